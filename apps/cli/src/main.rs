@@ -1,0 +1,2 @@
+//! The phea command.
+fn main() {}

@@ -1,0 +1,115 @@
+//! Recorded expressions: a model equation run once with [`Recorded`] numbers becomes data.
+//!
+//! An [`Expression`] is a list of operations over named parameters with one or more results. It is evaluated over any
+//! [`Scalar`] (numbers, dual numbers, later intervals), printed, and turned into code, without the function it came
+//! from. Equal sub-expressions are recorded once; operations on constants are done while recording.
+
+mod node;
+mod recording;
+
+pub use node::{Binary, Node, NodeIndex, Unary};
+pub use recording::Recorded;
+
+use crate::scalar::Scalar;
+
+/// Operations over named parameters, in an order in which each uses only earlier ones, and the results they give.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expression {
+    parameters: Vec<String>,
+    nodes: Vec<Node>,
+    results: Vec<NodeIndex>,
+}
+
+impl Expression {
+    /// Runs `equations` once on the named parameters and keeps what it did.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::expression::Expression;
+    /// let area = Expression::record(&["width", "height"], |p| vec![p[0] * p[1]]);
+    /// assert_eq!(area.evaluate(&[2.0, 3.0]), vec![6.0]);
+    /// assert_eq!(area.to_string(), "width*height");
+    /// ```
+    pub fn record<F>(parameters: &[&str], equations: F) -> Expression
+    where
+        F: for<'tape> FnOnce(&[Recorded<'tape>]) -> Vec<Recorded<'tape>>,
+    {
+        let (nodes, results) = recording::record(parameters.len(), equations);
+        Expression { parameters: parameters.iter().map(|name| name.to_string()).collect(), nodes, results }
+    }
+
+    /// Names of the parameters, in the order in which [`Expression::evaluate`] takes their values.
+    pub fn parameters(&self) -> &[String] {
+        &self.parameters
+    }
+
+    /// The operations; each refers only to earlier ones.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Number of results.
+    pub fn result_count(&self) -> usize {
+        self.results.len()
+    }
+
+    /// All results for these values of the parameters. A missing value counts as NaN, a surplus one is not used.
+    pub fn evaluate<S: Scalar>(&self, parameters: &[S]) -> Vec<S> {
+        let mut values: Vec<S> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let value = node.evaluate(parameters, &values);
+            values.push(value);
+        }
+        self.results.iter().map(|&index| values[index]).collect()
+    }
+}
+
+impl std::fmt::Display for Expression {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let texts: Vec<String> =
+            self.results.iter().map(|&index| node::text(&self.nodes, &self.parameters, index)).collect();
+        formatter.write_str(&texts.join("; "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Dual;
+
+    fn equations<S: Scalar>(p: &[S]) -> Vec<S> {
+        let shared = (p[0] + p[1]).sqrt();
+        vec![
+            shared * p[1] - S::from(3.0) / (shared + S::from(1.0)),
+            S::select(p[0].less_than(p[1]), p[0].exp(), (-p[1]).abs().ln()),
+        ]
+    }
+
+    #[test]
+    fn recording_and_running_agree_to_the_bit() {
+        let expression = Expression::record(&["a", "b"], |p| equations(p));
+        for values in [[0.5, 2.0], [2.0, 0.5], [1.0, 1.0]] {
+            assert_eq!(expression.evaluate(&values), equations(&values));
+            let duals = [Dual::<2>::variable(values[0], 0), Dual::<2>::variable(values[1], 1)];
+            assert_eq!(expression.evaluate(&duals), equations(&duals));
+        }
+    }
+
+    #[test]
+    fn equal_terms_are_recorded_once_and_constants_folded() {
+        let expression = Expression::record(&["a"], |p| {
+            let two = Recorded::from(1.0) + Recorded::from(1.0);
+            vec![(p[0] * two) + (p[0] * two)]
+        });
+        // a, 2, a*2, (a*2)+(a*2)
+        assert_eq!(expression.nodes().len(), 4);
+        assert_eq!(expression.evaluate(&[3.0]), vec![12.0]);
+    }
+
+    #[test]
+    fn text_keeps_the_precedence() {
+        let expression =
+            Expression::record(&["a", "b"], |p| vec![(p[0] - (p[1] - p[0])) / (p[0] * p[1]), -p[0]]);
+        assert_eq!(expression.to_string(), "(a - (b - a))/(a*b); -a");
+    }
+}

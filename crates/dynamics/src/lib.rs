@@ -1,0 +1,13 @@
+//! Systems without a fluid: the scalar every model equation is written over, recorded expressions, linear systems,
+//! their frequency and time responses, controllers, and the uncertain plant that robust design works on.
+//!
+//! SI units inside, angles in radians, frequencies in rad/s, polynomials with the highest power first.
+
+pub mod controller;
+pub mod expression;
+pub mod frequency;
+pub mod linear;
+pub mod portable;
+pub mod scalar;
+pub mod time_response;
+pub mod uncertain_plant;

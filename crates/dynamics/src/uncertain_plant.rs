@@ -1,0 +1,1 @@
+//! The bridge from any plant to robust design.

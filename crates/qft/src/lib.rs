@@ -1,0 +1,1 @@
+//! Quantitative Feedback Theory.
