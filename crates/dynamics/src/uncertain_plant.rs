@@ -1,1 +1,263 @@
-//! The bridge from any plant to robust design.
+//! The bridge from any plant to robust design: a rational function of s whose coefficients are recorded expressions of
+//! named, bounded parameters.
+//!
+//! Whatever the plant is made of (valve, hose and cylinder, or a formula in a file), robust design sees only this value:
+//! it can evaluate a plant at any point of the parameter box, over numbers, dual numbers or intervals, and so search and
+//! prove between the grid points.
+
+use num_complex::Complex64;
+
+use crate::expression::{Expression, Recorded};
+use crate::portable;
+use crate::scalar::Scalar;
+
+/// One uncertain parameter: `minimum <= nominal <= maximum`, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UncertainParameter {
+    /// Name, as it stands in the project file.
+    pub name: String,
+    /// The value of plant 0.
+    pub nominal: f64,
+    /// Lower end of the box.
+    pub minimum: f64,
+    /// Upper end of the box.
+    pub maximum: f64,
+}
+
+/// A quotient of polynomials, highest power first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RationalCoefficients<S> {
+    /// Numerator coefficients.
+    pub numerator: Vec<S>,
+    /// Denominator coefficients.
+    pub denominator: Vec<S>,
+}
+
+/// One member of an uncertain plant: command to force, load motion to force, dead time of the loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantCoefficients<S> {
+    /// From the command to the controlled output, P(s).
+    pub command: RationalCoefficients<S>,
+    /// From the disturbance (for an actuator: load position, Pd = F_e/X_L) to the output, where the plant has one.
+    pub disturbance: Option<RationalCoefficients<S>>,
+    /// Dead time in the command path, s.
+    pub dead_time_s: S,
+}
+
+/// Why an uncertain plant cannot be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum UncertainPlantError {
+    /// A parameter's bounds do not enclose its nominal value, or are not finite.
+    #[error("parameter `{name}`: {minimum} <= {nominal} <= {maximum} does not hold")]
+    Bounds {
+        /// Name of the parameter.
+        name: String,
+        /// Its lower bound.
+        minimum: f64,
+        /// Its nominal value.
+        nominal: f64,
+        /// Its upper bound.
+        maximum: f64,
+    },
+    /// Two parameters share a name.
+    #[error("parameter `{0}` is listed twice")]
+    Duplicate(String),
+    /// A numerator or denominator without coefficients.
+    #[error("the {0} has no coefficients")]
+    Empty(&'static str),
+}
+
+/// A rational plant with dead time over a box of named parameters.
+///
+/// ```text
+/// P(s, p) = (n_0(p) s^k + ... + n_k(p)) / (d_0(p) s^m + ... + d_m(p)) e^(-s T(p)),     p in the box
+/// ```
+///
+/// # Example
+/// P = k a/(s (s + a)) with a lag between 1 and 10 rad/s:
+/// ```
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// let parameter = |name: &str| UncertainParameter { name: name.into(), nominal: 1.0, minimum: 1.0, maximum: 10.0 };
+/// let plant = UncertainPlant::record(vec![parameter("k"), parameter("a")], |p| PlantCoefficients {
+///     command: RationalCoefficients { numerator: vec![p[0] * p[1]], denominator: vec![1.0.into(), p[1], 0.0.into()] },
+///     disturbance: None,
+///     dead_time_s: 0.0.into(),
+/// })?;
+/// assert_eq!(plant.coefficients(&[2.0, 5.0]).command.denominator, vec![1.0, 5.0, 0.0]);
+/// // |P(j 1)| = 2 * 5 / |j (j + 5)|
+/// assert!((plant.response(&[2.0, 5.0], 1.0).norm_sqr() - 100.0 / 26.0).abs() < 1e-14);
+/// # Ok::<(), phea_dynamics::uncertain_plant::UncertainPlantError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct UncertainPlant {
+    parameters: Vec<UncertainParameter>,
+    coefficients: Expression,
+    command: (usize, usize),
+    disturbance: Option<(usize, usize)>,
+}
+
+impl UncertainPlant {
+    /// Records the plant's coefficients as expressions of its parameters.
+    ///
+    /// # Errors
+    /// A parameter whose bounds do not enclose its nominal value or is listed twice; an empty polynomial.
+    pub fn record<F>(
+        parameters: Vec<UncertainParameter>,
+        equations: F,
+    ) -> Result<UncertainPlant, UncertainPlantError>
+    where
+        F: for<'tape> FnOnce(&[Recorded<'tape>]) -> PlantCoefficients<Recorded<'tape>>,
+    {
+        check_parameters(&parameters)?;
+        let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+        let mut command = (0, 0);
+        let mut disturbance = None;
+        let coefficients = Expression::record(&names, |recorded| {
+            let plant = equations(recorded);
+            command = lengths(&plant.command);
+            disturbance = plant.disturbance.as_ref().map(lengths);
+            flatten(plant)
+        });
+        check_lengths(command)?;
+        disturbance.map_or(Ok(()), check_lengths)?;
+        Ok(UncertainPlant { parameters, coefficients, command, disturbance })
+    }
+
+    /// The parameters, in the order in which values are taken.
+    pub fn parameters(&self) -> &[UncertainParameter] {
+        &self.parameters
+    }
+
+    /// The recorded coefficients: command numerator, command denominator, the same of the disturbance path, dead time.
+    pub fn expression(&self) -> &Expression {
+        &self.coefficients
+    }
+
+    /// The nominal values, plant 0 of every family.
+    pub fn nominal(&self) -> Vec<f64> {
+        self.parameters.iter().map(|parameter| parameter.nominal).collect()
+    }
+
+    /// The member at these parameter values, over any scalar.
+    pub fn coefficients<S: Scalar>(&self, values: &[S]) -> PlantCoefficients<S> {
+        let mut flat = self.coefficients.evaluate(values).into_iter();
+        let mut rational = |(numerator, denominator): (usize, usize)| RationalCoefficients {
+            numerator: flat.by_ref().take(numerator).collect(),
+            denominator: flat.by_ref().take(denominator).collect(),
+        };
+        let command = rational(self.command);
+        let disturbance = self.disturbance.map(&mut rational);
+        PlantCoefficients { command, disturbance, dead_time_s: flat.next().unwrap_or(S::from(0.0)) }
+    }
+
+    /// P(j w) of the member at these parameter values, dead time included.
+    pub fn response(&self, values: &[f64], frequency_rad_per_s: f64) -> Complex64 {
+        let plant = self.coefficients(values);
+        let delay = portable::exp_complex(Complex64::new(0.0, -frequency_rad_per_s * plant.dead_time_s));
+        plant.command.at_frequency(frequency_rad_per_s) * delay
+    }
+}
+
+impl RationalCoefficients<f64> {
+    /// The quotient at s = j w, by Horner's rule.
+    pub fn at_frequency(&self, frequency_rad_per_s: f64) -> Complex64 {
+        let s = Complex64::new(0.0, frequency_rad_per_s);
+        let polynomial =
+            |coefficients: &[f64]| coefficients.iter().fold(Complex64::new(0.0, 0.0), |sum, &c| sum * s + c);
+        polynomial(&self.numerator) / polynomial(&self.denominator)
+    }
+}
+
+fn check_parameters(parameters: &[UncertainParameter]) -> Result<(), UncertainPlantError> {
+    for (index, parameter) in parameters.iter().enumerate() {
+        let UncertainParameter { name, nominal, minimum, maximum } = parameter;
+        let ordered = minimum <= nominal && nominal <= maximum && minimum.is_finite() && maximum.is_finite();
+        if !ordered {
+            return Err(UncertainPlantError::Bounds {
+                name: name.clone(),
+                minimum: *minimum,
+                nominal: *nominal,
+                maximum: *maximum,
+            });
+        }
+        if parameters.iter().take(index).any(|earlier| earlier.name == *name) {
+            return Err(UncertainPlantError::Duplicate(name.clone()));
+        }
+    }
+    Ok(())
+}
+
+fn check_lengths((numerator, denominator): (usize, usize)) -> Result<(), UncertainPlantError> {
+    match (numerator, denominator) {
+        (0, _) => Err(UncertainPlantError::Empty("numerator")),
+        (_, 0) => Err(UncertainPlantError::Empty("denominator")),
+        _ => Ok(()),
+    }
+}
+
+fn lengths<S>(rational: &RationalCoefficients<S>) -> (usize, usize) {
+    (rational.numerator.len(), rational.denominator.len())
+}
+
+fn flatten<S>(plant: PlantCoefficients<S>) -> Vec<S> {
+    let mut flat = plant.command.numerator;
+    flat.extend(plant.command.denominator);
+    if let Some(disturbance) = plant.disturbance {
+        flat.extend(disturbance.numerator);
+        flat.extend(disturbance.denominator);
+    }
+    flat.push(plant.dead_time_s);
+    flat
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameter(minimum: f64, nominal: f64, maximum: f64) -> UncertainParameter {
+        UncertainParameter { name: "k".into(), nominal, minimum, maximum }
+    }
+
+    fn integrator<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
+        PlantCoefficients {
+            command: RationalCoefficients {
+                numerator: vec![p[0]],
+                denominator: vec![1.0.into(), 0.0.into()],
+            },
+            disturbance: Some(RationalCoefficients { numerator: vec![-p[0]], denominator: vec![2.0.into()] }),
+            dead_time_s: 0.5.into(),
+        }
+    }
+
+    #[test]
+    fn both_paths_and_the_dead_time_come_back() {
+        let plant = UncertainPlant::record(vec![parameter(1.0, 2.0, 3.0)], integrator).unwrap();
+        let member = plant.coefficients(&[3.0]);
+        assert_eq!(
+            member.command,
+            RationalCoefficients { numerator: vec![3.0], denominator: vec![1.0, 0.0] }
+        );
+        assert_eq!(
+            member.disturbance,
+            Some(RationalCoefficients { numerator: vec![-3.0], denominator: vec![2.0] })
+        );
+        // ORIGIN: analytic, 3/(j pi) e^(-j pi/2) = -3/pi
+        let response = plant.response(&[3.0], std::f64::consts::PI);
+        assert!((response - Complex64::new(-3.0 / std::f64::consts::PI, 0.0)).norm_sqr() < 1e-30);
+    }
+
+    #[test]
+    fn impossible_boxes_are_refused() {
+        for (minimum, nominal, maximum) in
+            [(2.0, 1.0, 3.0), (1.0, 4.0, 3.0), (f64::NAN, 1.0, 2.0), (1.0, 2.0, f64::INFINITY)]
+        {
+            let refused = UncertainPlant::record(vec![parameter(minimum, nominal, maximum)], integrator);
+            assert!(matches!(refused, Err(UncertainPlantError::Bounds { .. })));
+        }
+        let twice = vec![parameter(1.0, 2.0, 3.0); 2];
+        assert_eq!(
+            UncertainPlant::record(twice, integrator),
+            Err(UncertainPlantError::Duplicate("k".into()))
+        );
+    }
+}
