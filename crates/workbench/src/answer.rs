@@ -1,0 +1,69 @@
+//! What a command answers: a text for people, one JSON object for programs, and files.
+//!
+//! Each command has one typed output; this module gives them all the same envelope, the same treatment of numbers that
+//! do not exist, and the same tables.
+
+mod number;
+mod table;
+
+use serde::Serialize;
+
+pub use number::{Number, significant};
+pub use table::table;
+
+use crate::project::Loaded;
+
+/// Version of the JSON layout.
+pub const SCHEMA: u32 = 1;
+
+/// A file that a command produced, named relative to the output folder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputFile {
+    /// File name with its ending.
+    pub name: String,
+    /// Content.
+    pub bytes: Vec<u8>,
+}
+
+/// What a command has to say, ready to be printed and written by a shell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// Tables and short sentences for people.
+    pub text: String,
+    /// One JSON object.
+    pub json: String,
+    /// Files for the output folder.
+    pub files: Vec<OutputFile>,
+    /// Whether the answer is yes; a no ends the command with status 1.
+    pub affirmative: bool,
+}
+
+/// What every JSON object carries beside the command's own keys.
+#[derive(Clone, Debug, Serialize)]
+struct Envelope<'a, Body> {
+    schema: u32,
+    version: &'static str,
+    command: &'static str,
+    title: &'a str,
+    project_sha256: &'a str,
+    settings: &'a [String],
+    catalogue_files: &'a [String],
+    #[serde(flatten)]
+    body: Body,
+}
+
+/// The JSON object of a command on a project.
+pub fn json<Body: Serialize>(command: &'static str, loaded: &Loaded, body: Body) -> String {
+    let envelope = Envelope {
+        schema: SCHEMA,
+        version: env!("CARGO_PKG_VERSION"),
+        command,
+        title: &loaded.project.title,
+        project_sha256: &loaded.sha256,
+        settings: &loaded.settings,
+        catalogue_files: &loaded.catalogue_files,
+        body,
+    };
+    // Every output type has string keys and finite numbers by construction, so that nothing can fail here.
+    serde_json::to_string_pretty(&envelope).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
+}

@@ -1,0 +1,17 @@
+use comfy_table::Table;
+
+/// An empty table with these headings, aligned with spaces so that it can be read, searched and pasted anywhere.
+///
+/// # Example
+/// ```
+/// let mut table = phea_workbench::answer::table(&["quantity", "value"]);
+/// table.add_row(["stiffness", "2.233e6 N/m"]);
+/// assert_eq!(table.to_string().lines().count(), 3);
+/// ```
+pub fn table(headings: &[&str]) -> Table {
+    let mut table = Table::new();
+    // Only a rule of hyphens under the headings; no frame.
+    table.load_preset("     --            ");
+    table.set_header(headings);
+    table
+}

@@ -1,0 +1,77 @@
+//! Plain-text equations such as `K_H = A_u^2 beta_e/V` set with italics, subscripts and superscripts.
+
+use maud::{Markup, PreEscaped, html};
+
+/// Sets a plain-text equation for a page: `_` and `^` take the next word or a `{group}`, single letters are italic.
+///
+/// # Example
+/// ```
+/// use phea_workbench::report::typeset;
+/// let markup = typeset("K_H = A^2/V_{ho}").into_string();
+/// assert!(markup.contains("<i>K</i><sub>H</sub>") && markup.contains("<sup>2</sup>"));
+/// ```
+pub fn typeset(equation: &str) -> Markup {
+    let mut inside = String::new();
+    let mut rest = equation;
+    while let Some(first) = rest.chars().next() {
+        let after = &rest[first.len_utf8()..];
+        rest = match first {
+            '_' | '^' => {
+                let (script, remainder) = script(after);
+                let text = escaped(script);
+                let tag = if first == '_' { "sub" } else { "sup" };
+                inside.push_str(&format!("<{tag}>{text}</{tag}>"));
+                remainder
+            }
+            _ if first.is_alphabetic() => {
+                let length = rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len());
+                let (word, remainder) = rest.split_at(length);
+                let word_text = escaped(word);
+                // One letter is a quantity; a longer word is a function's name or prose and stays upright.
+                if word.chars().count() == 1 {
+                    inside.push_str(&format!("<i>{word_text}</i>"));
+                } else {
+                    inside.push_str(&word_text);
+                }
+                remainder
+            }
+            _ => {
+                inside.push_str(&escaped(&first.to_string()));
+                after
+            }
+        };
+    }
+    html! { span.equation { (PreEscaped(inside)) } }
+}
+
+/// The operand of `_` or `^` and what follows it.
+fn script(text: &str) -> (&str, &str) {
+    if let Some((group, remainder)) = text.strip_prefix('{').and_then(|grouped| grouped.split_once('}')) {
+        return (group, remainder);
+    }
+    let signed = usize::from(text.starts_with('-'));
+    let length = text[signed..].find(|c: char| !c.is_alphanumeric()).map_or(text.len(), |end| end + signed);
+    text.split_at(length)
+}
+
+fn escaped(text: &str) -> String {
+    html! { (text) }.into_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_escaped_and_scripts_end_where_they_should() {
+        let check = |equation: &str, expected: &str| {
+            assert_eq!(typeset(equation).into_string(), format!("<span class=\"equation\">{expected}</span>"));
+        };
+        check("a < b", "<i>a</i> &lt; <i>b</i>");
+        check("V_{A0}^2", "<i>V</i><sub>A0</sub><sup>2</sup>");
+        check("s^-1", "<i>s</i><sup>-1</sup>");
+        check("sqrt(p_S)", "sqrt(<i>p</i><sub>S</sub>)");
+        check("β_e_", "<i>β</i><sub>e</sub><sub></sub>");
+        check("x^{", "<i>x</i><sup></sup>{");
+    }
+}

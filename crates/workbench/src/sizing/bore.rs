@@ -1,0 +1,90 @@
+use std::f64::consts::PI;
+
+use super::{Decision, SizingProblem};
+use crate::answer::significant;
+
+/// What the oil velocity says about a bore.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoreVerdict {
+    /// The velocity is within the recommended range.
+    Recommended,
+    /// Slower than recommended: larger and dearer than necessary, but sound.
+    Slow,
+    /// Faster than recommended: refused.
+    TooFast,
+}
+
+/// A bore on the market and the oil velocity in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CommercialBore {
+    /// Dash size or product.
+    pub name: String,
+    /// m.
+    pub bore_m: f64,
+    /// Mean oil velocity at the largest flow, m/s.
+    pub oil_velocity_m_per_s: f64,
+    /// What it says.
+    pub verdict: BoreVerdict,
+}
+
+/// Mean oil velocity in a bore, m/s: 4 q/(pi D^2), thesis (6.17).
+pub(super) fn oil_velocity(problem: &SizingProblem, bore: f64) -> f64 {
+    4.0 * problem.maximum_flow / (PI * bore * bore)
+}
+
+pub(super) fn verdict(problem: &SizingProblem, bore: f64) -> BoreVerdict {
+    let velocity = oil_velocity(problem, bore);
+    let [slowest, fastest] = problem.oil_velocity;
+    if velocity > fastest {
+        BoreVerdict::TooFast
+    } else if velocity < slowest {
+        BoreVerdict::Slow
+    } else {
+        BoreVerdict::Recommended
+    }
+}
+
+/// Bores at the highest and at the lowest recommended velocity, m: D = sqrt(4 q/(pi v)), thesis (6.17).
+pub(super) fn range(problem: &SizingProblem) -> [f64; 2] {
+    let [slowest, fastest] = problem.oil_velocity;
+    [fastest, slowest].map(|velocity| (4.0 * problem.maximum_flow / (PI * velocity)).sqrt())
+}
+
+/// Every bore of market and catalogue, smallest first, and the record of steps c.2 to c.4.
+pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<Decision>) -> Vec<CommercialBore> {
+    let offered = problem.hoses.iter().map(|option| (option.name.clone(), option.hose.bore));
+    let mut bores: Vec<CommercialBore> = problem
+        .market_bores
+        .iter()
+        .cloned()
+        .chain(offered)
+        .map(|(name, bore_m)| CommercialBore {
+            name,
+            bore_m,
+            oil_velocity_m_per_s: oil_velocity(problem, bore_m),
+            verdict: verdict(problem, bore_m),
+        })
+        .collect();
+    bores.sort_by(|one, other| one.bore_m.total_cmp(&other.bore_m));
+    let [smallest, largest] = range(problem).map(|bore| significant(bore * 1e3, 3));
+    let feasible: Vec<&str> = bores
+        .iter()
+        .filter(|bore| bore.verdict == BoreVerdict::Recommended)
+        .map(|bore| bore.name.as_str())
+        .collect();
+    let [slowest, fastest] = problem.oil_velocity;
+    decisions.push(Decision {
+        step: "c.2",
+        text: format!("Oil velocity {slowest} to {fastest} m/s: above rejects a bore, below only warns."),
+    });
+    decisions.push(Decision {
+        step: "c.3",
+        text: format!(
+            "Largest flow {} L/min ({}): bores from {smallest} to {largest} mm, of those on the market {}.",
+            significant(problem.maximum_flow * 6e4, 4),
+            problem.maximum_flow_origin,
+            if feasible.is_empty() { "none".to_string() } else { feasible.join(", ") }
+        ),
+    });
+    bores
+}

@@ -1,0 +1,164 @@
+use phea_hydraulics::line::{Line, Member};
+use phea_hydraulics::stiffness::{LineLength, StiffnessModel, StrokeStiffness, line_length_for_stiffness};
+
+use super::{Decision, HoseOption, Question, SizingProblem};
+use crate::answer::significant;
+
+/// One trial of the iteration over the gain, steps f to j.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GainStep {
+    /// K_p, V/N.
+    pub gain_v_per_n: f64,
+    /// K_H of equation 6.16, N/m; infinite at or below the pole.
+    pub stiffness_n_per_m: f64,
+    /// L_ho for it, m: zero where no hose is needed.
+    pub length_m: f64,
+}
+
+/// A hose with the length and gain that one branch of the flowchart found for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Branch {
+    /// Whether the gain was given or searched for (left branch) and not the length (right branch).
+    pub by_gain: bool,
+    /// Stiffness model.
+    pub model: StiffnessModel,
+    /// The trials of the left branch.
+    pub steps: Vec<GainStep>,
+    /// Length of each line, m; zero where no hose is needed.
+    pub length_m: f64,
+    /// Stiffness over the stroke at that length.
+    pub stiffness: StrokeStiffness,
+    /// Gain for the desired time constant at the least stiffness, V/N.
+    pub gain_v_per_n: f64,
+}
+
+/// The branches of the flowchart that answer the question for one hose and one stiffness model.
+pub(super) fn branches(
+    problem: &SizingProblem,
+    option: &HoseOption,
+    model: StiffnessModel,
+    question: Question,
+) -> Vec<Branch> {
+    match question {
+        Question::Gain(gain) => vec![at_gain(problem, option, model, vec![], gain)],
+        Question::Length(length) => vec![at_length(problem, option, model, length)],
+        Question::Both => {
+            vec![search(problem, option, model), at_length(problem, option, model, problem.available_length())]
+        }
+    }
+}
+
+/// Steps k and l: the stiffness of this length, and the gain it needs.
+fn at_length(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel, length: f64) -> Branch {
+    let stiffness = problem.stroke_stiffness(option.hose, length, model);
+    let gain_v_per_n = problem.gain_for_stiffness(stiffness.minimum);
+    Branch { by_gain: false, model, steps: vec![], length_m: length, stiffness, gain_v_per_n }
+}
+
+/// Steps g and h at one gain.
+fn at_gain(
+    problem: &SizingProblem,
+    option: &HoseOption,
+    model: StiffnessModel,
+    mut steps: Vec<GainStep>,
+    gain: f64,
+) -> Branch {
+    let step = gain_step(problem, option, model, gain);
+    steps.push(step);
+    let stiffness = problem.stroke_stiffness(option.hose, step.length_m, model);
+    Branch { by_gain: true, model, steps, length_m: step.length_m, stiffness, gain_v_per_n: gain }
+}
+
+/// Steps f to j: the gain starts at 1 V/N and is halved until the hose is acceptably short or the gain too small; then
+/// the largest gain whose hose is acceptable lies between the last two trials and is found by bisection.
+fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -> Branch {
+    let longest = problem.available_length();
+    let mut gain = 1.0;
+    let mut steps = Vec::new();
+    loop {
+        let step = gain_step(problem, option, model, gain);
+        if step.length_m <= longest || gain / 2.0 < problem.minimum_gain {
+            break;
+        }
+        steps.push(step);
+        gain /= 2.0;
+    }
+    if gain_step(problem, option, model, gain).length_m > longest {
+        // Even the smallest practical gain asks for too long a hose.
+        return at_gain(problem, option, model, steps, problem.minimum_gain.max(problem.pole_gain()));
+    }
+    let (mut acceptable, mut too_long) = (gain, gain * 2.0);
+    // 40 halvings leave a relative interval of 1e-12.
+    for _ in 0..40 {
+        let middle = 0.5 * (acceptable + too_long);
+        if gain_step(problem, option, model, middle).length_m <= longest {
+            acceptable = middle;
+        } else {
+            too_long = middle;
+        }
+    }
+    at_gain(problem, option, model, steps, acceptable)
+}
+
+fn gain_step(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel, gain: f64) -> GainStep {
+    let wanted = problem.stiffness_for_gain(gain);
+    // Below its pole equation 6.16 turns negative: not even a rigid transmission is stiff enough for this gain.
+    let stiffness_n_per_m = if wanted > 0.0 { wanted } else { f64::INFINITY };
+    let line = Line::Hose { hose: option.hose, length: 1.0 };
+    let length = line_length_for_stiffness(
+        model,
+        problem.fluid_modulus,
+        &problem.cylinder,
+        &line,
+        Member::Nominal,
+        stiffness_n_per_m,
+    );
+    let length_m = match length {
+        LineLength::Length(length) => length,
+        LineLength::NotNeeded { .. } => 0.0,
+        LineLength::OutOfReach => f64::INFINITY,
+    };
+    GainStep { gain_v_per_n: gain, stiffness_n_per_m, length_m }
+}
+
+/// The model's name in the project file.
+pub(super) fn model_name(model: StiffnessModel) -> &'static str {
+    match model {
+        StiffnessModel::Uniform => "uniform",
+        StiffnessModel::ByVolume => "by_volume",
+    }
+}
+
+impl Branch {
+    pub(super) fn record(&self, option: &HoseOption, decisions: &mut Vec<Decision>) {
+        let name = &option.name;
+        let model = model_name(self.model);
+        let number = |value| significant(value, 4);
+        let mut decide = |step, text| decisions.push(Decision { step, text });
+        if self.by_gain {
+            for trial in &self.steps {
+                decide(
+                    "g, h",
+                    format!(
+                        "{name}, {model}: K_p = {} V/N asks for K_H = {} N/m (6.16), {} m of hose a line.",
+                        number(trial.gain_v_per_n),
+                        number(trial.stiffness_n_per_m),
+                        number(trial.length_m)
+                    ),
+                );
+            }
+            let outcome = if self.length_m == 0.0 { "no hose is needed" } else { "this is the length taken" };
+            decide("i, j", format!("{name}, {model}: {} m a line at K_p = {} V/N; {outcome}.", number(self.length_m), number(self.gain_v_per_n)));
+        } else {
+            decide(
+                "k, l",
+                format!(
+                    "{name}, {model}: {} m a line gives K_H = {} N/m at its least (6.26), which needs K_p = {} V/N (6.27).",
+                    number(self.length_m),
+                    number(self.stiffness.minimum),
+                    number(self.gain_v_per_n)
+                ),
+            );
+        }
+    }
+}

@@ -1,0 +1,167 @@
+use super::branch::Branch;
+use super::{BoreVerdict, HoseOption, SizingProblem, bore};
+use crate::answer::significant;
+
+/// How much a finding weighs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// The candidate is not accepted.
+    Rejects,
+    /// The candidate stands, but look.
+    Warns,
+}
+
+/// One reason for or against a candidate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// How much it weighs.
+    pub severity: Severity,
+    /// The reason, with its numbers.
+    pub text: String,
+}
+
+/// A hose, its length and its gain, judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// The hose.
+    pub option: HoseOption,
+    /// Length, stiffness and gain.
+    pub branch: Branch,
+    /// Oil velocity, m/s.
+    pub oil_velocity_m_per_s: f64,
+    /// Pressure surge when the largest flow is stopped at once, Pa.
+    pub surge_pressure_pa: f64,
+    /// Closed-loop time constant at the least and at the greatest stiffness over the stroke, s.
+    pub time_constant_s: [f64; 2],
+    /// Steady-state gain K_SS at the null flow-pressure coefficient, and at its largest where stated.
+    pub steady_state_gain: [f64; 2],
+    /// Reasons, those that reject first.
+    pub findings: Vec<Finding>,
+}
+
+impl Candidate {
+    /// Whether nothing rejects it.
+    pub fn accepted(&self) -> bool {
+        self.findings.iter().all(|finding| finding.severity != Severity::Rejects)
+    }
+
+    /// Length of each line, m.
+    pub fn length_m(&self) -> f64 {
+        self.branch.length_m
+    }
+}
+
+/// Step i or m and the checks a hose must pass besides: velocity, stock, pressure with surge, bending, settling.
+pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branch) -> Candidate {
+    let oil_velocity_m_per_s = bore::oil_velocity(problem, option.hose.bore);
+    let surge_pressure_pa = surge_pressure(problem, option, oil_velocity_m_per_s);
+    let largest_loss = problem.flow_pressure_coefficient_maximum.unwrap_or(problem.flow_pressure_coefficient);
+    let time_constant = |stiffness| {
+        problem.closed_loop_time_constant(stiffness, branch.gain_v_per_n, problem.flow_pressure_coefficient)
+    };
+    let mut candidate = Candidate {
+        option: option.clone(),
+        oil_velocity_m_per_s,
+        surge_pressure_pa,
+        time_constant_s: [time_constant(branch.stiffness.minimum), time_constant(branch.stiffness.maximum)],
+        steady_state_gain: [problem.flow_pressure_coefficient, largest_loss]
+            .map(|loss| problem.steady_state_gain(branch.gain_v_per_n, loss)),
+        branch,
+        findings: Vec::new(),
+    };
+    let mut findings = Vec::new();
+    velocity(problem, &candidate, &mut findings);
+    length(problem, &candidate, &mut findings);
+    gain(problem, &candidate, &mut findings);
+    pressure(problem, &candidate, &mut findings);
+    bending(&candidate, &mut findings);
+    settling(problem, &candidate, &mut findings);
+    findings.sort_by_key(|finding| finding.severity != Severity::Rejects);
+    candidate.findings = findings;
+    candidate
+}
+
+/// Pressure surge of a flow stopped at once, Pa: rho c v = v sqrt(rho beta_e), Joukowsky (1898).
+fn surge_pressure(problem: &SizingProblem, option: &HoseOption, velocity: f64) -> f64 {
+    let wall = option.hose.wall_modulus(phea_hydraulics::line::Member::Maximum);
+    let modulus = phea_hydraulics::line::series_modulus(problem.fluid_modulus, wall);
+    velocity * (problem.density * modulus).sqrt()
+}
+
+fn rejects(findings: &mut Vec<Finding>, text: String) {
+    findings.push(Finding { severity: Severity::Rejects, text });
+}
+
+fn warns(findings: &mut Vec<Finding>, text: String) {
+    findings.push(Finding { severity: Severity::Warns, text });
+}
+
+fn velocity(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+    let velocity = significant(candidate.oil_velocity_m_per_s, 3);
+    let [slowest, fastest] = problem.oil_velocity;
+    match bore::verdict(problem, candidate.option.hose.bore) {
+        BoreVerdict::TooFast => rejects(findings, format!("oil runs at {velocity} m/s, above {fastest} m/s")),
+        BoreVerdict::Slow => {
+            warns(findings, format!("oil runs at {velocity} m/s, below {slowest} m/s: a smaller bore would carry the flow"));
+        }
+        BoreVerdict::Recommended => {}
+    }
+}
+
+fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+    let [shortest, longest] = problem.hose_length;
+    let length = candidate.length_m();
+    if length == 0.0 {
+        rejects(findings, "no hose is needed: with rigid lines the actuator is already as compliant as this asks for".to_string());
+    } else if length < shortest {
+        rejects(findings, format!("{} m a line is shorter than the acceptable {shortest} m", significant(length, 3)));
+    } else if length > longest * (1.0 + 1e-9) {
+        rejects(findings, format!("{} m a line is longer than the acceptable {longest} m", significant(length, 3)));
+    }
+    if let Some(stock) = problem.stock_length.filter(|stock| 2.0 * length > stock * (1.0 + 1e-9)) {
+        rejects(findings, format!("both lines take {} m, the stock is {stock} m", significant(2.0 * length, 3)));
+    }
+}
+
+fn gain(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+    let gain = candidate.branch.gain_v_per_n;
+    if gain <= problem.pole_gain() {
+        rejects(findings, format!("K_p = {} V/N is not above {} V/N, where even a rigid transmission is too slow", significant(gain, 3), significant(problem.pole_gain(), 3)));
+    } else if gain < problem.minimum_gain {
+        rejects(findings, format!("K_p = {} V/N is below the practical {} V/N: the valve would hardly be driven", significant(gain, 3), significant(problem.minimum_gain, 3)));
+    }
+}
+
+fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+    let bar = |pressure: f64| significant(pressure / 1e5, 3);
+    let peak = problem.supply_pressure + candidate.surge_pressure_pa;
+    match candidate.option.working_pressure {
+        None => warns(findings, format!("the catalogue gives no working pressure: the hose must bear {} bar with surge ({} bar supply)", bar(peak), bar(problem.supply_pressure))),
+        Some(working) if working < problem.supply_pressure => {
+            rejects(findings, format!("working pressure {} bar is below the supply's {} bar", bar(working), bar(problem.supply_pressure)));
+        }
+        Some(working) if working < peak => {
+            rejects(findings, format!("working pressure {} bar is below supply and surge, {} bar", bar(working), bar(peak)));
+        }
+        Some(_) => {}
+    }
+}
+
+fn bending(candidate: &Candidate, findings: &mut Vec<Finding>) {
+    let Some(radius) = candidate.option.minimum_bend_radius else { return };
+    let quarter_turn = std::f64::consts::FRAC_PI_2 * radius;
+    if candidate.length_m() > 0.0 && candidate.length_m() < quarter_turn {
+        warns(findings, format!("a bend of 90 degrees at the least radius of {} mm takes {} m, more than the hose has", significant(radius * 1e3, 3), significant(quarter_turn, 3)));
+    }
+}
+
+fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+    let slowest = candidate.time_constant_s.into_iter().fold(0.0, f64::max);
+    if slowest > problem.time_constant * (1.0 + 1e-6) {
+        warns(findings, format!("the closed loop's time constant is {} s, slower than {} s", significant(slowest, 3), significant(problem.time_constant, 3)));
+    }
+    let [at_null, at_largest] = candidate.steady_state_gain;
+    if at_largest < 0.95 {
+        warns(findings, format!("a proportional loop reaches only {} % of the reference at null and {} % at the largest K_c: integral action is needed", significant(100.0 * at_null, 3), significant(100.0 * at_largest, 3)));
+    }
+}
