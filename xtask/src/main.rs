@@ -1,2 +1,37 @@
-//! Chores of the repository.
-fn main() {}
+//! Chores of the repository, written in Rust so that they run wherever the project does.
+//!
+//! `cargo xtask ci` is the test command; `cargo xtask tidy` checks the rules that neither the compiler nor clippy knows.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a chore talks to the person who started it")]
+
+mod ci;
+mod repository;
+mod tidy;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+usage: cargo xtask CHORE
+
+  ci [STAGE]...    the test command: every stage, or only those named
+  tidy             the rules of the house that compiler and clippy do not know";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match words.as_slice() {
+        ["ci", stages @ ..] => ci::run(&root(), stages),
+        ["tidy"] => tidy::report(&root()),
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// The repository's root: the folder above this package.
+fn root() -> PathBuf {
+    let package = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    package.parent().map_or(package.clone(), |folder| folder.to_path_buf())
+}

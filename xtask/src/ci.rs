@@ -1,0 +1,150 @@
+//! The test command: stages one after the other, the time of each in a table at the end.
+//!
+//! A stage that fails does not stop the later ones, so that one run tells everything there is to mend.
+
+mod comparisons;
+mod stories;
+mod tools;
+
+use std::path::Path;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// How a stage ended.
+pub(crate) enum Outcome {
+    /// All is well.
+    Passed,
+    /// Something is wrong: what, in a few words.
+    Failed(String),
+    /// The stage could not be run here, and why that is no fault of the project.
+    Skipped(String),
+}
+
+impl Outcome {
+    fn name(&self) -> &'static str {
+        match self {
+            Outcome::Passed => "passed",
+            Outcome::Failed(_) => "FAILED",
+            Outcome::Skipped(_) => "SKIPPED",
+        }
+    }
+
+    fn remark(&self) -> &str {
+        match self {
+            Outcome::Passed => "",
+            Outcome::Failed(remark) | Outcome::Skipped(remark) => remark,
+        }
+    }
+}
+
+type Stage = fn(&Path) -> Outcome;
+
+/// Cheap and telling first; what needs a network last.
+const STAGES: &[(&str, Stage)] = &[
+    ("formatting", formatting),
+    ("clippy", clippy),
+    ("tests", tests),
+    ("doctests", doctests),
+    ("stories", stories::run),
+    ("rustdoc", rustdoc),
+    ("tidy", tidy),
+    ("wasm32", wasm32),
+    ("comparisons", comparisons::run),
+];
+
+/// Runs the named stages, all of them when none is named; whether nothing failed.
+pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
+    let known: Vec<&str> = STAGES.iter().map(|(name, _)| *name).collect();
+    if let Some(unknown) = wanted.iter().find(|name| !known.contains(name)) {
+        eprintln!("no stage is called `{unknown}`; the stages are {}", known.join(", "));
+        return false;
+    }
+    let mut results = Vec::new();
+    for (name, stage) in STAGES.iter().filter(|(name, _)| wanted.is_empty() || wanted.contains(name)) {
+        println!("\n==== {name}");
+        let start = Instant::now();
+        let outcome = stage(root);
+        println!("==== {name}: {} {}", outcome.name(), outcome.remark());
+        results.push((*name, outcome, start.elapsed()));
+    }
+    summary(&results)
+}
+
+fn summary(results: &[(&str, Outcome, Duration)]) -> bool {
+    println!("\n{:<14}{:<9}{:>8}", "stage", "outcome", "seconds");
+    for (name, outcome, time) in results {
+        println!("{name:<14}{:<9}{:>8.1}  {}", outcome.name(), time.as_secs_f64(), outcome.remark());
+    }
+    let total: Duration = results.iter().map(|(_, _, time)| *time).sum();
+    println!("{:<14}{:<9}{:>8.1}\n", "all", "", total.as_secs_f64());
+    let count =
+        |wanted: fn(&Outcome) -> bool| results.iter().filter(|(_, outcome, _)| wanted(outcome)).count();
+    let failed = count(|outcome| matches!(outcome, Outcome::Failed(_)));
+    println!("{} passed, {failed} failed", count(|outcome| matches!(outcome, Outcome::Passed)));
+    failed == 0
+}
+
+/// Runs one command in the root, its output shown.
+fn execute(root: &Path, program: &str, arguments: &[&str]) -> Outcome {
+    execute_with(root, program, arguments, &[])
+}
+
+fn execute_with(root: &Path, program: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Outcome {
+    let line = format!("{program} {}", arguments.join(" "));
+    println!("$ {line}");
+    let status =
+        Command::new(program).args(arguments).envs(variables.iter().copied()).current_dir(root).status();
+    match status {
+        Ok(status) if status.success() => Outcome::Passed,
+        Ok(status) => Outcome::Failed(format!("`{line}`: {status}")),
+        Err(error) => Outcome::Failed(format!("`{line}`: {error}")),
+    }
+}
+
+fn formatting(root: &Path) -> Outcome {
+    match tools::component("rustfmt", "fmt") {
+        Ok(()) => execute(root, "cargo", &["fmt", "--all", "--check"]),
+        Err(missing) => Outcome::Failed(missing),
+    }
+}
+
+fn clippy(root: &Path) -> Outcome {
+    match tools::component("clippy", "clippy") {
+        Ok(()) => execute(root, "cargo", &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]),
+        Err(missing) => Outcome::Failed(missing),
+    }
+}
+
+/// Unit and integration tests but for the stories, which are a stage of their own.
+fn tests(root: &Path) -> Outcome {
+    let mut arguments =
+        vec!["test", "--workspace", "--lib", "--bins", "--tests", "--no-fail-fast", "--", "--exact"];
+    let names = stories::names(root);
+    for name in &names {
+        arguments.extend(["--skip", name]);
+    }
+    execute(root, "cargo", &arguments)
+}
+
+fn doctests(root: &Path) -> Outcome {
+    execute(root, "cargo", &["test", "--workspace", "--doc", "--no-fail-fast"])
+}
+
+fn rustdoc(root: &Path) -> Outcome {
+    execute_with(root, "cargo", &["doc", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")])
+}
+
+fn tidy(root: &Path) -> Outcome {
+    if crate::tidy::report(root) { Outcome::Passed } else { Outcome::Failed("see above".to_string()) }
+}
+
+/// The three lower crates build for the browser.
+fn wasm32(root: &Path) -> Outcome {
+    const TARGET: &str = "wasm32-unknown-unknown";
+    if let Err(missing) = tools::target(TARGET) {
+        println!("\n**** SKIPPED: {missing}\n**** nothing is known about {TARGET} from this run\n");
+        return Outcome::Skipped(missing);
+    }
+    let packages = ["-p", "phea-dynamics", "-p", "phea-hydraulics", "-p", "phea-qft"];
+    execute(root, "cargo", &[&["check", "--target", TARGET][..], &packages].concat())
+}

@@ -1,0 +1,34 @@
+//! Parts of the Rust toolchain that may have to be added first.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// Sees to it that `cargo SUBCOMMAND` works; says what is missing where it cannot.
+pub(super) fn component(name: &str, subcommand: &str) -> Result<(), String> {
+    let works = || quietly("cargo", &[subcommand, "--version"]);
+    if works() || (quietly("rustup", &["component", "add", name]) && works()) {
+        return Ok(());
+    }
+    Err(format!("`cargo {subcommand}` is missing and `rustup component add {name}` did not bring it"))
+}
+
+/// Sees to it that the standard library for this target is there; says what is missing where it cannot.
+pub(super) fn target(name: &str) -> Result<(), String> {
+    if is_target_there(name) || (quietly("rustup", &["target", "add", name]) && is_target_there(name)) {
+        return Ok(());
+    }
+    Err(format!("the target {name} is missing and `rustup target add {name}` did not bring it"))
+}
+
+fn is_target_there(name: &str) -> bool {
+    let printed = Command::new("rustc").args(["--print", "target-libdir", "--target", name]).output();
+    printed.is_ok_and(|output| {
+        let folder = String::from_utf8_lossy(&output.stdout).trim().to_string();
+        output.status.success() && Path::new(&folder).is_dir()
+    })
+}
+
+fn quietly(program: &str, arguments: &[&str]) -> bool {
+    let status = Command::new(program).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    status.is_ok_and(|status| status.success())
+}

@@ -1,0 +1,136 @@
+//! Every path and link that a document names exists.
+
+use super::Violation;
+use crate::repository::Repository;
+
+/// Folders at the root: a code span that starts with one of them is taken for a path.
+const FOLDERS: [&str; 7] = ["crates/", "apps/", "book/", "examples/", "xtask/", "comparisons/", ".ci/"];
+
+pub(super) fn check(repository: &Repository) -> Vec<Violation> {
+    let documents = repository.texts(|path| path.ends_with(".md"));
+    documents.flat_map(|(path, text)| check_document(repository, path, text)).collect()
+}
+
+fn check_document(repository: &Repository, path: &str, text: &str) -> Vec<Violation> {
+    let mut found = Vec::new();
+    for (number, line) in prose_lines(text) {
+        let links =
+            link_targets(line).into_iter().map(|target| (check_link(repository, path, target), target));
+        let spans = code_spans(line).into_iter().map(|span| (check_span(repository, span), span));
+        let broken = links.chain(spans).filter(|(fine, _)| !fine);
+        found.extend(
+            broken.map(|(_, target)| Violation::new(path, number, format!("`{target}` does not exist"))),
+        );
+    }
+    found
+}
+
+/// The lines outside fenced code, with their numbers.
+pub(super) fn prose_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut fenced = false;
+    text.lines().enumerate().filter_map(move |(index, line)| {
+        let fence = line.trim_start().starts_with("```");
+        let prose = !fenced && !fence;
+        fenced ^= fence;
+        prose.then_some((index + 1, line))
+    })
+}
+
+/// The targets of `[text](target)`.
+fn link_targets(line: &str) -> Vec<&str> {
+    let after = line.split("](").skip(1);
+    after
+        .filter_map(|rest| rest.split(')').next())
+        .map(|target| target.split(' ').next().unwrap_or(target))
+        .collect()
+}
+
+/// What stands between single backticks.
+pub(super) fn code_spans(line: &str) -> Vec<&str> {
+    line.split('`').skip(1).step_by(2).collect()
+}
+
+fn check_link(repository: &Repository, from: &str, target: &str) -> bool {
+    if target.contains("://") || target.starts_with("mailto:") {
+        return true;
+    }
+    let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+    let place = if file.is_empty() { from.to_string() } else { resolved(from, file) };
+    let heading =
+        |text: &str| prose_lines(text).any(|(_, line)| line.starts_with('#') && slug(line) == anchor);
+    repository.exists(&place) && (anchor.is_empty() || repository.text(&place).is_some_and(heading))
+}
+
+/// The path that `target` means in a document at `from`.
+fn resolved(from: &str, target: &str) -> String {
+    let mut parts: Vec<&str> = from.split('/').collect();
+    parts.pop();
+    for part in target.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => {
+                parts.pop();
+            }
+            name => parts.push(name),
+        }
+    }
+    parts.join("/")
+}
+
+/// The anchor that a heading gets: lower case, spaces to hyphens, other signs dropped.
+fn slug(heading: &str) -> String {
+    let words = heading.trim_start_matches('#').trim().to_lowercase();
+    let kept = words.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+}
+
+/// A code span that looks like a path of the repository must be one; `*` and capitals as in `NAME` stand for anything.
+fn check_span(repository: &Repository, span: &str) -> bool {
+    let looks_like_path = FOLDERS.iter().any(|folder| span.starts_with(folder)) && !span.contains(' ');
+    let placeholder =
+        |part: &str| part.contains(['*', '<', '{']) || part.chars().next().is_some_and(char::is_uppercase);
+    let known: Vec<&str> = span.split('/').take_while(|part| !placeholder(part)).collect();
+    !looks_like_path || repository.exists(&known.join("/"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn count(text: &str) -> usize {
+        let files = [
+            ("book/src/guide/units.md", text),
+            ("README.md", "# Two words, here\n"),
+            ("crates/a/src/b.rs", ""),
+        ];
+        check(&Repository::from_texts(&files)).len()
+    }
+
+    #[test]
+    fn links_lead_somewhere() {
+        assert_eq!(
+            count("[a](../../../README.md) [b](units.md) [c](https://example.org/x) [d](../guide)"),
+            0
+        );
+        assert_eq!(count("[a](README.md)"), 1);
+        assert_eq!(count("see [a](nowhere.md), [b](../nothing/)"), 2);
+    }
+
+    #[test]
+    fn anchors_are_headings() {
+        assert_eq!(count("[a](../../../README.md#two-words-here)"), 0);
+        assert_eq!(count("[a](../../../README.md#three-words)"), 1);
+        assert_eq!(count("# Here\n[a](#here) [b](#there)"), 1);
+    }
+
+    #[test]
+    fn paths_in_code_spans_exist() {
+        assert_eq!(count("`crates/a/src/b.rs`, `crates/a/*/golden.rs`, `crates/NAME/src`, `crates/a`"), 0);
+        assert_eq!(count("`crates/a/src/c.rs` and `crates/b/*`"), 2);
+    }
+
+    #[test]
+    fn fenced_code_is_left_alone() {
+        assert_eq!(count("```text\n[a](nowhere.md) `crates/none`\n```\n"), 0);
+    }
+}
