@@ -66,7 +66,7 @@ pub fn areas_from_diameters(piston: f64, rods: [f64; 2]) -> Result<[f64; 2], Par
     problems.positive("piston_diameter", piston);
     for (name, rod) in ["rod_diameter_a", "rod_diameter_b"].into_iter().zip(rods) {
         problems.require(name, rod, rod >= 0.0, "zero or positive");
-        problems.require(name, rod, !(rod >= piston), "less than the piston diameter");
+        problems.require(name, rod, rod < piston, "less than the piston diameter");
     }
     match problems.into_vec().into_iter().next() {
         Some(problem) => Err(problem),
