@@ -1,0 +1,96 @@
+//! The cylinder: areas, stroke, moving mass and chamber volumes, symmetric or not.
+
+use phea_dynamics::scalar::Scalar;
+
+use crate::parameter::{ParameterError, Problems};
+
+/// A double-acting cylinder. Units: m2, m, kg, m3.
+///
+/// The piston position x runs from 0 at the A end to the stroke at the B end, so chamber A grows with x.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder {
+    /// Piston area on the A side, A_A, in m2.
+    pub area_a: f64,
+    /// Piston area on the B side, A_B, in m2.
+    pub area_b: f64,
+    /// Stroke L in m.
+    pub stroke: f64,
+    /// Mass of piston, rods and everything fixed to them up to the force sensor, M, in kg.
+    pub moving_mass: f64,
+    /// Volume of chamber A that the piston never sweeps, without the line, in m3.
+    pub dead_volume_a: f64,
+    /// Volume of chamber B that the piston never sweeps, without the line, in m3.
+    pub dead_volume_b: f64,
+}
+
+impl Cylinder {
+    /// Whether both sides of the piston have the same area.
+    pub fn is_symmetric(&self) -> bool {
+        self.area_a == self.area_b
+    }
+
+    /// What about this cylinder is impossible; empty if nothing is.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("area_a", self.area_a);
+        problems.positive("area_b", self.area_b);
+        problems.positive("stroke", self.stroke);
+        problems.positive("moving_mass", self.moving_mass);
+        problems.not_negative("dead_volume_a", self.dead_volume_a);
+        problems.not_negative("dead_volume_b", self.dead_volume_b);
+        problems.into_vec()
+    }
+}
+
+/// Annulus areas in m2 on the A and B sides, from the piston diameter and the rod diameters on each side in m (zero
+/// for no rod).
+///
+/// ```text
+/// A_A = pi/4 (D_p^2 - D_rA^2)        A_B = pi/4 (D_p^2 - D_rB^2)
+/// ```
+///
+/// # Errors
+/// Negative diameters, and a rod as thick as its piston or thicker.
+///
+/// # Example
+/// ```
+/// use phea_hydraulics::cylinder::areas_from_diameters;
+/// let [area_a, area_b] = areas_from_diameters(0.05, [0.022, 0.022])?;
+/// assert_eq!(area_a, area_b);
+/// assert!((area_a - 1.58336e-3).abs() < 0.5e-8);
+/// assert!(areas_from_diameters(0.02, [0.022, 0.0]).is_err());
+/// # Ok::<(), phea_hydraulics::parameter::ParameterError>(())
+/// ```
+pub fn areas_from_diameters(piston: f64, rods: [f64; 2]) -> Result<[f64; 2], ParameterError> {
+    let mut problems = Problems::default();
+    problems.positive("piston_diameter", piston);
+    for (name, rod) in ["rod_diameter_a", "rod_diameter_b"].into_iter().zip(rods) {
+        problems.require(name, rod, rod >= 0.0, "zero or positive");
+        problems.require(name, rod, rod < piston, "less than the piston diameter");
+    }
+    match problems.into_vec().into_iter().next() {
+        Some(problem) => Err(problem),
+        None => Ok(rods.map(|rod| std::f64::consts::FRAC_PI_4 * (piston - rod) * (piston + rod))),
+    }
+}
+
+/// Swept and dead volumes of both chambers at piston position `x`, in m3, lines not included.
+///
+/// ```text
+/// V_A = V_A0 + A_A x        V_B = V_B0 + A_B (L - x)                  thesis (4.27), (4.28)
+/// ```
+///
+/// # Example
+/// ```
+/// use phea_hydraulics::cylinder::{Cylinder, chamber_volumes};
+/// let cylinder = Cylinder {
+///     area_a: 2e-3, area_b: 1e-3, stroke: 0.5, moving_mass: 10.0, dead_volume_a: 1e-5, dead_volume_b: 0.0,
+/// };
+/// assert_eq!(chamber_volumes(&cylinder, 0.25), [5.1e-4, 2.5e-4]);
+/// ```
+pub fn chamber_volumes<S: Scalar>(cylinder: &Cylinder, x: S) -> [S; 2] {
+    let volume_a = S::from(cylinder.dead_volume_a) + S::from(cylinder.area_a) * x;
+    let volume_b =
+        S::from(cylinder.dead_volume_b) + S::from(cylinder.area_b) * (S::from(cylinder.stroke) - x);
+    [volume_a, volume_b]
+}

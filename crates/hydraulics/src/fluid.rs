@@ -1,0 +1,117 @@
+//! The hydraulic fluid and the air entrained in it.
+
+use phea_dynamics::scalar::Scalar;
+
+use crate::parameter::{ParameterError, Problems};
+
+/// Atmospheric pressure in Pa absolute (ISO 2533 standard atmosphere at sea level): the pressure at which the volume
+/// fraction of entrained air is stated, and the difference between gauge and absolute pressures.
+pub const ATMOSPHERIC_PRESSURE_ABSOLUTE: f64 = 101_325.0;
+
+/// A hydraulic fluid. Units: Pa, kg/m3, m2/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fluid {
+    /// Bulk modulus of the fluid free of air, beta_0, in Pa.
+    pub bulk_modulus: f64,
+    /// Density in kg/m3.
+    pub density: f64,
+    /// Kinematic viscosity in m2/s.
+    pub kinematic_viscosity: f64,
+    /// Bubbles, absent by default.
+    pub entrained_air: Option<EntrainedAir>,
+}
+
+/// Free air carried as bubbles (air in solution does not soften the fluid and does not count).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EntrainedAir {
+    /// Volume of air over volume of the mixture at atmospheric pressure, in [0, 1).
+    pub volume_fraction: f64,
+    /// Polytropic index of its compression: 1 isothermal, 1.4 adiabatic.
+    pub polytropic_index: f64,
+}
+
+impl Fluid {
+    /// What about this fluid is impossible; empty if nothing is.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("bulk_modulus", self.bulk_modulus);
+        problems.positive("density", self.density);
+        problems.positive("kinematic_viscosity", self.kinematic_viscosity);
+        if let Some(EntrainedAir { volume_fraction, polytropic_index }) = self.entrained_air {
+            let is_fraction = (0.0..1.0).contains(&volume_fraction);
+            problems.require(
+                "entrained_air.volume_fraction",
+                volume_fraction,
+                is_fraction,
+                "from 0 to below 1",
+            );
+            let is_index = (1.0..=5.0 / 3.0).contains(&polytropic_index);
+            problems.require("entrained_air.polytropic_index", polytropic_index, is_index, "from 1 to 5/3");
+        }
+        problems.into_vec()
+    }
+
+    /// Bulk modulus in Pa at a gauge pressure: the fluid's own without air, [`bulk_modulus_with_air`] with.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::fluid::{EntrainedAir, Fluid};
+    /// let clean = Fluid { bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None };
+    /// assert_eq!(clean.modulus_at(35e5), 1.45e9);
+    /// let air = EntrainedAir { volume_fraction: 0.01, polytropic_index: 1.4 };
+    /// let foamy = Fluid { entrained_air: Some(air), ..clean };
+    /// assert!(foamy.modulus_at(35e5) < 1.3e9 && foamy.modulus_at(5e5) < 0.3e9);
+    /// ```
+    pub fn modulus_at(&self, pressure: f64) -> f64 {
+        match self.entrained_air {
+            None => self.bulk_modulus,
+            Some(air) => bulk_modulus_with_air(
+                self.bulk_modulus,
+                air.volume_fraction,
+                air.polytropic_index,
+                pressure + ATMOSPHERIC_PRESSURE_ABSOLUTE,
+            ),
+        }
+    }
+
+    /// Dynamic viscosity in Pa s.
+    pub fn dynamic_viscosity(&self) -> f64 {
+        self.density * self.kinematic_viscosity
+    }
+
+    /// Speed of sound in the unconfined fluid at a gauge pressure, sqrt(beta/rho), in m/s.
+    pub fn speed_of_sound(&self, pressure: f64) -> f64 {
+        (self.modulus_at(pressure) / self.density).sqrt()
+    }
+}
+
+/// Tangent bulk modulus of a fluid with entrained air, in Pa, at a pressure in Pa absolute.
+///
+/// ```text
+/// V_liquid = (1 - a) exp(-(p - p0)/beta)        V_gas = a (p0/p)^(1/n)
+/// beta_mixture = -V dp/dV = (V_liquid + V_gas) / (V_liquid/beta + V_gas/(n p))
+/// ```
+///
+/// The volumes of a compressible liquid and of a gas compressed polytropically from atmospheric pressure p0 add up; no
+/// air dissolves. Source: the family of models reviewed by Gholizadeh, Burton and Schoenau (2011), "Fluid bulk
+/// modulus: a literature survey", International Journal of Fluid Power 12(3). `pressure_absolute` must be positive.
+///
+/// # Example
+/// At atmospheric pressure, springs in series by volume:
+/// ```
+/// use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE as P0, bulk_modulus_with_air};
+/// let mixture = bulk_modulus_with_air(1.45e9, 0.02, 1.4, P0);
+/// let series = 1.0 / (0.98 / 1.45e9 + 0.02 / (1.4 * P0));
+/// assert!((mixture / series - 1.0).abs() < 1e-12);
+/// ```
+pub fn bulk_modulus_with_air<S: Scalar>(
+    bulk_modulus: S,
+    volume_fraction: S,
+    polytropic_index: S,
+    pressure_absolute: S,
+) -> S {
+    let reference = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+    let liquid = (S::from(1.0) - volume_fraction) * ((reference - pressure_absolute) / bulk_modulus).exp();
+    let gas = volume_fraction * ((reference / pressure_absolute).ln() / polytropic_index).exp();
+    (liquid + gas) / (liquid / bulk_modulus + gas / (polytropic_index * pressure_absolute))
+}

@@ -1,0 +1,109 @@
+use phea_dynamics::scalar::Scalar;
+
+use crate::parameter::{ParameterError, Problems};
+
+/// A round pipe. Units: m, Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pipe {
+    /// Bore D in m.
+    pub bore: f64,
+    /// What the wall gives, or nothing.
+    pub wall: PipeWall,
+}
+
+/// Elasticity of a pipe's wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PipeWall {
+    /// The wall does not yield at all.
+    Rigid,
+    /// Linear elasticity.
+    Elastic {
+        /// Wall thickness e in m.
+        thickness: f64,
+        /// Young's modulus E in Pa.
+        youngs_modulus: f64,
+        /// Poisson's ratio.
+        poisson_ratio: f64,
+        /// How the pipe is held along its axis.
+        anchoring: Anchoring,
+        /// Whether the stress varies over the wall (exact for any thickness) or is taken as even (D/e above 25).
+        thick: bool,
+    },
+}
+
+/// How a pipe is held along its axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchoring {
+    /// Held against all axial movement: no axial strain.
+    Throughout,
+    /// Held at one end, the other closed and free: axial stress from the pressure on the end.
+    OneEnd,
+    /// Expansion joints: no axial stress.
+    ExpansionJoints,
+}
+
+impl Pipe {
+    /// What about this pipe is impossible; empty if nothing is.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("bore", self.bore);
+        if let PipeWall::Elastic { thickness, youngs_modulus, poisson_ratio, .. } = self.wall {
+            problems.positive("wall_thickness", thickness);
+            problems.positive("youngs_modulus", youngs_modulus);
+            let possible = (0.0..=0.5).contains(&poisson_ratio);
+            problems.require("poisson_ratio", poisson_ratio, possible, "from 0 to 0.5");
+        }
+        problems.into_vec()
+    }
+
+    /// Relative growth of the bore's area per pressure, (dA/A)/dp, in 1/Pa; zero for a rigid wall.
+    pub fn wall_compliance(&self) -> f64 {
+        match self.wall {
+            PipeWall::Rigid => 0.0,
+            PipeWall::Elastic { thickness, youngs_modulus, poisson_ratio, anchoring, thick } => {
+                pipe_wall_compliance(self.bore, thickness, youngs_modulus, poisson_ratio, anchoring, thick)
+            }
+        }
+    }
+}
+
+/// Relative growth of a pipe's bore area per pressure, 1/beta_wall = (dA/A)/dp, in 1/Pa.
+///
+/// ```text
+/// 1/beta_wall = D/(E e) c          thin wall:  c = c_a
+///                                  thick wall: c = 2 (e/D) (1 + nu) + D/(D + e) c_a
+/// c_a = 1 - nu^2 (held throughout), 1 - nu/2 (held at one end), 1 (expansion joints)
+/// ```
+///
+/// Source: Wylie and Streeter (1993), "Fluid Transients in Systems", chapter 2; the thick wall is Lamé's solution.
+///
+/// # Example
+/// A thick steel wall is what Lamé found: (dA/A)/p = 2/E ((b^2 + a^2)/(b^2 - a^2) + nu) for radii a and b
+/// ```
+/// use phea_hydraulics::line::{Anchoring, pipe_wall_compliance};
+/// let (a, b, e, nu) = (5e-3, 8e-3, 206e9, 0.3);
+/// let lame = 2.0 / e * ((b * b + a * a) / (b * b - a * a) + nu);
+/// let wall = pipe_wall_compliance(2.0 * a, b - a, e, nu, Anchoring::ExpansionJoints, true);
+/// assert!((wall / lame - 1.0_f64).abs() < 1e-14);
+/// ```
+pub fn pipe_wall_compliance<S: Scalar>(
+    bore: S,
+    thickness: S,
+    youngs_modulus: S,
+    poisson_ratio: S,
+    anchoring: Anchoring,
+    thick: bool,
+) -> S {
+    let one = S::from(1.0);
+    let axial = match anchoring {
+        Anchoring::Throughout => one - poisson_ratio.squared(),
+        Anchoring::OneEnd => one - poisson_ratio / S::from(2.0),
+        Anchoring::ExpansionJoints => one,
+    };
+    let shape = if thick {
+        S::from(2.0) * thickness / bore * (one + poisson_ratio) + bore / (bore + thickness) * axial
+    } else {
+        axial
+    };
+    bore / (youngs_modulus * thickness) * shape
+}

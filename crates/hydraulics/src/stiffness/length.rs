@@ -1,0 +1,135 @@
+use std::f64::consts::PI;
+
+use phea_dynamics::scalar::Scalar;
+
+use super::{StiffnessModel, chamber_compliance};
+use crate::cylinder::Cylinder;
+use crate::line::{Line, Member};
+
+/// Length of each of two equal lines that gives the wanted least stiffness over the stroke.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LineLength {
+    /// This length, in m, of each line.
+    Length(f64),
+    /// The actuator is no stiffer than wanted with no line at all; its least stiffness then, in N/m.
+    NotNeeded {
+        /// Least stiffness over the stroke with lines of no length, in N/m.
+        stiffness_without_line: f64,
+    },
+    /// No line of this kind softens the actuator so far (none at all reaches a stiffness of zero or less).
+    OutOfReach,
+}
+
+/// Hose length L_ho of each line for a wanted least stiffness K_H, one modulus for hose and chamber, in m.
+///
+/// ```text
+/// L_ho = 8 A^2 r_b beta_0 (pi D^2 + 4 E) / (pi D^2 K_H (4 eps beta_0 + r_b (pi D^2 + 4 E))) - 2 A L/(pi D^2)
+///      = (4 beta_e A^2/K_H - A L) 2/(pi D^2)                                                   thesis (6.25)
+/// ```
+///
+/// For a symmetric cylinder of area A and stroke L with a hose of bore D and effective modulus beta_e on each side. A
+/// negative length means that no hose is needed.
+pub fn hose_length_uniform<S: Scalar>(stiffness: S, area: S, stroke: S, bore: S, effective_modulus: S) -> S {
+    let needed = S::from(4.0) * effective_modulus * area.squared() / stiffness - area * stroke;
+    needed * S::from(2.0 / PI) / bore.squared()
+}
+
+/// Hose length L_ho of each line for a wanted least stiffness K_H, the chamber keeping the fluid's modulus, in m.
+///
+/// ```text
+/// L_ho = (2 A^2/K_H - A L/(2 beta_0)) 4 beta_e/(pi D^2)                           thesis (6.25), corrected
+/// ```
+///
+/// For a symmetric cylinder, as [`hose_length_uniform`]; a negative length means that no hose is needed.
+///
+/// # Example
+/// The thesis' 2.24e6 N/m takes 4.05 m of its hose and not 1.5 m.
+/// ```
+/// use phea_hydraulics::stiffness::hose_length_by_volume;
+/// let length = hose_length_by_volume(2.24e6, 1.58336e-3, 0.5, 12.7e-3, 2.609e8, 1.45e9);
+/// assert!((length - 4.05_f64).abs() < 0.005);
+/// ```
+pub fn hose_length_by_volume<S: Scalar>(
+    stiffness: S,
+    area: S,
+    stroke: S,
+    bore: S,
+    effective_modulus: S,
+    fluid_modulus: S,
+) -> S {
+    let needed = S::from(2.0) * area.squared() / stiffness - area * stroke / (S::from(2.0) * fluid_modulus);
+    needed * S::from(4.0 / PI) * effective_modulus / bore.squared()
+}
+
+/// Least stiffness K_H over the stroke from the hose length of each line, one modulus for hose and chamber, in N/m.
+///
+/// ```text
+/// K_H = 8 r_b beta_0 A^2 (pi D^2 + 4 E) / ((4 eps beta_0 + r_b (pi D^2 + 4 E)) (2 A L + pi D^2 L_ho))
+///     = 8 beta_e A^2 / (2 A L + pi D^2 L_ho)                                                    thesis (6.26)
+/// ```
+pub fn stiffness_from_hose_length<S: Scalar>(
+    length: S,
+    area: S,
+    stroke: S,
+    bore: S,
+    effective_modulus: S,
+) -> S {
+    S::from(8.0) * effective_modulus * area.squared()
+        / (S::from(2.0) * area * stroke + S::from(PI) * bore.squared() * length)
+}
+
+/// Length of both lines, each like `line`, that brings the least stiffness over the stroke to `stiffness` in N/m: either
+/// model, any cylinder.
+///
+/// The length of a [`Line::Volume`] is its volume over the given one: a factor. Solved by bisection, since the least
+/// stiffness falls strictly as lines grow; agrees with [`hose_length_uniform`] and [`hose_length_by_volume`] where those
+/// apply.
+pub fn line_length_for_stiffness(
+    model: StiffnessModel,
+    fluid_modulus: f64,
+    cylinder: &Cylinder,
+    line: &Line,
+    member: Member,
+    stiffness: f64,
+) -> LineLength {
+    if stiffness.is_nan() || stiffness <= 0.0 {
+        return LineLength::OutOfReach;
+    }
+    let minimum_at = |length: f64| {
+        let line = with_length(line, length);
+        chamber_compliance(model, fluid_modulus, cylinder, [&line, &line], member).over_stroke().minimum
+    };
+    let stiffness_without_line = minimum_at(0.0);
+    if stiffness_without_line <= stiffness {
+        return LineLength::NotNeeded { stiffness_without_line };
+    }
+    let mut longer = 1.0;
+    while minimum_at(longer) > stiffness {
+        longer *= 2.0;
+        if longer > 1e12 {
+            return LineLength::OutOfReach;
+        }
+    }
+    let mut shorter = 0.0;
+    loop {
+        let middle = 0.5 * (shorter + longer);
+        if middle <= shorter || middle >= longer {
+            return LineLength::Length(middle);
+        }
+        if minimum_at(middle) > stiffness {
+            shorter = middle;
+        } else {
+            longer = middle;
+        }
+    }
+}
+
+fn with_length(line: &Line, length: f64) -> Line {
+    match *line {
+        Line::Hose { hose, .. } => Line::Hose { hose, length },
+        Line::Pipe { pipe, .. } => Line::Pipe { pipe, length },
+        Line::Volume { volume, effective_bulk_modulus } => {
+            Line::Volume { volume: volume * length, effective_bulk_modulus }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+use super::{ChamberCompliance, StiffnessModel, chamber_compliance, compliance_at, hydraulic_stiffness};
+use crate::cylinder::Cylinder;
+use crate::line::{Line, Member};
+
+/// Least and greatest hydraulic stiffness over the stroke. Units: N/m, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrokeStiffness {
+    /// Least stiffness; thesis (6.19) for a symmetric cylinder with equal lines.
+    pub minimum: f64,
+    /// Where it is; mid stroke for a symmetric cylinder with equal lines.
+    pub minimum_position: f64,
+    /// Greatest stiffness; thesis (6.18) for a symmetric cylinder with equal lines.
+    pub maximum: f64,
+    /// Where it is: at one of the ends.
+    pub maximum_position: f64,
+}
+
+impl ChamberCompliance<f64> {
+    /// Least and greatest stiffness over the stroke, exactly.
+    ///
+    /// ```text
+    /// dK_H/dx = 0   <=>   A_A sqrt(slope_a)/C_A(x) = A_B sqrt(slope_b)/C_B(x)        (linear in x)
+    /// ```
+    ///
+    /// K_H is convex in x, so the greatest is at an end, and the least at the root if it lies inside the stroke and
+    /// at an end otherwise. With neither dead volume nor line the stiffness at the ends is infinite.
+    ///
+    /// # Example
+    /// The big side is the softer: an asymmetric cylinder is softest on the rod's side of mid stroke.
+    /// ```
+    /// use phea_hydraulics::stiffness::ChamberCompliance;
+    /// let steel = 1.0 / 1.45e9;
+    /// let range = ChamberCompliance {
+    ///     area_a: 2e-3, area_b: 1.5e-3, stroke: 0.5,
+    ///     constant_a: 1e-5 * steel, slope_a: 2e-3 * steel, constant_b: 1e-5 * steel, slope_b: 1.5e-3 * steel,
+    /// }.over_stroke();
+    /// assert!(range.minimum_position > 0.25 && range.minimum_position < 0.5);
+    /// ```
+    pub fn over_stroke(&self) -> StrokeStiffness {
+        let (weight_a, weight_b) = (self.area_a * self.slope_a.sqrt(), self.area_b * self.slope_b.sqrt());
+        let [start_a, start_b] = compliance_at(self, 0.0);
+        let root =
+            (weight_a * start_b - weight_b * start_a) / (weight_a * self.slope_b + weight_b * self.slope_a);
+        let minimum_position = if root.is_finite() { root.max(0.0).min(self.stroke) } else { 0.0 };
+        let (start, end) = (hydraulic_stiffness(self, 0.0), hydraulic_stiffness(self, self.stroke));
+        let (maximum, maximum_position) = if start >= end { (start, 0.0) } else { (end, self.stroke) };
+        StrokeStiffness {
+            minimum: hydraulic_stiffness(self, minimum_position),
+            minimum_position,
+            maximum,
+            maximum_position,
+        }
+    }
+}
+
+/// The two stiffness models side by side: the numbers of one sentence. Units: N/m, 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelDifference {
+    /// One modulus for line and chamber.
+    pub uniform: StrokeStiffness,
+    /// Each volume with its own modulus.
+    pub by_volume: StrokeStiffness,
+    /// Least stiffness by volume over least stiffness uniform.
+    pub minimum_ratio: f64,
+    /// Greatest stiffness by volume over greatest stiffness uniform.
+    pub maximum_ratio: f64,
+    /// Share of the fluid that is in the chambers and not in the lines (piston at the softest position): what
+    /// `uniform` gives the wrong modulus to.
+    pub chamber_volume_share: f64,
+    /// Share of the compliance, by volume, that the lines provide there: what sizing the lines can change.
+    pub line_compliance_share: f64,
+}
+
+/// Both stiffness models of the same cylinder and lines, and how far they are apart.
+///
+/// # Example
+/// For 1.5 m of the thesis' hose the thesis' model is less than half as stiff as the truth.
+/// ```
+/// # use phea_hydraulics::{cylinder::*, line::*, stiffness::*};
+/// # let cylinder = Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: 0.5, moving_mass: 13.1,
+/// #     dead_volume_a: 0.0, dead_volume_b: 0.0 };
+/// # let dynamic_stiffening = Stiffening::certain(5.0);
+/// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, expansion_slope: 2.236e-12, dynamic_stiffening };
+/// # let line = Line::Hose { hose, length: 1.5 };
+/// let difference = model_difference(1.45e9, &cylinder, [&line, &line], Member::Nominal);
+/// assert!((difference.minimum_ratio - 2.24).abs() < 0.005);
+/// ```
+pub fn model_difference(
+    fluid_modulus: f64,
+    cylinder: &Cylinder,
+    lines: [&Line; 2],
+    member: Member,
+) -> ModelDifference {
+    let of = |model| chamber_compliance(model, fluid_modulus, cylinder, lines, member);
+    let (uniform, chambers) = (of(StiffnessModel::Uniform).over_stroke(), of(StiffnessModel::ByVolume));
+    let by_volume = chambers.over_stroke();
+    let total_compliance: f64 = compliance_at(&chambers, by_volume.minimum_position).iter().sum();
+    let line_compliance: f64 = lines.iter().map(|line| line.compliance(fluid_modulus, member)).sum();
+    let line_volume: f64 = lines.iter().map(|line| line.volume()).sum();
+    let chamber_volume: f64 =
+        crate::cylinder::chamber_volumes(cylinder, by_volume.minimum_position).iter().sum();
+    ModelDifference {
+        uniform,
+        by_volume,
+        minimum_ratio: by_volume.minimum / uniform.minimum,
+        maximum_ratio: by_volume.maximum / uniform.maximum,
+        chamber_volume_share: chamber_volume / (chamber_volume + line_volume),
+        line_compliance_share: line_compliance / total_compliance,
+    }
+}
