@@ -1,1 +1,161 @@
-//! Linear time-invariant systems.
+//! Linear time-invariant systems, continuous or sampled: factored transfer functions, polynomials and state space.
+//!
+//! Hydraulic systems spread their roots over many decades (a load-holding pole at 0.01 rad/s beside a mechanical
+//! resonance at 3000 rad/s and an oil column at 1e6), where the coefficients of a polynomial no longer say where its
+//! roots are. So a [`TransferFunction`] keeps gain, zeros and poles, and is evaluated from them; [`Polynomial`]s are
+//! for text and for other tools; a [`StateSpace`] is solved, never expanded.
+//!
+//! # Example
+//! A loop closed from factors, and its poles:
+//! ```
+//! use num_complex::Complex64;
+//! use phea_dynamics::linear::TransferFunction;
+//! # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
+//! let pole = Complex64::new(-2.0, 0.0);
+//! let plant = TransferFunction::from_factors(6.0, vec![], vec![pole])?;
+//! let closed = plant.feedback(&TransferFunction::gain_only(1.0))?;
+//! assert_eq!(closed.poles(), [Complex64::new(-8.0, 0.0)]);
+//! assert_eq!(closed.dc_gain(), 0.75);
+//! # Ok(())
+//! # }
+//! ```
+
+mod double_double;
+mod eigenvalues;
+mod interconnection;
+mod polynomial;
+mod realization;
+mod refinement;
+mod roots;
+mod state_space;
+mod transfer_function;
+mod zeros;
+
+use num_complex::Complex64;
+
+pub use polynomial::Polynomial;
+pub use state_space::StateSpace;
+pub use transfer_function::TransferFunction;
+
+/// Whether a system lives in continuous time (its variable is s) or in samples (its variable is z).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TimeDomain {
+    /// Continuous time: the imaginary axis is s = jw.
+    Continuous,
+    /// Sampled every `sample_time_s` seconds: the imaginary axis becomes the circle z = exp(jwT).
+    Discrete {
+        /// Sample time T in s, positive.
+        sample_time_s: f64,
+    },
+}
+
+/// Why a linear system cannot be built or computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LinearError {
+    /// A number of the input is infinite or not a number.
+    #[error("{what} is not a finite number")]
+    NotFinite {
+        /// What the number was.
+        what: &'static str,
+    },
+    /// A polynomial that is zero everywhere stands where roots or a denominator are needed.
+    #[error("the polynomial is zero everywhere")]
+    ZeroPolynomial,
+    /// A complex zero or pole without its conjugate: the system would not be real.
+    #[error("the root {root} has no conjugate partner")]
+    MissingConjugate {
+        /// The root that stands alone.
+        root: Complex64,
+    },
+    /// The iteration for the roots of a polynomial stopped without an answer.
+    #[error("the roots of a polynomial of degree {degree} did not converge")]
+    RootsNotConverged {
+        /// Degree of the polynomial.
+        degree: usize,
+    },
+    /// The iteration for the eigenvalues of a matrix stopped without an answer.
+    #[error("the eigenvalues of a matrix of order {order} did not converge")]
+    EigenvaluesNotConverged {
+        /// Order of the matrix.
+        order: usize,
+    },
+    /// A matrix does not have the shape that the others ask for.
+    #[error("{matrix} is {} by {}, expected {} by {}", found.0, found.1, expected.0, expected.1)]
+    Shape {
+        /// Name of the matrix.
+        matrix: &'static str,
+        /// Rows and columns it has.
+        found: (usize, usize),
+        /// Rows and columns it should have.
+        expected: (usize, usize),
+    },
+    /// An input or output number that the system does not have.
+    #[error("there is no {port} {index}; the system has {count}")]
+    NoSuchPort {
+        /// `"input"` or `"output"`.
+        port: &'static str,
+        /// The number asked for, counted from zero.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// Two systems in different time domains, or with different sample times, cannot be joined.
+    #[error("the systems live in different time domains")]
+    DomainMismatch,
+    /// The operation asks for the other time domain.
+    #[error("{operation} needs a {needed} system")]
+    WrongDomain {
+        /// What was asked for.
+        operation: &'static str,
+        /// `"continuous"` or `"sampled"`.
+        needed: &'static str,
+    },
+    /// A sample time that is zero, negative or not finite.
+    #[error("a sample time must be positive, not {sample_time_s} s")]
+    SampleTime {
+        /// The sample time given, s.
+        sample_time_s: f64,
+    },
+    /// A dead time that is negative or not finite.
+    #[error("a dead time must be zero or positive, not {dead_time_s} s")]
+    DeadTime {
+        /// The dead time given, s.
+        dead_time_s: f64,
+    },
+    /// A dead time that is not a whole number of samples where one is needed.
+    #[error("the dead time {dead_time_s} s is not a whole number of samples of {sample_time_s} s")]
+    FractionalDeadTime {
+        /// The dead time, s.
+        dead_time_s: f64,
+        /// The sample time, s.
+        sample_time_s: f64,
+    },
+    /// The result would not be a rational function: dead time inside a sum or a loop, or in a state space.
+    #[error("{operation} with dead time is not a rational function")]
+    NotRational {
+        /// What was asked for.
+        operation: &'static str,
+    },
+    /// More zeros than poles where a realisable system is needed.
+    #[error("the system has {zeros} zeros but only {poles} poles")]
+    Improper {
+        /// Number of zeros.
+        zeros: usize,
+        /// Number of poles.
+        poles: usize,
+    },
+    /// A loop whose gain at infinite frequency is -1: it has no solution.
+    #[error("the loop is not well posed: its gain at infinite frequency is -1")]
+    IllPosedLoop,
+    /// The inverse of a system that is zero everywhere.
+    #[error("a system with zero gain has no inverse")]
+    NoInverse,
+    /// A frequency outside the range in which the operation has a meaning.
+    #[error("the frequency {frequency_rad_per_s} rad/s is outside the range of {operation}")]
+    Frequency {
+        /// The frequency, rad/s.
+        frequency_rad_per_s: f64,
+        /// What was asked for.
+        operation: &'static str,
+    },
+}

@@ -1,0 +1,142 @@
+//! Eigenvalues of a real matrix whose states have very different units.
+//!
+//! The matrix is split into the irreducible blocks of its zero pattern (a cascade gives its poles exactly, an
+//! integrator gives an exact zero); each block is balanced (Parlett and Reinsch 1969), reduced by the QR algorithm,
+//! and its eigenvalues are improved as the roots of det(sI - A), whose logarithmic derivative is tr (sI - A)^-1.
+
+use nalgebra::{DMatrix, Schur};
+use num_complex::Complex64;
+
+use super::LinearError;
+use super::refinement::{refine, sort, symmetrise};
+use crate::portable::magnitude;
+
+/// All eigenvalues, sorted, in exact conjugate pairs.
+pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Result<Vec<Complex64>, LinearError> {
+    if matrix.iter().any(|entry| !entry.is_finite()) {
+        return Err(LinearError::NotFinite { what: "an entry of a matrix" });
+    }
+    let mut all = Vec::with_capacity(matrix.nrows());
+    for states in irreducible_blocks(matrix) {
+        let block = DMatrix::from_fn(states.len(), states.len(), |i, j| matrix[(states[i], states[j])]);
+        all.extend(of_block(block)?);
+    }
+    sort(&mut all);
+    Ok(all)
+}
+
+/// The sets of states that all influence each other; across sets the influence goes one way only.
+fn irreducible_blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
+    let order = matrix.nrows();
+    let mut reaches = DMatrix::from_fn(order, order, |i, j| i == j || matrix[(i, j)] != 0.0);
+    for via in 0..order {
+        for from in 0..order {
+            if reaches[(from, via)] {
+                for to in 0..order {
+                    reaches[(from, to)] = reaches[(from, to)] || reaches[(via, to)];
+                }
+            }
+        }
+    }
+    let mut assigned = vec![false; order];
+    let mut blocks = Vec::new();
+    for first in 0..order {
+        if !assigned[first] {
+            let block: Vec<usize> =
+                (first..order).filter(|&other| reaches[(first, other)] && reaches[(other, first)]).collect();
+            block.iter().for_each(|&state| assigned[state] = true);
+            blocks.push(block);
+        }
+    }
+    blocks
+}
+
+fn of_block(mut block: DMatrix<f64>) -> Result<Vec<Complex64>, LinearError> {
+    match block.nrows() {
+        0 => return Ok(Vec::new()),
+        1 => return Ok(vec![Complex64::new(block[(0, 0)], 0.0)]),
+        2 => {
+            let entry = |i, j| block[(i, j)];
+            return Ok(of_two_by_two(entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)).to_vec());
+        }
+        _ => {}
+    }
+    let order = block.nrows();
+    nalgebra::linalg::balancing::balance_parlett_reinsch(&mut block);
+    let schur = Schur::try_new(block.clone(), f64::EPSILON, 100 * order)
+        .ok_or(LinearError::EigenvaluesNotConverged { order })?;
+    let (_, triangular) = schur.unpack();
+    let mut values = of_quasi_triangular(&triangular);
+    if values.iter().any(|value| !value.is_finite()) {
+        return Err(LinearError::EigenvaluesNotConverged { order });
+    }
+    let singular = is_singular(&block);
+    if singular && let Some(smallest) = index_of_smallest(&values) {
+        values[smallest] = Complex64::new(0.0, 0.0);
+    }
+    let complex = block.map(|entry| Complex64::new(entry, 0.0));
+    refine(&mut values, 6, |s| {
+        let shifted = DMatrix::from_diagonal_element(order, order, s) - &complex;
+        Some(shifted.try_inverse().map_or(Complex64::new(0.0, 0.0), |inverse| inverse.trace().inv()))
+    });
+    Ok(symmetrise(&values))
+}
+
+/// The eigenvalues on the diagonal blocks of a real Schur form.
+fn of_quasi_triangular(triangular: &DMatrix<f64>) -> Vec<Complex64> {
+    let order = triangular.nrows();
+    let mut values = Vec::with_capacity(order);
+    let mut row = 0;
+    while row < order {
+        let below = if row + 1 < order { triangular[(row + 1, row)] } else { 0.0 };
+        if below == 0.0 {
+            values.push(Complex64::new(triangular[(row, row)], 0.0));
+            row += 1;
+        } else {
+            let entry = |i, j| triangular[(row + i, row + j)];
+            values.extend(of_two_by_two(entry(0, 0), entry(0, 1), below, entry(1, 1)));
+            row += 2;
+        }
+    }
+    values
+}
+
+/// Eigenvalues of [a b; c d], the real ones without cancellation.
+fn of_two_by_two(a: f64, b: f64, c: f64, d: f64) -> [Complex64; 2] {
+    let (mean, half) = ((a + d) / 2.0, (a - d) / 2.0);
+    // the square root of |b c| without overflow, and the sign of b c
+    let coupling = b.abs().sqrt() * c.abs().sqrt();
+    let same_sign = (b < 0.0) == (c < 0.0);
+    if same_sign {
+        let root = crate::portable::hypot(half, coupling);
+        let outer = if mean < 0.0 { mean - root } else { mean + root };
+        let determinant = (a * d) - (b * c);
+        let inner = if outer != 0.0 { determinant / outer } else { 0.0 };
+        return [Complex64::new(inner, 0.0), Complex64::new(outer, 0.0)];
+    }
+    let product = (half.abs() + coupling) * (half.abs() - coupling);
+    if product >= 0.0 {
+        let root = product.sqrt();
+        let outer = if mean < 0.0 { mean - root } else { mean + root };
+        let inner = if outer != 0.0 { (a * d - b * c) / outer } else { 0.0 };
+        [Complex64::new(inner, 0.0), Complex64::new(outer, 0.0)]
+    } else {
+        let root = (-product).sqrt();
+        [Complex64::new(mean, -root), Complex64::new(mean, root)]
+    }
+}
+
+/// Whether rounding the entries could make the matrix singular: its Skeel condition number, which no scaling of rows
+/// (or, transposed, of columns) changes, reaches the inverse of the working precision.
+fn is_singular(matrix: &DMatrix<f64>) -> bool {
+    let Some(inverse) = matrix.clone().try_inverse() else { return true };
+    let size = |m: DMatrix<f64>| m.row_iter().map(|row| row.sum()).fold(0.0, f64::max);
+    let by_rows = size(inverse.abs() * matrix.abs());
+    let by_columns = size((matrix.abs() * inverse.abs()).transpose());
+    by_rows.min(by_columns) * f64::EPSILON >= 0.25
+}
+
+fn index_of_smallest(values: &[Complex64]) -> Option<usize> {
+    let sizes = values.iter().enumerate().map(|(index, value)| (index, magnitude(*value)));
+    sizes.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(index, _)| index)
+}

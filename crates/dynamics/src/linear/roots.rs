@@ -1,0 +1,225 @@
+//! Roots of a polynomial with real coefficients, however widely they are spread.
+//!
+//! The iteration of Ehrlich (1967) and Aberth (1973) moves all roots at once and converges cubically to simple ones.
+//! Its starting radii come from the Newton polygon of the coefficients (Bini 1996), so that roots of very different
+//! magnitude start at their own magnitude; beyond the unit circle the reversed polynomial is evaluated.
+
+use num_complex::Complex64;
+
+pub(crate) use super::refinement::conjugate_pairs;
+use super::refinement::{repelled_step, sort, symmetrise};
+use super::{LinearError, Polynomial};
+use crate::portable::{self, magnitude};
+
+const MAXIMUM_SWEEPS: usize = 300;
+
+/// All roots, sorted, in exact conjugate pairs.
+pub(crate) fn of_polynomial(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
+    if polynomial.is_zero() {
+        return Err(LinearError::ZeroPolynomial);
+    }
+    let coefficients = polynomial.coefficients();
+    if coefficients.iter().any(|c| !c.is_finite()) {
+        return Err(LinearError::NotFinite { what: "a coefficient" });
+    }
+    let at_origin = coefficients.iter().rev().take_while(|&&c| c == 0.0).count();
+    let deflated = Polynomial::new(coefficients[..coefficients.len() - at_origin].to_vec());
+    let mut roots = match *deflated.coefficients() {
+        [_] => Vec::new(),
+        [a, b] => vec![Complex64::new(-b / a, 0.0)],
+        _ => merge_multiple(&deflated, iterate(&deflated)?),
+    };
+    if roots.iter().any(|root| !root.is_finite()) {
+        return Err(LinearError::RootsNotConverged { degree: polynomial.degree() });
+    }
+    roots.extend(std::iter::repeat_n(Complex64::new(0.0, 0.0), at_origin));
+    sort(&mut roots);
+    Ok(roots)
+}
+
+/// Ehrlich-Aberth from the Newton polygon to the level of rounding, once more with residuals in twice the working
+/// precision, and made symmetric.
+fn iterate(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
+    let derivative = polynomial.derivative();
+    let mut roots = starting_points(polynomial.coefficients());
+    sweep(&mut roots, |z| evaluate_locally(polynomial, z))
+        .and_then(|()| sweep(&mut roots, |z| evaluate_widely(polynomial, &derivative, z)))
+        .map(|()| symmetrise(&roots))
+        .ok_or(LinearError::RootsNotConverged { degree: polynomial.degree() })
+}
+
+/// Moves all roots until each is at the rounding level of its residual or moves no more.
+fn sweep<F: Fn(Complex64) -> LocalValue>(roots: &mut [Complex64], evaluate: F) -> Option<()> {
+    let mut done = vec![false; roots.len()];
+    for _ in 0..MAXIMUM_SWEEPS {
+        for index in 0..roots.len() {
+            if done[index] {
+                continue;
+            }
+            let local = evaluate(roots[index]);
+            if local.at_rounding_level {
+                done[index] = true;
+            } else if let Some(step) = repelled_step(roots, index, local.newton_step) {
+                roots[index] -= step;
+                done[index] = magnitude(step) <= f64::EPSILON * magnitude(roots[index]);
+            } else {
+                // a collision or a stationary point: step aside
+                roots[index] *= Complex64::new(1.0 + 1e-3, 1e-3);
+            }
+        }
+        if done.iter().all(|&flag| flag) {
+            return Some(());
+        }
+    }
+    None
+}
+
+/// Points on circles whose radii are the slopes of the upper convex hull of (power, ln |coefficient|).
+fn starting_points(coefficients: &[f64]) -> Vec<Complex64> {
+    let degree = coefficients.len() - 1;
+    // ascending powers
+    let points: Vec<(f64, f64)> = coefficients
+        .iter()
+        .rev()
+        .enumerate()
+        .filter(|(_, c)| **c != 0.0)
+        .map(|(power, c)| (power as f64, portable::ln(c.abs())))
+        .collect();
+    let mut hull: Vec<(f64, f64)> = Vec::new();
+    for point in points {
+        while let [.., a, b] = hull[..] {
+            let turns_left = (b.1 - a.1) * (point.0 - a.0) <= (point.1 - a.1) * (b.0 - a.0);
+            if !turns_left {
+                break;
+            }
+            hull.pop();
+        }
+        hull.push(point);
+    }
+    let mut roots = Vec::with_capacity(degree);
+    for (segment, pair) in hull.windows(2).enumerate() {
+        let (low, high) = (pair[0], pair[1]);
+        let count = high.0 - low.0;
+        let radius = portable::exp((low.1 - high.1) / count);
+        let offset = 0.7 + 2.0 * std::f64::consts::PI * segment as f64 / degree as f64;
+        let mut k = 0.0;
+        while k < count {
+            let angle = 2.0 * std::f64::consts::PI * k / count + offset;
+            roots.push(Complex64::new(radius * portable::cos(angle), radius * portable::sin(angle)));
+            k += 1.0;
+        }
+    }
+    roots
+}
+
+struct LocalValue {
+    newton_step: Option<Complex64>,
+    at_rounding_level: bool,
+}
+
+/// p/p' at z in working precision, and whether |p| is no more than its own rounding error.
+fn evaluate_locally(polynomial: &Polynomial, z: Complex64) -> LocalValue {
+    let coefficients = polynomial.coefficients();
+    let degree = polynomial.degree() as f64;
+    let outside = magnitude(z) > 1.0;
+    let point = if outside { z.inv() } else { z };
+    let radius = magnitude(point);
+    let zero = Complex64::new(0.0, 0.0);
+    let (mut value, mut slope, mut scale) = (zero, zero, 0.0);
+    let mut absorb = |c: f64| {
+        slope = slope * point + value;
+        value = value * point + c;
+        scale = scale * radius + c.abs();
+    };
+    if outside {
+        coefficients.iter().rev().for_each(|&c| absorb(c));
+    } else {
+        coefficients.iter().for_each(|&c| absorb(c));
+    }
+    let at_rounding_level = magnitude(value) <= 4.0 * degree * f64::EPSILON * scale;
+    // with w = 1/z and p(z) = z^n q(w):  p'/p = w (n - w q'/q)
+    let step = if outside { value * z / (value * degree - point * slope) } else { value / slope };
+    LocalValue { newton_step: step.is_finite().then_some(step), at_rounding_level }
+}
+
+/// p/p' at z with both in twice the working precision.
+fn evaluate_widely(polynomial: &Polynomial, derivative: &Polynomial, z: Complex64) -> LocalValue {
+    let value = polynomial.evaluate_wide(z).value();
+    let step = value / derivative.evaluate_wide(z).value();
+    let rounding = 8.0 * polynomial.degree() as f64 * f64::EPSILON * f64::EPSILON;
+    let at_rounding_level = magnitude(value) <= rounding * polynomial.evaluate_magnitudes(z);
+    LocalValue { newton_step: step.is_finite().then_some(step), at_rounding_level }
+}
+
+/// Replaces clusters that a rounding of the coefficients explains as a multiple root by that root.
+///
+/// The mean of a cluster of m roots is well conditioned although its members are not; it is the simple root of the
+/// derivative of order m - 1 nearby, and is accepted when all lower derivatives vanish there to the rounding of the
+/// coefficients.
+fn merge_multiple(polynomial: &Polynomial, roots: Vec<Complex64>) -> Vec<Complex64> {
+    let mut open: Vec<Complex64> = roots.into_iter().filter(|root| root.im >= 0.0).collect();
+    let mut merged = Vec::new();
+    while let Some(seed) = open.pop() {
+        // each root of the upper half plane counts once, its mirror image once more if it is near
+        let near = |root: &Complex64| magnitude(root - seed) <= 0.05 * magnitude(seed);
+        let (mut cluster, far): (Vec<Complex64>, Vec<Complex64>) = open.iter().copied().partition(near);
+        cluster.sort_by(|a, b| magnitude(a - seed).total_cmp(&magnitude(b - seed)));
+        cluster.insert(0, seed);
+        let taken = (1..=cluster.len()).rev().find_map(|size| {
+            multiple_root(polynomial, &cluster[..size]).map(|(root, count)| (root, count, size))
+        });
+        match taken {
+            Some((root, count, size)) => {
+                open = far;
+                open.extend_from_slice(&cluster[size..]);
+                merged.extend(std::iter::repeat_n(root, count));
+            }
+            None => merged.push(seed),
+        }
+    }
+    let mirrored: Vec<Complex64> =
+        merged.iter().filter(|root| root.im > 0.0).map(|root| root.conj()).collect();
+    merged.extend(mirrored);
+    merged
+}
+
+/// The multiple root that stands for these members of the closed upper half plane, and how many of the returned set it is.
+fn multiple_root(polynomial: &Polynomial, members: &[Complex64]) -> Option<(Complex64, usize)> {
+    let mean = members.iter().sum::<Complex64>() / members.len() as f64;
+    let real_count: usize = members.iter().map(|root| if root.im == 0.0 { 1 } else { 2 }).sum();
+    let on_axis = Complex64::new(mean.re, 0.0);
+    if real_count > 1
+        && let Some(root) = accepted(polynomial, on_axis, real_count)
+    {
+        return Some((root, real_count));
+    }
+    if members.len() > 1
+        && members.iter().all(|root| root.im > 0.0)
+        && let Some(root) = accepted(polynomial, mean, members.len())
+    {
+        return Some((root, members.len()));
+    }
+    None
+}
+
+fn accepted(polynomial: &Polynomial, start: Complex64, multiplicity: usize) -> Option<Complex64> {
+    // p, p'/1!, p''/2!, ... up to order m
+    let mut taylor = vec![polynomial.clone()];
+    for order in 1..=multiplicity {
+        let last = taylor.last()?;
+        taylor.push(last.derivative().scaled(1.0 / order as f64));
+    }
+    let (simple, slope) = (taylor.get(multiplicity - 1)?, taylor.get(multiplicity)?);
+    let mut root = start;
+    for _ in 0..3 {
+        let step = simple.evaluate(root) / (slope.evaluate(root) * multiplicity as f64);
+        if !step.is_finite() || magnitude(step) > 0.02 * magnitude(root) {
+            return None;
+        }
+        root -= step;
+    }
+    let vanishes =
+        |p: &Polynomial| magnitude(p.evaluate(root)) <= 2.0 * f64::EPSILON * p.evaluate_magnitudes(root);
+    let lower = taylor.get(..multiplicity - 1)?;
+    lower.iter().all(vanishes).then_some(root)
+}
