@@ -1,0 +1,155 @@
+//! `[[scenario]]`: what is simulated.
+
+use super::key::{key, plain};
+use super::visitor::Visitor;
+use crate::quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PRESSURE, RATIO, TIME, VELOCITY, VOLTAGE};
+
+/// One simulation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scenario {
+    /// Names its results.
+    pub name: String,
+    /// s.
+    pub duration: f64,
+    /// s, between rows of the result.
+    pub output_step: f64,
+    /// The state at the start; absent: equilibrium at mid stroke.
+    pub start: Option<Start>,
+    /// The reference force; each holds until the next.
+    pub reference: Vec<ReferenceStep>,
+    /// What the load does.
+    pub load_motion: Option<LoadMotion>,
+    /// Percent, of every settling time.
+    pub settling_band_percent: f64,
+}
+
+/// The state at the start; states not named are zero.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Start {
+    /// m.
+    pub position: Option<f64>,
+    /// m/s.
+    pub velocity: Option<f64>,
+    /// Pa.
+    pub pressure_a: Option<f64>,
+    /// Pa.
+    pub pressure_b: Option<f64>,
+    /// V, spool position as equivalent command.
+    pub spool: Option<f64>,
+    /// N, deflection of the load cell as a force.
+    pub force: Option<f64>,
+}
+
+/// The reference takes a value.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReferenceStep {
+    /// s.
+    pub at: f64,
+    /// N.
+    pub force: f64,
+}
+
+/// What the load does.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LoadMotion {
+    /// Its shape in time.
+    pub kind: LoadMotionKind,
+    /// s, when it begins.
+    pub start: f64,
+    /// s; of a smooth step or a chirp.
+    pub duration: Option<f64>,
+    /// m, of a step.
+    pub distance: Option<f64>,
+    /// s, of a first-order step.
+    pub time_constant: Option<f64>,
+    /// m, of a sine or chirp.
+    pub amplitude: Option<f64>,
+    /// rad/s, of a sine, or where a chirp begins.
+    pub frequency: Option<f64>,
+    /// rad/s, where a chirp ends.
+    pub final_frequency: Option<f64>,
+    /// A CSV file with time and position.
+    pub file: Option<String>,
+}
+
+/// Shape of the load motion in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LoadMotionKind {
+    /// Quintic: velocity and acceleration are zero at both ends.
+    #[default]
+    SmoothStep,
+    /// 1 - exp(-t/τ).
+    FirstOrder,
+    /// Sine.
+    Sine,
+    /// Sine of rising frequency.
+    Chirp,
+    /// From a file.
+    File,
+}
+
+impl Scenario {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let mut name = Some(std::mem::take(&mut self.name));
+        v.text(plain("name", "Names its results."), &mut name, true);
+        self.name = name.unwrap_or_default();
+        let k = key("duration", &TIME, "How long is simulated.").positive();
+        v.quantity(k, &mut self.duration);
+        let k = key("output_step", &TIME, "Time between rows of the result.").positive().or(1e-3);
+        v.quantity(k, &mut self.output_step);
+        let k = plain("start", "State at the start; states not named are zero. Absent: equilibrium.");
+        v.table(k, &mut self.start, Start::visit);
+        let k = plain("reference", "Values of the reference force; each holds until the next.");
+        v.tables(k, &mut self.reference, ReferenceStep::visit);
+        v.table(plain("load_motion", "What the load does."), &mut self.load_motion, LoadMotion::visit);
+        let k = key("settling_band_percent", &RATIO, "Band of every settling time, in percent.");
+        v.quantity(k.positive().below(100.0).or(1.0), &mut self.settling_band_percent);
+    }
+}
+
+impl Start {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("position", &LENGTH, "Position of the piston.").not_negative();
+        v.optional(k, &mut self.position);
+        v.optional(key("velocity", &VELOCITY, "Velocity of the piston."), &mut self.velocity);
+        let k = key("pressure_a", &PRESSURE, "Pressure in chamber A, gauge.").above(-101_325.0);
+        v.optional(k, &mut self.pressure_a);
+        let k = key("pressure_b", &PRESSURE, "Pressure in chamber B, gauge.").above(-101_325.0);
+        v.optional(k, &mut self.pressure_b);
+        v.optional(key("spool", &VOLTAGE, "Spool position as equivalent command."), &mut self.spool);
+        v.optional(key("force", &FORCE, "Force in the load cell."), &mut self.force);
+    }
+}
+
+impl ReferenceStep {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.quantity(key("at", &TIME, "When.").not_negative(), &mut self.at);
+        v.quantity(key("force", &FORCE, "The reference from then on."), &mut self.force);
+    }
+}
+
+impl LoadMotion {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let words = &[
+            ("smooth_step", LoadMotionKind::SmoothStep),
+            ("first_order", LoadMotionKind::FirstOrder),
+            ("sine", LoadMotionKind::Sine),
+            ("chirp", LoadMotionKind::Chirp),
+            ("file", LoadMotionKind::File),
+        ];
+        v.choice(plain("kind", "Its shape in time."), words, &mut self.kind, true);
+        v.quantity(key("start", &TIME, "When it begins.").not_negative().or(0.0), &mut self.start);
+        let k = key("duration", &TIME, "Of a smooth step or a chirp.").positive();
+        v.optional(k, &mut self.duration);
+        v.optional(key("distance", &LENGTH, "Of a smooth or first-order step."), &mut self.distance);
+        let k = key("time_constant", &TIME, "Of a first-order step.").positive();
+        v.optional(k, &mut self.time_constant);
+        let k = key("amplitude", &LENGTH, "Of a sine or chirp.").positive();
+        v.optional(k, &mut self.amplitude);
+        let k = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
+        v.optional(k, &mut self.frequency);
+        let k = key("final_frequency", &ANGULAR_FREQUENCY, "Where a chirp ends.").positive();
+        v.optional(k, &mut self.final_frequency);
+        v.text(plain("file", "A CSV file with time and position."), &mut self.file, false);
+    }
+}

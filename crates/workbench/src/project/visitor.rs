@@ -1,0 +1,96 @@
+//! One description of every table serves reading, printing and listing.
+//!
+//! Each type of the project has one `visit` function that names its keys beside its fields. A reader fills the
+//! fields from the file, a printer writes them, a listing collects what may be written: so a key has one place.
+
+use super::formula::Formula;
+use super::key::Key;
+use crate::catalogue::Kind;
+
+/// How a table's description is carried out.
+pub(crate) trait Visitor: Sized {
+    /// A number; required unless the key has a default.
+    fn quantity(&mut self, key: Key, field: &mut f64);
+    /// A number that may be absent.
+    fn optional(&mut self, key: Key, field: &mut Option<f64>);
+    /// Two numbers in order, or absent.
+    fn pair(&mut self, key: Key, field: &mut Option<[f64; 2]>);
+    /// A list of numbers.
+    fn quantities(&mut self, key: Key, field: &mut Vec<f64>);
+    /// A list of complex numbers: a number, or a pair of real and imaginary part.
+    fn complexes(&mut self, key: Key, field: &mut Vec<[f64; 2]>);
+    /// A whole number; required unless the key has a default.
+    fn count(&mut self, key: Key, field: &mut u32);
+    /// A text; required if `required`.
+    fn text(&mut self, key: Key, field: &mut Option<String>, required: bool);
+    /// A list of texts.
+    fn texts(&mut self, key: Key, field: &mut Vec<String>);
+    /// One of several words; absent, the field keeps its value unless `required`.
+    fn choice<T: Copy + PartialEq>(
+        &mut self,
+        key: Key,
+        words: &'static [(&'static str, T)],
+        field: &mut T,
+        required: bool,
+    );
+    /// A formula; required if `required`.
+    fn formula(&mut self, key: Key, shape: Shape, field: &mut Option<Formula>, required: bool);
+    /// The name of a catalogue entry, whose values serve where the table itself is silent.
+    fn catalogue(&mut self, key: Key, kind: Kind, field: &mut Option<String>);
+    /// A table that may be absent.
+    fn table<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
+    /// A table or, shorter, an array of its values in the order of its keys.
+    fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
+    /// An array of tables.
+    fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self));
+    /// A table whose keys name numbers of the project; each is handed to `visit` with what is known of it.
+    fn dictionary<T: Default>(
+        &mut self,
+        key: Key,
+        name_of: fn(&T) -> &str,
+        field: &mut Vec<T>,
+        visit: impl Fn(&mut T, Named<'_>, &mut Self),
+    );
+    /// The present table as a list of names and numbers.
+    fn numbers(&mut self, key: Key, field: &mut Vec<(String, f64)>);
+    /// Two tables `a` and `b` that inherit what the present table says, except that a key of `alternatives` written
+    /// in one of them hides all inherited alternatives.
+    fn sides<T: Default + Clone + PartialEq>(
+        &mut self,
+        keys: [Key; 2],
+        alternatives: &'static [&'static str],
+        fields: &mut [T; 2],
+        visit: impl Fn(&mut T, &mut Self),
+    );
+    /// In which of its forms the key's value is written; a reader looks, everyone else goes by the `field`'s form.
+    fn form(&mut self, key: Key, field: Form) -> Form;
+}
+
+/// A number of the project, named by the user.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Named<'a> {
+    /// As written.
+    pub(crate) name: &'a str,
+    /// Its dimension and range.
+    pub(crate) key: Key,
+}
+
+/// What a formula may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// A polynomial in `s` or `z`.
+    Polynomial,
+    /// A ratio of polynomials.
+    Ratio,
+}
+
+/// The form of a value, where more than one is accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// A number, bare or with its unit in text.
+    Number,
+    /// A text that is no quantity.
+    Text,
+    /// A table.
+    Table,
+}

@@ -1,0 +1,129 @@
+//! Dimensions of physical quantities, and which units people expect to read for each.
+
+/// Exponents of (mass, length, time, voltage, angle), counted in halves so that m³/(s·√Pa) is exact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exponents(pub [i8; 5]);
+
+impl Exponents {
+    /// Whole exponents of kg, m, s, V and rad.
+    pub const fn whole(mass: i8, length: i8, time: i8, voltage: i8, angle: i8) -> Self {
+        Exponents([2 * mass, 2 * length, 2 * time, 2 * voltage, 2 * angle])
+    }
+
+    /// The dimension of a pure number.
+    pub const NONE: Exponents = Exponents([0; 5]);
+
+    /// In SI base units, such as `kg/(m.s^2)`; `1` for a pure number.
+    pub fn in_base_units(self) -> String {
+        let symbols = ["kg", "m", "s", "V", "rad"];
+        let side = |positive: bool| -> Vec<String> {
+            let mut factors = Vec::new();
+            for (symbol, &halves) in symbols.iter().zip(&self.0) {
+                if halves == 0 || (halves > 0) != positive {
+                    continue;
+                }
+                let halves = halves.unsigned_abs();
+                factors.push(match (halves, halves % 2) {
+                    (2, _) => (*symbol).to_string(),
+                    (_, 0) => format!("{symbol}^{}", halves / 2),
+                    _ => format!("{symbol}^{}.5", halves / 2),
+                });
+            }
+            factors
+        };
+        let (over, under) = (side(true), side(false));
+        let numerator = if over.is_empty() { "1".to_string() } else { over.join(".") };
+        match under.len() {
+            0 => numerator,
+            1 => format!("{numerator}/{}", under[0]),
+            _ => format!("{numerator}/({})", under.join(".")),
+        }
+    }
+}
+
+/// A kind of quantity: what it is called, its exponents, and the units it is shown in.
+#[derive(Debug)]
+pub struct Dimension {
+    /// With its article, as it stands in "expected a pressure".
+    pub name: &'static str,
+    /// Exponents of the base units.
+    pub exponents: Exponents,
+    /// Units to print in, smallest first. The first serves zero; empty means a bare SI number.
+    pub units: &'static [&'static str],
+    /// Spellings to offer when the text is wrong.
+    pub examples: &'static str,
+    /// The SI unit in words of this grammar.
+    pub si: &'static str,
+}
+
+macro_rules! dimensions {
+    ($($(#[$doc:meta])* $identifier:ident = $name:literal, $exponents:expr, $units:expr, $si:literal, $examples:literal;)*) => {
+        $($(#[$doc])* pub static $identifier: Dimension =
+            Dimension { name: $name, exponents: $exponents, units: &$units, si: $si, examples: $examples };)*
+        /// Every named dimension, for naming what was found.
+        pub static DIMENSIONS: &[&Dimension] = &[$(&$identifier),*];
+    };
+}
+
+const fn whole(mass: i8, length: i8, time: i8, voltage: i8, angle: i8) -> Exponents {
+    Exponents::whole(mass, length, time, voltage, angle)
+}
+
+dimensions! {
+    /// Pa; gauge pressure unless a key says otherwise.
+    PRESSURE = "a pressure", whole(1, -1, -2, 0, 0), ["Pa", "kPa", "bar", "MPa", "GPa"], "Pa",
+        r#""70 bar", "7 MPa", "1000 psi""#;
+    /// kg/m³.
+    DENSITY = "a density", whole(1, -3, 0, 0, 0), ["kg/m3"], "kg/m3", r#""870 kg/m3", "0.87 g/cm3", "0.87 kg/L""#;
+    /// m²/s.
+    KINEMATIC_VISCOSITY = "a kinematic viscosity", whole(0, 2, -1, 0, 0), ["cSt"], "m2/s",
+        r#""46 cSt", "46 mm2/s""#;
+    /// m³/s.
+    FLOW = "a volume flow", whole(0, 3, -1, 0, 0), ["L/min"], "m3/s", r#""9.8 L/min", "10 gpm", "1.6e-4 m3/s""#;
+    /// V.
+    VOLTAGE = "a voltage", whole(0, 0, 0, 1, 0), ["mV", "V"], "V", r#""10 V", "50 mV""#;
+    /// rad/s; a text in Hz is a number of cycles and is multiplied by 2π.
+    ANGULAR_FREQUENCY = "an angular frequency", whole(0, 0, -1, 0, 1), ["rad/s"], "rad/s",
+        r#""1099 rad/s", "175 Hz""#;
+    /// A pure number.
+    RATIO = "a pure number", Exponents::NONE, [], "1", r#"0.9, "20 %""#;
+    /// A gain as a ratio; its text may be in dB.
+    GAIN = "a gain", Exponents::NONE, [], "1", r#"1.3, "6 dB""#;
+    /// m³/(s·√Pa).
+    FLOW_COEFFICIENT = "a flow coefficient", Exponents([-1, 7, 0, 0, 0]), [], "m3/(s.Pa^0.5)",
+        r#"3.2e-7, "3.2e-7 m3/(s.Pa^0.5)", "6.07 L/(min.bar^0.5)""#;
+    /// m³/(s·V).
+    FLOW_GAIN = "a flow gain", whole(0, 3, -1, -1, 0), [], "m3/(s.V)", r#"5.6e-5, "5.6e-5 m3/(s.V)", "3.4 L/(min.V)""#;
+    /// m³/(s·Pa).
+    FLOW_PRESSURE_COEFFICIENT = "a flow-pressure coefficient", whole(-1, 4, 1, 0, 0), [], "m3/(s.Pa)",
+        r#"6.42e-13, "6.42e-13 m3/(s.Pa)", "0.004 L/(min.bar)""#;
+    /// m.
+    LENGTH = "a length", whole(0, 1, 0, 0, 0), ["mm", "m"], "m", r#""12.7 mm", "1.5 m", "0.5 in""#;
+    /// m².
+    AREA = "an area", whole(0, 2, 0, 0, 0), ["mm2"], "m2", r#""1583 mm2", "15.83 cm2""#;
+    /// m³.
+    VOLUME = "a volume", whole(0, 3, 0, 0, 0), ["mL", "L"], "m3", r#""190 mL", "0.19 L", "190 cc""#;
+    /// m³/m, the volume a metre of hose gains.
+    VOLUME_PER_LENGTH = "a volume per length", whole(0, 2, 0, 0, 0), ["mL/m"], "m3/m",
+        r#""4.7 cc/ft", "15.4 mL/m""#;
+    /// m³/(m·Pa).
+    EXPANSION_SLOPE = "a volumetric expansion slope", whole(-1, 3, 2, 0, 0), [], "m3/(m.Pa)",
+        r#"2.236e-12, "0.0047 cc/(ft.psi)", "0.22 mL/(m.bar)""#;
+    /// kg.
+    MASS = "a mass", whole(1, 0, 0, 0, 0), ["g", "kg", "t"], "kg", r#""13.1 kg", "200 g""#;
+    /// N.
+    FORCE = "a force", whole(1, 1, -2, 0, 0), ["N", "kN", "MN"], "N", r#""80 N", "4 kN""#;
+    /// m/s.
+    VELOCITY = "a velocity", whole(0, 1, -1, 0, 0), ["mm/s", "m/s"], "m/s", r#""2.1 m/s", "10 mm/s""#;
+    /// N/m.
+    STIFFNESS = "a stiffness", whole(1, 0, -2, 0, 0), ["N/m", "N/mm", "kN/mm"], "N/m",
+        r#""20 MN/m", "20 kN/mm", "2e7 N/m""#;
+    /// N·s/m.
+    DAMPING = "a viscous friction", whole(1, 0, -1, 0, 0), ["N.s/m"], "N.s/m", r#""100 N.s/m", "0.1 N.s/mm""#;
+    /// s.
+    TIME = "a time", whole(0, 0, 1, 0, 0), ["us", "ms", "s"], "s", r#""50 ms", "5 s""#;
+    /// V/N, the gain of a force controller.
+    VOLTAGE_PER_FORCE = "a gain in V/N", whole(-1, -1, 2, 1, 0), [], "V/N", r#"0.001, "1e-3 V/N", "1 V/kN""#;
+    /// rad.
+    ANGLE = "an angle", whole(0, 0, 0, 0, 1), ["deg"], "rad", r#""30 deg", "0.5 rad""#;
+}
