@@ -1,1 +1,78 @@
-//! Controllers as values.
+//! A controller as one value: what it is made of, when it acts, and where it is limited.
+//!
+//! Loop shaping edits the elements, verification takes the responses, simulation and generated code take the sample
+//! step of [`SampledController`]: four users of one value.
+
+mod element;
+//mod sampled;
+mod section;
+
+pub use element::{Compensator, Element, Stage};
+//pub use sampled::{ControllerOutput, ControllerState, SampledController};
+pub use section::Section;
+
+/// How a continuous compensator becomes a sampled one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Discretization {
+    /// Bilinear transformation, s = 2/T (z - 1)/(z + 1).
+    #[default]
+    Tustin,
+    /// Input held constant over each sample.
+    ZeroOrderHold,
+    /// Poles and zeros by z = exp(s T).
+    Matched,
+}
+
+/// When the controller acts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Timing {
+    /// Sample time in s; absent for a continuous controller.
+    pub sample_time_s: Option<f64>,
+    /// Computation and transport delay of the loop in s.
+    pub delay_s: f64,
+    /// How continuous elements become sampled ones.
+    pub discretization: Discretization,
+}
+
+/// What the integral part does while the command is limited.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AntiWindup {
+    /// It goes on integrating.
+    #[default]
+    None,
+    /// The recursion continues from the limited command, so that the state is the one that would have given it.
+    BackCalculation,
+    /// The state is held while the command is limited and the error drives it further out.
+    Clamping,
+}
+
+/// Feedback compensator G, prefilter F, timing and limits.
+///
+/// ```text
+/// u = G(s) (F(s) r - y),    |u| <= limit
+/// ```
+///
+/// # Example
+/// The proportional-integral controller (0.001 s + 0.008)/s with a limit of 10 V
+/// ```
+/// use phea_dynamics::controller::{Compensator, Controller, Element};
+/// let integral = Element::ProportionalIntegral { proportional_gain: 0.001, integral_gain: 0.008 };
+/// let controller =
+///     Controller { feedback: Compensator::new(vec![integral]), command_limit: Some(10.0), ..Controller::default() };
+/// let g = controller.feedback.transfer_function()?;
+/// assert_eq!((g.gain(), g.zeros()[0].re, g.poles()[0].re), (0.001, -8.0, 0.0));
+/// # Ok::<(), phea_dynamics::linear::LinearError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Controller {
+    /// G, acting on the error.
+    pub feedback: Compensator,
+    /// F, acting on the reference.
+    pub prefilter: Compensator,
+    /// When it acts.
+    pub timing: Timing,
+    /// Largest magnitude of the command, in its own unit (V); absent: unlimited.
+    pub command_limit: Option<f64>,
+    /// What the integral part does at the limit.
+    pub anti_windup: AntiWindup,
+}

@@ -1,0 +1,57 @@
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Hydraulic force control through added compliance: size the hose, see the models, get the report.
+#[derive(Debug, Parser)]
+#[command(name = "phea", version, arg_required_else_help = true)]
+#[command(after_help = "Exit status: 0 done, 1 the answer is no or not proven, 2 the input is wrong.")]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Write a commented starter project into a new folder
+    New {
+        /// Folder to create; it must be empty or absent
+        folder: PathBuf,
+    },
+    /// Validate a project and print every derived quantity with its equation
+    Check(Common),
+    /// Size the hose over the catalogue, by gain and by length, with the reason for every decision
+    Size {
+        #[command(flatten)]
+        common: Common,
+        /// Proportional gain K_p in V/N: size every hose for this gain
+        #[arg(long, value_name = "V/N", conflicts_with = "length")]
+        gain: Option<String>,
+        /// Hose length per line, with its unit ("1.5 m"): find the gain every hose needs at this length
+        #[arg(long, value_name = "LENGTH")]
+        length: Option<String>,
+    },
+    /// Linear models: poles, differences, stiffness over the stroke, driving-point impedance, passivity
+    Linearize(Common),
+    /// Everything above as one self-contained HTML page
+    Report(Common),
+}
+
+/// What every command on a project takes.
+#[derive(Args, Debug)]
+pub(crate) struct Common {
+    /// The project file
+    pub(crate) project: PathBuf,
+    /// Print one JSON object on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write files (tables, figures, pages) into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Override a value of the project, e.g. --set line.length="2 m"; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) settings: Vec<String>,
+    /// A catalogue file or folder of your own, searched before the built-in one; may be repeated
+    #[arg(long = "catalogue", value_name = "PATH")]
+    pub(crate) catalogues: Vec<String>,
+}

@@ -1,0 +1,131 @@
+use super::section::cascade;
+use super::{AntiWindup, Compensator, Controller, Discretization, Section};
+use crate::linear::{LinearError, TimeDomain, TransferFunction, discretization};
+
+/// A controller ready to run once a sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampledController {
+    feedback: Vec<Section>,
+    prefilter: Vec<Section>,
+    command_limit: f64,
+    anti_windup: AntiWindup,
+    sample_time_s: f64,
+}
+
+/// All that changes from sample to sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ControllerState {
+    feedback: Vec<[f64; 2]>,
+    prefilter: Vec<[f64; 2]>,
+}
+
+/// What one sample gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ControllerOutput {
+    /// The command, within its limits.
+    pub command: f64,
+    /// Whether the limit was reached.
+    pub limited: bool,
+    /// The reference behind the prefilter.
+    pub filtered_reference: f64,
+}
+
+impl Controller {
+    /// The controller as it is deployed with this sample time: continuous compensators discretised by the timing's
+    /// method, sampled ones taken as they are.
+    ///
+    /// # Errors
+    /// A compensator that is improper or cannot be discretised, or a sampled one with another sample time.
+    pub fn sampled(&self, sample_time_s: f64) -> Result<SampledController, LinearError> {
+        let sections = |compensator: &Compensator| {
+            let function = compensator.transfer_function()?;
+            sampled_function(&function, sample_time_s, self.timing.discretization).map(|sampled| cascade(&sampled))
+        };
+        Ok(SampledController {
+            feedback: sections(&self.feedback)?,
+            prefilter: sections(&self.prefilter)?,
+            command_limit: self.command_limit.unwrap_or(f64::INFINITY),
+            anti_windup: self.anti_windup,
+            sample_time_s,
+        })
+    }
+}
+
+fn sampled_function(
+    function: &TransferFunction,
+    sample_time_s: f64,
+    method: Discretization,
+) -> Result<TransferFunction, LinearError> {
+    if function.domain() != TimeDomain::Continuous {
+        return function.clone().in_domain(TimeDomain::Discrete { sample_time_s });
+    }
+    match method {
+        Discretization::Tustin => discretization::tustin(function, sample_time_s),
+        Discretization::ZeroOrderHold => discretization::zero_order_hold(function, sample_time_s),
+        Discretization::Matched => discretization::matched(function, sample_time_s),
+    }
+}
+
+impl SampledController {
+    /// Sample time in s.
+    pub fn sample_time_s(&self) -> f64 {
+        self.sample_time_s
+    }
+
+    /// The state at rest.
+    pub fn at_rest(&self) -> ControllerState {
+        ControllerState { feedback: vec![[0.0; 2]; self.feedback.len()], prefilter: vec![[0.0; 2]; self.prefilter.len()] }
+    }
+
+    /// One sample: the command for this reference and measurement, and the next state.
+    ///
+    /// # Example
+    /// An integrator of 2/s, sampled every 0.1 s by the bilinear rule, driven by an error of one
+    /// ```
+    /// use phea_dynamics::controller::{Compensator, Controller, Element};
+    /// let integrator = vec![Element::Gain(2.0), Element::Integrator];
+    /// let controller = Controller { feedback: Compensator::new(integrator), ..Controller::default() };
+    /// let sampled = controller.sampled(0.1)?;
+    /// let mut state = sampled.at_rest();
+    /// let commands = [1.0; 3].map(|reference| sampled.step(&mut state, reference, 0.0).command);
+    /// for (command, expected) in commands.iter().zip([0.1, 0.3, 0.5]) {
+    ///     assert!((command - expected).abs() < 1e-15);
+    /// }
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn step(&self, state: &mut ControllerState, reference: f64, measurement: f64) -> ControllerOutput {
+        let mut filtered_reference = reference;
+        for (section, memory) in self.prefilter.iter().zip(&mut state.prefilter) {
+            let output = section.output(*memory, filtered_reference);
+            *memory = section.advance(*memory, filtered_reference, output);
+            filtered_reference = output;
+        }
+        let error = filtered_reference - measurement;
+        let (command, limited) = self.feedback_step(&mut state.feedback, error);
+        ControllerOutput { command, limited, filtered_reference }
+    }
+
+    fn feedback_step(&self, state: &mut [[f64; 2]], error: f64) -> (f64, bool) {
+        let before: Vec<[f64; 2]> = state.to_vec();
+        let last = self.feedback.len().saturating_sub(1);
+        let (mut signal, mut limited, mut wanted) = (error, false, 0.0);
+        for (index, (section, memory)) in self.feedback.iter().zip(state.iter_mut()).enumerate() {
+            let mut output = section.output(*memory, signal);
+            let mut continued = output;
+            if index == last {
+                wanted = output;
+                output = output.clamp(-self.command_limit, self.command_limit);
+                limited = output != wanted;
+                if self.anti_windup == AntiWindup::BackCalculation {
+                    continued = output;
+                }
+            }
+            *memory = section.advance(*memory, signal, continued);
+            signal = output;
+        }
+        if limited && self.anti_windup == AntiWindup::Clamping && wanted * error > 0.0 {
+            state.copy_from_slice(&before);
+        }
+        (signal, limited)
+    }
+}

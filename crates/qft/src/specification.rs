@@ -1,0 +1,138 @@
+//! Specifications: a closed-loop magnitude, its limit over frequency, where bounds are drawn and where it must hold.
+
+mod limit;
+
+use num_complex::Complex64;
+use phea_dynamics::portable;
+
+pub use limit::{Limit, LimitError, LimitTable};
+
+/// What is limited. L = P G is the loop of plant P, controller G; F the prefilter; Pd = F_e/X_L the load-motion path.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Requirement {
+    /// |L/(1+L)| <= limit
+    RobustStability(Limit),
+    /// |1/(1+L)| <= limit
+    Sensitivity(Limit),
+    /// |P/(1+L)| <= limit
+    PlantInputDisturbance(Limit),
+    /// |G/(1+L)| <= limit
+    ControlEffort(Limit),
+    /// |Pd/(1+L)| <= limit
+    LoadMotion(Limit),
+    /// lower <= |F L/(1+L)| <= upper
+    Tracking {
+        /// The least magnitude.
+        lower: Limit,
+        /// The greatest magnitude.
+        upper: Limit,
+    },
+}
+
+/// One member of a closed loop at one frequency: plant, load-motion path, controller and prefilter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopResponse {
+    /// P(j w)
+    pub plant: Complex64,
+    /// Pd(j w)
+    pub load_motion: Complex64,
+    /// G(j w)
+    pub controller: Complex64,
+    /// F(j w)
+    pub prefilter: Complex64,
+}
+
+/// A requirement with the frequencies at which bounds are drawn and the band over which it must hold, rad/s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Specification {
+    /// What is limited, and by how much.
+    pub requirement: Requirement,
+    /// Design frequencies, rad/s, increasing.
+    pub frequencies_rad_per_s: Vec<f64>,
+    /// The band `[from, to]` in rad/s over which it must hold; `to` may be infinite.
+    pub band_rad_per_s: [f64; 2],
+}
+
+impl Specification {
+    /// By how much the loop keeps to the limit at this frequency, in dB; negative where it violates it.
+    ///
+    /// ```text
+    /// margin = 20 log10(limit / |closed loop|)              for tracking the smaller of the margins to both limits
+    /// ```
+    ///
+    /// `None` where a limit given as a table does not reach.
+    ///
+    /// # Example
+    /// ```
+    /// use num_complex::Complex64;
+    /// use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
+    /// let one = Complex64::new(1.0, 0.0);
+    /// let response = LoopResponse { plant: one, load_motion: one, controller: one, prefilter: one };
+    /// let specification = Specification {
+    ///     requirement: Requirement::RobustStability(Limit::Constant(5.0)),
+    ///     frequencies_rad_per_s: vec![1.0],
+    ///     band_rad_per_s: [1.0, 1.0],
+    /// };
+    /// // |L/(1+L)| = 1/2 is ten times below 5
+    /// assert_eq!(specification.margin_db(&response, 1.0), Some(20.0));
+    /// ```
+    pub fn margin_db(&self, response: &LoopResponse, frequency_rad_per_s: f64) -> Option<f64> {
+        let below = |limit: &Limit, value: Complex64| {
+            Some(decibel(limit.magnitude(frequency_rad_per_s)? / portable::magnitude(value)))
+        };
+        let sensitivity = 1.0 / (1.0 + response.plant * response.controller);
+        match &self.requirement {
+            Requirement::RobustStability(limit) => {
+                below(limit, response.plant * response.controller * sensitivity)
+            }
+            Requirement::Sensitivity(limit) => below(limit, sensitivity),
+            Requirement::PlantInputDisturbance(limit) => below(limit, response.plant * sensitivity),
+            Requirement::ControlEffort(limit) => below(limit, response.controller * sensitivity),
+            Requirement::LoadMotion(limit) => below(limit, response.load_motion * sensitivity),
+            Requirement::Tracking { lower, upper } => {
+                let tracking = response.prefilter * response.plant * response.controller * sensitivity;
+                Some(below(upper, tracking)?.min(-below(lower, tracking)?))
+            }
+        }
+    }
+}
+
+fn decibel(ratio: f64) -> f64 {
+    20.0 * portable::log10(ratio)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn margin(requirement: Requirement) -> f64 {
+        let real = |value: f64| Complex64::new(value, 0.0);
+        let response = LoopResponse {
+            plant: real(3.0),
+            load_motion: real(8.0),
+            controller: real(1.0),
+            prefilter: real(2.0),
+        };
+        let specification =
+            Specification { requirement, frequencies_rad_per_s: vec![], band_rad_per_s: [0.0, 1.0] };
+        specification.margin_db(&response, 1.0).unwrap()
+    }
+
+    /// With L = 3 every closed loop is a plain fraction: T = 3/4, S = 1/4, P S = 3/4, G S = 1/4, Pd S = 2, F T = 3/2.
+    #[test]
+    fn each_kind_limits_its_own_closed_loop() {
+        let limit = Limit::Constant;
+        for (requirement, ratio) in [
+            (Requirement::RobustStability(limit(1.5)), 2.0),
+            (Requirement::Sensitivity(limit(0.5)), 2.0),
+            (Requirement::PlantInputDisturbance(limit(0.375)), 0.5),
+            (Requirement::ControlEffort(limit(0.25)), 1.0),
+            (Requirement::LoadMotion(limit(20.0)), 10.0),
+            (Requirement::Tracking { lower: limit(1.0), upper: limit(15.0) }, 1.5),
+            (Requirement::Tracking { lower: limit(3.0), upper: limit(15.0) }, 0.5),
+            (Requirement::Tracking { lower: limit(0.1), upper: limit(1.5) }, 1.0),
+        ] {
+            assert!((margin(requirement.clone()) - decibel(ratio)).abs() < 1e-12, "{requirement:?}");
+        }
+    }
+}

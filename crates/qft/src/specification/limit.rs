@@ -1,0 +1,117 @@
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable;
+
+/// The limit of a magnitude over frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Limit {
+    /// The same at every frequency.
+    Constant(f64),
+    /// The magnitude of a rational function of s.
+    Rational(TransferFunction),
+    /// Given at frequencies; between them straight in a double logarithmic diagram.
+    Table(LimitTable),
+}
+
+/// Magnitudes at increasing frequencies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LimitTable {
+    points: Vec<(f64, f64)>,
+}
+
+/// Why a table of limits is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LimitError {
+    /// A table without points.
+    #[error("a table of limits needs at least one point")]
+    Empty,
+    /// Frequencies must be positive and increase, magnitudes be positive; this point (counted from 0) is not so.
+    #[error(
+        "point {0} of the table: frequencies must be positive and increase, magnitudes be positive and finite"
+    )]
+    Point(usize),
+}
+
+impl LimitTable {
+    /// A table of (frequency in rad/s, magnitude) pairs.
+    ///
+    /// # Errors
+    /// No points, a frequency that does not increase, a value that is not positive and finite.
+    pub fn new(points: Vec<(f64, f64)>) -> Result<LimitTable, LimitError> {
+        if points.is_empty() {
+            return Err(LimitError::Empty);
+        }
+        let mut previous = 0.0;
+        for (index, &(frequency, magnitude)) in points.iter().enumerate() {
+            let sound =
+                frequency > previous && frequency.is_finite() && magnitude > 0.0 && magnitude.is_finite();
+            if !sound {
+                return Err(LimitError::Point(index));
+            }
+            previous = frequency;
+        }
+        Ok(LimitTable { points })
+    }
+
+    /// The (frequency in rad/s, magnitude) pairs.
+    pub fn points(&self) -> &[(f64, f64)] {
+        &self.points
+    }
+
+    fn magnitude(&self, frequency: f64) -> Option<f64> {
+        let exact = self.points.iter().find(|point| point.0 == frequency).map(|point| point.1);
+        let between = self.points.windows(2).find_map(|pair| match *pair {
+            [(low, low_value), (high, high_value)] if low < frequency && frequency < high => {
+                let share = portable::ln(frequency / low) / portable::ln(high / low);
+                Some(low_value * portable::exp(share * portable::ln(high_value / low_value)))
+            }
+            _ => None,
+        });
+        exact.or(between)
+    }
+}
+
+impl Limit {
+    /// The limit at this frequency; `None` beyond the ends of a table, where nothing is demanded or promised.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_qft::specification::{Limit, LimitTable};
+    /// let table = Limit::Table(LimitTable::new(vec![(1.0, 1.0), (100.0, 4.0)])?);
+    /// assert!((table.magnitude(10.0).unwrap() - 2.0).abs() < 1e-14);
+    /// assert_eq!(table.magnitude(1000.0), None);
+    /// # Ok::<(), phea_qft::specification::LimitError>(())
+    /// ```
+    pub fn magnitude(&self, frequency_rad_per_s: f64) -> Option<f64> {
+        match self {
+            Limit::Constant(value) => Some(*value),
+            Limit::Rational(function) => {
+                Some(portable::magnitude(function.at_frequency(frequency_rad_per_s)))
+            }
+            Limit::Table(table) => table.magnitude(frequency_rad_per_s),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_out_of_order_or_out_of_physics_are_refused() {
+        assert_eq!(LimitTable::new(vec![]), Err(LimitError::Empty));
+        assert_eq!(LimitTable::new(vec![(1.0, 1.0), (1.0, 2.0)]), Err(LimitError::Point(1)));
+        assert_eq!(LimitTable::new(vec![(0.0, 1.0)]), Err(LimitError::Point(0)));
+        assert_eq!(LimitTable::new(vec![(1.0, -1.0)]), Err(LimitError::Point(0)));
+        assert_eq!(LimitTable::new(vec![(f64::NAN, 1.0)]), Err(LimitError::Point(0)));
+    }
+
+    #[test]
+    fn a_table_passes_through_its_points_and_ends_there() {
+        let table = Limit::Table(LimitTable::new(vec![(0.1, 3.0), (1.0, 1.0), (10.0, 2.0)]).unwrap());
+        assert_eq!(
+            [0.1, 1.0, 10.0].map(|frequency| table.magnitude(frequency)),
+            [Some(3.0), Some(1.0), Some(2.0)]
+        );
+        assert_eq!([0.09, 10.1].map(|frequency| table.magnitude(frequency)), [None, None]);
+    }
+}
