@@ -7,8 +7,11 @@
 //! their chamber, the force on the load is positive when the rod pushes, pressures are gauge unless a name says
 //! `absolute`.
 
+pub mod actuator;
 pub mod cylinder;
 pub mod fluid;
+pub mod force_sensor;
+pub mod friction;
 pub mod line;
 pub mod orifice;
 pub mod parameter;

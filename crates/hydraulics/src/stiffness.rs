@@ -56,7 +56,8 @@ pub struct ChamberCompliance<S = f64> {
     pub slope_b: S,
 }
 
-/// Compliance of both chambers with their lines (A first), for a fluid of this modulus in Pa.
+/// Compliance of both chambers with their lines (A first), for fluids of these moduli in Pa (they differ between the
+/// chambers when air is entrained and the pressures differ).
 ///
 /// # Example
 /// The thesis' hose, both models, piston at mid stroke
@@ -68,7 +69,7 @@ pub struct ChamberCompliance<S = f64> {
 /// # let dynamic_stiffening = Stiffening { nominal: 5.0, minimum: 4.0, maximum: 5.0 };
 /// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, expansion_slope: 2.236e-12, dynamic_stiffening };
 /// # let line = Line::Hose { hose, length: 1.5 };
-/// let of = |model| chamber_compliance(model, 1.45e9, &cylinder, [&line, &line], Member::Nominal);
+/// let of = |model| chamber_compliance(model, [1.45e9; 2], &cylinder, [&line, &line], Member::Nominal);
 /// let uniform = hydraulic_stiffness(&of(StiffnessModel::Uniform), 0.25);
 /// let by_volume = hydraulic_stiffness(&of(StiffnessModel::ByVolume), 0.25);
 /// assert!((uniform - 2.233e6).abs() < 0.5e3 && (by_volume - 5.01e6).abs() < 0.5e4);
@@ -76,27 +77,29 @@ pub struct ChamberCompliance<S = f64> {
 /// ```
 pub fn chamber_compliance(
     model: StiffnessModel,
-    fluid_modulus: f64,
+    fluid_moduli: [f64; 2],
     cylinder: &Cylinder,
     lines: [&Line; 2],
     member: Member,
 ) -> ChamberCompliance {
-    let [line_a, line_b] = lines;
-    let chamber_modulus = |line: &Line| match model {
-        StiffnessModel::Uniform => line.effective_modulus(fluid_modulus, member),
-        StiffnessModel::ByVolume => fluid_modulus,
+    let one_side = |area: f64, dead_volume: f64, line: &Line, fluid_modulus: f64| {
+        let chamber_modulus = match model {
+            StiffnessModel::Uniform => line.effective_modulus(fluid_modulus, member),
+            StiffnessModel::ByVolume => fluid_modulus,
+        };
+        (dead_volume / chamber_modulus + line.compliance(fluid_modulus, member), area / chamber_modulus)
     };
-    let constant = |dead_volume: f64, line: &Line| {
-        dead_volume / chamber_modulus(line) + line.compliance(fluid_modulus, member)
-    };
+    let ([line_a, line_b], [modulus_a, modulus_b]) = (lines, fluid_moduli);
+    let (constant_a, slope_a) = one_side(cylinder.area_a, cylinder.dead_volume_a, line_a, modulus_a);
+    let (constant_b, slope_b) = one_side(cylinder.area_b, cylinder.dead_volume_b, line_b, modulus_b);
     ChamberCompliance {
         area_a: cylinder.area_a,
         area_b: cylinder.area_b,
         stroke: cylinder.stroke,
-        constant_a: constant(cylinder.dead_volume_a, line_a),
-        slope_a: cylinder.area_a / chamber_modulus(line_a),
-        constant_b: constant(cylinder.dead_volume_b, line_b),
-        slope_b: cylinder.area_b / chamber_modulus(line_b),
+        constant_a,
+        slope_a,
+        constant_b,
+        slope_b,
     }
 }
 

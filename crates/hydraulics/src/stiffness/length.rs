@@ -97,7 +97,7 @@ pub fn line_length_for_stiffness(
     }
     let minimum_at = |length: f64| {
         let line = with_length(line, length);
-        chamber_compliance(model, fluid_modulus, cylinder, [&line, &line], member).over_stroke().minimum
+        chamber_compliance(model, [fluid_modulus; 2], cylinder, [&line, &line], member).over_stroke().minimum
     };
     let stiffness_without_line = minimum_at(0.0);
     if stiffness_without_line <= stiffness {

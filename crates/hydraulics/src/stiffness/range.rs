@@ -91,7 +91,7 @@ pub fn model_difference(
     lines: [&Line; 2],
     member: Member,
 ) -> ModelDifference {
-    let of = |model| chamber_compliance(model, fluid_modulus, cylinder, lines, member);
+    let of = |model| chamber_compliance(model, [fluid_modulus; 2], cylinder, lines, member);
     let (uniform, chambers) = (of(StiffnessModel::Uniform).over_stroke(), of(StiffnessModel::ByVolume));
     let by_volume = chambers.over_stroke();
     let total_compliance: f64 = compliance_at(&chambers, by_volume.minimum_position).iter().sum();

@@ -1,0 +1,93 @@
+//! The actuator: valve, lines, cylinder, friction and force sensor assembled, and refused if any is impossible.
+
+use crate::cylinder::Cylinder;
+use crate::fluid::Fluid;
+use crate::force_sensor::ForceSensor;
+use crate::friction::Friction;
+use crate::line::{Line, Member};
+use crate::parameter::{ParameterError, Problems};
+use crate::servovalve::{Servovalve, Supply};
+use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance};
+
+/// The components of an actuator, not yet checked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Components {
+    /// The fluid throughout.
+    pub fluid: Fluid,
+    /// Supply and tank pressures.
+    pub supply: Supply,
+    /// The servovalve.
+    pub valve: Servovalve,
+    /// The line between port A and chamber A.
+    pub line_a: Line,
+    /// The line between port B and chamber B.
+    pub line_b: Line,
+    /// The cylinder.
+    pub cylinder: Cylinder,
+    /// Its friction.
+    pub friction: Friction,
+    /// The sensor between rod and load.
+    pub force_sensor: ForceSensor,
+    /// Which modulus the chambers have.
+    pub stiffness_model: StiffnessModel,
+}
+
+/// Why components do not make an actuator: every impossible parameter.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+pub struct ActuatorError {
+    /// All of them, in the order of the components.
+    pub problems: Vec<ParameterError>,
+}
+
+/// An actuator whose components are all possible.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Actuator(Components);
+
+impl Actuator {
+    /// Assembles the components as they are; nothing is repaired.
+    ///
+    /// # Errors
+    /// Every parameter outside physics, by its path (`valve.flow_coefficients.supply_to_a`), with what it must be. A line
+    /// and dead volumes of zero on one side are refused too: with the piston at that end the chamber would hold nothing.
+    pub fn new(components: Components) -> Result<Actuator, ActuatorError> {
+        let Components { fluid, supply, valve, line_a, line_b, cylinder, friction, force_sensor, .. } =
+            components;
+        let mut problems = Problems::default();
+        problems.component("fluid", fluid.problems());
+        problems.component("supply", supply.problems());
+        problems.component("valve", valve.problems());
+        problems.component("line.a", line_a.problems());
+        problems.component("line.b", line_b.problems());
+        problems.component("cylinder", cylinder.problems());
+        problems.component("cylinder.friction", friction.problems());
+        problems.component("force_sensor", force_sensor.problems());
+        let not_empty = "positive together with the line's volume: an empty chamber has no pressure";
+        let volume_a = cylinder.dead_volume_a + line_a.volume();
+        let volume_b = cylinder.dead_volume_b + line_b.volume();
+        problems.require("cylinder.dead_volume_a", volume_a, volume_a > 0.0, not_empty);
+        problems.require("cylinder.dead_volume_b", volume_b, volume_b > 0.0, not_empty);
+        match problems.into_vec() {
+            problems if problems.is_empty() => Ok(Actuator(components)),
+            problems => Err(ActuatorError { problems }),
+        }
+    }
+
+    /// The components.
+    pub fn components(&self) -> &Components {
+        &self.0
+    }
+
+    /// Pressure in Pa at which the fluid's modulus is taken when no operating point is given: midway between supply and
+    /// tank, where the chambers of an idle symmetric actuator stand.
+    pub fn mean_pressure(&self) -> f64 {
+        0.5 * (self.0.supply.pressure + self.0.supply.tank_pressure)
+    }
+
+    /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with entrained air alone).
+    pub fn chamber_compliance(&self, pressures: [f64; 2], member: Member) -> ChamberCompliance {
+        let Components { fluid, line_a, line_b, cylinder, stiffness_model, .. } = &self.0;
+        let moduli = pressures.map(|pressure| fluid.modulus_at(pressure));
+        chamber_compliance(*stiffness_model, moduli, cylinder, [line_a, line_b], member)
+    }
+}

@@ -1,0 +1,42 @@
+//! The force sensor: a stiff spring between rod and load, whose deflection is the measurement.
+
+use phea_dynamics::scalar::Scalar;
+
+use crate::parameter::{ParameterError, Problems};
+
+/// A load cell, in series with what it stands on when the load is a prescribed motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceSensor {
+    /// Stiffness K_S in N/m.
+    pub stiffness: f64,
+}
+
+impl ForceSensor {
+    /// What about this sensor is impossible; empty if nothing is.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("stiffness", self.stiffness);
+        problems.into_vec()
+    }
+}
+
+/// Force on the load F_e = K_S (x_p - x_L) in N, positive when the rod pushes; the deflection x_p - x_L in m.
+pub fn force<S: Scalar>(stiffness: S, deflection: S) -> S {
+    stiffness * deflection
+}
+
+/// Stiffness of two springs in series, in N/m.
+///
+/// ```text
+/// K = K_1 K_2/(K_1 + K_2)                     K_eq of thesis (6.12) is that of K_H and K_S
+/// ```
+///
+/// # Example
+/// A load cell of 9.81e7 N/m (1 t per 0.1 mm) on an environment of 2.51e7 N/m
+/// ```
+/// use phea_hydraulics::force_sensor::in_series;
+/// assert!((in_series(9.81e7, 2.51e7) - 2.0e7_f64).abs() < 0.5e5);
+/// ```
+pub fn in_series<S: Scalar>(first: S, second: S) -> S {
+    first * second / (first + second)
+}

@@ -1,0 +1,112 @@
+use phea_dynamics::scalar::Scalar;
+
+use super::Stribeck;
+use crate::parameter::{ParameterError, Problems};
+
+/// Friction of elastic bristles with mean deflection z. Units: N/m, N s/m.
+///
+/// ```text
+/// dz/dt = v - sigma_0 |v| z/g(v)                                       thesis (4.30), corrected
+/// F = sigma_0 z + sigma_1 dz/dt + sigma_2 v                            thesis (4.32)
+/// ```
+///
+/// Source: Canudas de Wit, Olsson, Astrom and Lischinsky (1995); the thesis' (4.30) drops sigma_0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LuGre<S = f64> {
+    /// The steady curve, with g(v) and sigma_2.
+    pub curve: Stribeck<S>,
+    /// Bristle stiffness sigma_0 in N/m.
+    pub bristle_stiffness: S,
+    /// Bristle damping sigma_1 in N s/m.
+    pub bristle_damping: S,
+}
+
+/// Whether a LuGre model can only take energy from the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LuGrePassivity {
+    /// It is passive; the viscous friction exceeds what is required by this, in N s/m.
+    Passive {
+        /// sigma_2 less the required value, zero or positive, in N s/m.
+        surplus: f64,
+    },
+    /// For some motions it gives energy; this viscous friction is required, in N s/m.
+    NotPassive {
+        /// sigma_1 (F_S - F_C)/F_C, above sigma_2, in N s/m.
+        required_viscous: f64,
+    },
+}
+
+impl<S: Scalar> LuGre<S> {
+    /// dz/dt in m/s at sliding velocity v in m/s and bristle deflection z in m.
+    ///
+    /// # Example
+    /// At a steady velocity the bristles settle where sigma_0 z = sign(v) g(v).
+    /// ```
+    /// use phea_hydraulics::friction::{LuGre, Stribeck};
+    /// let curve = Stribeck {
+    ///     coulomb: 80.0, breakaway: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    /// };
+    /// let lugre = LuGre { curve, bristle_stiffness: 1e7, bristle_damping: 2e3 };
+    /// let settled = -curve.sliding_force(-0.004) / 1e7;
+    /// assert!(lugre.bristle_rate(-0.004, settled).abs() < 1e-17);
+    /// let force: f64 = lugre.force(-0.004, settled);
+    /// assert!((force - curve.steady_force(-0.004)).abs() < 1e-12 * force.abs());
+    /// ```
+    pub fn bristle_rate(&self, velocity: S, deflection: S) -> S {
+        velocity - self.bristle_stiffness * velocity.abs() * deflection / self.curve.sliding_force(velocity)
+    }
+
+    /// Friction force in N at sliding velocity v in m/s and bristle deflection z in m.
+    pub fn force(&self, velocity: S, deflection: S) -> S {
+        self.bristle_stiffness * deflection
+            + self.bristle_damping * self.bristle_rate(velocity, deflection)
+            + self.curve.viscous * velocity
+    }
+}
+
+impl LuGre {
+    /// What about this friction is impossible; empty if nothing is. Lack of passivity is no impossibility: see
+    /// [`LuGre::passivity`].
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("bristle_stiffness", self.bristle_stiffness);
+        problems.not_negative("bristle_damping", self.bristle_damping);
+        let mut all = self.curve.problems();
+        all.extend(problems.into_vec());
+        all
+    }
+
+    /// Whether sigma_2 >= sigma_1 (F_S - F_C)/F_C, the condition for passivity.
+    ///
+    /// Source: Barahanov and Ortega (2000), IEEE Transactions on Automatic Control 45(4).
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::friction::{LuGre, LuGrePassivity, Stribeck};
+    /// let curve = Stribeck {
+    ///     coulomb: 80.0, breakaway: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    /// };
+    /// let lugre = LuGre { curve, bristle_stiffness: 1e7, bristle_damping: 2e3 };
+    /// assert_eq!(lugre.passivity(), LuGrePassivity::NotPassive { required_viscous: 1000.0 });
+    /// let softer = LuGre { bristle_damping: 100.0, ..lugre };
+    /// assert_eq!(softer.passivity(), LuGrePassivity::Passive { surplus: 50.0 });
+    /// ```
+    pub fn passivity(&self) -> LuGrePassivity {
+        let Stribeck { coulomb, breakaway, viscous, .. } = self.curve;
+        let required_viscous = self.bristle_damping * (breakaway - coulomb) / coulomb;
+        if viscous >= required_viscous {
+            LuGrePassivity::Passive { surplus: viscous - required_viscous }
+        } else {
+            LuGrePassivity::NotPassive { required_viscous }
+        }
+    }
+
+    /// The same numbers as constants of another scalar.
+    pub fn map<S: Scalar>(&self) -> LuGre<S> {
+        LuGre {
+            curve: self.curve.map(),
+            bristle_stiffness: S::from(self.bristle_stiffness),
+            bristle_damping: S::from(self.bristle_damping),
+        }
+    }
+}

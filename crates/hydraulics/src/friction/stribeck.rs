@@ -1,0 +1,79 @@
+use phea_dynamics::scalar::Scalar;
+
+use crate::parameter::{ParameterError, Problems};
+
+/// The steady friction curve. Units: N, m/s, N s/m.
+///
+/// ```text
+/// F(v) = sign(v) g(v) + sigma_2 v                                      thesis (4.33)
+/// g(v) = F_C + (F_S - F_C) exp(-|v/v_S|^alpha)                         thesis (4.31), corrected
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stribeck<S = f64> {
+    /// Coulomb friction F_C in N.
+    pub coulomb: S,
+    /// Static (breakaway) friction F_S in N.
+    pub breakaway: S,
+    /// Stribeck velocity v_S in m/s.
+    pub stribeck_velocity: S,
+    /// Stribeck exponent alpha.
+    pub stribeck_exponent: S,
+    /// Viscous coefficient sigma_2 in N s/m.
+    pub viscous: S,
+}
+
+impl<S: Scalar> Stribeck<S> {
+    /// g(v) in N: what the bristles carry when sliding steadily at v in m/s.
+    pub fn sliding_force(&self, velocity: S) -> S {
+        // The least positive number stands for zero velocity, whose logarithm does not exist; its power is zero.
+        let least = S::from(f64::MIN_POSITIVE);
+        let relative = (velocity / self.stribeck_velocity).abs().maximum(least);
+        let power = (self.stribeck_exponent * relative.ln()).exp();
+        self.coulomb + (self.breakaway - self.coulomb) * (-power).exp()
+    }
+
+    /// F(v) in N, zero at standstill (where any force up to F_S is possible).
+    ///
+    /// # Example
+    /// Odd in the velocity, and Coulomb plus viscous friction far above the Stribeck velocity
+    /// ```
+    /// use phea_hydraulics::friction::Stribeck;
+    /// let curve = Stribeck {
+    ///     coulomb: 80.0, breakaway: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    /// };
+    /// assert_eq!(curve.steady_force(0.5), 130.0);
+    /// assert_eq!(curve.steady_force(-0.003), -curve.steady_force(0.003));
+    /// assert!((curve.steady_force(1e-9) - 120.0_f64).abs() < 1e-6);
+    /// ```
+    pub fn steady_force(&self, velocity: S) -> S {
+        let (zero, one) = (S::from(0.0), S::from(1.0));
+        let negative_or_zero = S::select(velocity.less_than(zero), -one, zero);
+        let sign = S::select(zero.less_than(velocity), one, negative_or_zero);
+        sign * self.sliding_force(velocity) + self.viscous * velocity
+    }
+}
+
+impl Stribeck {
+    /// What about this curve is impossible; empty if nothing is.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("coulomb", self.coulomb);
+        let not_below = self.breakaway >= self.coulomb;
+        problems.require("static", self.breakaway, not_below, "at least the Coulomb friction");
+        problems.positive("stribeck_velocity", self.stribeck_velocity);
+        problems.positive("stribeck_exponent", self.stribeck_exponent);
+        problems.not_negative("viscous", self.viscous);
+        problems.into_vec()
+    }
+
+    /// The same numbers as constants of another scalar.
+    pub fn map<S: Scalar>(&self) -> Stribeck<S> {
+        Stribeck {
+            coulomb: S::from(self.coulomb),
+            breakaway: S::from(self.breakaway),
+            stribeck_velocity: S::from(self.stribeck_velocity),
+            stribeck_exponent: S::from(self.stribeck_exponent),
+            viscous: S::from(self.viscous),
+        }
+    }
+}
