@@ -1,1 +1,3 @@
 //! The engineer's procedures.
+
+pub mod figure;
