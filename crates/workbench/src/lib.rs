@@ -1,6 +1,11 @@
-//! The engineer's procedures.
+//! The engineer's procedures: read a project, derive what follows from it, size, linearise, report.
+//!
+//! A shell hands in text and bytes through [`source::Source`] and prints what an [`answer::Answer`] holds.
 
+pub mod answer;
 pub mod catalogue;
+pub mod figure;
 pub mod project;
 pub mod quantity;
+pub mod sizing;
 pub mod source;

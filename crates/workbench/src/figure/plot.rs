@@ -1,0 +1,163 @@
+//! Axes with panels that share x: curves, bands, reference lines, markers and labels that do not overlap.
+
+mod labels;
+mod layout;
+mod paint;
+
+pub use paint::draw_marker;
+
+use super::axis::Axis;
+use super::colour::Role;
+use super::legend::LegendEntry;
+use super::scene::{Fill, Scene, Stroke};
+
+/// Form of a marker.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Marker {
+    /// Filled circle.
+    Circle,
+    /// Circle without filling: a zero of a transfer function.
+    Ring,
+    /// Filled square.
+    Square,
+    /// Filled triangle.
+    Triangle,
+    /// Filled square on its corner.
+    Diamond,
+    /// Diagonal cross: a pole of a transfer function, or a rejection.
+    Cross,
+    /// Upright cross.
+    Plus,
+    /// Six-armed star.
+    Star,
+}
+
+/// A marker with colour and size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarkerStyle {
+    /// Form.
+    pub marker: Marker,
+    /// Colour by role.
+    pub role: Role,
+    /// Half its width.
+    pub radius: f64,
+}
+
+/// What a panel shows, in data coordinates, drawn in the order given.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mark {
+    /// A curve; points out of range or not a number interrupt it.
+    Line {
+        /// (x, y).
+        points: Vec<(f64, f64)>,
+        /// Line.
+        stroke: Stroke,
+    },
+    /// A closed area, cut at the frame.
+    Area {
+        /// (x, y) around it.
+        corners: Vec<(f64, f64)>,
+        /// Interior.
+        fill: Fill,
+    },
+    /// Markers; those out of range are not drawn.
+    Markers {
+        /// (x, y) and a tooltip.
+        points: Vec<(f64, f64, String)>,
+        /// Form, colour, size.
+        style: MarkerStyle,
+    },
+    /// A band across the panel.
+    Band {
+        /// The axis that `from` and `to` belong to.
+        direction: Direction,
+        /// Lower end.
+        from: f64,
+        /// Upper end.
+        to: f64,
+        /// Interior.
+        fill: Fill,
+        /// Diagonal lines, for prints without colour.
+        hatched: bool,
+        /// Text inside; empty for none.
+        label: String,
+    },
+    /// A straight line across the panel.
+    Reference {
+        /// The axis that `at` belongs to.
+        direction: Direction,
+        /// Where.
+        at: f64,
+        /// Line.
+        stroke: Stroke,
+        /// Text beside it; empty for none.
+        label: String,
+    },
+    /// A text near a point.
+    Label {
+        /// (x, y).
+        at: (f64, f64),
+        /// Text with markup.
+        text: String,
+        /// Colour.
+        role: Role,
+        /// The side tried first.
+        side: Side,
+    },
+}
+
+/// Which axis a value belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// A value of x: the mark is upright.
+    X,
+    /// A value of y: the mark lies.
+    Y,
+}
+
+/// Side of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Above.
+    Above,
+    /// Below.
+    Below,
+    /// To the left.
+    Left,
+    /// To the right.
+    Right,
+}
+
+/// One pair of axes; x belongs to the plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// The upright axis.
+    pub y: Axis,
+    /// Height of the frame in view box units.
+    pub height: f64,
+    /// Back to front.
+    pub marks: Vec<Mark>,
+}
+
+/// Panels below each other on one x axis, with a legend at the bottom.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plot {
+    /// The lying axis.
+    pub x: Axis,
+    /// Top to bottom.
+    pub panels: Vec<Panel>,
+    /// Entries in order; none, no legend.
+    pub legend: Vec<LegendEntry>,
+    /// One unit of x is as long as one of y (linear axes, one panel): the shorter axis is extended.
+    pub equal_aspect: bool,
+}
+
+impl Plot {
+    /// Draws the plot in the usual width.
+    ///
+    /// A label that finds no free place is left out, so that nothing overlaps: whatever a figure labels must also
+    /// stand in a table of the report.
+    pub fn draw(&self) -> Scene {
+        if self.equal_aspect { layout::draw(&layout::with_equal_aspect(self)) } else { layout::draw(self) }
+    }
+}

@@ -1,0 +1,156 @@
+//! Labels of marks, each at the first free place that suits its kind.
+
+use super::super::LABEL_SIZE;
+use super::super::colour::Role;
+use super::super::placement::Occupancy;
+use super::super::scene::{Anchor, Baseline, Point, Rectangle, Scene, Text, point};
+use super::layout::Placed;
+use super::paint::{band_area, reference_line};
+use super::{Direction, Mark, Side};
+
+const ROW: f64 = 17.0;
+const CLEAR: f64 = 5.0;
+
+type Hold = (Point, Anchor, Baseline);
+
+pub(super) fn draw(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occupancy: &mut Occupancy) {
+    for mark in marks {
+        let (text, role, holds) = match mark {
+            Mark::Reference { direction, at, stroke, label } if !label.is_empty() => {
+                let Some((from, to)) = reference_line(placed, *direction, *at) else { continue };
+                (label, legible(stroke.role), beside_line(from, to, placed.frame))
+            }
+            Mark::Band { direction, from, to, fill, label, .. } if !label.is_empty() => {
+                let Some(area) = band_area(placed, *direction, *from, *to) else { continue };
+                (label, legible(fill.role), inside_band(area, *direction, placed.frame))
+            }
+            Mark::Label { at, text, role, side } => {
+                let at = placed.at(at.0, at.1);
+                if !placed.frame.contains_point(at) {
+                    continue;
+                }
+                (text, *role, around(at, *side))
+            }
+            _ => continue,
+        };
+        place(scene, occupancy, placed.frame, text, role, &holds);
+    }
+}
+
+/// Series colours are lines' colours; as text only those roles appear that have a text's contrast.
+fn legible(role: Role) -> Role {
+    match role {
+        Role::Text | Role::Muted | Role::Accent | Role::Good | Role::Warning | Role::Bad => role,
+        _ => Role::Text,
+    }
+}
+
+fn place(
+    scene: &mut Scene,
+    occupancy: &mut Occupancy,
+    frame: Rectangle,
+    text: &str,
+    role: Role,
+    holds: &[Hold],
+) {
+    let texts: Vec<Text> = holds
+        .iter()
+        .map(|&(at, anchor, baseline)| {
+            Text::new(at, text, LABEL_SIZE).held(anchor, baseline).coloured(legible(role)).with_halo()
+        })
+        .collect();
+    let bounds: Vec<Rectangle> = texts.iter().map(Text::bounds).collect();
+    let Some(index) = occupancy.choose(&bounds, &frame.grown(-2.0)) else { return };
+    if let (Some(text), Some(bounds)) = (texts.get(index), bounds.get(index)) {
+        occupancy.add_text(*bounds);
+        scene.text(text.clone());
+    }
+}
+
+fn rows(top: f64, bottom: f64) -> impl Iterator<Item = f64> {
+    let count = ((bottom - top) / ROW).clamp(0.0, 40.0) as usize;
+    (0..count).map(move |index| top + 5.0 + ROW * index as f64)
+}
+
+/// Beside an upright line from the top down; above or below a lying line at its right end, its left end, its middle.
+fn beside_line(from: Point, to: Point, frame: Rectangle) -> Vec<Hold> {
+    if from.x == to.x {
+        return rows(frame.top, frame.bottom)
+            .flat_map(|y| {
+                [
+                    (point(from.x + CLEAR, y), Anchor::Start, Baseline::Top),
+                    (point(from.x - CLEAR, y), Anchor::End, Baseline::Top),
+                ]
+            })
+            .collect();
+    }
+    let y = from.y;
+    let ends = [
+        (to.x - CLEAR, Anchor::End),
+        (from.x + CLEAR, Anchor::Start),
+        (0.5 * (from.x + to.x), Anchor::Middle),
+    ];
+    ends.into_iter()
+        .flat_map(|(x, anchor)| {
+            [
+                (point(x, y - CLEAR), anchor, Baseline::Letters),
+                (point(x, y + CLEAR), anchor, Baseline::Top),
+                (point(x, y - CLEAR - ROW), anchor, Baseline::Letters),
+            ]
+        })
+        .collect()
+}
+
+/// In the middle of an upright band from the top down, else beside it; in a lying band at its ends or its middle.
+fn inside_band(area: Rectangle, direction: Direction, frame: Rectangle) -> Vec<Hold> {
+    match direction {
+        Direction::X => rows(frame.top, frame.bottom)
+            .flat_map(|y| {
+                [
+                    (point(area.centre().x, y), Anchor::Middle, Baseline::Top),
+                    (point(area.left + CLEAR, y), Anchor::Start, Baseline::Top),
+                    (point(area.right - CLEAR, y), Anchor::End, Baseline::Top),
+                ]
+            })
+            .collect(),
+        Direction::Y => [area.centre().y, area.top + ROW, area.bottom - ROW]
+            .into_iter()
+            .flat_map(|y| {
+                [
+                    (point(frame.left + 2.0 * CLEAR, y), Anchor::Start, Baseline::Middle),
+                    (point(frame.right - 2.0 * CLEAR, y), Anchor::End, Baseline::Middle),
+                    (point(frame.centre().x, y), Anchor::Middle, Baseline::Middle),
+                ]
+            })
+            .collect(),
+    }
+}
+
+/// Around a point: the wanted side, then the others, then farther away.
+fn around(at: Point, side: Side) -> Vec<Hold> {
+    let order = match side {
+        Side::Above => [Side::Above, Side::Right, Side::Left, Side::Below],
+        Side::Below => [Side::Below, Side::Right, Side::Left, Side::Above],
+        Side::Left => [Side::Left, Side::Above, Side::Below, Side::Right],
+        Side::Right => [Side::Right, Side::Above, Side::Below, Side::Left],
+    };
+    let near = |side: Side, away: f64| match side {
+        Side::Above => (point(at.x, at.y - away), Anchor::Middle, Baseline::Letters),
+        Side::Below => (point(at.x, at.y + away), Anchor::Middle, Baseline::Top),
+        Side::Left => (point(at.x - away, at.y), Anchor::End, Baseline::Middle),
+        Side::Right => (point(at.x + away, at.y), Anchor::Start, Baseline::Middle),
+    };
+    let corner = |away: f64| {
+        [(1.0, -1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(dx, dy): (f64, f64)| {
+            let anchor = if dx > 0.0 { Anchor::Start } else { Anchor::End };
+            let baseline = if dy > 0.0 { Baseline::Top } else { Baseline::Letters };
+            (point(at.x + dx * away, at.y + dy * away), anchor, baseline)
+        })
+    };
+    [9.0, 18.0, 30.0]
+        .into_iter()
+        .flat_map(|away| {
+            order.iter().map(move |s| near(*s, away)).chain(corner(0.8 * away)).collect::<Vec<_>>()
+        })
+        .collect()
+}

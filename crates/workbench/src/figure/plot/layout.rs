@@ -1,0 +1,168 @@
+//! Sizes of margins and frames, grid, ticks and titles.
+
+use super::super::axis::{Axis, Scale};
+use super::super::colour::Role;
+use super::super::legend;
+use super::super::placement::Occupancy;
+use super::super::scene::{Anchor, Baseline, Fill, Point, Rectangle, Scene, Stroke, Text, point};
+use super::super::ticks::Tick;
+use super::super::{LABEL_SIZE, TITLE_SIZE, WIDTH, typeset};
+use super::{Panel, Plot, labels, paint};
+
+const EDGE: f64 = 8.0;
+const RIGHT: f64 = 18.0;
+const BETWEEN: f64 = 16.0;
+const TICK: f64 = 4.0;
+
+/// A panel in its place: maps values to the view box.
+pub(super) struct Placed<'a> {
+    pub(super) x: &'a Axis,
+    pub(super) y: &'a Axis,
+    pub(super) frame: Rectangle,
+}
+
+impl Placed<'_> {
+    pub(super) fn at(&self, x: f64, y: f64) -> Point {
+        point(
+            self.frame.left + self.x.fraction(x) * self.frame.width(),
+            self.frame.bottom - self.y.fraction(y) * self.frame.height(),
+        )
+    }
+}
+
+pub(super) fn draw(plot: &Plot) -> Scene {
+    let left = left_margin(plot);
+    let bottom_of_panels =
+        EDGE + plot.panels.iter().map(|panel| panel.height + BETWEEN).sum::<f64>() - BETWEEN;
+    let below_ticks = bottom_of_panels + TICK + 5.0 + LABEL_SIZE;
+    let below_title = below_ticks + 8.0 + TITLE_SIZE;
+    let legend_left = left.min(70.0);
+    let legend_width = WIDTH - legend_left - EDGE;
+    let legend_height = legend::height(&plot.legend, legend_width);
+    let gap = if plot.legend.is_empty() { 0.0 } else { 8.0 };
+    let mut scene = Scene::new(WIDTH, (below_title + gap + legend_height + EDGE).ceil());
+    let mut top = EDGE;
+    for (index, panel) in plot.panels.iter().enumerate() {
+        let frame = Rectangle { left, top, right: WIDTH - RIGHT, bottom: top + panel.height };
+        let last = index + 1 == plot.panels.len();
+        draw_panel(&mut scene, plot, panel, frame, last);
+        top += panel.height + BETWEEN;
+    }
+    let title = typeset::fitted(&plot.x.full_title(), TITLE_SIZE, WIDTH - left - EDGE);
+    let middle = 0.5 * (left + WIDTH - RIGHT);
+    scene.text(
+        Text::new(point(middle, below_ticks + 6.0), title, TITLE_SIZE).held(Anchor::Middle, Baseline::Top),
+    );
+    legend::draw(&mut scene, &plot.legend, legend_left, below_title + gap, legend_width);
+    scene
+}
+
+fn draw_panel(scene: &mut Scene, plot: &Plot, panel: &Panel, frame: Rectangle, last: bool) {
+    let placed = Placed { x: &plot.x, y: &panel.y, frame };
+    let x_ticks = plot.x.ticks(x_tick_count(frame.width()));
+    let y_ticks = panel.y.ticks(y_tick_count(panel.height));
+    let mut occupancy = Occupancy::default();
+    scene.rectangle(frame, None, Some(Fill::solid(Role::Background)));
+    paint::bands(scene, &placed, &panel.marks);
+    grid(scene, &placed, &x_ticks, &y_ticks);
+    paint::marks(scene, &placed, &panel.marks, &mut occupancy);
+    scene.rectangle(frame, Some(Stroke::solid(Role::Axis, 1.0)), None);
+    tick_labels(scene, &placed, &x_ticks, &y_ticks, last);
+    let title = typeset::fitted(&panel.y.full_title(), TITLE_SIZE, panel.height + BETWEEN);
+    let at = point(EDGE, frame.centre().y);
+    scene.text(Text::new(at, title, TITLE_SIZE).held(Anchor::Middle, Baseline::Top).rotated(-90.0));
+    labels::draw(scene, &placed, &panel.marks, &mut occupancy);
+}
+
+fn x_tick_count(width: f64) -> usize {
+    // Between 3 and 20 for any width of a figure.
+    (width / 62.0).clamp(3.0, 20.0) as usize
+}
+
+fn y_tick_count(height: f64) -> usize {
+    (height / 30.0).clamp(2.0, 20.0) as usize
+}
+
+fn left_margin(plot: &Plot) -> f64 {
+    let widest = plot
+        .panels
+        .iter()
+        .flat_map(|panel| panel.y.ticks(y_tick_count(panel.height)))
+        .filter_map(|tick| tick.label)
+        .map(|label| typeset::width(&label, LABEL_SIZE))
+        .fold(0.0, f64::max);
+    (EDGE + TITLE_SIZE + 9.0 + widest + TICK + 4.0).ceil()
+}
+
+fn grid(scene: &mut Scene, placed: &Placed<'_>, x_ticks: &[Tick], y_ticks: &[Tick]) {
+    let frame = placed.frame;
+    let stroke = |tick: &Tick| match tick.label {
+        Some(_) => Stroke::solid(Role::Grid, 1.0),
+        None => Stroke::solid(Role::MinorGrid, 0.8),
+    };
+    for labelled in [false, true] {
+        for tick in x_ticks.iter().filter(|tick| tick.label.is_some() == labelled) {
+            let x = frame.left + placed.x.fraction(tick.value) * frame.width();
+            scene.line(point(x, frame.top), point(x, frame.bottom), stroke(tick));
+        }
+        for tick in y_ticks.iter().filter(|tick| tick.label.is_some() == labelled) {
+            let y = frame.bottom - placed.y.fraction(tick.value) * frame.height();
+            scene.line(point(frame.left, y), point(frame.right, y), stroke(tick));
+        }
+    }
+}
+
+fn tick_labels(scene: &mut Scene, placed: &Placed<'_>, x_ticks: &[Tick], y_ticks: &[Tick], last: bool) {
+    let frame = placed.frame;
+    let stroke = Stroke::solid(Role::Axis, 1.0);
+    let mut end = f64::NEG_INFINITY;
+    for tick in x_ticks {
+        let x = frame.left + placed.x.fraction(tick.value) * frame.width();
+        let length = if tick.label.is_some() { TICK } else { 0.5 * TICK };
+        scene.line(point(x, frame.bottom), point(x, frame.bottom + length), stroke);
+        let Some(label) = tick.label.as_ref().filter(|_| last) else { continue };
+        let text = Text::new(point(x, frame.bottom + TICK + 5.0), label.clone(), LABEL_SIZE)
+            .held(Anchor::Middle, Baseline::Top);
+        let bounds = text.bounds();
+        if bounds.left > end + 6.0 && bounds.right <= WIDTH {
+            end = bounds.right;
+            scene.text(text);
+        }
+    }
+    let mut above = f64::INFINITY;
+    for tick in y_ticks {
+        let y = frame.bottom - placed.y.fraction(tick.value) * frame.height();
+        let length = if tick.label.is_some() { TICK } else { 0.5 * TICK };
+        scene.line(point(frame.left - length, y), point(frame.left, y), stroke);
+        let Some(label) = &tick.label else { continue };
+        let text = Text::new(point(frame.left - TICK - 4.0, y), label.clone(), LABEL_SIZE)
+            .held(Anchor::End, Baseline::Middle);
+        let bounds = text.bounds();
+        if bounds.bottom < above - 1.0 {
+            above = bounds.top;
+            scene.text(text);
+        }
+    }
+}
+
+/// Extends the axis that is too short for equal units; other scales than linear are left alone.
+pub(super) fn with_equal_aspect(plot: &Plot) -> Plot {
+    let mut result = plot.clone();
+    let width = WIDTH - RIGHT - left_margin(plot);
+    let [panel] = result.panels.as_mut_slice() else { return result };
+    if plot.x.scale != Scale::Linear || panel.y.scale != Scale::Linear {
+        return result;
+    }
+    let per_x = (plot.x.maximum - plot.x.minimum) / width;
+    let per_y = (panel.y.maximum - panel.y.minimum) / panel.height;
+    let extend = |axis: &mut Axis, span: f64| {
+        let middle = 0.5 * (axis.minimum + axis.maximum);
+        (axis.minimum, axis.maximum) = (middle - 0.5 * span, middle + 0.5 * span);
+    };
+    if per_x < per_y {
+        extend(&mut result.x, per_y * width);
+    } else {
+        extend(&mut panel.y, per_x * panel.height);
+    }
+    result
+}

@@ -1,0 +1,144 @@
+//! Marks of a panel as primitives.
+
+use super::super::clip;
+use super::super::colour::Role;
+use super::super::placement::Occupancy;
+use super::super::scene::{Fill, Item, PathStep, Point, Rectangle, Scene, Shape, Stroke, point, run};
+use super::layout::Placed;
+use super::{Direction, Mark, Marker, MarkerStyle};
+
+/// What lies below the grid: bands and areas.
+pub(super) fn bands(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark]) {
+    for mark in marks {
+        match mark {
+            Mark::Band { direction, from, to, fill, hatched, .. } => {
+                let Some(area) = band_area(placed, *direction, *from, *to) else { continue };
+                scene.rectangle(area, None, Some(*fill));
+                if *hatched {
+                    hatch(scene, area, Stroke::solid(fill.role, 0.7));
+                }
+            }
+            Mark::Area { corners, fill } => {
+                let corners: Vec<Point> = corners.iter().map(|&(x, y)| placed.at(x, y)).collect();
+                let inside = clip::polygon(&corners, &placed.frame);
+                if inside.len() > 2 {
+                    scene.polygon(&inside, None, Some(*fill));
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// What lies above the grid: reference lines, curves, markers.
+pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occupancy: &mut Occupancy) {
+    for mark in marks {
+        match mark {
+            Mark::Line { points, stroke } => {
+                let points: Vec<Point> = points.iter().map(|&(x, y)| placed.at(x, y)).collect();
+                let runs = clip::polyline(&points, &placed.frame);
+                runs.iter().for_each(|piece| occupancy.add_polyline(piece));
+                let steps: Vec<PathStep> = runs.iter().flat_map(|piece| run(piece, false)).collect();
+                if !steps.is_empty() {
+                    scene.shape(Shape::Path(steps), Some(*stroke), None);
+                }
+            }
+            Mark::Reference { direction, at, stroke, .. } => {
+                if let Some((from, to)) = reference_line(placed, *direction, *at) {
+                    occupancy.add_polyline(&[from, to]);
+                    scene.line(from, to, *stroke);
+                }
+            }
+            Mark::Markers { points, style } => {
+                for (x, y, note) in points {
+                    let at = placed.at(*x, *y);
+                    if placed.frame.contains_point(at) {
+                        occupancy.add_obstacle(Rectangle::from_corners(at, at).grown(style.radius));
+                        draw_marker(scene, at, *style, Some(note));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The visible part of a band, or `None`.
+pub(super) fn band_area(placed: &Placed<'_>, direction: Direction, from: f64, to: f64) -> Option<Rectangle> {
+    let axis = match direction {
+        Direction::X => placed.x,
+        Direction::Y => placed.y,
+    };
+    let (low, high) = (from.min(to).max(axis.minimum), from.max(to).min(axis.maximum));
+    if from.is_nan() || to.is_nan() || low >= high {
+        return None;
+    }
+    let (a, b) = match direction {
+        Direction::X => (placed.at(low, placed.y.minimum), placed.at(high, placed.y.maximum)),
+        Direction::Y => (placed.at(placed.x.minimum, low), placed.at(placed.x.maximum, high)),
+    };
+    Some(Rectangle::from_corners(a, b))
+}
+
+/// The ends of a reference line, or `None` when it lies outside.
+pub(super) fn reference_line(placed: &Placed<'_>, direction: Direction, at: f64) -> Option<(Point, Point)> {
+    let frame = placed.frame;
+    match direction {
+        Direction::X => {
+            let x = placed.at(at, placed.y.minimum).x;
+            (x >= frame.left && x <= frame.right).then(|| (point(x, frame.bottom), point(x, frame.top)))
+        }
+        Direction::Y => {
+            let y = placed.at(placed.x.minimum, at).y;
+            (y >= frame.top && y <= frame.bottom).then(|| (point(frame.left, y), point(frame.right, y)))
+        }
+    }
+}
+
+/// Diagonal lines over an area.
+fn hatch(scene: &mut Scene, area: Rectangle, stroke: Stroke) {
+    const SPACING: f64 = 9.0;
+    let count = ((area.width() + area.height()) / SPACING).clamp(0.0, 400.0) as usize;
+    let mut steps = Vec::new();
+    for index in 1..=count {
+        let reach = SPACING * index as f64;
+        let (from, to) = (point(area.left + reach, area.top), point(area.left, area.top + reach));
+        if let Some((a, b)) = clip::segment(from, to, &area) {
+            steps.extend([PathStep::Move(a), PathStep::Line(b)]);
+        }
+    }
+    if !steps.is_empty() {
+        scene.shape(Shape::Path(steps), Some(stroke), None);
+    }
+}
+
+/// Draws a marker, with a tooltip where there is one.
+pub fn draw_marker(scene: &mut Scene, at: Point, style: MarkerStyle, note: Option<&str>) {
+    let r = style.radius;
+    let by = |dx: f64, dy: f64| point(at.x + dx * r, at.y + dy * r);
+    let filled = (Some(Stroke::solid(Role::Background, 1.0)), Some(Fill::solid(style.role)));
+    let open = (Some(Stroke::solid(style.role, 2.0)), None);
+    let polygon = |corners: &[Point]| Shape::Path(run(corners, true));
+    let arms = |ends: &[(Point, Point)]| {
+        Shape::Path(ends.iter().flat_map(|(a, b)| [PathStep::Move(*a), PathStep::Line(*b)]).collect())
+    };
+    let (shape, (stroke, fill)) = match style.marker {
+        Marker::Circle => (Shape::Circle(at, r), filled),
+        Marker::Ring => (Shape::Circle(at, r), (open.0, Some(Fill::solid(Role::Background)))),
+        Marker::Square => (polygon(&[by(-0.9, -0.9), by(0.9, -0.9), by(0.9, 0.9), by(-0.9, 0.9)]), filled),
+        Marker::Triangle => (polygon(&[by(0.0, -1.2), by(1.1, 0.8), by(-1.1, 0.8)]), filled),
+        Marker::Diamond => (polygon(&[by(0.0, -1.3), by(1.3, 0.0), by(0.0, 1.3), by(-1.3, 0.0)]), filled),
+        Marker::Cross => (arms(&[(by(-1.0, -1.0), by(1.0, 1.0)), (by(-1.0, 1.0), by(1.0, -1.0))]), open),
+        Marker::Plus => (arms(&[(by(-1.3, 0.0), by(1.3, 0.0)), (by(0.0, -1.3), by(0.0, 1.3))]), open),
+        Marker::Star => (
+            arms(&[
+                (by(0.0, -1.3), by(0.0, 1.3)),
+                (by(-1.1, -0.65), by(1.1, 0.65)),
+                (by(-1.1, 0.65), by(1.1, -0.65)),
+            ]),
+            open,
+        ),
+    };
+    let note = note.filter(|text| !text.is_empty()).map(str::to_string);
+    scene.items.push(Item::Drawing { shape, stroke, fill, note });
+}
