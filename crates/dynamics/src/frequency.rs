@@ -1,1 +1,115 @@
-//! Frequency responses and what is read off them.
+//! Frequency responses and what is read off them: unwrapped phase, margins, passivity.
+//!
+//! # Example
+//! A loop that becomes unstable at twice its gain:
+//! ```
+//! use phea_dynamics::frequency::margins;
+//! use phea_dynamics::linear::{Polynomial, TransferFunction};
+//! # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
+//! let open = TransferFunction::from_polynomials(
+//!     &Polynomial::new(vec![4.0]),
+//!     &Polynomial::new(vec![1.0, 3.0, 3.0, 1.0]), // (s + 1)^3
+//! )?;
+//! let critical = margins(&open).gain_increase_factor();
+//! assert!((critical - 2.0).abs() < 1e-12);
+//! # Ok(())
+//! # }
+//! ```
+
+mod crossings;
+mod grid;
+mod margins;
+mod passivity;
+mod phase;
+
+use num_complex::Complex64;
+
+pub use grid::logarithmic_grid;
+pub use margins::{GainMargin, Margins, ModulusMargin, PhaseMargin, margins};
+pub use passivity::{Band, ImaginaryPole, PassivityReport, passivity};
+
+use crate::linear::TransferFunction;
+use crate::portable::{log10, magnitude};
+
+/// Values of a system along the imaginary axis (or the unit circle), with their phase unwrapped.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::frequency::FrequencyResponse;
+/// use phea_dynamics::linear::{Polynomial, TransferFunction};
+/// # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
+/// let triple = TransferFunction::from_polynomials(
+///     &Polynomial::new(vec![1.0]),
+///     &Polynomial::new(vec![1.0, 0.0, 0.0, 0.0]), // s^3
+/// )?;
+/// let response = FrequencyResponse::of(&triple, &[1.0, 10.0]);
+/// assert_eq!(response.phases_deg(), [-270.0, -270.0]);
+/// assert_eq!(response.magnitudes_db(), [0.0, -60.0]);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrequencyResponse {
+    frequencies_rad_per_s: Vec<f64>,
+    values: Vec<Complex64>,
+    phases_deg: Vec<f64>,
+}
+
+impl FrequencyResponse {
+    /// The response of a transfer function. Its phase is the sum of the phases of its factors, so it is continuous
+    /// however far apart the frequencies are ([`TransferFunction::phase_rad`]).
+    pub fn of(system: &TransferFunction, frequencies_rad_per_s: &[f64]) -> Self {
+        FrequencyResponse {
+            frequencies_rad_per_s: frequencies_rad_per_s.to_vec(),
+            values: frequencies_rad_per_s.iter().map(|&w| system.at_frequency(w)).collect(),
+            phases_deg: frequencies_rad_per_s.iter().map(|&w| system.phase_rad(w).to_degrees()).collect(),
+        }
+    }
+
+    /// A response known only by its values (measured, or of a state space): from one frequency to the next the phase
+    /// takes the shorter way round, so the frequencies must be dense. Surplus values of the longer list are dropped.
+    pub fn from_values(frequencies_rad_per_s: &[f64], values: &[Complex64]) -> Self {
+        let count = frequencies_rad_per_s.len().min(values.len());
+        let mut phases_deg: Vec<f64> = Vec::with_capacity(count);
+        for value in values.iter().take(count) {
+            let principal = crate::portable::argument(*value).to_degrees();
+            let turns = phases_deg.last().map_or(0.0, |last: &f64| ((last - principal) / 360.0).round());
+            phases_deg.push(principal + 360.0 * if turns.is_finite() { turns } else { 0.0 });
+        }
+        FrequencyResponse {
+            frequencies_rad_per_s: frequencies_rad_per_s.iter().copied().take(count).collect(),
+            values: values.iter().copied().take(count).collect(),
+            phases_deg,
+        }
+    }
+
+    /// Frequencies in rad/s.
+    pub fn frequencies_rad_per_s(&self) -> &[f64] {
+        &self.frequencies_rad_per_s
+    }
+
+    /// Complex values.
+    pub fn values(&self) -> &[Complex64] {
+        &self.values
+    }
+
+    /// Unwrapped phases in degrees.
+    pub fn phases_deg(&self) -> &[f64] {
+        &self.phases_deg
+    }
+
+    /// Magnitudes in dB; minus infinity for zero.
+    pub fn magnitudes_db(&self) -> Vec<f64> {
+        self.values.iter().map(|value| decibels(magnitude(*value))).collect()
+    }
+}
+
+/// 20 log10 of a magnitude.
+///
+/// # Example
+/// ```
+/// assert_eq!(phea_dynamics::frequency::decibels(100.0), 40.0);
+/// ```
+pub fn decibels(magnitude: f64) -> f64 {
+    20.0 * log10(magnitude)
+}

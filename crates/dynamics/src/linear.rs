@@ -22,6 +22,7 @@
 
 mod double_double;
 mod eigenvalues;
+pub(crate) mod even_part;
 mod interconnection;
 mod polynomial;
 mod realization;
