@@ -4,3 +4,4 @@ pub mod catalogue;
 pub mod project;
 pub mod quantity;
 pub mod source;
+pub mod spelling;
