@@ -9,3 +9,4 @@ pub mod project;
 pub mod quantity;
 pub mod sizing;
 pub mod source;
+pub mod spelling;

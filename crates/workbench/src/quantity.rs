@@ -1,7 +1,15 @@
 //! Quantities in text: `"70 bar"`, `"4.7 cc/ft"`, `"9.8 L/min"`, and back.
 //!
-//! The only place of the workspace with factors between units. Inside, every number is SI.
+//! The only place of the workspace with factors between units. Inside, every number is SI. Pressures are gauge
+//! unless the name of their key says `absolute`.
 
 mod dimension;
+mod exact;
+mod parse;
+mod print;
+mod unit;
 
 pub use dimension::*;
+pub use parse::{QuantityError, parse};
+pub(crate) use print::print_bare;
+pub use print::{display, print};

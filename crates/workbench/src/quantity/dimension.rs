@@ -71,7 +71,7 @@ const fn whole(mass: i8, length: i8, time: i8, voltage: i8, angle: i8) -> Expone
 
 dimensions! {
     /// Pa; gauge pressure unless a key says otherwise.
-    PRESSURE = "a pressure", whole(1, -1, -2, 0, 0), ["Pa", "kPa", "bar", "MPa", "GPa"], "Pa",
+    PRESSURE = "a pressure", whole(1, -1, -2, 0, 0), ["Pa", "kPa", "bar", "GPa"], "Pa",
         r#""70 bar", "7 MPa", "1000 psi""#;
     /// kg/m³.
     DENSITY = "a density", whole(1, -3, 0, 0, 0), ["kg/m3"], "kg/m3", r#""870 kg/m3", "0.87 g/cm3", "0.87 kg/L""#;
