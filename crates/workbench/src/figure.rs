@@ -16,17 +16,33 @@ pub mod axis;
 pub mod bode;
 pub mod clip;
 pub mod colour;
+pub mod impedance;
 pub mod legend;
+pub mod nomograph;
 pub mod placement;
 pub mod plot;
 pub mod png;
+pub mod pole_map;
 pub mod scene;
+pub mod sizing_chart;
+pub mod step_response;
+pub mod stiffness_over_stroke;
 pub mod svg;
 pub mod ticks;
+pub mod tornado;
 pub mod typeset;
+pub mod unit;
 
 pub use bode::{BodeInput, FrequencySeries, bode};
 pub use colour::{Theme, style_sheet};
+pub use impedance::{Asymptote, ImpedanceInput, impedance};
+pub use nomograph::{NomographBore, NomographInput, nomograph};
+pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
+pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};
+pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};
+pub use stiffness_over_stroke::{StiffnessCurve, StiffnessInput, stiffness_over_stroke};
+pub use tornado::{TornadoBar, TornadoInput, tornado};
+pub use unit::DisplayUnit;
 
 use scene::Scene;
 use svg::{Destination, Names};
@@ -65,6 +81,74 @@ pub struct FrequencyMark {
     pub label: String,
     /// Where, rad/s.
     pub frequency_rad_per_s: f64,
+}
+
+/// The words of a figure.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Words {
+    /// Name of files and of the anchor on a page, unique in a report.
+    pub name: String,
+    /// Short title.
+    pub title: String,
+    /// What to see in it, in a sentence or two.
+    pub caption: String,
+}
+
+impl Words {
+    /// From name, title and caption.
+    pub fn new(name: impl Into<String>, title: impl Into<String>, caption: impl Into<String>) -> Self {
+        Words { name: name.into(), title: title.into(), caption: caption.into() }
+    }
+
+    /// The figure that shows a scene.
+    fn with_scene(self, scene: Scene) -> Figure {
+        Figure { name: self.name, title: self.title, caption: self.caption, scene }
+    }
+}
+
+/// What a procedure decided about a candidate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Meets everything.
+    Accepted,
+    /// Usable, with a reservation.
+    Warned,
+    /// Not usable.
+    Rejected,
+}
+
+impl Verdict {
+    /// Its marker: form and colour both tell.
+    pub const fn marker(self) -> plot::MarkerStyle {
+        match self {
+            Verdict::Accepted => {
+                plot::MarkerStyle { marker: plot::Marker::Circle, role: colour::Role::Good, radius: 5.5 }
+            }
+            Verdict::Warned => {
+                plot::MarkerStyle { marker: plot::Marker::Triangle, role: colour::Role::Warning, radius: 5.5 }
+            }
+            Verdict::Rejected => {
+                plot::MarkerStyle { marker: plot::Marker::Cross, role: colour::Role::Bad, radius: 4.5 }
+            }
+        }
+    }
+
+    /// Its colour.
+    pub const fn role(self) -> colour::Role {
+        self.marker().role
+    }
+
+    /// Its name for legends.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Verdict::Accepted => "accepted",
+            Verdict::Warned => "accepted with a warning",
+            Verdict::Rejected => "rejected",
+        }
+    }
+
+    /// All of them, best first.
+    pub const ALL: [Verdict; 3] = [Verdict::Accepted, Verdict::Warned, Verdict::Rejected];
 }
 
 /// A picture with its words.

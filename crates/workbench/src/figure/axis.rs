@@ -63,6 +63,11 @@ impl Axis {
         Self::fit_steps(title, values, Steps::Angle)
     }
 
+    /// Like [`Axis::fit_linear`], in decibels.
+    pub fn fit_decibel(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
+        Self::fit_steps(title, values, Steps::Decibel)
+    }
+
     fn fit_steps(title: impl Into<String>, values: impl IntoIterator<Item = f64>, steps: Steps) -> Self {
         let (low, high) = extent(values.into_iter().filter(|v| v.is_finite() && v.abs() < 1e250));
         let (low, high) = distinct(low, high);

@@ -3,13 +3,13 @@
 use num_complex::Complex64;
 use phea_dynamics::portable::{argument, log10, magnitude};
 
-use super::axis::Axis;
+use super::axis::{Axis, extent};
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
 use super::plot::{Direction, Mark, Panel, Plot};
 use super::scene::{Dash, Stroke};
 use super::ticks::plain;
-use super::{Figure, FrequencyMark};
+use super::{Figure, FrequencyMark, Words};
 
 /// A frequency response.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,52 +25,33 @@ pub struct FrequencySeries {
 /// What a Bode diagram shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodeInput {
-    /// Name of the figure.
-    pub name: String,
-    /// Title.
-    pub title: String,
-    /// Caption.
-    pub caption: String,
     /// The quantity, such as `F_e/U_C`.
     pub quantity: String,
     /// Its unit, such as `N/V`: 0 dB is one of it.
     pub unit: String,
     /// Models, the reference first.
     pub series: Vec<FrequencySeries>,
-    /// Adds panels with each model's difference from the first (same frequencies only).
+    /// Adds panels with the size of each model's difference from the first, on a logarithmic axis (same frequencies
+    /// only).
     pub with_difference: bool,
     /// Frequencies to mark.
     pub marks: Vec<FrequencyMark>,
 }
 
 /// Draws the diagram.
-pub fn bode(input: &BodeInput) -> Figure {
+pub fn bode(words: Words, input: &BodeInput) -> Figure {
     let curves = curves(&input.series);
     let frequencies = input.series.iter().flat_map(|s| s.frequencies_rad_per_s.iter().copied());
     let x = Axis::fit_logarithmic("Frequency (rad/s)", frequencies);
     let magnitude_title = format!("|{}| (dB re 1 {})", input.quantity, input.unit);
     let mut panels = vec![
-        panel(Axis::fit_linear(magnitude_title, all(&curves, |c| &c.decibels)), 190.0, &curves, |c| {
+        panel(Axis::fit_decibel(magnitude_title, all(&curves, |c| &c.decibels)), 190.0, &curves, |c| {
             &c.decibels
         }),
         panel(Axis::fit_angle("Phase (°)", all(&curves, |c| &c.degrees)), 150.0, &curves, |c| &c.degrees),
     ];
     if input.with_difference {
-        let differences = differences(&curves);
-        if !differences.is_empty() {
-            panels.push(panel(
-                Axis::fit_linear("Δ magnitude (dB)", all(&differences, |c| &c.decibels).chain([0.0])),
-                110.0,
-                &differences,
-                |c| &c.decibels,
-            ));
-            panels.push(panel(
-                Axis::fit_linear("Δ phase (°)", all(&differences, |c| &c.degrees).chain([0.0])),
-                110.0,
-                &differences,
-                |c| &c.degrees,
-            ));
-        }
+        panels.extend(difference_panels(&curves));
     }
     mark_frequencies(&mut panels, &input.marks);
     let legend = curves
@@ -78,12 +59,7 @@ pub fn bode(input: &BodeInput) -> Figure {
         .map(|curve| LegendEntry::line(curve.name.clone(), series_stroke(curve.index)))
         .collect();
     let plot = Plot { x, panels, legend, equal_aspect: false };
-    Figure {
-        name: input.name.clone(),
-        title: input.title.clone(),
-        caption: input.caption.clone(),
-        scene: plot.draw(),
-    }
+    words.with_scene(plot.draw())
 }
 
 /// Adds an upright line at each frequency to every panel, its label to the first.
@@ -147,10 +123,27 @@ pub fn unwrapped_degrees(response: &[Complex64], start: Option<f64>) -> Vec<f64>
         .collect()
 }
 
-/// Each later curve minus the first, where both have the same frequencies.
+/// Panels of |difference| in dB and degrees: models that agree to 1e-4 dB and models that part by 40 dB in one picture.
+fn difference_panels(curves: &[Curve]) -> Vec<Panel> {
+    let differences = differences(curves);
+    if differences.is_empty() {
+        return Vec::new();
+    }
+    let axis = |title: &str, of: fn(&Curve) -> &Vec<f64>| {
+        let (_, largest) = extent(all(&differences, of));
+        let floor = largest * 1e-7;
+        Axis::fit_logarithmic(title, all(&differences, of).map(|v| v.max(floor).max(1e-9)))
+    };
+    vec![
+        panel(axis("|Δ| (dB)", |c| &c.decibels), 105.0, &differences, |c| &c.decibels),
+        panel(axis("|Δ| (°)", |c| &c.degrees), 105.0, &differences, |c| &c.degrees),
+    ]
+}
+
+/// Each later curve minus the first, its size, where both have the same frequencies.
 fn differences(curves: &[Curve]) -> Vec<Curve> {
     let Some((first, others)) = curves.split_first() else { return Vec::new() };
-    let minus = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
+    let minus = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
     others
         .iter()
         .filter(|other| other.frequencies == first.frequencies)

@@ -16,6 +16,8 @@ pub enum Steps {
     Decimal,
     /// 15, 30, 45, 90, 180, 360 degrees.
     Angle,
+    /// 10, 20, 40, 60, 80, 100 decibels: 20 to a factor of ten.
+    Decibel,
 }
 
 /// The smallest round step that divides `span` into at most `count` intervals.
@@ -28,10 +30,16 @@ pub enum Steps {
 /// ```
 pub fn round_step(span: f64, count: usize, steps: Steps) -> f64 {
     let least = span / count.max(1) as f64;
-    if steps == Steps::Angle && least > 5.0 {
-        let found =
-            [15.0, 30.0, 45.0, 90.0, 180.0, 360.0].into_iter().find(|step| *step >= least * 0.999_999);
-        return found.unwrap_or_else(|| 360.0 * (least / 360.0).ceil());
+    let listed: &[f64] = match steps {
+        Steps::Angle if least > 5.0 => &[15.0, 30.0, 45.0, 90.0, 180.0, 360.0],
+        Steps::Decibel if least > 5.0 && least <= 100.0 => &[10.0, 20.0, 40.0, 60.0, 80.0, 100.0],
+        _ => &[],
+    };
+    if let (Some(found), _) | (None, Some(found)) = (
+        listed.iter().copied().find(|step| *step >= least * 0.999_999),
+        listed.last().map(|last| last * (least / last).ceil()),
+    ) {
+        return found;
     }
     let mut decade = decimal_power(floor_log10(least));
     if !(decade.is_finite() && decade > 0.0) {

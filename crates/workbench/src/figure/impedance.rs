@@ -1,0 +1,134 @@
+//! Driving-point impedance Z = -F_e/(s X_L): magnitude with its asymptotes, phase, and the bands where it is not passive.
+
+use num_complex::Complex64;
+use phea_dynamics::portable::{magnitude, pow};
+
+use super::axis::{Axis, extent};
+use super::bode::{FrequencySeries, mark_frequencies, unwrapped_degrees};
+use super::colour::{Role, series_stroke};
+use super::legend::LegendEntry;
+use super::plot::{Direction, Mark, Panel, Plot, Side};
+use super::scene::{Dash, Fill, Stroke};
+use super::{Figure, FrequencyMark, Words};
+
+/// A straight line of the diagram: |Z| = coefficient * frequency^exponent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Asymptote {
+    /// What dominates, such as `damper (A^2 + f_v K_c)/K_c`.
+    pub label: String,
+    /// |Z| at 1 rad/s, N.s/m.
+    pub coefficient: f64,
+    /// 1 for a mass, 0 for a damper, -1 for a spring.
+    pub exponent: i32,
+    /// Where it is drawn, rad/s.
+    pub from_rad_per_s: f64,
+    /// Where it ends, rad/s.
+    pub to_rad_per_s: f64,
+}
+
+/// What the figure shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ImpedanceInput {
+    /// Impedances in N.s/m, such as open and closed loop.
+    pub series: Vec<FrequencySeries>,
+    /// Straight lines.
+    pub asymptotes: Vec<Asymptote>,
+    /// Frequencies where one regime hands over to the next.
+    pub corners: Vec<FrequencyMark>,
+    /// Bands in rad/s where Re Z < 0.
+    pub non_passive_bands_rad_per_s: Vec<(f64, f64)>,
+    /// Adds the phase: passive between -90 and 90 degrees.
+    pub with_phase: bool,
+}
+
+/// Draws the figure.
+pub fn impedance(words: Words, input: &ImpedanceInput) -> Figure {
+    let frequencies = || input.series.iter().flat_map(|s| s.frequencies_rad_per_s.iter().copied());
+    let x = Axis::fit_logarithmic("Frequency (rad/s)", frequencies());
+    let values = input.series.iter().flat_map(|s| s.response.iter().map(|z| magnitude(*z)));
+    let mut marks: Vec<Mark> = bands(input, "not passive");
+    marks.extend(input.asymptotes.iter().map(|line| asymptote_line(line, &x)));
+    marks.extend(curves(input, |response| response.iter().map(|z| magnitude(*z)).collect()));
+    marks.extend(input.asymptotes.iter().map(|line| asymptote_label(line, &x)));
+    let mut panels = vec![Panel { y: Axis::fit_logarithmic("|Z| (N·s/m)", values), height: 290.0, marks }];
+    if input.with_phase {
+        panels.push(phase_panel(input));
+    }
+    mark_frequencies(&mut panels, &input.corners);
+    let mut legend: Vec<LegendEntry> = input
+        .series
+        .iter()
+        .enumerate()
+        .map(|(index, series)| LegendEntry::line(&series.name, series_stroke(index)))
+        .collect();
+    if !input.asymptotes.is_empty() {
+        legend.push(LegendEntry::line("asymptotes", asymptote_stroke()));
+    }
+    if !input.non_passive_bands_rad_per_s.is_empty() {
+        legend.push(LegendEntry::area("Re Z < 0: not passive", Fill::tint(Role::Bad)));
+    }
+    words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+}
+
+fn asymptote_stroke() -> Stroke {
+    Stroke::solid(Role::Axis, 1.3).dashed(Dash::Dashed)
+}
+
+fn curves(input: &ImpedanceInput, of: impl Fn(&[Complex64]) -> Vec<f64>) -> Vec<Mark> {
+    input
+        .series
+        .iter()
+        .enumerate()
+        .map(|(index, series)| Mark::Line {
+            points: series.frequencies_rad_per_s.iter().copied().zip(of(&series.response)).collect(),
+            stroke: series_stroke(index),
+        })
+        .collect()
+}
+
+fn bands(input: &ImpedanceInput, label: &str) -> Vec<Mark> {
+    input
+        .non_passive_bands_rad_per_s
+        .iter()
+        .map(|&(from, to)| Mark::Band {
+            direction: Direction::X,
+            from,
+            to,
+            fill: Fill::tint(Role::Bad),
+            hatched: true,
+            label: label.to_string(),
+        })
+        .collect()
+}
+
+fn asymptote_line(line: &Asymptote, x: &Axis) -> Mark {
+    let (from, to) = (line.from_rad_per_s.max(x.minimum), line.to_rad_per_s.min(x.maximum));
+    let at = |w: f64| (w, line.coefficient * pow(w, f64::from(line.exponent)));
+    Mark::Line { points: vec![at(from), at(to)], stroke: asymptote_stroke() }
+}
+
+fn asymptote_label(line: &Asymptote, x: &Axis) -> Mark {
+    let (from, to) = (line.from_rad_per_s.max(x.minimum), line.to_rad_per_s.min(x.maximum));
+    let middle = (from * to).sqrt();
+    let at = (middle, line.coefficient * pow(middle, f64::from(line.exponent)));
+    let side = if line.exponent < 0 { Side::Right } else { Side::Above };
+    Mark::Label { at, text: line.label.clone(), role: Role::Text, side }
+}
+
+fn phase_panel(input: &ImpedanceInput) -> Panel {
+    // Re Z >= 0 bounds the phase of a passive impedance, so each curve starts from its principal value.
+    let degrees = |response: &[Complex64]| unwrapped_degrees(response, None);
+    let (low, high) = extent(input.series.iter().flat_map(|s| degrees(&s.response)));
+    let mut marks = bands(input, "");
+    for limit in [-90.0, 90.0] {
+        marks.push(Mark::Reference {
+            direction: Direction::Y,
+            at: limit,
+            stroke: Stroke::solid(Role::Bad, 1.2).dashed(Dash::LongDash),
+            label: String::new(),
+        });
+    }
+    marks.extend(curves(input, degrees));
+    let y = Axis::fit_angle("arg Z (°)", [low, high, -95.0, 95.0]);
+    Panel { y, height: 120.0, marks }
+}

@@ -1,0 +1,164 @@
+//! Poles and zeros in the complex plane, linear or signed logarithmic, with damping ratios and natural frequencies.
+
+use num_complex::Complex64;
+use phea_dynamics::portable::{cos, magnitude, pow, sin};
+
+use super::axis::{Axis, Scale};
+use super::colour::{Role, series_role};
+use super::legend::LegendEntry;
+use super::plot::{Direction, Mark, Marker, MarkerStyle, Panel, Plot, Side};
+use super::scene::{Dash, Fill, Stroke};
+use super::ticks::{decimal_power, floor_log10, plain};
+use super::{Figure, Words};
+
+/// Poles and zeros of one model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PoleSeries {
+    /// Model.
+    pub name: String,
+    /// Poles, rad/s.
+    pub poles: Vec<Complex64>,
+    /// Zeros, rad/s.
+    pub zeros: Vec<Complex64>,
+}
+
+/// Scale of both axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PoleMapScale {
+    /// In proportion, the same on both axes.
+    Linear,
+    /// Signed logarithmic on both axes: shows poles at -0.3 and -1000 rad/s together.
+    SignedLogarithmic,
+}
+
+/// What the map shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoleMapInput {
+    /// Models; each has its own form of pole marker.
+    pub series: Vec<PoleSeries>,
+    /// Scale.
+    pub scale: PoleMapScale,
+    /// Damping ratios to draw, between 0 and 1.
+    pub damping_ratios: Vec<f64>,
+    /// Natural frequencies to draw, rad/s.
+    pub natural_frequencies_rad_per_s: Vec<f64>,
+}
+
+/// Draws the map.
+pub fn pole_map(words: Words, input: &PoleMapInput) -> Figure {
+    let (x, y) = axes(input);
+    let mut marks = vec![Mark::Band {
+        direction: Direction::X,
+        from: 0.0,
+        to: f64::INFINITY,
+        fill: Fill { role: Role::Bad, opacity: 0.08 },
+        hatched: false,
+        label: "unstable".to_string(),
+    }];
+    grid(&mut marks, input, &x, &y);
+    let axis_stroke = Stroke::solid(Role::Axis, 1.2);
+    for direction in [Direction::X, Direction::Y] {
+        marks.push(Mark::Reference { direction, at: 0.0, stroke: axis_stroke, label: String::new() });
+    }
+    let mut legend = Vec::new();
+    for (index, series) in input.series.iter().enumerate() {
+        roots(&mut marks, &series.poles, pole_style(index), &format!("{}: pole", series.name));
+        roots(&mut marks, &series.zeros, zero_style(index), &format!("{}: zero", series.name));
+        legend.push(LegendEntry::marker(format!("poles, {}", series.name), pole_style(index)));
+        if !series.zeros.is_empty() {
+            legend.push(LegendEntry::marker(format!("zeros, {}", series.name), zero_style(index)));
+        }
+    }
+    if !input.damping_ratios.is_empty() || !input.natural_frequencies_rad_per_s.is_empty() {
+        legend.push(LegendEntry::line("damping ratio ζ, natural frequency ω_n", grid_stroke()));
+    }
+    let panels = vec![Panel { y, height: 380.0, marks }];
+    words.with_scene(Plot { x, panels, legend, equal_aspect: input.scale == PoleMapScale::Linear }.draw())
+}
+
+fn pole_style(index: usize) -> MarkerStyle {
+    let (marker, radius) = match index % 4 {
+        0 => (Marker::Cross, 5.0),
+        1 => (Marker::Plus, 6.5),
+        2 => (Marker::Diamond, 4.0),
+        _ => (Marker::Star, 5.5),
+    };
+    MarkerStyle { marker, role: series_role(index), radius }
+}
+
+fn zero_style(index: usize) -> MarkerStyle {
+    MarkerStyle { marker: Marker::Ring, role: series_role(index), radius: 5.0 + 1.5 * (index % 3) as f64 }
+}
+
+fn roots(marks: &mut Vec<Mark>, roots: &[Complex64], style: MarkerStyle, what: &str) {
+    let points = roots
+        .iter()
+        .map(|root| {
+            let sign = if root.im < 0.0 { "\u{2212}" } else { "+" };
+            let note = match root.im == 0.0 {
+                true => format!("{what} at {} rad/s", plain(root.re)),
+                false => format!("{what} at {} {sign} {}j rad/s", plain(root.re), plain(root.im.abs())),
+            };
+            (root.re, root.im, note)
+        })
+        .collect();
+    marks.push(Mark::Markers { points, style });
+}
+
+fn axes(input: &PoleMapInput) -> (Axis, Axis) {
+    let all = || input.series.iter().flat_map(|series| series.poles.iter().chain(&series.zeros));
+    let (re, im) = ("Real part (rad/s)", "Imaginary part (rad/s)");
+    match input.scale {
+        PoleMapScale::Linear => (
+            Axis::fit_linear(re, all().map(|z| z.re).chain([0.0])),
+            Axis::fit_linear(im, all().flat_map(|z| [z.im, -z.im])),
+        ),
+        PoleMapScale::SignedLogarithmic => {
+            let parts = || all().flat_map(|z| [z.re.abs(), z.im.abs()]).filter(|v| v.is_finite() && *v > 0.0);
+            let largest = parts().fold(0.0, f64::max);
+            let smallest = parts().fold(f64::INFINITY, f64::min).max(largest * 1e-7);
+            let limit = if smallest.is_finite() { decimal_power(floor_log10(smallest)) } else { 1.0 };
+            // The same extent up and down, so that a real pole lies on the middle line.
+            (
+                Axis::fit_signed_logarithmic(re, all().map(|z| z.re), limit),
+                Axis::fit_signed_logarithmic(im, all().flat_map(|z| [z.im, -z.im]), limit),
+            )
+        }
+    }
+}
+
+fn grid_stroke() -> Stroke {
+    Stroke::solid(Role::Muted, 1.0).dashed(Dash::Dotted)
+}
+
+/// Lines of constant damping ratio and constant natural frequency in the left half plane, labelled where they end.
+fn grid(marks: &mut Vec<Mark>, input: &PoleMapInput, x: &Axis, y: &Axis) {
+    let reach = x.minimum.abs().max(y.maximum.abs());
+    let least = match x.scale {
+        Scale::SignedLogarithmic { limit } => 1e-3 * limit,
+        _ => 1e-6 * reach,
+    };
+    for &ratio in &input.damping_ratios {
+        let height = (1.0 - ratio * ratio).max(0.0).sqrt();
+        let at = |radius: f64, sign: f64| (-ratio * radius, sign * height * radius);
+        for sign in [1.0, -1.0] {
+            let points: Vec<(f64, f64)> =
+                (0..=120).map(|i| at(least * pow(2.0 * reach / least, f64::from(i) / 120.0), sign)).collect();
+            marks.push(Mark::Line { points, stroke: grid_stroke() });
+        }
+        let outermost = (0.97 * x.minimum.abs() / ratio.max(1e-9)).min(0.9 * y.maximum / height.max(1e-9));
+        let text = format!("ζ {}", plain(ratio));
+        marks.push(Mark::Label { at: at(outermost, 1.0), text, role: Role::Muted, side: Side::Below });
+    }
+    for &frequency in &input.natural_frequencies_rad_per_s {
+        let points: Vec<(f64, f64)> = (0..=90)
+            .map(|i| {
+                let angle = f64::from(i).mul_add(2.0, 90.0).to_radians();
+                (frequency * cos(angle), frequency * sin(angle))
+            })
+            .collect();
+        marks.push(Mark::Line { points, stroke: grid_stroke() });
+        let text = format!("{} rad/s", plain(magnitude(Complex64::new(frequency, 0.0))));
+        marks.push(Mark::Label { at: (0.0, -frequency), text, role: Role::Muted, side: Side::Left });
+    }
+}

@@ -1,0 +1,41 @@
+//! Units that figures show; values come in SI.
+
+/// A unit on an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DisplayUnit {
+    /// Symbol.
+    pub symbol: &'static str,
+    /// How much SI one of it is.
+    pub in_si: f64,
+}
+
+impl DisplayUnit {
+    /// Length.
+    pub const MILLIMETRE: Self = DisplayUnit { symbol: "mm", in_si: 1e-3 };
+    /// Length.
+    pub const METRE: Self = DisplayUnit { symbol: "m", in_si: 1.0 };
+    /// Flow.
+    pub const LITRE_PER_MINUTE: Self = DisplayUnit { symbol: "L/min", in_si: 1e-3 / 60.0 };
+    /// Stiffness.
+    pub const MEGANEWTON_PER_METRE: Self = DisplayUnit { symbol: "MN/m", in_si: 1e6 };
+    /// Force.
+    pub const KILONEWTON: Self = DisplayUnit { symbol: "kN", in_si: 1e3 };
+    /// Pressure.
+    pub const BAR: Self = DisplayUnit { symbol: "bar", in_si: 1e5 };
+    /// Control signal.
+    pub const VOLT: Self = DisplayUnit { symbol: "V", in_si: 1.0 };
+    /// Voltage for a force.
+    pub const MILLIVOLT_PER_NEWTON: Self = DisplayUnit { symbol: "mV/N", in_si: 1e-3 };
+    /// A ratio.
+    pub const ONE: Self = DisplayUnit { symbol: "1", in_si: 1.0 };
+
+    /// An SI value in this unit.
+    pub fn of(self, value: f64) -> f64 {
+        value / self.in_si
+    }
+
+    /// `quantity (symbol)`.
+    pub fn title(self, quantity: &str) -> String {
+        if self.symbol == "1" { quantity.to_string() } else { format!("{quantity} ({})", self.symbol) }
+    }
+}
