@@ -13,7 +13,7 @@ mod sensitivity;
 
 pub use answer::{files, json, text};
 pub use bore::{BoreVerdict, CommercialBore};
-pub use branch::{Branch, GainStep};
+pub use branch::{Branch, GainStep, model_name};
 pub use candidate::{Candidate, Finding, Severity};
 pub use problem::{HoseOption, SizingProblem};
 pub use sensitivity::{Influence, sensitivity};
@@ -74,7 +74,8 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
     candidates.sort_by(|one, other| {
         other.accepted().cmp(&one.accepted()).then(one.length_m().total_cmp(&other.length_m()))
     });
-    let best = candidates.iter().find(|candidate| candidate.accepted() && candidate.branch.model == problem.model);
+    let best =
+        candidates.iter().find(|candidate| candidate.accepted() && candidate.branch.model == problem.model);
     let influences = best.map(|candidate| sensitivity(problem, candidate)).unwrap_or_default();
     Sizing {
         bores,

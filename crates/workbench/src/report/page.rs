@@ -2,21 +2,12 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::figure;
-
-/// One chapter of the report.
-pub struct Chapter {
-    /// Anchor of the chapter on the page.
-    pub anchor: &'static str,
-    /// Heading.
-    pub title: &'static str,
-    /// Content below the heading.
-    pub body: Markup,
-}
+use super::chapter::Chapter;
+use crate::figure::style_sheet;
 
 /// The whole page from its heading, the chapters and the footer.
 pub fn page(title: &str, heading: &Markup, chapters: &[Chapter], footer: &Markup) -> String {
-    let style = format!("{}{}", include_str!("style.css"), figure::STYLE);
+    let style = format!("{}{}", include_str!("style.css"), style_sheet());
     html! {
         (DOCTYPE)
         html lang="en" {

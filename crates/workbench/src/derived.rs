@@ -1,0 +1,60 @@
+//! Every quantity that follows from what a project declares, with its equation, and where it contradicts a declared one.
+
+mod answer;
+mod list;
+mod rig;
+
+pub use answer::{json, text};
+pub use rig::derive;
+
+/// A quantity that follows from the project.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Derived {
+    /// Chapter of the list, in words.
+    pub group: &'static str,
+    /// Name, unique, with dots between its parts.
+    pub name: String,
+    /// Symbol as in the notation, such as `K_H`.
+    pub symbol: &'static str,
+    /// Value, SI.
+    pub value: f64,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Equation it follows from.
+    pub equation: &'static str,
+    /// The value that holds instead, where the project states one.
+    pub stated: Option<Stated>,
+    /// Why the value does not exist, where it is not a number.
+    pub reason: Option<String>,
+}
+
+/// A value that the project states for a quantity that also follows from the rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stated {
+    /// Value, SI.
+    pub value: f64,
+    /// Where it stands: `[linear]`, `[uncertainty]` or `[sizing]`.
+    pub place: &'static str,
+    /// Bounds, where stated.
+    pub bounds: Option<[f64; 2]>,
+}
+
+/// Relative difference above which a stated value is called a contradiction: more than rounding to two digits explains.
+const CONTRADICTION: f64 = 0.05;
+
+impl Derived {
+    /// How far the stated value is from the derived one, in percent of the latter.
+    pub fn difference_percent(&self) -> Option<f64> {
+        self.stated.as_ref().map(|stated| 100.0 * (stated.value - self.value) / self.value)
+    }
+
+    /// Whether the derived value contradicts what is stated: it lies outside the stated bounds, or without bounds more
+    /// than 5 % away.
+    pub fn contradicts(&self) -> bool {
+        match self.stated.as_ref() {
+            None => false,
+            Some(Stated { bounds: Some([minimum, maximum]), .. }) => self.value < *minimum || self.value > *maximum,
+            Some(stated) => (stated.value - self.value).abs() > CONTRADICTION * self.value.abs(),
+        }
+    }
+}

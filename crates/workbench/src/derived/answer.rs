@@ -1,0 +1,110 @@
+use serde::Serialize;
+
+use super::Derived;
+use crate::answer::{self, Number, significant, table};
+use crate::project::{Diagnostic, Loaded};
+
+#[derive(Serialize)]
+struct Body<'a> {
+    derived: Vec<Row<'a>>,
+    warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Row<'a> {
+    name: &'a str,
+    group: &'a str,
+    symbol: &'a str,
+    value: Number,
+    unit: &'a str,
+    equation: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    declared: Option<DeclaredRow>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct DeclaredRow {
+    value: Number,
+    place: &'static str,
+    bounds: Option<[f64; 2]>,
+    difference_percent: Number,
+    contradicts: bool,
+}
+
+/// The JSON object of `check`.
+pub fn json(loaded: &Loaded, derived: &[Derived]) -> String {
+    let rows = derived.iter().map(|quantity| Row {
+        name: &quantity.name,
+        group: quantity.group,
+        symbol: quantity.symbol,
+        value: Number(quantity.value),
+        unit: quantity.unit,
+        equation: quantity.equation,
+        declared: quantity.stated.as_ref().map(|stated| DeclaredRow {
+            value: Number(stated.value),
+            place: stated.place,
+            bounds: stated.bounds,
+            difference_percent: Number(quantity.difference_percent().unwrap_or(f64::NAN)),
+            contradicts: quantity.contradicts(),
+        }),
+        reason: quantity.reason.as_deref(),
+    });
+    let warnings = loaded.warnings.iter().map(Diagnostic::to_string);
+    answer::json("check", loaded, Body { derived: rows.collect(), warnings: warnings.collect() })
+}
+
+/// The table of `check` for people, and a sentence for each contradiction.
+pub fn text(derived: &[Derived]) -> String {
+    let mut out = String::new();
+    let mut group = "";
+    let mut rows = table(&["quantity", "value", "unit", "equation"]);
+    for quantity in derived {
+        if quantity.group != group {
+            if !group.is_empty() {
+                out.push_str(&format!("{group}\n{rows}\n\n"));
+                rows = table(&["quantity", "value", "unit", "equation"]);
+            }
+            group = quantity.group;
+        }
+        let value = significant(quantity.value, 5);
+        rows.add_row([&quantity.name, &value, quantity.unit, &plain(quantity.equation)]);
+    }
+    out.push_str(&format!("{group}\n{rows}\n"));
+    let stated: Vec<&Derived> = derived.iter().filter(|quantity| quantity.stated.is_some()).collect();
+    if !stated.is_empty() {
+        out.push_str("\nStated by the project and used instead of the derived value\n");
+    }
+    for quantity in stated {
+        out.push_str(&format!("  {}\n", sentence(quantity)));
+    }
+    out
+}
+
+/// What is stated beside what follows, in a sentence.
+pub(crate) fn sentence(quantity: &Derived) -> String {
+    let Some(stated) = &quantity.stated else { return String::new() };
+    let bounds = stated.bounds.map_or(String::new(), |[minimum, maximum]| {
+        format!(", from {} to {}", significant(minimum, 4), significant(maximum, 4))
+    });
+    let verdict = match (quantity.contradicts(), stated.bounds) {
+        (true, Some(_)) => "; the derived value lies outside these bounds",
+        (true, None) => "; they contradict each other",
+        (false, _) => "",
+    };
+    format!(
+        "{} = {} {} in {}{bounds}; derived {} ({:+.1} %){verdict}.",
+        quantity.symbol,
+        significant(stated.value, 4),
+        quantity.unit,
+        stated.place,
+        significant(quantity.value, 4),
+        quantity.difference_percent().unwrap_or(f64::NAN)
+    )
+}
+
+/// An equation without the braces that only typesetting needs.
+fn plain(equation: &str) -> String {
+    equation.replace(['{', '}'], "")
+}

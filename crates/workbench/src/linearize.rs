@@ -1,0 +1,206 @@
+//! The linear models of a rig side by side: two-pressure, fifth order (6.7), decomposed (6.12), first order (6.13);
+//! what they leave out, what the load feels, and whether that is passive.
+
+mod answer;
+
+use phea_dynamics::frequency::{PassivityReport, logarithmic_grid, passivity};
+use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_hydraulics::impedance::{
+    Asymptote, closed_loop_impedance, closed_loop_load_motion, compliance_hidden_above, final_force_after_load_step,
+    impedance_asymptotes, open_loop_impedance,
+};
+use phea_hydraulics::line::Member;
+use phea_hydraulics::linear::{
+    LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance, first_order_model,
+    linear_model, response_difference, transfer_functions,
+};
+use phea_hydraulics::stiffness::{ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference};
+use phea_hydraulics::two_pressure::two_pressure_coefficients;
+
+pub use answer::{json, text};
+
+use crate::rig::Rig;
+
+/// Frequency up to which the thesis compares its models, rad/s.
+const COMPARISON_END: f64 = 1000.0;
+
+/// Everything that the linear view of a rig says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linearization {
+    /// Stiffness over the stroke by the project's model: nominal, softest and stiffest wall.
+    pub stiffness: [StrokeStiffness; 3],
+    /// Both stiffness models side by side, nominal.
+    pub stiffness_models: ModelDifference,
+    /// The linearised two-pressure model of the rig as declared, at its operating point.
+    pub two_pressure: LinearModel,
+    /// The fifth-order model of the parameters that hold, equation 6.7.
+    pub full: LinearModel,
+    /// Equation 6.12 as printed, and with the damping corrected.
+    pub decomposed: [TransferFunction; 2],
+    /// Equation 6.13.
+    pub first_order: TransferFunction,
+    /// What the fifth order leaves out of the two-pressure model, both with derived parameters.
+    pub reduction: Comparison,
+    /// Equation 6.12 as printed against 6.7.
+    pub printed_decomposition: Comparison,
+    /// Equation 6.12 corrected against 6.7.
+    pub corrected_decomposition: Comparison,
+    /// Equation 6.13 against 6.7.
+    pub truncation: Comparison,
+    /// Share of each mode in the step response of 6.7.
+    pub modes: Vec<ModeShare>,
+    /// What the load feels with the command held still.
+    pub open_loop: PortView,
+    /// What it feels with the given controller, where that is continuous and without dead time.
+    pub closed_loop: Option<PortView>,
+    /// Why there is no closed-loop view.
+    pub closed_loop_absent: Option<String>,
+    /// Above this frequency the piston's mass hides the compliance, rad/s.
+    pub compliance_hidden_above_rad_per_s: f64,
+}
+
+/// Largest differences of two responses: below 1000 rad/s, and everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Comparison {
+    /// Up to 1000 rad/s.
+    pub low: ResponseDifference,
+    /// Over the whole grid, resonance included.
+    pub all: ResponseDifference,
+}
+
+/// The driving-point impedance and what follows from it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PortView {
+    /// Z = -F_e/(s X_L), N s/m.
+    pub impedance: TransferFunction,
+    /// Its straight lines.
+    pub asymptotes: Vec<Asymptote>,
+    /// Whether it is passive, and where not.
+    pub passivity: PassivityReport,
+    /// Force that a load step of 1 mm leaves in the end, N (Proposition 6.2: none); absent if unstable.
+    pub final_force_n: Option<f64>,
+}
+
+/// Linearises a rig; `controller` is the given one, if there is one.
+///
+/// # Errors
+/// A model without finite roots: parameters so extreme that the arithmetic ends.
+pub fn linearize(rig: &Rig, controller: Option<&TransferFunction>) -> Result<Linearization, LinearError> {
+    let full = linear_model(&rig.linear)?;
+    let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.two_pressure))?;
+    let decomposed = [
+        decomposed_model(&rig.linear, MechanicalDamping::Printed)?,
+        decomposed_model(&rig.linear, MechanicalDamping::Corrected)?,
+    ];
+    let first_order = first_order_model(&rig.linear)?;
+    let derived_full = linear_model(&rig.derived)?;
+    let grid = frequency_grid(&full.command)?;
+    let against_full = |other: &TransferFunction| compare(&grid, &full.command, other);
+    let continuous = controller.filter(|g| g.dead_time_s() == 0.0 && is_continuous(g));
+    let closed_loop = continuous.map(|controller| closed_loop_view(rig, &full, controller)).transpose()?;
+    Ok(Linearization {
+        stiffness: [Member::Nominal, Member::Minimum, Member::Maximum].map(|member| stroke_stiffness(rig, member)),
+        stiffness_models: stiffness_models(rig),
+        reduction: compare(&grid, &two_pressure.command, &derived_full.command),
+        printed_decomposition: against_full(&decomposed[0]),
+        corrected_decomposition: against_full(&decomposed[1]),
+        truncation: against_full(&first_order),
+        modes: dominance(&full.command),
+        open_loop: open_loop_view(rig, &full)?,
+        closed_loop_absent: absence(controller, closed_loop.as_ref()),
+        closed_loop,
+        compliance_hidden_above_rad_per_s: compliance_hidden_above(rig.linear.hydraulic_stiffness, rig.linear.moving_mass),
+        two_pressure,
+        full,
+        decomposed,
+        first_order,
+    })
+}
+
+fn is_continuous(function: &TransferFunction) -> bool {
+    function.domain() == phea_dynamics::linear::TimeDomain::Continuous
+}
+
+fn absence(controller: Option<&TransferFunction>, view: Option<&PortView>) -> Option<String> {
+    let reason = match (controller, view) {
+        (_, Some(_)) => return None,
+        (None, None) => "the project gives no controller",
+        (Some(_), None) => "the controller is sampled or the loop has dead time: its impedance is no rational function",
+    };
+    Some(reason.to_string())
+}
+
+fn open_loop_view(rig: &Rig, full: &LinearModel) -> Result<PortView, LinearError> {
+    let impedance = open_loop_impedance(full)?;
+    Ok(PortView {
+        passivity: passivity(&impedance)?,
+        asymptotes: impedance_asymptotes(&rig.linear, None),
+        final_force_n: final_force_after_load_step(&full.load_position, 1e-3),
+        impedance,
+    })
+}
+
+fn closed_loop_view(rig: &Rig, full: &LinearModel, controller: &TransferFunction) -> Result<PortView, LinearError> {
+    let impedance = closed_loop_impedance(full, controller)?;
+    Ok(PortView {
+        passivity: passivity(&impedance)?,
+        asymptotes: impedance_asymptotes(&rig.linear, Some(controller)),
+        final_force_n: final_force_after_load_step(&closed_loop_load_motion(full, controller)?, 1e-3),
+        impedance,
+    })
+}
+
+/// Stiffness over the stroke by the project's model, for one member of the stiffening interval.
+pub(crate) fn stroke_stiffness(rig: &Rig, member: Member) -> StrokeStiffness {
+    rig.actuator.chamber_compliance([rig.point.pressure_a, rig.point.pressure_b], member).over_stroke()
+}
+
+/// Stiffness at a position by either model.
+pub(crate) fn stiffness_at(rig: &Rig, model: StiffnessModel, member: Member, position: f64) -> f64 {
+    let components = rig.actuator.components();
+    let moduli = [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| components.fluid.modulus_at(pressure));
+    let lines = [&components.line_a, &components.line_b];
+    let chambers = chamber_compliance(model, moduli, &components.cylinder, lines, member);
+    phea_hydraulics::stiffness::hydraulic_stiffness(&chambers, position)
+}
+
+fn stiffness_models(rig: &Rig) -> ModelDifference {
+    let components = rig.actuator.components();
+    let modulus = components.fluid.modulus_at(rig.actuator.mean_pressure());
+    model_difference(modulus, &components.cylinder, [&components.line_a, &components.line_b], Member::Nominal)
+}
+
+/// Frequencies for comparing and drawing: from a decade below the slowest pole to a decade above the fastest, at least
+/// 0.01 to 10 000 rad/s, with the resonances themselves.
+pub(crate) fn frequency_grid(function: &TransferFunction) -> Result<Vec<f64>, LinearError> {
+    let moduli: Vec<f64> = function.poles().iter().map(|pole| phea_dynamics::portable::magnitude(*pole)).collect();
+    let slowest = moduli.iter().copied().filter(|modulus| *modulus > 0.0).fold(0.1, f64::min);
+    let fastest = moduli.iter().copied().fold(1e3, f64::max);
+    let mut grid = logarithmic_grid((slowest / 10.0).max(1e-6), (fastest * 10.0).min(1e9), 600)?;
+    grid.extend(function.poles().iter().filter(|pole| pole.im > 0.0).map(|pole| pole.im));
+    grid.sort_by(f64::total_cmp);
+    Ok(grid)
+}
+
+fn compare(grid: &[f64], reference: &TransferFunction, other: &TransferFunction) -> Comparison {
+    let difference = |grid: &[f64]| response_difference(grid, |w| reference.at_frequency(w), |w| other.at_frequency(w));
+    let low: Vec<f64> = grid.iter().copied().filter(|frequency| *frequency <= COMPARISON_END).collect();
+    Comparison { low: difference(&low), all: difference(grid) }
+}
+
+/// One sentence on the two stiffness models.
+pub fn stiffness_sentence(difference: &ModelDifference) -> String {
+    let number = |value: f64| crate::answer::significant(value / 1e6, 3);
+    format!(
+        "With one modulus for line and chamber (uniform) K_H is {} to {} MN/m over the stroke; with the chamber's oil \
+         keeping its own (by_volume) it is {} to {} MN/m, {} times as stiff at its least: {} % of the oil is in the \
+         chambers, and only {} % of the compliance is the lines'.",
+        number(difference.uniform.minimum),
+        number(difference.uniform.maximum),
+        number(difference.by_volume.minimum),
+        number(difference.by_volume.maximum),
+        crate::answer::significant(difference.minimum_ratio, 3),
+        crate::answer::significant(100.0 * difference.chamber_volume_share, 2),
+        crate::answer::significant(100.0 * difference.line_compliance_share, 2),
+    )
+}

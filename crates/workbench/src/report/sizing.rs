@@ -1,0 +1,187 @@
+//! The chapter on sizing: decisions, nomograph, candidates, what is uncertain.
+
+use maud::{Markup, html};
+
+use super::chapter::{Chapter, cell, place, table};
+use crate::answer::significant;
+use crate::figure::{
+    DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput, SizingCurve, TornadoBar,
+    TornadoInput, Verdict, Words, nomograph, sizing_chart, tornado,
+};
+use crate::sizing::{BoreVerdict, Candidate, Severity, Sizing, SizingProblem, model_name};
+use phea_hydraulics::stiffness::StiffnessModel;
+
+pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
+    let mut figures = vec![bores(problem, sizing), lengths(problem, sizing)];
+    figures.extend(uncertain(sizing));
+    let best = |model| sizing.candidates.iter().find(|c| c.accepted() && c.branch.model == model);
+    let body = html! {
+        p {
+            "The procedure of Ledezma (2019), section 6.3, walked over " (problem.hoses.len())
+            " hose(s) of the catalogue, once with each stiffness model."
+        }
+        div.callout.good-edge[best(problem.model).is_some()].bad-edge[best(problem.model).is_none()] {
+            @for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
+                p { code { (model_name(model)) } ": " (answer_sentence(best(model))) }
+            }
+        }
+        (place(&figures[0]))
+        h3 { "Candidates" }
+        (candidates(sizing))
+        (place(&figures[1]))
+        @if let Some(figure) = figures.get(2) {
+            h3 { "What is uncertain" }
+            p { "Each number goes from its low to its high value while all others stay nominal. Stiffening has its declared interval; where none is stated, 10 % either way is assumed." }
+            (place(figure))
+            (influences(sizing))
+        }
+        details { summary { "Every decision of the procedure" } (decisions(sizing)) }
+    };
+    Chapter { anchor: "sizing", title: "Sizing of the hose", body, figures }
+}
+
+fn answer_sentence(best: Option<&Candidate>) -> String {
+    match best {
+        None => "no hose of the catalogue meets every demand; the reasons stand in the table.".to_string(),
+        Some(candidate) => format!(
+            "{} with {} m a line: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
+            candidate.option.name,
+            significant(candidate.length_m(), 3),
+            significant(candidate.branch.stiffness.minimum / 1e6, 3),
+            significant(candidate.branch.stiffness.maximum / 1e6, 3),
+            significant(candidate.branch.gain_v_per_n, 3)
+        ),
+    }
+}
+
+fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
+    let bore = |bore: &crate::sizing::CommercialBore| NomographBore {
+        bore_m: bore.bore_m,
+        label: bore.name.clone(),
+        verdict: match bore.verdict {
+            BoreVerdict::Recommended => Verdict::Accepted,
+            BoreVerdict::Slow => Verdict::Warned,
+            BoreVerdict::TooFast => Verdict::Rejected,
+        },
+    };
+    let [slowest, fastest] = problem.oil_velocity;
+    let [smallest, largest] = sizing.bore_range_m.map(|bore| significant(bore * 1e3, 3));
+    let caption = format!(
+        "At {} L/min the recommended velocities of {slowest} to {fastest} m/s take a bore of {smallest} to {largest} mm. A faster bore is rejected, a slower one only warned of.",
+        significant(problem.maximum_flow * 6e4, 3)
+    );
+    let input = NomographInput {
+        bores: sizing.bores.iter().map(bore).collect(),
+        design_flow_m3_per_s: problem.maximum_flow,
+        velocity_range_m_per_s: (slowest, fastest),
+    };
+    nomograph(Words::new("sizing-nomograph", "Feasible bores", caption), &input)
+}
+
+fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
+    let longest = sizing.candidates.iter().map(Candidate::length_m).filter(|l| l.is_finite()).fold(problem.hose_length[1], f64::max);
+    let lengths: Vec<f64> = (1..=60).map(|step| longest.min(3.0 * problem.hose_length[1]) * f64::from(step) / 60.0).collect();
+    let mut curves = Vec::new();
+    for option in &problem.hoses {
+        for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
+            let stiffness: Vec<f64> =
+                lengths.iter().map(|length| problem.stroke_stiffness(option.hose, *length, model).minimum).collect();
+            curves.push(SizingCurve {
+                name: format!("{}, {}", option.name, model_name(model)),
+                lengths_m: lengths.clone(),
+                gain_v_per_n: stiffness.iter().map(|value| problem.gain_for_stiffness(*value)).collect(),
+                stiffness_n_per_m: stiffness,
+            });
+        }
+    }
+    let candidates = sizing.candidates.iter().filter(|c| c.length_m() > 0.0 && c.length_m() <= 3.0 * problem.hose_length[1]).map(|candidate| SizingCandidate {
+        label: String::new(),
+        length_m: candidate.length_m(),
+        stiffness_n_per_m: candidate.branch.stiffness.minimum,
+        gain_v_per_n: candidate.branch.gain_v_per_n,
+        verdict: if candidate.accepted() { Verdict::Accepted } else { Verdict::Rejected },
+    });
+    let input = SizingChartInput {
+        curves,
+        candidates: candidates.collect(),
+        length_range_m: Some((problem.hose_length[0], problem.hose_length[1])),
+        minimum_gain_v_per_n: Some(problem.minimum_gain),
+        pole_gain_v_per_n: Some(sizing.pole_gain_v_per_n),
+    };
+    let caption = format!("Least stiffness over the stroke and the proportional gain that makes the time constant {} ms, for each length of hose per line.", significant(problem.time_constant * 1e3, 3));
+    sizing_chart(Words::new("sizing-length", "Length, stiffness and gain", caption), &input)
+}
+
+fn candidates(sizing: &Sizing) -> Markup {
+    let rows: Vec<Vec<Markup>> = sizing
+        .candidates
+        .iter()
+        .map(|candidate| {
+            let branch = &candidate.branch;
+            let verdict = if candidate.accepted() { html! { span.good { "accepted" } } } else { html! { span.bad { "rejected" } } };
+            vec![
+                verdict,
+                cell(&candidate.option.name),
+                cell(model_name(branch.model)),
+                cell(if branch.by_gain { "by gain" } else { "by length" }),
+                reasons(candidate),
+                cell(significant(branch.length_m, 4)),
+                cell(format!("{} to {}", significant(branch.stiffness.minimum / 1e6, 3), significant(branch.stiffness.maximum / 1e6, 3))),
+                cell(significant(branch.gain_v_per_n * 1e3, 3)),
+                cell(significant(candidate.time_constant_s[0] * 1e3, 3)),
+            ]
+        })
+        .collect();
+    let headings = ["", "hose", "compliance", "branch", "why", "length, m", "K_H, MN/m", "K_p, mV/N", "τ, ms"];
+    table(&headings, 5, &rows)
+}
+
+fn reasons(candidate: &Candidate) -> Markup {
+    html! {
+        @for finding in &candidate.findings {
+            div { span.bad[finding.severity == Severity::Rejects].note[finding.severity == Severity::Warns] { (if finding.severity == Severity::Rejects { "✗ " } else { "! " }) } (finding.text) }
+        }
+    }
+}
+
+fn uncertain(sizing: &Sizing) -> Option<Figure> {
+    let nominal = sizing.influences.first()?.stiffness_n_per_m[1];
+    let bars = sizing.influences.iter().map(|influence| TornadoBar {
+        parameter: influence.quantity.clone(),
+        low_setting: significant(influence.values[0], 3),
+        high_setting: significant(influence.values[2], 3),
+        low_value: influence.stiffness_n_per_m[0],
+        high_value: influence.stiffness_n_per_m[2],
+    });
+    let input = TornadoInput {
+        quantity: "Hydraulic stiffness K_H".to_string(),
+        unit: DisplayUnit::MEGANEWTON_PER_METRE,
+        nominal,
+        bars: bars.collect(),
+    };
+    let caption = "Least stiffness over the stroke of the chosen hose.";
+    Some(tornado(Words::new("sizing-sensitivity", "Influence on the stiffness", caption), &input))
+}
+
+fn influences(sizing: &Sizing) -> Markup {
+    let three = |values: [f64; 3], scale: f64| cell(values.map(|value| significant(value / scale, 4)).join(" · "));
+    let rows: Vec<Vec<Markup>> = sizing
+        .influences
+        .iter()
+        .map(|influence| {
+            vec![
+                cell(&influence.quantity),
+                three(influence.values, 1.0),
+                three(influence.stiffness_n_per_m, 1e6),
+                three(influence.length_m, 1.0),
+            ]
+        })
+        .collect();
+    table(&["quantity", "low · nominal · high (SI)", "K_H at the chosen length, MN/m", "length for the chosen K_H, m"], 1, &rows)
+}
+
+fn decisions(sizing: &Sizing) -> Markup {
+    let rows: Vec<Vec<Markup>> =
+        sizing.decisions.iter().map(|decision| vec![cell(decision.step), cell(&decision.text)]).collect();
+    table(&["step", "decision"], 9, &rows)
+}

@@ -1,0 +1,92 @@
+//! From what is declared to what is computed with: the actuator as physics, its operating point, and every parameter
+//! of the linear model with where it comes from.
+
+mod assembly;
+mod parameters;
+mod sizing;
+
+use phea_hydraulics::actuator::{Actuator, ActuatorError};
+use phea_hydraulics::friction::ViscousSlope;
+use phea_hydraulics::line::Member;
+use phea_hydraulics::linear::LinearParameters;
+use phea_hydraulics::operating_point::{
+    Condition, Load, OperatingPoint, OperatingPointError, operating_point,
+};
+use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::two_pressure::{
+    TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
+};
+
+use crate::project::{self, Project};
+
+pub(crate) use assembly::stiffness_model;
+pub use parameters::{ParameterOrigin, ResolvedParameter};
+
+/// A rig ready to be computed with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rig {
+    /// The actuator as physics.
+    pub actuator: Actuator,
+    /// Where the linear models are taken.
+    pub point: OperatingPoint,
+    /// The nonlinear two-pressure model, nominal stiffening.
+    pub model: TwoPressureModel,
+    /// Its linearisation at the operating point.
+    pub two_pressure: TwoPressureLinearParameters,
+    /// Parameters of the fifth-order model as they follow from the rig.
+    pub derived: LinearParameters,
+    /// The same with what the project sets: `[linear]` before the nominal of `[uncertainty]` before the derived value.
+    pub parameters: Vec<ResolvedParameter>,
+    /// The values that hold.
+    pub linear: LinearParameters,
+}
+
+/// Why a project has no rig to compute with.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RigError {
+    /// The project describes another plant.
+    #[error("the project has a [plant] and no actuator: this command needs [valve], [cylinder] and [line]")]
+    NoActuator,
+    /// Parameters outside physics.
+    #[error(transparent)]
+    Actuator(#[from] ActuatorError),
+    /// No equilibrium at the declared operating point.
+    #[error("[operating_point]: {0}")]
+    OperatingPoint(#[from] OperatingPointError),
+    /// The friction has no slope to linearise with.
+    #[error("[cylinder.friction] has no viscous part to linearise with")]
+    Friction,
+}
+
+impl Rig {
+    /// Assembles the rig of a project and linearises it.
+    ///
+    /// # Errors
+    /// [`RigError`] if the project is about another plant, a parameter is impossible, or nothing balances at the
+    /// operating point.
+    pub fn new(project: &Project) -> Result<Rig, RigError> {
+        let declared = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
+        let actuator = assembly::actuator(declared)?;
+        let components = actuator.components();
+        let point = point(&actuator, &project.operating_point)?;
+        let friction = components.friction.viscous_slope(ViscousSlope::Viscous).ok_or(RigError::Friction)?;
+        let pressures = [point.pressure_a, point.pressure_b];
+        let model = TwoPressureModel::new(&actuator, pressures, Member::Nominal, friction);
+        let two_pressure = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+        let derived = reduce(&two_pressure);
+        let parameters = parameters::resolve(project, &derived);
+        let linear = parameters::linear(&parameters, &derived);
+        Ok(Rig { actuator, point, model, two_pressure, derived, parameters, linear })
+    }
+}
+
+fn point(actuator: &Actuator, declared: &project::OperatingPoint) -> Result<OperatingPoint, OperatingPointError> {
+    let position = declared.position.unwrap_or(actuator.components().cylinder.stroke / 2.0);
+    let condition = match (declared.command, declared.load_pressure) {
+        (Some(command), Some(load_pressure)) => Condition::Matched(command, load_pressure),
+        (Some(command), None) => Condition::Command(command),
+        (None, Some(load_pressure)) => Condition::Load(Load::Pressure(load_pressure)),
+        (None, None) => Condition::Command(0.0),
+    };
+    operating_point(actuator, position, condition)
+}

@@ -1,0 +1,211 @@
+use serde::Serialize;
+
+use super::branch::model_name;
+use super::{BoreVerdict, Candidate, Severity, Sizing};
+use crate::answer::{self, Number, OutputFile, significant, table};
+use crate::project::Loaded;
+
+#[derive(Serialize)]
+struct Body<'a> {
+    bore_range_m: [f64; 2],
+    pole_gain_v_per_n: f64,
+    bores: Vec<BoreRow<'a>>,
+    candidates: Vec<CandidateRow<'a>>,
+    decisions: Vec<DecisionRow<'a>>,
+    influences: Vec<InfluenceRow<'a>>,
+}
+
+#[derive(Serialize)]
+struct BoreRow<'a> {
+    name: &'a str,
+    bore_m: f64,
+    oil_velocity_m_per_s: f64,
+    verdict: &'static str,
+}
+
+#[derive(Serialize)]
+struct CandidateRow<'a> {
+    hose: &'a str,
+    compliance: &'static str,
+    branch: &'static str,
+    bore_m: f64,
+    length_m: Number,
+    stiffness_n_per_m: Number,
+    stiffness_maximum_n_per_m: Number,
+    proportional_gain_v_per_n: Number,
+    oil_velocity_m_per_s: f64,
+    surge_pressure_pa: f64,
+    time_constant_s: [Number; 2],
+    steady_state_gain: [Number; 2],
+    accepted: bool,
+    reasons: Vec<&'a str>,
+    iterations: Vec<IterationRow>,
+}
+
+#[derive(Serialize)]
+struct IterationRow {
+    proportional_gain_v_per_n: f64,
+    stiffness_n_per_m: Number,
+    length_m: Number,
+}
+
+#[derive(Serialize)]
+struct DecisionRow<'a> {
+    step: &'a str,
+    text: &'a str,
+}
+
+#[derive(Serialize)]
+struct InfluenceRow<'a> {
+    quantity: &'a str,
+    values: [f64; 3],
+    stiffness_n_per_m: [Number; 3],
+    length_m: [Number; 3],
+}
+
+/// The JSON object of `size`.
+pub fn json(loaded: &Loaded, sizing: &Sizing) -> String {
+    let bores = sizing.bores.iter().map(|bore| BoreRow {
+        name: &bore.name,
+        bore_m: bore.bore_m,
+        oil_velocity_m_per_s: bore.oil_velocity_m_per_s,
+        verdict: verdict_name(bore.verdict),
+    });
+    let influences = sizing.influences.iter().map(|influence| InfluenceRow {
+        quantity: &influence.quantity,
+        values: influence.values,
+        stiffness_n_per_m: influence.stiffness_n_per_m.map(Number),
+        length_m: influence.length_m.map(Number),
+    });
+    let decisions =
+        sizing.decisions.iter().map(|decision| DecisionRow { step: decision.step, text: &decision.text });
+    let body = Body {
+        bore_range_m: sizing.bore_range_m,
+        pole_gain_v_per_n: sizing.pole_gain_v_per_n,
+        bores: bores.collect(),
+        candidates: sizing.candidates.iter().map(candidate_row).collect(),
+        decisions: decisions.collect(),
+        influences: influences.collect(),
+    };
+    answer::json("size", loaded, body)
+}
+
+fn candidate_row(candidate: &Candidate) -> CandidateRow<'_> {
+    let branch = &candidate.branch;
+    let iterations = branch.steps.iter().map(|step| IterationRow {
+        proportional_gain_v_per_n: step.gain_v_per_n,
+        stiffness_n_per_m: Number(step.stiffness_n_per_m),
+        length_m: Number(step.length_m),
+    });
+    CandidateRow {
+        hose: &candidate.option.name,
+        compliance: model_name(branch.model),
+        branch: branch_name(branch.by_gain),
+        bore_m: candidate.option.hose.bore,
+        length_m: Number(branch.length_m),
+        stiffness_n_per_m: Number(branch.stiffness.minimum),
+        stiffness_maximum_n_per_m: Number(branch.stiffness.maximum),
+        proportional_gain_v_per_n: Number(branch.gain_v_per_n),
+        oil_velocity_m_per_s: candidate.oil_velocity_m_per_s,
+        surge_pressure_pa: candidate.surge_pressure_pa,
+        time_constant_s: candidate.time_constant_s.map(Number),
+        steady_state_gain: candidate.steady_state_gain.map(Number),
+        accepted: candidate.accepted(),
+        reasons: candidate.findings.iter().map(|finding| finding.text.as_str()).collect(),
+        iterations: iterations.collect(),
+    }
+}
+
+pub(crate) fn verdict_name(verdict: BoreVerdict) -> &'static str {
+    match verdict {
+        BoreVerdict::Recommended => "recommended",
+        BoreVerdict::Slow => "slow",
+        BoreVerdict::TooFast => "too_fast",
+    }
+}
+
+pub(crate) fn branch_name(by_gain: bool) -> &'static str {
+    if by_gain { "by_gain" } else { "by_length" }
+}
+
+/// The tables and sentences of `size` for people.
+pub fn text(sizing: &Sizing) -> String {
+    let mut out = String::from("Procedure (letters as in the flowchart of Ledezma 2019, section 6.3.2)\n");
+    for decision in &sizing.decisions {
+        out.push_str(&format!("  ({}) {}\n", decision.step, decision.text));
+    }
+    let mut candidates =
+        table(&["", "hose", "compliance", "branch", "length", "K_H over the stroke", "K_p", "tau"]);
+    for candidate in &sizing.candidates {
+        candidates.add_row(candidate_cells(candidate));
+    }
+    out.push_str(&format!("\nCandidates\n{candidates}\n"));
+    for candidate in sizing.candidates.iter().filter(|candidate| !candidate.findings.is_empty()) {
+        let verdict = if candidate.accepted() { "accepted" } else { "rejected" };
+        let model = model_name(candidate.branch.model);
+        let branch = branch_name(candidate.branch.by_gain);
+        out.push_str(&format!("\n{} ({model}, {branch}): {verdict}\n", candidate.option.name));
+        for finding in &candidate.findings {
+            let sign = if finding.severity == Severity::Rejects { "rejects" } else { "warns" };
+            out.push_str(&format!("  {sign}: {}\n", finding.text));
+        }
+    }
+    if !sizing.influences.is_empty() {
+        out.push_str(&format!("\nWhat is uncertain (low, nominal, high)\n{}\n", influence_table(sizing)));
+    }
+    out
+}
+
+fn candidate_cells(candidate: &Candidate) -> Vec<String> {
+    let branch = &candidate.branch;
+    let stiffness = &branch.stiffness;
+    vec![
+        if candidate.accepted() { "yes" } else { "no" }.to_string(),
+        candidate.option.name.clone(),
+        model_name(branch.model).to_string(),
+        branch_name(branch.by_gain).to_string(),
+        format!("{} m", significant(branch.length_m, 4)),
+        format!("{} to {} N/m", significant(stiffness.minimum, 4), significant(stiffness.maximum, 4)),
+        format!("{} V/N", significant(branch.gain_v_per_n, 3)),
+        format!("{} ms", significant(candidate.time_constant_s[0] * 1e3, 3)),
+    ]
+}
+
+fn influence_table(sizing: &Sizing) -> String {
+    let mut influences = table(&["quantity", "values", "K_H at this length, N/m", "length for this K_H, m"]);
+    let three = |values: [f64; 3]| values.map(|value| significant(value, 4)).join(", ");
+    for influence in &sizing.influences {
+        influences.add_row([
+            influence.quantity.clone(),
+            three(influence.values),
+            three(influence.stiffness_n_per_m),
+            three(influence.length_m),
+        ]);
+    }
+    influences.to_string()
+}
+
+/// The candidates as a table for other programs.
+pub fn files(sizing: &Sizing) -> Vec<OutputFile> {
+    let mut csv = String::from(
+        "accepted,hose,compliance,branch,bore_m,length_m,stiffness_minimum_n_per_m,stiffness_maximum_n_per_m,proportional_gain_v_per_n,reasons\n",
+    );
+    for candidate in &sizing.candidates {
+        let branch = &candidate.branch;
+        let reasons: Vec<&str> = candidate.findings.iter().map(|finding| finding.text.as_str()).collect();
+        csv.push_str(&format!(
+            "{},{},{},{},{},{},{},{},{},\"{}\"\n",
+            candidate.accepted(),
+            candidate.option.name,
+            model_name(branch.model),
+            branch_name(branch.by_gain),
+            candidate.option.hose.bore,
+            branch.length_m,
+            branch.stiffness.minimum,
+            branch.stiffness.maximum,
+            branch.gain_v_per_n,
+            reasons.join("; ").replace('"', "\"\"")
+        ));
+    }
+    vec![OutputFile { name: "sizing.csv".to_string(), bytes: csv.into_bytes() }]
+}
