@@ -20,10 +20,12 @@
 //! # }
 //! ```
 
+mod discretization;
 mod double_double;
 mod eigenvalues;
 pub(crate) mod even_part;
 mod interconnection;
+pub(crate) mod matrix_exponential;
 mod polynomial;
 mod realization;
 mod refinement;
@@ -34,6 +36,7 @@ mod zeros;
 
 use num_complex::Complex64;
 
+pub use discretization::Discretization;
 pub use polynomial::Polynomial;
 pub use state_space::StateSpace;
 pub use transfer_function::TransferFunction;
@@ -136,6 +139,12 @@ pub enum LinearError {
     NotRational {
         /// What was asked for.
         operation: &'static str,
+    },
+    /// Tustin's map takes this real root to infinity: the sample time does not fit the system.
+    #[error("a root at {root_rad_per_s} rad/s has no image at this sample time")]
+    NoImage {
+        /// The root, equal to 2/T, rad/s.
+        root_rad_per_s: f64,
     },
     /// More zeros than poles where a realisable system is needed.
     #[error("the system has {zeros} zeros but only {poles} poles")]

@@ -1,1 +1,70 @@
-//! Responses in time and their metrics.
+//! Responses in time, the metrics of a step response, and second-order specifications.
+//!
+//! # Example
+//! The step response of a second-order system, measured and predicted:
+//! ```
+//! use phea_dynamics::time_response::{SecondOrder, StepBaseline, step_metrics, step_response, uniform_times};
+//! # fn main() -> Result<(), phea_dynamics::time_response::TimeResponseError> {
+//! let model = SecondOrder::new(10.0, 0.5)?;
+//! let times = uniform_times(2.0, 2001)?;
+//! let values = step_response(&model.transfer_function(), &times)?;
+//! let metrics = step_metrics(&times, &values, StepBaseline::unit(), 2.0)?;
+//! assert!((metrics.overshoot_percent - model.overshoot_percent()).abs() < 1e-4);
+//! assert!((metrics.peak_time_s - model.peak_time_s().unwrap_or(f64::NAN)).abs() < 1e-3);
+//! # Ok(())
+//! # }
+//! ```
+
+mod second_order;
+mod signal;
+mod simulation;
+mod step_metrics;
+
+pub use second_order::{SecondOrder, SettlingRule, damping_ratio_from_overshoot};
+pub use signal::{Interpolation, Signal, uniform_times};
+pub use simulation::{forced_response, forced_response_of_states, step_response};
+pub use step_metrics::{Settling, StepBaseline, StepMetrics, step_metrics};
+
+use crate::linear::LinearError;
+
+/// Why a response in time, or a number read off one, does not exist.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TimeResponseError {
+    /// The linear system refuses.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    /// Two lists that belong together differ in length.
+    #[error("{what}: {found} where {expected} are needed")]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// Times that fall, are negative where they must not be, or are not finite.
+    #[error("time number {index} ({time_s} s) is out of order")]
+    TimeOrder {
+        /// Position in the list, from zero.
+        index: usize,
+        /// The time, s.
+        time_s: f64,
+    },
+    /// A number outside the range in which the formula has a meaning.
+    #[error("{what} is {value}; it must be {expected}")]
+    OutOfRange {
+        /// What the number is.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The range, in words.
+        expected: &'static str,
+    },
+    /// The baseline has no step: its initial and final value are equal.
+    #[error("initial and final value are equal ({value}): there is no step to measure")]
+    NoStep {
+        /// Both values.
+        value: f64,
+    },
+}

@@ -38,6 +38,13 @@ impl DoubleDouble {
         if self.high < 0.0 { -self } else { self }
     }
 
+    /// The quotient by an `f64`.
+    pub(crate) fn divided_by(self, divisor: f64) -> Self {
+        let first = self.high / divisor;
+        let rest = self - DoubleDouble::product_of(first, divisor);
+        DoubleDouble::normalised(first, rest.value() / divisor)
+    }
+
     fn normalised(high: f64, low: f64) -> Self {
         let sum = high + low;
         DoubleDouble { high: sum, low: low - (sum - high) }

@@ -1,0 +1,117 @@
+//! exp(A t) and the integrals that an exact step of a linear system needs.
+//!
+//! Squaring repeats rounding errors as often as the fastest mode fits into the step, so a slow pole beside a fast one
+//! would come out wrong by their ratio. The exponential is therefore formed in twice the working precision: balanced,
+//! scaled by a power of two, summed as a Taylor series, and squared back.
+
+use nalgebra::DMatrix;
+
+use super::double_double::DoubleDouble;
+
+const TAYLOR_TERMS: i32 = 18;
+
+/// exp(A t); infinite or not a number where the result overflows.
+pub(crate) fn exponential(matrix: &DMatrix<f64>, time: f64) -> DMatrix<f64> {
+    let order = matrix.nrows();
+    let mut balanced = matrix.clone();
+    let scales = if matrix.iter().all(|entry| entry.is_finite()) {
+        nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced)
+    } else {
+        nalgebra::DVector::from_element(order, 1.0)
+    };
+    // halve until the norm is at most 1/16: 18 terms then leave 1e-37
+    let norm = balanced.row_iter().map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max);
+    let (_, exponent) = libm::frexp(norm * time.abs() * 16.0);
+    let halvings = if norm == 0.0 { 0 } else { exponent.clamp(0, 1100) };
+    let step = libm::ldexp(time, -halvings);
+    let scaled = Wide::from_fn(order, |i, j| DoubleDouble::product_of(balanced[(i, j)], step));
+    let mut result = Wide::identity(order);
+    for term in (1..=TAYLOR_TERMS).rev() {
+        // Horner: I + X/k (I + X/(k+1) (...))
+        result = scaled.times(&result).divided_by(f64::from(term)).plus_identity();
+    }
+    for _ in 0..halvings {
+        result = result.times(&result);
+    }
+    DMatrix::from_fn(order, order, |i, j| result.entry(i, j).value() * scales[i] / scales[j])
+}
+
+/// A square matrix of twice the working precision.
+struct Wide {
+    order: usize,
+    entries: Vec<DoubleDouble>,
+}
+
+impl Wide {
+    fn from_fn(order: usize, entry: impl Fn(usize, usize) -> DoubleDouble) -> Self {
+        let entries = (0..order * order).map(|index| entry(index / order, index % order)).collect();
+        Wide { order, entries }
+    }
+
+    fn identity(order: usize) -> Self {
+        Wide::from_fn(order, |i, j| if i == j { 1.0.into() } else { DoubleDouble::ZERO })
+    }
+
+    fn entry(&self, row: usize, column: usize) -> DoubleDouble {
+        self.entries[row * self.order + column]
+    }
+
+    fn times(&self, other: &Wide) -> Self {
+        Wide::from_fn(self.order, |i, j| {
+            (0..self.order).fold(DoubleDouble::ZERO, |sum, k| {
+                let (left, right) = (self.entry(i, k), other.entry(k, j));
+                if left.high == 0.0 || right.high == 0.0 { sum } else { sum + left * right }
+            })
+        })
+    }
+
+    fn divided_by(mut self, divisor: f64) -> Self {
+        self.entries.iter_mut().for_each(|entry| *entry = entry.divided_by(divisor));
+        self
+    }
+
+    fn plus_identity(mut self) -> Self {
+        let order = self.order;
+        self.entries.iter_mut().step_by(order + 1).for_each(|entry| *entry = *entry + 1.0.into());
+        self
+    }
+}
+
+/// One exact step of dx/dt = A x + B u over a time h, with u straight between its values at both ends.
+pub(crate) struct ExactStep {
+    /// exp(A h).
+    pub(crate) transition: DMatrix<f64>,
+    /// Effect of a constant input: integral of exp(A t) B over the step.
+    pub(crate) constant: DMatrix<f64>,
+    /// Effect of an input that rises from zero to one over the step.
+    pub(crate) ramp: DMatrix<f64>,
+}
+
+impl ExactStep {
+    /// The blocks of the exponential of [A B 0; 0 0 I/h; 0 0 0] h.
+    pub(crate) fn new(a: &DMatrix<f64>, b: &DMatrix<f64>, time: f64) -> Self {
+        let (order, inputs) = b.shape();
+        if time == 0.0 {
+            let none = DMatrix::zeros(order, inputs);
+            return ExactStep {
+                transition: DMatrix::identity(order, order),
+                constant: none.clone(),
+                ramp: none,
+            };
+        }
+        let size = order + 2 * inputs;
+        let mut augmented = DMatrix::zeros(size, size);
+        augmented.view_mut((0, 0), (order, order)).copy_from(a);
+        augmented.view_mut((0, order), (order, inputs)).copy_from(b);
+        for input in 0..inputs {
+            augmented[(order + input, order + inputs + input)] = 1.0 / time;
+        }
+        let result = exponential(&augmented, time);
+        let part = |column, count| result.view((0, column), (order, count)).into_owned();
+        ExactStep {
+            transition: part(0, order),
+            constant: part(order, inputs),
+            ramp: part(order + inputs, inputs),
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! What is read off a step response.
+
+use super::TimeResponseError;
+
+/// The step that a response is measured against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepBaseline {
+    /// When the step happens, s.
+    pub step_time_s: f64,
+    /// Value before the step.
+    pub initial_value: f64,
+    /// Value that the response should reach: zero and hundred percent are this far apart.
+    pub final_value: f64,
+}
+
+impl StepBaseline {
+    /// From zero to one at time zero.
+    pub fn unit() -> Self {
+        StepBaseline { step_time_s: 0.0, initial_value: 0.0, final_value: 1.0 }
+    }
+
+    /// From zero to this value at time zero, as the final value of a unit step response is the gain at zero frequency.
+    pub fn to_value(final_value: f64) -> Self {
+        StepBaseline { step_time_s: 0.0, initial_value: 0.0, final_value }
+    }
+}
+
+/// Whether the response stays in the band, and from when.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Settling {
+    /// It enters the band for good.
+    Settled {
+        /// Time after the step, s.
+        time_s: f64,
+    },
+    /// Its last sample lies outside the band.
+    NotSettled {
+        /// Deviation of the last sample from the final value, percent of the step.
+        deviation_percent: f64,
+    },
+}
+
+impl Settling {
+    /// The settling time in s, if there is one.
+    pub fn time_s(self) -> Option<f64> {
+        match self {
+            Settling::Settled { time_s } => Some(time_s),
+            Settling::NotSettled { .. } => None,
+        }
+    }
+}
+
+/// Metrics of a step response. All times count from the step; crossings are interpolated between samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepMetrics {
+    /// From 10 to 90 percent of the step, s; none if it never gets there.
+    pub rise_time_10_90_s: Option<f64>,
+    /// From the step until the final value is first reached, s.
+    pub rise_time_0_100_s: Option<f64>,
+    /// The extreme value in the direction of the step.
+    pub peak_value: f64,
+    /// When it is first taken, s.
+    pub peak_time_s: f64,
+    /// How far the peak exceeds the final value, percent of the step; zero when it does not.
+    pub overshoot_percent: f64,
+    /// How far the response goes the wrong way first, percent of the step; zero when it does not.
+    pub undershoot_percent: f64,
+    /// Whether and when the response stays within the band.
+    pub settling: Settling,
+    /// The band of the settling time: plus or minus this percentage of the step.
+    pub settling_band_percent: f64,
+}
+
+/// Metrics of the samples of a step response, for an explicit baseline and settling band.
+///
+/// # Errors
+/// [`TimeResponseError::Count`] when times and values differ in number or none is after the step,
+/// [`TimeResponseError::TimeOrder`], [`TimeResponseError::NoStep`], [`TimeResponseError::OutOfRange`] for a band that is
+/// not between 0 and 100 percent or a value that is not finite.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::time_response::{Settling, StepBaseline, step_metrics};
+/// let times = [0.0, 1.0, 2.0, 3.0, 4.0];
+/// let values = [0.0, 1.0, 1.5, 1.0, 1.0];
+/// let metrics = step_metrics(&times, &values, StepBaseline::unit(), 5.0)?;
+/// assert_eq!((metrics.overshoot_percent, metrics.peak_time_s), (50.0, 2.0));
+/// assert_eq!(metrics.rise_time_0_100_s, Some(1.0));
+/// assert!(metrics.settling.time_s().is_some_and(|time| (time - 2.9).abs() < 1e-15));
+/// # Ok::<(), phea_dynamics::time_response::TimeResponseError>(())
+/// ```
+pub fn step_metrics(
+    times_s: &[f64],
+    values: &[f64],
+    baseline: StepBaseline,
+    settling_band_percent: f64,
+) -> Result<StepMetrics, TimeResponseError> {
+    let step = baseline.final_value - baseline.initial_value;
+    check(times_s, values, baseline, settling_band_percent)?;
+    // progress: 0 before, 1 at the final value
+    let samples: Vec<(f64, f64)> = times_s
+        .iter()
+        .zip(values)
+        .filter(|(time, _)| **time >= baseline.step_time_s)
+        .map(|(time, value)| (time - baseline.step_time_s, (value - baseline.initial_value) / step))
+        .collect();
+    let (Some(&first), Some(&last)) = (samples.first(), samples.last()) else {
+        return Err(TimeResponseError::Count { what: "samples after the step", found: 0, expected: 1 });
+    };
+    let peak = samples.iter().fold(first, |best, &sample| if sample.1 > best.1 { sample } else { best });
+    let lowest = samples.iter().map(|sample| sample.1).fold(f64::INFINITY, f64::min);
+    let rise_10_90 = first_reach(&samples, 0.1).zip(first_reach(&samples, 0.9)).map(|(low, high)| high - low);
+    let settling = match settling_time(&samples, settling_band_percent / 100.0) {
+        Some(time_s) => Settling::Settled { time_s },
+        None => Settling::NotSettled { deviation_percent: 100.0 * (last.1 - 1.0).abs() },
+    };
+    Ok(StepMetrics {
+        rise_time_10_90_s: rise_10_90,
+        rise_time_0_100_s: first_reach(&samples, 1.0),
+        peak_value: baseline.initial_value + peak.1 * step,
+        peak_time_s: peak.0,
+        overshoot_percent: (100.0 * (peak.1 - 1.0)).max(0.0),
+        undershoot_percent: (-100.0 * lowest).max(0.0),
+        settling,
+        settling_band_percent,
+    })
+}
+
+fn check(
+    times_s: &[f64],
+    values: &[f64],
+    baseline: StepBaseline,
+    settling_band_percent: f64,
+) -> Result<(), TimeResponseError> {
+    if times_s.len() != values.len() {
+        let (found, expected) = (values.len(), times_s.len());
+        return Err(TimeResponseError::Count { what: "values of a response", found, expected });
+    }
+    let mut last = f64::NEG_INFINITY;
+    for (index, &time_s) in times_s.iter().enumerate() {
+        if !(time_s.is_finite() && time_s >= last) {
+            return Err(TimeResponseError::TimeOrder { index, time_s });
+        }
+        last = time_s;
+    }
+    let numbers = [baseline.step_time_s, baseline.initial_value, baseline.final_value];
+    if let Some(&value) = values.iter().chain(&numbers).find(|value| !value.is_finite()) {
+        return Err(TimeResponseError::OutOfRange {
+            what: "a value of the response",
+            value,
+            expected: "finite",
+        });
+    }
+    if !(settling_band_percent > 0.0 && settling_band_percent < 100.0) {
+        return Err(TimeResponseError::OutOfRange {
+            what: "the settling band in percent",
+            value: settling_band_percent,
+            expected: "between 0 and 100",
+        });
+    }
+    if baseline.final_value == baseline.initial_value {
+        return Err(TimeResponseError::NoStep { value: baseline.final_value });
+    }
+    Ok(())
+}
+
+/// When the progress first reaches a level, interpolated.
+fn first_reach(samples: &[(f64, f64)], level: f64) -> Option<f64> {
+    let index = samples.iter().position(|sample| sample.1 >= level)?;
+    let after = samples[index];
+    match index.checked_sub(1).map(|before| samples[before]) {
+        Some(before) => Some(between(before, after, level)),
+        None => Some(after.0),
+    }
+}
+
+/// When the last sample outside the band crosses into it, interpolated; none when the last sample is outside.
+fn settling_time(samples: &[(f64, f64)], band: f64) -> Option<f64> {
+    // a deviation that equals the band up to rounding is inside
+    let outside = |sample: &(f64, f64)| (sample.1 - 1.0).abs() > band * (1.0 + 1e-12);
+    let Some(index) = samples.iter().rposition(outside) else {
+        return samples.first().map(|sample| sample.0);
+    };
+    let (before, after) = (samples[index], *samples.get(index + 1)?);
+    let level = if before.1 > 1.0 { 1.0 + band } else { 1.0 - band };
+    Some(between(before, after, level))
+}
+
+fn between(before: (f64, f64), after: (f64, f64), level: f64) -> f64 {
+    let share = (level - before.1) / (after.1 - before.1);
+    before.0 + share.clamp(0.0, 1.0) * (after.0 - before.0)
+}
