@@ -6,6 +6,8 @@ mod comparisons;
 mod stories;
 mod tools;
 
+pub(crate) use comparisons::recomputed_by;
+
 use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -52,11 +54,21 @@ const STAGES: &[(&str, Stage)] = &[
     ("comparisons", comparisons::run),
 ];
 
+/// The names of all stages.
+pub(crate) const STAGE_NAMES: [&str; STAGES.len()] = {
+    let mut names = [""; STAGES.len()];
+    let mut index = 0;
+    while index < STAGES.len() {
+        names[index] = STAGES[index].0;
+        index += 1;
+    }
+    names
+};
+
 /// Runs the named stages, all of them when none is named; whether nothing failed.
 pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
-    let known: Vec<&str> = STAGES.iter().map(|(name, _)| *name).collect();
-    if let Some(unknown) = wanted.iter().find(|name| !known.contains(name)) {
-        eprintln!("no stage is called `{unknown}`; the stages are {}", known.join(", "));
+    if let Some(unknown) = wanted.iter().find(|name| !STAGE_NAMES.contains(name)) {
+        eprintln!("no stage is called `{unknown}`; the stages are {}", STAGE_NAMES.join(", "));
         return false;
     }
     let mut results = Vec::new();

@@ -7,14 +7,14 @@ mod ci;
 mod repository;
 mod tidy;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const USAGE: &str = "\
 usage: cargo xtask CHORE
 
   ci [STAGE]...    the test command: every stage, or only those named
-  tidy             the rules of the house that compiler and clippy do not know";
+  tidy [FOLDER]    the rules of the house that compiler and clippy do not know, here or in another checkout";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -22,6 +22,7 @@ fn main() -> ExitCode {
     let done = match words.as_slice() {
         ["ci", stages @ ..] => ci::run(&root(), stages),
         ["tidy"] => tidy::report(&root()),
+        ["tidy", elsewhere] => tidy::report(Path::new(elsewhere)),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

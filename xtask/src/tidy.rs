@@ -1,11 +1,17 @@
 //! The rules of the house that neither the compiler nor clippy knows, each one a function from the repository's files to
 //! the places that break it.
 
+mod book;
+mod citation;
 mod dependencies;
+mod equations;
+mod golden;
+mod invariants;
 mod layout;
 mod links;
 mod lints;
 mod notation;
+mod parameters;
 mod purity;
 mod sizes;
 mod units;
@@ -45,7 +51,11 @@ type Check = fn(&Repository) -> Vec<Violation>;
 /// Every check by its name.
 const CHECKS: &[(&str, Check)] = &[
     ("syntax", syntax),
+    ("book", book::check),
     ("dependencies", dependencies::check),
+    ("equations", equations::check),
+    ("golden", golden::check),
+    ("invariants", invariants::check),
     ("layout", layout::check),
     ("links", links::check),
     ("lints", lints::check),

@@ -1,0 +1,145 @@
+//! A golden number names its origin.
+//!
+//! In `crates/*/tests/golden*.rs` and `apps/*/tests/golden*.rs` every function, constant and static whose literals have
+//! four significant digits or more carries a comment `ORIGIN: ...`, inside or directly above.
+
+use proc_macro2::{Span, TokenStream, TokenTree};
+use syn::spanned::Spanned;
+
+use super::Violation;
+use crate::ci::recomputed_by;
+use crate::repository::{Repository, RustFile};
+
+/// What an origin starts with.
+const ORIGINS: [&str; 7] =
+    ["analytic", "thesis", "recomputed by", "paper", "data sheet", "measured", "other tool"];
+
+pub(super) fn check(repository: &Repository) -> Vec<Violation> {
+    let golden = |file: &&RustFile| {
+        let name = file.path.rsplit('/').next().unwrap_or_default();
+        file.path.contains("/tests/") && name.starts_with("golden")
+    };
+    let mut found: Vec<Violation> =
+        repository.rust_files().iter().filter(golden).flat_map(check_file).collect();
+    for file in repository.rust_files().iter().filter(|file| !file.path.starts_with("xtask/")) {
+        for (index, line) in file.text.lines().enumerate() {
+            let problem =
+                line.split_once("ORIGIN:").and_then(|(_, origin)| check_origin(repository, line, origin));
+            found.extend(problem.map(|message| Violation::new(&file.path, index + 1, message)));
+        }
+    }
+    found
+}
+
+fn check_origin(repository: &Repository, line: &str, origin: &str) -> Option<String> {
+    let origin = origin.trim();
+    match recomputed_by(line) {
+        _ if !ORIGINS.iter().any(|known| origin.starts_with(known)) => {
+            Some(format!("an origin starts with one of: {}", ORIGINS.join(", ")))
+        }
+        Some(script) if !repository.exists(script) => Some(format!("the origin `{script}` does not exist")),
+        _ => None,
+    }
+}
+
+fn check_file(file: &RustFile) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let mut items: Vec<&syn::Item> = file.syntax.items.iter().collect();
+    while let Some(item) = items.pop() {
+        if let syn::Item::Mod(syn::ItemMod { content: Some((_, inner)), .. }) = item {
+            items.extend(inner);
+            continue;
+        }
+        let text = with_comments_above(&file.text, item.span());
+        let golden = text.parse().is_ok_and(has_golden_literal);
+        if golden && !text.contains("ORIGIN:") {
+            found.push(Violation::new(
+                &file.path,
+                item.span().start().line,
+                "golden numbers without an ORIGIN",
+            ));
+        }
+    }
+    found
+}
+
+/// The lines of an item and the comment lines directly above it.
+fn with_comments_above(text: &str, span: Span) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let (mut start, end) = (span.start().line - 1, span.end().line);
+    while start > 0 && lines[start - 1].trim_start().starts_with("//") {
+        start -= 1;
+    }
+    lines[start..end].join("\n")
+}
+
+fn has_golden_literal(tokens: TokenStream) -> bool {
+    tokens.into_iter().any(|token| match token {
+        TokenTree::Group(group) => has_golden_literal(group.stream()),
+        TokenTree::Literal(literal) => significant_digits(&literal.to_string()) >= 4,
+        TokenTree::Ident(_) | TokenTree::Punct(_) => false,
+    })
+}
+
+/// Significant digits of a floating-point literal; trailing zeros of a whole number count for nothing.
+fn significant_digits(literal: &str) -> usize {
+    let number = literal.replace('_', "");
+    if number.parse::<f64>().is_err() || !number.contains(['.', 'e']) {
+        return 0;
+    }
+    let mantissa = number.split('e').next().unwrap_or_default();
+    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    let without_leading = digits.trim_start_matches('0');
+    if mantissa.ends_with(".0") { without_leading.trim_end_matches('0').len() } else { without_leading.len() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn messages(text: &str) -> Vec<String> {
+        let files = [("crates/hydraulics/tests/golden_tables.rs", text), ("comparisons/recompute.py", "")];
+        check(&Repository::from_texts(&files)).iter().map(Violation::to_string).collect()
+    }
+
+    #[test]
+    fn digits_are_counted() {
+        for (literal, digits) in [
+            ("2.233e6", 4),
+            ("0.00025", 2),
+            ("1000.0", 1),
+            ("12.70", 4),
+            ("1e-9", 1),
+            ("2233000", 0),
+            ("\"1.2345\"", 0),
+        ] {
+            assert_eq!(significant_digits(literal), digits, "{literal}");
+        }
+    }
+
+    #[test]
+    fn golden_numbers_name_their_origin() {
+        let bare = "fn stiffness() { assert!(close(k(), 2.233e6)); }";
+        assert_eq!(
+            messages(bare),
+            ["crates/hydraulics/tests/golden_tables.rs:1: golden numbers without an ORIGIN"]
+        );
+        assert!(messages(&format!("// ORIGIN: thesis Table 6.2\n{bare}")).is_empty());
+        assert!(
+            messages("fn stiffness() {\n    // ORIGIN: analytic\n    close(k(), 2.233e6);\n}").is_empty()
+        );
+        assert!(messages("fn stiffness() { close(k(), 2.2e6, 1e-9); }").is_empty());
+    }
+
+    #[test]
+    fn an_origin_is_of_a_known_kind_and_exists() {
+        assert!(
+            messages("// ORIGIN: recomputed by comparisons/recompute.py\nconst K: f64 = 2.233e6;").is_empty()
+        );
+        assert_eq!(
+            messages("// ORIGIN: recomputed by comparisons/lost.py\nconst K: f64 = 2.233e6;").len(),
+            1
+        );
+        assert_eq!(messages("// ORIGIN: as the program printed it\nconst K: f64 = 2.233e6;").len(), 1);
+    }
+}
