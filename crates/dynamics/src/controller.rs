@@ -4,24 +4,14 @@
 //! step of [`SampledController`]: four users of one value.
 
 mod element;
-//mod sampled;
+mod sampled;
 mod section;
 
 pub use element::{Compensator, Element, Stage};
-//pub use sampled::{ControllerOutput, ControllerState, SampledController};
+pub use sampled::{ControllerOutput, ControllerState, SampledController};
 pub use section::Section;
 
-/// How a continuous compensator becomes a sampled one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Discretization {
-    /// Bilinear transformation, s = 2/T (z - 1)/(z + 1).
-    #[default]
-    Tustin,
-    /// Input held constant over each sample.
-    ZeroOrderHold,
-    /// Poles and zeros by z = exp(s T).
-    Matched,
-}
+use crate::linear::Discretization;
 
 /// When the controller acts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

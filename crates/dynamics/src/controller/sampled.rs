@@ -1,6 +1,6 @@
 use super::section::cascade;
-use super::{AntiWindup, Compensator, Controller, Discretization, Section};
-use crate::linear::{LinearError, TimeDomain, TransferFunction, discretization};
+use super::{AntiWindup, Compensator, Controller, Section};
+use crate::linear::{LinearError, TimeDomain};
 
 /// A controller ready to run once a sample.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,9 +37,14 @@ impl Controller {
     /// # Errors
     /// A compensator that is improper or cannot be discretised, or a sampled one with another sample time.
     pub fn sampled(&self, sample_time_s: f64) -> Result<SampledController, LinearError> {
-        let sections = |compensator: &Compensator| {
+        let sections = |compensator: &Compensator| -> Result<Vec<Section>, LinearError> {
             let function = compensator.transfer_function()?;
-            sampled_function(&function, sample_time_s, self.timing.discretization).map(|sampled| cascade(&sampled))
+            let sampled = match function.domain() {
+                TimeDomain::Continuous => function.discretized(sample_time_s, self.timing.discretization)?,
+                TimeDomain::Discrete { sample_time_s: own } if own == sample_time_s => function,
+                TimeDomain::Discrete { .. } => return Err(LinearError::DomainMismatch),
+            };
+            Ok(cascade(&sampled))
         };
         Ok(SampledController {
             feedback: sections(&self.feedback)?,
@@ -51,21 +56,6 @@ impl Controller {
     }
 }
 
-fn sampled_function(
-    function: &TransferFunction,
-    sample_time_s: f64,
-    method: Discretization,
-) -> Result<TransferFunction, LinearError> {
-    if function.domain() != TimeDomain::Continuous {
-        return function.clone().in_domain(TimeDomain::Discrete { sample_time_s });
-    }
-    match method {
-        Discretization::Tustin => discretization::tustin(function, sample_time_s),
-        Discretization::ZeroOrderHold => discretization::zero_order_hold(function, sample_time_s),
-        Discretization::Matched => discretization::matched(function, sample_time_s),
-    }
-}
-
 impl SampledController {
     /// Sample time in s.
     pub fn sample_time_s(&self) -> f64 {
@@ -74,7 +64,10 @@ impl SampledController {
 
     /// The state at rest.
     pub fn at_rest(&self) -> ControllerState {
-        ControllerState { feedback: vec![[0.0; 2]; self.feedback.len()], prefilter: vec![[0.0; 2]; self.prefilter.len()] }
+        ControllerState {
+            feedback: vec![[0.0; 2]; self.feedback.len()],
+            prefilter: vec![[0.0; 2]; self.prefilter.len()],
+        }
     }
 
     /// One sample: the command for this reference and measurement, and the next state.

@@ -10,9 +10,10 @@ use super::{LinearError, StateSpace, TimeDomain, realization, zeros};
 use crate::portable::{cos, exp, expm1, sin, tan};
 
 /// How a continuous system becomes a sampled one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Discretization {
     /// The trapezoidal rule, s = (2/T) (z - 1)/(z + 1).
+    #[default]
     Tustin,
     /// The trapezoidal rule scaled so that the response is exact at one frequency.
     PrewarpedTustin {
