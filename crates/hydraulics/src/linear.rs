@@ -18,7 +18,7 @@ pub use difference::{ResponseDifference, response_difference};
 pub use dominance::{ModeShare, dominance};
 pub use first_order::{
     RequiredStiffness, closed_loop_steady_state_gain, closed_loop_time_constant, first_order_model,
-    proportional_gain, rigid_limit_gain, required_stiffness,
+    proportional_gain, required_stiffness, rigid_limit_gain,
 };
 
 use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
@@ -77,9 +77,12 @@ pub struct LinearModel {
 /// a_3 = 2 xi w A^2 f_v + w^2 A^2 M + K_c K_H (2 xi w M + f_v) + A^2 (K_H + K_S)
 /// a_4 = 2 xi w A^2 M + A^2 f_v + K_c K_H M
 /// a_5 = A^2 M        c_0 = A K_H K_qU K_S w^2
-/// ```
 ///
-/// and b_0 to b_4 as printed: a_1 to a_5 without the sensor, since a = (s b + K_S/s-free part); `w`, `xi` are the spool's.
+/// b_0 = w^2 A^2 K_H + w^2 f_v K_c K_H
+/// b_1 = 2 xi w A^2 K_H + w^2 A^2 f_v + K_c K_H (2 xi w f_v + w^2 M)
+/// b_2 = 2 xi w A^2 f_v + w^2 A^2 M + A^2 K_H + K_c K_H (2 xi w M + f_v)
+/// b_3 = a_4        b_4 = a_5
+/// ```
 ///
 /// # Example
 /// Record the plant with an uncertain stiffness:

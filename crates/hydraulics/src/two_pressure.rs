@@ -15,8 +15,10 @@
 mod linearization;
 mod reduction;
 
-pub use linearization::{linearize, two_pressure_coefficients, two_pressure_linear_parameters};
-pub use reduction::{Reduction, reduce};
+pub use linearization::{
+    TwoPressureLinearParameters, linearize, two_pressure_coefficients, two_pressure_linear_parameters,
+};
+pub use reduction::{Reduction, reduce, reduction};
 
 use phea_dynamics::scalar::Scalar;
 
@@ -129,8 +131,7 @@ impl TwoPressureModel {
             velocity: point.velocity,
         };
         let load_position = point.position - deflection;
-        let input =
-            TwoPressureInput { command: point.command, load_velocity: point.velocity, load_position };
+        let input = TwoPressureInput { command: point.command, load_velocity: point.velocity, load_position };
         (state, input)
     }
 }

@@ -2,7 +2,9 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::scalar::Scalar;
 
 use super::{TwoPressureLinearParameters, two_pressure_coefficients};
-use crate::linear::{LinearParameters, ResponseDifference, linear_model, response_difference, transfer_functions};
+use crate::linear::{
+    LinearParameters, ResponseDifference, linear_model, response_difference, transfer_functions,
+};
 use crate::servovalve::ChamberCoefficients;
 
 /// Effective parameters of the fifth-order model (6.7) that stand for a two-pressure model.
@@ -62,7 +64,8 @@ pub fn reduction(
     let full = transfer_functions(&two_pressure_coefficients(parameters))?;
     let reduced_parameters = reduce(parameters);
     let reduced = linear_model(&reduced_parameters)?;
-    let compare = |full: &phea_dynamics::linear::TransferFunction, reduced: &phea_dynamics::linear::TransferFunction| {
+    let compare = |full: &phea_dynamics::linear::TransferFunction,
+                   reduced: &phea_dynamics::linear::TransferFunction| {
         response_difference(frequencies, |w| full.at_frequency(w), |w| reduced.at_frequency(w))
     };
     Ok(Reduction {
