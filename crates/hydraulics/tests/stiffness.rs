@@ -44,7 +44,7 @@ fn stiffness_of_hose_and_pipe_in_both_models() {
     let pipe = over_stroke(StiffnessModel::Uniform, &pipe_line(), Member::Nominal);
     check("pipe centre", pipe.minimum, 1.71e7, 1e5);
     check("pipe ends", pipe.maximum, 1.24e8, 1e6);
-    assert_eq!(uniform.minimum_position, 0.25);
+    assert!((uniform.minimum_position - 0.25).abs() < 1e-15);
 }
 
 #[test]
