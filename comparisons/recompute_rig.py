@@ -1,0 +1,216 @@
+"""Recomputes the numbers of the thesis' rig that the hydraulics tests hold phea to.
+
+Independent of phea: NumPy and SciPy only, from the component equations (matrices of the physical states, roots by
+bracketing), never from the expanded coefficients of Ledezma (2019), equation 6.7. Prints one line a number.
+
+    python comparisons/recompute_rig.py
+"""
+
+import numpy as np
+from scipy.linalg import eigvals
+from scipy.optimize import brentq, minimize_scalar
+
+AREA = np.pi / 4 * (0.05**2 - 0.022**2)
+MASS, STROKE, SUPPLY, NOMINAL_VOLTAGE = 13.1, 0.5, 70e5, 10.0
+VALVE_FREQUENCY, VALVE_DAMPING = 1099.0, 0.9
+FLUID_MODULUS = 1.45e9
+BORE, EXPANSION, EXPANSION_SLOPE, STIFFENING, LENGTH = 12.7e-3, 1.56e-5, 2.236e-12, 5.0, 1.5
+EDGES = {"3": 3.2e-7, "4": 2.5e-7, "5": 2.0e-7, "6": 3.85e-7}
+LEAKS = {"3": 2.35e-9, "4": 2.2e-9, "5": 1.7e-9, "6": 2.35e-9}
+
+
+def show(name, *values):
+    print(f"{name:58s}", *(f"{value:.8g}" for value in values))
+
+
+def blocks(area_a, area_b, c_a, c_b, kq_a, kc_a, kq_b, kc_b, friction, sensor):
+    """State matrices of valve, two chambers, piston and sensor; inputs U_C and load velocity, output the force."""
+    a, b, c = np.zeros((6, 6)), np.zeros((6, 2)), np.zeros((1, 6))
+    a[0, 1] = 1
+    a[1, 0], a[1, 1] = -(VALVE_FREQUENCY**2), -2 * VALVE_DAMPING * VALVE_FREQUENCY
+    b[1, 0] = VALVE_FREQUENCY**2
+    a[2, 0], a[2, 2], a[2, 5] = kq_a / c_a, -kc_a / c_a, -area_a / c_a
+    a[3, 0], a[3, 3], a[3, 5] = -kq_b / c_b, -kc_b / c_b, area_b / c_b
+    a[4, 5], b[4, 1] = 1, -1
+    a[5, 2], a[5, 3], a[5, 4], a[5, 5] = area_a / MASS, -area_b / MASS, -sensor / MASS, -friction / MASS
+    c[0, 4] = sensor
+    scale = np.array([1, 1e3, 1e5, 1e5, 1e-4, 1e-2])
+    return a / scale[:, None] * scale, b / scale[:, None], c * scale
+
+
+def one_pressure(stiffness, kq, kc, friction, sensor):
+    """The same with one load pressure: the blocks behind equation 6.7."""
+    compliance = AREA**2 / stiffness
+    a, b, c = np.zeros((5, 5)), np.zeros((5, 2)), np.zeros((1, 5))
+    a[0, 1] = 1
+    a[1, 0], a[1, 1] = -(VALVE_FREQUENCY**2), -2 * VALVE_DAMPING * VALVE_FREQUENCY
+    b[1, 0] = VALVE_FREQUENCY**2
+    a[2, 0], a[2, 2], a[2, 4] = kq / compliance, -kc / compliance, -AREA / compliance
+    a[3, 4], b[3, 1] = 1, -1
+    a[4, 2], a[4, 3], a[4, 4] = AREA / MASS, -sensor / MASS, -friction / MASS
+    c[0, 3] = sensor
+    scale = np.array([1, 1e3, 1e5, 1e-4, 1e-2])
+    return a / scale[:, None] * scale, b / scale[:, None], c * scale
+
+
+def response(system, frequency, channel):
+    a, b, c = system
+    return (c @ np.linalg.solve(1j * frequency * np.eye(len(a)) - a, b[:, channel]))[0]
+
+
+def decomposed(frequency, stiffness, kq, kc, friction, sensor, corrected):
+    s = 1j * frequency
+    equivalent = stiffness * sensor / (stiffness + sensor)
+    d0, d1 = (stiffness + sensor) / MASS, friction / MASS
+    if corrected:
+        d1 += kc * stiffness**2 / (AREA**2 * (stiffness + sensor))
+    valve = VALVE_FREQUENCY**2 / (s**2 + 2 * VALVE_DAMPING * VALVE_FREQUENCY * s + VALVE_FREQUENCY**2)
+    return kq * equivalent / AREA / (s + kc * equivalent / AREA**2) * d0 / (s**2 + d1 * s + d0) * valve
+
+
+def worst(ratios):
+    return np.max(np.abs(20 * np.log10(np.abs(ratios)))), np.max(np.abs(np.degrees(np.angle(ratios))))
+
+
+def stiffness_chain():
+    hose_area = np.pi / 4 * BORE**2
+    static = (hose_area + EXPANSION) / EXPANSION_SLOPE
+    effective = 1 / (1 / FLUID_MODULUS + 1 / (STIFFENING * static))
+    volume = hose_area * LENGTH
+    show("useful area m2", AREA)
+    show("static hose modulus, effective modulus Pa", static, effective)
+    for ratio in (1.0, 4.0, 5.0):
+        modulus = 1 / (1 / FLUID_MODULUS + 1 / (ratio * static))
+        show(f"uniform K_H at mid stroke, stiffening {ratio:g}", 4 * modulus * AREA**2 / (AREA * STROKE + 2 * volume))
+
+    def total(x, chamber_modulus):
+        ca = AREA * x / chamber_modulus + volume / effective
+        cb = AREA * (STROKE - x) / chamber_modulus + volume / effective
+        return AREA**2 / ca + AREA**2 / cb
+
+    show("uniform K_H at centre, end", total(STROKE / 2, effective), total(0, effective))
+    show("by volume K_H at centre, end", total(STROKE / 2, FLUID_MODULUS), total(0, FLUID_MODULUS))
+
+    def by_volume(length):
+        half = AREA * STROKE / 2 / FLUID_MODULUS + hose_area * length / effective
+        return 2 * AREA**2 / half
+
+    show("by volume length for 2.24e6 N/m", brentq(lambda l: by_volume(l) - 2.24e6, 0.1, 100))
+    pipe = np.pi / 4 * 0.0105**2 * 0.35
+    pipe_at = lambda x: FLUID_MODULUS * AREA**2 * (1 / (AREA * x + pipe) + 1 / (AREA * (STROKE - x) + pipe))
+    show("pipe 10.5 mm, 0.35 m: K_H at centre, end", pipe_at(STROKE / 2), pipe_at(0))
+    big, small = np.pi / 4 * 0.05**2, AREA
+    asymmetric = lambda x: FLUID_MODULUS * (big**2 / (big * x + pipe) + small**2 / (small * (STROKE - x) + pipe))
+    softest = minimize_scalar(asymmetric, bounds=(0, STROKE), method="bounded", options={"xatol": 1e-12})
+    show("one rod, the pipe: least K_H, position, ends", softest.fun, softest.x, asymmetric(0), asymmetric(STROKE))
+    return effective, volume
+
+
+def table_6_1():
+    for stiffness in (1.5e7, 1.5e6, 1.5e5):
+        poles = eigvals(one_pressure(stiffness, 5.4e-5, 5.7e-13, 299.0, 9.81e7)[0])
+        for pole in sorted(poles[poles.imag >= 0], key=lambda pole: -pole.real):
+            show(f"Table 6.1, K_H {stiffness:g}", pole.real, pole.imag)
+
+
+def table_6_2(effective):
+    hose_area = np.pi / 4 * BORE**2
+    kq, kc, sensor, tau = 5.62e-5, 6.42e-13, 2e7, 0.05
+
+    def time_constant(stiffness, gain):
+        equivalent = stiffness * sensor / (stiffness + sensor)
+        return 1 / (kc * equivalent / AREA**2 + gain * kq * equivalent / AREA)
+
+    for gain in (0.01, 0.001, 0.0005, 0.00025):
+        stiffness = brentq(lambda k: time_constant(k, gain) - tau, 1e3, 1e10, xtol=1e-6)
+        length = (4 * effective * AREA**2 / stiffness - AREA * STROKE) / (2 * hose_area)
+        show(f"Table 6.2, K_p {gain:g}: K_H, L_ho", stiffness, length)
+    stiffness = 4 * effective * AREA**2 / (AREA * STROKE + 2 * hose_area * LENGTH)
+    show("K_p for 1.5 m", brentq(lambda gain: time_constant(stiffness, gain) - tau, 1e-6, 1))
+    kq = 5.4e-5
+    show("K_p for 1.5 m with K_qU 5.4e-5", brentq(lambda gain: time_constant(stiffness, gain) - tau, 1e-6, 1))
+    kq = 5.62e-5
+    show("K_p at which K_H is infinite", brentq(lambda gain: time_constant(1e16, gain) - tau, 1e-6, 1))
+    for kc, name in ((6.42e-13, "null"), (7e-11, "largest")):
+        driven = AREA * 2.73e-4 * 5.62e-5
+        show(f"K_SS at K_p 2.73e-4, {name} K_c", driven / (kc + driven))
+
+
+def decomposition_errors():
+    case = (1.5e7, 5.4e-5, 5.7e-13, 299.0, 9.81e7)
+    below = np.logspace(-3, 3, 2001)
+    resonance = abs(eigvals(one_pressure(*case)[0])).max()
+    for corrected in (False, True):
+        name = "corrected" if corrected else "printed"
+        ratio = lambda w: decomposed(w, *case, corrected) / response(one_pressure(*case), w, 0)
+        show(f"6.12 {name} below 1000 rad/s: dB, deg", *worst([ratio(w) for w in below]))
+        near = np.linspace(resonance - 60, resonance + 60, 4001)
+        show(f"6.12 {name} at 2938 rad/s: dB, deg", *worst([ratio(2938.0)]))
+        show(f"6.12 {name} around {resonance:.1f} rad/s: dB, deg", *worst([ratio(w) for w in near]))
+    grid = np.concatenate([np.logspace(-3, 4, 1401), np.linspace(1200, 1500, 6001)])
+    for corrected in (False, True):
+        largest = (0.0, 0.0)
+        for stiffness in (2.24e6, 4.11e6):
+            for friction in (100.0, 3e4):
+                for kc in (6.42e-13, 7e-11):
+                    case = (stiffness, 5.4e-5, kc, friction, 2e7)
+                    system = one_pressure(*case)
+                    ratios = [decomposed(w, *case, corrected) / response(system, w, 0) for w in grid]
+                    largest = max(largest, worst(ratios))
+        show(f"6.12 {'corrected' if corrected else 'printed'} over Table 6.3: dB, deg", *largest)
+
+
+def passivity():
+    system = one_pressure(2.24e6, 5.4e-5, 6.42e-13, 100.0, 2e7)
+
+    def impedance(frequency, closed):
+        loop = (0.001 + 0.008 / (1j * frequency)) * response(system, frequency, 0) if closed else 0
+        return -response(system, frequency, 1) / (1 + loop)
+
+    grid = np.logspace(-3, 5, 8001)
+    show("open loop: least Re Z", min(impedance(w, False).real for w in grid))
+    real = np.array([impedance(w, True).real for w in grid])
+    for i in np.nonzero(np.diff(np.sign(real)))[0]:
+        show("closed loop: Re Z changes sign at rad/s", brentq(lambda w: impedance(w, True).real, grid[i], grid[i + 1]))
+
+
+def off_centre(effective, volume):
+    kq, kc, friction, sensor = 5.62e-5, 6.42e-13, 100.0, 2e7
+    grid = np.logspace(-3, 4, 2001)
+    for x in (0.25, 0.1, 0.0):
+        c_a, c_b = (volume + AREA * x) / effective, (volume + AREA * (STROKE - x)) / effective
+        full = blocks(AREA, AREA, c_a, c_b, kq, 2 * kc, kq, 2 * kc, friction, sensor)
+        reduced = one_pressure(AREA**2 * (1 / c_a + 1 / c_b), kq, kc, friction, sensor)
+        for channel, name in ((0, "command"), (1, "load")):
+            ratios = [response(reduced, w, channel) / response(full, w, channel) for w in grid]
+            show(f"6.7 against two pressures at x = {x:g}, {name}: dB, deg", *worst(ratios))
+
+
+def valve():
+    root = np.sqrt(SUPPLY)
+    series = lambda one, other: 1 / np.sqrt(1 / one**2 + 1 / other**2) * root / NOMINAL_VOLTAGE
+    show("flow gain, edges in series, extending", series(EDGES["3"], EDGES["6"]))
+    show("flow gain, edges in series, retracting", series(EDGES["5"], EDGES["4"]))
+    half = np.sqrt(SUPPLY / 2) / NOMINAL_VOLTAGE
+    show("flow gain, mean of chambers, extending", (EDGES["3"] + EDGES["6"]) / 2 * half)
+    show("flow gain, mean of chambers, retracting", (EDGES["4"] + EDGES["5"]) / 2 * half)
+    balance = lambda supply, tank: brentq(lambda p: supply * np.sqrt(SUPPLY - p) - tank * np.sqrt(p), 0, SUPPLY)
+    p_a, p_b = balance(LEAKS["3"], LEAKS["4"]), balance(LEAKS["5"], LEAKS["6"])
+    show("null valve, unequal edges: p_A, p_B", p_a, p_b)
+    show("null valve, unequal edges: force N", AREA * (p_a - p_b))
+    equal = lambda p_l: 3.0e-7 / NOMINAL_VOLTAGE * np.sqrt((SUPPLY - p_l) / 2)
+    show("K_qU of 4.21 with K_vp 3.0e-7 at p_L 0, 2 p_S/3", equal(0), equal(2 * SUPPLY / 3))
+    flow = lambda p_l: 3.0e-7 * np.sqrt((SUPPLY - p_l) / 2)
+    at, step = 2 * SUPPLY / 3, 1.0
+    show("K_c at full opening, p_L = 2 p_S/3, no leakage", -(flow(at + step) - flow(at - step)) / (2 * step))
+    show("the flow there L/min", flow(at) * 6e4)
+
+
+if __name__ == "__main__":
+    modulus, hose_volume = stiffness_chain()
+    table_6_1()
+    table_6_2(modulus)
+    decomposition_errors()
+    passivity()
+    off_centre(modulus, hose_volume)
+    valve()

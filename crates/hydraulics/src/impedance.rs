@@ -1,0 +1,107 @@
+//! Driving-point impedance: what the load feels when it moves the actuator.
+//!
+//! ```text
+//! Z(s) = -F_e/(s X_L)                          passive: Re Z(jw) >= 0 (thesis 2.2, with the sign that makes it so)
+//! open loop      Z = K_S (b_4 s^4 + ... + b_0)/D(s)                        second half of thesis (6.7)
+//! closed loop    Z = K_S (b_4 s^4 + ... + b_0)/(D(s) + G(s) c_0)           second half of thesis (6.8)
+//! ```
+
+mod asymptote;
+
+pub use asymptote::{Asymptote, AsymptoteKind, compliance_hidden_above, impedance_asymptotes};
+
+use num_complex::Complex64;
+use phea_dynamics::linear::{LinearError, TransferFunction};
+
+use crate::linear::LinearModel;
+
+/// Driving-point impedance Z = -F_e/(s X_L) in N s/m with the valve's command held still.
+///
+/// # Errors
+/// A load path without the zero at the origin that makes Z finite there.
+pub fn open_loop_impedance(model: &LinearModel) -> Result<TransferFunction, LinearError> {
+    let origin = Complex64::new(0.0, 0.0);
+    let motion = &model.load_position;
+    let mut zeros = motion.zeros().to_vec();
+    let mut poles = motion.poles().to_vec();
+    match zeros.iter().position(|&zero| zero == origin) {
+        Some(index) => drop(zeros.remove(index)),
+        None => poles.push(origin),
+    }
+    TransferFunction::from_factors(-motion.gain(), zeros, poles)
+}
+
+/// Driving-point impedance in N s/m with the force fed back through a controller G in V/N, U_C = G (F_ref - F_e).
+///
+/// ```text
+/// Z = Z_open/(1 + G P)                                                 thesis (6.8)
+/// ```
+///
+/// P and Z_open share their poles, which are those of the open loop and cancel exactly.
+///
+/// # Errors
+/// A controller that is sampled or has dead time: the impedance is then no rational function
+/// ([`closed_loop_impedance_at`] gives its response).
+pub fn closed_loop_impedance(
+    model: &LinearModel,
+    controller: &TransferFunction,
+) -> Result<TransferFunction, LinearError> {
+    let open = open_loop_impedance(model)?;
+    let forward = controller.series(&model.command)?;
+    let closed = forward.feedback(&TransferFunction::gain_only(1.0))?;
+    let mut zeros = open.zeros().to_vec();
+    zeros.extend_from_slice(controller.poles());
+    // 1/(1 + G P) has leading coefficient 1 unless G P is not strictly proper.
+    let sensitivity_gain = if forward.gain() == 0.0 { 1.0 } else { closed.gain() / forward.gain() };
+    let mut poles = closed.poles().to_vec();
+    for &pole in open.poles() {
+        // Poles that the load path alone has (a plant whose two paths do not share their denominator) stay.
+        if !model.command.poles().contains(&pole) {
+            poles.push(pole);
+        }
+    }
+    TransferFunction::from_factors(open.gain() * sensitivity_gain, zeros, poles)
+}
+
+/// Response of the closed-loop driving-point impedance at a frequency in rad/s, for any controller.
+///
+/// A sampled controller's response stands for the whole sampler and hold; dead time is included.
+///
+/// # Errors
+/// See [`open_loop_impedance`].
+pub fn closed_loop_impedance_at(
+    model: &LinearModel,
+    controller: &TransferFunction,
+    frequency: f64,
+) -> Result<Complex64, LinearError> {
+    let open = open_loop_impedance(model)?.at_frequency(frequency);
+    let loop_gain = controller.at_frequency(frequency) * model.command.at_frequency(frequency);
+    Ok(open / (1.0 + loop_gain))
+}
+
+/// Force per load position F_e/X_L in N/m with the loop closed by a controller G in V/N: second half of thesis (6.8) times s.
+///
+/// # Errors
+/// As [`closed_loop_impedance`].
+pub fn closed_loop_load_motion(
+    model: &LinearModel,
+    controller: &TransferFunction,
+) -> Result<TransferFunction, LinearError> {
+    let impedance = closed_loop_impedance(model, controller)?;
+    let differentiator = TransferFunction::from_factors(-1.0, vec![Complex64::new(0.0, 0.0)], Vec::new())?;
+    let product = impedance.series(&differentiator)?;
+    Ok(product.without_common_factors(0.0))
+}
+
+/// Force in N that remains long after the load has stepped by `step` in m: Proposition 6.2 says none.
+///
+/// ```text
+/// F_e(inf) = lim s (F_e/X_L) x_L0/s = (F_e/X_L)(0) x_L0                thesis (6.9) to (6.11)
+/// ```
+///
+/// `None` when the path is unstable and there is no final value. The proposition needs leakage or feedback: with K_c = 0
+/// and the command held still the denominator vanishes at the origin as well, and K_eq x_L0 stays.
+pub fn final_force_after_load_step(load_path: &TransferFunction, step: f64) -> Option<f64> {
+    let path = load_path.without_common_factors(0.0);
+    path.is_stable().then(|| path.dc_gain() * step)
+}

@@ -1,0 +1,107 @@
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable;
+
+use crate::linear::LinearParameters;
+
+/// What an asymptote of the driving-point impedance stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AsymptoteKind {
+    /// Valve leakage, or the feedback loop, gives way.
+    LowFrequency,
+    /// The fluid's spring in series with the sensor's: K_eq/s.
+    CompliancePlateau,
+    /// The piston's mass stands still between load and fluid: K_S/s.
+    SensorLimit,
+}
+
+/// One straight line of the impedance in a logarithmic plot, Z = coefficient s^power.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asymptote {
+    /// What it stands for.
+    pub kind: AsymptoteKind,
+    /// 1 for a mass (coefficient in kg), 0 for a damper (N s/m), -1 for a spring (N/m).
+    pub power: i32,
+    /// Mass, damping or stiffness; of whatever unit for other powers.
+    pub coefficient: f64,
+    /// Frequency in rad/s from which it is the nearest asymptote.
+    pub from: f64,
+    /// Frequency in rad/s up to which it is.
+    pub to: f64,
+}
+
+impl Asymptote {
+    /// Z on the asymptote at a frequency in rad/s, in N s/m.
+    pub fn at_frequency(&self, frequency: f64) -> Complex64 {
+        let s = Complex64::new(0.0, frequency);
+        let factor = if self.power < 0 { 1.0 / s } else { s };
+        (0..self.power.unsigned_abs()).fold(Complex64::new(self.coefficient, 0.0), |z, _| z * factor)
+    }
+}
+
+/// Frequency sqrt(K_H/M) in rad/s above which the piston's mass hides the added compliance from the load.
+///
+/// The load then moves the sensor's spring against a mass that no longer follows; making the fluid softer changes nothing.
+///
+/// # Example
+/// For the thesis' hose
+/// ```
+/// assert!((phea_hydraulics::impedance::compliance_hidden_above(2.233e6, 13.1) - 413.0).abs() < 0.5);
+/// ```
+pub fn compliance_hidden_above(hydraulic_stiffness: f64, moving_mass: f64) -> f64 {
+    (hydraulic_stiffness / moving_mass).sqrt()
+}
+
+/// Asymptotes of the driving-point impedance, lowest frequency first; without a controller the open loop's.
+///
+/// ```text
+/// low frequency   open loop             (A^2 + f_v K_c)/K_c                          a damper
+///                 G -> K_p              (A^2 + f_v K_c)/(K_c + A K_qU K_p)           a damper, about A/(K_qU K_p)
+///                 G -> K_i/s            (A^2 + f_v K_c)/(A K_qU K_i) s               a mass, about A/(K_qU K_i)
+///                 G -> K/s^n            (A^2 + f_v K_c)/(A K_qU K) s^n
+/// plateau         K_eq/s                up to sqrt(K_H/M): the piston follows the load
+/// limit           K_S/s                 above sqrt((K_H + K_S)/M): the piston stands still
+/// ```
+///
+/// The thesis (6.2.2) takes the plateau for the limit.
+pub fn impedance_asymptotes(
+    parameters: &LinearParameters,
+    controller: Option<&TransferFunction>,
+) -> Vec<Asymptote> {
+    let LinearParameters { useful_area: area, moving_mass: mass, .. } = *parameters;
+    let leak = parameters.flow_pressure_coefficient;
+    let spring = parameters.equivalent_stiffness();
+    let numerator = area * area + parameters.viscous_friction * leak;
+    let (coefficient, power) = match controller.map(low_frequency_behaviour) {
+        None => (numerator / leak, 0),
+        Some((gain, 0)) => (numerator / (leak + area * parameters.flow_gain * gain), 0),
+        Some((gain, integrators)) if integrators > 0 => {
+            (numerator / (area * parameters.flow_gain * gain), integrators)
+        }
+        Some(_) => (numerator / leak, 0),
+    };
+    // |coefficient| w^power = K_eq/w
+    let crossing = portable::pow(spring / coefficient.abs(), 1.0 / f64::from(power + 1));
+    let hidden = compliance_hidden_above(parameters.hydraulic_stiffness, mass);
+    let springs = parameters.hydraulic_stiffness + parameters.sensor_stiffness;
+    let asymptote = |kind, power, coefficient, from, to| Asymptote { kind, power, coefficient, from, to };
+    let limit = compliance_hidden_above(springs, mass);
+    vec![
+        asymptote(AsymptoteKind::LowFrequency, power, coefficient, 0.0, crossing),
+        asymptote(AsymptoteKind::CompliancePlateau, -1, spring, crossing, hidden),
+        asymptote(AsymptoteKind::SensorLimit, -1, parameters.sensor_stiffness, limit, f64::INFINITY),
+    ]
+}
+
+/// G(s) -> gain/s^integrators as s -> 0, for a continuous controller; differentiators count negatively.
+fn low_frequency_behaviour(controller: &TransferFunction) -> (f64, i32) {
+    let origin = Complex64::new(0.0, 0.0);
+    let split = |roots: &[Complex64]| {
+        let at_origin = roots.iter().filter(|&&root| root == origin).count();
+        let rest = roots.iter().filter(|&&root| root != origin);
+        let product = rest.fold(Complex64::new(1.0, 0.0), |product, root| product * -root);
+        (i32::try_from(at_origin).unwrap_or(i32::MAX), product)
+    };
+    let ((zeros, above), (poles, below)) = (split(controller.zeros()), split(controller.poles()));
+    ((controller.gain() * above / below).re, poles.saturating_sub(zeros))
+}

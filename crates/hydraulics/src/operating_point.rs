@@ -1,0 +1,276 @@
+//! Where the valve and the cylinder settle: chamber pressures at which the flows balance, for any edges and areas.
+//!
+//! At standstill nothing may flow into either chamber, in steady motion the piston takes it:
+//!
+//! ```text
+//! q_A(U, p_A) = A_A v        q_B(U, p_B) = -A_B v        F = A_A p_A - A_B p_B
+//! ```
+//!
+//! q_A falls strictly with p_A and q_B with p_B, so each pressure is unique. At standstill p_A rises and p_B falls with
+//! U, and in motion both move so that F falls with v: every unknown is found by bisection, to the last bit.
+
+mod bisection;
+
+use phea_dynamics::scalar::Scalar;
+
+use crate::actuator::Actuator;
+use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
+use bisection::{falling_root, falling_root_within};
+
+/// What is known of an operating point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Condition {
+    /// Standstill at this spool command in V; zero for the null valve.
+    Command(f64),
+    /// Standstill under this load; the command that holds it is found.
+    Load(Load),
+    /// Steady motion at this command in V under this load; the velocity is found.
+    Motion(f64, Load),
+    /// This command in V and load pressure in Pa with both edges of each path taking half the drop, as thesis (4.18)
+    /// assumes: p_A, p_B = (p_S + p_T +- p_L)/2. Steady for equal edges and areas alone; see the net flows.
+    Matched(f64, f64),
+}
+
+/// A load held by the pressures, friction left aside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Load {
+    /// A_A p_A - A_B p_B in N.
+    Force(f64),
+    /// p_A - p_B in Pa.
+    Pressure(f64),
+}
+
+/// An operating point. Units: m, V, Pa, m/s, N, m3/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OperatingPoint {
+    /// Piston position x in m.
+    pub position: f64,
+    /// Spool position U_Csp in V, equal to the command.
+    pub command: f64,
+    /// Chamber pressure p_A in Pa.
+    pub pressure_a: f64,
+    /// Chamber pressure p_B in Pa.
+    pub pressure_b: f64,
+    /// Piston velocity in m/s.
+    pub velocity: f64,
+    /// Force of the pressures on the piston, A_A p_A - A_B p_B, in N.
+    pub hydraulic_force: f64,
+    /// What flows into chamber A beyond what the piston takes, in m3/s: zero but for [`Condition::Matched`].
+    pub net_flow_a: f64,
+    /// What flows into chamber B beyond what the piston takes, in m3/s: zero but for [`Condition::Matched`].
+    pub net_flow_b: f64,
+}
+
+/// Why there is no such operating point.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum OperatingPointError {
+    /// The position lies outside the stroke.
+    #[error("position {position} m is outside the stroke of {stroke} m")]
+    PositionOutsideStroke {
+        /// The position asked for, in m.
+        position: f64,
+        /// The stroke in m.
+        stroke: f64,
+    },
+    /// The command exceeds the valve's nominal voltage.
+    #[error("command {command} V is beyond the nominal {nominal} V")]
+    CommandBeyondNominal {
+        /// The command asked for, in V.
+        command: f64,
+        /// The valve's nominal voltage.
+        nominal: f64,
+    },
+    /// No command within the nominal voltage holds this load (force in N, or load pressure in Pa).
+    #[error("a load of {load} cannot be held: from {minimum} to {maximum} can")]
+    LoadOutOfReach {
+        /// The load asked for.
+        load: f64,
+        /// The least that can be held.
+        minimum: f64,
+        /// The greatest that can be held.
+        maximum: f64,
+    },
+    /// A chamber would have to be below vacuum.
+    #[error("a chamber would be at {pressure} Pa gauge, below vacuum")]
+    BelowVacuum {
+        /// The lower of both chamber pressures in Pa gauge.
+        pressure: f64,
+    },
+    /// A value asked for is not a number, or no balance was found.
+    #[error("no balance was found")]
+    NotFound,
+}
+
+impl OperatingPoint {
+    /// Load pressure p_L = p_A - p_B in Pa.
+    pub fn load_pressure(&self) -> f64 {
+        self.pressure_a - self.pressure_b
+    }
+}
+
+/// The operating point of an actuator at piston position `position` in m.
+///
+/// # Errors
+/// A position outside the stroke, a command beyond the nominal voltage, a load out of reach, a pressure below vacuum.
+///
+/// # Example
+/// Unequal edges at null do not settle at half the supply pressure, and push:
+/// ```
+/// # use phea_hydraulics::{actuator::*, cylinder::*, fluid::*, force_sensor::*, friction::*, line::*};
+/// # use phea_hydraulics::{operating_point::*, servovalve::*, stiffness::*};
+/// # let line = Line::Volume { volume: 1.9e-4, effective_bulk_modulus: 2.6e8 };
+/// # let actuator = Actuator::new(Components {
+/// #     fluid: Fluid { bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None },
+/// #     supply: Supply { pressure: 70e5, tank_pressure: 0.0 },
+/// #     valve: Servovalve {
+/// #         flow_coefficients: Edges::from_array([3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]),
+/// #         leakage_coefficients: Edges::from_array([2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9]),
+/// #         leakage_shape: 100.0, tare_flow: 7.55e-6, nominal_voltage: 10.0,
+/// #         natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
+/// #     },
+/// #     line_a: line, line_b: line,
+/// #     cylinder: Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: 0.5, moving_mass: 13.1,
+/// #         dead_volume_a: 0.0, dead_volume_b: 0.0 },
+/// #     friction: Friction::Viscous { viscous: 100.0 }, force_sensor: ForceSensor { stiffness: 2e7 },
+/// #     stiffness_model: StiffnessModel::Uniform,
+/// # })?;
+/// let null = operating_point(&actuator, 0.25, Condition::Command(0.0))?;
+/// assert!((null.pressure_a - 37.3e5).abs() < 0.05e5 && (null.pressure_b - 24.0e5).abs() < 0.05e5);
+/// let idle = operating_point(&actuator, 0.25, Condition::Load(Load::Force(0.0)))?;
+/// assert!(idle.command < 0.0 && idle.hydraulic_force.abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn operating_point(
+    actuator: &Actuator,
+    position: f64,
+    condition: Condition,
+) -> Result<OperatingPoint, OperatingPointError> {
+    let balance = Balance::of(actuator);
+    let stroke = actuator.components().cylinder.stroke;
+    if !(0.0..=stroke).contains(&position) {
+        return Err(OperatingPointError::PositionOutsideStroke { position, stroke });
+    }
+    if let Condition::Command(command) | Condition::Motion(command, _) | Condition::Matched(command, _) =
+        condition
+    {
+        let nominal = balance.valve.nominal_voltage;
+        if command.is_nan() || command.abs() > nominal {
+            return Err(OperatingPointError::CommandBeyondNominal { command, nominal });
+        }
+    }
+    let (command, [pressure_a, pressure_b], velocity) = match condition {
+        Condition::Command(command) => (command, balance.pressures(command, 0.0)?, 0.0),
+        Condition::Load(load) => {
+            let command = balance.holding_command(load)?;
+            (command, balance.pressures(command, 0.0)?, 0.0)
+        }
+        Condition::Motion(command, load) => {
+            let velocity = balance.velocity(command, load)?;
+            (command, balance.pressures(command, velocity)?, velocity)
+        }
+        Condition::Matched(command, load_pressure) => {
+            let mean = balance.supply.pressure + balance.supply.tank_pressure;
+            (command, [0.5 * (mean + load_pressure), 0.5 * (mean - load_pressure)], 0.0)
+        }
+    };
+    let point = balance.point(position, command, [pressure_a, pressure_b], velocity);
+    let lowest = pressure_a.min(pressure_b);
+    match lowest > -ATMOSPHERIC_PRESSURE_ABSOLUTE {
+        true => Ok(point),
+        false => Err(OperatingPointError::BelowVacuum { pressure: lowest }),
+    }
+}
+
+/// What the balance of flows and forces depends on.
+struct Balance {
+    valve: Servovalve,
+    supply: Supply,
+    area_a: f64,
+    area_b: f64,
+}
+
+impl Balance {
+    fn of(actuator: &Actuator) -> Balance {
+        let components = actuator.components();
+        Balance {
+            valve: components.valve,
+            supply: components.supply,
+            area_a: components.cylinder.area_a,
+            area_b: components.cylinder.area_b,
+        }
+    }
+
+    /// Pressures at which the chambers take the flow of a piston at this velocity.
+    fn pressures(&self, command: f64, velocity: f64) -> Result<[f64; 2], OperatingPointError> {
+        let Supply { pressure, tank_pressure } = self.supply;
+        let into = |p: f64| chamber_flows(&self.valve, &self.supply, command, p, p);
+        let surplus_a = |p: f64| into(p).into_a - self.area_a * velocity;
+        let surplus_b = |p: f64| into(p).into_b + self.area_b * velocity;
+        let pressure_a = falling_root(surplus_a, tank_pressure, pressure);
+        let pressure_b = falling_root(surplus_b, tank_pressure, pressure);
+        match (pressure_a, pressure_b) {
+            (Some(pressure_a), Some(pressure_b)) => Ok([pressure_a, pressure_b]),
+            _ => Err(OperatingPointError::NotFound),
+        }
+    }
+
+    /// What these pressures hold, in the load's own unit.
+    fn held(&self, load: Load, [pressure_a, pressure_b]: [f64; 2]) -> f64 {
+        match load {
+            Load::Force(_) => self.area_a * pressure_a - self.area_b * pressure_b,
+            Load::Pressure(_) => pressure_a - pressure_b,
+        }
+    }
+
+    /// The command that holds a load at standstill.
+    fn holding_command(&self, load: Load) -> Result<f64, OperatingPointError> {
+        let wanted = wanted(load);
+        let nominal = self.valve.nominal_voltage;
+        let held = |command: f64| self.pressures(command, 0.0).map(|p| self.held(load, p));
+        let (minimum, maximum) = (held(-nominal)?, held(nominal)?);
+        if !(minimum..=maximum).contains(&wanted) {
+            return Err(OperatingPointError::LoadOutOfReach { load: wanted, minimum, maximum });
+        }
+        let shortfall = |command: f64| held(command).map_or(f64::NAN, |held| wanted - held);
+        falling_root_within(shortfall, -nominal, nominal).ok_or(OperatingPointError::NotFound)
+    }
+
+    /// The steady velocity at a command under a load.
+    fn velocity(&self, command: f64, load: Load) -> Result<f64, OperatingPointError> {
+        let wanted = wanted(load);
+        let excess = |velocity: f64| {
+            self.pressures(command, velocity).map_or(f64::NAN, |p| self.held(load, p) - wanted)
+        };
+        let flow = self.valve.flow_coefficients.supply_to_a * self.supply.pressure.abs().sqrt();
+        let scale = flow / self.area_a;
+        falling_root(excess, -scale, scale).ok_or(OperatingPointError::NotFound)
+    }
+
+    fn point(&self, position: f64, command: f64, pressures: [f64; 2], velocity: f64) -> OperatingPoint {
+        let [pressure_a, pressure_b] = pressures;
+        let ChamberFlows { into_a, into_b } =
+            chamber_flows(&self.valve, &self.supply, command, pressure_a, pressure_b);
+        OperatingPoint {
+            position,
+            command,
+            pressure_a,
+            pressure_b,
+            velocity,
+            hydraulic_force: hydraulic_force([self.area_a, self.area_b], pressures),
+            net_flow_a: into_a - self.area_a * velocity,
+            net_flow_b: into_b + self.area_b * velocity,
+        }
+    }
+}
+
+fn wanted(load: Load) -> f64 {
+    match load {
+        Load::Force(wanted) | Load::Pressure(wanted) => wanted,
+    }
+}
+
+/// Force of the chamber pressures on the piston, A_A p_A - A_B p_B, in N, positive towards B: thesis (4.29).
+pub fn hydraulic_force<S: Scalar>([area_a, area_b]: [S; 2], [pressure_a, pressure_b]: [S; 2]) -> S {
+    area_a * pressure_a - area_b * pressure_b
+}

@@ -1,0 +1,108 @@
+//! The rig of Ledezma (2019) as a reference problem: the same numbers in examples, tests and benches.
+//!
+//! Table A.1 for the components, Table 5.1 for the valve's edges, section 6.4.1 for the hose. What the thesis does not print
+//! (fluid modulus, density, viscosity, friction beyond f_v, the transition pressure) is chosen here: 1.45 GPa reproduces its
+//! tables.
+
+use crate::actuator::Components;
+use crate::cylinder::Cylinder;
+use crate::fluid::Fluid;
+use crate::force_sensor::ForceSensor;
+use crate::friction::Friction;
+use crate::line::{Hose, Line, Pipe, PipeWall, Stiffening};
+use crate::linear::LinearParameters;
+use crate::servovalve::{Edges, Servovalve, Supply};
+use crate::stiffness::StiffnessModel;
+
+/// Useful piston area of a 50 mm piston with 22 mm rods, in m2.
+pub const USEFUL_AREA: f64 = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
+
+/// Eaton Synflex 3130-08 at 70 bar: 12.7 mm, E = 1.56e-5 m3/m.
+pub fn hose() -> Hose {
+    Hose {
+        bore: 12.7e-3,
+        volumetric_expansion: 1.56e-5,
+        expansion_slope: 2.236e-12,
+        dynamic_stiffening: Stiffening { nominal: 5.0, minimum: 4.0, maximum: 5.0 },
+    }
+}
+
+/// 1.5 m of [`hose`] on each side.
+pub fn hose_line() -> Line {
+    Line::Hose { hose: hose(), length: 1.5 }
+}
+
+/// The pipe the hose is compared with: 0.35 m of 10.5 mm bore, taken as rigid.
+pub fn pipe_line() -> Line {
+    Line::Pipe { pipe: Pipe { bore: 10.5e-3, wall: PipeWall::Rigid }, length: 0.35 }
+}
+
+/// The symmetric cylinder: 50/22 mm, 0.5 m, 13.1 kg.
+pub fn cylinder() -> Cylinder {
+    Cylinder {
+        area_a: USEFUL_AREA,
+        area_b: USEFUL_AREA,
+        stroke: 0.5,
+        moving_mass: 13.1,
+        dead_volume_a: 0.0,
+        dead_volume_b: 0.0,
+    }
+}
+
+/// Moog 760 C263-A with the unequal edges of Table 5.1.
+pub fn valve() -> Servovalve {
+    Servovalve {
+        flow_coefficients: Edges::from_array([3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]),
+        leakage_coefficients: Edges::from_array([2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9]),
+        leakage_shape: 100.0,
+        tare_flow: 7.55e-6,
+        nominal_voltage: 10.0,
+        natural_frequency: 1099.0,
+        damping_ratio: 0.9,
+        transition_pressure: 1e3,
+    }
+}
+
+/// The same valve with equal edges: K_vp = 3.0e-7 and K_vinp = 2.40e-9, which give K_qU 5.61e-5 and K_c 6.42e-13 at null.
+pub fn valve_with_equal_edges() -> Servovalve {
+    Servovalve {
+        flow_coefficients: Edges::equal(3.0e-7),
+        leakage_coefficients: Edges::equal(2.40e-9),
+        ..valve()
+    }
+}
+
+/// The whole actuator with this line on both sides, viscous friction and the sensor in series with its environment.
+pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
+    Components {
+        fluid: Fluid {
+            bulk_modulus: 1.45e9,
+            density: 870.0,
+            kinematic_viscosity: 46e-6,
+            entrained_air: None,
+        },
+        supply: Supply { pressure: 70e5, tank_pressure: 0.0 },
+        valve: valve(),
+        line_a: line,
+        line_b: line,
+        cylinder: cylinder(),
+        friction: Friction::Viscous { viscous: 100.0 },
+        force_sensor: ForceSensor { stiffness: 2e7 },
+        stiffness_model,
+    }
+}
+
+/// Nominal plant of Table 6.3, with K_S = 2e7 N/m.
+pub fn nominal_plant() -> LinearParameters {
+    LinearParameters {
+        useful_area: USEFUL_AREA,
+        moving_mass: 13.1,
+        viscous_friction: 100.0,
+        flow_gain: 5.4e-5,
+        flow_pressure_coefficient: 6.42e-13,
+        hydraulic_stiffness: 2.24e6,
+        sensor_stiffness: 2e7,
+        valve_natural_frequency: 1099.0,
+        valve_damping_ratio: 0.9,
+    }
+}

@@ -1,0 +1,163 @@
+//! The two-pressure model: one pressure a chamber, the spool, the piston on the force sensor. The full truth that the
+//! reduced linear models are measured against, at any position, with any edges and any areas.
+//!
+//! ```text
+//! d2U_Csp/dt2 = w_nv^2 (U_C - U_Csp) - 2 xi_v w_nv dU_Csp/dt                    thesis (4.1)
+//! C_A(x) dp_A/dt = q_A(U_Csp, p_A) - A_A v                                      thesis (4.25)
+//! C_B(x) dp_B/dt = q_B(U_Csp, p_B) + A_B v                                      thesis (4.26), corrected
+//! d(x - x_L)/dt = v - v_L
+//! M dv/dt = A_A p_A - A_B p_B - f_v v - F_e,      F_e = K_S (x - x_L)           thesis (4.29)
+//! ```
+//!
+//! The deflection of the sensor is a state and the piston's position is not: the force is a small difference of two long
+//! positions, which would cost it six digits.
+
+mod linearization;
+mod reduction;
+
+pub use linearization::{
+    TwoPressureLinearParameters, linearize, two_pressure_coefficients, two_pressure_linear_parameters,
+};
+pub use reduction::{Reduction, reduce, reduction};
+
+use phea_dynamics::scalar::Scalar;
+
+use crate::actuator::Actuator;
+use crate::force_sensor;
+use crate::line::Member;
+use crate::operating_point::{OperatingPoint, hydraulic_force};
+use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
+use crate::stiffness::{ChamberCompliance, compliance_at};
+
+/// What the equations depend on. Units: kg, N s/m, N/m and those of the components.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoPressureModel<S = f64> {
+    /// The servovalve.
+    pub valve: Servovalve<S>,
+    /// Supply and tank pressures.
+    pub supply: Supply<S>,
+    /// Compliance of both chambers with their lines.
+    pub chambers: ChamberCompliance<S>,
+    /// Moving mass M in kg.
+    pub moving_mass: S,
+    /// Viscous friction f_v in N s/m.
+    pub viscous_friction: S,
+    /// Sensor stiffness K_S in N/m.
+    pub sensor_stiffness: S,
+}
+
+/// States of the model. Units: V, V/s, Pa, m, m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoPressureState<S = f64> {
+    /// Spool position U_Csp in V.
+    pub spool: S,
+    /// Its rate in V/s.
+    pub spool_rate: S,
+    /// Chamber pressure p_A in Pa.
+    pub pressure_a: S,
+    /// Chamber pressure p_B in Pa.
+    pub pressure_b: S,
+    /// Deflection of the force sensor x - x_L in m.
+    pub deflection: S,
+    /// Piston velocity v in m/s.
+    pub velocity: S,
+}
+
+/// Inputs of the model. Units: V, m/s, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoPressureInput<S = f64> {
+    /// Command U_C in V.
+    pub command: S,
+    /// Load velocity v_L in m/s.
+    pub load_velocity: S,
+    /// Load position x_L in m; its rate is the load velocity.
+    pub load_position: S,
+}
+
+impl<S: Copy> TwoPressureState<S> {
+    /// In the order of the fields.
+    pub fn to_array(&self) -> [S; 6] {
+        [self.spool, self.spool_rate, self.pressure_a, self.pressure_b, self.deflection, self.velocity]
+    }
+
+    /// In the order of the fields.
+    pub fn from_array([spool, spool_rate, pressure_a, pressure_b, deflection, velocity]: [S; 6]) -> Self {
+        TwoPressureState { spool, spool_rate, pressure_a, pressure_b, deflection, velocity }
+    }
+}
+
+impl TwoPressureModel {
+    /// The model of an actuator, its friction replaced by a viscous one in N s/m, the fluid's modulus taken at these
+    /// chamber pressures in Pa (they matter with entrained air alone).
+    pub fn new(
+        actuator: &Actuator,
+        pressures: [f64; 2],
+        member: Member,
+        viscous_friction: f64,
+    ) -> TwoPressureModel {
+        let components = actuator.components();
+        TwoPressureModel {
+            valve: components.valve,
+            supply: components.supply,
+            chambers: actuator.chamber_compliance(pressures, member),
+            moving_mass: components.cylinder.moving_mass,
+            viscous_friction,
+            sensor_stiffness: components.force_sensor.stiffness,
+        }
+    }
+
+    /// The same numbers as constants of another scalar.
+    pub fn map<S: Scalar>(&self) -> TwoPressureModel<S> {
+        TwoPressureModel {
+            valve: self.valve.map(),
+            supply: self.supply.map(),
+            chambers: self.chambers.map(),
+            moving_mass: S::from(self.moving_mass),
+            viscous_friction: S::from(self.viscous_friction),
+            sensor_stiffness: S::from(self.sensor_stiffness),
+        }
+    }
+
+    /// State and input in which the model rests (or moves steadily with its load) at an operating point.
+    pub fn at(&self, point: &OperatingPoint) -> (TwoPressureState, TwoPressureInput) {
+        let force = point.hydraulic_force - self.viscous_friction * point.velocity;
+        let deflection = force / self.sensor_stiffness;
+        let state = TwoPressureState {
+            spool: point.command,
+            spool_rate: 0.0,
+            pressure_a: point.pressure_a,
+            pressure_b: point.pressure_b,
+            deflection,
+            velocity: point.velocity,
+        };
+        let load_position = point.position - deflection;
+        let input = TwoPressureInput { command: point.command, load_velocity: point.velocity, load_position };
+        (state, input)
+    }
+}
+
+/// Rates of all states, per second: the equations at the top of this module.
+pub fn rates<S: Scalar>(
+    model: &TwoPressureModel<S>,
+    state: &TwoPressureState<S>,
+    input: &TwoPressureInput<S>,
+) -> TwoPressureState<S> {
+    let TwoPressureState { spool, spool_rate, pressure_a, pressure_b, deflection, velocity } = *state;
+    let chambers = &model.chambers;
+    let position = input.load_position + deflection;
+    let [compliance_a, compliance_b] = compliance_at(chambers, position);
+    let ChamberFlows { into_a, into_b } =
+        chamber_flows(&model.valve, &model.supply, spool, pressure_a, pressure_b);
+    let natural_frequency = model.valve.natural_frequency;
+    let pushing = hydraulic_force([chambers.area_a, chambers.area_b], [pressure_a, pressure_b]);
+    let sensed = force_sensor::force(model.sensor_stiffness, deflection);
+    TwoPressureState {
+        spool: spool_rate,
+        spool_rate: natural_frequency.squared() * (input.command - spool)
+            - S::from(2.0) * model.valve.damping_ratio * natural_frequency * spool_rate,
+        pressure_a: (into_a - chambers.area_a * velocity) / compliance_a,
+        pressure_b: (into_b + chambers.area_b * velocity) / compliance_b,
+        deflection: velocity - input.load_velocity,
+        velocity: (pushing - model.viscous_friction * velocity - sensed) / model.moving_mass,
+    }
+}

@@ -1,0 +1,186 @@
+//! The four-edge valve: data sheet, coefficients at any operating point, and what is true of any such valve.
+
+use phea_dynamics::scalar::Dual;
+use phea_hydraulics::reference_rig::{USEFUL_AREA, valve, valve_with_equal_edges};
+use phea_hydraulics::servovalve::{
+    ChamberFlows, Direction, Edges, Servovalve, Supply, chamber_coefficients, chamber_flows,
+    control_coefficients, control_flow, flow_coefficient_from_rating, leakage_coefficient_from_rating,
+    velocity_gain,
+};
+
+const SUPPLY: Supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
+
+fn check(what: &str, value: f64, printed: f64, last_digit: f64) {
+    assert!((value - printed).abs() <= 0.5 * last_digit, "{what}: {value} is not {printed}");
+}
+
+#[test]
+fn coefficients_from_a_data_sheet() {
+    // ORIGIN: thesis Table 5.1, K_vp from 88 % of the rated flow of Table A.1
+    check("K_vp", flow_coefficient_from_rating(0.88 * 6.31e-4, 70e5), 2.97e-7, 1e-9);
+    // ORIGIN: analytic, the flow through two such edges in series at the rated drop is the rated flow
+    let coefficient: f64 = flow_coefficient_from_rating(6e-4, 70e5);
+    let through = |middle: f64| coefficient * (70e5 - middle).sqrt() - coefficient * middle.sqrt();
+    assert_eq!(through(35e5), 0.0);
+    assert!((coefficient * 35e5_f64.sqrt() / 6e-4 - 1.0).abs() < 1e-15);
+    // ORIGIN: analytic, two paths of two edges leak the rated leakage less the tare flow
+    let leak: f64 = leakage_coefficient_from_rating(3.0e-5, 1.64e-5, 2.068e7);
+    assert!((2.0 * leak * (2.068e7_f64 / 2.0).sqrt() / (3.0e-5 - 1.64e-5) - 1.0).abs() < 1e-14);
+}
+
+/// ORIGIN: analytic, thesis (4.21) and (4.22) corrected, with plain square roots and the derivative of the leakage.
+#[test]
+fn control_coefficients_are_the_closed_forms_for_equal_edges() {
+    let valve = Servovalve { transition_pressure: 1e-3, ..valve_with_equal_edges() };
+    let supply = Supply { pressure: 70e5, tank_pressure: 3e5 };
+    let (flow, leak, nominal, shape) = (3.0e-7, 2.40e-9, 10.0, 100.0);
+    for spool in [-7.0, -0.2, -0.01, 0.02, 0.3, 10.0_f64] {
+        for load_pressure in [-40e5, 0.0, 25e5] {
+            let s = spool.signum();
+            let drop = supply.pressure - supply.tank_pressure;
+            let (near, far) = (drop - s * load_pressure, drop + s * load_pressure);
+            let y = shape * spool / nominal;
+            let sech = 1.0 / y.cosh();
+            let slope = -shape / nominal * sech * y.tanh();
+            let gain = flow / nominal * (near / 2.0).sqrt()
+                + s * leak * slope * ((near / 2.0).sqrt() - (far / 2.0).sqrt());
+            let pressure = (flow * spool.abs() / nominal + leak * sech) / (8.0 * near).sqrt()
+                + leak * sech / (8.0 * far).sqrt();
+            let found = control_coefficients(&valve, &supply, spool, load_pressure, Direction::Mean);
+            assert!((found.flow_gain / gain - 1.0).abs() < 1e-12);
+            assert!((found.flow_pressure_coefficient / pressure - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn ranges_of_table_6_3() {
+    let valve = Servovalve { leakage_shape: 0.0, ..valve_with_equal_edges() };
+    let at = |spool, load| control_coefficients(&valve, &SUPPLY, spool, load, Direction::Extending);
+    // ORIGIN: thesis Table 6.3 (one unit of the last digit)
+    check("K_qU, no load", at(0.0, 0.0).flow_gain, 5.61e-5, 2.0 * 1e-7);
+    // The printed lower end is 5.61e-5/sqrt(3); K_vp = 3.0e-7 itself gives 3.240e-5.
+    let ratio = at(0.0, 2.0 * 70e5 / 3.0).flow_gain / at(0.0, 0.0).flow_gain;
+    assert!((ratio * 3.0_f64.sqrt() - 1.0).abs() < 1e-6);
+    check("K_qU, two thirds", 5.61e-5 * ratio, 3.23e-5, 2.0 * 1e-7);
+    check("K_c, null", at(0.0, 0.0).flow_pressure_coefficient, 6.42e-13, 2.0 * 1e-15);
+    check("K_c, full opening", at(10.0, 2.0 * 70e5 / 3.0).flow_pressure_coefficient, 7e-11, 2.0 * 1e-12);
+}
+
+#[test]
+fn velocity_gain_carries_the_same_flow_through_both_edges() {
+    let gain = |direction| velocity_gain(&valve(), &SUPPLY, [USEFUL_AREA; 2], 0.0, direction).unwrap();
+    // ORIGIN: recomputed by comparisons/recompute_rig.py, the edges of Table 5.1 in series at 70 bar
+    check("extending", USEFUL_AREA * gain(Direction::Extending), 6.51e-5, 1e-7);
+    check("retracting", USEFUL_AREA * gain(Direction::Retracting), 4.13e-5, 1e-7);
+    // ORIGIN: recomputed by comparisons/recompute_rig.py, mean of both chambers at half the supply pressure
+    let mean = |direction| control_coefficients(&valve(), &SUPPLY, 0.0, 0.0, direction).flow_gain;
+    check("mean of chambers, extending", mean(Direction::Extending), 6.59467e-5, 1e-10);
+    check("mean of chambers, retracting", mean(Direction::Retracting), 4.20936e-5, 1e-10);
+    assert_eq!(velocity_gain(&valve(), &SUPPLY, [1e-3, 1e-3], 1e5, Direction::Extending), None);
+}
+
+/// The leakage's share of the flow gain that thesis (4.21) leaves out.
+#[test]
+fn leakage_adds_to_the_flow_gain_under_load() {
+    let largest = (1..200)
+        .map(|step| {
+            let spool = 0.005 * f64::from(step);
+            let with = control_coefficients(&valve_with_equal_edges(), &SUPPLY, spool, 25e5, Direction::Mean);
+            let constant = Servovalve { leakage_shape: 0.0, ..valve_with_equal_edges() };
+            let without = control_coefficients(&constant, &SUPPLY, spool, 25e5, Direction::Mean);
+            with.flow_gain / without.flow_gain - 1.0
+        })
+        .fold(0.0, f64::max);
+    // ORIGIN: recomputed below from max|sech'| = 1/2 at sinh y = 1
+    let (near, far) = (45e5_f64.sqrt(), 95e5_f64.sqrt());
+    let expected = 2.40e-9 * 100.0 * 0.5 * (far - near) / (3.0e-7 * near);
+    assert!((largest - expected).abs() < 1e-3 * expected, "{largest} against {expected}");
+}
+
+/// Analytic derivatives of both chambers' flows against dual numbers, everywhere, the laminar zone and reversed drops
+/// included.
+#[test]
+fn chamber_coefficients_are_the_derivatives_of_the_flows() {
+    for valve in [valve(), valve_with_equal_edges()] {
+        for spool in [-9.0, -0.3, -0.04, -1e-9, 1e-9, 0.02, 0.5, 10.0] {
+            for (pressure_a, pressure_b) in [(35e5, 35e5), (69.9995e5, 300.0), (12e5, 71e5), (-0.5e5, 60e5)] {
+                let found =
+                    chamber_coefficients(&valve, &SUPPLY, spool, pressure_a, pressure_b, Direction::Mean);
+                let [u, a, b] = [(spool, 0), (pressure_a, 1), (pressure_b, 2)]
+                    .map(|(value, index)| Dual::<3>::variable(value, index));
+                let flows = chamber_flows(&valve.map(), &SUPPLY.map(), u, a, b);
+                let expected = [
+                    (found.flow_gain_a, flows.into_a.gradient()[0]),
+                    (found.flow_pressure_a, -flows.into_a.gradient()[1]),
+                    (found.flow_gain_b, -flows.into_b.gradient()[0]),
+                    (found.flow_pressure_b, -flows.into_b.gradient()[2]),
+                ];
+                for (analytic, dual) in expected {
+                    assert!((analytic - dual).abs() <= 1e-12 * dual.abs(), "{analytic} against {dual}");
+                }
+                assert_eq!((flows.into_a.gradient()[2], flows.into_b.gradient()[1]), (0.0, 0.0));
+            }
+        }
+    }
+}
+
+#[test]
+fn direction_decides_at_null_and_the_mean_is_between() {
+    let at = |direction| chamber_coefficients(&valve(), &SUPPLY, 0.0, 37e5, 24e5, direction);
+    let beside = |spool| chamber_coefficients(&valve(), &SUPPLY, spool, 37e5, 24e5, Direction::Mean);
+    let (extending, retracting, mean) =
+        (at(Direction::Extending), at(Direction::Retracting), at(Direction::Mean));
+    for (one_sided, limit) in [(extending, beside(1e-12)), (retracting, beside(-1e-12))] {
+        assert!((one_sided.flow_gain_a / limit.flow_gain_a - 1.0).abs() < 1e-9);
+        assert!((one_sided.flow_gain_b / limit.flow_gain_b - 1.0).abs() < 1e-9);
+    }
+    assert!((2.0 * mean.flow_gain_a / (extending.flow_gain_a + retracting.flow_gain_a) - 1.0).abs() < 1e-15);
+    let dual = chamber_flows(
+        &valve().map(),
+        &SUPPLY.map(),
+        Dual::<1>::variable(0.0, 0),
+        Dual::constant(37e5),
+        Dual::constant(24e5),
+    );
+    assert!((dual.into_a.gradient()[0] / mean.flow_gain_a - 1.0).abs() < 1e-15);
+}
+
+/// Exchanging A and B and reversing the command is the same valve seen from the other side.
+#[test]
+fn mirrored_valve() {
+    let edges = |e: Edges| Edges::from_array([e.supply_to_b, e.b_to_tank, e.supply_to_a, e.a_to_tank]);
+    let mirrored = Servovalve {
+        flow_coefficients: edges(valve().flow_coefficients),
+        leakage_coefficients: edges(valve().leakage_coefficients),
+        ..valve()
+    };
+    for spool in [-3.0, -0.05, 0.0, 0.7] {
+        let ChamberFlows { into_a, into_b } = chamber_flows(&valve(), &SUPPLY, spool, 20e5, 55e5);
+        let seen = chamber_flows(&mirrored, &SUPPLY, -spool, 55e5, 20e5);
+        assert_eq!((into_a, into_b), (seen.into_b, seen.into_a));
+    }
+}
+
+/// Thesis (4.18) in its printed form for equal edges, and no flow without a cause.
+#[test]
+fn control_flow_of_equal_edges() {
+    let valve = Servovalve { transition_pressure: 1e-3, ..valve_with_equal_edges() };
+    assert_eq!(control_flow(&valve, &SUPPLY, 0.0, 0.0), 0.0);
+    for (spool, load) in [(2.0, 10e5), (-2.0, 10e5), (0.05, -30e5)] {
+        let s: f64 = f64::signum(spool);
+        let leak = 2.40e-9 / (100.0_f64 * spool / 10.0).cosh();
+        let (near, far) = (((70e5 - s * load) / 2.0).sqrt(), ((70e5 + s * load) / 2.0).sqrt());
+        let printed = s * (3.0e-7 * spool.abs() / 10.0 + leak) * near - s * leak * far;
+        assert!((control_flow(&valve, &SUPPLY, spool, load) / printed - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn impossible_valves_are_refused_by_name() {
+    let broken = Servovalve { damping_ratio: 0.0, leakage_shape: f64::NAN, ..valve() };
+    let names: Vec<String> = broken.problems().into_iter().map(|problem| problem.quantity).collect();
+    assert_eq!(names, ["leakage_shape", "damping_ratio"]);
+    let inverted = Supply { pressure: 1e5, tank_pressure: 2e5 };
+    assert_eq!(inverted.problems()[0].requirement, "above the tank pressure");
+}

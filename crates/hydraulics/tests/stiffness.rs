@@ -1,0 +1,205 @@
+//! Stiffness over the stroke: the thesis' numbers, closed forms, and the inverse problems.
+
+use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::fluid::EntrainedAir;
+use phea_hydraulics::line::{Line, Member};
+use phea_hydraulics::reference_rig::{USEFUL_AREA, components, cylinder, hose, hose_line, pipe_line};
+use phea_hydraulics::stiffness::{
+    LineLength, StiffnessModel, StrokeStiffness, chamber_compliance, hose_length_by_volume,
+    hose_length_uniform, hydraulic_stiffness, line_length_for_stiffness, model_difference,
+    stiffness_from_hose_length,
+};
+
+const FLUID_MODULUS: f64 = 1.45e9;
+
+/// `value` is what was printed, to half the unit of its last digit.
+fn check(what: &str, value: f64, printed: f64, last_digit: f64) {
+    assert!((value - printed).abs() <= 0.5 * last_digit, "{what}: {value} is not {printed}");
+}
+
+fn over_stroke(model: StiffnessModel, line: &Line, member: Member) -> StrokeStiffness {
+    chamber_compliance(model, [FLUID_MODULUS; 2], &cylinder(), [line, line], member).over_stroke()
+}
+
+#[test]
+fn modulus_chain_of_the_thesis() {
+    // ORIGIN: thesis 6.4.1 and Table A.1, recomputed by comparisons/recompute_rig.py
+    check("A_u", USEFUL_AREA, 1.58336e-3, 1e-8);
+    check("beta_hoSS", hose().static_modulus(), 6.363e7, 1e4);
+    check("beta_e", hose_line().effective_modulus(FLUID_MODULUS, Member::Nominal), 2.609e8, 1e5);
+}
+
+#[test]
+fn stiffness_of_hose_and_pipe_in_both_models() {
+    // ORIGIN: recomputed by comparisons/recompute_rig.py; thesis 6.4.1 prints 2.24e6 and Table 6.3 4.11e6
+    let uniform = over_stroke(StiffnessModel::Uniform, &hose_line(), Member::Nominal);
+    check("uniform centre", uniform.minimum, 2.233e6, 1e3);
+    check("uniform ends", uniform.maximum, 4.109e6, 1e3);
+    check("uniform centre, thesis", uniform.minimum, 2.24e6, 2.0 * 1e4);
+    check("uniform ends, thesis", uniform.maximum, 4.11e6, 2.0 * 1e4);
+    let by_volume = over_stroke(StiffnessModel::ByVolume, &hose_line(), Member::Nominal);
+    check("by volume centre", by_volume.minimum, 5.01e6, 1e4);
+    check("by volume ends", by_volume.maximum, 5.41e6, 1e4);
+    let pipe = over_stroke(StiffnessModel::Uniform, &pipe_line(), Member::Nominal);
+    check("pipe centre", pipe.minimum, 1.71e7, 1e5);
+    check("pipe ends", pipe.maximum, 1.24e8, 1e6);
+    assert!((uniform.minimum_position - 0.25).abs() < 1e-15);
+}
+
+#[test]
+fn stiffening_interval_brackets_the_nominal() {
+    // ORIGIN: recomputed by comparisons/recompute_rig.py, r_beta 4 and 5
+    let of = |member| over_stroke(StiffnessModel::Uniform, &hose_line(), member).minimum;
+    check("r_beta 4", of(Member::Minimum), 1.85e6, 1e4);
+    check("r_beta 5", of(Member::Maximum), 2.23e6, 1e4);
+    let by_volume = |member| over_stroke(StiffnessModel::ByVolume, &hose_line(), member).minimum;
+    assert!(by_volume(Member::Minimum) < by_volume(Member::Nominal));
+    assert!(by_volume(Member::Nominal) <= by_volume(Member::Maximum));
+}
+
+/// ORIGIN: analytic, thesis (6.18) and (6.19) as printed.
+#[test]
+fn extremes_are_the_closed_forms_of_the_symmetric_cylinder() {
+    let line = hose_line();
+    let (modulus, volume) = (line.effective_modulus(FLUID_MODULUS, Member::Nominal), line.volume());
+    let (a, l) = (USEFUL_AREA, 0.5);
+    let range = over_stroke(StiffnessModel::Uniform, &line, Member::Nominal);
+    let minimum = 4.0 * modulus * a * a / (a * l + 2.0 * volume);
+    let maximum = modulus * a * a * (a * l + 2.0 * volume) / (volume * (a * l + volume));
+    assert!((range.minimum / minimum - 1.0).abs() < 1e-14);
+    assert!((range.maximum / maximum - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn models_agree_when_the_line_is_as_stiff_as_the_fluid() {
+    let difference =
+        model_difference(FLUID_MODULUS, &cylinder(), [&pipe_line(), &pipe_line()], Member::Nominal);
+    assert!((difference.minimum_ratio - 1.0).abs() < 1e-14);
+    assert!((difference.maximum_ratio - 1.0).abs() < 1e-14);
+    let hose = model_difference(FLUID_MODULUS, &cylinder(), [&hose_line(), &hose_line()], Member::Nominal);
+    assert!(hose.minimum_ratio > 2.2 && hose.maximum_ratio > 1.3 && hose.line_compliance_share > 0.7);
+}
+
+fn asymmetric() -> Cylinder {
+    let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
+    Cylinder { area_a, area_b, ..cylinder() }
+}
+
+#[test]
+fn softest_position_of_an_asymmetric_cylinder_is_found_exactly() {
+    let line = pipe_line();
+    let chambers = chamber_compliance(
+        StiffnessModel::ByVolume,
+        [FLUID_MODULUS; 2],
+        &asymmetric(),
+        [&line, &line],
+        Member::Nominal,
+    );
+    let range = chambers.over_stroke();
+    // ORIGIN: recomputed by comparisons/recompute_rig.py (bounded minimisation)
+    check("least stiffness", range.minimum, 1.9185810e7, 1.0);
+    check("its position", range.minimum_position, 0.2662174, 2e-7);
+    check("greatest stiffness, A end", range.maximum, 1.8887781e8, 10.0);
+    for step in 0..=1000 {
+        let stiffness = hydraulic_stiffness(&chambers, 0.5 * f64::from(step) / 1000.0);
+        assert!((range.minimum..=range.maximum).contains(&stiffness));
+    }
+}
+
+#[test]
+fn softest_position_leaves_the_stroke_when_one_line_is_long() {
+    let long = Line::Volume { volume: 0.1, effective_bulk_modulus: 1.45e9 };
+    let short = Line::Volume { volume: 1e-5, effective_bulk_modulus: 1.45e9 };
+    let at = |lines| {
+        chamber_compliance(StiffnessModel::ByVolume, [FLUID_MODULUS; 2], &cylinder(), lines, Member::Nominal)
+            .over_stroke()
+    };
+    // Chamber B alone is a spring then, softest when it is largest: at the A end.
+    assert_eq!((at([&long, &short]).minimum_position, at([&long, &short]).maximum_position), (0.0, 0.5));
+    assert_eq!((at([&short, &long]).minimum_position, at([&short, &long]).maximum_position), (0.5, 0.0));
+}
+
+#[test]
+fn lengths_undo_stiffnesses_in_both_models() {
+    let effective = hose_line().effective_modulus(FLUID_MODULUS, Member::Nominal);
+    let (bore, stroke) = (12.7e-3, 0.5);
+    for length in [0.3, 1.5, 12.0] {
+        let line = Line::Hose { hose: hose(), length };
+        for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
+            let stiffness = over_stroke(model, &line, Member::Nominal).minimum;
+            let closed = match model {
+                StiffnessModel::Uniform => {
+                    hose_length_uniform(stiffness, USEFUL_AREA, stroke, bore, effective)
+                }
+                StiffnessModel::ByVolume => {
+                    hose_length_by_volume(stiffness, USEFUL_AREA, stroke, bore, effective, FLUID_MODULUS)
+                }
+            };
+            assert!((closed / length - 1.0).abs() < 1e-12);
+            let solved = line_length_for_stiffness(
+                model,
+                FLUID_MODULUS,
+                &cylinder(),
+                &hose_line(),
+                Member::Nominal,
+                stiffness,
+            );
+            let LineLength::Length(solved) = solved else { panic!("{solved:?}") };
+            assert!((solved / length - 1.0).abs() < 1e-12);
+        }
+        // ORIGIN: analytic, (6.26) is the inverse of (6.25)
+        let stiffness = stiffness_from_hose_length(length, USEFUL_AREA, stroke, bore, effective);
+        let back = hose_length_uniform(stiffness, USEFUL_AREA, stroke, bore, effective);
+        assert!((back / length - 1.0).abs() < 1e-12);
+    }
+    // ORIGIN: recomputed by comparisons/recompute_rig.py
+    let length = hose_length_by_volume(2.24e6, USEFUL_AREA, stroke, bore, effective, FLUID_MODULUS);
+    check("by volume, 2.24e6 N/m", length, 4.05, 0.01);
+}
+
+/// ORIGIN: analytic, thesis (6.25) and (6.26) exactly as printed, with E, epsilon and r_beta.
+#[test]
+fn printed_forms_of_the_sizing_equations() {
+    let pi = std::f64::consts::PI;
+    let (a, l, d, e, eps, r) = (USEFUL_AREA, 0.5, 12.7e-3, 1.56e-5, 2.236e-12, 5.0);
+    let bracket = pi * d * d + 4.0 * e;
+    let stiffness = 2.24e6;
+    let printed = 8.0 * a * a * r * FLUID_MODULUS * bracket
+        / (pi * d * d * stiffness * (4.0 * eps * FLUID_MODULUS + r * bracket))
+        - 2.0 * a * l / (pi * d * d);
+    let effective = hose_line().effective_modulus(FLUID_MODULUS, Member::Nominal);
+    assert!((hose_length_uniform(stiffness, a, l, d, effective) / printed - 1.0).abs() < 1e-13);
+    let printed = 8.0 * r * FLUID_MODULUS * a * a * bracket
+        / ((4.0 * eps * FLUID_MODULUS + r * bracket) * (2.0 * a * l + pi * d * d * 1.5));
+    assert!((stiffness_from_hose_length(1.5, a, l, d, effective) / printed - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn no_hose_is_needed_when_the_chambers_are_soft_enough() {
+    let solve = |stiffness| {
+        let (cylinder, line) = (asymmetric(), hose_line());
+        let model = StiffnessModel::ByVolume;
+        line_length_for_stiffness(model, FLUID_MODULUS, &cylinder, &line, Member::Nominal, stiffness)
+    };
+    // ORIGIN: analytic, the wanted stiffness far above 4 beta_0 A/L
+    assert!(matches!(solve(1e9), LineLength::NotNeeded { .. }));
+    assert_eq!(solve(0.0), LineLength::OutOfReach);
+    assert_eq!(solve(f64::NAN), LineLength::OutOfReach);
+    let (LineLength::Length(soft), LineLength::Length(stiff)) = (solve(1e6), solve(4e6)) else { panic!() };
+    assert!(soft > stiff);
+}
+
+#[test]
+fn entrained_air_softens_the_chamber_at_lower_pressure() {
+    let clean = components(hose_line(), StiffnessModel::ByVolume);
+    let air = Some(EntrainedAir { volume_fraction: 0.01, polytropic_index: 1.4 });
+    let foamy =
+        Components { fluid: phea_hydraulics::fluid::Fluid { entrained_air: air, ..clean.fluid }, ..clean };
+    let least = |components: Components, pressure: f64| {
+        let actuator = Actuator::new(components).unwrap();
+        actuator.chamber_compliance([pressure; 2], Member::Nominal).over_stroke().minimum
+    };
+    assert_eq!(least(clean, 10e5), least(clean, 35e5));
+    assert!(least(foamy, 10e5) < least(foamy, 35e5) && least(foamy, 35e5) < least(clean, 35e5));
+}

@@ -1,0 +1,223 @@
+//! The two-pressure model against its own dual-number linearisation, and the fifth-order model against it.
+
+use num_complex::Complex64;
+use phea_dynamics::linear::StateSpace;
+use phea_dynamics::scalar::Dual;
+use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::fluid::{EntrainedAir, Fluid};
+use phea_hydraulics::line::Member;
+use phea_hydraulics::linear::{linear_model, response_difference, transfer_functions};
+use phea_hydraulics::operating_point::{Condition, Load, OperatingPoint, operating_point};
+use phea_hydraulics::reference_rig::{
+    USEFUL_AREA, components, cylinder, hose_line, nominal_plant, pipe_line, valve_with_equal_edges,
+};
+use phea_hydraulics::servovalve::{Direction, Edges, Servovalve};
+use phea_hydraulics::stiffness::StiffnessModel;
+use phea_hydraulics::two_pressure::{
+    TwoPressureInput, TwoPressureLinearParameters, TwoPressureModel, TwoPressureState, linearize, rates,
+    reduce, reduction, two_pressure_coefficients, two_pressure_linear_parameters,
+};
+
+fn model(actuator: &Actuator, point: &OperatingPoint, friction: f64) -> TwoPressureModel {
+    TwoPressureModel::new(actuator, [point.pressure_a, point.pressure_b], Member::Nominal, friction)
+}
+
+/// Matrices of the nonlinear equations at a state, by dual numbers: states first, then command and load velocity.
+fn jacobian(
+    model: &TwoPressureModel,
+    state: &TwoPressureState,
+    input: &TwoPressureInput,
+) -> ([[f64; 8]; 6], [f64; 6]) {
+    let mut index = 0;
+    let mut variable = |value: f64| {
+        index += 1;
+        Dual::<8>::variable(value, index - 1)
+    };
+    let state = TwoPressureState::from_array(state.to_array().map(&mut variable));
+    let input = TwoPressureInput {
+        command: variable(input.command),
+        load_velocity: variable(input.load_velocity),
+        load_position: Dual::constant(input.load_position),
+    };
+    let rates = rates(&model.map(), &state, &input).to_array();
+    (rates.map(|rate| *rate.gradient()), rates.map(|rate| rate.value()))
+}
+
+/// Every entry agrees to 1e-9 of the largest entry that its row could have, weighted by the column's scale.
+fn check_against_jacobian(system: &StateSpace, jacobian: &[[f64; 8]; 6]) {
+    let scales = [1.0, 1e3, 1e5, 1e5, 1e-4, 1e-2, 1.0, 1e-2];
+    for (row, duals) in jacobian.iter().enumerate() {
+        let largest = duals.iter().zip(scales).map(|(dual, scale)| (dual * scale).abs()).fold(0.0, f64::max);
+        for (column, (&dual, scale)) in duals.iter().zip(scales).enumerate() {
+            let analytic = if column < 6 { system.a()[(row, column)] } else { system.b()[(row, column - 6)] };
+            let error = (analytic - dual).abs() * scale;
+            assert!(error <= 1e-9 * largest, "row {row}, column {column}: {analytic} against {dual}");
+        }
+    }
+}
+
+fn rigs() -> Vec<Components> {
+    let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
+    let unequal = components(hose_line(), StiffnessModel::Uniform);
+    let asymmetric = Components {
+        cylinder: Cylinder { area_a, area_b, dead_volume_a: 2e-5, ..cylinder() },
+        line_b: pipe_line(),
+        ..components(hose_line(), StiffnessModel::ByVolume)
+    };
+    let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_index: 1.4 });
+    vec![
+        unequal,
+        Components { valve: valve_with_equal_edges(), ..unequal },
+        asymmetric,
+        Components { fluid: Fluid { entrained_air: air, ..asymmetric.fluid }, ..asymmetric },
+    ]
+}
+
+#[test]
+fn linearisation_agrees_with_dual_numbers_everywhere() {
+    let conditions = [
+        Condition::Command(0.03),
+        Condition::Command(-0.4),
+        Condition::Load(Load::Force(3000.0)),
+        Condition::Load(Load::Force(-2000.0)),
+        Condition::Motion(1.5, Load::Force(1000.0)),
+        Condition::Motion(-0.7, Load::Force(2500.0)),
+    ];
+    for components in rigs() {
+        let actuator = Actuator::new(components).unwrap();
+        for position in [0.0, 0.1, 0.25, 0.47] {
+            for condition in conditions {
+                let point = operating_point(&actuator, position, condition).unwrap();
+                let model = model(&actuator, &point, 299.0);
+                let (state, input) = model.at(&point);
+                let parameters = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+                let system = linearize(&parameters).unwrap();
+                let (jacobian, rest) = jacobian(&model, &state, &input);
+                check_against_jacobian(&system, &jacobian);
+                // It rests there: what is left over is rounding of far larger terms.
+                let largest = [1e-9, 1e-3, 10.0, 10.0, 1e-12, 1e-6];
+                for (rate, bound) in rest.into_iter().zip(largest) {
+                    assert!(rate.abs() < bound, "{rest:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn null_valve_takes_the_mean_slope_of_both_directions() {
+    let actuator = Actuator::new(rigs()[0]).unwrap();
+    let point = operating_point(&actuator, 0.3, Condition::Command(0.0)).unwrap();
+    let model = model(&actuator, &point, 100.0);
+    let (state, input) = model.at(&point);
+    let (duals, _) = jacobian(&model, &state, &input);
+    let of = |direction| {
+        linearize(&two_pressure_linear_parameters(&model, &point, direction)).unwrap().a().clone()
+    };
+    check_against_jacobian(
+        &linearize(&two_pressure_linear_parameters(&model, &point, Direction::Mean)).unwrap(),
+        &duals,
+    );
+    let (extending, retracting) = (of(Direction::Extending), of(Direction::Retracting));
+    assert!((extending[(2, 0)] + retracting[(2, 0)] - 2.0 * duals[2][0]).abs() < 1e-12 * extending[(2, 0)]);
+    // ORIGIN: analytic, K_v3 sqrt(p_S - p_A) over K_v4 sqrt(p_A) where leakage balances
+    let ratio = (3.2e-7 / 2.5e-7) * (2.2e-9 / 2.35e-9);
+    assert!((extending[(2, 0)] / retracting[(2, 0)] / ratio - 1.0).abs() < 1e-6);
+}
+
+/// The rational form and the state space are the same system.
+#[test]
+fn coefficients_and_state_space_respond_alike() {
+    for components in rigs() {
+        let actuator = Actuator::new(components).unwrap();
+        let point = operating_point(&actuator, 0.15, Condition::Load(Load::Force(1000.0))).unwrap();
+        let model = model(&actuator, &point, 150.0);
+        let parameters = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+        let system = linearize(&parameters).unwrap();
+        let plant = two_pressure_coefficients(&parameters);
+        let rational = transfer_functions(&plant).unwrap();
+        for frequency in [1e-3, 0.1, 3.0, 40.0, 700.0, 1290.0, 5e3, 1e5] {
+            let s = Complex64::new(0.0, frequency);
+            let command = system.at_frequency(frequency, 0, 0).unwrap();
+            let load = s * system.at_frequency(frequency, 1, 0).unwrap();
+            for (a, b) in [
+                (command, rational.command.at_frequency(frequency)),
+                (load, rational.load_position.at_frequency(frequency)),
+            ] {
+                assert!((a / b - 1.0).norm_sqr().sqrt() < 1e-9, "{frequency}: {a} against {b}");
+            }
+        }
+    }
+}
+
+fn matched(position: f64) -> TwoPressureLinearParameters {
+    // The case of comparisons/recompute_rig.py: the hose, K_qU 5.62e-5, K_c 6.42e-13, f_v 100, K_S 2e7.
+    let valve = Servovalve {
+        flow_coefficients: Edges::equal(5.62e-4 / 35e5_f64.sqrt()),
+        leakage_coefficients: Edges::equal(6.42e-13 * 140e5_f64.sqrt()),
+        ..valve_with_equal_edges()
+    };
+    let components = Components { valve, ..components(hose_line(), StiffnessModel::Uniform) };
+    let actuator = Actuator::new(components).unwrap();
+    let point = operating_point(&actuator, position, Condition::Command(0.0)).unwrap();
+    two_pressure_linear_parameters(&model(&actuator, &point, 100.0), &point, Direction::Extending)
+}
+
+fn grid() -> Vec<f64> {
+    (0..=2000).map(|step| phea_dynamics::portable::pow(10.0, -3.0 + 7.0 * f64::from(step) / 2000.0)).collect()
+}
+
+#[test]
+fn fifth_order_model_is_exact_at_mid_stroke_with_equal_edges() {
+    let parameters = matched(0.25);
+    let reduced = reduce(&parameters);
+    let plant = nominal_plant();
+    // ORIGIN: analytic, the parameters of (6.7) come back
+    assert!((reduced.flow_gain / 5.62e-5 - 1.0).abs() < 1e-6);
+    assert!((reduced.flow_pressure_coefficient / plant.flow_pressure_coefficient - 1.0).abs() < 1e-6);
+    assert!((reduced.hydraulic_stiffness / 2.2329616e6 - 1.0).abs() < 1e-7);
+    assert!((reduced.useful_area / USEFUL_AREA - 1.0).abs() < 1e-15);
+    let difference = reduction(&parameters, &grid()).unwrap();
+    for found in [difference.command, difference.load_motion] {
+        assert!(found.magnitude_db < 1e-8 && found.phase_deg < 1e-7, "{found:?}");
+    }
+    assert!((difference.static_gain_ratio - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn fifth_order_model_errs_off_mid_stroke() {
+    // ORIGIN: recomputed by comparisons/recompute_rig.py
+    for (position, magnitude, phase) in [(0.1, 0.70377, 2.32054), (0.0, 2.11579, 6.96108)] {
+        let found = reduction(&matched(position), &grid()).unwrap();
+        assert!((found.command.magnitude_db - magnitude).abs() < 1e-4, "{found:?}");
+        assert!((found.command.phase_deg - phase).abs() < 1e-3, "{found:?}");
+        assert!((found.load_motion.magnitude_db - magnitude).abs() < 1e-3);
+    }
+}
+
+/// What the reduction promises for any cylinder: the fast and the slow ends are right.
+#[test]
+fn reduction_of_an_asymmetric_actuator_keeps_both_ends() {
+    let actuator = Actuator::new(rigs()[2]).unwrap();
+    let point = operating_point(&actuator, 0.2, Condition::Load(Load::Force(2000.0))).unwrap();
+    let parameters =
+        two_pressure_linear_parameters(&model(&actuator, &point, 120.0), &point, Direction::Extending);
+    let full = transfer_functions(&two_pressure_coefficients(&parameters)).unwrap();
+    let reduced = linear_model(&reduce(&parameters)).unwrap();
+    let difference = |frequencies: &[f64], load: bool| {
+        let pick = |model: &phea_hydraulics::linear::LinearModel| match load {
+            true => model.load_position.clone(),
+            false => model.command.clone(),
+        };
+        let (full, reduced) = (pick(&full), pick(&reduced));
+        response_difference(frequencies, |w| full.at_frequency(w), |w| reduced.at_frequency(w))
+    };
+    assert!(difference(&[1e5, 1e6], false).magnitude_db < 1e-3);
+    assert!(difference(&[1e5, 1e6], true).magnitude_db < 1e-3);
+    assert!(difference(&[1e-6, 1e-5], true).magnitude_db < 1e-3);
+    let report = reduction(&parameters, &grid()).unwrap();
+    assert!(report.command.magnitude_db > 0.1, "an asymmetric actuator is no (6.7): {report:?}");
+    let statics = difference(&[1e-6], false).magnitude_db;
+    assert!((20.0 * phea_dynamics::portable::log10(report.static_gain_ratio).abs() - statics).abs() < 1e-4);
+}
