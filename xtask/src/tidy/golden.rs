@@ -17,7 +17,7 @@ const ORIGINS: [&str; 7] =
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let golden = |file: &&RustFile| {
         let name = file.path.rsplit('/').next().unwrap_or_default();
-        file.path.contains("/tests/") && name.starts_with("golden")
+        file.path.contains("/tests/") && name.ends_with(".rs")
     };
     let mut found: Vec<Violation> =
         repository.rust_files().iter().filter(golden).flat_map(check_file).collect();

@@ -1,0 +1,377 @@
+"""Recomputes the numbers that the theory pages of the book quote, from the equations alone and without phea.
+
+Each `expect` states a number of the book with the precision it is quoted to; the script fails where they part.
+"""
+
+import math
+
+import numpy as np
+
+AREA = math.pi / 4 * (0.05**2 - 0.022**2)
+STROKE, MASS = 0.5, 13.1
+BORE, EXPANSION, SLOPE = 12.7e-3, 1.56e-5, 2.236e-12
+BETA_0, STIFFENING = 1.45e9, 5.0
+OMEGA, XI = 1099.0, 0.9
+GALLON_PER_MINUTE = 3.785411784e-3 / 60
+FAILURES = []
+
+
+def expect(what, value, quoted, tolerance):
+    """The book quotes `quoted`; `tolerance` is half a unit of its last digit."""
+    fine = abs(value - quoted) <= tolerance * (1 + 1e-9)
+    print(f"{'ok  ' if fine else 'FAIL'} {what}: {value:.6g} (quoted {quoted:g})")
+    if not fine:
+        FAILURES.append(what)
+
+
+def step_response(numerator, denominator, times):
+    """Step response of a strictly proper system with simple poles, by partial fractions."""
+    poles = np.roots(denominator)
+    derivative = np.polyder(denominator)
+    static = np.polyval(numerator, 0) / np.polyval(denominator, 0)
+    terms = [np.polyval(numerator, p) / (p * np.polyval(derivative, p)) * np.exp(p * times) for p in poles]
+    return static + np.real(sum(terms))
+
+
+def metrics(response, times, band):
+    """Overshoot in percent and settling time into +-band around 1."""
+    outside = np.nonzero(np.abs(response - 1) > band)[0]
+    return 100 * (response.max() - 1), times[outside[-1] + 1] if len(outside) else 0.0
+
+
+def second_order():
+    xi, omega = 0.5, 1.0
+    sigma, damped = xi * omega, omega * math.sqrt(1 - xi**2)
+    times = np.linspace(0, 10, 2_000_001)
+    response = step_response([1.0], [1.0, 2 * xi, 1.0], times)
+    reached = times[np.nonzero(response >= 1)[0][0]]
+    expect("3.7 rise time at xi 0.5, first crossing", reached, 2.418, 5e-4)
+    expect("3.7 corrected", (math.pi - math.atan(damped / sigma)) / damped, 2.418, 5e-4)
+    expect("3.7 printed, negative", math.atan(-damped / sigma) / damped, -1.209, 5e-4)
+    logarithm = math.log(0.01)
+    expect("3.9 under the printed root at 1 %", math.pi**2 - logarithm**2, -11.3, 0.05)
+    expect("3.9 corrected at 1 %", -logarithm / math.sqrt(math.pi**2 + logarithm**2), 0.826, 5e-4)
+    expect("3.12 envelope at 1 %", -math.log(0.01), 4.6, 0.05)
+    expect("3.13 critically damped, 2 %", critically_damped(0.02), 5.83, 5e-3)
+    expect("3.13 critically damped, 1 %", critically_damped(0.01), 6.64, 5e-3)
+
+
+def critically_damped(band):
+    """omega t where (1 + omega t) e^(-omega t) = band."""
+    low, high = 1.0, 20.0
+    for _ in range(100):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (1 + middle) * math.exp(-middle) > band else (low, middle)
+    return low
+
+
+def valve():
+    rated = 0.88 * 6.31e-4
+    expect("4.12 corrected", rated / math.sqrt(7e6 / 2), 2.97e-7, 0.5e-9)
+    expect("4.12 printed", rated / math.sqrt(2 * 7e6), 1.48e-7, 0.5e-9)
+    pressure = 3000 * 6894.757293168
+    for total, quoted in [(0.40, 1.37e-9), (0.61, 3.43e-9)]:
+        leakage = (total - 0.26) * GALLON_PER_MINUTE / math.sqrt(2 * pressure)
+        expect(f"4.13 at {total} gpm, tare off", leakage, quoted, 0.5e-11)
+    expect("tare flow of 0.26 gpm", 0.26 * GALLON_PER_MINUTE, 1.64e-5, 0.5e-7)
+    expect("leak peak of 5.2.1", 0.0167 * rated, 9.3e-6, 0.05e-6)
+    for name, flow, leak, excess, place in [
+        ("equal edges", [2.88e-7] * 4, [2.15e-9] * 4, 10.8, 0.34),
+        (
+            "edges of Table 5.1",
+            [3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7],
+            [2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9],
+            13.0,
+            0.40,
+        ),
+    ]:
+        peak, command = leakage_peak(flow, leak, 100.0, 7e6)
+        expect(f"total leakage above null in percent, {name}", peak, excess, 0.05)
+        expect(f"at percent of full command, {name}", command, place, 0.005)
+    gain = lambda load: (2.97e-7 / 10) * math.sqrt((7e6 - load) / 2)
+    expect("4.21 at null", gain(0.0), 5.56e-5, 0.5e-7)
+    expect("4.21 from 2/3 p_S to null", gain(7e6 * 2 / 3) / gain(0.0), 1 / math.sqrt(3), 1e-12)
+    expect("4.22 at null, K_vinp 2.402e-9", 2 * 2.402e-9 / math.sqrt(8 * 7e6), 6.42e-13, 0.5e-15)
+    expect(
+        "leakage's share of 4.21 at 25 bar in percent",
+        leakage_share_of_gain(2.97e-7, 2.402e-9, 100.0, 7e6, 25e5),
+        11,
+        0.5,
+    )
+    corner = 2.97e-7 / math.sqrt(8 * 7e6 / 3)
+    expect("4.22 at full opening, 2/3 p_S", corner, 6.9e-11, 0.5e-12)
+    demand = 2.97e-7 * math.sqrt(7e6 / 6)
+    expect("flow at that corner in L/min", demand * 60e3, 19.2, 0.05)
+
+
+def leakage_share_of_gain(flow, leak, shape, supply, load):
+    """The leakage's derivative over the printed 4.21, in percent, at the command that holds a load."""
+    outer, inner = math.sqrt((supply + load) / 2), math.sqrt((supply - load) / 2)
+    command = 0.0
+    for _ in range(100):
+        command = leak / flow * (outer / inner - 1) / math.cosh(shape * command)
+    slope = shape * math.tanh(shape * command) / math.cosh(shape * command) * leak * (outer - inner)
+    return 100 * slope / (flow * inner)
+
+
+def leakage_peak(flow, leak, shape, supply):
+    """Peak of the flow from the supply over spool position with both ports blocked, in percent, and where."""
+    best = (0.0, 0.0)
+    null = supply_flow(flow, leak, shape, supply, 0.0)
+    for command in np.linspace(-0.01, 0.01, 4001):
+        total = supply_flow(flow, leak, shape, supply, command)
+        best = max(best, (100 * (total / null - 1), 100 * abs(command)))
+    return best
+
+
+def supply_flow(flow, leak, shape, supply, command):
+    forward, backward = max(command, 0.0), max(-command, 0.0)
+    opening = [
+        f * u + k / math.cosh(shape * command)
+        for f, u, k in zip(flow, [forward, backward, backward, forward], leak)
+    ]
+    in_series = lambda first, second: first * second / math.hypot(first, second)
+    return (in_series(opening[0], opening[1]) + in_series(opening[2], opening[3])) * math.sqrt(supply)
+
+
+def moduli():
+    bore_area = math.pi / 4 * BORE**2
+    static = (bore_area + EXPANSION) / SLOPE
+    expect("beta_hoSS", static, 6.363e7, 0.5e4)
+    wall = STIFFENING * static
+    effective = BETA_0 * wall / (BETA_0 + wall)
+    expect("beta_e", effective, 2.609e8, 0.5e5)
+    line = bore_area * 1.5
+    for name, chamber, centre, ends in [
+        ("uniform", effective, 2.233e6, 4.109e6),
+        ("by volume", BETA_0, 5.01e6, 5.41e6),
+    ]:
+        stiffness = lambda x: sum(AREA**2 / (AREA * y / chamber + line / effective) for y in (x, STROKE - x))
+        digits = 0.5e3 if name == "uniform" else 0.5e4
+        expect(f"K_H {name}, centre", stiffness(STROKE / 2), centre, digits)
+        expect(f"K_H {name}, ends", stiffness(0.0), ends, digits)
+    length = (2 * AREA**2 / 2.24e6 - AREA * STROKE / (2 * BETA_0)) * 4 * effective / (math.pi * BORE**2)
+    expect("length for 2.24e6 N/m by volume", length, 4.05, 5e-3)
+    expect("E over A_ho in percent", 100 * EXPANSION / bore_area, 12.3, 0.05)
+    for ratio, quoted in [(1, 0.52e6), (4, 1.85e6), (5, 2.23e6)]:
+        softened = BETA_0 * ratio * static / (BETA_0 + ratio * static)
+        uniform = 4 * softened * AREA**2 / (AREA * STROKE + 2 * line)
+        expect(f"uniform K_H with r_beta {ratio}", uniform, quoted, 0.5e4)
+    return effective, bore_area
+
+
+def sizing(effective, bore_area):
+    sensor, gain, leak, constant = 2e7, 5.62e-5, 6.42e-13, 0.05
+    for proportional, stiffness, length, digits in [
+        (0.01, 5.65e4, 180, 0.5),
+        (0.001, 5.76e5, 14.84, 5e-3),
+        (0.0005, 1.175e6, 5.66, 5e-3),
+        (0.00025, 2.46e6, 1.07, 5e-3),
+    ]:
+        needed = sensor * AREA**2 / (sensor * constant * (leak + AREA * proportional * gain) - AREA**2)
+        expect(f"Table 6.2 K_H at {proportional}", needed / stiffness, 1, 0.002)
+        metres = (4 * effective * AREA**2 / needed - AREA * STROKE) / 2 / bore_area
+        expect(f"Table 6.2 L_ho at {proportional}", metres, length, 0.01 * length)
+    limit = (AREA / (constant * sensor) - leak / AREA) / gain
+    expect("gain with infinite stiffness", limit, 2.1e-5, 0.05e-5)
+    for flow_gain, quoted in [(5.62e-5, 2.73e-4), (5.4e-5, 2.84e-4)]:
+        stiffness = 2.233e6
+        proportional = (
+            AREA * (stiffness + sensor) / (constant * stiffness * sensor) - leak / AREA
+        ) / flow_gain
+        expect(f"K_p for 1.5 m with K_qU {flow_gain}", proportional, quoted, 0.5e-6)
+    for coefficient, quoted in [(6.42e-13, 0.974), (7e-11, 0.26)]:
+        driven = AREA * 2.844e-4 * 5.4e-5
+        expect(
+            f"K_SS at K_c {coefficient}",
+            driven / (coefficient + driven),
+            quoted,
+            0.5 * 10 ** -len(str(quoted)[2:]),
+        )
+    for flow, velocity, quoted in [
+        (1.6e-4, 4.6, 6.7),
+        (1.6e-4, 2.1, 9.8),
+        (9.8e-3 / 60, 4.6, 6.72),
+        (9.8e-3 / 60, 2.1, 9.95),
+    ]:
+        bore = 1e3 * math.sqrt(4 * flow / (math.pi * velocity))
+        expect(
+            f"6.17 in mm, {flow:.4g} m3/s at {velocity} m/s",
+            bore,
+            quoted,
+            0.05 if quoted in (6.7, 9.8) else 0.005,
+        )
+    expect("velocity in 12.7 mm", 1.6e-4 / bore_area, 1.26, 5e-3)
+
+
+def denominator(stiffness, sensor, friction, leak):
+    """a_5 ... a_0 of 6.7, by multiplying the block equations out."""
+    spool = np.array([1.0, 2 * XI * OMEGA, OMEGA**2])
+    piston = np.polyadd(
+        AREA**2 * np.array([MASS, friction, sensor + stiffness, 0.0]),
+        leak * stiffness * np.array([0.0, MASS, friction, sensor]),
+    )
+    return np.polymul(spool, piston)
+
+
+def linear_models():
+    sensor, friction, leak, gain = 9.81e7, 299.0, 5.7e-13, 5.4e-5
+    for stiffness, real, mechanical in [
+        (1.5e7, -2.96, -11.64 + 2938j),
+        (1.5e6, -0.336, -11.41 + 2757j),
+        (1.5e5, -0.0341, -11.41 + 2739j),
+    ]:
+        poles = np.roots(denominator(stiffness, sensor, friction, leak))
+        slow = max(poles, key=lambda pole: pole.real).real
+        expect(
+            f"Table 6.1 real pole at {stiffness:g}",
+            slow,
+            real,
+            0.5 * 10.0 ** (math.floor(math.log10(-real)) - 2),
+        )
+        pair = max(poles, key=lambda pole: pole.imag)
+        expect(f"Table 6.1 pair at {stiffness:g}, real", pair.real, mechanical.real, 5e-3)
+        expect(f"Table 6.1 pair at {stiffness:g}, imaginary", pair.imag, mechanical.imag, 0.5)
+    for name, stiffness, sensor, friction, leak, printed, corrected in [
+        ("Table 6.1", 1.5e7, 9.81e7, 299.0, 5.7e-13, 0.17, 0.0006),
+        ("Table 6.3 corner", 4.11e6, 2e7, 100.0, 7e-11, 11.0, 0.22),
+    ]:
+        omegas = np.concatenate(
+            [
+                np.geomspace(0.01, 5000, 20001),
+                math.sqrt((stiffness + sensor) / MASS) * np.linspace(0.95, 1.05, 20001),
+            ]
+        )
+        full = (
+            AREA
+            * stiffness
+            * gain
+            * sensor
+            * OMEGA**2
+            / np.polyval(denominator(stiffness, sensor, friction, leak), 1j * omegas)
+        )
+        for label, extra, quoted in [
+            ("printed", 0.0, printed),
+            ("corrected", leak * stiffness**2 / (AREA**2 * (stiffness + sensor)), corrected),
+        ]:
+            error = np.abs(
+                20
+                * np.log10(
+                    np.abs(decomposed(omegas, stiffness, sensor, friction / MASS + extra, leak, gain) / full)
+                )
+            ).max()
+            expect(f"6.12 {label} against 6.7 in dB, {name}", error, quoted, 0.06 * quoted + 5e-5)
+
+
+def two_pressures(effective, bore_area):
+    omegas = np.geomspace(0.01, 5000, 200001)
+    line = bore_area * 1.5 / effective
+    for model, modulus, quoted in [
+        ("uniform", effective, [(0.1, 0.70, 2.3), (0.0, 2.1, 7.0)]),
+        ("by volume", BETA_0, [(0.1, 0.10, 0.34), (0.0, 0.29, 0.96)]),
+    ]:
+        for position, decibels, degrees in quoted:
+            chambers = [AREA * y / modulus + line for y in (position, STROKE - position)]
+            mean = 2 * chambers[0] * chambers[1] / sum(chambers)
+            ratio = force(omegas, [mean, mean]) / force(omegas, chambers)
+            place = f"6.7 against two pressures, {model}, x = {position}"
+            digit = 0.05 if degrees > 1 else 0.005
+            expect(f"{place}, dB", np.abs(20 * np.log10(np.abs(ratio))).max(), decibels, digit)
+            expect(f"{place}, degrees", np.abs(np.degrees(np.angle(ratio))).max(), degrees, digit)
+
+
+def force(omegas, compliances):
+    """F_e per command ahead of the spool's dynamics, with each chamber's own pressure."""
+    s = 1j * omegas
+    chambers = sum(1 / (compliance * s + 2 * 6.42e-13) for compliance in compliances)
+    sensor = 2e7
+    moved = MASS * s**2 + 100.0 * s + sensor + AREA**2 * s * chambers
+    return sensor * AREA * 5.4e-5 * chambers / moved
+
+
+def decomposed(omegas, stiffness, sensor, damping, leak, gain):
+    s = 1j * omegas
+    equal, square = stiffness * sensor / (stiffness + sensor), (stiffness + sensor) / MASS
+    hydraulic = (gain * equal / AREA) / (s + leak * equal / AREA**2)
+    return (
+        hydraulic * square / (s**2 + damping * s + square) * OMEGA**2 / (s**2 + 2 * XI * OMEGA * s + OMEGA**2)
+    )
+
+
+def impedance():
+    stiffness, sensor, leak = 2.24e6, 2e7, 6.42e-13
+    omegas = np.geomspace(0.01, 1e4, 400001)
+    open_loop = driving_point(omegas, stiffness, sensor, 100.0, leak, 0.0, 0.0)
+    expect("open loop, least Re Z above zero", float(np.real(open_loop).min() > 0), 1, 0)
+    active = omegas[np.real(driving_point(omegas, stiffness, sensor, 100.0, leak, 0.001, 0.008)) < 0]
+    expect("closed loop is active from", active[0], 447, 0.5)
+    expect("closed loop is active to", active[-1], 922, 0.5)
+    rough = np.real(driving_point(omegas, stiffness, sensor, 299.0, leak, 0.001, 0.008))
+    expect("closed loop with f_v 299, least Re Z above zero", float(rough.min() > 0), 1, 0)
+    expect("compliance hidden above, hose", math.sqrt(2.233e6 / MASS), 413, 0.5)
+    ends = np.array([4e-3, 3e4])
+    low, high = np.abs(driving_point(ends, stiffness, sensor, 100.0, leak, 0.0, 0.0))
+    expect("open-loop damper at low frequency", low / ((AREA**2 + 100.0 * leak) / leak), 1, 0.005)
+    expect("spring K_S at high frequency", high / (sensor / ends[1]), 1, 0.005)
+    damper = abs(driving_point(np.array([1e-3]), stiffness, sensor, 100.0, leak, 0.001, 0.0))[0]
+    expect("P control, damper", damper / (AREA / (5.4e-5 * 0.001)), 1, 0.01)
+    mass = abs(driving_point(np.array([1e-5]), stiffness, sensor, 100.0, leak, 0.001, 0.008))[0] / 1e-5
+    expect("PI control, mass", mass / (AREA / (5.4e-5 * 0.008)), 1, 0.01)
+
+
+def driving_point(omegas, stiffness, sensor, friction, leak, proportional, integral):
+    """Z = -F_e/(s X_L) with U_C = -(K_p + K_i/s) F_e and K_qU = 5.4e-5."""
+    s = 1j * omegas
+    spool = np.array([1.0, 2 * XI * OMEGA, OMEGA**2])
+    own = np.polyadd(
+        AREA**2 * np.array([MASS, friction, stiffness]), leak * stiffness * np.array([0, MASS, friction])
+    )
+    command = AREA * stiffness * 5.4e-5 * sensor * OMEGA**2
+    closed = (
+        np.polyval(denominator(stiffness, sensor, friction, leak), s)
+        + (proportional + integral / s) * command
+    )
+    return sensor * np.polyval(np.polymul(spool, own), s) / closed
+
+
+def limits():
+    times = np.linspace(0, 1, 1_000_001)
+    upper = step_response(np.polymul([2116.0], [1 / 75, 1.0]), [1.0, 73.6, 2116.0], times)
+    overshoot, settling = metrics(upper, times, 0.01)
+    expect("6.28 overshoot in percent", overshoot, 2.2, 0.05)
+    expect("6.28 settling time", settling, 0.126, 5e-4)
+    lower_denominator = np.polymul([1.0, 40.0000004, 400.000004], [1.0, 50.0])
+    _, settling = metrics(step_response([20000.0], lower_denominator, times), times, 0.01)
+    expect("6.29 settling time", settling, 0.356, 5e-4)
+
+
+def sources_of_constants():
+    expect("K_S, cell and environment in series", 1 / (1 / 9.81e7 + 1 / 2.51e7), 2.0e7, 0.5e5)
+    expect("cell of 1 t per 0.1 mm", 1000 * 9.80665 / 1e-4, 9.81e7, 0.5e5)
+    expect("K_qU nominal", 5.4e-5 * 10 / math.sqrt(7e6 / 2), 2.89e-7, 0.5e-9)
+    for edges, quoted in [((3.2e-7, 3.85e-7), 6.51e-5), ((2.0e-7, 2.5e-7), 4.13e-5)]:
+        inlet, outlet = edges
+        gain = inlet * outlet / math.hypot(inlet, outlet) * math.sqrt(7e6) / 10
+        expect(f"no-load flow gain of edges {edges}", gain, quoted, 0.5e-7)
+    expect("wave speed in the hose", math.sqrt(2.609e8 / 870), 548, 0.5)
+    expect("delay of 1.5 m in ms", 1e3 * 1.5 / math.sqrt(2.609e8 / 870), 2.74, 5e-3)
+    expect("quarter wave in 1.5 m, rad/s", math.pi * math.sqrt(2.609e8 / 870) / (2 * 1.5), 573, 0.5)
+    expect("1099 rad/s in Hz", 1099 / (2 * math.pi), 175, 0.5)
+
+
+def main():
+    second_order()
+    valve()
+    hose = moduli()
+    sizing(*hose)
+    two_pressures(*hose)
+    linear_models()
+    impedance()
+    limits()
+    sources_of_constants()
+    if FAILURES:
+        raise SystemExit(f"{len(FAILURES)} numbers of the book do not hold: {', '.join(FAILURES)}")
+
+
+if __name__ == "__main__":
+    main()
