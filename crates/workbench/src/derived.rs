@@ -53,7 +53,9 @@ impl Derived {
     pub fn contradicts(&self) -> bool {
         match self.stated.as_ref() {
             None => false,
-            Some(Stated { bounds: Some([minimum, maximum]), .. }) => self.value < *minimum || self.value > *maximum,
+            Some(Stated { bounds: Some([minimum, maximum]), .. }) => {
+                self.value < *minimum || self.value > *maximum
+            }
             Some(stated) => (stated.value - self.value).abs() > CONTRADICTION * self.value.abs(),
         }
     }

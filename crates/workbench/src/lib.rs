@@ -4,9 +4,12 @@
 
 pub mod answer;
 pub mod catalogue;
+pub mod derived;
 pub mod figure;
+pub mod linearize;
 pub mod project;
 pub mod quantity;
+pub mod rig;
 pub mod sizing;
 pub mod source;
 pub mod spelling;

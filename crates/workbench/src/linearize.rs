@@ -6,15 +6,17 @@ mod answer;
 use phea_dynamics::frequency::{PassivityReport, logarithmic_grid, passivity};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_hydraulics::impedance::{
-    Asymptote, closed_loop_impedance, closed_loop_load_motion, compliance_hidden_above, final_force_after_load_step,
-    impedance_asymptotes, open_loop_impedance,
+    Asymptote, closed_loop_impedance, closed_loop_load_motion, compliance_hidden_above,
+    final_force_after_load_step, impedance_asymptotes, open_loop_impedance,
 };
 use phea_hydraulics::line::Member;
 use phea_hydraulics::linear::{
-    LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance, first_order_model,
-    linear_model, response_difference, transfer_functions,
+    LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance,
+    first_order_model, linear_model, response_difference, transfer_functions,
 };
-use phea_hydraulics::stiffness::{ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference};
+use phea_hydraulics::stiffness::{
+    ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference,
+};
 use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
 pub use answer::{json, text};
@@ -99,7 +101,8 @@ pub fn linearize(rig: &Rig, controller: Option<&TransferFunction>) -> Result<Lin
     let continuous = controller.filter(|g| g.dead_time_s() == 0.0 && is_continuous(g));
     let closed_loop = continuous.map(|controller| closed_loop_view(rig, &full, controller)).transpose()?;
     Ok(Linearization {
-        stiffness: [Member::Nominal, Member::Minimum, Member::Maximum].map(|member| stroke_stiffness(rig, member)),
+        stiffness: [Member::Nominal, Member::Minimum, Member::Maximum]
+            .map(|member| stroke_stiffness(rig, member)),
         stiffness_models: stiffness_models(rig),
         reduction: compare(&grid, &two_pressure.command, &derived_full.command),
         printed_decomposition: against_full(&decomposed[0]),
@@ -109,7 +112,10 @@ pub fn linearize(rig: &Rig, controller: Option<&TransferFunction>) -> Result<Lin
         open_loop: open_loop_view(rig, &full)?,
         closed_loop_absent: absence(controller, closed_loop.as_ref()),
         closed_loop,
-        compliance_hidden_above_rad_per_s: compliance_hidden_above(rig.linear.hydraulic_stiffness, rig.linear.moving_mass),
+        compliance_hidden_above_rad_per_s: compliance_hidden_above(
+            rig.linear.hydraulic_stiffness,
+            rig.linear.moving_mass,
+        ),
         two_pressure,
         full,
         decomposed,
@@ -125,7 +131,9 @@ fn absence(controller: Option<&TransferFunction>, view: Option<&PortView>) -> Op
     let reason = match (controller, view) {
         (_, Some(_)) => return None,
         (None, None) => "the project gives no controller",
-        (Some(_), None) => "the controller is sampled or the loop has dead time: its impedance is no rational function",
+        (Some(_), None) => {
+            "the controller is sampled or the loop has dead time: its impedance is no rational function"
+        }
     };
     Some(reason.to_string())
 }
@@ -140,7 +148,11 @@ fn open_loop_view(rig: &Rig, full: &LinearModel) -> Result<PortView, LinearError
     })
 }
 
-fn closed_loop_view(rig: &Rig, full: &LinearModel, controller: &TransferFunction) -> Result<PortView, LinearError> {
+fn closed_loop_view(
+    rig: &Rig,
+    full: &LinearModel,
+    controller: &TransferFunction,
+) -> Result<PortView, LinearError> {
     let impedance = closed_loop_impedance(full, controller)?;
     Ok(PortView {
         passivity: passivity(&impedance)?,
@@ -158,7 +170,8 @@ pub(crate) fn stroke_stiffness(rig: &Rig, member: Member) -> StrokeStiffness {
 /// Stiffness at a position by either model.
 pub(crate) fn stiffness_at(rig: &Rig, model: StiffnessModel, member: Member, position: f64) -> f64 {
     let components = rig.actuator.components();
-    let moduli = [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| components.fluid.modulus_at(pressure));
+    let moduli =
+        [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| components.fluid.modulus_at(pressure));
     let lines = [&components.line_a, &components.line_b];
     let chambers = chamber_compliance(model, moduli, &components.cylinder, lines, member);
     phea_hydraulics::stiffness::hydraulic_stiffness(&chambers, position)
@@ -173,7 +186,8 @@ fn stiffness_models(rig: &Rig) -> ModelDifference {
 /// Frequencies for comparing and drawing: from a decade below the slowest pole to a decade above the fastest, at least
 /// 0.01 to 10 000 rad/s, with the resonances themselves.
 pub(crate) fn frequency_grid(function: &TransferFunction) -> Result<Vec<f64>, LinearError> {
-    let moduli: Vec<f64> = function.poles().iter().map(|pole| phea_dynamics::portable::magnitude(*pole)).collect();
+    let moduli: Vec<f64> =
+        function.poles().iter().map(|pole| phea_dynamics::portable::magnitude(*pole)).collect();
     let slowest = moduli.iter().copied().filter(|modulus| *modulus > 0.0).fold(0.1, f64::min);
     let fastest = moduli.iter().copied().fold(1e3, f64::max);
     let mut grid = logarithmic_grid((slowest / 10.0).max(1e-6), (fastest * 10.0).min(1e9), 600)?;
@@ -183,7 +197,8 @@ pub(crate) fn frequency_grid(function: &TransferFunction) -> Result<Vec<f64>, Li
 }
 
 fn compare(grid: &[f64], reference: &TransferFunction, other: &TransferFunction) -> Comparison {
-    let difference = |grid: &[f64]| response_difference(grid, |w| reference.at_frequency(w), |w| other.at_frequency(w));
+    let difference =
+        |grid: &[f64]| response_difference(grid, |w| reference.at_frequency(w), |w| other.at_frequency(w));
     let low: Vec<f64> = grid.iter().copied().filter(|frequency| *frequency <= COMPARISON_END).collect();
     Comparison { low: difference(&low), all: difference(grid) }
 }

@@ -3,7 +3,7 @@
 
 mod assembly;
 mod parameters;
-mod sizing;
+//mod sizing;
 
 use phea_hydraulics::actuator::{Actuator, ActuatorError};
 use phea_hydraulics::friction::ViscousSlope;
@@ -19,7 +19,6 @@ use phea_hydraulics::two_pressure::{
 
 use crate::project::{self, Project};
 
-pub(crate) use assembly::stiffness_model;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 
 /// A rig ready to be computed with.
@@ -80,7 +79,10 @@ impl Rig {
     }
 }
 
-fn point(actuator: &Actuator, declared: &project::OperatingPoint) -> Result<OperatingPoint, OperatingPointError> {
+fn point(
+    actuator: &Actuator,
+    declared: &project::OperatingPoint,
+) -> Result<OperatingPoint, OperatingPointError> {
     let position = declared.position.unwrap_or(actuator.components().cylinder.stroke / 2.0);
     let condition = match (declared.command, declared.load_pressure) {
         (Some(command), Some(load_pressure)) => Condition::Matched(command, load_pressure),

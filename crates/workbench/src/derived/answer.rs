@@ -2,7 +2,7 @@ use serde::Serialize;
 
 use super::Derived;
 use crate::answer::{self, Number, significant, table};
-use crate::project::{Diagnostic, Loaded};
+use crate::project::Loaded;
 
 #[derive(Serialize)]
 struct Body<'a> {
@@ -51,7 +51,7 @@ pub fn json(loaded: &Loaded, derived: &[Derived]) -> String {
         }),
         reason: quantity.reason.as_deref(),
     });
-    let warnings = loaded.warnings.iter().map(Diagnostic::to_string);
+    let warnings = loaded.warnings.iter().map(|warning| warning.message.clone());
     answer::json("check", loaded, Body { derived: rows.collect(), warnings: warnings.collect() })
 }
 

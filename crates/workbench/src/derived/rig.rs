@@ -40,26 +40,65 @@ fn cylinder(rig: &Rig, list: &mut List) {
 
 fn lines(rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
-    let moduli = [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| components.fluid.modulus_at(pressure));
+    let moduli =
+        [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| components.fluid.modulus_at(pressure));
     let sides = [("a", components.line_a, moduli[0]), ("b", components.line_b, moduli[1])];
     let same = components.line_a == components.line_b && moduli[0] == moduli[1];
     list.group("Lines");
-    list.add("fluid.bulk_modulus_at_pressure", "β_0", moduli[0], "Pa", "β_0(p) = -V dp/dV, entrained air included");
+    list.add(
+        "fluid.bulk_modulus_at_pressure",
+        "β_0",
+        moduli[0],
+        "Pa",
+        "β_0(p) = -V dp/dV, entrained air included",
+    );
     for (side, line, modulus) in sides.into_iter().take(if same { 1 } else { 2 }) {
-        let name = |quantity: &str| if same { format!("line.{quantity}") } else { format!("line.{side}.{quantity}") };
+        let name = |quantity: &str| {
+            if same { format!("line.{quantity}") } else { format!("line.{side}.{quantity}") }
+        };
         list.add(name("volume"), "V_ho", line.volume(), "m3", "V_{ho} = π/4 D_{ho}^2 L_{ho}");
         if let Line::Hose { hose, .. } = line {
-            list.add(name("volumetric_expansion"), "E", hose.volumetric_expansion, "m3/m", "E(p_S) = E_1 + ε (p_S - p_1)");
-            list.add(name("static_modulus"), "β_hoSS", hose.static_modulus(), "Pa", "β_{hoSS} = (A_{ho} + E)/ε");
-            list.add(name("dynamic_modulus"), "β_ho", hose.wall_modulus(Member::Nominal), "Pa", "β_{ho} = r_β β_{hoSS}");
+            list.add(
+                name("volumetric_expansion"),
+                "E",
+                hose.volumetric_expansion,
+                "m3/m",
+                "E(p_S) = E_1 + ε (p_S - p_1)",
+            );
+            list.add(
+                name("static_modulus"),
+                "β_hoSS",
+                hose.static_modulus(),
+                "Pa",
+                "β_{hoSS} = (A_{ho} + E)/ε",
+            );
+            list.add(
+                name("dynamic_modulus"),
+                "β_ho",
+                hose.wall_modulus(Member::Nominal),
+                "Pa",
+                "β_{ho} = r_β β_{hoSS}",
+            );
         }
         let effective = line.effective_modulus(modulus, Member::Nominal);
         list.add(name("effective_modulus"), "β_e", effective, "Pa", "1/β_e = 1/β_0 + 1/β_{ho}");
         if let Line::Hose { .. } = line {
             let softest = line.effective_modulus(modulus, Member::Minimum);
-            list.add(name("effective_modulus_minimum"), "β_e", softest, "Pa", "β_e at the least stiffening r_β");
+            list.add(
+                name("effective_modulus_minimum"),
+                "β_e",
+                softest,
+                "Pa",
+                "β_e at the least stiffening r_β",
+            );
             let stiffest = line.effective_modulus(modulus, Member::Maximum);
-            list.add(name("effective_modulus_maximum"), "β_e", stiffest, "Pa", "β_e at the greatest stiffening r_β");
+            list.add(
+                name("effective_modulus_maximum"),
+                "β_e",
+                stiffest,
+                "Pa",
+                "β_e at the greatest stiffening r_β",
+            );
         }
         let wave_speed = (effective / components.fluid.density).sqrt();
         list.add(name("wave_speed"), "c", wave_speed, "m/s", "c = sqrt(β_e/ρ)");
@@ -82,15 +121,51 @@ fn stiffness(rig: &Rig, list: &mut List) {
     let (end, middle) = (declared.maximum_position, declared.minimum_position);
     let uniform = StiffnessModel::Uniform;
     let by_volume = StiffnessModel::ByVolume;
-    list.add("stiffness.uniform.minimum", "K_H", at(uniform, middle), "N/m", "C_A = (V_{ho} + V_{A0} + A_A x)/β_e");
-    list.add("stiffness.uniform.maximum", "K_H", at(uniform, end), "N/m", "C_A = (V_{ho} + V_{A0} + A_A x)/β_e");
-    list.add("stiffness.by_volume.minimum", "K_H", at(by_volume, middle), "N/m", "C_A = V_{ho}/β_e + (V_{A0} + A_A x)/β_0");
-    list.add("stiffness.by_volume.maximum", "K_H", at(by_volume, end), "N/m", "C_A = V_{ho}/β_e + (V_{A0} + A_A x)/β_0");
+    list.add(
+        "stiffness.uniform.minimum",
+        "K_H",
+        at(uniform, middle),
+        "N/m",
+        "C_A = (V_{ho} + V_{A0} + A_A x)/β_e",
+    );
+    list.add(
+        "stiffness.uniform.maximum",
+        "K_H",
+        at(uniform, end),
+        "N/m",
+        "C_A = (V_{ho} + V_{A0} + A_A x)/β_e",
+    );
+    list.add(
+        "stiffness.by_volume.minimum",
+        "K_H",
+        at(by_volume, middle),
+        "N/m",
+        "C_A = V_{ho}/β_e + (V_{A0} + A_A x)/β_0",
+    );
+    list.add(
+        "stiffness.by_volume.maximum",
+        "K_H",
+        at(by_volume, end),
+        "N/m",
+        "C_A = V_{ho}/β_e + (V_{A0} + A_A x)/β_0",
+    );
     if let Line::Hose { .. } = components.line_a {
         let soft = stroke_stiffness(rig, Member::Minimum).minimum;
-        list.add("stiffness.minimum_softest_wall", "K_H", soft, "N/m", "least K_H at the least stiffening r_β");
+        list.add(
+            "stiffness.minimum_softest_wall",
+            "K_H",
+            soft,
+            "N/m",
+            "least K_H at the least stiffening r_β",
+        );
         let stiff = stroke_stiffness(rig, Member::Maximum).maximum;
-        list.add("stiffness.maximum_stiffest_wall", "K_H", stiff, "N/m", "greatest K_H at the greatest stiffening r_β");
+        list.add(
+            "stiffness.maximum_stiffest_wall",
+            "K_H",
+            stiff,
+            "N/m",
+            "greatest K_H at the greatest stiffening r_β",
+        );
     }
 }
 
@@ -100,19 +175,61 @@ fn valve(rig: &Rig, list: &mut List) {
     let areas = [cylinder.area_a, cylinder.area_b];
     list.group("Servovalve");
     for (name, direction, area, equation) in [
-        ("extending", Direction::Extending, cylinder.area_a, "K_{qU} = A_A v/U, edges 3 and 6 carrying one flow"),
-        ("retracting", Direction::Retracting, cylinder.area_b, "K_{qU} = A_B v/U, edges 5 and 4 carrying one flow"),
+        (
+            "extending",
+            Direction::Extending,
+            cylinder.area_a,
+            "K_{qU} = A_A v/U, edges 3 and 6 carrying one flow",
+        ),
+        (
+            "retracting",
+            Direction::Retracting,
+            cylinder.area_b,
+            "K_{qU} = A_B v/U, edges 5 and 4 carrying one flow",
+        ),
     ] {
         match velocity_gain(valve, supply, areas, 0.0, direction) {
-            Some(gain) => list.add(format!("valve.flow_gain_{name}"), "K_qU", area * gain, "m3/(s.V)", equation),
-            None => list.absent(format!("valve.flow_gain_{name}"), "K_qU", "m3/(s.V)", equation, "the supply cannot move the unloaded piston this way"),
+            Some(gain) => {
+                list.add(format!("valve.flow_gain_{name}"), "K_qU", area * gain, "m3/(s.V)", equation)
+            }
+            None => list.absent(
+                format!("valve.flow_gain_{name}"),
+                "K_qU",
+                "m3/(s.V)",
+                equation,
+                "the supply cannot move the unloaded piston this way",
+            ),
         }
     }
     let chambers = &rig.two_pressure.chambers;
-    list.add("valve.flow_gain_a", "K_qA", chambers.flow_gain_a, "m3/(s.V)", "K_{qA} = dq_A/dU at the operating point");
-    list.add("valve.flow_gain_b", "K_qB", chambers.flow_gain_b, "m3/(s.V)", "K_{qB} = -dq_B/dU at the operating point");
-    list.add("valve.flow_pressure_a", "K_cA", chambers.flow_pressure_a, "m3/(s.Pa)", "K_{cA} = -dq_A/dp_A at the operating point");
-    list.add("valve.flow_pressure_b", "K_cB", chambers.flow_pressure_b, "m3/(s.Pa)", "K_{cB} = -dq_B/dp_B at the operating point");
+    list.add(
+        "valve.flow_gain_a",
+        "K_qA",
+        chambers.flow_gain_a,
+        "m3/(s.V)",
+        "K_{qA} = dq_A/dU at the operating point",
+    );
+    list.add(
+        "valve.flow_gain_b",
+        "K_qB",
+        chambers.flow_gain_b,
+        "m3/(s.V)",
+        "K_{qB} = -dq_B/dU at the operating point",
+    );
+    list.add(
+        "valve.flow_pressure_a",
+        "K_cA",
+        chambers.flow_pressure_a,
+        "m3/(s.Pa)",
+        "K_{cA} = -dq_A/dp_A at the operating point",
+    );
+    list.add(
+        "valve.flow_pressure_b",
+        "K_cB",
+        chambers.flow_pressure_b,
+        "m3/(s.Pa)",
+        "K_{cB} = -dq_B/dp_B at the operating point",
+    );
     let pressure_gain = rig.derived.flow_gain / rig.derived.flow_pressure_coefficient;
     list.add("valve.pressure_gain", "K_pU", pressure_gain, "Pa/V", "K_{pU} = K_{qU}/K_c");
 }
@@ -121,7 +238,13 @@ fn equilibrium(rig: &Rig, list: &mut List) {
     let point = &rig.point;
     list.group("Operating point");
     list.add("operating_point.position", "x_p", point.position, "m", "declared, or mid stroke");
-    list.add("operating_point.command", "U_C", point.command, "V", "declared, or the command that holds the load");
+    list.add(
+        "operating_point.command",
+        "U_C",
+        point.command,
+        "V",
+        "declared, or the command that holds the load",
+    );
     list.add("operating_point.pressure_a", "p_A", point.pressure_a, "Pa", "q_A(U, p_A) = A_A v");
     list.add("operating_point.pressure_b", "p_B", point.pressure_b, "Pa", "q_B(U, p_B) = -A_B v");
     list.add("operating_point.load_pressure", "p_L", point.load_pressure(), "Pa", "p_L = p_A - p_B");
@@ -155,12 +278,36 @@ fn dynamics(rig: &Rig, list: &mut List) {
     let linear = &rig.linear;
     let factors = decompose(linear, MechanicalDamping::Corrected);
     list.group("Dynamics, with the values that hold");
-    list.add("dynamics.equivalent_stiffness", "K_eq", linear.equivalent_stiffness(), "N/m", "K_{eq} = K_H K_S/(K_H + K_S)");
+    list.add(
+        "dynamics.equivalent_stiffness",
+        "K_eq",
+        linear.equivalent_stiffness(),
+        "N/m",
+        "K_{eq} = K_H K_S/(K_H + K_S)",
+    );
     list.add("dynamics.hydraulic_pole", "s_1", -factors.hydraulic_rate, "rad/s", "s_1 = -K_c K_{eq}/A_u^2");
-    list.add("dynamics.mechanical_frequency", "ω_m", factors.mechanical_square.sqrt(), "rad/s", "ω_m = sqrt((K_H + K_S)/M)");
+    list.add(
+        "dynamics.mechanical_frequency",
+        "ω_m",
+        factors.mechanical_square.sqrt(),
+        "rad/s",
+        "ω_m = sqrt((K_H + K_S)/M)",
+    );
     let damping_ratio = factors.mechanical_damping / (2.0 * factors.mechanical_square.sqrt());
-    list.add("dynamics.mechanical_damping_ratio", "ξ_m", damping_ratio, "1", "2 ξ_m ω_m = f_v/M + K_c K_H^2/(A_u^2 (K_H + K_S))");
-    list.add("dynamics.force_rate_gain", "K_qU K_eq/A_u", factors.hydraulic_gain, "N/(s.V)", "dF_e/dt per volt = K_{qU} K_{eq}/A_u");
+    list.add(
+        "dynamics.mechanical_damping_ratio",
+        "ξ_m",
+        damping_ratio,
+        "1",
+        "2 ξ_m ω_m = f_v/M + K_c K_H^2/(A_u^2 (K_H + K_S))",
+    );
+    list.add(
+        "dynamics.force_rate_gain",
+        "K_qU K_eq/A_u",
+        factors.hydraulic_gain,
+        "N/(s.V)",
+        "dF_e/dt per volt = K_{qU} K_{eq}/A_u",
+    );
     let hidden = (linear.hydraulic_stiffness / linear.moving_mass).sqrt();
     list.add("dynamics.compliance_hidden_above", "ω", hidden, "rad/s", "ω = sqrt(K_H/M)");
 }
@@ -169,7 +316,13 @@ fn friction(rig: &Rig, list: &mut List) {
     let Friction::LuGre(lugre) = &rig.actuator.components().friction else { return };
     list.group("Friction");
     let least = lugre.bristle_damping * (lugre.curve.breakaway - lugre.curve.coulomb) / lugre.curve.coulomb;
-    list.add("friction.passive_viscous_minimum", "σ_2", least, "N.s/m", "σ_2 >= σ_1 (F_S - F_C)/F_C for passivity");
+    list.add(
+        "friction.passive_viscous_minimum",
+        "σ_2",
+        least,
+        "N.s/m",
+        "σ_2 >= σ_1 (F_S - F_C)/F_C for passivity",
+    );
 }
 
 fn flow(project: &Project, rig: &Rig, list: &mut List) {

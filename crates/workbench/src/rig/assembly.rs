@@ -9,7 +9,7 @@ use phea_hydraulics::servovalve::{
 };
 use phea_hydraulics::stiffness::StiffnessModel;
 
-use crate::project::{self, Component, Compliance, FrictionModel, Interval};
+use crate::project::{self, Compliance, Component, FrictionModel, Interval};
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: taken where a project states none.
 pub(super) const KINEMATIC_VISCOSITY: f64 = 46e-6;
@@ -78,7 +78,9 @@ fn valve(declared: &project::Valve) -> Servovalve {
 /// The line as physics; the volumetric expansion is taken at the working pressure, the supply's.
 fn line(declared: &project::Line, working_pressure: f64) -> Line {
     match declared.component() {
-        Some(Component::Volume { volume, effective_bulk_modulus }) => Line::Volume { volume, effective_bulk_modulus },
+        Some(Component::Volume { volume, effective_bulk_modulus }) => {
+            Line::Volume { volume, effective_bulk_modulus }
+        }
         Some(Component::Pipe { pipe, length }) => Line::Pipe { pipe: self::pipe(pipe), length },
         Some(Component::Hose { bore, expansion, expansion_pressure, expansion_slope, length, .. }) => {
             let hose = hose(

@@ -104,9 +104,7 @@ fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -
 }
 
 fn gain_step(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel, gain: f64) -> GainStep {
-    let wanted = problem.stiffness_for_gain(gain);
-    // Below its pole equation 6.16 turns negative: not even a rigid transmission is stiff enough for this gain.
-    let stiffness_n_per_m = if wanted > 0.0 { wanted } else { f64::INFINITY };
+    let stiffness_n_per_m = problem.stiffness_for_gain(gain);
     let line = Line::Hose { hose: option.hose, length: 1.0 };
     let length = line_length_for_stiffness(
         model,

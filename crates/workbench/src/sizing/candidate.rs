@@ -1,3 +1,6 @@
+use phea_hydraulics::line::{Member, series_modulus};
+use phea_hydraulics::linear::{LinearParameters, closed_loop_steady_state_gain, closed_loop_time_constant};
+
 use super::branch::Branch;
 use super::{BoreVerdict, HoseOption, SizingProblem, bore};
 use crate::answer::significant;
@@ -55,24 +58,26 @@ impl Candidate {
 pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branch) -> Candidate {
     let oil_velocity_m_per_s = bore::oil_velocity(problem, option.hose.bore);
     let surge_pressure_pa = surge_pressure(problem, option, oil_velocity_m_per_s);
-    let largest_loss = problem.flow_pressure_coefficient_maximum.unwrap_or(problem.flow_pressure_coefficient);
-    let time_constant = |stiffness| {
-        problem.closed_loop_time_constant(stiffness, branch.gain_v_per_n, problem.flow_pressure_coefficient)
+    let largest_loss =
+        problem.flow_pressure_coefficient_maximum.unwrap_or(problem.linear.flow_pressure_coefficient);
+    let gain = branch.gain_v_per_n;
+    let time_constant = |stiffness| closed_loop_time_constant(&problem.with_stiffness(stiffness), gain);
+    let steady_state_gain = |flow_pressure_coefficient| {
+        closed_loop_steady_state_gain(&LinearParameters { flow_pressure_coefficient, ..problem.linear }, gain)
     };
     let mut candidate = Candidate {
         option: option.clone(),
         oil_velocity_m_per_s,
         surge_pressure_pa,
         time_constant_s: [time_constant(branch.stiffness.minimum), time_constant(branch.stiffness.maximum)],
-        steady_state_gain: [problem.flow_pressure_coefficient, largest_loss]
-            .map(|loss| problem.steady_state_gain(branch.gain_v_per_n, loss)),
+        steady_state_gain: [problem.linear.flow_pressure_coefficient, largest_loss].map(steady_state_gain),
         branch,
         findings: Vec::new(),
     };
     let mut findings = Vec::new();
     velocity(problem, &candidate, &mut findings);
     length(problem, &candidate, &mut findings);
-    gain(problem, &candidate, &mut findings);
+    practical_gain(problem, &candidate, &mut findings);
     pressure(problem, &candidate, &mut findings);
     bending(&candidate, &mut findings);
     settling(problem, &candidate, &mut findings);
@@ -83,8 +88,8 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
 
 /// Pressure surge of a flow stopped at once, Pa: rho c v = v sqrt(rho beta_e), Joukowsky (1898).
 fn surge_pressure(problem: &SizingProblem, option: &HoseOption, velocity: f64) -> f64 {
-    let wall = option.hose.wall_modulus(phea_hydraulics::line::Member::Maximum);
-    let modulus = phea_hydraulics::line::series_modulus(problem.fluid_modulus, wall);
+    let wall = option.hose.wall_modulus(Member::Maximum);
+    let modulus = series_modulus(problem.fluid_modulus, wall);
     velocity * (problem.density * modulus).sqrt()
 }
 
@@ -141,7 +146,7 @@ fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Fin
     }
 }
 
-fn gain(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+fn practical_gain(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
     let gain = candidate.branch.gain_v_per_n;
     if gain <= problem.pole_gain() {
         rejects(

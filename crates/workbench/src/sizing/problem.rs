@@ -1,5 +1,8 @@
 use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::line::{Hose, Line, Member};
+use phea_hydraulics::linear::{
+    LinearParameters, RequiredStiffness, proportional_gain, required_stiffness, rigid_limit_gain,
+};
 use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, chamber_compliance};
 
 use super::Decision;
@@ -10,18 +13,12 @@ use crate::answer::significant;
 pub struct SizingProblem {
     /// The cylinder.
     pub cylinder: Cylinder,
-    /// Useful piston area A_u, m2.
-    pub useful_area: f64,
+    /// Parameters of the linear model; the hydraulic stiffness is what is looked for, its value is not used.
+    pub linear: LinearParameters,
     /// Bulk modulus of the fluid beta_0, Pa.
     pub fluid_modulus: f64,
     /// Density of the fluid, kg/m3.
     pub density: f64,
-    /// Stiffness K_S of load cell and environment, N/m.
-    pub sensor_stiffness: f64,
-    /// Flow gain K_qU at null, m3/(s V).
-    pub flow_gain: f64,
-    /// Flow-pressure coefficient K_c at null, m3/(s Pa).
-    pub flow_pressure_coefficient: f64,
     /// The largest K_c of the project's uncertainty, where it states one.
     pub flow_pressure_coefficient_maximum: Option<f64>,
     /// Desired closed-loop time constant tau_d, s.
@@ -64,60 +61,28 @@ pub struct HoseOption {
 }
 
 impl SizingProblem {
-    /// Hydraulic stiffness that gives the desired time constant under gain K_p, N/m; infinite or negative below the
-    /// pole, where no transmission is stiff enough.
-    ///
-    /// ```text
-    /// K_H = K_S A_u^2 / (K_S tau_d (K_c0 + A_u K_p K_qU) - A_u^2)                               thesis (6.16)
-    /// ```
+    /// Hydraulic stiffness that gives the desired time constant under gain K_p, thesis (6.16), N/m; infinite at and below
+    /// the gain where not even a rigid transmission is stiff enough.
     pub fn stiffness_for_gain(&self, gain: f64) -> f64 {
-        let area_squared = self.useful_area * self.useful_area;
-        let flow = self.flow_pressure_coefficient + self.useful_area * gain * self.flow_gain;
-        self.sensor_stiffness * area_squared
-            / (self.sensor_stiffness * self.time_constant * flow - area_squared)
+        match required_stiffness(&self.linear, self.time_constant, gain) {
+            RequiredStiffness::Stiffness(stiffness) => stiffness,
+            RequiredStiffness::TooSlow { .. } => f64::INFINITY,
+        }
     }
 
-    /// Gain that gives the desired time constant at hydraulic stiffness K_H, V/N.
-    ///
-    /// ```text
-    /// K_p = (A_u (K_H + K_S)/(tau_d K_H K_S) - K_c0/A_u) / K_qU                                 thesis (6.27)
-    /// ```
+    /// Gain that gives the desired time constant at hydraulic stiffness K_H, thesis (6.27), V/N.
     pub fn gain_for_stiffness(&self, stiffness: f64) -> f64 {
-        let equivalent = stiffness * self.sensor_stiffness / (stiffness + self.sensor_stiffness);
-        let loss = self.flow_pressure_coefficient / self.useful_area;
-        (self.useful_area / (self.time_constant * equivalent) - loss) / self.flow_gain
+        proportional_gain(&self.with_stiffness(stiffness), self.time_constant)
     }
 
-    /// The gain at which equation 6.16 has its pole, V/N: the limit of equation 6.27 for an infinite K_H.
+    /// The gain at which equation 6.16 has its pole, V/N.
     pub fn pole_gain(&self) -> f64 {
-        let loss = self.flow_pressure_coefficient / self.useful_area;
-        (self.useful_area / (self.time_constant * self.sensor_stiffness) - loss) / self.flow_gain
+        rigid_limit_gain(&self.linear, self.time_constant)
     }
 
-    /// Time constant of the first-order closed loop at this stiffness and gain, s.
-    ///
-    /// ```text
-    /// tau = A_u^2 / (K_eq (K_c + A_u K_p K_qU)),  K_eq = K_H K_S/(K_H + K_S)                    thesis (6.14)
-    /// ```
-    pub fn closed_loop_time_constant(
-        &self,
-        stiffness: f64,
-        gain: f64,
-        flow_pressure_coefficient: f64,
-    ) -> f64 {
-        let equivalent = stiffness * self.sensor_stiffness / (stiffness + self.sensor_stiffness);
-        let flow = flow_pressure_coefficient + self.useful_area * gain * self.flow_gain;
-        self.useful_area * self.useful_area / (equivalent * flow)
-    }
-
-    /// Steady-state gain K_SS of the closed loop, which equation 6.16 drops.
-    ///
-    /// ```text
-    /// K_SS = A_u K_p K_qU / (K_c + A_u K_p K_qU)                                                thesis (6.15)
-    /// ```
-    pub fn steady_state_gain(&self, gain: f64, flow_pressure_coefficient: f64) -> f64 {
-        let flow = self.useful_area * gain * self.flow_gain;
-        flow / (flow_pressure_coefficient + flow)
+    /// The linear model with this hydraulic stiffness.
+    pub(super) fn with_stiffness(&self, hydraulic_stiffness: f64) -> LinearParameters {
+        LinearParameters { hydraulic_stiffness, ..self.linear }
     }
 
     /// Stiffness over the stroke with a hose of this length on each side.
@@ -140,12 +105,12 @@ impl SizingProblem {
                 step: "a",
                 text: format!(
                     "System data: A_u = {} m2, stroke {} m, beta_0 = {} Pa, K_S = {} N/m, K_qU = {} m3/(s V), K_c0 = {} m3/(s Pa).",
-                    number(self.useful_area),
+                    number(self.linear.useful_area),
                     number(self.cylinder.stroke),
                     number(self.fluid_modulus),
-                    number(self.sensor_stiffness),
-                    number(self.flow_gain),
-                    number(self.flow_pressure_coefficient)
+                    number(self.linear.sensor_stiffness),
+                    number(self.linear.flow_gain),
+                    number(self.linear.flow_pressure_coefficient)
                 ),
             },
             Decision {

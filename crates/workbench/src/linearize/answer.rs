@@ -1,0 +1,320 @@
+use num_complex::Complex64;
+use phea_dynamics::frequency::PassivityReport;
+use phea_dynamics::linear::TransferFunction;
+use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
+use phea_hydraulics::linear::ResponseDifference;
+use serde::Serialize;
+
+use super::{Comparison, Linearization, PortView, stiffness_sentence};
+use crate::answer::{self, Number, significant, table};
+use crate::project::Loaded;
+
+#[derive(Serialize)]
+struct Body<'a> {
+    stiffness: StiffnessRow,
+    poles: Poles,
+    decomposition_error: DecompositionError,
+    reduction_error: Difference,
+    first_order_error: Difference,
+    dominance: Vec<Mode>,
+    impedance: Ports<'a, ImpedanceRow>,
+    passivity: Ports<'a, PassivityRow>,
+    compliance_hidden_above_rad_per_s: f64,
+    load_step_final_force_n: Ports<'a, Number>,
+}
+
+#[derive(Serialize)]
+struct StiffnessRow {
+    minimum_n_per_m: f64,
+    maximum_n_per_m: f64,
+    minimum_position_m: f64,
+    minimum_softest_wall_n_per_m: f64,
+    maximum_stiffest_wall_n_per_m: f64,
+    uniform: [f64; 2],
+    by_volume: [f64; 2],
+    sentence: String,
+}
+
+#[derive(Serialize)]
+struct Poles {
+    full: Vec<[f64; 2]>,
+    decomposed: Vec<[f64; 2]>,
+    first_order: Vec<[f64; 2]>,
+    two_pressure: Vec<[f64; 2]>,
+}
+
+#[derive(Serialize)]
+struct DecompositionError {
+    #[serde(flatten)]
+    corrected: Difference,
+    as_printed: Difference,
+}
+
+/// Largest differences over all frequencies, and below 1000 rad/s.
+#[derive(Serialize)]
+struct Difference {
+    magnitude_db: f64,
+    magnitude_at_rad_per_s: f64,
+    phase_deg: f64,
+    phase_at_rad_per_s: f64,
+    below_1000_rad_per_s: LowDifference,
+}
+
+#[derive(Serialize)]
+struct LowDifference {
+    magnitude_db: f64,
+    phase_deg: f64,
+}
+
+#[derive(Serialize)]
+struct Mode {
+    pole: [f64; 2],
+    step_share: Number,
+    decay_ratio: Number,
+}
+
+#[derive(Serialize)]
+struct Ports<'a, Row> {
+    open_loop: Row,
+    closed_loop: Option<Row>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    closed_loop_reason: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct ImpedanceRow {
+    gain: f64,
+    zeros: Vec<[f64; 2]>,
+    poles: Vec<[f64; 2]>,
+    asymptotes: Vec<AsymptoteRow>,
+}
+
+#[derive(Serialize)]
+struct AsymptoteRow {
+    kind: &'static str,
+    /// Z = coefficient s^power
+    coefficient: f64,
+    power: i32,
+    from_rad_per_s: Number,
+    to_rad_per_s: Number,
+}
+
+#[derive(Serialize)]
+struct PassivityRow {
+    passive: bool,
+    right_half_plane_poles: Vec<[f64; 2]>,
+    imaginary_poles: Vec<f64>,
+    bands: Vec<[Number; 2]>,
+}
+
+fn pairs(roots: &[Complex64]) -> Vec<[f64; 2]> {
+    roots.iter().map(|root| [root.re, root.im]).collect()
+}
+
+fn difference(comparison: &Comparison) -> Difference {
+    let ResponseDifference { magnitude_db, magnitude_frequency, phase_deg, phase_frequency } = comparison.all;
+    Difference {
+        magnitude_db,
+        magnitude_at_rad_per_s: magnitude_frequency,
+        phase_deg,
+        phase_at_rad_per_s: phase_frequency,
+        below_1000_rad_per_s: LowDifference {
+            magnitude_db: comparison.low.magnitude_db,
+            phase_deg: comparison.low.phase_deg,
+        },
+    }
+}
+
+/// The JSON object of `linearize`.
+pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
+    let [nominal, softest, stiffest] = linearization.stiffness;
+    let models = &linearization.stiffness_models;
+    let modes = linearization.modes.iter().map(|mode| Mode {
+        pole: [mode.pole.re, mode.pole.im],
+        step_share: Number(mode.step_share),
+        decay_ratio: Number(mode.decay_ratio),
+    });
+    let body = Body {
+        stiffness: StiffnessRow {
+            minimum_n_per_m: nominal.minimum,
+            maximum_n_per_m: nominal.maximum,
+            minimum_position_m: nominal.minimum_position,
+            minimum_softest_wall_n_per_m: softest.minimum,
+            maximum_stiffest_wall_n_per_m: stiffest.maximum,
+            uniform: [models.uniform.minimum, models.uniform.maximum],
+            by_volume: [models.by_volume.minimum, models.by_volume.maximum],
+            sentence: stiffness_sentence(models),
+        },
+        poles: Poles {
+            full: pairs(linearization.full.command.poles()),
+            decomposed: pairs(linearization.decomposed[1].poles()),
+            first_order: pairs(linearization.first_order.poles()),
+            two_pressure: pairs(linearization.two_pressure.command.poles()),
+        },
+        decomposition_error: DecompositionError {
+            corrected: difference(&linearization.corrected_decomposition),
+            as_printed: difference(&linearization.printed_decomposition),
+        },
+        reduction_error: difference(&linearization.reduction),
+        first_order_error: difference(&linearization.truncation),
+        dominance: modes.collect(),
+        impedance: ports(linearization, impedance_row),
+        passivity: ports(linearization, |view| passivity_row(&view.passivity)),
+        compliance_hidden_above_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
+        load_step_final_force_n: ports(linearization, |view| Number(view.final_force_n.unwrap_or(f64::NAN))),
+    };
+    answer::json("linearize", loaded, body)
+}
+
+fn ports<Row>(linearization: &Linearization, row: impl Fn(&PortView) -> Row) -> Ports<'_, Row> {
+    Ports {
+        open_loop: row(&linearization.open_loop),
+        closed_loop: linearization.closed_loop.as_ref().map(&row),
+        closed_loop_reason: linearization.closed_loop_absent.as_deref(),
+    }
+}
+
+fn impedance_row(view: &PortView) -> ImpedanceRow {
+    ImpedanceRow {
+        gain: view.impedance.gain(),
+        zeros: pairs(view.impedance.zeros()),
+        poles: pairs(view.impedance.poles()),
+        asymptotes: view.asymptotes.iter().map(asymptote_row).collect(),
+    }
+}
+
+fn asymptote_row(asymptote: &Asymptote) -> AsymptoteRow {
+    AsymptoteRow {
+        kind: match asymptote.kind {
+            AsymptoteKind::LowFrequency => "low_frequency",
+            AsymptoteKind::CompliancePlateau => "compliance_plateau",
+            AsymptoteKind::SensorLimit => "sensor_limit",
+        },
+        coefficient: asymptote.coefficient,
+        power: asymptote.power,
+        from_rad_per_s: Number(asymptote.from),
+        to_rad_per_s: Number(asymptote.to),
+    }
+}
+
+fn passivity_row(report: &PassivityReport) -> PassivityRow {
+    PassivityRow {
+        passive: report.passive,
+        right_half_plane_poles: pairs(&report.right_half_plane_poles),
+        imaginary_poles: report.imaginary_poles.iter().map(|pole| pole.frequency_rad_per_s).collect(),
+        bands: report
+            .bands
+            .iter()
+            .map(|band| [Number(band.from_rad_per_s), Number(band.to_rad_per_s)])
+            .collect(),
+    }
+}
+
+/// The tables and sentences of `linearize` for people.
+pub fn text(linearization: &Linearization) -> String {
+    let mut out = format!("Stiffness\n  {}\n", stiffness_sentence(&linearization.stiffness_models));
+    let mut poles = table(&["model", "equation", "poles, rad/s"]);
+    for (model, equation, function) in models(linearization) {
+        poles.add_row([model, equation, &root_list(function.poles())]);
+    }
+    out.push_str(&format!("\nPoles\n{poles}\n"));
+    let mut errors = table(&["comparison", "below 1000 rad/s", "everywhere"]);
+    for (name, comparison) in comparisons(linearization) {
+        errors.add_row([name.to_string(), difference_text(&comparison.low), located(&comparison.all)]);
+    }
+    out.push_str(&format!("\nLargest differences\n{errors}\n"));
+    let mut modes =
+        table(&["mode, rad/s", "share of the step response", "decays faster than the slowest by"]);
+    for mode in &linearization.modes {
+        modes.add_row([
+            root_list(&[mode.pole]),
+            significant(mode.step_share, 3),
+            significant(mode.decay_ratio, 3),
+        ]);
+    }
+    out.push_str(&format!("\nDominance\n{modes}\n\nDriving-point impedance Z = -F_e/(s X_L)\n"));
+    out.push_str(&format!("  open loop:   {}\n", passivity_sentence(&linearization.open_loop.passivity)));
+    match (&linearization.closed_loop, &linearization.closed_loop_absent) {
+        (Some(view), _) => out.push_str(&format!("  closed loop: {}\n", passivity_sentence(&view.passivity))),
+        (None, reason) => {
+            out.push_str(&format!("  closed loop: none, {}\n", reason.as_deref().unwrap_or("not computed")))
+        }
+    }
+    let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
+    out.push_str(&format!("  above {hidden} rad/s the piston's mass hides the compliance\n"));
+    out
+}
+
+/// Every model with its equation, the fullest first.
+pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 5] {
+    [
+        ("two-pressure", "4.25 to 4.29", &linearization.two_pressure.command),
+        ("fifth order", "6.7", &linearization.full.command),
+        ("decomposed, as printed", "6.12", &linearization.decomposed[0]),
+        ("decomposed, corrected", "6.12", &linearization.decomposed[1]),
+        ("first order", "6.13", &linearization.first_order),
+    ]
+}
+
+/// Every comparison with its name.
+pub(crate) fn comparisons(linearization: &Linearization) -> [(&'static str, &Comparison); 4] {
+    [
+        ("6.7 for two-pressure, derived parameters", &linearization.reduction),
+        ("6.12 as printed for 6.7", &linearization.printed_decomposition),
+        ("6.12 corrected for 6.7", &linearization.corrected_decomposition),
+        ("6.13 for 6.7", &linearization.truncation),
+    ]
+}
+
+/// Roots in the upper half plane, pairs as `a ± bi`.
+pub(crate) fn root_list(roots: &[Complex64]) -> String {
+    let shown: Vec<String> = roots
+        .iter()
+        .filter(|root| root.im >= 0.0)
+        .map(|root| match root.im {
+            0.0 => significant(root.re, 4),
+            imaginary => format!("{} ± {}i", significant(root.re, 4), significant(imaginary, 4)),
+        })
+        .collect();
+    shown.join(", ")
+}
+
+pub(crate) fn difference_text(difference: &ResponseDifference) -> String {
+    format!("{} dB, {}°", significant(difference.magnitude_db, 2), significant(difference.phase_deg, 2))
+}
+
+pub(crate) fn located(difference: &ResponseDifference) -> String {
+    format!(
+        "{} dB at {} rad/s, {}° at {} rad/s",
+        significant(difference.magnitude_db, 2),
+        significant(difference.magnitude_frequency, 4),
+        significant(difference.phase_deg, 2),
+        significant(difference.phase_frequency, 4)
+    )
+}
+
+/// Whether an impedance is passive, and where not.
+pub(crate) fn passivity_sentence(report: &PassivityReport) -> String {
+    if report.passive {
+        return "passive at every frequency".to_string();
+    }
+    let mut reasons = Vec::new();
+    if !report.right_half_plane_poles.is_empty() {
+        reasons
+            .push(format!("poles in the right half plane at {}", root_list(&report.right_half_plane_poles)));
+    }
+    for pole in report.imaginary_poles.iter().filter(|pole| !pole.passive) {
+        reasons.push(format!(
+            "a pole on the imaginary axis at {} rad/s",
+            significant(pole.frequency_rad_per_s, 4)
+        ));
+    }
+    for band in &report.bands {
+        reasons.push(format!(
+            "Re Z < 0 from {} to {} rad/s",
+            significant(band.from_rad_per_s, 4),
+            significant(band.to_rad_per_s, 4)
+        ));
+    }
+    format!("not passive: {}", reasons.join("; "))
+}
