@@ -4,8 +4,10 @@
 
 pub mod answer;
 pub mod catalogue;
+pub mod control;
 pub mod derived;
 pub mod figure;
+pub mod linear_loop;
 pub mod linearize;
 pub mod project;
 pub mod quantity;

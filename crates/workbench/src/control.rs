@@ -1,0 +1,137 @@
+//! The controller and prefilter of a project as values of `phea_dynamics`, and the linear loop they close.
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Timing};
+use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
+
+use crate::project::{self, ElementKind, Formula, FormulaError, Project, Transfer, TransferForm, Variable};
+
+/// Why a declared controller or prefilter is no transfer function.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ControlError {
+    /// The text is no ratio of polynomials.
+    #[error("{place}: {error}", error = error.message)]
+    Formula {
+        /// `[controller]` or `[prefilter]`.
+        place: &'static str,
+        /// What is wrong with it.
+        error: FormulaError,
+    },
+    /// The factors or polynomials make no transfer function.
+    #[error("{place}: {error}")]
+    Linear {
+        /// `[controller]` or `[prefilter]`.
+        place: &'static str,
+        /// What is wrong with it.
+        error: LinearError,
+    },
+    /// A text in z without a sample time.
+    #[error("{place}: a transfer function in z needs `sample_time`")]
+    SampleTime {
+        /// `[controller]` or `[prefilter]`.
+        place: &'static str,
+    },
+}
+
+/// The given controller with its prefilter; `None` where the project gives no controller.
+///
+/// # Errors
+/// [`ControlError`] if one of them is no transfer function.
+pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError> {
+    let Some(declared) = &project.controller else { return Ok(None) };
+    let prefilter = match &project.prefilter {
+        Some(prefilter) => {
+            compensator("[prefilter]", &prefilter.transfer, prefilter.sample_time.or(declared.sample_time))?
+        }
+        None => Compensator::default(),
+    };
+    Ok(Some(Controller {
+        feedback: compensator("[controller]", &declared.transfer, declared.sample_time)?,
+        prefilter,
+        timing: Timing {
+            sample_time_s: declared.sample_time,
+            delay_s: declared.delay,
+            discretization: match declared.discretization {
+                project::Discretization::Tustin => Discretization::Tustin,
+                project::Discretization::ZeroOrderHold => Discretization::ZeroOrderHold,
+                project::Discretization::Matched => Discretization::Matched,
+            },
+        },
+        command_limit: declared.saturation,
+        anti_windup: match declared.anti_windup {
+            project::AntiWindup::None => AntiWindup::None,
+            project::AntiWindup::BackCalculation => AntiWindup::BackCalculation,
+            project::AntiWindup::Clamping => AntiWindup::Clamping,
+        },
+    }))
+}
+
+fn compensator(
+    place: &'static str,
+    transfer: &Transfer,
+    sample_time: Option<f64>,
+) -> Result<Compensator, ControlError> {
+    let linear = |error| ControlError::Linear { place, error };
+    let elements = match transfer.form() {
+        None => vec![],
+        Some(TransferForm::Elements(elements)) => elements.iter().map(element).collect(),
+        Some(TransferForm::Polynomials { numerator, denominator }) => {
+            let function = from_formulas(numerator, denominator)
+                .map_err(|error| ControlError::Formula { place, error })?
+                .map_err(linear)?;
+            let sampled =
+                [numerator, denominator].iter().any(|formula| formula.variable() == Some(Variable::Z));
+            let function = match (sampled, sample_time) {
+                (false, _) => function,
+                (true, None) => return Err(ControlError::SampleTime { place }),
+                (true, Some(sample_time_s)) => {
+                    function.in_domain(TimeDomain::Discrete { sample_time_s }).map_err(linear)?
+                }
+            };
+            vec![Element::General(function)]
+        }
+        Some(TransferForm::Factors { gain, zeros, poles }) => {
+            let roots = |pairs: &[[f64; 2]]| pairs.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
+            vec![Element::General(
+                TransferFunction::from_factors(gain, roots(zeros), roots(poles)).map_err(linear)?,
+            )]
+        }
+    };
+    Ok(Compensator::new(elements))
+}
+
+fn from_formulas(
+    numerator: &Formula,
+    denominator: &Formula,
+) -> Result<Result<TransferFunction, LinearError>, FormulaError> {
+    let (upper, lower) = (numerator.numbers()?, denominator.numbers()?);
+    let polynomial = |one: Vec<f64>, other: Vec<f64>| Polynomial::new(one).product(&Polynomial::new(other));
+    let top = polynomial(upper.numerator, lower.denominator);
+    let bottom = polynomial(lower.numerator, upper.denominator);
+    Ok(TransferFunction::from_polynomials(&top, &bottom))
+}
+
+/// A validated element has every number its kind needs; a missing one is refused as not finite further on.
+fn element(declared: &project::Element) -> Element {
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let frequency = number(declared.frequency);
+    let damping_ratio = number(declared.damping_ratio);
+    match declared.kind {
+        ElementKind::Gain => Element::Gain(number(declared.value)),
+        ElementKind::Integrator => Element::Integrator,
+        ElementKind::Differentiator => Element::Differentiator,
+        ElementKind::Zero => Element::RealZero { frequency },
+        ElementKind::Pole => Element::RealPole { frequency },
+        ElementKind::ComplexZeros => Element::ComplexZeros { natural_frequency: frequency, damping_ratio },
+        ElementKind::ComplexPoles => Element::ComplexPoles { natural_frequency: frequency, damping_ratio },
+        ElementKind::Lead => Element::LeadLag {
+            zero_frequency: number(declared.zero_frequency),
+            pole_frequency: number(declared.pole_frequency),
+        },
+        ElementKind::Notch => Element::Notch {
+            natural_frequency: frequency,
+            zero_damping_ratio: number(declared.numerator_damping_ratio),
+            pole_damping_ratio: damping_ratio,
+        },
+    }
+}

@@ -1,0 +1,143 @@
+//! The linear loop of a rig with its given controller and prefilter: margins and step response.
+
+use phea_dynamics::controller::Controller;
+use phea_dynamics::frequency::{Margins, margins};
+use phea_dynamics::linear::{Discretization, LinearError, TimeDomain, TransferFunction};
+use phea_dynamics::time_response::{
+    Settling, StepBaseline, StepMetrics, TimeResponseError, step_metrics, step_response, uniform_times,
+};
+
+/// The loop, closed, and what is read off it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearLoop {
+    /// G
+    pub controller: TransferFunction,
+    /// F
+    pub prefilter: TransferFunction,
+    /// L = P G with the delay of the loop.
+    pub open_loop: TransferFunction,
+    /// Gain, phase, modulus and delay margin of L.
+    pub margins: Margins,
+    /// F L/(1 + L), where it can be had.
+    pub step: Result<StepView, String>,
+}
+
+/// A unit step through prefilter and closed loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepView {
+    /// s
+    pub times_s: Vec<f64>,
+    /// Force over the reference's height.
+    pub response: Vec<f64>,
+    /// The prefiltered reference over its height.
+    pub filtered_reference: Vec<f64>,
+    /// The command per newton of reference, V/N.
+    pub command_v_per_n: Vec<f64>,
+    /// With the band they are stated for.
+    pub metrics: StepMetrics,
+}
+
+/// Why there is no linear loop.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LoopError {
+    /// A system cannot be built.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    /// A response cannot be computed.
+    #[error(transparent)]
+    Time(#[from] TimeResponseError),
+}
+
+/// Number of samples of a step response.
+const SAMPLES: usize = 2000;
+
+/// Closes the loop of plant P with a controller.
+///
+/// A continuous controller in a continuous loop; a sampled one with the plant held by a zero-order hold, the delay of the
+/// loop in it.
+///
+/// # Errors
+/// A system that cannot be built or discretised.
+pub fn linear_loop(
+    plant: &TransferFunction,
+    controller: &Controller,
+    band_percent: f64,
+) -> Result<LinearLoop, LoopError> {
+    let (feedback, prefilter) =
+        (controller.feedback.transfer_function()?, controller.prefilter.transfer_function()?);
+    let delay_s = controller.timing.delay_s;
+    let (plant, feedback, prefilter) = match controller.timing.sample_time_s {
+        None => (plant.clone().with_dead_time(delay_s)?, feedback, prefilter),
+        Some(sample_time_s) => {
+            let sampled = |function: TransferFunction| match function.domain() {
+                TimeDomain::Continuous => {
+                    function.discretized(sample_time_s, controller.timing.discretization)
+                }
+                TimeDomain::Discrete { .. } => Ok(function),
+            };
+            let held = plant
+                .clone()
+                .with_dead_time(delay_s)?
+                .discretized(sample_time_s, Discretization::ZeroOrderHold)?;
+            (held, sampled(feedback)?, sampled(prefilter)?)
+        }
+    };
+    let open_loop = plant.series(&feedback)?;
+    let step = step_view(&plant, &feedback, &prefilter, band_percent).map_err(|error| error.to_string());
+    Ok(LinearLoop { margins: margins(&open_loop), controller: feedback, prefilter, open_loop, step })
+}
+
+fn step_view(
+    plant: &TransferFunction,
+    feedback: &TransferFunction,
+    prefilter: &TransferFunction,
+    band_percent: f64,
+) -> Result<StepView, LoopError> {
+    let unity = TransferFunction::gain_only(1.0);
+    let closed = plant.series(feedback)?.feedback(&unity.clone().in_domain(plant.domain())?)?;
+    let through = prefilter.series(&closed)?;
+    // U/R = F G/(1 + P G), closed from the factors of G and P.
+    let command = prefilter.series(&feedback.feedback(plant)?)?;
+    let duration = duration(&through);
+    let times_s = match plant.domain() {
+        TimeDomain::Continuous => uniform_times(duration, SAMPLES)?,
+        TimeDomain::Discrete { sample_time_s } => {
+            let samples = (duration / sample_time_s).ceil().clamp(10.0, 100_000.0) as usize;
+            (0..samples).map(|sample| sample as f64 * sample_time_s).collect()
+        }
+    };
+    let response = step_response(&through, &times_s)?;
+    let baseline = StepBaseline::to_value(1.0);
+    let metrics = step_metrics(&times_s, &response, baseline, band_percent)?;
+    Ok(StepView {
+        filtered_reference: step_response(prefilter, &times_s)?,
+        command_v_per_n: step_response(&command, &times_s)?,
+        metrics,
+        response,
+        times_s,
+    })
+}
+
+/// Eight time constants of the slowest pole that matters for what is seen, within a tenth of a second and a minute.
+fn duration(through: &TransferFunction) -> f64 {
+    let rate = |pole: &num_complex::Complex64| match through.domain() {
+        TimeDomain::Continuous => -pole.re,
+        TimeDomain::Discrete { sample_time_s } => {
+            -phea_dynamics::portable::ln(phea_dynamics::portable::magnitude(*pole).max(1e-300))
+                / sample_time_s
+        }
+    };
+    let slowest = through.without_common_factors(0.05).poles().iter().map(rate).fold(f64::INFINITY, f64::min);
+    if slowest > 0.0 { (8.0 / slowest).clamp(0.1, 60.0) } else { 1.0 }
+}
+
+/// A settling time in words, with its band.
+pub(crate) fn settling_words(metrics: &StepMetrics) -> String {
+    let band = crate::answer::significant(metrics.settling_band_percent, 2);
+    match metrics.settling {
+        Settling::Settled { time_s, .. } => {
+            format!("{} s (band {band} %)", crate::answer::significant(time_s, 3))
+        }
+        _ => format!("not settled within the time shown (band {band} %)"),
+    }
+}
