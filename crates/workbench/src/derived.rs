@@ -4,6 +4,7 @@ mod answer;
 mod list;
 mod rig;
 
+pub(crate) use answer::sentence;
 pub use answer::{json, text};
 pub use rig::derive;
 

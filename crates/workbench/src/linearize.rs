@@ -19,6 +19,7 @@ use phea_hydraulics::stiffness::{
 };
 use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
+pub(crate) use answer::{comparisons, difference_text, located, models, passivity_sentence, root_list};
 pub use answer::{json, text};
 
 use crate::rig::Rig;

@@ -1,0 +1,105 @@
+//! The chapter on linear models: poles, Bode diagram of the models with their difference, dominance.
+
+use maud::{Markup, html};
+
+use super::chapter::{Chapter, cell, place, table};
+use crate::answer::significant;
+use crate::figure::{
+    BodeInput, Figure, FrequencyMark, FrequencySeries, PoleMapInput, PoleMapScale, PoleSeries, Words, bode, pole_map,
+};
+use crate::linearize::{Linearization, comparisons, difference_text, frequency_grid, located, models, root_list};
+use phea_dynamics::linear::{LinearError, TransferFunction};
+
+pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearError> {
+    let figures = vec![poles(linearization), responses(linearization)?];
+    let body = html! {
+        p {
+            "The two-pressure model is the linearised truth of the rig as declared; the fifth-order model (6.7) takes one stiffness and one load pressure and uses the values that hold; "
+            "(6.12) splits it into hydraulic, mechanical and valve part; (6.13) keeps the hydraulic part alone."
+        }
+        (pole_table(linearization))
+        (place(&figures[0]))
+        (place(&figures[1]))
+        h3 { "Largest differences" }
+        (difference_table(linearization))
+        h3 { "Dominance" }
+        p { "Share: greatest amplitude of the mode in the step response over its final value. The slowest mode rules when every other share is small." }
+        (dominance_table(linearization))
+    };
+    Ok(Chapter { anchor: "models", title: "Linear models", body, figures })
+}
+
+fn pole_table(linearization: &Linearization) -> Markup {
+    let rows: Vec<Vec<Markup>> = models(linearization)
+        .iter()
+        .map(|(model, equation, function)| vec![cell(*model), cell(*equation), cell(root_list(function.poles()))])
+        .collect();
+    table(&["model", "equation", "poles, rad/s"], 9, &rows)
+}
+
+fn difference_table(linearization: &Linearization) -> Markup {
+    let rows: Vec<Vec<Markup>> = comparisons(linearization)
+        .iter()
+        .map(|(name, comparison)| vec![cell(*name), cell(difference_text(&comparison.low)), cell(located(&comparison.all))])
+        .collect();
+    table(&["first for second", "below 1000 rad/s", "everywhere"], 9, &rows)
+}
+
+fn dominance_table(linearization: &Linearization) -> Markup {
+    let rows: Vec<Vec<Markup>> = linearization
+        .modes
+        .iter()
+        .map(|mode| {
+            vec![
+                cell(root_list(&[mode.pole])),
+                cell(significant(mode.step_share, 3)),
+                cell(significant(mode.decay_ratio, 3)),
+            ]
+        })
+        .collect();
+    table(&["mode, rad/s", "share of the step response", "times faster gone than the slowest"], 1, &rows)
+}
+
+fn poles(linearization: &Linearization) -> Figure {
+    let series = |name: &str, function: &TransferFunction| PoleSeries {
+        name: name.to_string(),
+        poles: function.poles().to_vec(),
+        zeros: function.zeros().to_vec(),
+    };
+    let input = PoleMapInput {
+        series: vec![
+            series("two-pressure", &linearization.two_pressure.command),
+            series("fifth order (6.7)", &linearization.full.command),
+            series("decomposed (6.12), corrected", &linearization.decomposed[1]),
+        ],
+        scale: PoleMapScale::SIGNED_LOGARITHMIC,
+        damping_ratios: vec![],
+        natural_frequencies_rad_per_s: vec![],
+    };
+    let caption = "Poles from command to force: the slow hydraulic pole, the piston on the load cell, the valve's spool.";
+    pole_map(Words::new("poles", "Pole map", caption), &input)
+}
+
+fn responses(linearization: &Linearization) -> Result<Figure, LinearError> {
+    let grid = frequency_grid(&linearization.full.command)?;
+    let series = |name: &str, function: &TransferFunction| FrequencySeries {
+        name: name.to_string(),
+        response: grid.iter().map(|frequency| function.at_frequency(*frequency)).collect(),
+        frequencies_rad_per_s: grid.clone(),
+    };
+    let resonance = linearization.full.command.poles().iter().map(|pole| pole.im).fold(0.0, f64::max);
+    let input = BodeInput {
+        quantity: "F_e/U_C".to_string(),
+        unit: "N/V".to_string(),
+        series: vec![
+            series("fifth order (6.7)", &linearization.full.command),
+            series("two-pressure", &linearization.two_pressure.command),
+            series("decomposed (6.12), corrected", &linearization.decomposed[1]),
+            series("first order (6.13)", &linearization.first_order),
+        ],
+        with_difference: true,
+        marks: vec![FrequencyMark { label: "resonance".to_string(), frequency_rad_per_s: resonance }],
+    };
+    let caption = "Force over command of the models, and how far each is from the fifth-order model.";
+    Ok(bode(Words::new("bode", "Frequency response of the models", caption), &input))
+}

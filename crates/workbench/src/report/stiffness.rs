@@ -1,0 +1,58 @@
+//! The chapter on stiffness over the stroke, Figure 6.4, in both models.
+
+use maud::html;
+use phea_hydraulics::line::Member;
+use phea_hydraulics::stiffness::StiffnessModel;
+
+use super::chapter::{Chapter, place};
+use crate::figure::{Figure, StiffnessCurve, StiffnessInput, Words, stiffness_over_stroke};
+use crate::linearize::{Linearization, stiffness_at, stiffness_sentence};
+use crate::rig::Rig;
+use crate::sizing::model_name;
+
+/// Positions of a curve over the stroke.
+const POSITIONS: u32 = 120;
+
+pub(super) fn chapter(rig: &Rig, linearization: &Linearization) -> Chapter {
+    let figures = vec![figure(rig)];
+    let declared = model_name(rig.actuator.components().stiffness_model);
+    let body = html! {
+        p { (stiffness_sentence(&linearization.stiffness_models)) }
+        p {
+            "This project declares " code { (declared) } ". The thesis' tables are made with " code { "uniform" }
+            "; a steel chamber does not become softer because a hose is screwed to it, so " code { "by_volume" } " is what a rig will show."
+        }
+        (place(&figures[0]))
+    };
+    Chapter { anchor: "stiffness", title: "Stiffness over the stroke", body, figures }
+}
+
+fn figure(rig: &Rig) -> Figure {
+    let declared = rig.actuator.components().stiffness_model;
+    let other = match declared {
+        StiffnessModel::Uniform => StiffnessModel::ByVolume,
+        StiffnessModel::ByVolume => StiffnessModel::Uniform,
+    };
+    let input = StiffnessInput {
+        curves: vec![curve(rig, declared), curve(rig, other)],
+        operating_position_m: Some(rig.point.position),
+        band_label: "dynamic stiffening from least to greatest".to_string(),
+    };
+    let caption = "Hydraulic stiffness against piston position: the declared model with its band of dynamic stiffening, and the other model.";
+    stiffness_over_stroke(Words::new("stiffness", "Hydraulic stiffness over the stroke", caption), &input)
+}
+
+fn curve(rig: &Rig, model: StiffnessModel) -> StiffnessCurve {
+    let stroke = rig.actuator.components().cylinder.stroke;
+    let positions_m: Vec<f64> = (0..=POSITIONS).map(|step| stroke * f64::from(step) / f64::from(POSITIONS)).collect();
+    let at = |member| positions_m.iter().map(|x| stiffness_at(rig, model, member, *x)).collect::<Vec<f64>>();
+    let (minimum, maximum) = (at(Member::Minimum), at(Member::Maximum));
+    let uncertain = minimum != maximum;
+    StiffnessCurve {
+        name: model_name(model).to_string(),
+        stiffness_n_per_m: at(Member::Nominal),
+        minimum_n_per_m: if uncertain { minimum } else { vec![] },
+        maximum_n_per_m: if uncertain { maximum } else { vec![] },
+        positions_m,
+    }
+}
