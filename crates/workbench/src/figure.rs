@@ -24,6 +24,7 @@ pub mod plot;
 pub mod png;
 pub mod pole_map;
 pub mod scene;
+pub mod schematic;
 pub mod sizing_chart;
 pub mod step_response;
 pub mod stiffness_over_stroke;
@@ -38,6 +39,9 @@ pub use colour::{Theme, style_sheet};
 pub use impedance::{Asymptote, ImpedanceInput, impedance};
 pub use nomograph::{NomographBore, NomographInput, nomograph};
 pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
+pub use schematic::{
+    ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, schematic,
+};
 pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};
 pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};
 pub use stiffness_over_stroke::{StiffnessCurve, StiffnessInput, stiffness_over_stroke};

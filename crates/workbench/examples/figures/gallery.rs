@@ -8,6 +8,8 @@ use phea_workbench::figure::*;
 /// Every figure once.
 pub(crate) fn all() -> Vec<Figure> {
     vec![
+        circuit(),
+        asymmetric_circuit(),
         bode_of_models(),
         stiffness(),
         commercial_bores(),
@@ -332,6 +334,61 @@ pub(crate) fn sensitivities() -> Figure {
                 bar("entrained air", ("0 %", 2.233), ("2 %", 2.02)),
                 bar("piston position x_p", ("0 mm", 4.109), ("500 mm", 4.0)),
             ],
+        },
+    )
+}
+
+pub(crate) fn circuit() -> Figure {
+    let hose = LineSymbol {
+        kind: LineKind::Hose,
+        rows: vec!["Synflex 3130-08".into(), "12.7 mm × 1.5 m".into(), "β_e 261 MPa".into()],
+    };
+    schematic(
+        words("schematic", "The rig"),
+        &SchematicInput {
+            supply: SupplyKind::ConstantPressure,
+            supply_rows: vec!["70 bar".into(), "9.8 L/min".into()],
+            tank: "0 bar".into(),
+            valve_rows: vec!["Moog 760 C263-A".into(), "1099 rad/s, ζ 0.9".into()],
+            line_a: hose.clone(),
+            line_b: hose,
+            rods: Rods::Both,
+            load_beside_b: true,
+            cylinder: "50/22 mm, stroke 500 mm".into(),
+            mass: "13.1 kg".into(),
+            load_cell: Some(vec!["load cell".into(), "98.1 MN/m".into()]),
+            environment: Environment::PrescribedMotion,
+            environment_rows: vec!["K_S 20 MN/m".into()],
+            controller: Some(ControllerSymbol {
+                has_prefilter: true,
+                rows: vec!["G = (0.001 s + 0.008)/s".into(), "F = 910/(s^2 + 83 s + 910)".into()],
+            }),
+        },
+    )
+}
+
+pub(crate) fn asymmetric_circuit() -> Figure {
+    let pipe = LineSymbol { kind: LineKind::Pipe, rows: vec!["pipe 10.5 mm".into(), "0.35 m".into()] };
+    schematic(
+        words("schematic-asymmetric", "An asymmetric cylinder on pipes"),
+        &SchematicInput {
+            supply: SupplyKind::Pump,
+            supply_rows: vec!["210 bar".into(), "38 L/min".into()],
+            tank: "0 bar".into(),
+            valve_rows: vec!["a servovalve with a rather long name".into()],
+            line_a: pipe.clone(),
+            line_b: pipe,
+            rods: Rods::TowardsLoad,
+            load_beside_b: true,
+            cylinder: "63/36 mm, stroke 300 mm".into(),
+            mass: "25 kg".into(),
+            load_cell: Some(vec!["load cell".into(), "50 MN/m".into()]),
+            environment: Environment::SpringMassDamper,
+            environment_rows: vec!["5 kg, 2 MN/m, 100 N·s/m".into()],
+            controller: Some(ControllerSymbol {
+                has_prefilter: false,
+                rows: vec!["G = 0.0005 + 0.002/s".into()],
+            }),
         },
     )
 }

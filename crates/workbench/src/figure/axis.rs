@@ -53,7 +53,7 @@ impl Axis {
         Axis { title: title.into(), scale: Scale::Logarithmic, minimum, maximum, steps: Steps::Decimal }
     }
 
-    /// A linear axis that holds the finite values with room to spare and ends on round numbers.
+    /// A linear axis that holds the finite values and ends on round numbers.
     pub fn fit_linear(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
         Self::fit_steps(title, values, Steps::Decimal)
     }
@@ -72,7 +72,8 @@ impl Axis {
         let (low, high) = extent(values.into_iter().filter(|v| v.is_finite() && v.abs() < 1e250));
         let (low, high) = distinct(low, high);
         let step = ticks::round_step(high - low, 5, steps);
-        let (minimum, maximum) = ((low / step - 0.02).floor() * step, (high / step + 0.02).ceil() * step);
+        let slack = 1e-9;
+        let (minimum, maximum) = ((low / step + slack).floor() * step, (high / step - slack).ceil() * step);
         Axis { steps, ..Self::linear(title, minimum, maximum) }
     }
 

@@ -112,7 +112,7 @@ fn asymptote_label(line: &Asymptote, x: &Axis) -> Mark {
     let middle = (from * to).sqrt();
     let at = (middle, line.coefficient * pow(middle, f64::from(line.exponent)));
     let side = if line.exponent < 0 { Side::Right } else { Side::Above };
-    Mark::Label { at, text: line.label.clone(), role: Role::Text, side }
+    Mark::Label { at: vec![at], text: line.label.clone(), role: Role::Text, side }
 }
 
 fn phase_panel(input: &ImpedanceInput) -> Panel {

@@ -6,6 +6,8 @@ use super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point
 use super::typeset;
 
 const SWATCH: f64 = 30.0;
+/// For a marker alone.
+const NARROW: f64 = 14.0;
 const GAP: f64 = 7.0;
 const BETWEEN: f64 = 20.0;
 /// Height of a row.
@@ -41,13 +43,17 @@ impl LegendEntry {
     }
 }
 
+fn swatch(entry: &LegendEntry) -> f64 {
+    if entry.stroke.is_none() && entry.fill.is_none() { NARROW } else { SWATCH }
+}
+
 /// Entries distributed over rows of the given width: each with its offset from the left.
 fn rows(entries: &[LegendEntry], width: f64) -> Vec<Vec<(f64, String, &LegendEntry)>> {
     let mut result: Vec<Vec<(f64, String, &LegendEntry)>> = Vec::new();
     let mut x = 0.0;
     for entry in entries {
-        let text = typeset::fitted(&entry.text, LABEL_SIZE, width - SWATCH - GAP);
-        let length = SWATCH + GAP + typeset::width(&text, LABEL_SIZE);
+        let text = typeset::fitted(&entry.text, LABEL_SIZE, width - swatch(entry) - GAP);
+        let length = swatch(entry) + GAP + typeset::width(&text, LABEL_SIZE);
         if result.is_empty() || x + length > width {
             result.push(Vec::new());
             x = 0.0;
@@ -80,9 +86,9 @@ pub fn draw(scene: &mut Scene, entries: &[LegendEntry], left: f64, top: f64, wid
                 scene.line(point(x, middle), point(x + SWATCH, middle), stroke);
             }
             if let Some(marker) = entry.marker {
-                draw_marker(scene, point(x + 0.5 * SWATCH, middle), marker, None);
+                draw_marker(scene, point(x + 0.5 * swatch(entry), middle), marker, None);
             }
-            let at = point(x + SWATCH + GAP, middle);
+            let at = point(x + swatch(entry) + GAP, middle);
             scene.text(Text::new(at, text, LABEL_SIZE).held(Anchor::Start, Baseline::Middle));
         }
     }

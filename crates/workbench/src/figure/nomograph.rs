@@ -49,11 +49,13 @@ pub fn nomograph(words: Words, input: &NomographInput) -> Figure {
     let unit = DisplayUnit::LITRE_PER_MINUTE;
     let flow = unit.of(input.design_flow_m3_per_s);
     let (slowest, fastest) = input.velocity_range_m_per_s;
-    let x = Axis::logarithmic(unit.title("Flow q"), flow / 5.0, flow * 5.0);
-    let at_design = input.bores.iter().map(|b| velocity(input.design_flow_m3_per_s, b.bore_m));
+    let x = Axis::logarithmic(unit.title("Flow q"), flow / 5.0, flow * 2.2);
+    let ends = [1.0, 2.2].into_iter().flat_map(|factor| {
+        input.bores.iter().map(move |b| velocity(factor * input.design_flow_m3_per_s, b.bore_m))
+    });
     let y = Axis::fit_logarithmic(
         "Oil velocity v (m/s)",
-        at_design.chain([slowest / 2.0, fastest * 2.0]).map(|v| v.clamp(slowest / 20.0, fastest * 20.0)),
+        ends.chain([slowest / 2.0, fastest * 2.0]).map(|v| v.max(slowest / 20.0).min(fastest * 10.0)),
     );
     let mut marks = vec![
         Mark::Band {
@@ -74,7 +76,7 @@ pub fn nomograph(words: Words, input: &NomographInput) -> Figure {
     marks.extend(input.bores.iter().map(|bore| bore_line(bore, &x)));
     limits(&mut marks, input, &x);
     bore_markers(&mut marks, input, flow);
-    marks.extend(input.bores.iter().filter_map(|bore| bore_label(bore, &x, &y)));
+    marks.extend(input.bores.iter().map(|bore| bore_label(bore, &x)));
     let used = |verdict: &Verdict| input.bores.iter().any(|bore| bore.verdict == *verdict);
     let mut legend: Vec<LegendEntry> = Verdict::ALL
         .into_iter()
@@ -114,7 +116,7 @@ fn limits(marks: &mut Vec<Mark>, input: &NomographInput, x: &Axis) {
         let bore = (4.0 * input.design_flow_m3_per_s / (PI * limit)).sqrt();
         marks.push(Mark::Line { points: line_of(bore, x), stroke: limit_stroke() });
         let text = format!("{} mm", plain(DisplayUnit::MILLIMETRE.of(bore)));
-        marks.push(Mark::Label { at: (flow, limit), text, role: Role::Good, side: Side::Left });
+        marks.push(Mark::Label { at: vec![(flow, limit)], text, role: Role::Good, side: Side::Left });
     }
     marks.push(Mark::Line {
         points: vec![(flow, slowest), (flow, fastest)],
@@ -138,26 +140,18 @@ fn bore_markers(marks: &mut Vec<Mark>, input: &NomographInput, flow: f64) {
     }
 }
 
-/// The bore's name where its line leaves the frame on the right, or at the top.
-fn bore_label(bore: &NomographBore, x: &Axis, y: &Axis) -> Option<Mark> {
-    let unit = DisplayUnit::LITRE_PER_MINUTE;
+/// The bore's name where its line ends on the right.
+fn bore_label(bore: &NomographBore, x: &Axis) -> Mark {
     let diameter = plain(DisplayUnit::MILLIMETRE.of(bore.bore_m));
     let text = match bore.label.as_str() {
         "" => format!("{diameter} mm"),
         label => format!("{diameter} mm ({label})"),
     };
-    let flow_at = |v: f64| unit.of(v * PI * bore.bore_m * bore.bore_m / 4.0);
-    let (right_velocity, top_flow) = (velocity(x.maximum * unit.in_si, bore.bore_m), flow_at(y.maximum));
     let role = match bore.verdict {
         Verdict::Rejected => Role::Muted,
-        _ => Role::Text,
+        Verdict::Warned => Role::Text,
+        Verdict::Accepted => Role::Good,
     };
-    if right_velocity < y.maximum {
-        let at = (x.maximum * 0.93, right_velocity * 0.93);
-        Some(Mark::Label { at, text, role, side: Side::Left })
-    } else if top_flow > x.minimum {
-        Some(Mark::Label { at: (top_flow * 0.97, y.maximum * 0.94), text, role, side: Side::Left })
-    } else {
-        None
-    }
+    let flow_m3_per_s = x.maximum * DisplayUnit::LITRE_PER_MINUTE.in_si;
+    Mark::EdgeLabel { at: velocity(flow_m3_per_s, bore.bore_m), text, role }
 }

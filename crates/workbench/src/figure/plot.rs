@@ -93,10 +93,19 @@ pub enum Mark {
         /// Text beside it; empty for none.
         label: String,
     },
+    /// A text outside the frame on the right, level with a value of y: the name of a line that ends there.
+    EdgeLabel {
+        /// Value of y.
+        at: f64,
+        /// Text with markup.
+        text: String,
+        /// Colour.
+        role: Role,
+    },
     /// A text near a point.
     Label {
-        /// (x, y).
-        at: (f64, f64),
+        /// (x, y) of the point, or of several to choose from, the best first.
+        at: Vec<(f64, f64)>,
         /// Text with markup.
         text: String,
         /// Colour.
@@ -126,6 +135,8 @@ pub enum Side {
     Left,
     /// To the right.
     Right,
+    /// On the point itself, interrupting what lies below.
+    On,
 }
 
 /// One pair of axes; x belongs to the plot.

@@ -1,7 +1,7 @@
 //! Poles and zeros in the complex plane, linear or signed logarithmic, with damping ratios and natural frequencies.
 
 use num_complex::Complex64;
-use phea_dynamics::portable::{cos, magnitude, pow, sin};
+use phea_dynamics::portable::{cos, pow, sin};
 
 use super::axis::{Axis, Scale};
 use super::colour::{Role, series_role};
@@ -51,9 +51,9 @@ pub fn pole_map(words: Words, input: &PoleMapInput) -> Figure {
         direction: Direction::X,
         from: 0.0,
         to: f64::INFINITY,
-        fill: Fill { role: Role::Bad, opacity: 0.08 },
+        fill: unstable_fill(),
         hatched: false,
-        label: "unstable".to_string(),
+        label: String::new(),
     }];
     grid(&mut marks, input, &x, &y);
     let axis_stroke = Stroke::solid(Role::Axis, 1.2);
@@ -70,10 +70,15 @@ pub fn pole_map(words: Words, input: &PoleMapInput) -> Figure {
         }
     }
     if !input.damping_ratios.is_empty() || !input.natural_frequencies_rad_per_s.is_empty() {
-        legend.push(LegendEntry::line("damping ratio ζ, natural frequency ω_n", grid_stroke()));
+        legend.push(LegendEntry::line("damping ratio ζ and natural frequency", grid_stroke()));
     }
+    legend.push(LegendEntry::area("unstable half plane", unstable_fill()));
     let panels = vec![Panel { y, height: 380.0, marks }];
     words.with_scene(Plot { x, panels, legend, equal_aspect: input.scale == PoleMapScale::Linear }.draw())
+}
+
+fn unstable_fill() -> Fill {
+    Fill { role: Role::Bad, opacity: 0.1 }
 }
 
 fn pole_style(index: usize) -> MarkerStyle {
@@ -109,10 +114,14 @@ fn axes(input: &PoleMapInput) -> (Axis, Axis) {
     let all = || input.series.iter().flat_map(|series| series.poles.iter().chain(&series.zeros));
     let (re, im) = ("Real part (rad/s)", "Imaginary part (rad/s)");
     match input.scale {
-        PoleMapScale::Linear => (
-            Axis::fit_linear(re, all().map(|z| z.re).chain([0.0])),
-            Axis::fit_linear(im, all().flat_map(|z| [z.im, -z.im])),
-        ),
+        PoleMapScale::Linear => {
+            let y = Axis::fit_linear(im, all().flat_map(|z| [z.im, -z.im]));
+            // A strip of the unstable half plane stays in sight.
+            let strip = 0.2 * y.maximum;
+            let x = Axis::fit_linear(re, all().map(|z| z.re).chain([0.0]));
+            let (minimum, maximum) = (x.minimum.min(-1.4 * y.maximum), x.maximum.max(strip));
+            (Axis::linear(re, minimum, maximum), y)
+        }
         PoleMapScale::SignedLogarithmic => {
             let parts = || all().flat_map(|z| [z.re.abs(), z.im.abs()]).filter(|v| v.is_finite() && *v > 0.0);
             let largest = parts().fold(0.0, f64::max);
@@ -126,6 +135,9 @@ fn axes(input: &PoleMapInput) -> (Axis, Axis) {
         }
     }
 }
+
+/// Where along a line its label may stand, as parts of the way to the frame.
+const PLACES: [f64; 7] = [0.85, 0.7, 0.55, 0.4, 0.25, 0.12, 0.06];
 
 fn grid_stroke() -> Stroke {
     Stroke::solid(Role::Muted, 1.0).dashed(Dash::Dotted)
@@ -146,9 +158,10 @@ fn grid(marks: &mut Vec<Mark>, input: &PoleMapInput, x: &Axis, y: &Axis) {
                 (0..=120).map(|i| at(least * pow(2.0 * reach / least, f64::from(i) / 120.0), sign)).collect();
             marks.push(Mark::Line { points, stroke: grid_stroke() });
         }
-        let outermost = (0.97 * x.minimum.abs() / ratio.max(1e-9)).min(0.9 * y.maximum / height.max(1e-9));
+        let farthest = (x.minimum.abs() / ratio.max(1e-9)).min(y.maximum / height.max(1e-9));
+        let places = PLACES.map(|part| at(part * farthest, 1.0)).to_vec();
         let text = format!("ζ {}", plain(ratio));
-        marks.push(Mark::Label { at: at(outermost, 1.0), text, role: Role::Muted, side: Side::Below });
+        marks.push(Mark::Label { at: places, text, role: Role::Muted, side: Side::On });
     }
     for &frequency in &input.natural_frequencies_rad_per_s {
         let points: Vec<(f64, f64)> = (0..=90)
@@ -158,7 +171,11 @@ fn grid(marks: &mut Vec<Mark>, input: &PoleMapInput, x: &Axis, y: &Axis) {
             })
             .collect();
         marks.push(Mark::Line { points, stroke: grid_stroke() });
-        let text = format!("{} rad/s", plain(magnitude(Complex64::new(frequency, 0.0))));
-        marks.push(Mark::Label { at: (0.0, -frequency), text, role: Role::Muted, side: Side::Left });
+        let places = [250.0_f64, 235.0, 220.0, 260.0, 205.0, 265.0]
+            .map(|degrees| degrees.to_radians())
+            .map(|angle| (frequency * cos(angle), frequency * sin(angle)))
+            .to_vec();
+        let text = format!("{} rad/s", plain(frequency));
+        marks.push(Mark::Label { at: places, text, role: Role::Muted, side: Side::On });
     }
 }

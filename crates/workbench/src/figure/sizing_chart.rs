@@ -122,7 +122,7 @@ fn panel_marks(
     for candidate in input.candidates.iter().filter(|c| named && !c.label.is_empty()) {
         let at = (candidate.length_m, unit.of(candidate_value(candidate)));
         let role = candidate.verdict.role();
-        marks.push(Mark::Label { at, text: candidate.label.clone(), role, side: Side::Above });
+        marks.push(Mark::Label { at: vec![at], text: candidate.label.clone(), role, side: Side::Above });
     }
     marks
 }

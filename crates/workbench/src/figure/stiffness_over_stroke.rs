@@ -100,6 +100,6 @@ fn curve_marks(marks: &mut Vec<Mark>, index: usize, curve: &StiffnessCurve) {
         let style = MarkerStyle { marker: Marker::Circle, role: series_role(index), radius: 4.0 };
         let text = format!("{} {}", plain(y), stiffness.symbol);
         marks.push(Mark::Markers { points: vec![(x, y, format!("softest: {text}"))], style });
-        marks.push(Mark::Label { at: (x, y), text, role: Role::Text, side: Side::Above });
+        marks.push(Mark::Label { at: vec![(x, y)], text, role: Role::Text, side: Side::Above });
     }
 }

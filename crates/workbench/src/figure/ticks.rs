@@ -68,12 +68,12 @@ pub fn linear(minimum: f64, maximum: f64, count: usize, steps: Steps, exponent: 
 }
 
 /// Ticks of a logarithmic axis: decades with labels, at most `count` of them, and 2 to 9 between them as minor ones.
-/// Less than one and a half decades get labels at 1, 2, 5 as well.
+/// Where that leaves room, 2 and 5 get labels as well.
 pub fn logarithmic(minimum: f64, maximum: f64, count: usize) -> Vec<Tick> {
     let (low, high) = (floor_log10(minimum), floor_log10(maximum));
     let decades = (high - low).max(1) as usize;
     let stride = decades.div_ceil(count.max(1)) as i32;
-    let narrow = maximum / minimum < 31.7;
+    let narrow = 3.0 * phea_dynamics::portable::log10(maximum / minimum) <= count as f64;
     let (from, to) = (minimum * (1.0 - 1e-9), maximum * (1.0 + 1e-9));
     let mut ticks = Vec::new();
     for exponent in low..=high {

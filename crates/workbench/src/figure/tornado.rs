@@ -50,11 +50,7 @@ pub fn tornado(words: Words, input: &TornadoInput) -> Figure {
     };
     bars.sort_by(|a, b| span(b).total_cmp(&span(a)));
     let frame = frame(&bars);
-    let values = bars.iter().flat_map(|bar| [bar.low_value, bar.high_value]).chain([input.nominal]);
-    // Room at both ends for the settings written beside the bars.
-    let fitted = Axis::fit_linear(input.unit.title(&input.quantity), values.map(|v| input.unit.of(v)));
-    let room = 0.16 * (fitted.maximum - fitted.minimum);
-    let axis = Axis::linear(fitted.title.clone(), fitted.minimum - room, fitted.maximum + room);
+    let axis = axis(input, &bars, frame);
     let entries = [
         LegendEntry::area("parameter at its low setting", fill(false)),
         LegendEntry::area("at its high setting", fill(true)),
@@ -105,6 +101,39 @@ fn scale(scene: &mut Scene, axis: &Axis, frame: Rectangle) {
     scene.text(Text::new(at, axis.full_title(), TITLE_SIZE).held(Anchor::Middle, Baseline::Top));
 }
 
+/// Where a bar ends and the words beside its end: one text for both ends when they lie on one side.
+fn ends(bar: &TornadoBar, nominal: f64) -> Vec<(f64, bool, String)> {
+    let low = (bar.low_value, false, bar.low_setting.clone());
+    let high = (bar.high_value, true, bar.high_setting.clone());
+    if (bar.low_value - nominal) * (bar.high_value - nominal) < 0.0 {
+        return vec![low, high];
+    }
+    let both = format!("{} / {}", bar.low_setting, bar.high_setting);
+    if (bar.low_value - nominal).abs() > (bar.high_value - nominal).abs() {
+        vec![(bar.low_value, false, both), (bar.high_value, true, String::new())]
+    } else {
+        vec![(bar.low_value, false, String::new()), (bar.high_value, true, both)]
+    }
+}
+
+/// An axis with room for the words beside the longest bars.
+fn axis(input: &TornadoInput, bars: &[&TornadoBar], frame: Rectangle) -> Axis {
+    let (mut low, mut high) = (input.nominal, input.nominal);
+    let (mut before, mut after) = (12.0_f64, 12.0_f64);
+    for (value, _, words) in bars.iter().flat_map(|bar| ends(bar, input.nominal)) {
+        (low, high) = (low.min(value), high.max(value));
+        let room = typeset::width(&words, SMALL_SIZE).min(0.3 * frame.width()) + 12.0;
+        if value < input.nominal {
+            before = before.max(room);
+        } else {
+            after = after.max(room);
+        }
+    }
+    let per_unit = (high - low) / (frame.width() - before - after);
+    let (minimum, maximum) = (low - before * per_unit, high + after * per_unit);
+    Axis::linear(input.unit.title(&input.quantity), input.unit.of(minimum), input.unit.of(maximum))
+}
+
 fn draw_bar(
     scene: &mut Scene,
     bar: &TornadoBar,
@@ -115,39 +144,25 @@ fn draw_bar(
 ) {
     let middle = frame.top + ROW * (index as f64 + 0.5);
     let name = typeset::fitted(&bar.parameter, LABEL_SIZE, frame.left - 16.0);
-    scene.text(
-        Text::new(point(frame.left - 8.0, middle), name, LABEL_SIZE).held(Anchor::End, Baseline::Middle),
-    );
+    let at = point(frame.left - 8.0, middle);
+    scene.text(Text::new(at, name, LABEL_SIZE).held(Anchor::End, Baseline::Middle));
     let nominal = place(axis, frame, input.unit.of(input.nominal));
-    let ends = [(bar.low_value, &bar.low_setting, false), (bar.high_value, &bar.high_setting, true)];
-    let both_right = bar.low_value.min(bar.high_value) >= input.nominal;
-    let both_left = bar.low_value.max(bar.high_value) <= input.nominal;
-    for (value, setting, high) in ends {
+    let one_sided = (bar.low_value - input.nominal) * (bar.high_value - input.nominal) >= 0.0;
+    for (value, high, words) in ends(bar, input.nominal) {
         let x = place(axis, frame, input.unit.of(value));
         // Two ends on one side of the nominal value share the row, one above the other.
-        let (from, to) = match (both_left || both_right, high) {
+        let (from, to) = match (one_sided, high) {
             (false, _) => (middle - 0.5 * BAR, middle + 0.5 * BAR),
             (true, false) => (middle - 0.5 * BAR, middle),
             (true, true) => (middle, middle + 0.5 * BAR),
         };
         let area = Rectangle::from_corners(point(nominal.min(x), from), point(nominal.max(x), to));
         scene.rectangle(area, None, Some(fill(high)));
-        let to_right = value > input.nominal || (value == input.nominal && high);
-        let (dx, anchor) = if to_right { (5.0, Anchor::Start) } else { (-5.0, Anchor::End) };
-        let outermost = !(both_left || both_right)
-            || (value - input.nominal).abs()
-                >= (bar.low_value - input.nominal).abs().max((bar.high_value - input.nominal).abs());
-        if outermost {
-            let at = point(x + dx, middle);
-            let limit = if to_right { frame.right - at.x - 4.0 } else { at.x - frame.left - 4.0 };
-            let text = typeset::fitted(setting, SMALL_SIZE, limit);
-            scene.text(
-                Text::new(at, text, SMALL_SIZE)
-                    .held(anchor, Baseline::Middle)
-                    .coloured(Role::Muted)
-                    .with_halo(),
-            );
-        }
+        let (dx, anchor) = if value < input.nominal { (-5.0, Anchor::End) } else { (5.0, Anchor::Start) };
+        let limit = if dx > 0.0 { frame.right - x - 8.0 } else { x - frame.left - 8.0 };
+        let words = typeset::fitted(&words, SMALL_SIZE, limit);
+        let text = Text::new(point(x + dx, middle), words, SMALL_SIZE).held(anchor, Baseline::Middle);
+        scene.text(text.coloured(Role::Muted));
     }
 }
 

@@ -1,10 +1,10 @@
 //! Labels of marks, each at the first free place that suits its kind.
 
-use super::super::LABEL_SIZE;
 use super::super::colour::Role;
 use super::super::placement::Occupancy;
 use super::super::scene::{Anchor, Baseline, Point, Rectangle, Scene, Text, point};
-use super::layout::Placed;
+use super::super::{LABEL_SIZE, WIDTH, typeset};
+use super::layout::{EDGE_GAP, Placed};
 use super::paint::{band_area, reference_line};
 use super::{Direction, Mark, Side};
 
@@ -25,15 +25,38 @@ pub(super) fn draw(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occup
                 (label, legible(fill.role), inside_band(area, *direction, placed.frame))
             }
             Mark::Label { at, text, role, side } => {
-                let at = placed.at(at.0, at.1);
-                if !placed.frame.contains_point(at) {
-                    continue;
-                }
-                (text, *role, around(at, *side))
+                let points = at.iter().map(|(x, y)| placed.at(*x, *y));
+                let visible = points.filter(|p| placed.frame.contains_point(*p));
+                (text, *role, visible.flat_map(|p| around(p, *side)).collect())
             }
             _ => continue,
         };
         place(scene, occupancy, placed.frame, text, role, &holds);
+    }
+}
+
+/// Names of lines that end at the right side, those that would touch one above left out.
+pub(super) fn draw_at_edge(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark]) {
+    let limit = WIDTH - placed.frame.right - EDGE_GAP - 2.0;
+    let mut texts: Vec<Text> = marks
+        .iter()
+        .filter_map(|mark| {
+            let Mark::EdgeLabel { at, text, role } = mark else { return None };
+            let y = placed.at(placed.x.minimum, *at).y;
+            let inside = y >= placed.frame.top && y <= placed.frame.bottom;
+            let content = typeset::fitted(text, LABEL_SIZE, limit);
+            let text = Text::new(point(placed.frame.right + EDGE_GAP, y), content, LABEL_SIZE);
+            inside.then(|| text.held(Anchor::Start, Baseline::Middle).coloured(legible(*role)))
+        })
+        .collect();
+    texts.sort_by(|a, b| a.position.y.total_cmp(&b.position.y));
+    let mut end = f64::NEG_INFINITY;
+    for text in texts {
+        let bounds = text.bounds();
+        if bounds.top > end {
+            end = bounds.bottom;
+            scene.text(text);
+        }
     }
 }
 
@@ -126,31 +149,38 @@ fn inside_band(area: Rectangle, direction: Direction, frame: Rectangle) -> Vec<H
     }
 }
 
-/// Around a point: the wanted side, then the others, then farther away.
+/// Around a point: the wanted side and its corners, the other sides, the other corners, then farther away.
 fn around(at: Point, side: Side) -> Vec<Hold> {
-    let order = match side {
-        Side::Above => [Side::Above, Side::Right, Side::Left, Side::Below],
-        Side::Below => [Side::Below, Side::Right, Side::Left, Side::Above],
-        Side::Left => [Side::Left, Side::Above, Side::Below, Side::Right],
-        Side::Right => [Side::Right, Side::Above, Side::Below, Side::Left],
+    const UP: [(f64, f64); 2] = [(1.0, -1.0), (-1.0, -1.0)];
+    const DOWN: [(f64, f64); 2] = [(1.0, 1.0), (-1.0, 1.0)];
+    const LEFT: [(f64, f64); 2] = [(-1.0, -1.0), (-1.0, 1.0)];
+    const RIGHT: [(f64, f64); 2] = [(1.0, -1.0), (1.0, 1.0)];
+    let (order, [first, second]) = match side {
+        Side::On => return vec![(at, Anchor::Middle, Baseline::Middle)],
+        Side::Above => ([Side::Above, Side::Right, Side::Left, Side::Below], [UP, DOWN]),
+        Side::Below => ([Side::Below, Side::Right, Side::Left, Side::Above], [DOWN, UP]),
+        Side::Left => ([Side::Left, Side::Above, Side::Below, Side::Right], [LEFT, RIGHT]),
+        Side::Right => ([Side::Right, Side::Above, Side::Below, Side::Left], [RIGHT, LEFT]),
     };
     let near = |side: Side, away: f64| match side {
         Side::Above => (point(at.x, at.y - away), Anchor::Middle, Baseline::Letters),
         Side::Below => (point(at.x, at.y + away), Anchor::Middle, Baseline::Top),
         Side::Left => (point(at.x - away, at.y), Anchor::End, Baseline::Middle),
-        Side::Right => (point(at.x + away, at.y), Anchor::Start, Baseline::Middle),
+        Side::Right | Side::On => (point(at.x + away, at.y), Anchor::Start, Baseline::Middle),
     };
-    let corner = |away: f64| {
-        [(1.0, -1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(dx, dy): (f64, f64)| {
-            let anchor = if dx > 0.0 { Anchor::Start } else { Anchor::End };
-            let baseline = if dy > 0.0 { Baseline::Top } else { Baseline::Letters };
-            (point(at.x + dx * away, at.y + dy * away), anchor, baseline)
-        })
+    let corner = |(dx, dy): (f64, f64), away: f64| {
+        let anchor = if dx > 0.0 { Anchor::Start } else { Anchor::End };
+        let baseline = if dy > 0.0 { Baseline::Top } else { Baseline::Letters };
+        (point(at.x + dx * away, at.y + dy * away), anchor, baseline)
     };
     [9.0, 18.0, 30.0]
         .into_iter()
         .flat_map(|away| {
-            order.iter().map(move |s| near(*s, away)).chain(corner(0.8 * away)).collect::<Vec<_>>()
+            let [wanted, others @ ..] = order;
+            let own = first.map(|c| corner(c, 0.8 * away));
+            let far = second.map(|c| corner(c, 0.8 * away));
+            let sides = others.map(|s| near(s, away));
+            [near(wanted, away)].into_iter().chain(own).chain(sides).chain(far)
         })
         .collect()
 }

@@ -7,12 +7,14 @@ use super::super::placement::Occupancy;
 use super::super::scene::{Anchor, Baseline, Fill, Point, Rectangle, Scene, Stroke, Text, point};
 use super::super::ticks::Tick;
 use super::super::{LABEL_SIZE, TITLE_SIZE, WIDTH, typeset};
-use super::{Panel, Plot, labels, paint};
+use super::{Mark, Panel, Plot, labels, paint};
 
 const EDGE: f64 = 8.0;
 const RIGHT: f64 = 18.0;
 const BETWEEN: f64 = 16.0;
 const TICK: f64 = 4.0;
+/// From the frame to a name on its right.
+pub(super) const EDGE_GAP: f64 = 6.0;
 
 /// A panel in its place: maps values to the view box.
 pub(super) struct Placed<'a> {
@@ -32,6 +34,7 @@ impl Placed<'_> {
 
 pub(super) fn draw(plot: &Plot) -> Scene {
     let left = left_margin(plot);
+    let right = right_edge(plot);
     let bottom_of_panels =
         EDGE + plot.panels.iter().map(|panel| panel.height + BETWEEN).sum::<f64>() - BETWEEN;
     let below_ticks = bottom_of_panels + TICK + 5.0 + LABEL_SIZE;
@@ -43,13 +46,13 @@ pub(super) fn draw(plot: &Plot) -> Scene {
     let mut scene = Scene::new(WIDTH, (below_title + gap + legend_height + EDGE).ceil());
     let mut top = EDGE;
     for (index, panel) in plot.panels.iter().enumerate() {
-        let frame = Rectangle { left, top, right: WIDTH - RIGHT, bottom: top + panel.height };
+        let frame = Rectangle { left, top, right, bottom: top + panel.height };
         let last = index + 1 == plot.panels.len();
         draw_panel(&mut scene, plot, panel, frame, last);
         top += panel.height + BETWEEN;
     }
     let title = typeset::fitted(&plot.x.full_title(), TITLE_SIZE, WIDTH - left - EDGE);
-    let middle = 0.5 * (left + WIDTH - RIGHT);
+    let middle = 0.5 * (left + right);
     scene.text(
         Text::new(point(middle, below_ticks + 6.0), title, TITLE_SIZE).held(Anchor::Middle, Baseline::Top),
     );
@@ -71,6 +74,7 @@ fn draw_panel(scene: &mut Scene, plot: &Plot, panel: &Panel, frame: Rectangle, l
     let title = typeset::fitted(&panel.y.full_title(), TITLE_SIZE, panel.height + BETWEEN);
     let at = point(EDGE, frame.centre().y);
     scene.text(Text::new(at, title, TITLE_SIZE).held(Anchor::Middle, Baseline::Top).rotated(-90.0));
+    labels::draw_at_edge(scene, &placed, &panel.marks);
     labels::draw(scene, &placed, &panel.marks, &mut occupancy);
 }
 
@@ -92,6 +96,20 @@ fn left_margin(plot: &Plot) -> f64 {
         .map(|label| typeset::width(&label, LABEL_SIZE))
         .fold(0.0, f64::max);
     (EDGE + TITLE_SIZE + 9.0 + widest + TICK + 4.0).ceil()
+}
+
+/// Right side of the frames: room for half a tick label, or for the names of lines that end there.
+fn right_edge(plot: &Plot) -> f64 {
+    let widest = plot
+        .panels
+        .iter()
+        .flat_map(|panel| &panel.marks)
+        .filter_map(|mark| match mark {
+            Mark::EdgeLabel { text, .. } => Some(typeset::width(text, LABEL_SIZE) + EDGE_GAP + EDGE),
+            _ => None,
+        })
+        .fold(RIGHT, f64::max);
+    WIDTH - widest.min(0.3 * WIDTH).ceil()
 }
 
 fn grid(scene: &mut Scene, placed: &Placed<'_>, x_ticks: &[Tick], y_ticks: &[Tick]) {
@@ -145,24 +163,21 @@ fn tick_labels(scene: &mut Scene, placed: &Placed<'_>, x_ticks: &[Tick], y_ticks
     }
 }
 
-/// Extends the axis that is too short for equal units; other scales than linear are left alone.
+/// Extends the axis that is too short for equal units, x at its lower end, y at both; other scales than linear are left alone.
 pub(super) fn with_equal_aspect(plot: &Plot) -> Plot {
     let mut result = plot.clone();
-    let width = WIDTH - RIGHT - left_margin(plot);
+    let width = right_edge(plot) - left_margin(plot);
     let [panel] = result.panels.as_mut_slice() else { return result };
     if plot.x.scale != Scale::Linear || panel.y.scale != Scale::Linear {
         return result;
     }
     let per_x = (plot.x.maximum - plot.x.minimum) / width;
     let per_y = (panel.y.maximum - panel.y.minimum) / panel.height;
-    let extend = |axis: &mut Axis, span: f64| {
-        let middle = 0.5 * (axis.minimum + axis.maximum);
-        (axis.minimum, axis.maximum) = (middle - 0.5 * span, middle + 0.5 * span);
-    };
     if per_x < per_y {
-        extend(&mut result.x, per_y * width);
+        result.x.minimum = result.x.maximum - per_y * width;
     } else {
-        extend(&mut panel.y, per_x * panel.height);
+        let (middle, half) = (0.5 * (panel.y.minimum + panel.y.maximum), 0.5 * per_x * panel.height);
+        (panel.y.minimum, panel.y.maximum) = (middle - half, middle + half);
     }
     result
 }

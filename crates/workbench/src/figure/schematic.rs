@@ -1,0 +1,125 @@
+//! The hydraulic circuit with its controller, in symbols after ISO 1219-1, from the words of a project.
+//!
+//! Fixed places, variable symbols and texts: cylinder, moving mass, load cell and environment on top, the lines below
+//! them, then servovalve and controller, then supply and tank. Every text comes from the caller and is cut to its place.
+
+mod mechanics;
+mod pen;
+mod symbols;
+
+use super::scene::Scene;
+use super::{Figure, WIDTH, Words};
+
+/// What feeds the valve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SupplyKind {
+    /// A source of constant pressure.
+    ConstantPressure,
+    /// A pump of limited flow.
+    Pump,
+}
+
+/// What joins valve and chamber.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineKind {
+    /// A flexible line.
+    Hose,
+    /// A rigid line.
+    Pipe,
+}
+
+/// A line between valve and chamber.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LineSymbol {
+    /// Kind.
+    pub kind: LineKind,
+    /// Words, one row each, such as `hose 12.7 mm` and `1.5 m`; three rows at most.
+    pub rows: Vec<String>,
+}
+
+/// Rods of the cylinder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rods {
+    /// On both sides: a symmetric cylinder.
+    Both,
+    /// Towards the load only.
+    TowardsLoad,
+}
+
+/// What the rod pushes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Environment {
+    /// A place whose motion is given; drawn with the arrow of x_L.
+    PrescribedMotion,
+    /// A wall that stands still.
+    Wall,
+    /// A mass on a spring and a damper.
+    SpringMassDamper,
+}
+
+/// Blocks of the control loop.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ControllerSymbol {
+    /// There is a prefilter F.
+    pub has_prefilter: bool,
+    /// Words below the blocks, such as `G = 0.001 (s + 8)/s`; three rows at most.
+    pub rows: Vec<String>,
+}
+
+/// What the diagram shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SchematicInput {
+    /// Supply.
+    pub supply: SupplyKind,
+    /// Words beside the supply, such as `70 bar`; two rows at most.
+    pub supply_rows: Vec<String>,
+    /// Word beside the tank, such as `0 bar`.
+    pub tank: String,
+    /// Words of the valve, such as its model; two rows at most.
+    pub valve_rows: Vec<String>,
+    /// Line of chamber A.
+    pub line_a: LineSymbol,
+    /// Line of chamber B.
+    pub line_b: LineSymbol,
+    /// Rods.
+    pub rods: Rods,
+    /// Chamber B is the one beside the load; otherwise A is.
+    pub load_beside_b: bool,
+    /// Word above the cylinder, such as `50/22 mm, stroke 500 mm`.
+    pub cylinder: String,
+    /// Word above the moving mass, such as `13.1 kg`.
+    pub mass: String,
+    /// Words of the load cell, such as `20 MN/m`; two rows at most. Absent: the rod holds the environment itself.
+    pub load_cell: Option<Vec<String>>,
+    /// Environment.
+    pub environment: Environment,
+    /// Words below the environment, such as its stiffness; two rows at most.
+    pub environment_rows: Vec<String>,
+    /// Control loop, where there is one.
+    pub controller: Option<ControllerSymbol>,
+}
+
+/// As low as the supply or the words of the controller reach.
+fn height(input: &SchematicInput) -> f64 {
+    let rows = input.controller.as_ref().map_or(0, |controller| controller.rows.len().min(3));
+    let words = symbols::CONTROLLER_ROWS + pen::ROW * rows as f64 + 4.0;
+    let supply: f64 = match input.supply {
+        SupplyKind::ConstantPressure => 340.0,
+        SupplyKind::Pump => 368.0,
+    };
+    supply.max(words)
+}
+
+/// Draws the diagram.
+pub fn schematic(words: Words, input: &SchematicInput) -> Figure {
+    let mut scene = Scene::new(WIDTH, height(input));
+    symbols::supply(&mut scene, input);
+    symbols::working_lines(&mut scene, input);
+    symbols::valve(&mut scene, input);
+    mechanics::cylinder(&mut scene, input);
+    mechanics::load(&mut scene, input);
+    if let Some(controller) = &input.controller {
+        symbols::controller(&mut scene, controller, input.load_cell.is_some());
+    }
+    words.with_scene(scene)
+}

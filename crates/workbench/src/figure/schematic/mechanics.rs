@@ -1,0 +1,122 @@
+//! Cylinder, moving mass, load cell, environment.
+
+use super::super::SMALL_SIZE;
+use super::super::colour::Role;
+use super::super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point};
+use super::super::typeset;
+use super::pen::{MOTION, OUTLINE, arrow, block, ground, lines, rows, spring, word};
+use super::{Environment, Rods, SchematicInput};
+
+/// Height of the rod's axis.
+const AXIS: f64 = 74.0;
+const LEFT: f64 = 104.0;
+const RIGHT: f64 = 300.0;
+const HALF: f64 = 26.0;
+const PISTON: f64 = 196.0;
+const ROD: f64 = 5.0;
+const MASS: f64 = 342.0;
+/// Centre of the load cell: its signal starts below it.
+pub(super) const CELL: f64 = 412.0;
+/// Lower edge of the load cell.
+pub(super) const CELL_BOTTOM: f64 = AXIS + 15.0;
+const WALL: f64 = 520.0;
+/// Port of the chamber away from the load.
+pub(super) const PORT_FAR: (f64, f64) = (LEFT + 30.0, AXIS + HALF);
+/// Port of the chamber beside the load.
+pub(super) const PORT_NEAR: (f64, f64) = (RIGHT - 30.0, AXIS + HALF);
+
+/// The cylinder with piston, rods and the names of its chambers.
+pub(super) fn cylinder(scene: &mut Scene, input: &SchematicInput) {
+    let oil = Fill { role: Role::Series(0), opacity: 0.13 };
+    let body = Rectangle { left: LEFT, top: AXIS - HALF, right: RIGHT, bottom: AXIS + HALF };
+    scene.rectangle(body, None, Some(Fill::solid(Role::Background)));
+    scene.rectangle(body, Some(OUTLINE), Some(oil));
+    let rod_left = match input.rods {
+        Rods::Both => LEFT - 44.0,
+        Rods::TowardsLoad => PISTON,
+    };
+    let end = MASS - 20.0;
+    let rod = Rectangle { left: rod_left, top: AXIS - ROD, right: end, bottom: AXIS + ROD };
+    scene.rectangle(rod, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
+    let piston = Rectangle { left: PISTON - 7.0, top: AXIS - HALF, right: PISTON + 7.0, bottom: AXIS + HALF };
+    scene.rectangle(piston, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
+    let (far, near) = if input.load_beside_b { ("A", "B") } else { ("B", "A") };
+    for (name, x) in [(far, 0.5 * (LEFT + PISTON)), (near, 0.5 * (RIGHT + PISTON))] {
+        word(scene, name, (x - 14.0, AXIS + 15.0), Role::Text);
+        word(scene, &format!("p_{name}"), (x + 14.0, AXIS + 15.0), Role::Muted);
+    }
+    let text = typeset::fitted(&input.cylinder, SMALL_SIZE, RIGHT - LEFT + 30.0);
+    let at = point(0.5 * (LEFT + RIGHT), 8.0);
+    scene.text(Text::new(at, text, SMALL_SIZE).held(Anchor::Middle, Baseline::Top));
+    position_arrow(scene, input);
+}
+
+/// The position x_p counts from the A end to the B end.
+fn position_arrow(scene: &mut Scene, input: &SchematicInput) {
+    let y = AXIS - HALF - 11.0;
+    let (from, to) = if input.load_beside_b { (PISTON, PISTON + 40.0) } else { (PISTON, PISTON - 40.0) };
+    lines(scene, &[(from, y - 5.0), (from, y + 5.0)], MOTION);
+    arrow(scene, (from, y), (to, y), MOTION);
+    let away = if to > from { 13.0 } else { -13.0 };
+    word(scene, "x_p", (to + away, y), Role::Accent);
+}
+
+/// Mass, load cell and environment on the axis of the rod.
+pub(super) fn load(scene: &mut Scene, input: &SchematicInput) {
+    let heavy = Stroke::solid(Role::Axis, 3.0);
+    block(scene, MASS - 20.0, AXIS - 22.0, 40.0, 44.0);
+    word(scene, "M", (MASS, AXIS), Role::Text);
+    let mass = [input.mass.clone()];
+    rows(scene, &mass, (MASS, AXIS - 41.0), Anchor::Middle, 66.0, 1);
+    match &input.load_cell {
+        Some(words) => {
+            lines(scene, &[(MASS + 20.0, AXIS), (CELL - 17.0, AXIS)], heavy);
+            block(scene, CELL - 17.0, AXIS - 15.0, 34.0, 30.0);
+            word(scene, "F_e", (CELL, AXIS), Role::Text);
+            rows(scene, words, (CELL, 17.0), Anchor::Middle, 84.0, 2);
+            lines(scene, &[(CELL + 17.0, AXIS), (CELL + 26.0, AXIS)], heavy);
+        }
+        None => lines(scene, &[(MASS + 20.0, AXIS), (CELL + 26.0, AXIS)], heavy),
+    }
+    environment(scene, input);
+}
+
+fn environment(scene: &mut Scene, input: &SchematicInput) {
+    let from = CELL + 26.0;
+    match input.environment {
+        Environment::PrescribedMotion => {
+            spring(scene, from, WALL - 6.0, AXIS, 9.0, OUTLINE);
+            let wall =
+                Rectangle { left: WALL - 6.0, top: AXIS - 32.0, right: WALL + 6.0, bottom: AXIS + 32.0 };
+            scene.rectangle(wall, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
+            let y = AXIS - 44.0;
+            arrow(scene, (WALL, y), (WALL + 26.0, y), MOTION);
+            arrow(scene, (WALL, y), (WALL - 26.0, y), MOTION);
+            word(scene, "x_L", (WALL, y - 13.0), Role::Accent);
+        }
+        Environment::Wall => {
+            spring(scene, from, WALL, AXIS, 9.0, OUTLINE);
+            ground(scene, WALL, AXIS - 30.0, AXIS + 30.0);
+        }
+        Environment::SpringMassDamper => {
+            block(scene, from, AXIS - 18.0, 24.0, 36.0);
+            word(scene, "m", (from + 12.0, AXIS), Role::Text);
+            spring(scene, from + 24.0, WALL, AXIS - 10.0, 6.0, OUTLINE);
+            damper(scene, from + 24.0, WALL, AXIS + 10.0);
+            ground(scene, WALL, AXIS - 30.0, AXIS + 30.0);
+        }
+    }
+    rows(scene, &input.environment_rows, (WALL + 32.0, AXIS + 40.0), Anchor::End, 132.0, 2);
+}
+
+fn damper(scene: &mut Scene, from: f64, to: f64, y: f64) {
+    let middle = 0.5 * (from + to);
+    lines(scene, &[(from, y), (middle, y)], OUTLINE);
+    lines(scene, &[(middle, y - 4.0), (middle, y + 4.0)], OUTLINE);
+    lines(
+        scene,
+        &[(middle - 8.0, y - 6.0), (middle + 8.0, y - 6.0), (middle + 8.0, y + 6.0), (middle - 8.0, y + 6.0)],
+        OUTLINE,
+    );
+    lines(scene, &[(middle + 8.0, y), (to, y)], OUTLINE);
+}
