@@ -1,5 +1,6 @@
 //! The four-edge valve: data sheet, coefficients at any operating point, and what is true of any such valve.
 
+use phea_dynamics::portable;
 use phea_dynamics::scalar::Dual;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::operating_point::{Condition, operating_point};
@@ -47,8 +48,8 @@ fn control_coefficients_are_the_closed_forms_for_equal_edges() {
             let drop = supply.pressure - supply.tank_pressure;
             let (near, far) = (drop - s * load_pressure, drop + s * load_pressure);
             let y = shape * spool / nominal;
-            let sech = 1.0 / y.cosh();
-            let slope = -shape / nominal * sech * y.tanh();
+            let sech = 1.0 / portable::cosh(y);
+            let slope = -shape / nominal * sech * portable::sinh(y) / portable::cosh(y);
             let gain = flow / nominal * (near / 2.0).sqrt()
                 + s * leak * slope * ((near / 2.0).sqrt() - (far / 2.0).sqrt());
             let pressure = (flow * spool.abs() / nominal + leak * sech) / (8.0 * near).sqrt()
@@ -212,7 +213,7 @@ fn control_flow_of_equal_edges() {
     assert_eq!(control_flow(&valve, &SUPPLY, 0.0, 0.0), 0.0);
     for (spool, load) in [(2.0, 10e5), (-2.0, 10e5), (0.05, -30e5)] {
         let s: f64 = f64::signum(spool);
-        let leak = 2.40e-9 / (100.0_f64 * spool / 10.0).cosh();
+        let leak = 2.40e-9 / portable::cosh(100.0 * spool / 10.0);
         let (near, far) = (((70e5 - s * load) / 2.0).sqrt(), ((70e5 + s * load) / 2.0).sqrt());
         let printed = s * (3.0e-7 * spool.abs() / 10.0 + leak) * near - s * leak * far;
         assert!((control_flow(&valve, &SUPPLY, spool, load) / printed - 1.0).abs() < 1e-12);

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use num_complex::Complex64;
+use phea_dynamics::expression::Expression;
 use phea_dynamics::linear::StateSpace;
 use phea_dynamics::scalar::Dual;
 use phea_hydraulics::actuator::{Actuator, Components};
@@ -119,6 +120,30 @@ fn rates_of_the_nonlinear_model() {
     let expected = [12.0, 1510168.9, 17210055.0, -22253611.0, -0.024, -524.66254];
     for (found, expected) in rates(&model, &state, &input).to_array().into_iter().zip(expected) {
         assert!((found / expected - 1.0).abs() < 5e-8, "{found} against {expected}");
+    }
+}
+
+/// Run with recorded numbers the equations become data that gives the same bits.
+#[test]
+fn recorded_rates_are_the_rates() {
+    let actuator = Actuator::new(rigs()[2]).unwrap();
+    let model = TwoPressureModel::new(&actuator, [35e5; 2], Member::Nominal, 100.0);
+    let names = ["spool", "spool_rate", "pressure_a", "pressure_b", "deflection", "velocity", "command"];
+    let recorded = Expression::record(&names, |p| {
+        let state = TwoPressureState::from_array([p[0], p[1], p[2], p[3], p[4], p[5]]);
+        let input =
+            TwoPressureInput { command: p[6], load_velocity: 0.004.into(), load_position: 0.31.into() };
+        rates(&model.map(), &state, &input).to_array().to_vec()
+    });
+    for values in [
+        [-0.37, 12.0, 21e5, 48e5, 1.3e-4, -0.02, 0.9],
+        [0.0, 0.0, 35e5, 35e5, 0.0, 0.0, 0.0],
+        [9.0, -300.0, 70.1e5, 10.0, -2e-4, 0.3, -10.0],
+    ] {
+        let [a, b, c, d, e, f, command] = values;
+        let state = TwoPressureState::from_array([a, b, c, d, e, f]);
+        let input = TwoPressureInput { command, load_velocity: 0.004, load_position: 0.31 };
+        assert_eq!(recorded.evaluate(&values), rates(&model, &state, &input).to_array());
     }
 }
 
