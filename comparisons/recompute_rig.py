@@ -206,6 +206,55 @@ def valve():
     show("the flow there L/min", flow(at) * 6e4)
 
 
+def nonlinear_rates():
+    """Rates of the nonlinear model at one state far from rest: U, dU/dt, p_A, p_B, deflection, velocity."""
+    spool, spool_rate, p_a, p_b, deflection, velocity = -0.37, 12.0, 21e5, 48e5, 1.3e-4, -0.02
+    command, load_velocity, load_position, friction, sensor, shape = 0.9, 0.004, 0.31, 100.0, 2e7, 100.0
+    u = spool / NOMINAL_VOLTAGE
+    leak, ahead, back = 1 / np.cosh(shape * u), max(u, 0.0), max(-u, 0.0)
+    root = lambda dp: dp / (dp**2 + 1e6) ** 0.25
+    q3 = (EDGES["3"] * ahead + LEAKS["3"] * leak) * root(SUPPLY - p_a)
+    q4 = (EDGES["4"] * back + LEAKS["4"] * leak) * root(p_a)
+    q5 = (EDGES["5"] * back + LEAKS["5"] * leak) * root(SUPPLY - p_b)
+    q6 = (EDGES["6"] * ahead + LEAKS["6"] * leak) * root(p_b)
+    hose_area = np.pi / 4 * BORE**2
+    effective = 1 / (1 / FLUID_MODULUS + 1 / (STIFFENING * (hose_area + EXPANSION) / EXPANSION_SLOPE))
+    x = load_position + deflection
+    line = hose_area * LENGTH / effective
+    c_a, c_b = AREA * x / FLUID_MODULUS + line, AREA * (STROKE - x) / FLUID_MODULUS + line
+    show(
+        "nonlinear rates, by volume",
+        spool_rate,
+        VALVE_FREQUENCY**2 * (command - spool) - 2 * VALVE_DAMPING * VALVE_FREQUENCY * spool_rate,
+        (q3 - q4 - AREA * velocity) / c_a,
+        (q5 - q6 + AREA * velocity) / c_b,
+        velocity - load_velocity,
+        (AREA * (p_a - p_b) - friction * velocity - sensor * deflection) / MASS,
+    )
+
+
+def leakage_peak():
+    """Total leakage of the four-edge valve with blocked ports, over the command."""
+    def total(u, edges, leaks):
+        leak, ahead, back = 1 / np.cosh(100 * u), max(u, 0.0), max(-u, 0.0)
+        q = 0.0
+        for supply, tank, opening_s, opening_t in (("3", "4", ahead, back), ("5", "6", back, ahead)):
+            k_s = edges[supply] * opening_s + leaks[supply] * leak
+            k_t = edges[tank] * opening_t + leaks[tank] * leak
+            p = SUPPLY * k_s**2 / (k_s**2 + k_t**2)
+            q += k_s * np.sqrt(SUPPLY - p)
+        return q
+
+    equal = ({edge: 2.97e-7 for edge in EDGES}, {edge: 2.48e-9 for edge in EDGES})
+    for name, edges, leaks in (("Table 5.1", EDGES, LEAKS), ("equal", *equal)):
+        for side in (1, -1):
+            found = minimize_scalar(
+                lambda u: -total(side * u, edges, leaks), bounds=(0, 0.02), method="bounded", options={"xatol": 1e-10}
+            )
+            ratio = -found.fun / total(0.0, edges, leaks)
+            show(f"leakage peak, {name}, side {side:+d}: ratio, command", ratio, side * found.x)
+
+
 if __name__ == "__main__":
     modulus, hose_volume = stiffness_chain()
     table_6_1()
@@ -214,3 +263,5 @@ if __name__ == "__main__":
     passivity()
     off_centre(modulus, hose_volume)
     valve()
+    nonlinear_rates()
+    leakage_peak()

@@ -65,7 +65,7 @@ pub fn closed_loop_impedance(
 
 /// Response of the closed-loop driving-point impedance at a frequency in rad/s, for any controller.
 ///
-/// A sampled controller's response stands for the whole sampler and hold; dead time is included.
+/// Dead time is included; a sampled controller is taken at z = exp(jwT), without the response of its hold.
 ///
 /// # Errors
 /// See [`open_loop_impedance`].

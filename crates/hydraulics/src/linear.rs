@@ -13,7 +13,9 @@ mod dominance;
 mod first_order;
 pub(crate) mod polynomial;
 
-pub use decomposed::{Decomposition, MechanicalDamping, decompose, decomposed_model};
+pub use decomposed::{
+    Decomposition, DecompositionError, MechanicalDamping, decompose, decomposed_model, decomposition_error,
+};
 pub use difference::{ResponseDifference, response_difference};
 pub use dominance::{ModeShare, dominance};
 pub use first_order::{
@@ -26,6 +28,7 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 
 use crate::force_sensor::in_series;
+use crate::parameter::{ParameterError, Problems};
 use polynomial::{scaled, shifted};
 
 /// Parameters of the fifth-order model. Units: m2, kg, N s/m, m3/(s V), m3/(s Pa), N/m, rad/s.
@@ -55,6 +58,23 @@ impl<S: Scalar> LinearParameters<S> {
     /// Equivalent stiffness K_eq = K_H K_S/(K_H + K_S) in N/m: both springs in series, thesis (6.12).
     pub fn equivalent_stiffness(&self) -> S {
         in_series(self.hydraulic_stiffness, self.sensor_stiffness)
+    }
+}
+
+impl LinearParameters {
+    /// What about these parameters is impossible; empty if nothing is.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("useful_area", self.useful_area);
+        problems.positive("moving_mass", self.moving_mass);
+        problems.not_negative("viscous_friction", self.viscous_friction);
+        problems.positive("flow_gain", self.flow_gain);
+        problems.not_negative("flow_pressure_coefficient", self.flow_pressure_coefficient);
+        problems.positive("hydraulic_stiffness", self.hydraulic_stiffness);
+        problems.positive("sensor_stiffness", self.sensor_stiffness);
+        problems.positive("valve_natural_frequency", self.valve_natural_frequency);
+        problems.positive("valve_damping_ratio", self.valve_damping_ratio);
+        problems.into_vec()
     }
 }
 

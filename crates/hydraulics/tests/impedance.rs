@@ -1,5 +1,7 @@
 //! What the load feels: asymptotes, the published controller's lack of passivity, and the step that leaves no force.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;

@@ -1,5 +1,7 @@
 //! Equilibria: closed forms, balances that must hold, and refusals with their numbers.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::operating_point::{Condition, Load, OperatingPointError, operating_point};

@@ -1,17 +1,25 @@
 //! The four-edge valve: data sheet, coefficients at any operating point, and what is true of any such valve.
 
+use phea_dynamics::portable;
 use phea_dynamics::scalar::Dual;
-use phea_hydraulics::reference_rig::{USEFUL_AREA, valve, valve_with_equal_edges};
+use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::operating_point::{Condition, operating_point};
+use phea_hydraulics::reference_rig::{USEFUL_AREA, components, hose_line, valve, valve_with_equal_edges};
 use phea_hydraulics::servovalve::{
-    ChamberFlows, Direction, Edges, Servovalve, Supply, chamber_coefficients, chamber_flows,
-    control_coefficients, control_flow, flow_coefficient_from_rating, leakage_coefficient_from_rating,
-    velocity_gain,
+    ChamberFlows, Direction, Edges, Openings, Servovalve, Supply, chamber_coefficients, chamber_flows,
+    control_coefficients, control_flow, edge_flows, flow_coefficient_from_rating,
+    leakage_coefficient_from_rating, velocity_gain,
 };
+use phea_hydraulics::stiffness::StiffnessModel;
 
 const SUPPLY: Supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
 
 fn check(what: &str, value: f64, printed: f64, last_digit: f64) {
     assert!((value - printed).abs() <= 0.5 * last_digit, "{what}: {value} is not {printed}");
+}
+
+fn rig() -> Components {
+    components(hose_line(), StiffnessModel::Uniform)
 }
 
 #[test]
@@ -40,8 +48,8 @@ fn control_coefficients_are_the_closed_forms_for_equal_edges() {
             let drop = supply.pressure - supply.tank_pressure;
             let (near, far) = (drop - s * load_pressure, drop + s * load_pressure);
             let y = shape * spool / nominal;
-            let sech = 1.0 / y.cosh();
-            let slope = -shape / nominal * sech * y.tanh();
+            let sech = 1.0 / portable::cosh(y);
+            let slope = -shape / nominal * sech * portable::sinh(y) / portable::cosh(y);
             let gain = flow / nominal * (near / 2.0).sqrt()
                 + s * leak * slope * ((near / 2.0).sqrt() - (far / 2.0).sqrt());
             let pressure = (flow * spool.abs() / nominal + leak * sech) / (8.0 * near).sqrt()
@@ -77,6 +85,8 @@ fn velocity_gain_carries_the_same_flow_through_both_edges() {
     let mean = |direction| control_coefficients(&valve(), &SUPPLY, 0.0, 0.0, direction).flow_gain;
     check("mean of chambers, extending", mean(Direction::Extending), 6.59467e-5, 1e-10);
     check("mean of chambers, retracting", mean(Direction::Retracting), 4.20936e-5, 1e-10);
+    // ORIGIN: thesis Table 6.3, nominal K_qU 5.4e-5 (one unit of the last digit)
+    check("mean of both directions", mean(Direction::Mean), 5.4e-5, 2.0 * 1e-6);
     assert_eq!(velocity_gain(&valve(), &SUPPLY, [1e-3, 1e-3], 1e5, Direction::Extending), None);
 }
 
@@ -96,6 +106,40 @@ fn leakage_adds_to_the_flow_gain_under_load() {
     let (near, far) = (45e5_f64.sqrt(), 95e5_f64.sqrt());
     let expected = 2.40e-9 * 100.0 * 0.5 * (far - near) / (3.0e-7 * near);
     assert!((largest - expected).abs() < 1e-3 * expected, "{largest} against {expected}");
+}
+
+/// With the leakage's curve on each edge the total leakage is not greatest at null, as thesis (4.14) has it.
+#[test]
+fn total_leakage_peaks_beside_null() {
+    // ORIGIN: recomputed by comparisons/recompute_rig.py (plain square roots, blocked ports)
+    let cases = [
+        (valve(), 1.0, 1.0816865, 2.9372e-3),
+        (valve(), -1.0, 1.1295702, 3.9964e-3),
+        (
+            Servovalve {
+                flow_coefficients: Edges::equal(2.97e-7),
+                leakage_coefficients: Edges::equal(2.48e-9),
+                ..valve()
+            },
+            1.0,
+            1.0952882,
+            3.3669e-3,
+        ),
+    ];
+    for (valve, side, ratio, command) in cases {
+        let actuator = Actuator::new(Components { valve, ..rig() }).unwrap();
+        let total = |relative: f64| {
+            let spool = 10.0 * side * relative;
+            let point = operating_point(&actuator, 0.25, Condition::Command(spool)).unwrap();
+            let openings = Openings::at(&valve, spool);
+            let flows = edge_flows(&valve, &SUPPLY, &openings, point.pressure_a, point.pressure_b);
+            flows.supply_to_a + flows.supply_to_b
+        };
+        let null = total(0.0);
+        check("leakage at its peak", total(command) / null, ratio, 2e-6);
+        assert!(total(0.98 * command) < total(command) && total(1.02 * command) < total(command));
+        assert!(total(0.05) < 0.1 * null);
+    }
 }
 
 /// Analytic derivatives of both chambers' flows against dual numbers, everywhere, the laminar zone and reversed drops
@@ -169,7 +213,7 @@ fn control_flow_of_equal_edges() {
     assert_eq!(control_flow(&valve, &SUPPLY, 0.0, 0.0), 0.0);
     for (spool, load) in [(2.0, 10e5), (-2.0, 10e5), (0.05, -30e5)] {
         let s: f64 = f64::signum(spool);
-        let leak = 2.40e-9 / (100.0_f64 * spool / 10.0).cosh();
+        let leak = 2.40e-9 / portable::cosh(100.0 * spool / 10.0);
         let (near, far) = (((70e5 - s * load) / 2.0).sqrt(), ((70e5 + s * load) / 2.0).sqrt());
         let printed = s * (3.0e-7 * spool.abs() / 10.0 + leak) * near - s * leak * far;
         assert!((control_flow(&valve, &SUPPLY, spool, load) / printed - 1.0).abs() < 1e-12);

@@ -1,5 +1,7 @@
 //! Stiffness over the stroke: the thesis' numbers, closed forms, and the inverse problems.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::EntrainedAir;
@@ -7,7 +9,7 @@ use phea_hydraulics::line::{Line, Member};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, cylinder, hose, hose_line, pipe_line};
 use phea_hydraulics::stiffness::{
     LineLength, StiffnessModel, StrokeStiffness, chamber_compliance, hose_length_by_volume,
-    hose_length_uniform, hydraulic_stiffness, line_length_for_stiffness, model_difference,
+    hose_length_uniform, hydraulic_stiffness, line_length_for_stiffness, model_difference, stiffening_range,
     stiffness_from_hose_length,
 };
 
@@ -50,12 +52,13 @@ fn stiffness_of_hose_and_pipe_in_both_models() {
 #[test]
 fn stiffening_interval_brackets_the_nominal() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py, r_beta 4 and 5
-    let of = |member| over_stroke(StiffnessModel::Uniform, &hose_line(), member).minimum;
-    check("r_beta 4", of(Member::Minimum), 1.85e6, 1e4);
-    check("r_beta 5", of(Member::Maximum), 2.23e6, 1e4);
-    let by_volume = |member| over_stroke(StiffnessModel::ByVolume, &hose_line(), member).minimum;
-    assert!(by_volume(Member::Minimum) < by_volume(Member::Nominal));
-    assert!(by_volume(Member::Nominal) <= by_volume(Member::Maximum));
+    let lines = [&hose_line(), &hose_line()];
+    let uniform = stiffening_range(StiffnessModel::Uniform, FLUID_MODULUS, &cylinder(), lines);
+    check("r_beta 4", uniform.minimum.minimum, 1.85e6, 1e4);
+    check("r_beta 5", uniform.maximum.minimum, 2.23e6, 1e4);
+    let by_volume = stiffening_range(StiffnessModel::ByVolume, FLUID_MODULUS, &cylinder(), lines);
+    assert!(by_volume.minimum.minimum < by_volume.nominal.minimum);
+    assert!(by_volume.nominal.minimum <= by_volume.maximum.minimum);
 }
 
 /// ORIGIN: analytic, thesis (6.18) and (6.19) as printed.

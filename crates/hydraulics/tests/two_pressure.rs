@@ -1,11 +1,15 @@
 //! The two-pressure model against its own dual-number linearisation, and the fifth-order model against it.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 use num_complex::Complex64;
+use phea_dynamics::expression::Expression;
 use phea_dynamics::linear::StateSpace;
 use phea_dynamics::scalar::Dual;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
+use phea_hydraulics::impedance::open_loop_impedance;
 use phea_hydraulics::line::Member;
 use phea_hydraulics::linear::{linear_model, response_difference, transfer_functions};
 use phea_hydraulics::operating_point::{Condition, Load, OperatingPoint, operating_point};
@@ -100,6 +104,68 @@ fn linearisation_agrees_with_dual_numbers_everywhere() {
                 for (rate, bound) in rest.into_iter().zip(largest) {
                     assert!(rate.abs() < bound, "{rest:?}");
                 }
+            }
+        }
+    }
+}
+
+/// The equations themselves, far from rest.
+#[test]
+fn rates_of_the_nonlinear_model() {
+    let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume)).unwrap();
+    let model = TwoPressureModel::new(&actuator, [0.0; 2], Member::Nominal, 100.0);
+    let state = TwoPressureState::from_array([-0.37, 12.0, 21e5, 48e5, 1.3e-4, -0.02]);
+    let input = TwoPressureInput { command: 0.9, load_velocity: 0.004, load_position: 0.31 };
+    // ORIGIN: recomputed by comparisons/recompute_rig.py (eight digits)
+    let expected = [12.0, 1510168.9, 17210055.0, -22253611.0, -0.024, -524.66254];
+    for (found, expected) in rates(&model, &state, &input).to_array().into_iter().zip(expected) {
+        assert!((found / expected - 1.0).abs() < 5e-8, "{found} against {expected}");
+    }
+}
+
+/// Run with recorded numbers the equations become data that gives the same bits.
+#[test]
+fn recorded_rates_are_the_rates() {
+    let actuator = Actuator::new(rigs()[2]).unwrap();
+    let model = TwoPressureModel::new(&actuator, [35e5; 2], Member::Nominal, 100.0);
+    let names = ["spool", "spool_rate", "pressure_a", "pressure_b", "deflection", "velocity", "command"];
+    let recorded = Expression::record(&names, |p| {
+        let state = TwoPressureState::from_array([p[0], p[1], p[2], p[3], p[4], p[5]]);
+        let input =
+            TwoPressureInput { command: p[6], load_velocity: 0.004.into(), load_position: 0.31.into() };
+        rates(&model.map(), &state, &input).to_array().to_vec()
+    });
+    for values in [
+        [-0.37, 12.0, 21e5, 48e5, 1.3e-4, -0.02, 0.9],
+        [0.0, 0.0, 35e5, 35e5, 0.0, 0.0, 0.0],
+        [9.0, -300.0, 70.1e5, 10.0, -2e-4, 0.3, -10.0],
+    ] {
+        let [a, b, c, d, e, f, command] = values;
+        let state = TwoPressureState::from_array([a, b, c, d, e, f]);
+        let input = TwoPressureInput { command, load_velocity: 0.004, load_position: 0.31 };
+        assert_eq!(recorded.evaluate(&values), rates(&model, &state, &input).to_array());
+    }
+}
+
+/// A passive actuator stays passive whatever its edges, areas and position: leakage and friction only take energy.
+#[test]
+fn open_loop_impedance_of_the_two_pressure_model_is_passive() {
+    for components in rigs() {
+        let actuator = Actuator::new(components).unwrap();
+        for (position, condition) in
+            [(0.0, Condition::Command(0.0)), (0.4, Condition::Motion(2.0, Load::Force(2000.0)))]
+        {
+            let point = operating_point(&actuator, position, condition).unwrap();
+            let parameters = two_pressure_linear_parameters(
+                &model(&actuator, &point, 100.0),
+                &point,
+                Direction::Extending,
+            );
+            let model = transfer_functions(&two_pressure_coefficients(&parameters)).unwrap();
+            let impedance = open_loop_impedance(&model).unwrap();
+            assert!(impedance.is_stable());
+            for frequency in grid() {
+                assert!(impedance.at_frequency(frequency).re >= 0.0, "at {frequency}");
             }
         }
     }

@@ -1,0 +1,188 @@
+//! Fluid, lines, orifice and friction: limits, conservation and consistency.
+
+use phea_dynamics::scalar::{Dual, Scalar};
+use phea_hydraulics::cylinder::areas_from_diameters;
+use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid, bulk_modulus_with_air};
+use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity, Stribeck, ViscousSlope};
+use phea_hydraulics::line::{
+    Anchoring, Hose, Line, Member, Pipe, PipeWall, Stiffening, pipe_wall_compliance,
+};
+use phea_hydraulics::orifice::{flow, regular_root, regular_root_slope};
+use phea_hydraulics::reference_rig::{hose, hose_line};
+
+/// The modulus is -V dp/dV of the volumes it is said to come from.
+#[test]
+fn bulk_modulus_with_air_is_the_slope_of_the_volume() {
+    fn volume<S: Scalar>(p: S) -> S {
+        let reference = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        let liquid = S::from(0.97) * ((reference - p) / S::from(1.45e9)).exp();
+        liquid + S::from(0.03) * ((reference / p).ln() / S::from(1.25)).exp()
+    }
+    for pressure in [0.3e5, 1e5, 10e5, 70e5, 400e5] {
+        let v = volume(Dual::<1>::variable(pressure, 0));
+        let expected = -v.value() / v.gradient()[0];
+        let found: f64 = bulk_modulus_with_air(1.45e9, 0.03, 1.25, pressure);
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} against {expected}");
+    }
+}
+
+#[test]
+fn air_softens_less_the_higher_the_pressure() {
+    let fluid = |volume_fraction| Fluid {
+        bulk_modulus: 1.45e9,
+        density: 870.0,
+        kinematic_viscosity: 46e-6,
+        entrained_air: Some(EntrainedAir { volume_fraction, polytropic_index: 1.4 }),
+    };
+    let mut last = 0.0;
+    for pressure in [0.0, 5e5, 20e5, 70e5, 300e5] {
+        let modulus = fluid(0.02).modulus_at(pressure);
+        assert!(modulus > last && modulus < 1.45e9);
+        last = modulus;
+    }
+    // ORIGIN: analytic, the limits of no air and of infinite pressure
+    assert!((fluid(0.0).modulus_at(20e5) / 1.45e9 - 1.0).abs() < 1e-15);
+    assert!((fluid(0.02).modulus_at(1e9) / 1.45e9 - 1.0).abs() < 2e-5);
+    // ORIGIN: analytic, sqrt(1.45e9/870)
+    let clean = Fluid { entrained_air: None, ..fluid(0.0) };
+    assert!((clean.speed_of_sound(0.0) - 1290.994).abs() < 1e-3);
+    let excessive = EntrainedAir { volume_fraction: 1.0, polytropic_index: 0.5 };
+    let problems = Fluid { entrained_air: Some(excessive), ..clean }.problems();
+    assert_eq!(problems.len(), 2);
+}
+
+#[test]
+fn thick_walls_become_thin_ones() {
+    for anchoring in [Anchoring::Throughout, Anchoring::OneEnd, Anchoring::ExpansionJoints] {
+        let ratio = |thickness: f64| {
+            let of = |thick| pipe_wall_compliance(10e-3, thickness, 206e9, 0.3, anchoring, thick);
+            of(true) / of(false)
+        };
+        assert!((ratio(1e-6) - 1.0).abs() < 3e-4 && (ratio(1e-3) - 1.0).abs() > 0.05);
+    }
+    let compliance = |anchoring| pipe_wall_compliance(10e-3, 1e-3, 206e9, 0.3, anchoring, false);
+    assert!(compliance(Anchoring::OneEnd) < compliance(Anchoring::Throughout));
+    assert!(compliance(Anchoring::Throughout) < compliance(Anchoring::ExpansionJoints));
+}
+
+#[test]
+fn elastic_pipe_is_a_little_softer_than_its_fluid() {
+    let wall = PipeWall::Elastic {
+        thickness: 1.5e-3,
+        youngs_modulus: 206e9,
+        poisson_ratio: 0.3,
+        anchoring: Anchoring::Throughout,
+        thick: true,
+    };
+    let line = |wall| Line::Pipe { pipe: Pipe { bore: 10.5e-3, wall }, length: 0.35 };
+    let (rigid, elastic) = (line(PipeWall::Rigid), line(wall));
+    assert_eq!(rigid.effective_modulus(1.45e9, Member::Nominal), 1.45e9);
+    let modulus = elastic.effective_modulus(1.45e9, Member::Nominal);
+    assert!(modulus < 0.97 * 1.45e9 && modulus > 0.9 * 1.45e9);
+    // ORIGIN: analytic, fluid and wall take up volume in parallel
+    let fluid = rigid.compliance(1.45e9, Member::Nominal);
+    let taken_by_wall = elastic.compliance(1.45e9, Member::Nominal) - fluid;
+    let Line::Pipe { pipe, .. } = elastic else { panic!() };
+    assert!((taken_by_wall / (elastic.volume() * pipe.wall_compliance()) - 1.0).abs() < 1e-12);
+}
+
+/// The thesis multiplies a modulus of the expanded bore with the unexpanded volume.
+#[test]
+fn unexpanded_volume_understates_the_hose() {
+    let unexpanded = hose_line().compliance(1.45e9, Member::Nominal) / 1.5;
+    let expanded = hose().expanded_compliance_per_length(1.45e9, Member::Nominal);
+    // ORIGIN: analytic, E/A_ho = 1.56e-5/(pi/4 0.0127^2)
+    assert!((expanded / unexpanded - 1.0 - 0.12315).abs() < 1e-4);
+}
+
+#[test]
+fn impossible_lines_and_cylinders_are_refused() {
+    let soft = Hose { dynamic_stiffening: Stiffening { nominal: 3.0, minimum: 4.0, maximum: 2.0 }, ..hose() };
+    let problems = Line::Hose { hose: soft, length: -1.0 }.problems();
+    let names: Vec<&str> = problems.iter().map(|problem| problem.quantity.as_str()).collect();
+    let expected = ["hose.dynamic_stiffening.nominal", "hose.dynamic_stiffening.maximum", "length"];
+    assert_eq!(names, expected);
+    let thick = areas_from_diameters(0.05, [0.022, 0.05]).unwrap_err();
+    assert_eq!((thick.quantity.as_str(), thick.value), ("rod_diameter_b", 0.05));
+    assert!(areas_from_diameters(f64::NAN, [0.0, 0.0]).is_err());
+}
+
+#[test]
+fn regular_root_is_smooth_odd_and_rising() {
+    let mut last = f64::NEG_INFINITY;
+    for step in -400..=400 {
+        let drop = 25.0 * f64::from(step);
+        let root = regular_root(Dual::<1>::variable(drop, 0), Dual::constant(1e3));
+        assert!(root.value() > last && root.gradient()[0] > 0.0);
+        assert!((root.gradient()[0] / regular_root_slope(drop, 1e3) - 1.0).abs() < 1e-13);
+        assert_eq!(regular_root(-drop, 1e3), -root.value());
+        last = root.value();
+    }
+    // ORIGIN: analytic, 1 - (1 + 1/r^2)^(-1/4) at r transition pressures
+    for ratio in [10.0_f64, 100.0] {
+        let missing = 1.0 - flow(2.0, ratio * 1e3, 1e3) / (2.0 * (ratio * 1e3).sqrt());
+        assert!((missing - 0.25 / (ratio * ratio)).abs() < 0.01 / (ratio * ratio));
+    }
+}
+
+fn curve() -> Stribeck {
+    Stribeck {
+        coulomb: 80.0,
+        breakaway: 120.0,
+        stribeck_velocity: 0.01,
+        stribeck_exponent: 2.0,
+        viscous: 100.0,
+    }
+}
+
+#[test]
+fn friction_slopes_of_every_choice() {
+    let lugre = Friction::LuGre(LuGre { curve: curve(), bristle_stiffness: 1e7, bristle_damping: 2e3 });
+    let viscous = Friction::Viscous { viscous: 55.0 };
+    assert_eq!(lugre.viscous_slope(ViscousSlope::Viscous), Some(100.0));
+    assert_eq!(lugre.viscous_slope(ViscousSlope::Sticking), Some(2100.0));
+    assert_eq!(lugre.viscous_slope(ViscousSlope::Secant(0.0)), None);
+    for choice in [ViscousSlope::Viscous, ViscousSlope::Secant(0.2), ViscousSlope::Tangent(0.0)] {
+        assert!((viscous.viscous_slope(choice).unwrap() - 55.0).abs() < 1e-12);
+    }
+    // ORIGIN: analytic, dF/dv = sigma_2 - 2 (F_S - F_C) v/v_S^2 exp(-(v/v_S)^2)
+    let expected = 100.0 - 2.0 * 40.0 * 0.005 / 1e-4 * phea_dynamics::portable::exp(-0.25);
+    let tangent = lugre.viscous_slope(ViscousSlope::Tangent(0.005)).unwrap();
+    assert!((tangent / expected - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn derivatives_of_friction_exist_at_standstill() {
+    for exponent in [0.5, 1.0, 2.0] {
+        let curve = Stribeck { stribeck_exponent: exponent, ..curve() }.map::<Dual<2>>();
+        let lugre =
+            LuGre { curve, bristle_stiffness: Dual::constant(1e7), bristle_damping: Dual::constant(2e3) };
+        let force = lugre.force(Dual::variable(0.0, 0), Dual::variable(3e-6, 1));
+        // ORIGIN: analytic, dF/dv = sigma_1 + sigma_2 and dF/dz = sigma_0 where |v| has slope zero
+        assert!((force.gradient()[0] - 2100.0).abs() < 1e-9 && force.gradient()[1] == 1e7);
+    }
+}
+
+/// Power taken less power stored in the bristles, F v - sigma_0 z dz/dt, at any velocity and any deflection that the model
+/// can reach (|sigma_0 z| <= F_S): never negative when the condition holds, negative somewhere just beyond it.
+#[test]
+fn lugre_gives_no_energy_exactly_when_it_is_passive() {
+    let least_dissipation = |lugre: LuGre| {
+        let mut least = f64::INFINITY;
+        for i in -120..=120 {
+            for exponent in -40..=30 {
+                let z = 1e-7 * f64::from(i);
+                let v = phea_dynamics::portable::pow(10.0, 0.1 * f64::from(exponent));
+                let stored = lugre.bristle_stiffness * z * lugre.bristle_rate(v, z);
+                least = least.min((lugre.force(v, z) * v - stored) / v);
+            }
+        }
+        least
+    };
+    // sigma_1 (F_S - F_C)/F_C = 100 at sigma_1 = 200
+    let at = |bristle_damping| LuGre { curve: curve(), bristle_stiffness: 1e7, bristle_damping };
+    assert_eq!(at(200.0).passivity(), LuGrePassivity::Passive { surplus: 0.0 });
+    assert!(least_dissipation(at(200.0)) >= 0.0);
+    assert!(matches!(at(205.0).passivity(), LuGrePassivity::NotPassive { .. }));
+    assert!(least_dissipation(at(205.0)) < 0.0);
+}
