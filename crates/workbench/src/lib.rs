@@ -11,6 +11,7 @@ pub mod linear_loop;
 pub mod linearize;
 pub mod project;
 pub mod quantity;
+pub mod report;
 pub mod rig;
 pub mod sizing;
 pub mod source;

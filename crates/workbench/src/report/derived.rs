@@ -29,7 +29,8 @@ pub(super) fn chapter(derived: &[Derived]) -> Chapter {
 fn rows<'a>(quantities: impl Iterator<Item = &'a Derived>) -> Markup {
     let rows: Vec<Vec<Markup>> = quantities
         .map(|quantity| {
-            let value = if quantity.value.is_nan() { "-".to_string() } else { significant(quantity.value, 5) };
+            let value =
+                if quantity.value.is_nan() { "-".to_string() } else { significant(quantity.value, 5) };
             vec![
                 typeset(quantity.symbol),
                 cell(quantity.name.rsplit('.').next().unwrap_or(&quantity.name).replace('_', " ")),

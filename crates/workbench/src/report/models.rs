@@ -5,9 +5,12 @@ use maud::{Markup, html};
 use super::chapter::{Chapter, cell, place, table};
 use crate::answer::significant;
 use crate::figure::{
-    BodeInput, Figure, FrequencyMark, FrequencySeries, PoleMapInput, PoleMapScale, PoleSeries, Words, bode, pole_map,
+    BodeInput, Figure, FrequencyMark, FrequencySeries, PoleMapInput, PoleMapScale, PoleSeries, Words, bode,
+    pole_map,
 };
-use crate::linearize::{Linearization, comparisons, difference_text, frequency_grid, located, models, root_list};
+use crate::linearize::{
+    Linearization, comparisons, difference_text, frequency_grid, located, models, root_list,
+};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 
 pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearError> {
@@ -32,7 +35,9 @@ pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearEr
 fn pole_table(linearization: &Linearization) -> Markup {
     let rows: Vec<Vec<Markup>> = models(linearization)
         .iter()
-        .map(|(model, equation, function)| vec![cell(*model), cell(*equation), cell(root_list(function.poles()))])
+        .map(|(model, equation, function)| {
+            vec![cell(*model), cell(*equation), cell(root_list(function.poles()))]
+        })
         .collect();
     table(&["model", "equation", "poles, rad/s"], 9, &rows)
 }
@@ -40,7 +45,9 @@ fn pole_table(linearization: &Linearization) -> Markup {
 fn difference_table(linearization: &Linearization) -> Markup {
     let rows: Vec<Vec<Markup>> = comparisons(linearization)
         .iter()
-        .map(|(name, comparison)| vec![cell(*name), cell(difference_text(&comparison.low)), cell(located(&comparison.all))])
+        .map(|(name, comparison)| {
+            vec![cell(*name), cell(difference_text(&comparison.low)), cell(located(&comparison.all))]
+        })
         .collect();
     table(&["first for second", "below 1000 rad/s", "everywhere"], 9, &rows)
 }
@@ -72,7 +79,7 @@ fn poles(linearization: &Linearization) -> Figure {
             series("fifth order (6.7)", &linearization.full.command),
             series("decomposed (6.12), corrected", &linearization.decomposed[1]),
         ],
-        scale: PoleMapScale::SIGNED_LOGARITHMIC,
+        scale: PoleMapScale::SignedLogarithmic,
         damping_ratios: vec![],
         natural_frequencies_rad_per_s: vec![],
     };

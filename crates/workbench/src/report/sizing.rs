@@ -5,8 +5,8 @@ use maud::{Markup, html};
 use super::chapter::{Chapter, cell, place, table};
 use crate::answer::significant;
 use crate::figure::{
-    DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput, SizingCurve, TornadoBar,
-    TornadoInput, Verdict, Words, nomograph, sizing_chart, tornado,
+    DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput, SizingCurve,
+    TornadoBar, TornadoInput, Verdict, Words, nomograph, sizing_chart, tornado,
 };
 use crate::sizing::{BoreVerdict, Candidate, Severity, Sizing, SizingProblem, model_name};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -79,13 +79,21 @@ fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
 }
 
 fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
-    let longest = sizing.candidates.iter().map(Candidate::length_m).filter(|l| l.is_finite()).fold(problem.hose_length[1], f64::max);
-    let lengths: Vec<f64> = (1..=60).map(|step| longest.min(3.0 * problem.hose_length[1]) * f64::from(step) / 60.0).collect();
+    let longest = sizing
+        .candidates
+        .iter()
+        .map(Candidate::length_m)
+        .filter(|l| l.is_finite())
+        .fold(problem.hose_length[1], f64::max);
+    let lengths: Vec<f64> =
+        (1..=60).map(|step| longest.min(3.0 * problem.hose_length[1]) * f64::from(step) / 60.0).collect();
     let mut curves = Vec::new();
     for option in &problem.hoses {
         for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
-            let stiffness: Vec<f64> =
-                lengths.iter().map(|length| problem.stroke_stiffness(option.hose, *length, model).minimum).collect();
+            let stiffness: Vec<f64> = lengths
+                .iter()
+                .map(|length| problem.stroke_stiffness(option.hose, *length, model).minimum)
+                .collect();
             curves.push(SizingCurve {
                 name: format!("{}, {}", option.name, model_name(model)),
                 lengths_m: lengths.clone(),
@@ -94,13 +102,17 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
             });
         }
     }
-    let candidates = sizing.candidates.iter().filter(|c| c.length_m() > 0.0 && c.length_m() <= 3.0 * problem.hose_length[1]).map(|candidate| SizingCandidate {
-        label: String::new(),
-        length_m: candidate.length_m(),
-        stiffness_n_per_m: candidate.branch.stiffness.minimum,
-        gain_v_per_n: candidate.branch.gain_v_per_n,
-        verdict: if candidate.accepted() { Verdict::Accepted } else { Verdict::Rejected },
-    });
+    let candidates = sizing
+        .candidates
+        .iter()
+        .filter(|c| c.length_m() > 0.0 && c.length_m() <= 3.0 * problem.hose_length[1])
+        .map(|candidate| SizingCandidate {
+            label: String::new(),
+            length_m: candidate.length_m(),
+            stiffness_n_per_m: candidate.branch.stiffness.minimum,
+            gain_v_per_n: candidate.branch.gain_v_per_n,
+            verdict: if candidate.accepted() { Verdict::Accepted } else { Verdict::Rejected },
+        });
     let input = SizingChartInput {
         curves,
         candidates: candidates.collect(),
@@ -108,7 +120,10 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
         minimum_gain_v_per_n: Some(problem.minimum_gain),
         pole_gain_v_per_n: Some(sizing.pole_gain_v_per_n),
     };
-    let caption = format!("Least stiffness over the stroke and the proportional gain that makes the time constant {} ms, for each length of hose per line.", significant(problem.time_constant * 1e3, 3));
+    let caption = format!(
+        "Least stiffness over the stroke and the proportional gain that makes the time constant {} ms, for each length of hose per line.",
+        significant(problem.time_constant * 1e3, 3)
+    );
     sizing_chart(Words::new("sizing-length", "Length, stiffness and gain", caption), &input)
 }
 
@@ -118,7 +133,11 @@ fn candidates(sizing: &Sizing) -> Markup {
         .iter()
         .map(|candidate| {
             let branch = &candidate.branch;
-            let verdict = if candidate.accepted() { html! { span.good { "accepted" } } } else { html! { span.bad { "rejected" } } };
+            let verdict = if candidate.accepted() {
+                html! { span.good { "accepted" } }
+            } else {
+                html! { span.bad { "rejected" } }
+            };
             vec![
                 verdict,
                 cell(&candidate.option.name),
@@ -126,13 +145,18 @@ fn candidates(sizing: &Sizing) -> Markup {
                 cell(if branch.by_gain { "by gain" } else { "by length" }),
                 reasons(candidate),
                 cell(significant(branch.length_m, 4)),
-                cell(format!("{} to {}", significant(branch.stiffness.minimum / 1e6, 3), significant(branch.stiffness.maximum / 1e6, 3))),
+                cell(format!(
+                    "{} to {}",
+                    significant(branch.stiffness.minimum / 1e6, 3),
+                    significant(branch.stiffness.maximum / 1e6, 3)
+                )),
                 cell(significant(branch.gain_v_per_n * 1e3, 3)),
                 cell(significant(candidate.time_constant_s[0] * 1e3, 3)),
             ]
         })
         .collect();
-    let headings = ["", "hose", "compliance", "branch", "why", "length, m", "K_H, MN/m", "K_p, mV/N", "τ, ms"];
+    let headings =
+        ["", "hose", "compliance", "branch", "why", "length, m", "K_H, MN/m", "K_p, mV/N", "τ, ms"];
     table(&headings, 5, &rows)
 }
 
@@ -164,7 +188,8 @@ fn uncertain(sizing: &Sizing) -> Option<Figure> {
 }
 
 fn influences(sizing: &Sizing) -> Markup {
-    let three = |values: [f64; 3], scale: f64| cell(values.map(|value| significant(value / scale, 4)).join(" · "));
+    let three =
+        |values: [f64; 3], scale: f64| cell(values.map(|value| significant(value / scale, 4)).join(" · "));
     let rows: Vec<Vec<Markup>> = sizing
         .influences
         .iter()
@@ -177,7 +202,16 @@ fn influences(sizing: &Sizing) -> Markup {
             ]
         })
         .collect();
-    table(&["quantity", "low · nominal · high (SI)", "K_H at the chosen length, MN/m", "length for the chosen K_H, m"], 1, &rows)
+    table(
+        &[
+            "quantity",
+            "low · nominal · high (SI)",
+            "K_H at the chosen length, MN/m",
+            "length for the chosen K_H, m",
+        ],
+        1,
+        &rows,
+    )
 }
 
 fn decisions(sizing: &Sizing) -> Markup {

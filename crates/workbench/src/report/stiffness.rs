@@ -44,7 +44,8 @@ fn figure(rig: &Rig) -> Figure {
 
 fn curve(rig: &Rig, model: StiffnessModel) -> StiffnessCurve {
     let stroke = rig.actuator.components().cylinder.stroke;
-    let positions_m: Vec<f64> = (0..=POSITIONS).map(|step| stroke * f64::from(step) / f64::from(POSITIONS)).collect();
+    let positions_m: Vec<f64> =
+        (0..=POSITIONS).map(|step| stroke * f64::from(step) / f64::from(POSITIONS)).collect();
     let at = |member| positions_m.iter().map(|x| stiffness_at(rig, model, member, *x)).collect::<Vec<f64>>();
     let (minimum, maximum) = (at(Member::Minimum), at(Member::Maximum));
     let uncertain = minimum != maximum;

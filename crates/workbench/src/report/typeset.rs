@@ -65,7 +65,10 @@ mod tests {
     #[test]
     fn text_is_escaped_and_scripts_end_where_they_should() {
         let check = |equation: &str, expected: &str| {
-            assert_eq!(typeset(equation).into_string(), format!("<span class=\"equation\">{expected}</span>"));
+            assert_eq!(
+                typeset(equation).into_string(),
+                format!("<span class=\"equation\">{expected}</span>")
+            );
         };
         check("a < b", "<i>a</i> &lt; <i>b</i>");
         check("V_{A0}^2", "<i>V</i><sub>A0</sub><sup>2</sup>");

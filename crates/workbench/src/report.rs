@@ -1,0 +1,183 @@
+//! The report: everything this workbench can say of a rig, as one page that needs nothing else.
+
+mod chapter;
+mod derived;
+mod impedance;
+mod models;
+mod page;
+mod provenance;
+mod response;
+mod rig;
+mod sizing;
+mod stiffness;
+mod typeset;
+
+use maud::{Markup, html};
+
+pub use chapter::Chapter;
+pub use typeset::typeset;
+
+use crate::answer::{OutputFile, significant};
+use crate::control::{ControlError, controller};
+use crate::derived::derive;
+use crate::figure::{Figure, FigureError};
+use crate::linear_loop::{LinearLoop, linear_loop};
+use crate::linearize::{Linearization, linearize};
+use crate::project::{Loaded, Project};
+use crate::rig::{Rig, RigError};
+use crate::sizing::{Question, Sizing, SizingProblem, size};
+
+/// A report, before it is written anywhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// The page.
+    pub html: String,
+    /// Its figures, in order.
+    pub figures: Vec<Figure>,
+    /// What it says in a few numbers.
+    pub summary: Vec<(&'static str, String)>,
+}
+
+/// Why there is no report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The rig cannot be computed with.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// The controller is no transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// A linear system cannot be computed.
+    #[error("the linear models: {0}")]
+    Linear(#[from] phea_dynamics::linear::LinearError),
+    /// The loop cannot be closed.
+    #[error("the linear loop: {0}")]
+    Loop(#[from] crate::linear_loop::LoopError),
+    /// A figure cannot be drawn.
+    #[error("a figure: {0}")]
+    Figure(#[from] FigureError),
+}
+
+/// Band of the settling time where no scenario states one, percent.
+const SETTLING_BAND: f64 = 1.0;
+
+/// Scale of the figures as PNG: 1120 pixels of width.
+const PNG_SCALE: f64 = 2.0;
+
+/// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, provenance.
+///
+/// # Errors
+/// [`ReportError`] if the project is about another plant or something in it cannot be computed.
+pub fn report(loaded: &Loaded, problem: Option<&SizingProblem>) -> Result<Report, ReportError> {
+    let project = &loaded.project;
+    let rig = Rig::new(project)?;
+    let actuator = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
+    let controller = controller(project)?;
+    let feedback = controller.as_ref().map(|given| given.feedback.transfer_function()).transpose()?;
+    let linearization = linearize(&rig, feedback.as_ref())?;
+    let derived = derive(project, &rig);
+    let sizing = problem.map(|problem| size(problem, Question::Both));
+    let band = project.scenarios.first().map_or(SETTLING_BAND, |scenario| scenario.settling_band_percent);
+    let given =
+        controller.as_ref().map(|given| linear_loop(&linearization.full.command, given, band)).transpose()?;
+
+    let mut chapters = vec![
+        rig::chapter(project, actuator, &rig),
+        derived::chapter(&derived),
+        stiffness::chapter(&rig, &linearization),
+    ];
+    if let (Some(problem), Some(sizing)) = (problem, &sizing) {
+        chapters.push(sizing::chapter(problem, sizing));
+    }
+    chapters.push(models::chapter(&linearization)?);
+    chapters.push(impedance::chapter(&linearization)?);
+    chapters.push(response::chapter(given.as_ref(), reference(project)));
+    chapters.push(provenance::chapter(loaded));
+
+    let summary = summary(&linearization, sizing.as_ref(), problem, given.as_ref());
+    let html = page::page(&project.title, &heading(project, &summary), &chapters, &footer(loaded));
+    let figures = chapters.into_iter().flat_map(|chapter| chapter.figures).collect();
+    Ok(Report { html, figures, summary })
+}
+
+impl Report {
+    /// The page and every figure as SVG and PNG.
+    ///
+    /// # Errors
+    /// A figure that the rasteriser refuses.
+    pub fn files(&self) -> Result<Vec<OutputFile>, FigureError> {
+        let mut files =
+            vec![OutputFile { name: "report.html".to_string(), bytes: self.html.clone().into_bytes() }];
+        for figure in &self.figures {
+            let svg = figure.to_svg_standalone().into_bytes();
+            files.push(OutputFile { name: format!("{}.svg", figure.name), bytes: svg });
+            files.push(OutputFile { name: format!("{}.png", figure.name), bytes: figure.to_png(PNG_SCALE)? });
+        }
+        Ok(files)
+    }
+}
+
+/// Height of the first reference step of the scenarios, N.
+fn reference(project: &Project) -> Option<f64> {
+    project
+        .scenarios
+        .iter()
+        .flat_map(|scenario| &scenario.reference)
+        .map(|step| step.force)
+        .find(|force| *force != 0.0)
+}
+
+fn summary(
+    linearization: &Linearization,
+    sizing: Option<&Sizing>,
+    problem: Option<&SizingProblem>,
+    given: Option<&LinearLoop>,
+) -> Vec<(&'static str, String)> {
+    let stiffness = linearization.stiffness[0];
+    let mega = |value: f64| significant(value / 1e6, 3);
+    let mut facts = vec![(
+        "Hydraulic stiffness",
+        format!("{} to {} MN/m", mega(stiffness.minimum), mega(stiffness.maximum)),
+    )];
+    let best = sizing.zip(problem).and_then(|(sizing, problem)| {
+        sizing.candidates.iter().find(|c| c.accepted() && c.branch.model == problem.model)
+    });
+    if let Some(best) = best {
+        let gain = significant(best.branch.gain_v_per_n * 1e3, 3);
+        facts.push(("Hose", format!("{} m a line at K_p = {gain} mV/N", significant(best.length_m(), 3))));
+    } else if sizing.is_some() {
+        facts.push(("Hose", "none of the catalogue fits".to_string()));
+    }
+    let port =
+        |view: &crate::linearize::PortView| if view.passivity.passive { "passive" } else { "not passive" };
+    let mut passive = format!("open loop {}", port(&linearization.open_loop));
+    if let Some(view) = &linearization.closed_loop {
+        passive.push_str(&format!(", closed loop {}", port(view)));
+    }
+    facts.push(("Towards the load", passive));
+    if let Some(view) = given.and_then(|given| given.step.as_ref().ok()) {
+        let settling = crate::linear_loop::settling_words(&view.metrics);
+        facts.push((
+            "Nominal linear step",
+            format!("{} % overshoot, settles in {settling}", significant(view.metrics.overshoot_percent, 2)),
+        ));
+    }
+    facts
+}
+
+fn heading(project: &Project, summary: &[(&'static str, String)]) -> Markup {
+    html! {
+        header {
+            h1 { (project.title) }
+            p.subtitle { "Hydraulic force control through added compliance: sizing and linear models" }
+            dl.facts { @for (name, value) in summary { div.fact { dt { (name) } dd { (value) } } } }
+        }
+    }
+}
+
+fn footer(loaded: &Loaded) -> Markup {
+    html! {
+        p { "Made by phea " (env!("CARGO_PKG_VERSION")) " from a project with SHA-256 " code { (loaded.sha256) } "." }
+        p { "Equations are numbered as in Ledezma (2019), Universidade Federal de Santa Catarina; corrected where its book of errata says so." }
+    }
+}

@@ -1,0 +1,144 @@
+//! The chapter on the driving-point impedance: what the load feels, its asymptotes, and passivity.
+
+use maud::{Markup, html};
+use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_hydraulics::impedance::AsymptoteKind;
+
+use super::chapter::{Chapter, cell, place, table};
+use crate::answer::significant;
+use crate::figure::{Asymptote, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance};
+use crate::linearize::{Linearization, PortView, frequency_grid, passivity_sentence};
+
+pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearError> {
+    let figures = vec![figure(linearization)?];
+    let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
+    let body = html! {
+        p {
+            "Z = -F_e/(s X_L) is what a load feels that moves the rod: a damper, spring or mass, depending on frequency. Above " (hidden)
+            " rad/s the piston's mass hides the hydraulic compliance, and the load meets the sensor's stiffness alone."
+        }
+        (place(&figures[0]))
+        h3 { "Asymptotes" }
+        (asymptotes(linearization))
+        h3 { "Passivity" }
+        p { "A passive port stays stable against every passive load (poles not in the right half plane, simple ones with positive residue on the axis, Re Z not negative)." }
+        ul {
+            li { "open loop: " (verdict(&linearization.open_loop)) }
+            li { "closed loop: "
+                @match &linearization.closed_loop {
+                    Some(view) => (verdict(view)),
+                    None => (linearization.closed_loop_absent.clone().unwrap_or_default()),
+                }
+            }
+        }
+        h3 { "A step of the load" }
+        p { "Proposition 6.2: the zero at the origin makes the force return. After a load step of 1 mm there remains, "
+            "open loop " (remains(&linearization.open_loop))
+            @if let Some(view) = &linearization.closed_loop { ", closed loop " (remains(view)) }
+            "."
+        }
+    };
+    Ok(Chapter { anchor: "impedance", title: "What the load feels", body, figures })
+}
+
+fn verdict(view: &PortView) -> Markup {
+    let sentence = passivity_sentence(&view.passivity);
+    html! { span.good[view.passivity.passive].bad[!view.passivity.passive] { (sentence) } }
+}
+
+fn remains(view: &PortView) -> String {
+    match view.final_force_n {
+        Some(force) => format!("{} N", significant(force, 3)),
+        None => "no final value (unstable, or without leakage)".to_string(),
+    }
+}
+
+fn views(linearization: &Linearization) -> Vec<(&'static str, &PortView)> {
+    let mut views = vec![("open loop", &linearization.open_loop)];
+    views.extend(linearization.closed_loop.as_ref().map(|view| ("closed loop", view)));
+    views
+}
+
+fn behaviour(power: i32) -> &'static str {
+    match power {
+        -1 => "spring",
+        0 => "damper",
+        1 => "mass",
+        _ => "of higher order",
+    }
+}
+
+fn asymptotes(linearization: &Linearization) -> Markup {
+    let mut rows = Vec::new();
+    for (name, view) in views(linearization) {
+        for asymptote in &view.asymptotes {
+            let regime = match asymptote.kind {
+                AsymptoteKind::LowFrequency => "low frequency",
+                AsymptoteKind::CompliancePlateau => "compliance plateau K_eq",
+                AsymptoteKind::SensorLimit => "limit K_S",
+            };
+            let unit = match asymptote.power {
+                -1 => "N/m",
+                0 => "N.s/m",
+                1 => "kg",
+                _ => "SI",
+            };
+            rows.push(vec![
+                cell(name),
+                cell(regime),
+                cell(behaviour(asymptote.power)),
+                cell(format!("{} {unit}", significant(asymptote.coefficient, 4))),
+                cell(format!("{} to {}", significant(asymptote.from, 3), significant(asymptote.to, 3))),
+            ]);
+        }
+    }
+    table(&["loop", "regime", "behaves as", "size", "between, rad/s"], 3, &rows)
+}
+
+fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
+    let grid = frequency_grid(&linearization.full.command)?;
+    let (first, last) = (grid.first().copied().unwrap_or(0.01), grid.last().copied().unwrap_or(1e4));
+    let series = |name: &str, function: &TransferFunction| FrequencySeries {
+        name: name.to_string(),
+        response: grid.iter().map(|frequency| function.at_frequency(*frequency)).collect(),
+        frequencies_rad_per_s: grid.clone(),
+    };
+    let mut lines: Vec<Asymptote> = Vec::new();
+    for (name, view) in views(linearization) {
+        for asymptote in &view.asymptotes {
+            // Plateau and limit are the same for both loops; one line is enough.
+            if name != "open loop" && asymptote.kind != AsymptoteKind::LowFrequency {
+                continue;
+            }
+            lines.push(Asymptote {
+                label: match asymptote.kind {
+                    AsymptoteKind::LowFrequency => format!("{}, {name}", behaviour(asymptote.power)),
+                    AsymptoteKind::CompliancePlateau => "K_eq/s".to_string(),
+                    AsymptoteKind::SensorLimit => "K_S/s".to_string(),
+                },
+                coefficient: asymptote.coefficient,
+                exponent: asymptote.power,
+                from_rad_per_s: asymptote.from.max(first),
+                to_rad_per_s: asymptote.to.min(last),
+            });
+        }
+    }
+    let bands =
+        linearization.closed_loop.as_ref().map(|view| view.passivity.bands.as_slice()).unwrap_or_default();
+    let input = ImpedanceInput {
+        series: views(linearization).iter().map(|(name, view)| series(name, &view.impedance)).collect(),
+        asymptotes: lines,
+        corners: vec![FrequencyMark {
+            label: "sqrt(K_H/M)".to_string(),
+            frequency_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
+        }],
+        non_passive_bands_rad_per_s: bands
+            .iter()
+            .map(|band| (band.from_rad_per_s.max(first), band.to_rad_per_s.min(last)))
+            .collect(),
+        with_phase: true,
+    };
+    let caption =
+        "Magnitude and phase of Z with its straight lines; shaded where the closed loop is not passive.";
+    Ok(impedance(Words::new("impedance", "Driving-point impedance", caption), &input))
+}

@@ -1,0 +1,65 @@
+//! The chapter on provenance: where each number comes from, what was assumed, what was not proven.
+
+use maud::{Markup, html};
+
+use super::chapter::{Chapter, cell, table};
+use crate::project::{Loaded, Origin, Project};
+
+pub(super) fn chapter(loaded: &Loaded) -> Chapter {
+    let catalogue: Vec<Vec<Markup>> = loaded
+        .provenance
+        .iter()
+        .filter_map(|entry| match &entry.origin {
+            Origin::Catalogue { name, source } => {
+                Some(vec![html! { code { (entry.path) } }, cell(name), cell(source)])
+            }
+            _ => None,
+        })
+        .collect();
+    let defaults: Vec<&str> = paths(loaded, |origin| matches!(origin, Origin::Default));
+    let body = html! {
+        p {
+            "Project " b { (loaded.project.title) } ", SHA-256 " code { (loaded.sha256) } "."
+            @if !loaded.settings.is_empty() {
+                " Settings: " @for setting in &loaded.settings { code { (setting) } " " } "."
+            }
+        }
+        @if !loaded.warnings.is_empty() {
+            h3 { "Warnings" }
+            ul { @for warning in &loaded.warnings { li { span.note { (warning.message) } @if let Some(help) = &warning.help { " " (help) } } } }
+        }
+        @if !catalogue.is_empty() {
+            h3 { "From the catalogue" }
+            (table(&["value", "entry", "source"], 9, &catalogue))
+        }
+        @if !defaults.is_empty() {
+            h3 { "Defaults" }
+            p { "Not stated by the project: " @for path in &defaults { code { (path) } " " } }
+        }
+        h3 { "Assumptions" }
+        ul { @for assumption in assumptions(&loaded.project) { li { (assumption) } } }
+        h3 { "Not proven here" }
+        p { "This report computes nominal linear models and a sizing. It does not say that the controller holds for every plant of the declared uncertainty, nor how the nonlinear machine behaves." }
+    };
+    Chapter { anchor: "provenance", title: "Provenance and assumptions", body, figures: vec![] }
+}
+
+fn paths(loaded: &Loaded, keep: impl Fn(&Origin) -> bool) -> Vec<&str> {
+    loaded.provenance.iter().filter(|entry| keep(&entry.origin)).map(|entry| entry.path.as_str()).collect()
+}
+
+fn assumptions(project: &Project) -> Vec<String> {
+    let mut assumptions = vec![
+        "Pressures are gauge; the tank is at the declared pressure; the supply pressure is constant in every linear model.".to_string(),
+        "Volumetric expansion and wall modulus of a hose are taken at the supply pressure; the expansion grows in proportion to pressure beyond the catalogue's point.".to_string(),
+        "The hose wall has its dynamic modulus at every frequency; at rest it is softer by the stiffening ratio.".to_string(),
+        "Friction enters the linear models by its viscous part alone.".to_string(),
+        "The load moves as prescribed; the force sensor's stiffness includes what it stands on.".to_string(),
+        "A settling time of four time constants is the 2 % rule (1 % takes 4.6).".to_string(),
+    ];
+    let air = project.actuator.as_ref().and_then(|actuator| actuator.fluid.entrained_air);
+    if air.is_none_or(|fraction| fraction == 0.0) {
+        assumptions.push("The oil carries no free air.".to_string());
+    }
+    assumptions
+}

@@ -1,0 +1,111 @@
+//! The chapter on the linear loop with the given controller: step response, metrics, margins.
+
+use maud::{Markup, html};
+use phea_dynamics::frequency::Margins;
+
+use super::chapter::{Chapter, cell, place, table};
+use crate::answer::significant;
+use crate::figure::{
+    DisplayUnit, Figure, SettlingBand, StepResponseInput, TimeEvent, TimeSeries, Words, step_response,
+};
+use crate::linear_loop::{LinearLoop, StepView, settling_words};
+
+/// Height of the drawn step where the project's scenarios give none, N.
+const REFERENCE: f64 = 1000.0;
+
+pub(super) fn chapter(linear_loop: Option<&LinearLoop>, reference_n: Option<f64>) -> Chapter {
+    let (anchor, title) = ("response", "Step response of the linear loop");
+    let Some(linear_loop) = linear_loop else {
+        let body = html! { p { "The project gives no controller, so that there is no loop to close." } };
+        return Chapter { anchor, title, body, figures: vec![] };
+    };
+    let figures: Vec<Figure> =
+        linear_loop.step.iter().map(|view| figure(view, reference_n.unwrap_or(REFERENCE))).collect();
+    let body = html! {
+        p { "The fifth-order model with its nominal values in a loop with the given controller and prefilter. One plant, linear: no proof of anything for the others, nor for the nonlinear machine." }
+        @match &linear_loop.step {
+            Ok(view) => { (place(&figures[0])) (metrics(view)) }
+            Err(reason) => { div.callout.bad-edge { p { "No step response: " (reason) "." } } }
+        }
+        h3 { "Margins" }
+        (margins(&linear_loop.margins))
+    };
+    Chapter { anchor, title, body, figures }
+}
+
+fn figure(view: &StepView, reference: f64) -> Figure {
+    let series = |name: &str, values: &[f64]| TimeSeries {
+        name: name.to_string(),
+        times_s: view.times_s.clone(),
+        values: values.iter().map(|value| value * reference).collect(),
+    };
+    let band = view.metrics.settling_band_percent;
+    let settled = view.metrics.settling.time_s().map(|time_s| TimeEvent {
+        time_s,
+        label: format!("t_s({} %) = {} s", significant(band, 2), significant(time_s, 3)),
+    });
+    let ones = vec![1.0; view.times_s.len()];
+    let input = StepResponseInput {
+        quantity: "Force F_e".to_string(),
+        unit: DisplayUnit::KILONEWTON,
+        reference: Some(series("reference", &ones)),
+        responses: vec![
+            series("force", &view.response),
+            series("prefiltered reference", &view.filtered_reference),
+        ],
+        settling_band: Some(SettlingBand { level: reference, percent: band }),
+        bounds: None,
+        events: settled.into_iter().collect(),
+        controls: vec![series("command U_C", &view.command_v_per_n)],
+    };
+    let caption = format!(
+        "A step of {} kN: force, prefiltered reference and command.",
+        significant(reference / 1e3, 3)
+    );
+    step_response(Words::new("step", "Step response", caption), &input)
+}
+
+fn metrics(view: &StepView) -> Markup {
+    let metrics = &view.metrics;
+    let rise = metrics
+        .rise_time_10_90_s
+        .map_or("not reached".to_string(), |time| format!("{} s", significant(time, 3)));
+    let rows = vec![
+        vec![cell("overshoot"), cell(format!("{} %", significant(metrics.overshoot_percent, 3)))],
+        vec![cell("settling time"), cell(settling_words(metrics))],
+        vec![cell("rise time, 10 to 90 %"), cell(rise)],
+        vec![
+            cell("peak"),
+            cell(format!(
+                "{} of the reference at {} s",
+                significant(metrics.peak_value, 4),
+                significant(metrics.peak_time_s, 3)
+            )),
+        ],
+    ];
+    table(&["metric", "value"], 9, &rows)
+}
+
+fn margins(margins: &Margins) -> Markup {
+    let at = |frequency: f64| format!("at {} rad/s", significant(frequency, 4));
+    let gain = margins.gain_increase().map_or("infinite".to_string(), |margin| {
+        format!("{} dB {}", significant(margin.db(), 3), at(margin.frequency_rad_per_s))
+    });
+    let phase = margins.critical_phase().map_or("infinite".to_string(), |margin| {
+        format!("{}° {}", significant(margin.phase_deg, 3), at(margin.frequency_rad_per_s))
+    });
+    let delay = margins.critical_delay().map_or("infinite".to_string(), |margin| {
+        format!("{} ms {}", significant(margin.delay_s * 1e3, 3), at(margin.frequency_rad_per_s))
+    });
+    let modulus = &margins.modulus_margin;
+    let rows = vec![
+        vec![cell("gain margin"), cell(gain)],
+        vec![cell("phase margin"), cell(phase)],
+        vec![
+            cell("modulus margin, least |1 + L|"),
+            cell(format!("{} {}", significant(modulus.distance, 3), at(modulus.frequency_rad_per_s))),
+        ],
+        vec![cell("delay margin"), cell(delay)],
+    ];
+    table(&["margin", "value"], 9, &rows)
+}

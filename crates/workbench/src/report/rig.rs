@@ -1,0 +1,158 @@
+//! The chapter on the rig: its circuit, drawn from the project, and what is declared.
+
+use maud::{Markup, html};
+
+use super::chapter::{Chapter, cell, place, table};
+use crate::figure::{
+    ControllerSymbol, Environment, Figure, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, Words,
+    schematic,
+};
+use crate::project::{self, Component, LoadModel, Project, SupplyModel};
+use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE};
+use crate::rig::Rig;
+
+pub(super) fn chapter(project: &Project, actuator: &project::Actuator, rig: &Rig) -> Chapter {
+    let figures = vec![circuit(project, actuator)];
+    let body = html! {
+        (place(&figures[0]))
+        (facts(actuator, rig))
+    };
+    Chapter { anchor: "rig", title: "The rig", body, figures }
+}
+
+fn shown(value: f64, dimension: &Dimension) -> String {
+    quantity::display(value, dimension, 4)
+}
+
+fn circuit(project: &Project, actuator: &project::Actuator) -> Figure {
+    let cylinder = &actuator.cylinder;
+    let [rod_a, rod_b] = cylinder.rod_diameters_m();
+    let mut supply_rows = vec![shown(actuator.supply.pressure, &PRESSURE)];
+    supply_rows.extend(actuator.supply.flow.map(|flow| shown(flow, &FLOW)));
+    let symmetric = rod_a > 0.0 && rod_b > 0.0;
+    let input = SchematicInput {
+        supply: match actuator.supply.model {
+            SupplyModel::Constant => SupplyKind::ConstantPressure,
+            SupplyModel::PumpLimited => SupplyKind::Pump,
+        },
+        supply_rows,
+        tank: shown(actuator.supply.tank_pressure, &PRESSURE),
+        valve_rows: vec![
+            actuator.valve.model.clone().unwrap_or_else(|| "servovalve".to_string()),
+            format!("±{}", shown(actuator.valve.nominal_voltage, &VOLTAGE)),
+        ],
+        line_a: line(&actuator.line.a),
+        line_b: line(&actuator.line.b),
+        rods: if symmetric { Rods::Both } else { Rods::TowardsLoad },
+        load_beside_b: symmetric || rod_b > 0.0,
+        cylinder: cylinder_words(cylinder),
+        mass: shown(cylinder.moving_mass, &MASS),
+        load_cell: Some(vec![shown(actuator.force_sensor.stiffness, &STIFFNESS)]),
+        environment: match actuator.load.model {
+            LoadModel::Prescribed => Environment::PrescribedMotion,
+            LoadModel::Wall => Environment::Wall,
+            LoadModel::SpringMassDamper => Environment::SpringMassDamper,
+        },
+        environment_rows: actuator
+            .load
+            .stiffness
+            .map(|stiffness| shown(stiffness, &STIFFNESS))
+            .into_iter()
+            .collect(),
+        controller: project.controller.as_ref().map(|controller| ControllerSymbol {
+            has_prefilter: project.prefilter.is_some(),
+            rows: controller_words(project, controller),
+        }),
+    };
+    let caption = "The circuit as the project describes it: supply, servovalve, lines, cylinder, load cell, load, and the loop that closes over the force.";
+    schematic(Words::new("circuit", "The rig", caption), &input)
+}
+
+fn cylinder_words(cylinder: &project::Cylinder) -> String {
+    let millimetres = |length: f64| crate::answer::significant(length * 1e3, 3);
+    let piston = 2.0 * (cylinder.piston_area_m2() / std::f64::consts::PI).sqrt();
+    let [rod_a, rod_b] = cylinder.rod_diameters_m();
+    let rods = if rod_a == rod_b {
+        millimetres(rod_a)
+    } else {
+        format!("{}/{}", millimetres(rod_a), millimetres(rod_b))
+    };
+    format!("{}/{rods} mm, stroke {}", millimetres(piston), shown(cylinder.stroke, &LENGTH))
+}
+
+fn line(declared: &project::Line) -> LineSymbol {
+    match declared.component() {
+        Some(Component::Pipe { pipe, length }) => LineSymbol {
+            kind: LineKind::Pipe,
+            rows: vec![format!("pipe {}", shown(pipe.bore, &LENGTH)), shown(length, &LENGTH)],
+        },
+        Some(Component::Hose { bore, length, .. }) => LineSymbol {
+            kind: LineKind::Hose,
+            rows: vec![format!("hose {}", shown(bore, &LENGTH)), shown(length, &LENGTH)],
+        },
+        Some(Component::Volume { volume, effective_bulk_modulus }) => LineSymbol {
+            kind: LineKind::Pipe,
+            rows: vec![shown(volume, &quantity::VOLUME), shown(effective_bulk_modulus, &PRESSURE)],
+        },
+        None => LineSymbol { kind: LineKind::Pipe, rows: vec![] },
+    }
+}
+
+fn controller_words(project: &Project, controller: &project::Controller) -> Vec<String> {
+    let words = |letter: &str, transfer: &project::Transfer| match transfer.form() {
+        Some(project::TransferForm::Polynomials { numerator, denominator }) => {
+            Some(format!("{letter} = ({})/({})", numerator.text(), denominator.text()))
+        }
+        _ => None,
+    };
+    let mut rows: Vec<String> = words("G", &controller.transfer).into_iter().collect();
+    rows.extend(project.prefilter.as_ref().and_then(|prefilter| words("F", &prefilter.transfer)));
+    if let Some(sample_time) = controller.sample_time {
+        rows.push(format!("sampled every {}", shown(sample_time, &quantity::TIME)));
+    }
+    rows
+}
+
+fn facts(actuator: &project::Actuator, rig: &Rig) -> Markup {
+    let components = rig.actuator.components();
+    let mut rows = vec![
+        (
+            "supply",
+            format!(
+                "{} over {}",
+                shown(actuator.supply.pressure, &PRESSURE),
+                shown(actuator.supply.tank_pressure, &PRESSURE)
+            ),
+        ),
+        (
+            "fluid",
+            format!(
+                "bulk modulus {}, density {}",
+                shown(actuator.fluid.bulk_modulus, &PRESSURE),
+                shown(actuator.fluid.density, &quantity::DENSITY)
+            ),
+        ),
+        ("servovalve", valve_words(actuator)),
+        ("cylinder", cylinder_words(&actuator.cylinder)),
+        ("moving mass", shown(actuator.cylinder.moving_mass, &MASS)),
+        ("force sensor", shown(actuator.force_sensor.stiffness, &STIFFNESS)),
+    ];
+    if components.line_a.volume() == components.line_b.volume() {
+        rows.push(("each line", line(&actuator.line.a).rows.join(", ")));
+    } else {
+        rows.push(("line A", line(&actuator.line.a).rows.join(", ")));
+        rows.push(("line B", line(&actuator.line.b).rows.join(", ")));
+    }
+    let rows: Vec<Vec<Markup>> = rows.into_iter().map(|(name, text)| vec![cell(name), cell(text)]).collect();
+    table(&["component", "declared"], 9, &rows)
+}
+
+fn valve_words(actuator: &project::Actuator) -> String {
+    let valve = &actuator.valve;
+    let name = valve.model.clone().unwrap_or_else(|| "by coefficients".to_string());
+    format!(
+        "{name}, {} and damping {}",
+        shown(valve.natural_frequency, &quantity::ANGULAR_FREQUENCY),
+        valve.damping_ratio
+    )
+}
