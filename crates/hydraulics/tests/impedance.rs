@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use num_complex::Complex64;
+use phea_dynamics::frequency::passivity;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 use phea_hydraulics::impedance::{
@@ -59,6 +60,18 @@ fn published_closed_loop_fails_between_447_and_921_rad_per_s() {
     for frequency in logarithmic(1e-3, 1e5, 4000) {
         assert_eq!(real(frequency) < 0.0, (from..to).contains(&frequency), "at {frequency}");
     }
+}
+
+/// All three conditions, and the band as the passivity test finds it.
+#[test]
+fn passivity_of_open_and_published_closed_loop() {
+    let open = passivity(&open_loop_impedance(&model()).unwrap()).unwrap();
+    assert!(open.passive && open.bands.is_empty() && open.right_half_plane_poles.is_empty());
+    let closed = passivity(&closed_loop_impedance(&model(), &published_controller()).unwrap()).unwrap();
+    assert!(!closed.passive && closed.right_half_plane_poles.is_empty() && closed.bands.len() == 1);
+    // ORIGIN: recomputed by comparisons/recompute_rig.py
+    assert!((closed.bands[0].from_rad_per_s / 446.62935 - 1.0).abs() < 2e-8);
+    assert!((closed.bands[0].to_rad_per_s / 921.59055 - 1.0).abs() < 2e-8);
 }
 
 /// Z from factors against Z_open/(1 + G P), at every frequency.

@@ -48,15 +48,16 @@ fn jacobian(
     (rates.map(|rate| *rate.gradient()), rates.map(|rate| rate.value()))
 }
 
-/// Every entry agrees to 1e-9 of the largest entry that its row could have, weighted by the column's scale.
+/// Every entry agrees to 1e-9 of itself. The chambers' dependence on the deflection is proportional to a net flow that
+/// vanishes at an equilibrium: it must be 1e-9 of what the piston's velocity does to the same pressure.
 fn check_against_jacobian(system: &StateSpace, jacobian: &[[f64; 8]; 6]) {
-    let scales = [1.0, 1e3, 1e5, 1e5, 1e-4, 1e-2, 1.0, 1e-2];
     for (row, duals) in jacobian.iter().enumerate() {
-        let largest = duals.iter().zip(scales).map(|(dual, scale)| (dual * scale).abs()).fold(0.0, f64::max);
-        for (column, (&dual, scale)) in duals.iter().zip(scales).enumerate() {
+        for (column, &dual) in duals.iter().enumerate() {
             let analytic = if column < 6 { system.a()[(row, column)] } else { system.b()[(row, column - 6)] };
-            let error = (analytic - dual).abs() * scale;
-            assert!(error <= 1e-9 * largest, "row {row}, column {column}: {analytic} against {dual}");
+            let vanishing = column == 4 && (row == 2 || row == 3);
+            let scale = if vanishing { (duals[5] * 1e-2 / 1e-4).abs() } else { dual.abs() };
+            let error = (analytic - dual).abs();
+            assert!(error <= 1e-9 * scale, "row {row}, column {column}: {analytic} against {dual}");
         }
     }
 }
