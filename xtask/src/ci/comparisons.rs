@@ -116,9 +116,8 @@ mod tests {
             ("crates/a/tests/golden.rs", "// ORIGIN: recomputed by comparisons/recompute_poles.py\n"),
             ("crates/b/tests/golden.rs", "// ORIGIN: recomputed by comparisons/recompute_poles.py\n"),
         ]);
-        assert_eq!(
-            scripts(&repository),
-            ["comparisons/compare_margins.py", "comparisons/recompute_poles.py"]
-        );
+        let expected =
+            ["book/recompute_theory.py", "comparisons/compare_margins.py", "comparisons/recompute_poles.py"];
+        assert_eq!(scripts(&repository), expected);
     }
 }

@@ -12,7 +12,7 @@ use crate::repository::{Repository, RustFile};
 
 /// What an origin starts with.
 const ORIGINS: [&str; 7] =
-    ["analytic", "thesis", "recomputed by", "paper", "data sheet", "measured", "other tool"];
+    ["analytic", "thesis", "recomputed", "paper", "data sheet", "measured", "other tool"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let golden = |file: &&RustFile| {

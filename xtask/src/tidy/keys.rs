@@ -1,7 +1,7 @@
 //! The guide describes every key of the project file, and no key that there is not.
 //!
-//! A key is declared in `crates/workbench/src/project/` by `key("name", ...)`, `plain("name", ...)` or `part("name", ...)`; the
-//! words of a choice are pairs `("word", Value)`.
+//! A key is declared in `crates/workbench/src/project/` by `key("name", ...)`, `plain("name", ...)`, `part("name", ...)` or
+//! `visit("name", ...)`; the words of a choice are pairs `("word", Value)`.
 
 use std::collections::BTreeSet;
 
@@ -60,7 +60,7 @@ impl Declared {
             match token {
                 TokenTree::Ident(ident) => word = ident.to_string(),
                 TokenTree::Group(group) => {
-                    let called = matches!(word.as_str(), "key" | "plain" | "part");
+                    let called = matches!(word.as_str(), "key" | "plain" | "part" | "visit");
                     let pair = word.is_empty() && is_choice(group.stream());
                     self.collect(group.stream(), path, called || pair);
                     word.clear();
