@@ -2,11 +2,13 @@
 //! the places that break it.
 
 mod book;
+mod catalogue;
 mod citation;
 mod dependencies;
 mod equations;
 mod golden;
 mod invariants;
+mod keys;
 mod layout;
 mod links;
 mod lints;
@@ -52,10 +54,12 @@ type Check = fn(&Repository) -> Vec<Violation>;
 const CHECKS: &[(&str, Check)] = &[
     ("syntax", syntax),
     ("book", book::check),
+    ("catalogue", catalogue::check),
     ("dependencies", dependencies::check),
     ("equations", equations::check),
     ("golden", golden::check),
     ("invariants", invariants::check),
+    ("keys", keys::check),
     ("layout", layout::check),
     ("links", links::check),
     ("lints", lints::check),

@@ -1,4 +1,4 @@
-//! Comparisons with other tools, in Python, in a virtual environment of their own.
+//! Comparisons with other tools and recomputed numbers, in Python, in a virtual environment of their own.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -6,7 +6,6 @@ use std::process::{Command, Stdio};
 use super::{Outcome, execute};
 use crate::repository::Repository;
 
-const FOLDER: &str = "comparisons";
 const REQUIREMENTS: &str = "comparisons/requirements.txt";
 
 /// Makes the environment, then runs every comparison and every script that a golden number names as its origin.
@@ -19,6 +18,9 @@ pub(super) fn run(root: &Path) -> Outcome {
         Ok(python) => python.to_string_lossy().into_owned(),
         Err(problem) => return Outcome::Failed(problem),
     };
+    if !scripts.iter().any(|script| script.starts_with("comparisons/compare_")) {
+        return Outcome::Failed("there is no comparisons/compare_*.py".to_string());
+    }
     let failed: Vec<String> = scripts
         .into_iter()
         .filter(|script| !matches!(execute(root, &python, &[script]), Outcome::Passed))
@@ -26,9 +28,12 @@ pub(super) fn run(root: &Path) -> Outcome {
     if failed.is_empty() { Outcome::Passed } else { Outcome::Failed(failed.join(", ")) }
 }
 
-/// `comparisons/compare_*.py` and the scripts named in `ORIGIN: recomputed by PATH`.
+/// `comparisons/compare_*.py`, `book/recompute_*.py` and the scripts named in `ORIGIN: recomputed by PATH`.
 fn scripts(repository: &Repository) -> Vec<String> {
-    let comparison = |path: &str| path.starts_with(&format!("{FOLDER}/compare_")) && path.ends_with(".py");
+    let comparison = |path: &str| {
+        (path.starts_with("comparisons/compare_") || path.starts_with("book/recompute_"))
+            && path.ends_with(".py")
+    };
     let mut scripts: Vec<String> = repository.texts(comparison).map(|(path, _)| path.to_string()).collect();
     for (_, text) in repository.texts(|path| path.ends_with(".rs")) {
         scripts.extend(text.lines().filter_map(recomputed_by).map(str::to_string));
@@ -106,13 +111,13 @@ mod tests {
         let repository = Repository::from_texts(&[
             ("comparisons/compare_margins.py", ""),
             ("comparisons/systems.py", ""),
+            ("book/recompute_theory.py", ""),
             ("comparisons/recompute_poles.py", ""),
             ("crates/a/tests/golden.rs", "// ORIGIN: recomputed by comparisons/recompute_poles.py\n"),
             ("crates/b/tests/golden.rs", "// ORIGIN: recomputed by comparisons/recompute_poles.py\n"),
         ]);
-        assert_eq!(
-            scripts(&repository),
-            ["comparisons/compare_margins.py", "comparisons/recompute_poles.py"]
-        );
+        let expected =
+            ["book/recompute_theory.py", "comparisons/compare_margins.py", "comparisons/recompute_poles.py"];
+        assert_eq!(scripts(&repository), expected);
     }
 }

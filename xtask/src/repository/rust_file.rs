@@ -19,10 +19,10 @@ impl RustFile {
         RustFile { path: path.to_string(), text: text.to_string(), syntax }
     }
 
-    /// Whether the whole file is test code by where it lies.
+    /// Whether the whole file is test code, or an example, by where it lies.
     pub(crate) fn is_test_file(&self) -> bool {
         let folder = |name: &str| self.path.contains(&format!("/{name}/"));
-        folder("tests") || folder("benches") || folder("fuzz") || self.path.ends_with("/tests.rs")
+        ["tests", "benches", "fuzz", "examples"].into_iter().any(folder) || self.path.ends_with("/tests.rs")
     }
 
     /// What the shipped code mentions; test code is left out.

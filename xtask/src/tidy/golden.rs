@@ -1,7 +1,7 @@
 //! A golden number names its origin.
 //!
-//! In `crates/*/tests/golden*.rs` and `apps/*/tests/golden*.rs` every function, constant and static whose literals have
-//! four significant digits or more carries a comment `ORIGIN: ...`, inside or directly above.
+//! A function, constant or static in a `tests` folder carries a comment `ORIGIN: ...`, inside or directly above, if an assertion in
+//! it names a number of four significant digits or more; in files called `golden*.rs`, if any number in it has so many.
 
 use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::spanned::Spanned;
@@ -12,7 +12,7 @@ use crate::repository::{Repository, RustFile};
 
 /// What an origin starts with.
 const ORIGINS: [&str; 7] =
-    ["analytic", "thesis", "recomputed by", "paper", "data sheet", "measured", "other tool"];
+    ["analytic", "thesis", "recomputed", "paper", "data sheet", "measured", "other tool"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let golden = |file: &&RustFile| {
@@ -51,7 +51,8 @@ fn check_file(file: &RustFile) -> Vec<Violation> {
             continue;
         }
         let text = with_comments_above(&file.text, item.span());
-        let golden = text.parse().is_ok_and(has_golden_literal);
+        let golden =
+            text.parse().is_ok_and(|tokens| has_golden_number(tokens, file.path.contains("/golden")));
         if golden && !text.contains("ORIGIN:") {
             found.push(Violation::new(
                 &file.path,
@@ -73,11 +74,22 @@ fn with_comments_above(text: &str, span: Span) -> String {
     lines[start..end].join("\n")
 }
 
-fn has_golden_literal(tokens: TokenStream) -> bool {
+/// Whether a number of four digits or more stands among the tokens: anywhere, or in an assertion only.
+fn has_golden_number(tokens: TokenStream, anywhere: bool) -> bool {
+    let mut word = String::new();
     tokens.into_iter().any(|token| match token {
-        TokenTree::Group(group) => has_golden_literal(group.stream()),
-        TokenTree::Literal(literal) => significant_digits(&literal.to_string()) >= 4,
-        TokenTree::Ident(_) | TokenTree::Punct(_) => false,
+        TokenTree::Group(group) => has_golden_number(group.stream(), anywhere || word.starts_with("assert")),
+        TokenTree::Literal(literal) => anywhere && significant_digits(&literal.to_string()) >= 4,
+        TokenTree::Ident(ident) => {
+            word = ident.to_string();
+            false
+        }
+        TokenTree::Punct(sign) => {
+            if sign.as_char() != '!' {
+                word.clear();
+            }
+            false
+        }
     })
 }
 
@@ -115,6 +127,14 @@ mod tests {
         ] {
             assert_eq!(significant_digits(literal), digits, "{literal}");
         }
+    }
+
+    #[test]
+    fn elsewhere_assertions_count_and_inputs_do_not() {
+        let count = |text| check(&Repository::from_texts(&[("crates/hydraulics/tests/line.rs", text)])).len();
+        assert_eq!(count("fn f() { for p in [69.9995e5] { g(p); } }"), 0);
+        assert_eq!(count("fn f() { assert!((g() - 2.233e6).abs() < 1.0); }"), 1);
+        assert_eq!(count("fn f() { assert!((g() - 2.233e6).abs() < 1.0); // ORIGIN: analytic\n}"), 0);
     }
 
     #[test]
