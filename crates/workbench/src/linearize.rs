@@ -3,6 +3,7 @@
 
 mod answer;
 
+use phea_dynamics::controller::{Controller, Timing};
 use phea_dynamics::frequency::{PassivityReport, logarithmic_grid, passivity};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_hydraulics::impedance::{
@@ -88,7 +89,8 @@ pub struct PortView {
 ///
 /// # Errors
 /// A model without finite roots: parameters so extreme that the arithmetic ends.
-pub fn linearize(rig: &Rig, controller: Option<&TransferFunction>) -> Result<Linearization, LinearError> {
+pub fn linearize(rig: &Rig, controller: Option<&Controller>) -> Result<Linearization, LinearError> {
+    let feedback = controller.map(|given| given.feedback.transfer_function()).transpose()?;
     let full = linear_model(&rig.linear)?;
     let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.two_pressure))?;
     let decomposed = [
@@ -99,7 +101,8 @@ pub fn linearize(rig: &Rig, controller: Option<&TransferFunction>) -> Result<Lin
     let derived_full = linear_model(&rig.derived)?;
     let grid = frequency_grid(&full.command)?;
     let against_full = |other: &TransferFunction| compare(&grid, &full.command, other);
-    let continuous = controller.filter(|g| g.dead_time_s() == 0.0 && is_continuous(g));
+    let rational = controller.is_some_and(|given| given.timing == Timing { discretization: given.timing.discretization, ..Timing::default() });
+    let continuous = feedback.as_ref().filter(|function| rational && is_continuous(function));
     let closed_loop = continuous.map(|controller| closed_loop_view(rig, &full, controller)).transpose()?;
     Ok(Linearization {
         stiffness: [Member::Nominal, Member::Minimum, Member::Maximum]
@@ -111,7 +114,7 @@ pub fn linearize(rig: &Rig, controller: Option<&TransferFunction>) -> Result<Lin
         truncation: against_full(&first_order),
         modes: dominance(&full.command),
         open_loop: open_loop_view(rig, &full)?,
-        closed_loop_absent: absence(controller, closed_loop.as_ref()),
+        closed_loop_absent: absence(feedback.as_ref(), closed_loop.as_ref()),
         closed_loop,
         compliance_hidden_above_rad_per_s: compliance_hidden_above(
             rig.linear.hydraulic_stiffness,

@@ -73,8 +73,7 @@ pub fn report(loaded: &Loaded, problem: Option<&SizingProblem>) -> Result<Report
     let rig = Rig::new(project)?;
     let actuator = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
     let controller = controller(project)?;
-    let feedback = controller.as_ref().map(|given| given.feedback.transfer_function()).transpose()?;
-    let linearization = linearize(&rig, feedback.as_ref())?;
+    let linearization = linearize(&rig, controller.as_ref())?;
     let derived = derive(project, &rig);
     let sizing = problem.map(|problem| size(problem, Question::Both));
     let band = project.scenarios.first().map_or(SETTLING_BAND, |scenario| scenario.settling_band_percent);

@@ -1,0 +1,225 @@
+//! The commands on a project: what is asked, and the answer that a shell prints and writes.
+
+use serde::Serialize;
+
+use crate::answer::{self, Answer, Number};
+use crate::control::{ControlError, controller};
+use crate::derived::{self, derive};
+use crate::linearize::{self, linearize};
+use crate::project::{Loaded, Report as Refusal, Severity};
+use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
+use crate::report::{ReportError, report};
+use crate::rig::{Rig, RigError, sizing_problem};
+use crate::sizing::{self, Question, size};
+use crate::source::Source;
+
+/// What is asked of a project.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// Every derived quantity.
+    Check,
+    /// The hose, for a gain or a length in text where given.
+    Size {
+        /// K_p, such as `2.7e-4`.
+        gain: Option<String>,
+        /// Length of each line, such as `1.5 m`.
+        length: Option<String>,
+    },
+    /// Linear models.
+    Linearize,
+    /// The page.
+    Report,
+}
+
+impl Request {
+    /// Name of the command.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Request::Check => "check",
+            Request::Size { .. } => "size",
+            Request::Linearize => "linearize",
+            Request::Report => "report",
+        }
+    }
+}
+
+/// Why a sound project has no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum CommandError {
+    /// The rig cannot be computed with.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// The controller is no transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// A linear system cannot be computed.
+    #[error("the linear models: {0}")]
+    Linear(#[from] phea_dynamics::linear::LinearError),
+    /// There is no report.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// A figure cannot be drawn.
+    #[error("a figure: {0}")]
+    Figure(#[from] crate::figure::FigureError),
+    /// A quantity of the command line is wrong.
+    #[error("--{option} {text}: {message}")]
+    Option {
+        /// Name of the option.
+        option: &'static str,
+        /// As written.
+        text: String,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// The catalogue cannot be read.
+    #[error("{0}")]
+    Catalogue(Refusal),
+    /// The project does not say what to size for.
+    #[error("{0}")]
+    Sizing(#[from] crate::rig::SizingError),
+}
+
+/// Answers a request on a project; `catalogues` are the user's files and folders.
+///
+/// # Errors
+/// [`CommandError`] if the project does not hold what the command needs, or something in it cannot be computed.
+pub fn answer(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    request: &Request,
+) -> Result<Answer, CommandError> {
+    match request {
+        Request::Check => check(loaded),
+        Request::Size { gain, length } => {
+            let question = question(gain.as_deref(), length.as_deref())?;
+            size_answer(source, loaded, catalogues, question)
+        }
+        Request::Linearize => linearize_answer(loaded),
+        Request::Report => report_answer(source, loaded, catalogues),
+    }
+}
+
+fn check(loaded: &Loaded) -> Result<Answer, CommandError> {
+    let derived = match Rig::new(&loaded.project) {
+        Ok(rig) => derive(&loaded.project, &rig),
+        // A plant given as a transfer function has nothing to derive; it is valid all the same.
+        Err(RigError::NoActuator) => vec![],
+        Err(error) => return Err(error.into()),
+    };
+    controller(&loaded.project)?;
+    let text = format!("{}\nThe project is valid.\n", derived::text(&derived));
+    Ok(Answer { text, json: derived::json(loaded, &derived), files: vec![], affirmative: true })
+}
+
+fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, CommandError> {
+    let positive = |option: &'static str, text: &str, dimension: &quantity::Dimension| {
+        let refuse = |message: String| CommandError::Option { option, text: text.to_string(), message };
+        let value = quantity::parse(text, dimension).map_err(|error| refuse(error.to_string()))?;
+        if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string())) }
+    };
+    match (gain, length) {
+        (Some(text), _) => positive("gain", text, &VOLTAGE_PER_FORCE).map(Question::Gain),
+        (None, Some(text)) => positive("length", text, &LENGTH).map(Question::Length),
+        (None, None) => Ok(Question::Both),
+    }
+}
+
+fn size_answer(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    question: Question,
+) -> Result<Answer, CommandError> {
+    let rig = Rig::new(&loaded.project)?;
+    let catalogue = crate::catalogue::load(source, catalogues).map_err(CommandError::Catalogue)?;
+    let problem = sizing_problem(&loaded.project, &rig, &catalogue)?;
+    let sizing = size(&problem, question);
+    Ok(Answer {
+        text: sizing::text(&sizing),
+        json: sizing::json(loaded, &sizing),
+        files: sizing::files(&sizing),
+        affirmative: sizing.candidates.iter().any(|candidate| candidate.accepted()),
+    })
+}
+
+fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
+    let rig = Rig::new(&loaded.project)?;
+    let given = controller(&loaded.project)?;
+    let linearization = linearize(&rig, given.as_ref())?;
+    Ok(Answer {
+        text: linearize::text(&linearization),
+        json: linearize::json(loaded, &linearization),
+        files: vec![],
+        affirmative: true,
+    })
+}
+
+#[derive(Serialize)]
+struct ReportBody {
+    summary: Vec<SummaryRow>,
+    figures: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct SummaryRow {
+    name: &'static str,
+    text: String,
+}
+
+fn report_answer(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Answer, CommandError> {
+    let problem = match loaded.project.sizing {
+        None => None,
+        Some(_) => {
+            let rig = Rig::new(&loaded.project)?;
+            let catalogue = crate::catalogue::load(source, catalogues).map_err(CommandError::Catalogue)?;
+            Some(sizing_problem(&loaded.project, &rig, &catalogue)?)
+        }
+    };
+    let report = report(loaded, problem.as_ref())?;
+    let text: String = report.summary.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
+    let body = ReportBody {
+        summary: report.summary.iter().map(|(name, text)| SummaryRow { name, text: text.clone() }).collect(),
+        figures: report.figures.iter().map(|figure| figure.name.clone()).collect(),
+    };
+    Ok(Answer { text, json: answer::json("report", loaded, body), files: report.files()?, affirmative: true })
+}
+
+#[derive(Serialize)]
+struct RefusalBody<'a> {
+    schema: u32,
+    version: &'static str,
+    command: &'static str,
+    errors: Vec<RefusalRow<'a>>,
+}
+
+#[derive(Serialize)]
+struct RefusalRow<'a> {
+    severity: &'static str,
+    message: &'a str,
+    file: &'a str,
+    line: Number,
+    column: Number,
+    expected: Option<&'a str>,
+    help: Option<&'a str>,
+}
+
+/// The JSON object of a command whose project was refused.
+pub fn refusal_json(request: &Request, refusal: &Refusal) -> String {
+    let errors = refusal.diagnostics.iter().map(|diagnostic| RefusalRow {
+        severity: if diagnostic.severity == Severity::Error { "error" } else { "warning" },
+        message: &diagnostic.message,
+        file: &diagnostic.file,
+        line: Number(diagnostic.line as f64),
+        column: Number(diagnostic.column as f64),
+        expected: diagnostic.expected.as_deref(),
+        help: diagnostic.help.as_deref(),
+    });
+    let body = RefusalBody {
+        schema: answer::SCHEMA,
+        version: env!("CARGO_PKG_VERSION"),
+        command: request.name(),
+        errors: errors.collect(),
+    };
+    serde_json::to_string_pretty(&body).unwrap_or_default()
+}
