@@ -3,7 +3,7 @@
 
 mod assembly;
 mod parameters;
-//mod sizing;
+mod sizing;
 
 use phea_hydraulics::actuator::{Actuator, ActuatorError};
 use phea_hydraulics::friction::ViscousSlope;
@@ -20,6 +20,7 @@ use phea_hydraulics::two_pressure::{
 use crate::project::{self, Project};
 
 pub use parameters::{ParameterOrigin, ResolvedParameter};
+pub use sizing::{SizingError, sizing_problem};
 
 /// A rig ready to be computed with.
 #[derive(Clone, Debug, PartialEq)]
