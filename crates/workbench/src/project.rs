@@ -13,11 +13,19 @@ mod interval;
 mod key;
 mod line;
 mod linear;
+mod listing;
 mod plant;
+mod printer;
+mod read;
+mod reader;
 mod scenario;
+mod setting;
 mod sizing;
 mod specification;
+mod text;
+mod tree;
 mod uncertainty;
+mod validate;
 mod valve;
 mod visitor;
 
@@ -32,15 +40,20 @@ pub use interval::*;
 pub use key::{Key, Range};
 pub use line::*;
 pub use linear::*;
+pub use listing::KeyEntry;
 pub use plant::*;
+pub use read::{keys, print, read};
 pub use scenario::*;
 pub use sizing::*;
 pub use specification::*;
 pub use uncertainty::*;
 pub use valve::*;
 
-use key::{key, plain};
-use visitor::Visitor;
+pub(crate) use key::{key, plain};
+pub(crate) use reader::Reader;
+pub(crate) use text::{Findings, Found, Place};
+pub(crate) use tree::{Node, Value as TreeValue, read as read_tree};
+pub(crate) use visitor::Visitor;
 
 use crate::quantity::RATIO;
 
@@ -94,6 +107,9 @@ pub struct Actuator {
     pub load: Load,
 }
 
+/// A commented project to start from.
+pub const STARTER: &str = include_str!("project/starter.toml");
+
 /// A project that was read, and what belongs to the reading rather than to the rig.
 #[derive(Clone, Debug)]
 pub struct Loaded {
@@ -101,6 +117,8 @@ pub struct Loaded {
     pub project: Project,
     /// What is doubtful without being wrong.
     pub warnings: Vec<Diagnostic>,
+    /// Name and content of every text a warning points into.
+    pub texts: Vec<(String, String)>,
     /// Of the file's bytes, in hexadecimal.
     pub sha256: String,
     /// The `path=value` texts that were applied, as given.
@@ -136,4 +154,79 @@ pub enum Origin {
     },
     /// Nobody: it is the default of the key.
     Default,
+}
+
+impl Project {
+    /// The tables that make the system: the actuator or the plant.
+    fn visit_system<V: Visitor>(&mut self, v: &mut V) {
+        let mut schema = 1;
+        v.count(key("schema", &RATIO, "Version of this format: 1.").at_least(1.0).at_most(1.0), &mut schema);
+        let mut title = (!self.title.is_empty()).then(|| std::mem::take(&mut self.title));
+        v.text(plain("title", "One line for people."), &mut title, false);
+        self.title = title.unwrap_or_default();
+        v.table(plain("plant", "Any plant but an actuator."), &mut self.plant, Plant::visit);
+        v.part(&mut self.actuator, Actuator::visit);
+    }
+
+    /// What is wanted of the system.
+    fn visit_wishes<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("operating_point", "Where the linear model is taken.");
+        table_or_default(k, &mut self.operating_point, OperatingPoint::visit, v);
+        let k = plain("linear", "Parameters of the linear model, set outright.");
+        table_or_default(k, &mut self.linear, Linear::visit, v);
+        v.table(plain("sizing", "What the compliance is sized for."), &mut self.sizing, Sizing::visit);
+        let k = plain("uncertainty", "Uncertain numbers and their grids.");
+        v.dictionary(
+            k,
+            |u| &u.name,
+            &mut self.uncertainty,
+            |uncertain: &mut Uncertain, number, v| {
+                uncertain.name = number.name.to_string();
+                uncertain.visit(number.key, v);
+            },
+        );
+        v.table(plain("family", "A family that is not a grid."), &mut self.family, Family::visit);
+        let k = plain("specification", "What the closed loop must meet.");
+        v.tables(k, &mut self.specifications, Specification::visit);
+        let k = plain("controller", "Given, to be verified; absent, to be designed.");
+        v.table(k, &mut self.controller, Controller::visit);
+        let k = plain("prefilter", "Given, to be verified; absent, to be designed.");
+        v.table(k, &mut self.prefilter, Prefilter::visit);
+        v.tables(plain("scenario", "What is simulated."), &mut self.scenarios, Scenario::visit);
+        v.table(plain("campaign", "What a campaign varies."), &mut self.campaign, Campaign::visit);
+    }
+}
+
+/// A table whose absence means its default.
+fn table_or_default<T: Default + PartialEq, V: Visitor>(
+    key: Key,
+    field: &mut T,
+    visit: impl Fn(&mut T, &mut V),
+    v: &mut V,
+) {
+    let declared = *field != T::default();
+    let mut table = declared.then(|| std::mem::take(field));
+    v.table(key, &mut table, visit);
+    *field = table.unwrap_or_default();
+}
+
+impl Actuator {
+    /// The tables of an actuator, which must all be there but `[load]`.
+    const REQUIRED: [&'static str; 6] = ["fluid", "supply", "valve", "cylinder", "line", "force_sensor"];
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        required(plain("fluid", "The oil."), &mut self.fluid, Fluid::visit, v);
+        required(plain("supply", "The pressure supply."), &mut self.supply, Supply::visit, v);
+        required(plain("valve", "The servovalve."), &mut self.valve, Valve::visit, v);
+        required(plain("cylinder", "The cylinder."), &mut self.cylinder, Cylinder::visit, v);
+        required(plain("line", "From the valve to each chamber."), &mut self.line, Lines::visit, v);
+        required(plain("force_sensor", "The load cell."), &mut self.force_sensor, ForceSensor::visit, v);
+        table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit, v);
+    }
+}
+
+fn required<T: Default, V: Visitor>(key: Key, field: &mut T, visit: impl Fn(&mut T, &mut V), v: &mut V) {
+    let mut table = Some(std::mem::take(field));
+    v.table(key, &mut table, visit);
+    *field = table.unwrap_or_default();
 }

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+
 /// One finding in a file or setting.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -37,6 +39,69 @@ pub enum Severity {
 pub struct Report {
     /// Errors first, each in file order.
     pub diagnostics: Vec<Diagnostic>,
+    /// How many more errors there are beyond those listed.
+    pub more: usize,
     /// Name and content of every text a diagnostic points into.
     pub texts: Vec<(String, String)>,
+}
+
+/// Longest line that is shown, in bytes.
+const MAXIMUM_SHOWN: usize = 400;
+
+/// The findings for people: each with its line, what was expected and what would help. `styled` adds terminal colours.
+pub fn render(diagnostics: &[Diagnostic], texts: &[(String, String)], styled: bool) -> String {
+    let renderer = if styled { Renderer::styled() } else { Renderer::plain() };
+    let one = |diagnostic: &Diagnostic| renderer.render(&diagnostic.groups(texts));
+    diagnostics.iter().map(one).collect::<Vec<_>>().join("\n\n")
+}
+
+impl Report {
+    /// All findings for people; see [`render`].
+    pub fn render(&self, styled: bool) -> String {
+        let listed = render(&self.diagnostics, &self.texts, styled);
+        if self.more == 0 { listed } else { format!("{listed}\n\n... and {} more", self.more) }
+    }
+}
+
+impl std::fmt::Display for Report {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for Report {}
+
+impl Diagnostic {
+    fn groups<'a>(&'a self, texts: &'a [(String, String)]) -> Vec<Group<'a>> {
+        let level = match self.severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let title = level.primary_title(self.message.as_str());
+        let content = texts.iter().find(|(name, _)| *name == self.file).map(|(_, content)| content.as_str());
+        let line = self.line.checked_sub(1).and_then(|index| content?.lines().nth(index));
+        let group = match line.filter(|line| line.len() <= MAXIMUM_SHOWN) {
+            Some(line) => title.element(self.snippet(line)),
+            None => title.element(self.origin()),
+        };
+        let help = self.help.iter().map(|help| Group::with_title(Level::HELP.secondary_title(help.as_str())));
+        std::iter::once(group).chain(help).collect()
+    }
+
+    /// The line with the span underlined and what was expected beside it.
+    fn snippet<'a>(&'a self, line: &'a str) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
+        let start: usize = line.chars().take(self.column.saturating_sub(1)).map(char::len_utf8).sum();
+        let mut end = (start + self.span.len()).min(line.len());
+        while !line.is_char_boundary(end) {
+            end += 1;
+        }
+        let label = self.expected.as_ref().map(|expected| format!("expected {expected}"));
+        let annotation = AnnotationKind::Primary.span(start..end.max(start)).label(label);
+        Snippet::source(line).line_start(self.line).path(self.file.as_str()).annotation(annotation)
+    }
+
+    fn origin(&self) -> Origin<'_> {
+        let origin = Origin::path(self.file.as_str());
+        if self.line == 0 { origin } else { origin.line(self.line).char_column(self.column) }
+    }
 }

@@ -44,6 +44,25 @@ pub enum LineModel {
 pub struct Line {
     /// Name of the catalogue's hose; with it, or with `bore` and an expansion, the line is a hose.
     pub hose: Option<String>,
+    /// What is known of the hose, from the catalogue or written here.
+    pub hose_properties: HoseProperties,
+    /// A pipe instead of a hose.
+    pub pipe: Option<Pipe>,
+    /// m³, a line given outright, with `effective_bulk_modulus`.
+    pub volume: Option<f64>,
+    /// Pa, of the volume given outright.
+    pub effective_bulk_modulus: Option<f64>,
+    /// m, of this one line.
+    pub length: Option<f64>,
+    /// r_β, dynamic over static modulus of the hose.
+    pub dynamic_stiffening: Option<Interval>,
+    /// How waves in it are modelled.
+    pub model: LineModel,
+}
+
+/// What is known of a hose; what is absent is unknown.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HoseProperties {
     /// m, inner diameter of the hose.
     pub bore: Option<f64>,
     /// m³/m gained at `volumetric_expansion_pressure`.
@@ -58,18 +77,6 @@ pub struct Line {
     pub working_pressure: Option<f64>,
     /// Pa.
     pub burst_pressure: Option<f64>,
-    /// A pipe instead of a hose.
-    pub pipe: Option<Pipe>,
-    /// m³, a line given outright, with `effective_bulk_modulus`.
-    pub volume: Option<f64>,
-    /// Pa, of the volume given outright.
-    pub effective_bulk_modulus: Option<f64>,
-    /// m, of this one line.
-    pub length: Option<f64>,
-    /// r_β, dynamic over static modulus of the hose.
-    pub dynamic_stiffening: Option<Interval>,
-    /// How waves in it are modelled.
-    pub model: LineModel,
 }
 
 /// A pipe with an elastic wall.
@@ -135,15 +142,6 @@ impl Line {
         "effective_bulk_modulus",
     ];
 
-    /// m³/(m·Pa): the declared slope, or the expansion over the pressure it was measured at.
-    pub fn expansion_slope(&self) -> Option<f64> {
-        let secant = match (self.volumetric_expansion, self.volumetric_expansion_pressure) {
-            (Some(expansion), Some(pressure)) => Some(expansion / pressure),
-            _ => None,
-        };
-        self.volumetric_expansion_slope.or(secant)
-    }
-
     /// What the line is made of; `None` only for a line that was not read from a valid project.
     pub fn component(&self) -> Option<Component<'_>> {
         if let (Some(volume), Some(effective_bulk_modulus)) = (self.volume, self.effective_bulk_modulus) {
@@ -155,17 +153,17 @@ impl Line {
         }
         Some(Component::Hose {
             name: self.hose.as_deref(),
-            bore: self.bore?,
-            expansion: self.volumetric_expansion,
-            expansion_pressure: self.volumetric_expansion_pressure,
-            expansion_slope: self.expansion_slope()?,
+            bore: self.hose_properties.bore?,
+            expansion: self.hose_properties.volumetric_expansion,
+            expansion_pressure: self.hose_properties.volumetric_expansion_pressure,
+            expansion_slope: self.hose_properties.expansion_slope()?,
             length,
         })
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.catalogue(plain("hose", "Name of a hose of the catalogue."), Kind::Hose, &mut self.hose);
-        self.visit_hose(v);
+        self.hose_properties.visit(v);
         v.table(plain("pipe", "A pipe instead of a hose."), &mut self.pipe, Pipe::visit);
         let k = key("volume", &VOLUME, "Volume of the line, instead of a hose or pipe.").positive();
         v.optional(k, &mut self.volume);
@@ -182,9 +180,20 @@ impl Line {
         ];
         v.choice(plain("model", "How waves in the line are modelled."), words, &mut self.model, false);
     }
+}
+
+impl HoseProperties {
+    /// m³/(m·Pa): the declared slope, or the expansion over the pressure it was measured at.
+    pub fn expansion_slope(&self) -> Option<f64> {
+        let secant = match (self.volumetric_expansion, self.volumetric_expansion_pressure) {
+            (Some(expansion), Some(pressure)) => Some(expansion / pressure),
+            _ => None,
+        };
+        self.volumetric_expansion_slope.or(secant)
+    }
 
     /// The keys a catalogue's hose has.
-    pub(crate) fn visit_hose<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("bore", &LENGTH, "Inner diameter of the hose.").positive();
         v.optional(k, &mut self.bore);
         let k = key("volumetric_expansion", &VOLUME_PER_LENGTH, "Volume gained by a metre of hose.");

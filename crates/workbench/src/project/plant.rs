@@ -27,25 +27,33 @@ pub struct Rational {
 
 impl Rational {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        self.visit_as(Shape::Polynomial, v);
+    }
+
+    fn visit_parametric<V: Visitor>(&mut self, v: &mut V) {
+        self.visit_as(Shape::Parametric, v);
+    }
+
+    fn visit_as<V: Visitor>(&mut self, shape: Shape, v: &mut V) {
         let k = plain("numerator", "Polynomial, such as \"2116*(s + 75)/75\".");
-        required(k, &mut self.numerator, v);
+        required(k, shape, &mut self.numerator, v);
         let k = plain("denominator", "Polynomial, such as \"s^2 + 73.6*s + 2116\".");
-        required(k, &mut self.denominator, v);
+        required(k, shape, &mut self.denominator, v);
     }
 }
 
-fn required<V: Visitor>(key: Key, field: &mut Formula, v: &mut V) {
+fn required<V: Visitor>(key: Key, shape: Shape, field: &mut Formula, v: &mut V) {
     let mut formula = Some(std::mem::take(field));
-    v.formula(key, Shape::Polynomial, &mut formula, true);
+    v.formula(key, shape, &mut formula, true);
     *field = formula.unwrap_or_default();
 }
 
 impl Plant {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        self.transfer.visit(v);
+        self.transfer.visit_parametric(v);
         v.quantity(key("delay", &TIME, "Dead time.").not_negative().or(0.0), &mut self.delay);
         let k = plain("disturbance", "Transfer function of the second path, for \"load_motion\".");
-        v.table(k, &mut self.disturbance, Rational::visit);
+        v.table(k, &mut self.disturbance, Rational::visit_parametric);
     }
 }
 

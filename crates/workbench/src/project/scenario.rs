@@ -1,6 +1,6 @@
 //! `[[scenario]]`: what is simulated.
 
-use super::key::{key, plain};
+use super::key::{Key, key, plain};
 use super::visitor::Visitor;
 use crate::quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PRESSURE, RATIO, TIME, VELOCITY, VOLTAGE};
 
@@ -152,4 +152,15 @@ impl LoadMotion {
         v.optional(k, &mut self.final_frequency);
         v.text(plain("file", "A CSV file with time and position."), &mut self.file, false);
     }
+}
+
+/// The numbers of the start as a campaign names them: `start.position` and so on.
+pub(crate) fn start_numbers() -> Vec<(String, Key)> {
+    let keys = [
+        key("start.position", &LENGTH, "Position of the piston at the start.").not_negative(),
+        key("start.velocity", &VELOCITY, "Velocity of the piston at the start."),
+        key("start.pressure_a", &PRESSURE, "Pressure in chamber A at the start.").above(-101_325.0),
+        key("start.pressure_b", &PRESSURE, "Pressure in chamber B at the start.").above(-101_325.0),
+    ];
+    keys.into_iter().map(|key| (key.name.to_string(), key)).collect()
 }

@@ -39,6 +39,8 @@ pub(crate) trait Visitor: Sized {
     fn catalogue(&mut self, key: Key, kind: Kind, field: &mut Option<String>);
     /// A table that may be absent.
     fn table<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
+    /// Keys of the present table that belong to a part which may be absent as a whole.
+    fn part<T: Default>(&mut self, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
     /// A table or, shorter, an array of its values in the order of its keys.
     fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
     /// An array of tables.
@@ -80,6 +82,8 @@ pub(crate) struct Named<'a> {
 pub(crate) enum Shape {
     /// A polynomial in `s` or `z`.
     Polynomial,
+    /// A polynomial with parameters.
+    Parametric,
     /// A ratio of polynomials.
     Ratio,
 }

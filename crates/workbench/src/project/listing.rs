@@ -1,0 +1,207 @@
+//! Lists the keys of a project, and gets or sets its numbers by their path.
+
+use std::collections::BTreeMap;
+
+use super::formula::Formula;
+use super::key::Key;
+use super::visitor::{Form, Named, Shape, Visitor};
+use crate::catalogue::Kind;
+
+/// Walks a project without changing it, but for one number if asked to.
+#[derive(Default)]
+pub(crate) struct Listing {
+    /// Tables that are absent are listed too.
+    everything: bool,
+    path: Vec<String>,
+    /// Every key with a value of its own, by its path.
+    pub(crate) keys: Vec<KeyEntry>,
+    /// Every number that exists, by its path.
+    pub(crate) numbers: BTreeMap<String, (Key, f64)>,
+    /// A number to set.
+    assign: Option<(String, f64)>,
+    /// Whether it was found.
+    pub(crate) assigned: bool,
+}
+
+/// A key as the documentation lists it.
+#[derive(Clone, Debug)]
+pub struct KeyEntry {
+    /// Dotted; `[]` stands for each element of a list, `NAME` for a name of the user's.
+    pub path: String,
+    /// What is known of it.
+    pub key: Key,
+    /// What it takes: a quantity, a text, one of several words, ...
+    pub takes: String,
+    /// Whether its absence is an error.
+    pub required: bool,
+}
+
+impl Listing {
+    /// Lists every key there can be.
+    pub(crate) fn of_everything() -> Self {
+        Listing { everything: true, ..Listing::default() }
+    }
+
+    /// Sets one number.
+    pub(crate) fn assigning(path: &str, value: f64) -> Self {
+        Listing { assign: Some((path.to_string(), value)), ..Listing::default() }
+    }
+
+    fn path_of(&self, name: &str) -> String {
+        let mut parts = self.path.clone();
+        parts.push(name.to_string());
+        parts.join(".")
+    }
+
+    fn list(&mut self, key: Key, takes: impl Into<String>, required: bool) {
+        if self.everything {
+            let path = self.path_of(key.name);
+            self.keys.push(KeyEntry { path, key, takes: takes.into(), required });
+        }
+    }
+
+    fn number(&mut self, key: Key, field: &mut f64) {
+        let path = self.path_of(key.name);
+        if let Some((wanted, value)) = &self.assign {
+            if *wanted == path {
+                *field = *value;
+                self.assigned = true;
+            }
+        }
+        self.numbers.insert(path, (key, *field));
+    }
+
+    fn within(&mut self, name: String, walk: impl FnOnce(&mut Self)) {
+        self.path.push(name);
+        walk(self);
+        self.path.pop();
+    }
+}
+
+impl Visitor for Listing {
+    fn quantity(&mut self, key: Key, field: &mut f64) {
+        self.list(key, key.dimension.name, key.default.is_none());
+        self.number(key, field);
+    }
+
+    fn optional(&mut self, key: Key, field: &mut Option<f64>) {
+        self.list(key, key.dimension.name, false);
+        if let Some(value) = field {
+            self.number(key, value);
+        }
+    }
+
+    fn pair(&mut self, key: Key, _field: &mut Option<[f64; 2]>) {
+        self.list(key, format!("two of {}", key.dimension.name), false);
+    }
+
+    fn quantities(&mut self, key: Key, _field: &mut Vec<f64>) {
+        self.list(key, format!("a list of {}", key.dimension.name), false);
+    }
+
+    fn complexes(&mut self, key: Key, _field: &mut Vec<[f64; 2]>) {
+        self.list(key, "a list of complex numbers", false);
+    }
+
+    fn count(&mut self, key: Key, _field: &mut u32) {
+        self.list(key, "a whole number", key.default.is_none());
+    }
+
+    fn text(&mut self, key: Key, _field: &mut Option<String>, required: bool) {
+        self.list(key, "a text", required);
+    }
+
+    fn texts(&mut self, key: Key, _field: &mut Vec<String>) {
+        self.list(key, "a list of texts", false);
+    }
+
+    fn choice<T: Copy + PartialEq>(
+        &mut self,
+        key: Key,
+        words: &'static [(&'static str, T)],
+        _field: &mut T,
+        required: bool,
+    ) {
+        let all: Vec<String> = words.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+        self.list(key, format!("one of {}", all.join(", ")), required);
+    }
+
+    fn formula(&mut self, key: Key, shape: Shape, _field: &mut Option<Formula>, required: bool) {
+        let takes = match shape {
+            Shape::Polynomial => "a polynomial in s or z, in text",
+            Shape::Parametric => "a polynomial in s and named parameters, in text",
+            Shape::Ratio => "a ratio of polynomials in s, in text",
+        };
+        self.list(key, takes, required);
+    }
+
+    fn catalogue(&mut self, key: Key, kind: Kind, _field: &mut Option<String>) {
+        self.list(key, format!("the name of a {} of the catalogue", kind.name()), false);
+    }
+
+    fn table<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
+        let mut absent = if self.everything { Some(T::default()) } else { None };
+        if let Some(value) = field.as_mut().or(absent.as_mut()) {
+            self.within(key.name.to_string(), |listing| visit(value, listing));
+        }
+    }
+
+    fn part<T: Default>(&mut self, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
+        let mut absent = if self.everything { Some(T::default()) } else { None };
+        if let Some(value) = field.as_mut().or(absent.as_mut()) {
+            visit(value, self);
+        }
+    }
+
+    fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
+        self.table(key, field, visit);
+    }
+
+    fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
+        if self.everything {
+            self.within(format!("{}[]", key.name), |listing| visit(&mut T::default(), listing));
+        }
+        for (index, value) in field.iter_mut().enumerate() {
+            self.within(format!("{}[{index}]", key.name), |listing| visit(value, listing));
+        }
+    }
+
+    fn dictionary<T: Default>(
+        &mut self,
+        key: Key,
+        _name_of: fn(&T) -> &str,
+        _field: &mut Vec<T>,
+        visit: impl Fn(&mut T, Named<'_>, &mut Self),
+    ) {
+        if self.everything {
+            self.within(format!("{}.NAME", key.name), |listing| {
+                visit(&mut T::default(), Named { name: "NAME", key }, listing);
+            });
+        }
+    }
+
+    fn numbers(&mut self, key: Key, _field: &mut Vec<(String, f64)>) {
+        self.list(Key { name: "NAME", ..key }, "a number", false);
+    }
+
+    fn sides<T: Default + Clone + PartialEq>(
+        &mut self,
+        keys: [Key; 2],
+        _alternatives: &'static [&'static str],
+        fields: &mut [T; 2],
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        if fields[0] == fields[1] {
+            visit(&mut fields[0], self);
+            fields[1] = fields[0].clone();
+            return;
+        }
+        for (key, field) in keys.into_iter().zip(fields) {
+            self.within(key.name.to_string(), |listing| visit(field, listing));
+        }
+    }
+
+    fn form(&mut self, _key: Key, field: Form) -> Form {
+        field
+    }
+}

@@ -1,0 +1,105 @@
+//! `--set path=value`: puts a value into the tree before anything is checked.
+
+use super::text::{Findings, Found, Place};
+use super::tree::{self, Entry, Node, Value};
+
+/// Most parts of a path.
+const MAXIMUM_PARTS: usize = 16;
+
+/// Applies one setting. Its own errors, and those of its value later on, point into the setting's text.
+pub(crate) fn apply(root: &mut Node, setting: &str, findings: &mut Findings) {
+    let text = findings.add_text(&format!("--set {setting}"), setting, 0);
+    let whole = Place { text, start: 0, end: setting.len() };
+    let Some(equals) = setting.find('=') else {
+        let found = Found::error(whole, "a setting has the form path=value");
+        return findings.push(found.help("for instance --set line.length=\"2 m\""));
+    };
+    let parts = match parts(text, &setting[..equals]) {
+        Ok(parts) => parts,
+        Err(found) => return findings.push(found),
+    };
+    let node = value(text, equals + 1, setting, findings);
+    if let Err(found) = insert(root, &parts, node) {
+        findings.push(found);
+    }
+}
+
+/// A part of the path and where it stands.
+type Part = (String, Place);
+
+fn parts(text: usize, path: &str) -> Result<Vec<Part>, Found> {
+    let mut parts = Vec::new();
+    let mut at = 0;
+    for piece in split(path) {
+        let place = Place { text, start: at, end: at + piece.len() };
+        at += piece.len() + 1;
+        let name = piece.trim().trim_matches('"');
+        if name.is_empty() {
+            return Err(Found::error(place, "an empty name in the path"));
+        }
+        parts.push((name.to_string(), place));
+    }
+    let whole = Place { text, start: 0, end: path.len() };
+    if parts.len() > MAXIMUM_PARTS {
+        return Err(Found::error(whole, format!("a path of more than {MAXIMUM_PARTS} parts")));
+    }
+    Ok(parts)
+}
+
+/// At the dots that are not inside quotes.
+fn split(path: &str) -> Vec<&str> {
+    let mut inside = false;
+    path.split(|c| {
+        inside ^= c == '"';
+        c == '.' && !inside
+    })
+    .collect()
+}
+
+/// A TOML value, or else the bare text.
+fn value(text: usize, start: usize, setting: &str, findings: &mut Findings) -> Node {
+    let written = &setting[start..];
+    let from = start + written.len() - written.trim_start().len();
+    let to = start + written.trim_end().len();
+    let place = Place { text, start: from.min(to), end: to };
+    let bare = || Node { place, value: Value::Text(written.trim().to_string()) };
+    tree::value(text, place.start..place.end, findings).unwrap_or_else(bare)
+}
+
+fn insert(table: &mut Node, path: &[Part], value: Node) -> Result<(), Found> {
+    let Some(((name, place), rest)) = path.split_first() else { return Ok(()) };
+    let kind = table.kind();
+    match &mut table.value {
+        Value::Table(entries) => {
+            let index = match entries.iter().position(|entry| entry.key == *name) {
+                Some(index) => index,
+                None => {
+                    let node = Node { place: *place, value: Value::Table(Vec::new()) };
+                    entries.push(Entry { key: name.clone(), key_place: *place, node });
+                    entries.len() - 1
+                }
+            };
+            let Some(entry) = entries.get_mut(index) else { return Ok(()) };
+            if rest.is_empty() {
+                entry.node = value;
+                return Ok(());
+            }
+            insert(&mut entry.node, rest, value)
+        }
+        Value::List(items) => {
+            let count = items.len();
+            let item = name.parse::<usize>().ok().and_then(|index| items.get_mut(index));
+            let wrong = || {
+                let found = Found::error(*place, format!("`{name}` is no element of this list of {count}"));
+                found.help("elements are counted from 0")
+            };
+            let item = item.ok_or_else(wrong)?;
+            if rest.is_empty() {
+                *item = value;
+                return Ok(());
+            }
+            insert(item, rest, value)
+        }
+        _ => Err(Found::error(*place, format!("nothing can be set inside {kind}"))),
+    }
+}

@@ -1,0 +1,170 @@
+//! Texts, places in them, and findings: what everything that reads a file shares.
+
+use super::diagnostic::{Diagnostic, Report, Severity};
+
+/// Where something is written: which text, and its bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Place {
+    /// Index into the texts.
+    pub(crate) text: usize,
+    /// First byte.
+    pub(crate) start: usize,
+    /// First byte after it.
+    pub(crate) end: usize,
+}
+
+/// The texts that are read, and what was found in them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Findings {
+    texts: Vec<Text>,
+    found: Vec<Found>,
+}
+
+/// A named text.
+#[derive(Clone, Debug)]
+struct Text {
+    name: String,
+    content: String,
+    /// Bytes of the file before the content, such as a byte order mark.
+    skipped: usize,
+    line_starts: Vec<usize>,
+}
+
+/// A finding before its line and column are counted.
+#[derive(Clone, Debug)]
+pub(crate) struct Found {
+    severity: Severity,
+    place: Place,
+    message: String,
+    expected: Option<String>,
+    help: Option<String>,
+    /// Whether it can be the consequence of a syntax error elsewhere.
+    consequence: bool,
+    syntax: bool,
+}
+
+impl Found {
+    pub(crate) fn error(place: Place, message: impl Into<String>) -> Self {
+        let message = message.into();
+        let severity = Severity::Error;
+        Found { severity, place, message, expected: None, help: None, consequence: false, syntax: false }
+    }
+
+    pub(crate) fn warning(place: Place, message: impl Into<String>) -> Self {
+        Found { severity: Severity::Warning, ..Found::error(place, message) }
+    }
+
+    pub(crate) fn expected(mut self, expected: impl Into<String>) -> Self {
+        self.expected = Some(expected.into());
+        self
+    }
+
+    pub(crate) fn maybe_expected(mut self, expected: Option<String>) -> Self {
+        self.expected = expected.or(self.expected);
+        self
+    }
+
+    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    pub(crate) fn maybe_help(mut self, help: Option<String>) -> Self {
+        self.help = help.or(self.help);
+        self
+    }
+
+    /// Something is missing, which a syntax error may be to blame for.
+    pub(crate) fn consequence(mut self) -> Self {
+        self.consequence = true;
+        self
+    }
+
+    pub(crate) fn syntax(mut self) -> Self {
+        self.syntax = true;
+        self
+    }
+}
+
+/// More errors than this are counted but not listed.
+const MAXIMUM_LISTED: usize = 200;
+
+impl Findings {
+    /// Takes a text in and gives its index.
+    pub(crate) fn add_text(&mut self, name: &str, content: &str, skipped: usize) -> usize {
+        let starts = content.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
+        let line_starts = std::iter::once(0).chain(starts).collect();
+        self.texts.push(Text { name: name.to_string(), content: content.to_string(), skipped, line_starts });
+        self.texts.len() - 1
+    }
+
+    /// Index of the text taken in last.
+    pub(crate) fn last_text(&self) -> usize {
+        self.texts.len().saturating_sub(1)
+    }
+
+    pub(crate) fn push(&mut self, found: Found) {
+        self.found.push(found);
+    }
+
+    pub(crate) fn content(&self, text: usize) -> &str {
+        self.texts.get(text).map_or("", |text| &text.content)
+    }
+
+    pub(crate) fn name(&self, text: usize) -> &str {
+        self.texts.get(text).map_or("", |text| &text.name)
+    }
+
+    pub(crate) fn has_errors(&self) -> bool {
+        self.found.iter().any(|found| found.severity == Severity::Error)
+    }
+
+    pub(crate) fn has_error_at(&self, place: Place) -> bool {
+        self.found.iter().any(|found| found.place == place)
+    }
+
+    /// Everything found, in order of place, without what a syntax error of the same text explains.
+    pub(crate) fn report(self) -> Report {
+        let Findings { texts, mut found } = self;
+        let line = |place: &Place| texts.get(place.text).map_or(0, |text| text.line(place.start));
+        let broken: Vec<(usize, usize)> =
+            found.iter().filter(|f| f.syntax).map(|f| (f.place.text, line(&f.place))).collect();
+        found.retain(|f| {
+            let explained = broken.contains(&(f.place.text, line(&f.place)));
+            f.syntax || !(explained || f.consequence && !broken.is_empty())
+        });
+        found.sort_by(|a, b| (a.severity, a.place, &a.message).cmp(&(b.severity, b.place, &b.message)));
+        found.dedup_by(|a, b| a.place == b.place && a.message == b.message);
+        let more = found.len().saturating_sub(MAXIMUM_LISTED);
+        found.truncate(MAXIMUM_LISTED);
+        let diagnostics = found.iter().filter_map(|f| Some(texts.get(f.place.text)?.diagnostic(f))).collect();
+        Report { diagnostics, more, texts: texts.into_iter().map(|text| (text.name, text.content)).collect() }
+    }
+}
+
+impl Text {
+    /// From 1.
+    fn line(&self, at: usize) -> usize {
+        self.line_starts.partition_point(|start| *start <= at)
+    }
+
+    fn diagnostic(&self, found: &Found) -> Diagnostic {
+        let end = self.content.len();
+        let (from, to) = (found.place.start.min(end), found.place.end.min(end));
+        let line = self.line(from);
+        let line_start =
+            line.checked_sub(1).and_then(|index| self.line_starts.get(index)).copied().unwrap_or(0);
+        let whole_file = self.content.is_empty();
+        let before = self.content.get(line_start..from).unwrap_or_default();
+        Diagnostic {
+            severity: found.severity,
+            message: found.message.clone(),
+            file: self.name.clone(),
+            line: if whole_file { 0 } else { line },
+            column: if whole_file { 0 } else { before.chars().count() + 1 },
+            span: from + self.skipped..to.max(from) + self.skipped,
+            expected: found.expected.clone(),
+            help: found.help.clone(),
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! What must hold between the values of a project, beyond the range of each.
+
+mod linear_loop;
+mod rig;
+mod wishes;
+
+use super::reader::Reader;
+use super::text::{Found, Place};
+use super::{LINEAR_PARAMETERS, Project};
+
+/// Reports everything that cannot be together.
+pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
+    let mut check = Check { reader };
+    if let Some(actuator) = &project.actuator {
+        rig::actuator(actuator, &mut check);
+        wishes::with_actuator(project, actuator, &mut check);
+    }
+    if let Some(plant) = &project.plant {
+        wishes::with_plant(project, plant, &mut check);
+    }
+    wishes::uncertainty(project, &mut check);
+    linear_loop::specifications(project, &mut check);
+    linear_loop::controllers(project, &mut check);
+}
+
+/// Reports findings at the places of values.
+struct Check<'r, 'a> {
+    reader: &'r mut Reader<'a>,
+}
+
+impl Check<'_, '_> {
+    /// Where the value of a path is written, or the nearest table around it.
+    fn place(&self, path: &str) -> Place {
+        let mut path = path;
+        loop {
+            if let Some(place) = self.reader.places.get(path) {
+                return *place;
+            }
+            match path.rfind(['.', '[']) {
+                Some(cut) => path = &path[..cut],
+                None => return self.reader.root_place(),
+            }
+        }
+    }
+
+    /// Whether a path was written in the project or set.
+    fn declared(&self, path: &str) -> bool {
+        self.reader.places.contains_key(path)
+    }
+
+    fn error(&mut self, path: &str, message: impl Into<String>) {
+        let place = self.place(path);
+        self.reader.findings.push(Found::error(place, message));
+    }
+
+    fn error_with_help(&mut self, path: &str, message: impl Into<String>, help: impl Into<String>) {
+        let place = self.place(path);
+        self.reader.findings.push(Found::error(place, message).help(help));
+    }
+
+    fn warning(&mut self, path: &str, message: impl Into<String>) {
+        let place = self.place(path);
+        self.reader.findings.push(Found::warning(place, message));
+    }
+
+    /// Something is absent from the table at `path`; perhaps because its value was refused.
+    fn missing(&mut self, path: &str, name: &str, message: impl Into<String>) {
+        if self.declared(&format!("{path}.{name}")) {
+            return;
+        }
+        let place = self.place(path);
+        self.reader.findings.push(Found::error(place, message).consequence());
+    }
+
+    /// Exactly one of two keys of a table must be there.
+    fn one_of(&mut self, path: &str, names: [&str; 2], present: [bool; 2]) {
+        let [first, second] = names;
+        let written = names.map(|name| self.declared(&format!("{path}.{name}")));
+        match [present[0] || written[0], present[1] || written[1]] {
+            [true, true] => {
+                let message = format!("both `{first}` and `{second}`: one says it all");
+                self.error(&format!("{path}.{second}"), message);
+            }
+            [false, false] => {
+                let place = self.place(path);
+                let message = format!("missing `{first}` or `{second}` in [{path}]");
+                self.reader.findings.push(Found::error(place, message).consequence());
+            }
+            _ => {}
+        }
+    }
+
+    /// Two numbers must be in order.
+    fn ascending(&mut self, path: &str, pair: Option<[f64; 2]>) {
+        if let Some([low, high]) = pair {
+            if low > high {
+                self.error(path, format!("`{}` is reversed: the lower value comes first", last(path)));
+            }
+        }
+    }
+
+    /// Numbers must increase from one to the next.
+    fn increasing(&mut self, path: &str, values: &[f64]) {
+        if values.windows(2).any(|pair| pair[0] >= pair[1]) {
+            self.error(path, format!("`{}` must increase from each to the next", last(path)));
+        }
+    }
+}
+
+/// The last part of a path.
+fn last(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
+
+/// The linear parameter of that name.
+fn linear_parameter(name: &str) -> Option<&'static super::LinearParameter> {
+    LINEAR_PARAMETERS.iter().find(|parameter| parameter.key.name == name)
+}

@@ -1,0 +1,190 @@
+//! Specifications, controller and prefilter.
+
+use super::Check;
+use crate::project::{
+    AntiWindup, Element, ElementKind, Limit, Project, Specification, SpecificationKind, Transfer, Variable,
+};
+
+pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
+    for (index, specification) in project.specifications.iter().enumerate() {
+        one_specification(specification, &format!("specification[{index}]"), check);
+        let second_path = project.plant.as_ref().is_none_or(|plant| plant.disturbance.is_some());
+        if specification.kind == SpecificationKind::LoadMotion && !second_path {
+            check.error(&format!("specification[{index}].kind"), "\"load_motion\" needs [plant.disturbance]");
+        }
+    }
+}
+
+fn one_specification(specification: &Specification, path: &str, check: &mut Check<'_, '_>) {
+    let limits =
+        [("limit", &specification.limit), ("upper", &specification.upper), ("lower", &specification.lower)];
+    let tracking = specification.kind == SpecificationKind::Tracking;
+    for (name, limit) in limits {
+        let belongs = tracking != (name == "limit");
+        let at = format!("{path}.{name}");
+        if belongs && limit.is_none() {
+            let kind = if tracking { "a tracking specification" } else { "a specification of this kind" };
+            check.missing(path, name, format!("missing `{name}`: {kind} needs it"));
+        }
+        if !belongs && (limit.is_some() || check.declared(&at)) {
+            let right = if tracking { "`upper` and `lower`" } else { "`limit`" };
+            check.error(&at, format!("`{name}` does not belong here: this kind takes {right}"));
+        }
+        if let Some(limit) = limit {
+            one_limit(limit, &at, check);
+        }
+    }
+    if let (Some(Limit::Constant(lower)), Some(Limit::Constant(upper))) =
+        (&specification.lower, &specification.upper)
+    {
+        if lower > upper {
+            check.error(&format!("{path}.lower"), "`lower` is above `upper`");
+        }
+    }
+    let at = format!("{path}.frequencies");
+    if specification.frequencies.is_empty() {
+        match check.declared(&at) {
+            true => check.error(&at, "`frequencies` is empty"),
+            false => check.missing(path, "frequencies", "missing `frequencies`: where bounds are drawn"),
+        }
+    }
+    check.increasing(&at, &specification.frequencies);
+    if let Some([low, high]) = specification.band {
+        if low >= high {
+            check.error(
+                &format!("{path}.band"),
+                "`band` is empty or reversed: the lower frequency comes first",
+            );
+        }
+    }
+}
+
+fn one_limit(limit: &Limit, path: &str, check: &mut Check<'_, '_>) {
+    let formulas = match limit {
+        Limit::Constant(_) => Vec::new(),
+        Limit::Text(formula) => vec![formula],
+        Limit::Rational(rational) => vec![&rational.numerator, &rational.denominator],
+        Limit::Table(table) => {
+            if table.frequencies.len() != table.values.len() {
+                let (points, values) = (table.frequencies.len(), table.values.len());
+                check.error(path, format!("{points} frequencies but {values} values"));
+            }
+            check.increasing(&format!("{path}.frequencies"), &table.frequencies);
+            Vec::new()
+        }
+    };
+    if formulas.iter().any(|formula| formula.variable() == Some(Variable::Z)) {
+        check.error(path, "a limit is written in `s`, not in `z`");
+    }
+}
+
+pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
+    if let Some(controller) = &project.controller {
+        transfer(&controller.transfer, "controller", controller.sample_time, check);
+        if controller.anti_windup != AntiWindup::None && controller.saturation.is_none() {
+            check.warning("controller.anti_windup", "`anti_windup` has no effect without `saturation`");
+        }
+        let discrete = is_discrete(&controller.transfer);
+        if check.declared("controller.discretization") && (discrete || controller.sample_time.is_none()) {
+            let why = if discrete { "the controller is in `z` already" } else { "there is no `sample_time`" };
+            check.warning("controller.discretization", format!("`discretization` has no effect: {why}"));
+        }
+    }
+    if let Some(prefilter) = &project.prefilter {
+        transfer(&prefilter.transfer, "prefilter", prefilter.sample_time, check);
+    }
+}
+
+fn is_discrete(transfer: &Transfer) -> bool {
+    let formulas = [&transfer.numerator, &transfer.denominator];
+    formulas.into_iter().flatten().any(|formula| formula.variable() == Some(Variable::Z))
+}
+
+fn transfer(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
+    let declared = |check: &Check<'_, '_>, name: &str| check.declared(&format!("{path}.{name}"));
+    let polynomials = declared(check, "numerator") || declared(check, "denominator");
+    let factors = ["gain", "zeros", "poles"].iter().any(|name| declared(check, name));
+    let elements = declared(check, "elements");
+    let forms = "`numerator` and `denominator`, or `gain` with `zeros` and `poles`, or `elements`";
+    match [polynomials, factors, elements].iter().filter(|is| **is).count() {
+        0 => check.missing(path, "numerator", format!("an empty [{path}]: it takes {forms}")),
+        1 => {}
+        _ => check.error(path, format!("more than one form in [{path}]: it takes either {forms}")),
+    }
+    if polynomials {
+        polynomial_form(transfer, path, sample_time, check);
+    }
+    if factors {
+        if transfer.gain.is_none() {
+            check.missing(path, "gain", "`zeros` and `poles` need `gain`, the leading coefficient");
+        }
+        if transfer.gain == Some(0.0) {
+            check.error(&format!("{path}.gain"), "`gain` is zero");
+        }
+        conjugates(&transfer.zeros, &format!("{path}.zeros"), check);
+        conjugates(&transfer.poles, &format!("{path}.poles"), check);
+    }
+    for (index, element) in transfer.elements.iter().enumerate() {
+        one_element(element, &format!("{path}.elements[{index}]"), check);
+    }
+}
+
+fn polynomial_form(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
+    for (name, formula) in [("numerator", &transfer.numerator), ("denominator", &transfer.denominator)] {
+        if formula.is_none() {
+            check.missing(path, name, format!("missing `{name}` in [{path}]"));
+        }
+    }
+    let (Some(numerator), Some(denominator)) = (&transfer.numerator, &transfer.denominator) else { return };
+    if let (Some(over), Some(under)) = (numerator.variable(), denominator.variable()) {
+        if over != under {
+            check.error(&format!("{path}.denominator"), "numerator and denominator mix `s` and `z`");
+        }
+    }
+    if is_discrete(transfer) && sample_time.is_none() {
+        let message = format!("missing `sample_time` in [{path}]: it is written in `z`");
+        check.missing(path, "sample_time", message);
+    }
+}
+
+/// Complex numbers must come with their conjugates, since coefficients are real.
+fn conjugates(roots: &[[f64; 2]], path: &str, check: &mut Check<'_, '_>) {
+    let count = |wanted: [f64; 2]| roots.iter().filter(|root| **root == wanted).count();
+    for &[real, imaginary] in roots {
+        if imaginary != 0.0 && count([real, imaginary]) != count([real, -imaginary]) {
+            let message = format!("[{real}, {imaginary}] has no conjugate [{real}, {}]", -imaginary);
+            return check.error(path, message);
+        }
+    }
+}
+
+fn one_element(element: &Element, path: &str, check: &mut Check<'_, '_>) {
+    let needs: &[&str] = match element.kind {
+        ElementKind::Gain => &["value"],
+        ElementKind::Integrator | ElementKind::Differentiator => &[],
+        ElementKind::Zero | ElementKind::Pole => &["frequency"],
+        ElementKind::ComplexZeros | ElementKind::ComplexPoles => &["frequency", "damping_ratio"],
+        ElementKind::Lead => &["zero_frequency", "pole_frequency"],
+        ElementKind::Notch => &["frequency", "damping_ratio", "numerator_damping_ratio"],
+    };
+    let values = [
+        ("value", element.value),
+        ("frequency", element.frequency),
+        ("damping_ratio", element.damping_ratio),
+        ("numerator_damping_ratio", element.numerator_damping_ratio),
+        ("zero_frequency", element.zero_frequency),
+        ("pole_frequency", element.pole_frequency),
+    ];
+    for (name, value) in values {
+        let needed = needs.contains(&name);
+        if needed && value.is_none() {
+            check.missing(path, name, format!("this element needs `{name}`"));
+        }
+        if !needed && value.is_some() {
+            check.error(&format!("{path}.{name}"), format!("`{name}` has no meaning for this element"));
+        }
+    }
+    if element.kind == ElementKind::Gain && element.value == Some(0.0) {
+        check.error(&format!("{path}.value"), "a gain of zero");
+    }
+}

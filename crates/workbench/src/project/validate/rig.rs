@@ -1,0 +1,246 @@
+//! The actuator: what geometry and physics forbid.
+
+use std::f64::consts::FRAC_PI_4;
+
+use super::Check;
+use crate::project::{
+    Actuator, Cylinder, Friction, FrictionModel, Interval, Line, Lines, Load, LoadModel, SupplyModel, Valve,
+};
+
+pub(super) fn actuator(actuator: &Actuator, check: &mut Check<'_, '_>) {
+    supply(actuator, check);
+    valve(&actuator.valve, check);
+    cylinder(&actuator.cylinder, check);
+    lines(actuator, &actuator.line, check);
+    load(&actuator.load, check);
+}
+
+fn supply(actuator: &Actuator, check: &mut Check<'_, '_>) {
+    let supply = &actuator.supply;
+    if supply.pressure > 0.0 && supply.tank_pressure >= supply.pressure {
+        let at =
+            if check.declared("supply.tank_pressure") { "supply.tank_pressure" } else { "supply.pressure" };
+        check.error(at, "`tank_pressure` must be below `pressure`");
+    }
+    if supply.model == SupplyModel::PumpLimited && supply.flow.is_none() {
+        check.missing("supply", "flow", "a pump-limited supply needs `flow`");
+    }
+}
+
+fn valve(valve: &Valve, check: &mut Check<'_, '_>) {
+    if valve.flow_coefficients.is_none()
+        && valve.nominal_flow.is_none()
+        && !check.declared("valve.nominal_flow")
+    {
+        let message =
+            "missing `flow_coefficients`, or `nominal_flow` with `nominal_pressure_drop`, in [valve]";
+        check.missing("valve", "flow_coefficients", message);
+    }
+    if valve.nominal_flow.is_some() && valve.nominal_pressure_drop.is_none() {
+        check.missing("valve", "nominal_pressure_drop", "`nominal_flow` needs its `nominal_pressure_drop`");
+    }
+    if valve.flow_coefficients.is_some_and(|edges| edges.in_order().iter().all(|edge| *edge == 0.0)) {
+        check.error("valve.flow_coefficients", "all flow coefficients are zero: the valve never opens");
+    }
+    let Some(leakage) = valve.null_leakage else { return };
+    if valve.null_leakage_pressure.is_none() {
+        check.missing("valve", "null_leakage_pressure", "`null_leakage` needs its `null_leakage_pressure`");
+    }
+    if leakage < valve.tare_flow {
+        check.error("valve.null_leakage", "`null_leakage` includes `tare_flow`, so it cannot be below it");
+    }
+    if valve.null_leakage_maximum.is_some_and(|maximum| maximum < leakage) {
+        check.error("valve.null_leakage_maximum", "`null_leakage_maximum` is below `null_leakage`");
+    }
+}
+
+fn cylinder(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
+    let area = [cylinder.piston_diameter.is_some(), cylinder.piston_area.is_some()];
+    check.one_of("cylinder", ["piston_diameter", "piston_area"], area);
+    let rods = [cylinder.rod_diameter.is_some(), cylinder.rod_diameters.is_some()];
+    check.one_of("cylinder", ["rod_diameter", "rod_diameters"], rods);
+    if cylinder.dead_volume.is_some() && cylinder.dead_volumes.is_some() {
+        check.error("cylinder.dead_volumes", "both `dead_volume` and `dead_volumes`: one says it all");
+    }
+    let piston = cylinder.piston_area_m2();
+    let too_thick = cylinder.rod_diameters_m().iter().any(|rod| FRAC_PI_4 * rod * rod >= piston);
+    if piston > 0.0 && too_thick {
+        let at =
+            if cylinder.rod_diameters.is_some() { "cylinder.rod_diameters" } else { "cylinder.rod_diameter" };
+        check.error(at, "the rod is as thick as the piston or thicker: no area is left for the oil");
+    }
+    if let Some(law) = &cylinder.friction {
+        friction(law, check);
+    }
+}
+
+fn friction(friction: &Friction, check: &mut Check<'_, '_>) {
+    let path = "cylinder.friction";
+    let values = [
+        ("coulomb", friction.coulomb, 1),
+        ("static", friction.static_friction, 1),
+        ("stribeck_velocity", friction.stribeck_velocity, 1),
+        ("bristle_stiffness", friction.bristle_stiffness, 2),
+        ("bristle_damping", friction.bristle_damping, 2),
+    ];
+    let (level, model) = match friction.model {
+        FrictionModel::Viscous => (0, "viscous"),
+        FrictionModel::Stribeck => (1, "stribeck"),
+        FrictionModel::LuGre => (2, "lugre"),
+    };
+    for (name, value, needed_from) in values {
+        if value.is_none() && level >= needed_from {
+            check.missing(path, name, format!("missing `{name}` in [{path}]: model \"{model}\" needs it"));
+        }
+        if value.is_some() && level < needed_from {
+            check
+                .warning(&format!("{path}.{name}"), format!("`{name}` has no effect with model \"{model}\""));
+        }
+    }
+    let (Some(coulomb), Some(breakaway)) = (friction.coulomb, friction.static_friction) else { return };
+    if breakaway < coulomb {
+        check.error("cylinder.friction.static", "`static` friction is below `coulomb` friction");
+        return;
+    }
+    let Some(bristle_damping) = friction.bristle_damping else { return };
+    let least = bristle_damping * (breakaway - coulomb) / coulomb;
+    if friction.model == FrictionModel::LuGre && friction.viscous < least {
+        let message = format!(
+            "this LuGre friction can give out energy: it is passive for `viscous` of at least {least} N.s/m \
+             (bristle_damping (static - coulomb)/coulomb; Barabanov and Ortega, 2000)"
+        );
+        check.warning("cylinder.friction.viscous", message);
+    }
+}
+
+fn lines(actuator: &Actuator, lines: &Lines, check: &mut Check<'_, '_>) {
+    for (name, side) in [("a", &lines.a), ("b", &lines.b)] {
+        let own = format!("line.{name}");
+        let path = if check.declared(&own) { own } else { "line".to_string() };
+        line(side, &path, check);
+        let working = side.hose_properties.working_pressure;
+        if working.is_some_and(|working| working < actuator.supply.pressure) {
+            let message = "the hose's `working_pressure` is below the supply pressure";
+            check.warning(
+                &format!("{path}.{}", if side.hose.is_some() { "hose" } else { "working_pressure" }),
+                message,
+            );
+        }
+    }
+}
+
+fn line(line: &Line, path: &str, check: &mut Check<'_, '_>) {
+    let known = &line.hose_properties;
+    let hose = line.hose.is_some() || known.bore.is_some() || known.expansion_slope().is_some();
+    let outright = line.volume.is_some() || line.effective_bulk_modulus.is_some();
+    match [hose, line.pipe.is_some(), outright].iter().filter(|is| **is).count() {
+        0 => {
+            let message = format!("missing `hose`, `pipe` or `volume` in [{path}]");
+            return check.missing(path, "pipe", message);
+        }
+        1 => {}
+        _ => {
+            let at = if line.pipe.is_some() { "pipe" } else { "volume" };
+            return check
+                .error(&format!("{path}.{at}"), "a line is a hose, a pipe or a volume: only one of them");
+        }
+    }
+    if outright {
+        check_volume(line, path, check);
+    } else if line.length.is_none() {
+        check.missing(path, "length", format!("missing `length` in [{path}]"));
+    }
+    if hose {
+        check_hose(line, path, check);
+    }
+    if let Some(pipe) = &line.pipe {
+        let pipe_path = format!("{path}.pipe");
+        let parts = [pipe.wall_thickness.is_some(), pipe.youngs_modulus.is_some()];
+        match parts {
+            [true, false] => {
+                check.missing(&pipe_path, "youngs_modulus", "`wall_thickness` needs `youngs_modulus`")
+            }
+            [false, true] => {
+                check.missing(&pipe_path, "wall_thickness", "`youngs_modulus` needs `wall_thickness`")
+            }
+            _ => {}
+        }
+    }
+    if !hose && line.dynamic_stiffening.is_some() {
+        check.warning(
+            &format!("{path}.dynamic_stiffening"),
+            "`dynamic_stiffening` has no effect without a hose",
+        );
+    }
+    check.interval(&format!("{path}.dynamic_stiffening"), line.dynamic_stiffening);
+}
+
+fn check_volume(line: &Line, path: &str, check: &mut Check<'_, '_>) {
+    if line.volume.is_none() {
+        check.missing(path, "volume", "`effective_bulk_modulus` needs `volume`");
+    }
+    if line.effective_bulk_modulus.is_none() {
+        check.missing(path, "effective_bulk_modulus", "`volume` needs `effective_bulk_modulus`");
+    }
+    if line.length.is_some() {
+        check.warning(&format!("{path}.length"), "`length` has no effect beside `volume`");
+    }
+}
+
+fn check_hose(line: &Line, path: &str, check: &mut Check<'_, '_>) {
+    let known = &line.hose_properties;
+    // A name the catalogue does not have was refused already.
+    let looked_up = line.hose.is_none() || known.bore.is_some();
+    if looked_up && known.bore.is_none() {
+        check.missing(path, "bore", format!("missing `bore` in [{path}]"));
+    }
+    if looked_up && known.expansion_slope().is_none() {
+        let message =
+            "a hose needs `volumetric_expansion` with its pressure, or `volumetric_expansion_slope`";
+        check.missing(path, "volumetric_expansion_slope", message);
+    }
+    if let (Some(working), Some(burst)) = (known.working_pressure, known.burst_pressure) {
+        if burst < working {
+            check.error(&format!("{path}.burst_pressure"), "`burst_pressure` is below `working_pressure`");
+        }
+    }
+}
+
+impl Check<'_, '_> {
+    fn interval(&mut self, path: &str, interval: Option<Interval>) {
+        let Some(Interval { nominal, minimum, maximum }) = interval else { return };
+        self.bounds(path, [minimum, nominal, maximum]);
+    }
+
+    /// Minimum, nominal and maximum in order.
+    pub(super) fn bounds(&mut self, path: &str, [minimum, nominal, maximum]: [f64; 3]) {
+        if minimum > maximum {
+            return self.error(&format!("{path}.minimum"), "`minimum` is above `maximum`");
+        }
+        if minimum > nominal {
+            self.error(&format!("{path}.minimum"), "`minimum` is above `nominal`");
+        }
+        if maximum < nominal {
+            self.error(&format!("{path}.maximum"), "`maximum` is below `nominal`");
+        }
+    }
+}
+
+fn load(load: &Load, check: &mut Check<'_, '_>) {
+    let (model, uses): (&str, &[&str]) = match load.model {
+        LoadModel::Prescribed => ("prescribed", &[]),
+        LoadModel::SpringMassDamper => ("spring_mass_damper", &["mass", "stiffness", "damping"]),
+        LoadModel::Wall => ("wall", &["stiffness", "damping", "gap"]),
+    };
+    let values =
+        [("mass", load.mass), ("stiffness", load.stiffness), ("damping", load.damping), ("gap", load.gap)];
+    for (name, value) in values {
+        if value.is_some() && !uses.contains(&name) {
+            check.warning(&format!("load.{name}"), format!("`{name}` has no effect with model \"{model}\""));
+        }
+        let needed = matches!(name, "mass" | "stiffness") && uses.contains(&name);
+        if value.is_none() && needed {
+            check.missing("load", name, format!("missing `{name}` in [load]: model \"{model}\" needs it"));
+        }
+    }
+}

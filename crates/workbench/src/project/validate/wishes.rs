@@ -1,0 +1,244 @@
+//! Sizing, operating point, uncertainty, scenarios and campaign.
+
+use super::{Check, linear_parameter};
+use crate::project::{
+    Actuator, Campaign, Distribution, Formula, LoadMotion, LoadMotionKind, Plant, Project, Scenario, Sizing,
+    Spacing, Uncertain,
+};
+
+/// Most rows a scenario may write.
+const MAXIMUM_ROWS: f64 = 1e7;
+
+/// What only a project with an actuator has.
+pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut Check<'_, '_>) {
+    if let Some(wanted) = &project.sizing {
+        sizing(wanted, check);
+    }
+    operating_point(project, actuator, check);
+    for (index, scenario) in project.scenarios.iter().enumerate() {
+        let path = format!("scenario[{index}]");
+        one_scenario(scenario, actuator.cylinder.stroke, &path, check);
+        if project.scenarios.iter().take(index).any(|earlier| earlier.name == scenario.name) {
+            check.error(&format!("{path}.name"), format!("a second scenario called \"{}\"", scenario.name));
+        }
+    }
+    if let Some(varied) = &project.campaign {
+        campaign(varied, check);
+    }
+    if project.family.as_ref().is_some_and(|family| !family.cases.is_empty()) {
+        family(project, &[], check);
+    }
+}
+
+fn sizing(sizing: &Sizing, check: &mut Check<'_, '_>) {
+    let times = [sizing.time_constant.is_some(), sizing.settling_time.is_some()];
+    check.one_of("sizing", ["time_constant", "settling_time"], times);
+    if sizing.settling_time.is_some() && sizing.settling_band_percent.is_none() {
+        check.missing("sizing", "settling_band_percent", "`settling_time` needs `settling_band_percent`");
+    }
+    check.ascending("sizing.oil_velocity", sizing.oil_velocity);
+    check.ascending("sizing.hose_length", sizing.hose_length);
+    if let (Some(minimum), Some(maximum)) = (sizing.minimum_gain, sizing.maximum_gain) {
+        if minimum > maximum {
+            check.error("sizing.minimum_gain", "`minimum_gain` is above `maximum_gain`");
+        }
+    }
+}
+
+fn operating_point(project: &Project, actuator: &Actuator, check: &mut Check<'_, '_>) {
+    let point = &project.operating_point;
+    let stroke = actuator.cylinder.stroke;
+    if point.position.is_some_and(|position| position > stroke && stroke > 0.0) {
+        check.error("operating_point.position", "`position` is beyond the stroke");
+    }
+    let available = actuator.supply.pressure - actuator.supply.tank_pressure;
+    if point.load_pressure.is_some_and(|pressure| pressure.abs() >= available && available > 0.0) {
+        let message = "`load_pressure` must be below supply less tank pressure";
+        check.error("operating_point.load_pressure", message);
+    }
+    if point.command.is_some_and(|command| command.abs() > actuator.valve.nominal_voltage) {
+        check.error("operating_point.command", "`command` is beyond the valve's `nominal_voltage`");
+    }
+}
+
+fn one_scenario(scenario: &Scenario, stroke: f64, path: &str, check: &mut Check<'_, '_>) {
+    if scenario.duration / scenario.output_step > MAXIMUM_ROWS {
+        check.error(&format!("{path}.output_step"), "more than ten million rows: `output_step` is too short");
+    }
+    if scenario.output_step > scenario.duration && scenario.duration > 0.0 {
+        check.error(&format!("{path}.output_step"), "`output_step` is longer than `duration`");
+    }
+    let position = scenario.start.as_ref().and_then(|start| start.position);
+    if position.is_some_and(|position| position > stroke && stroke > 0.0) {
+        check.error(&format!("{path}.start.position"), "`position` is beyond the stroke");
+    }
+    let times: Vec<f64> = scenario.reference.iter().map(|step| step.at).collect();
+    check.increasing(&format!("{path}.reference"), &times);
+    if scenario.duration > 0.0 && times.last().is_some_and(|last| *last > scenario.duration) {
+        check.warning(&format!("{path}.reference"), "the last reference step is after the end");
+    }
+    if let Some(motion) = &scenario.load_motion {
+        load_motion(motion, &format!("{path}.load_motion"), check);
+    }
+}
+
+fn load_motion(motion: &LoadMotion, path: &str, check: &mut Check<'_, '_>) {
+    let needs: &[&str] = match motion.kind {
+        LoadMotionKind::SmoothStep => &["duration", "distance"],
+        LoadMotionKind::FirstOrder => &["distance", "time_constant"],
+        LoadMotionKind::Sine => &["amplitude", "frequency"],
+        LoadMotionKind::Chirp => &["amplitude", "frequency", "final_frequency", "duration"],
+        LoadMotionKind::File => &["file"],
+    };
+    let values = [
+        ("duration", motion.duration.is_some()),
+        ("distance", motion.distance.is_some()),
+        ("time_constant", motion.time_constant.is_some()),
+        ("amplitude", motion.amplitude.is_some()),
+        ("frequency", motion.frequency.is_some()),
+        ("final_frequency", motion.final_frequency.is_some()),
+        ("file", motion.file.is_some()),
+    ];
+    for (name, present) in values {
+        let needed = needs.contains(&name);
+        if needed && !present {
+            check.missing(path, name, format!("this load motion needs `{name}`"));
+        }
+        if !needed && present {
+            check.error(&format!("{path}.{name}"), format!("`{name}` has no meaning for this load motion"));
+        }
+    }
+}
+
+fn campaign(campaign: &Campaign, check: &mut Check<'_, '_>) {
+    for varied in &campaign.parameters {
+        let path = format!("campaign.parameters.{}", varied.path);
+        match (varied.spread, varied.minimum, varied.maximum) {
+            (Some(_), None, None) => {}
+            (None, Some(low), Some(high)) if low < high => {
+                let distribution = varied.distribution.unwrap_or(campaign.distribution);
+                if distribution == Distribution::LogUniform && low <= 0.0 {
+                    check.error(&path, "a log-uniform distribution needs a `minimum` above zero");
+                }
+            }
+            (None, Some(_), Some(_)) => check.error(&path, "`minimum` must be below `maximum`"),
+            _ => check.error(&path, format!("`{}` takes `spread`, or `minimum` and `maximum`", varied.path)),
+        }
+        if linear_parameter(&varied.path).is_some() {
+            let message = format!("`{}` does not exist in the nonlinear machine", varied.path);
+            check.error_with_help(&path, message, "vary the physical numbers it depends on");
+        }
+    }
+}
+
+/// What only a project with a plant has.
+pub(super) fn with_plant(project: &Project, plant: &Plant, check: &mut Check<'_, '_>) {
+    let foreign = [
+        ("sizing", project.sizing.is_some()),
+        ("campaign", project.campaign.is_some()),
+        ("scenario", !project.scenarios.is_empty()),
+        ("operating_point", check.declared("operating_point")),
+        ("linear", check.declared("linear")),
+    ];
+    for (name, present) in foreign {
+        if present {
+            check.error(name, format!("[{name}] needs an actuator, but this project has a [plant]"));
+        }
+    }
+    let mut formulas = vec![("plant.numerator", &plant.transfer.numerator)];
+    formulas.push(("plant.denominator", &plant.transfer.denominator));
+    if let Some(second) = &plant.disturbance {
+        formulas.push(("plant.disturbance.numerator", &second.numerator));
+        formulas.push(("plant.disturbance.denominator", &second.denominator));
+    }
+    let used: Vec<&str> =
+        formulas.iter().flat_map(|(_, formula)| formula.parameters()).map(|(name, _)| name).collect();
+    for uncertain in &project.uncertainty {
+        if !used.contains(&uncertain.name.as_str()) {
+            let message = format!("`{}` does not occur in [plant]", uncertain.name);
+            check.warning(&format!("uncertainty.{}", uncertain.name), message);
+        }
+    }
+    family(project, &used, check);
+    for (path, formula) in formulas {
+        nominal_formula(project, formula, path, check);
+    }
+}
+
+/// The formula must have a value at the nominal plant.
+fn nominal_formula(project: &Project, formula: &Formula, path: &str, check: &mut Check<'_, '_>) {
+    let first = project.family.as_ref().and_then(|family| family.cases.first());
+    let value = |name: &str| {
+        let nominal = project.uncertainty.iter().find(|u| u.name == name).map(|u| u.nominal);
+        let case = || first.and_then(|case| case.parameters.iter().find(|(known, _)| known == name));
+        nominal.or_else(|| case().map(|(_, value)| *value))
+    };
+    let Ok(ratio) = formula.ratio::<f64>(&value) else { return };
+    if ratio.denominator.len() > 1 {
+        return check
+            .error(path, format!("`{}` must be a polynomial: here `s` is divided by", super::last(path)));
+    }
+    if ratio.numerator.iter().any(|c| !c.is_finite()) {
+        check.error(path, "this has no value at the nominal parameters");
+    } else if ratio.numerator.iter().all(|c| *c == 0.0) {
+        check.error(path, "this is zero at the nominal parameters");
+    }
+}
+
+fn family(project: &Project, used: &[&str], check: &mut Check<'_, '_>) {
+    let Some(family) = &project.family else { return };
+    for (index, case) in family.cases.iter().enumerate() {
+        for name in used {
+            if !case.parameters.iter().any(|(known, _)| known == name) {
+                check.error(
+                    &format!("family.cases[{index}]"),
+                    format!("this case gives no value to `{name}`"),
+                );
+            }
+        }
+    }
+    for (index, group) in family.correlation.iter().enumerate() {
+        let path = format!("family.correlation[{index}]");
+        let member = |name: &String| project.uncertainty.iter().find(|uncertain| uncertain.name == *name);
+        let points: Vec<Option<u32>> =
+            group.parameters.iter().map(|name| member(name).map(|uncertain| uncertain.points)).collect();
+        if points.iter().any(Option::is_none) {
+            check.error(&path, "only parameters of [uncertainty] can be correlated");
+        } else if points.len() < 2 || points.windows(2).any(|pair| pair[0] != pair[1]) {
+            check.error(&path, "correlated parameters are two or more with the same number of points");
+        }
+    }
+}
+
+pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
+    for uncertain in &project.uncertainty {
+        let path = format!("uncertainty.{}", uncertain.name);
+        check.bounds(&path, [uncertain.minimum, uncertain.nominal, uncertain.maximum]);
+        if uncertain.spacing == Spacing::Logarithmic && uncertain.minimum <= 0.0 {
+            check.error(&format!("{path}.minimum"), "logarithmic spacing needs a `minimum` above zero");
+        }
+        if uncertain.points == 1 && uncertain.minimum < uncertain.maximum {
+            check.error(
+                &format!("{path}.points"),
+                "one point cannot span a range: give `points` of 2 or more",
+            );
+        }
+        if ["s", "z"].contains(&uncertain.name.as_str()) {
+            check.error(&path, format!("`{}` is the variable of transfer functions", uncertain.name));
+        }
+        depends(uncertain, project, check);
+    }
+}
+
+/// A linear parameter beside a path it is derived from would count the same uncertainty twice.
+fn depends(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) {
+    let Some(parameter) = linear_parameter(&uncertain.name) else { return };
+    for other in &project.uncertainty {
+        let below = |path: &&str| other.name == **path || other.name.starts_with(&format!("{path}."));
+        if parameter.depends_on.iter().any(|path| below(&path)) {
+            let message =
+                format!("`{}` depends on `{}`: both cannot be uncertain", uncertain.name, other.name);
+            check.error_with_help(&format!("uncertainty.{}", other.name), message, "list one of the two");
+        }
+    }
+}
