@@ -1,4 +1,4 @@
-//! Every path and link that a document names exists.
+//! Every path and link that a document names exists, in prose, in code spans and in the commands of console blocks.
 
 use super::Violation;
 use crate::repository::Repository;
@@ -127,6 +127,13 @@ mod tests {
     fn paths_in_code_spans_exist() {
         assert_eq!(count("`crates/a/src/b.rs`, `crates/a/*/golden.rs`, `crates/NAME/src`, `crates/a`"), 0);
         assert_eq!(count("`crates/a/src/c.rs` and `crates/b/*`"), 2);
+    }
+
+    #[test]
+    fn paths_in_commands_exist() {
+        assert_eq!(count("```console\n$ phea report crates/a/src/b.rs --out out\n```\n"), 0);
+        assert_eq!(count("```console\n$ phea report crates/a/lost.toml\n```\n"), 1);
+        assert_eq!(count("```text\n$ phea report crates/a/lost.toml\n```\n"), 0);
     }
 
     #[test]
