@@ -18,6 +18,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("crates/qft", &["phea-dynamics"]),
     ("crates/workbench", &["phea-dynamics", "phea-hydraulics", "phea-qft"]),
     ("apps/cli", &["phea-workbench"]),
+    ("fuzz", &["phea-workbench"]),
     ("xtask", &["phea-dynamics", "phea-hydraulics", "phea-qft", "phea-workbench"]),
 ];
 

@@ -56,7 +56,7 @@ impl Declared {
             }
         }
         let mut word = String::new();
-        while let Some(token) = tokens.next() {
+        for token in tokens {
             match token {
                 TokenTree::Ident(ident) => word = ident.to_string(),
                 TokenTree::Group(group) => {

@@ -1,4 +1,4 @@
-//! Every path and link that a document names exists.
+//! Every path and link that a document names exists, in prose, in code spans and in the commands of console blocks.
 
 use super::Violation;
 use crate::repository::Repository;
@@ -22,7 +22,23 @@ fn check_document(repository: &Repository, path: &str, text: &str) -> Vec<Violat
             broken.map(|(_, target)| Violation::new(path, number, format!("`{target}` does not exist"))),
         );
     }
+    // Stories run in a folder of their own; what they name is the story's business.
+    for (number, line) in commands(text).filter(|_| !path.starts_with("examples/")) {
+        let lost = line.split_whitespace().filter(|word| !check_span(repository, word));
+        found.extend(lost.map(|word| Violation::new(path, number, format!("`{word}` does not exist"))));
+    }
     found
+}
+
+/// The commands in console blocks: lines that start with a dollar sign.
+fn commands(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut console = false;
+    text.lines().enumerate().filter_map(move |(index, line)| {
+        if line.trim_start().starts_with("```") {
+            console = !console && line.trim() == "```console";
+        }
+        line.strip_prefix("$ ").filter(|_| console).map(|command| (index + 1, command))
+    })
 }
 
 /// The lines outside fenced code, with their numbers.
@@ -127,6 +143,13 @@ mod tests {
     fn paths_in_code_spans_exist() {
         assert_eq!(count("`crates/a/src/b.rs`, `crates/a/*/golden.rs`, `crates/NAME/src`, `crates/a`"), 0);
         assert_eq!(count("`crates/a/src/c.rs` and `crates/b/*`"), 2);
+    }
+
+    #[test]
+    fn paths_in_commands_exist() {
+        assert_eq!(count("```console\n$ phea report crates/a/src/b.rs --out out\n```\n"), 0);
+        assert_eq!(count("```console\n$ phea report crates/a/lost.toml\n```\n"), 1);
+        assert_eq!(count("```text\n$ phea report crates/a/lost.toml\n```\n"), 0);
     }
 
     #[test]

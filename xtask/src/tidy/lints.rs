@@ -14,6 +14,10 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
 
 fn check_manifest(path: &str, text: &str) -> Option<Violation> {
     let manifest: toml::Table = text.parse().ok()?;
+    if manifest.contains_key("workspace") {
+        // A workspace of its own, as fuzzing tools want it, has nothing to inherit.
+        return None;
+    }
     let lints = manifest.get("lints").and_then(|lints| lints.get("workspace")).and_then(toml::Value::as_bool);
     (lints != Some(true)).then(|| Violation::new(path, 0, "lacks `[lints] workspace = true`"))
 }
@@ -61,6 +65,7 @@ mod tests {
         assert_eq!(count("crates/a/Cargo.toml", "[package]\nname = \"a\""), 1);
         assert_eq!(count("crates/a/Cargo.toml", "[lints]\nworkspace = false"), 1);
         assert_eq!(count("crates/a/Cargo.toml", "[lints]\nworkspace = true"), 0);
+        assert_eq!(count("fuzz/Cargo.toml", "[package]\nname = \"fuzz\"\n[workspace]"), 0);
     }
 
     #[test]
