@@ -1,3 +1,4 @@
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -42,13 +43,14 @@ fn on_project(common: &Common, request: &Request) -> Result<u8, String> {
             if common.json {
                 say(&format!("{}\n", command::refusal_json(request, &report)));
             }
-            return Err(report.to_string());
+            return Err(report.render(styled()));
         }
     };
     if !loaded.warnings.is_empty() {
-        complain(&loaded.warnings_text());
+        complain(&project::render(&loaded.warnings, &loaded.texts, styled()));
     }
-    let answer = command::answer(&FileSystem, &loaded, &common.catalogues, request).map_err(|error| error.to_string())?;
+    let answer = command::answer(&FileSystem, &loaded, &common.catalogues, request)
+        .map_err(|error| error.to_string())?;
     let written = write_files(common, request, &answer)?;
     if common.json {
         say(&format!("{}\n", answer.json));
@@ -75,6 +77,11 @@ fn write_files(common: &Common, request: &Request, answer: &Answer) -> Result<Ve
         file.name = format!("{stem}-report.html");
     }
     write(Path::new("."), &page)
+}
+
+/// Colours for a person at a terminal who has not asked for none.
+fn styled() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
 #[expect(clippy::print_stdout, reason = "the command's one voice to standard output")]

@@ -15,8 +15,10 @@
 //! ```
 
 mod built_in;
+mod dash_size;
 mod read;
 
+pub use dash_size::DASH_SIZES;
 pub use read::load;
 
 use crate::project::{HoseProperties, Node};

@@ -167,7 +167,11 @@ struct SummaryRow {
     text: String,
 }
 
-fn report_answer(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Answer, CommandError> {
+fn report_answer(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+) -> Result<Answer, CommandError> {
     let problem = match loaded.project.sizing {
         None => None,
         Some(_) => {

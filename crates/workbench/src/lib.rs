@@ -4,6 +4,7 @@
 
 pub mod answer;
 pub mod catalogue;
+pub mod command;
 pub mod control;
 pub mod derived;
 pub mod figure;

@@ -101,7 +101,9 @@ pub fn linearize(rig: &Rig, controller: Option<&Controller>) -> Result<Lineariza
     let derived_full = linear_model(&rig.derived)?;
     let grid = frequency_grid(&full.command)?;
     let against_full = |other: &TransferFunction| compare(&grid, &full.command, other);
-    let rational = controller.is_some_and(|given| given.timing == Timing { discretization: given.timing.discretization, ..Timing::default() });
+    let rational = controller.is_some_and(|given| {
+        given.timing == Timing { discretization: given.timing.discretization, ..Timing::default() }
+    });
     let continuous = feedback.as_ref().filter(|function| rational && is_continuous(function));
     let closed_loop = continuous.map(|controller| closed_loop_view(rig, &full, controller)).transpose()?;
     Ok(Linearization {

@@ -6,7 +6,7 @@ use super::chapter::Chapter;
 use crate::figure::style_sheet;
 
 /// The whole page from its heading, the chapters and the footer.
-pub fn page(title: &str, heading: &Markup, chapters: &[Chapter], footer: &Markup) -> String {
+pub(super) fn page(title: &str, heading: &Markup, chapters: &[Chapter], footer: &Markup) -> String {
     let style = format!("{}{}", include_str!("style.css"), style_sheet());
     html! {
         (DOCTYPE)

@@ -19,7 +19,9 @@ const HOSE_LENGTH: [f64; 2] = [0.1, 10.0];
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SizingError {
     /// There is nothing to size for.
-    #[error("the project has no [sizing]: add one with `time_constant`, or `settling_time` and `settling_band_percent`")]
+    #[error(
+        "the project has no [sizing]: add one with `time_constant`, or `settling_time` and `settling_band_percent`"
+    )]
     Absent,
     /// No time constant can be had.
     #[error("[sizing] needs `time_constant`, or `settling_time` with `settling_band_percent`")]
@@ -36,7 +38,11 @@ pub enum SizingError {
 ///
 /// # Errors
 /// [`SizingError`] if the project does not say what to size for.
-pub fn sizing_problem(project: &Project, rig: &Rig, catalogue: &Catalogue) -> Result<SizingProblem, SizingError> {
+pub fn sizing_problem(
+    project: &Project,
+    rig: &Rig,
+    catalogue: &Catalogue,
+) -> Result<SizingProblem, SizingError> {
     let wish = project.sizing.as_ref().ok_or(SizingError::Absent)?;
     let actuator = project.actuator.as_ref().ok_or(SizingError::NoHose)?;
     let components = rig.actuator.components();
@@ -58,7 +64,9 @@ pub fn sizing_problem(project: &Project, rig: &Rig, catalogue: &Catalogue) -> Re
         },
         fluid_modulus: components.fluid.modulus_at(rig.actuator.mean_pressure()),
         density: components.fluid.density,
-        flow_pressure_coefficient_maximum: leakage.and_then(|parameter| parameter.bounds).map(|bounds| bounds[1]),
+        flow_pressure_coefficient_maximum: leakage
+            .and_then(|parameter| parameter.bounds)
+            .map(|bounds| bounds[1]),
         time_constant,
         time_constant_origin,
         maximum_flow,
@@ -93,7 +101,9 @@ fn time_constant(wish: &project::Sizing) -> Result<(f64, String), SizingError> {
 
 fn maximum_flow(actuator: &project::Actuator) -> Result<(f64, String), SizingError> {
     match (actuator.supply.flow, actuator.valve.nominal_flow) {
-        (Some(pump), Some(valve)) if pump <= valve => Ok((pump, "the pump's, less than the valve's rated flow".to_string())),
+        (Some(pump), Some(valve)) if pump <= valve => {
+            Ok((pump, "the pump's, less than the valve's rated flow".to_string()))
+        }
         (Some(_), Some(valve)) => Ok((valve, "the valve's rated flow, less than the pump's".to_string())),
         (Some(pump), None) => Ok((pump, "the pump's".to_string())),
         (None, Some(valve)) => Ok((valve, "the valve's rated flow".to_string())),
