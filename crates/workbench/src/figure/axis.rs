@@ -42,7 +42,7 @@ impl Axis {
 
     /// A logarithmic axis with exactly these ends (made positive and distinct where they are not).
     pub fn logarithmic(title: impl Into<String>, minimum: f64, maximum: f64) -> Self {
-        let usable = |v: f64| v.is_finite() && v > 1e-300;
+        let usable = |v: f64| v > 1e-300 && v < 1e300;
         let (minimum, maximum) = match (usable(minimum), usable(maximum)) {
             (true, true) if maximum / minimum > 1.01 => (minimum, maximum),
             (true, true) => (minimum.min(maximum) / 2.0, minimum.max(maximum) * 2.0),
@@ -99,9 +99,11 @@ impl Axis {
         values: impl IntoIterator<Item = f64>,
         limit: f64,
     ) -> Self {
-        let limit = if limit.is_finite() && limit > 1e-300 { limit } else { 1.0 };
+        let limit = if limit > 1e-300 && limit < 1e250 { limit } else { 1.0 };
         let (low, high) =
             extent(values.into_iter().filter(|v| v.is_finite() && v.abs() < 1e250).chain([0.0]));
+        // More than thirty decades on a side would neither be legible nor stay within a double.
+        let limit = limit.max(1e-30 * low.abs().max(high.abs()));
         let grown = |v: f64| if v.abs() > limit { 2.0 * v } else { v.signum() * 2.0 * limit };
         let minimum = if low < 0.0 { grown(low) } else { -limit };
         let maximum = if high > 0.0 { grown(high) } else { limit };

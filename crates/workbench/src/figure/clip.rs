@@ -21,37 +21,54 @@ pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Poin
     if !(dx.is_finite() && dy.is_finite() && from.x.is_finite() && from.y.is_finite()) {
         return None;
     }
+    // Distance to each side, positive inside, at both ends.
     let sides = [
-        (-dx, from.x - frame.left),
-        (dx, frame.right - from.x),
-        (-dy, from.y - frame.top),
-        (dy, frame.bottom - from.y),
+        (from.x - frame.left, to.x - frame.left),
+        (frame.right - from.x, frame.right - to.x),
+        (from.y - frame.top, to.y - frame.top),
+        (frame.bottom - from.y, frame.bottom - to.y),
     ];
-    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    for (rate, distance) in sides {
-        if rate == 0.0 {
-            if distance < 0.0 {
-                return None;
-            }
-        } else if rate < 0.0 {
-            enter = enter.max(distance / rate);
-        } else {
-            leave = leave.min(distance / rate);
+    let (mut enter, mut leave) = (Along { done: 0.0, left: 1.0 }, Along { done: 1.0, left: 0.0 });
+    for (at_from, at_to) in sides {
+        if at_from < 0.0 && at_to < 0.0 {
+            return None;
+        }
+        let crossing = Along { done: at_from / (at_from - at_to), left: at_to / (at_to - at_from) };
+        if at_from < 0.0 && enter.is_before(crossing) {
+            enter = crossing;
+        } else if at_to < 0.0 && crossing.is_before(leave) {
+            leave = crossing;
         }
     }
-    if enter > leave {
+    if leave.is_before(enter) {
         return None;
     }
-    let at = |t: f64| {
+    let at = |place: Along| {
+        let (x, y) = if place.done < 0.5 {
+            (from.x + place.done * dx, from.y + place.done * dy)
+        } else {
+            (to.x - place.left * dx, to.y - place.left * dy)
+        };
         // Rounding may step over the border by an ulp; the answer lies on it.
-        point(
-            (from.x + t * dx).clamp(frame.left, frame.right),
-            (from.y + t * dy).clamp(frame.top, frame.bottom),
-        )
+        point(x.clamp(frame.left, frame.right), y.clamp(frame.top, frame.bottom))
     };
-    let start = if enter == 0.0 { from } else { at(enter) };
-    let end = if leave == 1.0 { to } else { at(leave) };
+    let start = if frame.contains_point(from) { from } else { at(enter) };
+    let end = if frame.contains_point(to) { to } else { at(leave) };
     Some((start, end))
+}
+
+/// A place along a segment by the parts done and left: both, because one of them alone is lost to rounding when an end
+/// is very far away.
+#[derive(Clone, Copy)]
+struct Along {
+    done: f64,
+    left: f64,
+}
+
+impl Along {
+    fn is_before(self, other: Along) -> bool {
+        if self.done + other.done < 1.0 { self.done < other.done } else { self.left > other.left }
+    }
 }
 
 /// The runs of a polyline inside the frame, each of two points or more.

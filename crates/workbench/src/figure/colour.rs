@@ -139,13 +139,15 @@ impl Role {
 
 /// Line of the series with this index: colour and dash pattern together.
 pub const fn series_stroke(index: usize) -> Stroke {
-    let dash = match index % 6 {
+    let dash = match index % 8 {
         0 => Dash::Solid,
         1 => Dash::Dashed,
         2 => Dash::DashDot,
         3 => Dash::Dotted,
         4 => Dash::LongDash,
-        _ => Dash::DashDotDot,
+        5 => Dash::DashDotDot,
+        6 => Dash::ShortDash,
+        _ => Dash::LongShort,
     };
     Stroke { role: series_role(index), width: 2.0, dash }
 }

@@ -102,6 +102,10 @@ pub enum Dash {
     LongDash,
     /// Dash and two dots.
     DashDotDot,
+    /// Short dashes with short gaps.
+    ShortDash,
+    /// A long and a short dash.
+    LongShort,
 }
 
 impl Dash {
@@ -114,6 +118,8 @@ impl Dash {
             Dash::Dotted => &[1.8, 2.6],
             Dash::LongDash => &[12.0, 4.0],
             Dash::DashDotDot => &[8.0, 2.6, 1.8, 2.6, 1.8, 2.6],
+            Dash::ShortDash => &[3.2, 3.2],
+            Dash::LongShort => &[13.0, 3.0, 4.5, 3.0],
         }
     }
 }

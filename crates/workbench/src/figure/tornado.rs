@@ -43,7 +43,7 @@ const TOP: f64 = 26.0;
 /// Draws the bars; a bar whose values are not finite is left out.
 pub fn tornado(words: Words, input: &TornadoInput) -> Figure {
     let mut bars: Vec<&TornadoBar> =
-        input.bars.iter().filter(|b| b.low_value.is_finite() && b.high_value.is_finite()).collect();
+        input.bars.iter().filter(|bar| is_drawable(bar, input.nominal)).collect();
     let span = |bar: &TornadoBar| {
         let ends = [bar.low_value, bar.high_value, input.nominal];
         ends.into_iter().fold(f64::NEG_INFINITY, f64::max) - ends.into_iter().fold(f64::INFINITY, f64::min)
@@ -64,6 +64,11 @@ pub fn tornado(words: Words, input: &TornadoInput) -> Figure {
     nominal_line(&mut scene, input, &axis, frame);
     legend::draw(&mut scene, &entries, frame.left.min(70.0), below, WIDTH - 16.0);
     words.with_scene(scene)
+}
+
+/// Finite, and not so large that differences overflow.
+fn is_drawable(bar: &TornadoBar, nominal: f64) -> bool {
+    [bar.low_value, bar.high_value, nominal].iter().all(|value| value.abs() < 1e200)
 }
 
 fn frame(bars: &[&TornadoBar]) -> Rectangle {
@@ -98,7 +103,10 @@ fn scale(scene: &mut Scene, axis: &Axis, frame: Rectangle) {
     }
     scene.rectangle(frame, Some(Stroke::solid(Role::Axis, 1.0)), None);
     let at = point(frame.centre().x, frame.bottom + 9.0 + LABEL_SIZE + 6.0);
-    scene.text(Text::new(at, axis.full_title(), TITLE_SIZE).held(Anchor::Middle, Baseline::Top));
+    scene.text(
+        Text::new(at, typeset::fitted(&axis.full_title(), TITLE_SIZE, frame.width()), TITLE_SIZE)
+            .held(Anchor::Middle, Baseline::Top),
+    );
 }
 
 /// Where a bar ends and the words beside its end: one text for both ends when they lie on one side.
@@ -169,6 +177,9 @@ fn draw_bar(
 fn nominal_line(scene: &mut Scene, input: &TornadoInput, axis: &Axis, frame: Rectangle) {
     let value = input.unit.of(input.nominal);
     let x = place(axis, frame, value);
+    if !x.is_finite() {
+        return;
+    }
     scene.line(point(x, frame.top - 4.0), point(x, frame.bottom), Stroke::solid(Role::Text, 1.6));
     let text = format!("nominal {} {}", plain(value), input.unit.symbol);
     let half = 0.5 * typeset::width(&text, LABEL_SIZE);

@@ -13,6 +13,8 @@ const EDGE: f64 = 8.0;
 const RIGHT: f64 = 18.0;
 const BETWEEN: f64 = 16.0;
 const TICK: f64 = 4.0;
+/// From the frame to the capitals below it: clear of a number at the lower left corner.
+const X_LABEL: f64 = 12.0;
 /// From the frame to a name on its right.
 pub(super) const EDGE_GAP: f64 = 6.0;
 
@@ -37,7 +39,7 @@ pub(super) fn draw(plot: &Plot) -> Scene {
     let right = right_edge(plot);
     let bottom_of_panels =
         EDGE + plot.panels.iter().map(|panel| panel.height + BETWEEN).sum::<f64>() - BETWEEN;
-    let below_ticks = bottom_of_panels + TICK + 5.0 + LABEL_SIZE;
+    let below_ticks = bottom_of_panels + X_LABEL + LABEL_SIZE;
     let below_title = below_ticks + 8.0 + TITLE_SIZE;
     let legend_left = left.min(70.0);
     let legend_width = WIDTH - legend_left - EDGE;
@@ -139,7 +141,7 @@ fn tick_labels(scene: &mut Scene, placed: &Placed<'_>, x_ticks: &[Tick], y_ticks
         let length = if tick.label.is_some() { TICK } else { 0.5 * TICK };
         scene.line(point(x, frame.bottom), point(x, frame.bottom + length), stroke);
         let Some(label) = tick.label.as_ref().filter(|_| last) else { continue };
-        let text = Text::new(point(x, frame.bottom + TICK + 5.0), label.clone(), LABEL_SIZE)
+        let text = Text::new(point(x, frame.bottom + X_LABEL), label.clone(), LABEL_SIZE)
             .held(Anchor::Middle, Baseline::Top);
         let bounds = text.bounds();
         if bounds.left > end + 6.0 && bounds.right <= WIDTH {

@@ -67,13 +67,13 @@ pub(super) fn load(scene: &mut Scene, input: &SchematicInput) {
     block(scene, MASS - 20.0, AXIS - 22.0, 40.0, 44.0);
     word(scene, "M", (MASS, AXIS), Role::Text);
     let mass = [input.mass.clone()];
-    rows(scene, &mass, (MASS, AXIS - 41.0), Anchor::Middle, 66.0, 1);
+    rows(scene, &mass, (MASS, AXIS - 41.0), Anchor::Middle, 56.0, 1);
     match &input.load_cell {
         Some(words) => {
             lines(scene, &[(MASS + 20.0, AXIS), (CELL - 17.0, AXIS)], heavy);
             block(scene, CELL - 17.0, AXIS - 15.0, 34.0, 30.0);
             word(scene, "F_e", (CELL, AXIS), Role::Text);
-            rows(scene, words, (CELL, 17.0), Anchor::Middle, 84.0, 2);
+            rows(scene, words, (CELL, 17.0), Anchor::Middle, 80.0, 2);
             lines(scene, &[(CELL + 17.0, AXIS), (CELL + 26.0, AXIS)], heavy);
         }
         None => lines(scene, &[(MASS + 20.0, AXIS), (CELL + 26.0, AXIS)], heavy),
