@@ -25,6 +25,7 @@ pub mod png;
 pub mod pole_map;
 pub mod scene;
 pub mod schematic;
+pub mod simplify;
 pub mod sizing_chart;
 pub mod step_response;
 pub mod stiffness_over_stroke;

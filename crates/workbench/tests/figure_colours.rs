@@ -1,5 +1,8 @@
 //! Contrast and colour blindness: what the palette promises.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use phea_dynamics::portable::{cbrt, pow};
 use phea_workbench::figure::Theme;
 use phea_workbench::figure::colour::{ROLES, Role, SERIES_COUNT, series_stroke, style_sheet};
 
@@ -10,7 +13,7 @@ fn linear(hex: &str) -> Rgb {
     [1, 3, 5].map(|start| {
         let byte = u8::from_str_radix(&hex[start..start + 2], 16).unwrap();
         let v = f64::from(byte) / 255.0;
-        if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+        if v <= 0.04045 { v / 12.92 } else { pow((v + 0.055) / 1.055, 2.4) }
     })
 }
 
@@ -94,14 +97,14 @@ fn oklab(c: Rgb) -> Rgb {
             [1.9779984951, -2.4285922050, 0.4505937099],
             [0.0259040371, 0.7827717662, -0.8086757660],
         ],
-        cone.map(f64::cbrt),
+        cone.map(cbrt),
     )
 }
 
 fn seen_distance(a: Role, b: Role, theme: Theme, matrix: &[Rgb; 3]) -> f64 {
     let seen = |role| oklab(product(matrix, of(role, theme)).map(|v: f64| v.clamp(0.0, 1.0)));
     let (p, q) = (seen(a), seen(b));
-    p.iter().zip(q).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
+    p.iter().zip(q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }
 
 /// Distance in Oklab (black to white is 1) below which two series could be taken for each other.

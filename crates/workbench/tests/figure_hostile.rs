@@ -5,6 +5,7 @@ mod legibility;
 
 use legibility::check;
 use num_complex::Complex64;
+use phea_dynamics::portable::pow;
 use phea_workbench::figure::*;
 
 struct Random(u64);
@@ -26,8 +27,8 @@ impl Random {
         match self.below(12) {
             0 => STRANGE[self.below(STRANGE.len())],
             1 => -self.unit(),
-            2 => 10_f64.powf(60.0 * self.unit() - 30.0),
-            _ => 10_f64.powf(9.0 * self.unit() - 4.0),
+            2 => pow(10.0, 60.0 * self.unit() - 30.0),
+            _ => pow(10.0, 9.0 * self.unit() - 4.0),
         }
     }
 

@@ -1,11 +1,14 @@
 //! Cutting, ticks, text and numbers of the drawing layer.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use phea_dynamics::portable::hypot;
 use phea_workbench::figure::axis::{Axis, Scale};
-use phea_workbench::figure::clip;
 use phea_workbench::figure::scene::{Anchor, Baseline, Point, Rectangle, Text, point};
 use phea_workbench::figure::svg::{escaped, number};
 use phea_workbench::figure::ticks::{Tick, decimal_power, floor_log10};
 use phea_workbench::figure::typeset::{Level, fitted, pieces, width};
+use phea_workbench::figure::{clip, simplify};
 
 /// A linear congruential generator (Knuth's MMIX constants); the tests need no better one.
 struct Random(u64);
@@ -37,9 +40,9 @@ const FRAME: Rectangle = Rectangle { left: -100.0, top: -70.0, right: 110.0, bot
 /// True when the point lies on the segment between two others, to rounding: measured from the nearer end, since the
 /// other may be very far away.
 fn lies_on(p: Point, a: Point, b: Point) -> bool {
-    let away = |q: Point| (p.x - q.x).hypot(p.y - q.y);
+    let away = |q: Point| hypot(p.x - q.x, p.y - q.y);
     let (near, far) = if away(a) < away(b) { (a, b) } else { (b, a) };
-    let length = (far.x - near.x).hypot(far.y - near.y);
+    let length = hypot(far.x - near.x, far.y - near.y);
     let (ux, uy) = ((far.x - near.x) / length, (far.y - near.y) / length);
     let (wx, wy) = (p.x - near.x, p.y - near.y);
     let tolerance = 1e-9 * (1.0 + near.x.abs() + near.y.abs());
@@ -248,4 +251,39 @@ fn text_has_the_size_of_its_font() {
         assert!(width(&fitted("a rather long name", 12.0, limit), 12.0) <= limit);
     }
     assert_eq!(fitted("short", 12.0, 1000.0), "short");
+}
+
+#[test]
+fn a_simplified_curve_stays_where_it_was() {
+    let mut random = Random(5);
+    for _ in 0..500 {
+        let mut at = point(0.0, 0.0);
+        let bend = random.between(0.0, 1.5);
+        let points: Vec<Point> = (0..200)
+            .map(|_| {
+                at = point(at.x + random.between(-0.1, 1.0), at.y + random.between(-bend, bend));
+                at
+            })
+            .collect();
+        let kept = simplify::polyline(&points);
+        assert_eq!((kept.first(), kept.last()), (points.first(), points.last()));
+        for p in &points {
+            let away =
+                kept.windows(2).map(|pair| distance(*p, pair[0], pair[1])).fold(f64::INFINITY, f64::min);
+            assert!(away <= 2.0 * simplify::TOLERANCE, "{away}");
+        }
+    }
+    let resonance: Vec<Point> =
+        (0..2000).map(|i| point(0.2 * f64::from(i), 100.0 / (0.01 + f64::from(i - 1000).abs()))).collect();
+    let kept = simplify::polyline(&resonance);
+    assert!(kept.len() < 300 && kept.contains(&resonance[1000]), "{} points", kept.len());
+}
+
+/// Distance of a point from the segment between two others.
+fn distance(p: Point, a: Point, b: Point) -> f64 {
+    let (dx, dy) = (b.x - a.x, b.y - a.y);
+    let length = dx * dx + dy * dy;
+    let t = if length > 0.0 { ((p.x - a.x) * dx + (p.y - a.y) * dy) / length } else { 0.0 };
+    let t = t.clamp(0.0, 1.0);
+    hypot(p.x - a.x - t * dx, p.y - a.y - t * dy)
 }

@@ -12,6 +12,7 @@ pub(crate) fn all() -> Vec<Figure> {
         asymmetric_circuit(),
         bode_of_models(),
         stiffness(),
+        stiffness_against_pipe(),
         commercial_bores(),
         poles(PoleMapScale::SignedLogarithmic),
         poles(PoleMapScale::Linear),
@@ -115,6 +116,29 @@ pub(crate) fn stiffness() -> Figure {
             ],
             operating_position_m: Some(0.25),
             band_label: "stiffening 4 to 6".to_string(),
+        },
+    )
+}
+
+/// A stiff pipe beside the hose: the axis becomes logarithmic.
+pub(crate) fn stiffness_against_pipe() -> Figure {
+    let positions_m: Vec<f64> = (0..=100).map(|i| STROKE * f64::from(i) / 100.0).collect();
+    let curve = |name: &str, line: f64, modulus: f64, uniform: bool| StiffnessCurve {
+        name: name.to_string(),
+        stiffness_n_per_m: positions_m.iter().map(|x| total_stiffness(*x, line, modulus, uniform)).collect(),
+        positions_m: positions_m.clone(),
+        ..StiffnessCurve::default()
+    };
+    stiffness_over_stroke(
+        words("stiffness-pipe", "Hose against pipe"),
+        &StiffnessInput {
+            curves: vec![
+                curve("hose, by volume", 1.9e-4, hose_modulus(5.0), false),
+                curve("hose, uniform", 1.9e-4, hose_modulus(5.0), true),
+                curve("pipe", 3.03e-5, OIL, true),
+            ],
+            operating_position_m: None,
+            band_label: String::new(),
         },
     )
 }

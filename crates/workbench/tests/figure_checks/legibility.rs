@@ -10,7 +10,9 @@ pub(crate) fn check(figure: &Figure) {
     let scene = &figure.scene;
     let page = Rectangle { left: 0.0, top: 0.0, right: scene.width, bottom: scene.height };
     for svg in [figure.to_svg_inline(), figure.to_svg_standalone()] {
-        let document = roxmltree::Document::parse(&svg).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let parsed = roxmltree::Document::parse(&svg);
+        assert!(parsed.is_ok(), "{name}: {parsed:?}");
+        let Ok(document) = parsed else { continue };
         for node in document.descendants().filter(roxmltree::Node::is_element) {
             for attribute in node.attributes() {
                 let value = attribute.value();

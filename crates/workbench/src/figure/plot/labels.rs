@@ -42,7 +42,7 @@ pub(super) fn draw_at_edge(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark
         .iter()
         .filter_map(|mark| {
             let Mark::EdgeLabel { at, text, role } = mark else { return None };
-            let y = placed.at(placed.x.minimum, *at).y;
+            let y = placed.y_at(*at);
             let inside = y >= placed.frame.top && y <= placed.frame.bottom;
             let content = typeset::fitted(text, LABEL_SIZE, limit);
             let text = Text::new(point(placed.frame.right + EDGE_GAP, y), content, LABEL_SIZE);

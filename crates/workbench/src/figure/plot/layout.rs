@@ -4,7 +4,9 @@ use super::super::axis::{Axis, Scale};
 use super::super::colour::Role;
 use super::super::legend;
 use super::super::placement::Occupancy;
-use super::super::scene::{Anchor, Baseline, Fill, Point, Rectangle, Scene, Stroke, Text, point};
+use super::super::scene::{
+    Anchor, Baseline, Fill, PathStep, Point, Rectangle, Scene, Shape, Stroke, Text, point,
+};
 use super::super::ticks::Tick;
 use super::super::{LABEL_SIZE, TITLE_SIZE, WIDTH, typeset};
 use super::{Mark, Panel, Plot, labels, paint};
@@ -27,10 +29,15 @@ pub(super) struct Placed<'a> {
 
 impl Placed<'_> {
     pub(super) fn at(&self, x: f64, y: f64) -> Point {
-        point(
-            self.frame.left + self.x.fraction(x) * self.frame.width(),
-            self.frame.bottom - self.y.fraction(y) * self.frame.height(),
-        )
+        point(self.x_at(x), self.y_at(y))
+    }
+
+    pub(super) fn x_at(&self, value: f64) -> f64 {
+        self.frame.left + self.x.fraction(value) * self.frame.width()
+    }
+
+    pub(super) fn y_at(&self, value: f64) -> f64 {
+        self.frame.bottom - self.y.fraction(value) * self.frame.height()
     }
 }
 
@@ -114,32 +121,45 @@ fn right_edge(plot: &Plot) -> f64 {
     WIDTH - widest.min(0.3 * WIDTH).ceil()
 }
 
+/// All lines of a kind as one path.
+fn strokes(scene: &mut Scene, ends: impl Iterator<Item = (Point, Point)>, stroke: Stroke) {
+    let steps: Vec<PathStep> = ends.flat_map(|(a, b)| [PathStep::Move(a), PathStep::Line(b)]).collect();
+    if !steps.is_empty() {
+        scene.shape(Shape::Path(steps), Some(stroke), None);
+    }
+}
+
 fn grid(scene: &mut Scene, placed: &Placed<'_>, x_ticks: &[Tick], y_ticks: &[Tick]) {
     let frame = placed.frame;
-    let stroke = |tick: &Tick| match tick.label {
-        Some(_) => Stroke::solid(Role::Grid, 1.0),
-        None => Stroke::solid(Role::MinorGrid, 0.8),
-    };
-    for labelled in [false, true] {
-        for tick in x_ticks.iter().filter(|tick| tick.label.is_some() == labelled) {
-            let x = frame.left + placed.x.fraction(tick.value) * frame.width();
-            scene.line(point(x, frame.top), point(x, frame.bottom), stroke(tick));
-        }
-        for tick in y_ticks.iter().filter(|tick| tick.label.is_some() == labelled) {
-            let y = frame.bottom - placed.y.fraction(tick.value) * frame.height();
-            scene.line(point(frame.left, y), point(frame.right, y), stroke(tick));
-        }
+    let kinds = [(false, Stroke::solid(Role::MinorGrid, 0.8)), (true, Stroke::solid(Role::Grid, 1.0))];
+    for (labelled, stroke) in kinds {
+        let upright = x_ticks.iter().filter(|tick| tick.label.is_some() == labelled).map(|tick| {
+            let x = placed.x_at(tick.value);
+            (point(x, frame.top), point(x, frame.bottom))
+        });
+        let lying = y_ticks.iter().filter(|tick| tick.label.is_some() == labelled).map(|tick| {
+            let y = placed.y_at(tick.value);
+            (point(frame.left, y), point(frame.right, y))
+        });
+        strokes(scene, upright.chain(lying), stroke);
     }
+    let length = |tick: &Tick| if tick.label.is_some() { TICK } else { 0.5 * TICK };
+    let below = x_ticks.iter().map(|tick| {
+        let x = placed.x_at(tick.value);
+        (point(x, frame.bottom), point(x, frame.bottom + length(tick)))
+    });
+    let beside = y_ticks.iter().map(|tick| {
+        let y = placed.y_at(tick.value);
+        (point(frame.left - length(tick), y), point(frame.left, y))
+    });
+    strokes(scene, below.chain(beside), Stroke::solid(Role::Axis, 1.0));
 }
 
 fn tick_labels(scene: &mut Scene, placed: &Placed<'_>, x_ticks: &[Tick], y_ticks: &[Tick], last: bool) {
     let frame = placed.frame;
-    let stroke = Stroke::solid(Role::Axis, 1.0);
     let mut end = f64::NEG_INFINITY;
     for tick in x_ticks {
-        let x = frame.left + placed.x.fraction(tick.value) * frame.width();
-        let length = if tick.label.is_some() { TICK } else { 0.5 * TICK };
-        scene.line(point(x, frame.bottom), point(x, frame.bottom + length), stroke);
+        let x = placed.x_at(tick.value);
         let Some(label) = tick.label.as_ref().filter(|_| last) else { continue };
         let text = Text::new(point(x, frame.bottom + X_LABEL), label.clone(), LABEL_SIZE)
             .held(Anchor::Middle, Baseline::Top);
@@ -151,9 +171,7 @@ fn tick_labels(scene: &mut Scene, placed: &Placed<'_>, x_ticks: &[Tick], y_ticks
     }
     let mut above = f64::INFINITY;
     for tick in y_ticks {
-        let y = frame.bottom - placed.y.fraction(tick.value) * frame.height();
-        let length = if tick.label.is_some() { TICK } else { 0.5 * TICK };
-        scene.line(point(frame.left - length, y), point(frame.left, y), stroke);
+        let y = placed.y_at(tick.value);
         let Some(label) = &tick.label else { continue };
         let text = Text::new(point(frame.left - TICK - 4.0, y), label.clone(), LABEL_SIZE)
             .held(Anchor::End, Baseline::Middle);

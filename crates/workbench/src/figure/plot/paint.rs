@@ -1,9 +1,9 @@
 //! Marks of a panel as primitives.
 
-use super::super::clip;
 use super::super::colour::Role;
 use super::super::placement::Occupancy;
 use super::super::scene::{Fill, Item, PathStep, Point, Rectangle, Scene, Shape, Stroke, point, run};
+use super::super::{clip, simplify};
 use super::layout::Placed;
 use super::{Direction, Mark, Marker, MarkerStyle};
 
@@ -38,7 +38,8 @@ pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occu
                 let points: Vec<Point> = points.iter().map(|&(x, y)| placed.at(x, y)).collect();
                 let runs = clip::polyline(&points, &placed.frame);
                 runs.iter().for_each(|piece| occupancy.add_polyline(piece));
-                let steps: Vec<PathStep> = runs.iter().flat_map(|piece| run(piece, false)).collect();
+                let steps: Vec<PathStep> =
+                    runs.iter().flat_map(|piece| run(&simplify::polyline(piece), false)).collect();
                 if !steps.is_empty() {
                     scene.shape(Shape::Path(steps), Some(*stroke), None);
                 }
@@ -85,11 +86,11 @@ pub(super) fn reference_line(placed: &Placed<'_>, direction: Direction, at: f64)
     let frame = placed.frame;
     match direction {
         Direction::X => {
-            let x = placed.at(at, placed.y.minimum).x;
+            let x = placed.x_at(at);
             (x >= frame.left && x <= frame.right).then(|| (point(x, frame.bottom), point(x, frame.top)))
         }
         Direction::Y => {
-            let y = placed.at(placed.x.minimum, at).y;
+            let y = placed.y_at(at);
             (y >= frame.top && y <= frame.bottom).then(|| (point(frame.left, y), point(frame.right, y)))
         }
     }

@@ -126,7 +126,7 @@ pub(super) fn valve(scene: &mut Scene, input: &SchematicInput) {
     word(scene, b, (VALVE.0 + PORT + 11.0, TOP - 13.0), Role::Muted);
     spring(scene, left - 30.0, left, VALVE.1, 7.0, thin);
     torque_motor(scene, left + 3.0 * SIDE);
-    rows(scene, &input.valve_rows, (VALVE.0 + 40.0, BOTTOM + 16.0), Anchor::Start, 160.0, 2);
+    rows(scene, &input.valve_rows, (VALVE.0 + 40.0, BOTTOM + 16.0), Anchor::Start, 300.0, 2);
 }
 
 /// A box with a diagonal and the arrow of proportional action.
@@ -142,9 +142,9 @@ fn torque_motor(scene: &mut Scene, left: f64) {
 pub(super) fn controller(scene: &mut Scene, symbol: &ControllerSymbol, measured: bool) {
     let y = VALVE.1;
     let sum = (CELL, y);
-    let g = (sum.0 - 88.0, sum.0 - 48.0);
+    let g = (sum.0 - 80.0, sum.0 - 44.0);
     arrow(scene, (g.0, y), (VALVE_END + 1.0, y), SIGNAL);
-    word(scene, "U_C", (0.5 * (g.0 + VALVE_END) + 4.0, y - 14.0), Role::Text);
+    word(scene, "U_C", (0.5 * (g.0 + VALVE_END), y - 14.0), Role::Text);
     block(scene, g.0, y - 17.0, g.1 - g.0, 34.0);
     word(scene, "G", (0.5 * (g.0 + g.1), y), Role::Text);
     arrow(scene, (sum.0 - 9.0, y), (g.1, y), SIGNAL);
