@@ -74,7 +74,8 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
     candidates.sort_by(|one, other| {
         other.accepted().cmp(&one.accepted()).then(one.length_m().total_cmp(&other.length_m()))
     });
-    let best = candidates.iter().find(|candidate| candidate.accepted() && candidate.branch.model == problem.model);
+    let best =
+        candidates.iter().find(|candidate| candidate.accepted() && candidate.branch.model == problem.model);
     let influences = best.map(|candidate| sensitivity(problem, candidate)).unwrap_or_default();
     Sizing {
         bores,

@@ -43,7 +43,10 @@ pub(super) fn branches(
         Question::Gain(gain) => vec![at_gain(problem, option, model, vec![], gain)],
         Question::Length(length) => vec![at_length(problem, option, model, length)],
         Question::Both => {
-            vec![search(problem, option, model), at_length(problem, option, model, problem.available_length())]
+            vec![
+                search(problem, option, model),
+                at_length(problem, option, model, problem.available_length()),
+            ]
         }
     }
 }
@@ -148,7 +151,14 @@ impl Branch {
                 );
             }
             let outcome = if self.length_m == 0.0 { "no hose is needed" } else { "this is the length taken" };
-            decide("i, j", format!("{name}, {model}: {} m a line at K_p = {} V/N; {outcome}.", number(self.length_m), number(self.gain_v_per_n)));
+            decide(
+                "i, j",
+                format!(
+                    "{name}, {model}: {} m a line at K_p = {} V/N; {outcome}.",
+                    number(self.length_m),
+                    number(self.gain_v_per_n)
+                ),
+            );
         } else {
             decide(
                 "k, l",

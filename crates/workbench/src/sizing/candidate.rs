@@ -102,7 +102,12 @@ fn velocity(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<F
     match bore::verdict(problem, candidate.option.hose.bore) {
         BoreVerdict::TooFast => rejects(findings, format!("oil runs at {velocity} m/s, above {fastest} m/s")),
         BoreVerdict::Slow => {
-            warns(findings, format!("oil runs at {velocity} m/s, below {slowest} m/s: a smaller bore would carry the flow"));
+            warns(
+                findings,
+                format!(
+                    "oil runs at {velocity} m/s, below {slowest} m/s: a smaller bore would carry the flow"
+                ),
+            );
         }
         BoreVerdict::Recommended => {}
     }
@@ -112,23 +117,50 @@ fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Fin
     let [shortest, longest] = problem.hose_length;
     let length = candidate.length_m();
     if length == 0.0 {
-        rejects(findings, "no hose is needed: with rigid lines the actuator is already as compliant as this asks for".to_string());
+        rejects(
+            findings,
+            "no hose is needed: with rigid lines the actuator is already as compliant as this asks for"
+                .to_string(),
+        );
     } else if length < shortest {
-        rejects(findings, format!("{} m a line is shorter than the acceptable {shortest} m", significant(length, 3)));
+        rejects(
+            findings,
+            format!("{} m a line is shorter than the acceptable {shortest} m", significant(length, 3)),
+        );
     } else if length > longest * (1.0 + 1e-9) {
-        rejects(findings, format!("{} m a line is longer than the acceptable {longest} m", significant(length, 3)));
+        rejects(
+            findings,
+            format!("{} m a line is longer than the acceptable {longest} m", significant(length, 3)),
+        );
     }
     if let Some(stock) = problem.stock_length.filter(|stock| 2.0 * length > stock * (1.0 + 1e-9)) {
-        rejects(findings, format!("both lines take {} m, the stock is {stock} m", significant(2.0 * length, 3)));
+        rejects(
+            findings,
+            format!("both lines take {} m, the stock is {stock} m", significant(2.0 * length, 3)),
+        );
     }
 }
 
 fn gain(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
     let gain = candidate.branch.gain_v_per_n;
     if gain <= problem.pole_gain() {
-        rejects(findings, format!("K_p = {} V/N is not above {} V/N, where even a rigid transmission is too slow", significant(gain, 3), significant(problem.pole_gain(), 3)));
+        rejects(
+            findings,
+            format!(
+                "K_p = {} V/N is not above {} V/N, where even a rigid transmission is too slow",
+                significant(gain, 3),
+                significant(problem.pole_gain(), 3)
+            ),
+        );
     } else if gain < problem.minimum_gain {
-        rejects(findings, format!("K_p = {} V/N is below the practical {} V/N: the valve would hardly be driven", significant(gain, 3), significant(problem.minimum_gain, 3)));
+        rejects(
+            findings,
+            format!(
+                "K_p = {} V/N is below the practical {} V/N: the valve would hardly be driven",
+                significant(gain, 3),
+                significant(problem.minimum_gain, 3)
+            ),
+        );
     }
 }
 
@@ -136,12 +168,29 @@ fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<F
     let bar = |pressure: f64| significant(pressure / 1e5, 3);
     let peak = problem.supply_pressure + candidate.surge_pressure_pa;
     match candidate.option.working_pressure {
-        None => warns(findings, format!("the catalogue gives no working pressure: the hose must bear {} bar with surge ({} bar supply)", bar(peak), bar(problem.supply_pressure))),
+        None => warns(
+            findings,
+            format!(
+                "the catalogue gives no working pressure: the hose must bear {} bar with surge ({} bar supply)",
+                bar(peak),
+                bar(problem.supply_pressure)
+            ),
+        ),
         Some(working) if working < problem.supply_pressure => {
-            rejects(findings, format!("working pressure {} bar is below the supply's {} bar", bar(working), bar(problem.supply_pressure)));
+            rejects(
+                findings,
+                format!(
+                    "working pressure {} bar is below the supply's {} bar",
+                    bar(working),
+                    bar(problem.supply_pressure)
+                ),
+            );
         }
         Some(working) if working < peak => {
-            rejects(findings, format!("working pressure {} bar is below supply and surge, {} bar", bar(working), bar(peak)));
+            rejects(
+                findings,
+                format!("working pressure {} bar is below supply and surge, {} bar", bar(working), bar(peak)),
+            );
         }
         Some(_) => {}
     }
@@ -151,17 +200,38 @@ fn bending(candidate: &Candidate, findings: &mut Vec<Finding>) {
     let Some(radius) = candidate.option.minimum_bend_radius else { return };
     let quarter_turn = std::f64::consts::FRAC_PI_2 * radius;
     if candidate.length_m() > 0.0 && candidate.length_m() < quarter_turn {
-        warns(findings, format!("a bend of 90 degrees at the least radius of {} mm takes {} m, more than the hose has", significant(radius * 1e3, 3), significant(quarter_turn, 3)));
+        warns(
+            findings,
+            format!(
+                "a bend of 90 degrees at the least radius of {} mm takes {} m, more than the hose has",
+                significant(radius * 1e3, 3),
+                significant(quarter_turn, 3)
+            ),
+        );
     }
 }
 
 fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
     let slowest = candidate.time_constant_s.into_iter().fold(0.0, f64::max);
     if slowest > problem.time_constant * (1.0 + 1e-6) {
-        warns(findings, format!("the closed loop's time constant is {} s, slower than {} s", significant(slowest, 3), significant(problem.time_constant, 3)));
+        warns(
+            findings,
+            format!(
+                "the closed loop's time constant is {} s, slower than {} s",
+                significant(slowest, 3),
+                significant(problem.time_constant, 3)
+            ),
+        );
     }
     let [at_null, at_largest] = candidate.steady_state_gain;
     if at_largest < 0.95 {
-        warns(findings, format!("a proportional loop reaches only {} % of the reference at null and {} % at the largest K_c: integral action is needed", significant(100.0 * at_null, 3), significant(100.0 * at_largest, 3)));
+        warns(
+            findings,
+            format!(
+                "a proportional loop reaches only {} % of the reference at null and {} % at the largest K_c: integral action is needed",
+                significant(100.0 * at_null, 3),
+                significant(100.0 * at_largest, 3)
+            ),
+        );
     }
 }

@@ -73,7 +73,8 @@ impl SizingProblem {
     pub fn stiffness_for_gain(&self, gain: f64) -> f64 {
         let area_squared = self.useful_area * self.useful_area;
         let flow = self.flow_pressure_coefficient + self.useful_area * gain * self.flow_gain;
-        self.sensor_stiffness * area_squared / (self.sensor_stiffness * self.time_constant * flow - area_squared)
+        self.sensor_stiffness * area_squared
+            / (self.sensor_stiffness * self.time_constant * flow - area_squared)
     }
 
     /// Gain that gives the desired time constant at hydraulic stiffness K_H, V/N.
@@ -98,7 +99,12 @@ impl SizingProblem {
     /// ```text
     /// tau = A_u^2 / (K_eq (K_c + A_u K_p K_qU)),  K_eq = K_H K_S/(K_H + K_S)                    thesis (6.14)
     /// ```
-    pub fn closed_loop_time_constant(&self, stiffness: f64, gain: f64, flow_pressure_coefficient: f64) -> f64 {
+    pub fn closed_loop_time_constant(
+        &self,
+        stiffness: f64,
+        gain: f64,
+        flow_pressure_coefficient: f64,
+    ) -> f64 {
         let equivalent = stiffness * self.sensor_stiffness / (stiffness + self.sensor_stiffness);
         let flow = flow_pressure_coefficient + self.useful_area * gain * self.flow_gain;
         self.useful_area * self.useful_area / (equivalent * flow)
@@ -117,7 +123,8 @@ impl SizingProblem {
     /// Stiffness over the stroke with a hose of this length on each side.
     pub fn stroke_stiffness(&self, hose: Hose, length: f64, model: StiffnessModel) -> StrokeStiffness {
         let line = Line::Hose { hose, length };
-        chamber_compliance(model, self.fluid_modulus, &self.cylinder, [&line, &line], Member::Nominal).over_stroke()
+        chamber_compliance(model, self.fluid_modulus, &self.cylinder, [&line, &line], Member::Nominal)
+            .over_stroke()
     }
 
     /// Length of each line when the stock is shared, or the longest acceptable one, whichever is shorter, m.
@@ -143,7 +150,11 @@ impl SizingProblem {
             },
             Decision {
                 step: "b",
-                text: format!("Time constant tau_d = {} s: {}.", number(self.time_constant), self.time_constant_origin),
+                text: format!(
+                    "Time constant tau_d = {} s: {}.",
+                    number(self.time_constant),
+                    self.time_constant_origin
+                ),
             },
         ]
     }
