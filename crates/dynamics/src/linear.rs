@@ -31,6 +31,7 @@ mod realization;
 mod refinement;
 mod roots;
 mod state_space;
+mod structure;
 mod transfer_function;
 mod zeros;
 

@@ -43,14 +43,17 @@ pub struct Stated {
 /// Relative difference above which a stated value is called a contradiction: more than rounding to two digits explains.
 const CONTRADICTION: f64 = 0.05;
 
+/// The same for stated bounds, which are printed to three digits.
+const BEYOND_BOUNDS: f64 = 0.01;
+
 impl Derived {
     /// How far the stated value is from the derived one, in percent of the latter.
     pub fn difference_percent(&self) -> Option<f64> {
         self.stated.as_ref().map(|stated| 100.0 * (stated.value - self.value) / self.value)
     }
 
-    /// Whether the derived value contradicts what is stated: it lies outside the stated bounds, or without bounds more
-    /// than 5 % away.
+    /// Whether the derived value contradicts what is stated: it lies more than 1 % outside the stated
+    /// bounds, or without bounds more than 5 % away.
     pub fn contradicts(&self) -> bool {
         match self.stated.as_ref() {
             None => false,

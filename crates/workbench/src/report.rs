@@ -15,7 +15,7 @@ mod typeset;
 use maud::{Markup, html};
 
 pub use chapter::Chapter;
-pub use typeset::typeset;
+pub use typeset::{prose, typeset};
 
 use crate::answer::{OutputFile, significant};
 use crate::control::{ControlError, controller};
@@ -169,7 +169,7 @@ fn heading(project: &Project, summary: &[(&'static str, String)]) -> Markup {
         header {
             h1 { (project.title) }
             p.subtitle { "Hydraulic force control through added compliance: sizing and linear models" }
-            dl.facts { @for (name, value) in summary { div.fact { dt { (name) } dd { (value) } } } }
+            dl.facts { @for (name, value) in summary { div.fact { dt { (name) } dd { (prose(value)) } } } }
         }
     }
 }

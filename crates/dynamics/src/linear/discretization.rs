@@ -104,7 +104,7 @@ impl TransferFunction {
         let mut poles: Vec<Complex64> =
             self.poles().iter().map(|pole| exponential_of(pole * sample_time_s)).collect();
         poles.resize(sampled.order(), Complex64::new(0.0, 0.0));
-        let (gain, zeros) = zeros::of_channel(&sampled)?;
+        let (gain, zeros) = zeros::of_channel(&sampled, &poles)?;
         TransferFunction::assembled(gain, zeros, poles, TimeDomain::Discrete { sample_time_s })
             .with_dead_time(whole * sample_time_s)
     }

@@ -106,6 +106,13 @@ impl ComplexDoubleDouble {
         }
     }
 
+    /// The number times a power of two.
+    pub(crate) fn scaled(self, power_of_two: f64) -> Self {
+        let scaled =
+            |x: DoubleDouble| DoubleDouble { high: x.high * power_of_two, low: x.low * power_of_two };
+        ComplexDoubleDouble { re: scaled(self.re), im: scaled(self.im) }
+    }
+
     /// The nearest ordinary complex number.
     pub(crate) fn value(self) -> Complex64 {
         Complex64::new(self.re.value(), self.im.value())

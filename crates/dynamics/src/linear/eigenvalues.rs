@@ -9,49 +9,45 @@ use num_complex::Complex64;
 
 use super::LinearError;
 use super::refinement::{refine, sort, symmetrise};
+use super::structure::irreducible_blocks;
 use crate::portable::magnitude;
 
-/// All eigenvalues, sorted, in exact conjugate pairs.
+/// All eigenvalues, sorted, in exact conjugate pairs; that of an irreducible block which is singular to rounding is zero.
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Result<Vec<Complex64>, LinearError> {
+    by_blocks(matrix, |block, values| {
+        if is_singular(block)
+            && let Some(smallest) = index_of_smallest(values)
+        {
+            values[smallest] = Complex64::new(0.0, 0.0);
+        }
+    })
+}
+
+/// The same for a matrix whose entries are themselves the result of a cancellation: no eigenvalue is taken for zero.
+pub(crate) fn eigenvalues_of_computed(matrix: &DMatrix<f64>) -> Result<Vec<Complex64>, LinearError> {
+    by_blocks(matrix, |_, _| ())
+}
+
+fn by_blocks(
+    matrix: &DMatrix<f64>,
+    adjust: impl Fn(&DMatrix<f64>, &mut [Complex64]),
+) -> Result<Vec<Complex64>, LinearError> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return Err(LinearError::NotFinite { what: "an entry of a matrix" });
     }
     let mut all = Vec::with_capacity(matrix.nrows());
     for states in irreducible_blocks(matrix) {
         let block = DMatrix::from_fn(states.len(), states.len(), |i, j| matrix[(states[i], states[j])]);
-        all.extend(of_block(block)?);
+        all.extend(of_block(block, &adjust)?);
     }
     sort(&mut all);
     Ok(all)
 }
 
-/// The sets of states that all influence each other; across sets the influence goes one way only.
-fn irreducible_blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
-    let order = matrix.nrows();
-    let mut reaches = DMatrix::from_fn(order, order, |i, j| i == j || matrix[(i, j)] != 0.0);
-    for via in 0..order {
-        for from in 0..order {
-            if reaches[(from, via)] {
-                for to in 0..order {
-                    reaches[(from, to)] = reaches[(from, to)] || reaches[(via, to)];
-                }
-            }
-        }
-    }
-    let mut assigned = vec![false; order];
-    let mut blocks = Vec::new();
-    for first in 0..order {
-        if !assigned[first] {
-            let block: Vec<usize> =
-                (first..order).filter(|&other| reaches[(first, other)] && reaches[(other, first)]).collect();
-            block.iter().for_each(|&state| assigned[state] = true);
-            blocks.push(block);
-        }
-    }
-    blocks
-}
-
-fn of_block(mut block: DMatrix<f64>) -> Result<Vec<Complex64>, LinearError> {
+fn of_block(
+    mut block: DMatrix<f64>,
+    adjust: impl Fn(&DMatrix<f64>, &mut [Complex64]),
+) -> Result<Vec<Complex64>, LinearError> {
     match block.nrows() {
         0 => return Ok(Vec::new()),
         1 => return Ok(vec![Complex64::new(block[(0, 0)], 0.0)]),
@@ -70,10 +66,7 @@ fn of_block(mut block: DMatrix<f64>) -> Result<Vec<Complex64>, LinearError> {
     if values.iter().any(|value| !value.is_finite()) {
         return Err(LinearError::EigenvaluesNotConverged { order });
     }
-    let singular = is_singular(&block);
-    if singular && let Some(smallest) = index_of_smallest(&values) {
-        values[smallest] = Complex64::new(0.0, 0.0);
-    }
+    adjust(&block, &mut values);
     let complex = block.map(|entry| Complex64::new(entry, 0.0));
     refine(&mut values, 6, |s| {
         let shifted = DMatrix::from_diagonal_element(order, order, s) - &complex;
@@ -136,7 +129,7 @@ fn is_singular(matrix: &DMatrix<f64>) -> bool {
     by_rows.min(by_columns) * f64::EPSILON >= 0.25
 }
 
-fn index_of_smallest(values: &[Complex64]) -> Option<usize> {
+pub(crate) fn index_of_smallest(values: &[Complex64]) -> Option<usize> {
     let sizes = values.iter().enumerate().map(|(index, value)| (index, magnitude(*value)));
     sizes.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(index, _)| index)
 }

@@ -1,19 +1,21 @@
-//! A transfer function as a cascade of first- and second-order sections.
+//! A transfer function as a chain of first- and second-order sections with an output tap on every state.
 //!
-//! Each section keeps its poles on the diagonal of A, has about unit gain at its corner, and takes the zeros nearest to
-//! it; the companion form of the whole would lose the small roots beside the large ones.
+//! ```text
+//! u -> 1/d_m -> ... -> 1/d_2 -> 1/d_1          d_1 ... d_m the poles, slowest first, so that the fast ones act first
+//! y = D u + r_1/d_1...d_m u + r_2/d_2...d_m u + ... + r_m/d_m u
+//! ```
+//!
+//! The taps r are the digits of the numerator in the mixed radix d_1, d_1 d_2, ...: remainders of repeated division,
+//! done in twice the working precision. The poles stand on the diagonal of A; the companion form of the whole would
+//! lose the small ones beside the large ones.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
+use super::double_double::DoubleDouble;
+use super::polynomial::expand;
 use super::{LinearError, StateSpace, TimeDomain, TransferFunction};
 use crate::portable::magnitude;
-
-/// One or two poles with at most as many zeros.
-struct Section {
-    poles: Vec<Complex64>,
-    zeros: Vec<Complex64>,
-}
 
 pub(crate) fn cascade(system: &TransferFunction) -> Result<StateSpace, LinearError> {
     let delay = match system.domain() {
@@ -25,20 +27,20 @@ pub(crate) fn cascade(system: &TransferFunction) -> Result<StateSpace, LinearErr
     if zeros.len() > poles.len() {
         return Err(LinearError::Improper { zeros: zeros.len(), poles: poles.len() });
     }
-    let domain = system.domain();
-    let constant = |d: f64| StateSpace::new(zero(0, 0), zero(0, 1), zero(1, 0), scalar(d), domain);
-    let mut result = constant(1.0)?;
-    let mut remaining = system.gain();
-    for section in sections(zeros, poles) {
-        let gain = corner_gain(&section);
-        remaining /= gain;
-        result = result.series(&realise(&section, gain, domain)?)?;
+    let mut numerator = expand(system.gain(), zeros);
+    let mut chain = Vec::with_capacity(poles.len());
+    for pole in slowest_first(poles, system.domain()) {
+        let (quotient, remainder) = divided(&numerator, &denominator(pole));
+        numerator = quotient;
+        chain.push(Section { pole, remainder, exponent: exponent_of(pole) });
     }
-    for _ in 0..delay {
-        let sample = StateSpace::new(scalar(0.0), scalar(1.0), scalar(1.0), scalar(0.0), domain)?;
-        result = result.series(&sample)?;
-    }
-    result.series(&constant(remaining)?)
+    let feedthrough = if zeros.len() == poles.len() { system.gain() } else { 0.0 };
+    let result = states_of(&chain, poles.len(), feedthrough, system.domain())?;
+    let sample = |entries: [f64; 4]| {
+        let [a, b, c, d] = entries.map(|entry| DMatrix::from_element(1, 1, entry));
+        StateSpace::new(a, b, c, d, system.domain())
+    };
+    (0..delay).try_fold(result, |result, _| result.series(&sample([0.0, 1.0, 1.0, 0.0])?))
 }
 
 /// The nearest count; a dead time of a sampled system has been checked to be one.
@@ -52,117 +54,102 @@ pub(crate) fn whole_samples(samples: f64) -> usize {
     count
 }
 
-fn scalar(value: f64) -> DMatrix<f64> {
-    DMatrix::from_element(1, 1, value)
+/// A real pole or a complex pair (by its upper member), with its digit of the numerator.
+struct Section {
+    pole: Complex64,
+    remainder: Vec<DoubleDouble>,
+    /// Its input and its inner coupling are multiplied by this power of two, near the magnitude of its pole.
+    exponent: i32,
 }
 
-fn zero(rows: usize, columns: usize) -> DMatrix<f64> {
-    DMatrix::zeros(rows, columns)
+/// s - p, or (s - sigma)^2 + omega^2.
+fn denominator(pole: Complex64) -> Vec<DoubleDouble> {
+    if pole.im == 0.0 { expand(1.0, &[pole]) } else { expand(1.0, &[pole.conj(), pole]) }
 }
 
-/// Groups poles in pairs and gives each zero (or pair) to the nearest section with room.
-fn sections(zeros: &[Complex64], poles: &[Complex64]) -> Vec<Section> {
-    let complex_zeros: Vec<Complex64> = zeros.iter().copied().filter(|z| z.im > 0.0).collect();
-    let real_zeros: Vec<Complex64> = zeros.iter().copied().filter(|z| z.im == 0.0).collect();
-    let mut result: Vec<Section> = poles
-        .iter()
-        .filter(|pole| pole.im > 0.0)
-        .map(|&pole| Section { poles: vec![pole.conj(), pole], zeros: vec![] })
-        .collect();
-    let real_poles: Vec<Complex64> = poles.iter().copied().filter(|pole| pole.im == 0.0).collect();
-    let missing = complex_zeros.len().saturating_sub(result.len());
-    // real poles share a section only where complex zeros need the room
-    let (paired, single) = real_poles.split_at((2 * missing).min(real_poles.len()));
-    result.extend(paired.chunks(2).map(|pair| Section { poles: pair.to_vec(), zeros: vec![] }));
-    result.extend(single.iter().map(|&pole| Section { poles: vec![pole], zeros: vec![] }));
-    for &zero in &complex_zeros {
-        place(&mut result, &[zero.conj(), zero]);
-    }
-    for &zero in &real_zeros {
-        place(&mut result, &[zero]);
-    }
-    result.sort_by(|a, b| size(a).total_cmp(&size(b)));
-    result
-}
-
-fn size(section: &Section) -> f64 {
-    section.poles.iter().map(|pole| magnitude(*pole)).fold(0.0, f64::max)
-}
-
-fn place(sections: &mut [Section], group: &[Complex64]) {
-    let Some(&zero) = group.first() else { return };
-    let distance = |section: &Section| {
-        section.poles.iter().map(|pole| magnitude(pole - zero)).fold(f64::INFINITY, f64::min)
+/// The real poles and the upper members of pairs, by their distance from zero frequency.
+fn slowest_first(poles: &[Complex64], domain: TimeDomain) -> Vec<Complex64> {
+    let slow = match domain {
+        TimeDomain::Continuous => Complex64::new(0.0, 0.0),
+        TimeDomain::Discrete { .. } => Complex64::new(1.0, 0.0),
     };
-    let with_room = sections.iter_mut().filter(|s| s.zeros.len() + group.len() <= s.poles.len());
-    if let Some(section) = with_room.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
-        section.zeros.extend_from_slice(group);
+    let mut upper: Vec<Complex64> = poles.iter().copied().filter(|pole| pole.im >= 0.0).collect();
+    upper.sort_by(|a, b| magnitude(a - slow).total_cmp(&magnitude(b - slow)));
+    upper
+}
+
+/// Quotient and remainder of a polynomial by a monic one, highest power first; the remainder has the divisor's degree
+/// as its number of coefficients.
+fn divided(dividend: &[DoubleDouble], divisor: &[DoubleDouble]) -> (Vec<DoubleDouble>, Vec<DoubleDouble>) {
+    let degree = divisor.len() - 1;
+    let mut rest = dividend.to_vec();
+    let count = dividend.len().saturating_sub(degree);
+    for index in 0..count {
+        let factor = rest[index];
+        for (offset, &coefficient) in divisor.iter().enumerate().skip(1) {
+            rest[index + offset] = rest[index + offset] - factor * coefficient;
+        }
     }
+    let remainder = rest.split_off(count);
+    let padding = vec![DoubleDouble::ZERO; degree - remainder.len()];
+    (rest, [padding, remainder].concat())
 }
 
-/// A power of two that brings the section to about unit gain at its corner.
-fn corner_gain(section: &Section) -> f64 {
-    let corner = Complex64::new(0.0, corner(section));
-    let product = |roots: &[Complex64]| roots.iter().map(|root| magnitude(corner - root)).product::<f64>();
-    let gain = product(&section.poles) / product(&section.zeros);
-    if gain.is_finite() && gain > 0.0 { power_of_two(gain) } else { 1.0 }
-}
-
-fn corner(section: &Section) -> f64 {
-    let size = size(section);
-    if size > 0.0 { size } else { 1.0 }
-}
-
-fn power_of_two(value: f64) -> f64 {
-    let (_, exponent) = libm::frexp(value);
-    libm::ldexp(1.0, exponent)
-}
-
-fn realise(section: &Section, gain: f64, domain: TimeDomain) -> Result<StateSpace, LinearError> {
-    let scale = power_of_two(corner(section));
-    let proper = section.zeros.len() == section.poles.len();
-    let d = if proper { gain } else { 0.0 };
-    match section.poles[..] {
-        [pole] => {
-            // gain (s - z)/(s - p) = gain + gain (p - z)/(s - p)
-            let residue = section.zeros.first().map_or(gain, |zero| gain * (pole.re - zero.re));
-            let (b, c) = (scalar(scale), scalar(residue / scale));
-            StateSpace::new(scalar(pole.re), b, c, scalar(d), domain)
+/// The state space of a chain whose slowest section comes first in the list and last in the signal's way.
+///
+/// With w = 2^exponent a section with input v has the state x = w v/(s - p), or the two states x_1 = w^2 v/d and
+/// x_2 = w (s - sigma) v/d; x or x_1 is its output.
+fn states_of(
+    chain: &[Section],
+    order: usize,
+    feedthrough: f64,
+    domain: TimeDomain,
+) -> Result<StateSpace, LinearError> {
+    let mut a = DMatrix::zeros(order, order);
+    let mut b = DMatrix::zeros(order, 1);
+    let mut c = DMatrix::zeros(1, order);
+    // exponent of the product of all w that a signal has met before the section, from the fastest on
+    let mut before = 0;
+    // where the signal comes from: a state, or (at first) the input
+    let mut source: Option<usize> = None;
+    let mut end = order;
+    for section in chain.iter().rev() {
+        let (sigma, omega) = (section.pole.re, section.pole.im);
+        let unit = libm::ldexp(1.0, section.exponent);
+        let size = section.remainder.len();
+        let output = end - size;
+        let entry = end - 1;
+        match source {
+            Some(state) => a[(entry, state)] = unit,
+            None => b[(entry, 0)] = unit,
         }
-        [first, second] if first.im != 0.0 => {
-            // x_2 = (s - sigma)/den, x_1 = scale/den, den = (s - sigma)^2 + omega^2
-            let (sigma, omega) = (first.re, second.im);
-            let a = DMatrix::from_row_slice(2, 2, &[sigma, scale, -omega * (omega / scale), sigma]);
-            let (linear, constant) = match section.zeros[..] {
-                [] => (0.0, gain),
-                [z] => (gain, gain * (sigma - z.re)),
-                [z, w] if z.im != 0.0 => {
-                    let part = (sigma - z.re) * (sigma - z.re) + (w.im - omega) * (w.im + omega);
-                    (2.0 * gain * (sigma - z.re), gain * part)
-                }
-                [z, w, ..] => {
-                    let part = (sigma - z.re) * (sigma - w.re) - omega * omega;
-                    (gain * (sigma - z.re + (sigma - w.re)), gain * part)
-                }
-            };
-            let c = DMatrix::from_row_slice(1, 2, &[constant / scale / scale, linear / scale]);
-            StateSpace::new(a, DMatrix::from_row_slice(2, 1, &[0.0, scale]), c, scalar(d), domain)
+        for state in output..end {
+            a[(state, state)] = sigma;
         }
-        [first, second] => {
-            // x_2 = 1/(s - p_2), x_1 = scale/((s - p_1)(s - p_2)); here the zeros are a complex pair or none
-            let a = DMatrix::from_row_slice(2, 2, &[first.re, scale, 0.0, second.re]);
-            let (linear, constant) = match section.zeros[..] {
-                [z, w] => {
-                    let sum = (first.re - z.re) + (second.re - w.re);
-                    let value = (Complex64::new(first.re, 0.0) - z) * (Complex64::new(first.re, 0.0) - w);
-                    (gain * sum, gain * value.re)
-                }
-                [z] => (gain, gain * (first.re - z.re)),
-                _ => (0.0, gain),
-            };
-            let c = DMatrix::from_row_slice(1, 2, &[constant / scale / scale, linear / scale]);
-            StateSpace::new(a, DMatrix::from_row_slice(2, 1, &[0.0, scale]), c, scalar(d), domain)
+        match section.remainder[..] {
+            [slope, constant] => {
+                a[(output, entry)] = unit;
+                a[(entry, output)] = -omega * (omega / unit);
+                // slope s + constant = slope (s - sigma) + (constant + slope sigma)
+                let at_centre = (constant + slope * sigma.into()).value();
+                c[(0, output)] = libm::ldexp(at_centre, -before - 2 * section.exponent);
+                c[(0, entry)] = libm::ldexp(slope.value(), -before - section.exponent);
+                before += 2 * section.exponent;
+            }
+            [constant] => {
+                c[(0, output)] = libm::ldexp(constant.value(), -before - section.exponent);
+                before += section.exponent;
+            }
+            _ => {}
         }
-        _ => StateSpace::new(zero(0, 0), zero(0, 1), zero(1, 0), scalar(gain), domain),
+        source = Some(output);
+        end = output;
     }
+    StateSpace::new(a, b, c, DMatrix::from_element(1, 1, feedthrough), domain)
+}
+
+/// Exponent of a power of two near the magnitude of a pole; zero for one at the origin.
+fn exponent_of(pole: Complex64) -> i32 {
+    let size = magnitude(pole);
+    if size == 0.0 { 0 } else { libm::frexp(size).1 }
 }

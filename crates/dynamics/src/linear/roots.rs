@@ -6,6 +6,7 @@
 
 use num_complex::Complex64;
 
+use super::double_double::ComplexDoubleDouble;
 pub(crate) use super::refinement::conjugate_pairs;
 use super::refinement::{repelled_step, sort, symmetrise};
 use super::{LinearError, Polynomial};
@@ -23,7 +24,11 @@ pub(crate) fn of_polynomial(polynomial: &Polynomial) -> Result<Vec<Complex64>, L
         return Err(LinearError::NotFinite { what: "a coefficient" });
     }
     let at_origin = coefficients.iter().rev().take_while(|&&c| c == 0.0).count();
-    let deflated = Polynomial::new(coefficients[..coefficients.len() - at_origin].to_vec());
+    // a common factor, a power of two, changes no root and keeps products in range
+    let largest = coefficients.iter().fold(0.0_f64, |largest, c| largest.max(c.abs()));
+    let (_, exponent) = libm::frexp(largest);
+    let scaled = coefficients[..coefficients.len() - at_origin].iter().map(|&c| libm::ldexp(c, -exponent));
+    let deflated = Polynomial::new(scaled.collect());
     let mut roots = match *deflated.coefficients() {
         [_] => Vec::new(),
         [a, b] => vec![Complex64::new(-b / a, 0.0)],
@@ -40,11 +45,10 @@ pub(crate) fn of_polynomial(polynomial: &Polynomial) -> Result<Vec<Complex64>, L
 /// Ehrlich-Aberth from the Newton polygon to the level of rounding, once more with residuals in twice the working
 /// precision, and made symmetric.
 fn iterate(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
-    let derivative = polynomial.derivative();
     let mut roots = starting_points(polynomial.coefficients());
     sweep(&mut roots, |z| evaluate_locally(polynomial, z))
-        .and_then(|()| sweep(&mut roots, |z| evaluate_widely(polynomial, &derivative, z)))
-        .map(|()| symmetrise(&roots))
+        .and_then(|()| sweep(&mut roots, |z| evaluate_widely(polynomial, z)))
+        .map(|()| symmetrise(&on_the_axis(roots)))
         .ok_or(LinearError::RootsNotConverged { degree: polynomial.degree() })
 }
 
@@ -138,17 +142,47 @@ fn evaluate_locally(polynomial: &Polynomial, z: Complex64) -> LocalValue {
     }
     let at_rounding_level = magnitude(value) <= 4.0 * degree * f64::EPSILON * scale;
     // with w = 1/z and p(z) = z^n q(w):  p'/p = w (n - w q'/q)
-    let step = if outside { value * z / (value * degree - point * slope) } else { value / slope };
-    LocalValue { newton_step: step.is_finite().then_some(step), at_rounding_level }
+    let newton_step =
+        if outside { quotient(value * z, value * degree - point * slope) } else { quotient(value, slope) };
+    LocalValue { newton_step, at_rounding_level }
 }
 
-/// p/p' at z with both in twice the working precision.
-fn evaluate_widely(polynomial: &Polynomial, derivative: &Polynomial, z: Complex64) -> LocalValue {
-    let value = polynomial.evaluate_wide(z).value();
-    let step = value / derivative.evaluate_wide(z).value();
+/// p/p' at z with both in twice the working precision; partial sums that grow out of range are scaled down together.
+fn evaluate_widely(polynomial: &Polynomial, z: Complex64) -> LocalValue {
+    const LIMIT: f64 = 1e30;
+    let (point, radius) = (ComplexDoubleDouble::from(z), magnitude(z));
+    let (mut value, mut slope) = (ComplexDoubleDouble::default(), ComplexDoubleDouble::default());
+    let (mut scale, mut unit) = (0.0, 1.0);
+    for &coefficient in polynomial.coefficients() {
+        if scale > LIMIT {
+            let shrink = libm::ldexp(1.0, -100);
+            (value, slope) = (value.scaled(shrink), slope.scaled(shrink));
+            (scale, unit) = (scale * shrink, unit * shrink);
+        }
+        slope = slope * point + value;
+        value = value * point + ComplexDoubleDouble::from(coefficient * unit);
+        scale = scale * radius + (coefficient * unit).abs();
+    }
     let rounding = 8.0 * polynomial.degree() as f64 * f64::EPSILON * f64::EPSILON;
-    let at_rounding_level = magnitude(value) <= rounding * polynomial.evaluate_magnitudes(z);
-    LocalValue { newton_step: step.is_finite().then_some(step), at_rounding_level }
+    LocalValue {
+        newton_step: quotient(value.value(), slope.value()),
+        at_rounding_level: magnitude(value.value()) <= rounding * scale,
+    }
+}
+
+/// a/b with b brought to unit size first, so that its square stays in range.
+fn quotient(a: Complex64, b: Complex64) -> Option<Complex64> {
+    let scale = 1.0 / b.re.abs().max(b.im.abs());
+    let result = (a * scale) / (b * scale);
+    result.is_finite().then_some(result)
+}
+
+/// Puts roots that a rounding of the coefficients cannot tell from the imaginary axis on it.
+fn on_the_axis(mut roots: Vec<Complex64>) -> Vec<Complex64> {
+    for root in roots.iter_mut().filter(|root| root.re.abs() <= 0.5 * f64::EPSILON * root.im.abs()) {
+        root.re = 0.0;
+    }
+    roots
 }
 
 /// Replaces clusters that a rounding of the coefficients explains as a multiple root by that root.

@@ -4,6 +4,7 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::eigenvalues::eigenvalues;
+use super::structure::Resolvent;
 use super::transfer_function::is_stable_pole;
 use super::{LinearError, TimeDomain, TransferFunction, realization, zeros};
 use crate::portable;
@@ -186,23 +187,13 @@ impl StateSpace {
     /// C (s I - A)^-1 B + D for all channels at any s (or z); infinite entries where s is an eigenvalue of A.
     pub fn responses(&self, s: Complex64) -> DMatrix<Complex64> {
         let complex = |matrix: &DMatrix<f64>| matrix.map(|entry| Complex64::new(entry, 0.0));
-        let mut balanced = self.a.clone();
-        let scales = nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced);
-        let b = DMatrix::from_fn(self.order(), self.inputs(), |i, j| self.b[(i, j)] / scales[i]);
-        let c = DMatrix::from_fn(self.outputs(), self.order(), |i, j| self.c[(i, j)] * scales[j]);
-        let shifted = DMatrix::from_diagonal_element(self.order(), self.order(), s) - complex(&balanced);
-        let right = complex(&b);
-        let lu = shifted.clone().lu();
-        let Some(mut states) = lu.solve(&right) else {
-            return DMatrix::from_element(self.outputs(), self.inputs(), Complex64::new(f64::INFINITY, 0.0));
-        };
-        // one step of refinement makes the solution backward stable entry by entry (Skeel 1980)
-        if let Some(correction) = lu.solve(&(&right - &shifted * &states))
-            && correction.iter().all(|entry| entry.is_finite())
-        {
-            states += correction;
+        match Resolvent::of(&self.a).solve(s, &complex(&self.b)) {
+            Some(states) => complex(&self.c) * states + complex(&self.d),
+            None => {
+                let infinite = Complex64::new(f64::INFINITY, 0.0);
+                DMatrix::from_element(self.outputs(), self.inputs(), infinite)
+            }
         }
-        complex(&c) * states + complex(&self.d)
     }
 
     /// The transfer function from one input to one output: poles from A, zeros from the system pencil, gain from the
@@ -214,7 +205,7 @@ impl StateSpace {
     pub fn to_transfer_function(&self, input: usize, output: usize) -> Result<TransferFunction, LinearError> {
         let channel = self.channel(input, output)?;
         let poles = channel.poles()?;
-        let (gain, zeros) = zeros::of_channel(&channel)?;
+        let (gain, zeros) = zeros::of_channel(&channel, &poles)?;
         Ok(TransferFunction::assembled(gain, zeros, poles, self.domain))
     }
 }

@@ -14,9 +14,11 @@
 use nalgebra::{DMatrix, DVector, RowDVector};
 use num_complex::Complex64;
 
-use super::eigenvalues::eigenvalues;
+use super::eigenvalues::{eigenvalues_of_computed, index_of_smallest};
 use super::refinement::{refine, symmetrise};
+use super::structure::Resolvent;
 use super::{LinearError, StateSpace};
+use crate::portable::magnitude;
 
 /// A number with the sum of the magnitudes that went into it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,12 +45,21 @@ impl Traced {
     }
 }
 
-/// Gain (leading coefficient) and zeros of a system with one input and one output.
-pub(crate) fn of_channel(system: &StateSpace) -> Result<(f64, Vec<Complex64>), LinearError> {
+/// Gain (leading coefficient) and zeros of a system with one input and one output, whose poles are known.
+pub(crate) fn of_channel(
+    system: &StateSpace,
+    poles: &[Complex64],
+) -> Result<(f64, Vec<Complex64>), LinearError> {
     let (gain, reduced) = reduce(system);
     let Some(matrix) = reduced else { return Ok((0.0, Vec::new())) };
-    let mut zeros = eigenvalues(&matrix)?;
-    refine(&mut zeros, 6, |s| newton_step(system, s));
+    let mut zeros = eigenvalues_of_computed(&matrix)?;
+    let resolvent = Resolvent::of(system.a());
+    if vanishes_at_origin(system, &resolvent)
+        && let Some(smallest) = index_of_smallest(&zeros)
+    {
+        zeros[smallest] = Complex64::new(0.0, 0.0);
+    }
+    refine(&mut zeros, 6, |s| newton_step(system, &resolvent, poles, s));
     Ok((gain, symmetrise(&zeros)))
 }
 
@@ -93,22 +104,37 @@ fn eliminate(a: &DMatrix<Traced>, b: &DVector<Traced>, c: &RowDVector<Traced>, k
     (reduced, inputs, row, feedthrough)
 }
 
-/// f/f' for the determinant f of the system pencil, states scaled so that A is balanced.
-fn newton_step(system: &StateSpace, s: Complex64) -> Option<Complex64> {
-    let order = system.order();
-    let mut balanced = system.a().clone();
-    let scales = nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced);
-    let pencil = DMatrix::from_fn(order + 1, order + 1, |i, j| {
-        let entry = match (i < order, j < order) {
-            (true, true) => -balanced[(i, j)],
-            (true, false) => -system.b()[(i, 0)] / scales[i],
-            (false, true) => system.c()[(0, j)] * scales[j],
-            (false, false) => system.d()[(0, 0)],
-        };
-        if i == j && i < order { s + entry } else { Complex64::new(entry, 0.0) }
-    });
-    let Some(inverse) = pencil.try_inverse() else { return Some(Complex64::new(0.0, 0.0)) };
-    let trace: Complex64 = (0..order).map(|i| inverse[(i, i)]).sum();
-    let step = trace.inv();
+/// Whether the response at s = 0 is no more than the rounding of its parts.
+fn vanishes_at_origin(system: &StateSpace, resolvent: &Resolvent<'_>) -> bool {
+    let inputs = system.b().map(|entry| Complex64::new(entry, 0.0));
+    let Some(states) = resolvent.solve(Complex64::new(0.0, 0.0), &inputs) else { return false };
+    let parts = (0..system.order()).map(|j| system.c()[(0, j)] * states[(j, 0)].re);
+    let feedthrough = system.d()[(0, 0)];
+    let (sum, size) =
+        parts.fold((feedthrough, feedthrough.abs()), |(sum, size), part| (sum + part, size + part.abs()));
+    sum.abs() <= 16.0 * f64::EPSILON * size
+}
+
+/// f/f' for the numerator f = g(s) prod (s - p) of the response g; nothing at a pole that cancels.
+fn newton_step(
+    system: &StateSpace,
+    resolvent: &Resolvent<'_>,
+    poles: &[Complex64],
+    s: Complex64,
+) -> Option<Complex64> {
+    if poles.iter().any(|pole| magnitude(pole - s) <= 1e-6 * magnitude(s)) {
+        return None;
+    }
+    let complex = |matrix: &DMatrix<f64>| matrix.map(|entry| Complex64::new(entry, 0.0));
+    let output = complex(system.c());
+    let states = resolvent.solve(s, &complex(system.b()))?;
+    let slopes = resolvent.solve(s, &states)?;
+    let response = (&output * &states)[(0, 0)] + system.d()[(0, 0)];
+    let slope = -(&output * &slopes)[(0, 0)];
+    if response == Complex64::new(0.0, 0.0) {
+        return Some(response);
+    }
+    let poles: Complex64 = poles.iter().map(|pole| (s - pole).inv()).sum();
+    let step = (slope / response + poles).inv();
     step.is_finite().then_some(step)
 }

@@ -3,8 +3,7 @@
 use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, table};
-use super::typeset::typeset;
-use crate::answer::significant;
+use super::typeset::{figures, prose, typeset};
 use crate::derived::{Derived, sentence};
 
 pub(super) fn chapter(derived: &[Derived]) -> Chapter {
@@ -20,7 +19,7 @@ pub(super) fn chapter(derived: &[Derived]) -> Chapter {
         @if !stated.is_empty() {
             h3 { "Stated by the project and used instead" }
             p { "The linear models use these values. Where a stated value and the derived one part, the nonlinear machine follows the derived one." }
-            ul { @for quantity in stated { li class=(if quantity.contradicts() { "bad" } else { "" }) { (typeset(&sentence(quantity))) } } }
+            ul { @for quantity in stated { li class=(if quantity.contradicts() { "bad" } else { "" }) { (prose(&sentence(quantity))) } } }
         }
     };
     Chapter { anchor: "derived", title: "Derived quantities", body, figures: vec![] }
@@ -29,16 +28,20 @@ pub(super) fn chapter(derived: &[Derived]) -> Chapter {
 fn rows<'a>(quantities: impl Iterator<Item = &'a Derived>) -> Markup {
     let rows: Vec<Vec<Markup>> = quantities
         .map(|quantity| {
-            let value =
-                if quantity.value.is_nan() { "-".to_string() } else { significant(quantity.value, 5) };
             vec![
                 typeset(quantity.symbol),
-                cell(quantity.name.rsplit('.').next().unwrap_or(&quantity.name).replace('_', " ")),
+                cell(
+                    quantity
+                        .name
+                        .split_once('.')
+                        .map_or(quantity.name.as_str(), |(_, name)| name)
+                        .replace(['_', '.'], " "),
+                ),
                 match &quantity.reason {
                     Some(reason) => cell(reason),
                     None => typeset(quantity.equation),
                 },
-                cell(value),
+                figures(quantity.value, 5),
                 html! { span.unit { (quantity.unit) } },
             ]
         })

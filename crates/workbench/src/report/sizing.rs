@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, place, table};
+use super::typeset::prose;
 use crate::answer::significant;
 use crate::figure::{
     DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput, SizingCurve,
@@ -22,7 +23,7 @@ pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
         }
         div.callout.good-edge[best(problem.model).is_some()].bad-edge[best(problem.model).is_none()] {
             @for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
-                p { code { (model_name(model)) } ": " (answer_sentence(best(model))) }
+                p { code { (model_name(model)) } ": " (prose(&answer_sentence(best(model)))) }
             }
         }
         (place(&figures[0]))
@@ -127,44 +128,51 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
     sizing_chart(Words::new("sizing-length", "Length, stiffness and gain", caption), &input)
 }
 
+/// Two rows a candidate: its numbers, and below them the reasons over the whole width.
 fn candidates(sizing: &Sizing) -> Markup {
-    let rows: Vec<Vec<Markup>> = sizing
-        .candidates
-        .iter()
-        .map(|candidate| {
-            let branch = &candidate.branch;
-            let verdict = if candidate.accepted() {
-                html! { span.good { "accepted" } }
-            } else {
-                html! { span.bad { "rejected" } }
-            };
-            vec![
-                verdict,
-                cell(&candidate.option.name),
-                cell(model_name(branch.model)),
-                cell(if branch.by_gain { "by gain" } else { "by length" }),
-                reasons(candidate),
-                cell(significant(branch.length_m, 4)),
-                cell(format!(
-                    "{} to {}",
-                    significant(branch.stiffness.minimum / 1e6, 3),
-                    significant(branch.stiffness.maximum / 1e6, 3)
-                )),
-                cell(significant(branch.gain_v_per_n * 1e3, 3)),
-                cell(significant(candidate.time_constant_s[0] * 1e3, 3)),
-            ]
-        })
-        .collect();
-    let headings =
-        ["", "hose", "compliance", "branch", "why", "length, m", "K_H, MN/m", "K_p, mV/N", "τ, ms"];
-    table(&headings, 5, &rows)
+    let headings = [
+        "hose",
+        "compliance",
+        "branch",
+        "length, m",
+        "K_H, MN/m",
+        "K_p, mV/N",
+        "τ at K_Hmin and K_Hmax, ms",
+        "",
+    ];
+    html! {
+        div.table { table {
+            thead { tr { @for (column, heading) in headings.iter().enumerate() { th.number[(3..7).contains(&column)] { (prose(heading)) } } } }
+            @for candidate in &sizing.candidates { tbody.candidate { (candidate_rows(candidate)) } }
+        } }
+    }
+}
+
+fn candidate_rows(candidate: &Candidate) -> Markup {
+    let branch = &candidate.branch;
+    let mega = |stiffness: f64| significant(stiffness / 1e6, 3);
+    let milliseconds = candidate.time_constant_s.map(|time| significant(time * 1e3, 3));
+    html! {
+        tr {
+            td { code { (candidate.option.name) } }
+            td { code { (model_name(branch.model)) } }
+            td { (if branch.by_gain { "by gain" } else { "by length" }) }
+            td.number { (significant(branch.length_m, 4)) }
+            td.number { (mega(branch.stiffness.minimum)) " to " (mega(branch.stiffness.maximum)) }
+            td.number { (significant(branch.gain_v_per_n * 1e3, 3)) }
+            td.number { (milliseconds[0]) " and " (milliseconds[1]) }
+            td { @if candidate.accepted() { span.good { "accepted" } } @else { span.bad { "rejected" } } }
+        }
+        @if !candidate.findings.is_empty() { tr { td.reasons colspan="8" { (reasons(candidate)) } } }
+    }
 }
 
 fn reasons(candidate: &Candidate) -> Markup {
     html! {
-        @for finding in &candidate.findings {
-            div { span.bad[finding.severity == Severity::Rejects].note[finding.severity == Severity::Warns] { (if finding.severity == Severity::Rejects { "✗ " } else { "! " }) } (finding.text) }
-        }
+        ul { @for finding in &candidate.findings {
+            @let rejects = finding.severity == Severity::Rejects;
+            li { span.bad[rejects].note[!rejects] { (if rejects { "rejects" } else { "warns" }) } ": " (prose(&finding.text)) }
+        } }
     }
 }
 
@@ -216,6 +224,6 @@ fn influences(sizing: &Sizing) -> Markup {
 
 fn decisions(sizing: &Sizing) -> Markup {
     let rows: Vec<Vec<Markup>> =
-        sizing.decisions.iter().map(|decision| vec![cell(decision.step), cell(&decision.text)]).collect();
+        sizing.decisions.iter().map(|decision| vec![cell(decision.step), prose(&decision.text)]).collect();
     table(&["step", "decision"], 9, &rows)
 }

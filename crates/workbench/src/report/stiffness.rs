@@ -5,6 +5,7 @@ use phea_hydraulics::line::Member;
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::chapter::{Chapter, place};
+use super::typeset::prose;
 use crate::figure::{Figure, StiffnessCurve, StiffnessInput, Words, stiffness_over_stroke};
 use crate::linearize::{Linearization, stiffness_at, stiffness_sentence};
 use crate::rig::Rig;
@@ -17,7 +18,7 @@ pub(super) fn chapter(rig: &Rig, linearization: &Linearization) -> Chapter {
     let figures = vec![figure(rig)];
     let declared = model_name(rig.actuator.components().stiffness_model);
     let body = html! {
-        p { (stiffness_sentence(&linearization.stiffness_models)) }
+        p { (prose(&stiffness_sentence(&linearization.stiffness_models))) }
         p {
             "This project declares " code { (declared) } ". The thesis' tables are made with " code { "uniform" }
             "; a steel chamber does not become softer because a hose is screwed to it, so " code { "by_volume" } " is what a rig will show."

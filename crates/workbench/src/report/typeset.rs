@@ -44,6 +44,51 @@ pub fn typeset(equation: &str) -> Markup {
     html! { span.equation { (PreEscaped(inside)) } }
 }
 
+/// Sets a sentence: words such as `K_H` and numbers such as `2.2e6` as in an equation, the rest as it is.
+///
+/// # Example
+/// ```
+/// use phea_workbench::report::prose;
+/// let markup = prose("take K_p = 2.7e-4 V/N of `by_volume`").into_string();
+/// assert!(markup.contains("<i>K</i><sub>p</sub>") && markup.contains("2.7·10<sup>-4</sup>"));
+/// assert!(markup.contains("`by_volume`"));
+/// ```
+pub fn prose(sentence: &str) -> Markup {
+    let mut inside = String::new();
+    for (index, word) in sentence.split(' ').enumerate() {
+        if index > 0 {
+            inside.push(' ');
+        }
+        let core = word.trim_end_matches([',', '.', ';', ':', ')']);
+        let (core, tail) = word.split_at(core.len());
+        let (head, core) = core.split_at(core.len() - core.trim_start_matches('(').len());
+        let is_symbol = core.split_once('_').is_some_and(|(base, _)| base.chars().count() == 1);
+        let set = if is_symbol {
+            typeset(core).into_string()
+        } else {
+            number(core).unwrap_or_else(|| escaped(core))
+        };
+        inside.push_str(&format!("{}{set}{}", escaped(head), escaped(tail)));
+    }
+    html! { (PreEscaped(inside)) }
+}
+
+/// `2.2e6` as 2.2·10^6; `None` for anything else.
+fn number(word: &str) -> Option<String> {
+    let (mantissa, exponent) = word.split_once('e')?;
+    let (_, exponent): (f64, i32) = (mantissa.parse().ok()?, exponent.parse().ok()?);
+    Some(format!("{mantissa}·10<sup>{exponent}</sup>"))
+}
+
+/// A number for people, see [`prose`].
+pub(super) fn figures(value: f64, digits: usize) -> Markup {
+    if value.is_nan() {
+        html! { "-" }
+    } else {
+        prose(&crate::answer::significant(value, digits))
+    }
+}
+
 /// The operand of `_` or `^` and what follows it.
 fn script(text: &str) -> (&str, &str) {
     if let Some((group, remainder)) = text.strip_prefix('{').and_then(|grouped| grouped.split_once('}')) {
