@@ -26,7 +26,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let described: BTreeSet<&str> = prose_lines(guide).flat_map(|(_, line)| code_spans(line)).collect();
     let mut found = Vec::new();
     for (name, path, line) in &declared.names {
-        if !described.contains(name.as_str()) {
+        if !name.split('.').all(|part| described.contains(part)) {
             found.push(Violation::new(path, *line, format!("{GUIDE} does not describe `{name}`")));
         }
     }
