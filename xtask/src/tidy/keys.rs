@@ -1,7 +1,7 @@
 //! The guide describes every key of the project file, and no key that there is not.
 //!
-//! A key is declared in `crates/workbench/src/project/` by `key("name", ...)`, `plain("name", ...)`, `part("name", ...)` or
-//! `visit("name", ...)`; the words of a choice are pairs `("word", Value)`.
+//! A key is declared in `crates/workbench/src/project/` by `key("name", ...)`, `plain("name", ...)`, `part("name",
+//! ...)` or `visit("name", ...)`; the words of a choice are pairs `("word", Value)`.
 
 use std::collections::BTreeSet;
 
