@@ -1,13 +1,15 @@
 //! Every number in the built-in catalogue has a source.
 //!
-//! In `crates/workbench/catalogue/` a value is a number or a text that begins with one. It is sourced when its own table has a
-//! `source`, as in `bore = { value = "12.7 mm", source = "..." }`, or when the table `source` beside it has its key.
+//! A file in `crates/workbench/catalogue/` describes one product and is called after it. `source` holds for every
+//! number of the file, `[sources]` for single ones.
 
 use super::Violation;
 use crate::repository::Repository;
 
 const FOLDER: &str = "crates/workbench/catalogue/";
-const SOURCE: &str = "source";
+
+/// A source shorter than this names no document.
+const SHORTEST_SOURCE: usize = 12;
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let files = repository.texts(|path| path.starts_with(FOLDER) && path.ends_with(".toml"));
@@ -15,49 +17,40 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
 }
 
 fn check_file(path: &str, text: &str) -> Vec<Violation> {
-    match text.parse::<toml::Table>() {
-        Ok(table) => {
-            let mut unsourced = Vec::new();
-            collect_unsourced(&table, &mut Vec::new(), &mut unsourced);
-            unsourced
-                .into_iter()
-                .map(|key| Violation::new(path, 0, format!("`{key}` has no source")))
-                .collect()
-        }
-        Err(error) => vec![Violation::new(path, 0, error.to_string())],
+    let table: toml::Table = match text.parse() {
+        Ok(table) => table,
+        Err(error) => return vec![Violation::new(path, 0, error.to_string())],
+    };
+    let mut found = Vec::new();
+    let name = table.get("name").and_then(toml::Value::as_str).unwrap_or_default();
+    if !path.ends_with(&format!("/{name}.toml")) {
+        found.push(Violation::new(path, 0, format!("is not called after its product, `{name}`")));
     }
+    let is_source = |value: Option<&toml::Value>| {
+        value.and_then(toml::Value::as_str).is_some_and(|text| text.len() >= SHORTEST_SOURCE)
+    };
+    let numbers = table.iter().filter(|(key, value)| *key != "schema" && is_number(value));
+    for (key, _) in numbers {
+        let own = table.get("sources").and_then(toml::Value::as_table).and_then(|sources| sources.get(key));
+        if !is_source(own.or(table.get("source"))) {
+            let line =
+                text.lines().position(|line| line.starts_with(key.as_str())).map_or(0, |index| index + 1);
+            found.push(Violation::new(path, line, format!("`{key}` has no source")));
+        }
+    }
+    found
 }
 
-fn collect_unsourced(table: &toml::Table, above: &mut Vec<String>, unsourced: &mut Vec<String>) {
-    let sources = table.get(SOURCE);
-    let has_text =
-        |value: Option<&toml::Value>| value.and_then(toml::Value::as_str).is_some_and(|text| text.len() > 5);
-    for (key, value) in table.iter().filter(|(key, _)| !matches!(key.as_str(), SOURCE | "schema")) {
-        above.push(key.clone());
-        match value {
-            toml::Value::Table(inner) => collect_unsourced(inner, above, unsourced),
-            toml::Value::Array(items) if items.iter().any(toml::Value::is_table) => {
-                let tables = items.iter().filter_map(toml::Value::as_table);
-                tables.for_each(|inner| collect_unsourced(inner, above, unsourced));
-            }
-            value => {
-                let own = above.len() > 1 && key == "value" && has_text(sources);
-                let listed =
-                    sources.and_then(toml::Value::as_table).is_some_and(|list| has_text(list.get(key)));
-                if is_number(value) && !own && !listed {
-                    unsourced.push(above.join("."));
-                }
-            }
-        }
-        above.pop();
-    }
-}
-
+/// A number, or a text that begins with one, or anything that holds one.
 fn is_number(value: &toml::Value) -> bool {
     match value {
         toml::Value::Integer(_) | toml::Value::Float(_) => true,
-        toml::Value::String(text) => text.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '.'),
+        toml::Value::String(text) => {
+            let unsigned = text.trim_start_matches(['-', '+', '.']);
+            unsigned.starts_with(|c: char| c.is_ascii_digit())
+        }
         toml::Value::Array(items) => items.iter().any(is_number),
+        toml::Value::Table(table) => table.values().any(is_number),
         _ => false,
     }
 }
@@ -68,23 +61,31 @@ mod tests {
 
     fn messages(text: &str) -> Vec<String> {
         let path = "crates/workbench/catalogue/hoses/example.toml";
-        check(&Repository::from_texts(&[(path, text)])).iter().map(|v| v.message.clone()).collect()
+        let text = format!("schema = 1\nname = \"example\"\n{text}");
+        check(&Repository::from_texts(&[(path, &text)])).iter().map(|v| v.message.clone()).collect()
     }
 
     #[test]
     fn numbers_and_quantities_need_a_source() {
-        assert_eq!(messages("[hose]\nname = \"example\"\nbore = \"12.7 mm\""), ["`hose.bore` has no source"]);
-        assert_eq!(messages("r = { value = 3 }\nk = 2.5").len(), 2);
-        assert_eq!(messages("schema = 1\nname = \"3130-08\"").len(), 1);
+        assert_eq!(messages("bore = \"12.7 mm\"\ntitle = \"Example\""), ["`bore` has no source"]);
+        assert_eq!(messages("r = { nominal = 3 }\nk = 2.5\nrange = [\".5 m\"]").len(), 3);
+        assert_eq!(messages("source = \"a book\"\nbore = 1.0").len(), 1);
     }
 
     #[test]
-    fn a_source_stands_in_the_value_or_in_a_table_beside_it() {
-        assert!(messages("bore = { value = \"12.7 mm\", source = \"Eaton (2008), page 12\" }").is_empty());
-        assert!(
-            messages("[hose]\nbore = \"12.7 mm\"\n[hose.source]\nbore = \"Eaton (2008), page 12\"")
-                .is_empty()
+    fn a_source_holds_for_the_file_or_for_one_number() {
+        assert!(messages("source = \"Eaton (2008), page 12\"\nbore = \"12.7 mm\"").is_empty());
+        assert!(messages("bore = 1.0\n[sources]\nbore = \"Eaton (2008), page 12\"").is_empty());
+        assert_eq!(
+            messages("bore = 1.0\nlength = 2.0\n[sources]\nbore = \"Eaton (2008), page 12\"").len(),
+            1
         );
-        assert_eq!(messages("[hose]\nbore = \"12.7 mm\"\n[hose.source]\nbore = \"\"").len(), 1);
+    }
+
+    #[test]
+    fn a_file_is_called_after_its_product() {
+        assert_eq!(messages("").len(), 0);
+        let other = Repository::from_texts(&[("crates/workbench/catalogue/a.toml", "name = \"b\"")]);
+        assert_eq!(check(&other).len(), 1);
     }
 }

@@ -1,5 +1,5 @@
-//! Every equation of the thesis that the code cites stands in the book's index of equations, and what the index says
-//! implements it exists.
+//! Every equation of the thesis that the code cites stands in the book's index of equations, and what the index
+//! says implements it exists.
 
 use std::collections::BTreeSet;
 

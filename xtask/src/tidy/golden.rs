@@ -1,27 +1,24 @@
 //! A golden number names its origin.
 //!
-//! A function, constant or static in a `tests` folder carries a comment `ORIGIN: ...`, inside or directly above, if an assertion in
-//! it names a number of four significant digits or more; in files called `golden*.rs`, if any number in it has so many.
+//! A test, and a function, constant or static in a `tests` folder, carries a comment `ORIGIN: ...`, inside or
+//! directly above, if an assertion in it names a number of four significant digits or more; in files called
+//! `golden*.rs`, if any number in it has so many.
 
 use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::spanned::Spanned;
 
 use super::Violation;
 use crate::ci::recomputed_by;
-use crate::repository::{Repository, RustFile};
+use crate::repository::{Repository, RustFile, is_test_item};
 
 /// What an origin starts with.
 const ORIGINS: [&str; 7] =
     ["analytic", "thesis", "recomputed", "paper", "data sheet", "measured", "other tool"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
-    let golden = |file: &&RustFile| {
-        let name = file.path.rsplit('/').next().unwrap_or_default();
-        file.path.contains("/tests/") && name.ends_with(".rs")
-    };
-    let mut found: Vec<Violation> =
-        repository.rust_files().iter().filter(golden).flat_map(check_file).collect();
+    let mut found = Vec::new();
     for file in repository.rust_files().iter().filter(|file| !file.path.starts_with("xtask/")) {
+        found.extend(check_file(file));
         for (index, line) in file.text.lines().enumerate() {
             let problem =
                 line.split_once("ORIGIN:").and_then(|(_, origin)| check_origin(repository, line, origin));
@@ -34,12 +31,18 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
 fn check_origin(repository: &Repository, line: &str, origin: &str) -> Option<String> {
     let origin = origin.trim();
     match recomputed_by(line) {
-        _ if !ORIGINS.iter().any(|known| origin.starts_with(known)) => {
-            Some(format!("an origin starts with one of: {}", ORIGINS.join(", ")))
+        _ if !ORIGINS.iter().any(|known| origin.starts_with(known)) && !cites_a_year(origin) => {
+            Some(format!("an origin cites (year), or starts with one of: {}", ORIGINS.join(", ")))
         }
         Some(script) if !repository.exists(script) => Some(format!("the origin `{script}` does not exist")),
         _ => None,
     }
+}
+
+/// Whether a work is cited as in "Ledezma (2019)".
+fn cites_a_year(origin: &str) -> bool {
+    let inside = origin.split('(').skip(1).filter_map(|rest| rest.split(')').next());
+    inside.into_iter().any(|year| year.len() == 4 && year.parse::<u16>().is_ok())
 }
 
 fn check_file(file: &RustFile) -> Vec<Violation> {
@@ -48,6 +51,10 @@ fn check_file(file: &RustFile) -> Vec<Violation> {
     while let Some(item) = items.pop() {
         if let syn::Item::Mod(syn::ItemMod { content: Some((_, inner)), .. }) = item {
             items.extend(inner);
+            continue;
+        }
+        let is_test = matches!(item, syn::Item::Fn(function) if is_test_item(&function.attrs));
+        if !is_test && !file.is_test_file() {
             continue;
         }
         let text = with_comments_above(&file.text, item.span());
@@ -130,6 +137,13 @@ mod tests {
     }
 
     #[test]
+    fn tests_beside_the_code_count_and_the_code_does_not() {
+        let count = |text| check(&Repository::from_texts(&[("crates/hydraulics/src/line.rs", text)])).len();
+        assert_eq!(count("fn f() { assert!(g() < 2.233e6); }"), 0);
+        assert_eq!(count("#[cfg(test)] mod tests { #[test] fn f() { assert!(g() < 2.233e6); } }"), 1);
+    }
+
+    #[test]
     fn elsewhere_assertions_count_and_inputs_do_not() {
         let count = |text| check(&Repository::from_texts(&[("crates/hydraulics/tests/line.rs", text)])).len();
         assert_eq!(count("fn f() { for p in [69.9995e5] { g(p); } }"), 0);
@@ -159,6 +173,9 @@ mod tests {
         assert_eq!(
             messages("// ORIGIN: recomputed by comparisons/lost.py\nconst K: f64 = 2.233e6;").len(),
             1
+        );
+        assert!(
+            messages("// ORIGIN: Machado, Oliveira and Fernandes (2009)\nconst K: f64 = 2.233e6;").is_empty()
         );
         assert_eq!(messages("// ORIGIN: as the program printed it\nconst K: f64 = 2.233e6;").len(), 1);
     }

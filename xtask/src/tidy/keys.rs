@@ -1,7 +1,7 @@
 //! The guide describes every key of the project file, and no key that there is not.
 //!
-//! A key is declared in `crates/workbench/src/project/` by `key("name", ...)`, `plain("name", ...)`, `part("name", ...)` or
-//! `visit("name", ...)`; the words of a choice are pairs `("word", Value)`.
+//! A key is declared in `crates/workbench/src/project/` by `key("name", ...)`, `plain("name", ...)`, `part("name",
+//! ...)` or `visit("name", ...)`; the words of a choice are pairs `("word", Value)`.
 
 use std::collections::BTreeSet;
 
@@ -26,7 +26,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let described: BTreeSet<&str> = prose_lines(guide).flat_map(|(_, line)| code_spans(line)).collect();
     let mut found = Vec::new();
     for (name, path, line) in &declared.names {
-        if !described.contains(name.as_str()) {
+        if !name.split('.').all(|part| described.contains(part)) {
             found.push(Violation::new(path, *line, format!("{GUIDE} does not describe `{name}`")));
         }
     }

@@ -1,5 +1,6 @@
-//! The parameters of the actuator: the public numbers of those types of `crates/hydraulics` that can be refused, because they have a
-//! method `problems` or are part of a type that has one. Somebody types these numbers and has to know what they mean.
+//! The parameters of the actuator: the public numbers of those types of `crates/hydraulics` that can be refused,
+//! because they have a method `problems` or are part of a type that has one. Somebody types these numbers and has
+//! to know what they mean.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -74,7 +75,10 @@ impl<'ast> Visit<'ast> for Types {
     }
 
     fn visit_item_impl(&mut self, block: &'ast syn::ItemImpl) {
-        let problems = |item: &syn::ImplItem| matches!(item, syn::ImplItem::Fn(method) if method.sig.ident == "problems");
+        let problems = |item: &syn::ImplItem| match item {
+            syn::ImplItem::Fn(method) => method.sig.ident == "problems",
+            _ => false,
+        };
         if let (syn::Type::Path(owner), true) = (&*block.self_ty, block.items.iter().any(problems)) {
             self.refusable.extend(owner.path.segments.last().map(|segment| segment.ident.to_string()));
         }
@@ -94,7 +98,10 @@ impl<'ast> Visit<'ast> for Names {
 
 /// `f64`, a scalar by the name of a type parameter, an array or an option of them.
 fn is_number(kind: &syn::Type, scalars: &[String]) -> bool {
-    let of_numbers = |argument: &syn::GenericArgument| matches!(argument, syn::GenericArgument::Type(inner) if is_number(inner, scalars));
+    let of_numbers = |argument: &syn::GenericArgument| match argument {
+        syn::GenericArgument::Type(inner) => is_number(inner, scalars),
+        _ => false,
+    };
     match kind {
         syn::Type::Array(array) => is_number(&array.elem, scalars),
         syn::Type::Path(path) => path.path.segments.last().is_some_and(|last| match &last.arguments {
