@@ -58,7 +58,8 @@ impl Derived {
         match self.stated.as_ref() {
             None => false,
             Some(Stated { bounds: Some([minimum, maximum]), .. }) => {
-                self.value < *minimum || self.value > *maximum
+                let slack = BEYOND_BOUNDS * self.value.abs();
+                self.value < *minimum - slack || self.value > *maximum + slack
             }
             Some(stated) => (stated.value - self.value).abs() > CONTRADICTION * self.value.abs(),
         }

@@ -1,5 +1,6 @@
 use maud::{Markup, PreEscaped, html};
 
+use super::typeset::prose;
 use crate::figure::Figure;
 
 /// One chapter of the report.
@@ -29,7 +30,7 @@ pub(super) fn table(headings: &[&str], numbers_from: usize, rows: &[Vec<Markup>]
     let class = |column: usize| if column >= numbers_from { "number" } else { "" };
     html! {
         div.table { table {
-            thead { tr { @for (column, heading) in headings.iter().enumerate() { th class=(class(column)) { (heading) } } } }
+            thead { tr { @for (column, heading) in headings.iter().enumerate() { th class=(class(column)) { (prose(heading)) } } } }
             tbody { @for row in rows { tr { @for (column, cell) in row.iter().enumerate() { td class=(class(column)) { (cell) } } } } }
         } }
     }

@@ -131,6 +131,7 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
 /// Two rows a candidate: its numbers, and below them the reasons over the whole width.
 fn candidates(sizing: &Sizing) -> Markup {
     let headings = [
+        "",
         "hose",
         "compliance",
         "branch",
@@ -138,11 +139,10 @@ fn candidates(sizing: &Sizing) -> Markup {
         "K_H, MN/m",
         "K_p, mV/N",
         "τ at K_Hmin and K_Hmax, ms",
-        "",
     ];
     html! {
         div.table { table {
-            thead { tr { @for (column, heading) in headings.iter().enumerate() { th.number[(3..7).contains(&column)] { (prose(heading)) } } } }
+            thead { tr { @for (column, heading) in headings.iter().enumerate() { th.number[(4..8).contains(&column)] { (prose(heading)) } } } }
             @for candidate in &sizing.candidates { tbody.candidate { (candidate_rows(candidate)) } }
         } }
     }
@@ -154,6 +154,7 @@ fn candidate_rows(candidate: &Candidate) -> Markup {
     let milliseconds = candidate.time_constant_s.map(|time| significant(time * 1e3, 3));
     html! {
         tr {
+            td { @if candidate.accepted() { span.good { "accepted" } } @else { span.bad { "rejected" } } }
             td { code { (candidate.option.name) } }
             td { code { (model_name(branch.model)) } }
             td { (if branch.by_gain { "by gain" } else { "by length" }) }
@@ -161,7 +162,6 @@ fn candidate_rows(candidate: &Candidate) -> Markup {
             td.number { (mega(branch.stiffness.minimum)) " to " (mega(branch.stiffness.maximum)) }
             td.number { (significant(branch.gain_v_per_n * 1e3, 3)) }
             td.number { (milliseconds[0]) " and " (milliseconds[1]) }
-            td { @if candidate.accepted() { span.good { "accepted" } } @else { span.bad { "rejected" } } }
         }
         @if !candidate.findings.is_empty() { tr { td.reasons colspan="8" { (reasons(candidate)) } } }
     }
@@ -203,7 +203,7 @@ fn influences(sizing: &Sizing) -> Markup {
         .iter()
         .map(|influence| {
             vec![
-                cell(&influence.quantity),
+                prose(&influence.quantity),
                 three(influence.values, 1.0),
                 three(influence.stiffness_n_per_m, 1e6),
                 three(influence.length_m, 1.0),

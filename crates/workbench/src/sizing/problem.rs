@@ -104,7 +104,7 @@ impl SizingProblem {
             Decision {
                 step: "a",
                 text: format!(
-                    "System data: A_u = {} m2, stroke {} m, beta_0 = {} Pa, K_S = {} N/m, K_qU = {} m3/(s V), K_c0 = {} m3/(s Pa).",
+                    "System data: A_u = {} m2, stroke {} m, β_0 = {} Pa, K_S = {} N/m, K_qU = {} m3/(s V), K_c0 = {} m3/(s Pa).",
                     number(self.linear.useful_area),
                     number(self.cylinder.stroke),
                     number(self.fluid_modulus),
@@ -116,7 +116,7 @@ impl SizingProblem {
             Decision {
                 step: "b",
                 text: format!(
-                    "Time constant tau_d = {} s: {}.",
+                    "Time constant τ_d = {} s: {}.",
                     number(self.time_constant),
                     self.time_constant_origin
                 ),

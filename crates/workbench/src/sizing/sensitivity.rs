@@ -37,10 +37,10 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
         }
     };
     vec![
-        influence("dynamic stiffening r_beta", [minimum, nominal, maximum], &|value| {
+        influence("dynamic stiffening r_β", [minimum, nominal, maximum], &|value| {
             (problem.clone(), Hose { dynamic_stiffening: Stiffening::certain(value), ..hose })
         }),
-        influence("fluid bulk modulus beta_0", around(problem.fluid_modulus), &|value| {
+        influence("fluid bulk modulus β_0", around(problem.fluid_modulus), &|value| {
             (SizingProblem { fluid_modulus: value, ..problem.clone() }, hose)
         }),
         // The slope goes with the expansion: a hose that expands more does so at every pressure.
