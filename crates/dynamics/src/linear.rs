@@ -21,7 +21,7 @@
 //! ```
 
 mod discretization;
-mod double_double;
+pub(crate) mod double_double;
 mod eigenvalues;
 pub(crate) mod even_part;
 mod interconnection;

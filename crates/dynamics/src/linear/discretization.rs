@@ -203,7 +203,7 @@ fn held_with_fraction(
     let whole = ExactStep::new(system.a(), system.b(), sample_time_s);
     if fraction_s == 0.0 {
         return StateSpace::new(
-            whole.transition,
+            whole.transition(),
             whole.constant,
             system.c().clone(),
             system.d().clone(),
@@ -214,8 +214,8 @@ fn held_with_fraction(
     let early = ExactStep::new(system.a(), system.b(), fraction_s);
     let late = ExactStep::new(system.a(), system.b(), sample_time_s - fraction_s);
     let mut a = DMatrix::zeros(order + inputs, order + inputs);
-    a.view_mut((0, 0), (order, order)).copy_from(&whole.transition);
-    a.view_mut((0, order), (order, inputs)).copy_from(&(late.transition * early.constant));
+    a.view_mut((0, 0), (order, order)).copy_from(&whole.transition());
+    a.view_mut((0, order), (order, inputs)).copy_from(&(late.transition() * early.constant));
     let mut b = DMatrix::zeros(order + inputs, inputs);
     b.view_mut((0, 0), (order, inputs)).copy_from(&late.constant);
     b.view_mut((order, 0), (inputs, inputs)).fill_with_identity();

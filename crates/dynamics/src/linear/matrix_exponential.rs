@@ -1,4 +1,4 @@
-//! exp(A t) and the integrals that an exact step of a linear system needs.
+//! exp(A t) - I and the integrals that an exact step of a linear system needs.
 //!
 //! Squaring repeats rounding errors as often as the fastest mode fits into the step, so a slow pole beside a fast one
 //! would come out wrong by their ratio. The exponential is therefore formed in twice the working precision: balanced,
@@ -10,8 +10,9 @@ use super::double_double::DoubleDouble;
 
 const TAYLOR_TERMS: i32 = 18;
 
-/// exp(A t); infinite or not a number where the result overflows.
-pub(crate) fn exponential(matrix: &DMatrix<f64>, time: f64) -> DMatrix<f64> {
+/// exp(A t) - I, whose small entries (a slow mode, a short step) are kept to full precision; infinite or not a number
+/// where the result overflows.
+pub(crate) fn exponential_less_identity(matrix: &DMatrix<f64>, time: f64) -> DMatrix<f64> {
     let order = matrix.nrows();
     let mut balanced = matrix.clone();
     let scales = if matrix.iter().all(|entry| entry.is_finite()) {
@@ -33,7 +34,10 @@ pub(crate) fn exponential(matrix: &DMatrix<f64>, time: f64) -> DMatrix<f64> {
     for _ in 0..halvings {
         result = result.times(&result);
     }
-    DMatrix::from_fn(order, order, |i, j| result.entry(i, j).value() * scales[i] / scales[j])
+    DMatrix::from_fn(order, order, |i, j| {
+        let identity = DoubleDouble::from(if i == j { 1.0 } else { 0.0 });
+        (result.entry(i, j) - identity).value() * scales[i] / scales[j]
+    })
 }
 
 /// A square matrix of twice the working precision.
@@ -79,8 +83,8 @@ impl Wide {
 
 /// One exact step of dx/dt = A x + B u over a time h, with u straight between its values at both ends.
 pub(crate) struct ExactStep {
-    /// exp(A h).
-    pub(crate) transition: DMatrix<f64>,
+    /// exp(A h) - I: what the state gains over the step by itself.
+    pub(crate) increment: DMatrix<f64>,
     /// Effect of a constant input: integral of exp(A t) B over the step.
     pub(crate) constant: DMatrix<f64>,
     /// Effect of an input that rises from zero to one over the step.
@@ -93,11 +97,7 @@ impl ExactStep {
         let (order, inputs) = b.shape();
         if time == 0.0 {
             let none = DMatrix::zeros(order, inputs);
-            return ExactStep {
-                transition: DMatrix::identity(order, order),
-                constant: none.clone(),
-                ramp: none,
-            };
+            return ExactStep { increment: DMatrix::zeros(order, order), constant: none.clone(), ramp: none };
         }
         let size = order + 2 * inputs;
         let mut augmented = DMatrix::zeros(size, size);
@@ -106,12 +106,18 @@ impl ExactStep {
         for input in 0..inputs {
             augmented[(order + input, order + inputs + input)] = 1.0 / time;
         }
-        let result = exponential(&augmented, time);
+        let result = exponential_less_identity(&augmented, time);
         let part = |column, count| result.view((0, column), (order, count)).into_owned();
         ExactStep {
-            transition: part(0, order),
+            increment: part(0, order),
             constant: part(order, inputs),
             ramp: part(order + inputs, inputs),
         }
+    }
+
+    /// exp(A h).
+    pub(crate) fn transition(&self) -> DMatrix<f64> {
+        let (rows, columns) = self.increment.shape();
+        &self.increment + DMatrix::<f64>::identity(rows, columns)
     }
 }

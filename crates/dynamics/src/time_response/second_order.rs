@@ -60,7 +60,7 @@ impl SettlingRule {
             SettlingRule::TwoPercent => 4.0,
             SettlingRule::OnePercent => 4.6,
             SettlingRule::OnePercentThesis => 5.0,
-            SettlingRule::CriticallyDampedTwoPercent => 5.833_921_701_923_917,
+            SettlingRule::CriticallyDampedTwoPercent => 5.833_921_701_917_391,
         }
     }
 

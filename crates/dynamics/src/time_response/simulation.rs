@@ -3,6 +3,7 @@
 use nalgebra::DVector;
 
 use super::{Signal, TimeResponseError};
+use crate::linear::double_double::DoubleDouble;
 use crate::linear::matrix_exponential::ExactStep;
 use crate::linear::{StateSpace, TimeDomain, TransferFunction};
 
@@ -100,20 +101,26 @@ fn continuous(
     events.dedup();
     let mut steps = StepCache::new(system, 8.0 * f64::EPSILON * end);
     let mut state = initial_state.clone();
+    // what rounding took from the state in the last step; without it long runs of short steps drift
+    let mut carried = DVector::zeros(system.order());
     // `reached` follows the lengths of the steps taken, `now` the times asked for: they differ by rounding only
-    let (mut now, mut reached) = (0.0, 0.0);
+    let (mut now, mut reached) = (0.0, DoubleDouble::ZERO);
     let mut outputs = Vec::with_capacity(times_s.len());
     let mut wanted = times_s.iter().copied().peekable();
     for event in std::iter::once(0.0).chain(events) {
         if event > now {
-            let (length, step) = steps.of_length(event - reached);
+            let (length, step) = steps.of_length((DoubleDouble::from(event) - reached).value());
             let pieces: Vec<(f64, f64, f64)> = inputs.iter().map(|input| input.piece_at(now)).collect();
             let at_start =
                 DVector::from_fn(inputs.len(), |i, _| pieces[i].0 + pieces[i].1 * (now - pieces[i].2));
             let rise = DVector::from_fn(inputs.len(), |i, _| pieces[i].1 * (event - now));
-            state = &step.transition * state + &step.constant * at_start + &step.ramp * rise;
+            let change = &step.increment * &state + &step.constant * at_start + &step.ramp * rise + &carried;
+            for (index, change) in change.iter().enumerate() {
+                let sum = DoubleDouble::sum_of(state[index], *change);
+                (state[index], carried[index]) = (sum.high, sum.low);
+            }
             now = event;
-            reached += length;
+            reached = reached + length.into();
         }
         while wanted.next_if(|time| *time <= now).is_some() {
             let input = DVector::from_fn(inputs.len(), |i, _| inputs[i].value_at(now));

@@ -98,16 +98,20 @@ pub fn step_metrics(
     let step = baseline.final_value - baseline.initial_value;
     check(times_s, values, baseline, settling_band_percent)?;
     // progress: 0 before, 1 at the final value
-    let samples: Vec<(f64, f64)> = times_s
-        .iter()
-        .zip(values)
-        .filter(|(time, _)| **time >= baseline.step_time_s)
+    let after_step = times_s.iter().zip(values).filter(|(time, _)| **time >= baseline.step_time_s);
+    let samples: Vec<(f64, f64)> = after_step
+        .clone()
         .map(|(time, value)| (time - baseline.step_time_s, (value - baseline.initial_value) / step))
         .collect();
     let (Some(&first), Some(&last)) = (samples.first(), samples.last()) else {
         return Err(TimeResponseError::Count { what: "samples after the step", found: 0, expected: 1 });
     };
-    let peak = samples.iter().fold(first, |best, &sample| if sample.1 > best.1 { sample } else { best });
+    let higher = |best: (f64, f64, f64), (sample, value): (&(f64, f64), f64)| {
+        if sample.1 > best.1 { (sample.0, sample.1, value) } else { best }
+    };
+    let values_after = after_step.map(|(_, value)| *value);
+    let start = (first.0, f64::NEG_INFINITY, baseline.initial_value);
+    let (peak_time_s, peak, peak_value) = samples.iter().zip(values_after).fold(start, higher);
     let lowest = samples.iter().map(|sample| sample.1).fold(f64::INFINITY, f64::min);
     let rise_10_90 = first_reach(&samples, 0.1).zip(first_reach(&samples, 0.9)).map(|(low, high)| high - low);
     let settling = match settling_time(&samples, settling_band_percent / 100.0) {
@@ -117,9 +121,9 @@ pub fn step_metrics(
     Ok(StepMetrics {
         rise_time_10_90_s: rise_10_90,
         rise_time_0_100_s: first_reach(&samples, 1.0),
-        peak_value: baseline.initial_value + peak.1 * step,
-        peak_time_s: peak.0,
-        overshoot_percent: (100.0 * (peak.1 - 1.0)).max(0.0),
+        peak_value,
+        peak_time_s,
+        overshoot_percent: (100.0 * (peak - 1.0)).max(0.0),
         undershoot_percent: (-100.0 * lowest).max(0.0),
         settling,
         settling_band_percent,
