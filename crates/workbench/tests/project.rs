@@ -194,8 +194,16 @@ fn catalogues_are_added_and_every_number_has_a_source() {
             assert!(entry.file.contains(&format!("{}s/{}.toml", kind.name(), entry.name)), "{}", entry.file);
         }
     }
+    // Read as a user's files, so that everything wrong with one is reported.
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("catalogue");
-    let files = |name: &str| std::fs::read_dir(folder.join(name)).expect("a folder").count();
-    assert_eq!(own.names(Kind::Hose).len(), files("hoses"));
-    assert_eq!(own.names(Kind::Valve).len(), files("valves"));
+    for kind in [Kind::Hose, Kind::Valve] {
+        let files = std::fs::read_dir(folder.join(format!("{}s", kind.name()))).expect("a folder");
+        let files: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
+        assert_eq!(own.names(kind).len(), files.len());
+        for file in files {
+            let bytes = std::fs::read(&file).expect("readable");
+            let source = Memory::default().with("file.toml", bytes);
+            catalogue::load(&source, &["file.toml".to_string()]).unwrap_or_else(|report| panic!("{report}"));
+        }
+    }
 }
