@@ -84,11 +84,12 @@ impl Printer {
         if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { Section::default() }
     }
 
-    /// Ends a table: short ones below the first level go into one line.
-    fn attach(&mut self, key: &str, short: bool) {
+    /// Ends a table: short ones below the first level go into one line, and all that keep the order of their names.
+    fn attach(&mut self, key: &str, in_order: bool) {
         let nested = self.open.len() > 2;
         let section = self.leave();
-        match section.inline().filter(|text| (nested || short) && text.len() <= INLINE_WIDTH) {
+        let fits = |text: &String| in_order || nested && text.len() <= INLINE_WIDTH;
+        match section.inline().filter(fits) {
             Some(text) => self.line(key, text),
             None => {
                 if let Some(outer) = self.open.last_mut() {

@@ -16,6 +16,7 @@ use crate::spelling::nearest;
 pub(crate) struct Reader<'a> {
     pub(crate) findings: &'a mut Findings,
     catalogue: &'a Catalogue,
+    root: &'a Node,
     frames: Vec<Frame<'a>>,
     /// Index of the text of the project itself; others are settings.
     project_text: usize,
@@ -72,6 +73,7 @@ impl<'a> Reader<'a> {
         let mut reader = Reader {
             findings,
             catalogue,
+            root,
             frames: Vec::new(),
             project_text,
             partial: false,
@@ -124,7 +126,7 @@ impl<'a> Reader<'a> {
 
     /// A top-level key, whether asked for or not.
     pub(crate) fn root_entry(&self, key: &str) -> Option<&'a Entry> {
-        self.frames.first()?.layers.first()?.node.get(key)
+        self.root.get(key)
     }
 
     /// Counts a key of the present table as known.

@@ -119,8 +119,12 @@ impl Findings {
         self.found.iter().any(|found| found.severity == Severity::Error)
     }
 
-    pub(crate) fn has_error_at(&self, place: Place) -> bool {
-        self.found.iter().any(|found| found.place == place)
+    /// Whether something within a place was refused already.
+    pub(crate) fn has_error_within(&self, place: Place) -> bool {
+        let within = |inner: &Place| {
+            inner.text == place.text && inner.start >= place.start && inner.end <= place.end && place.end > 0
+        };
+        self.found.iter().any(|found| found.severity == Severity::Error && within(&found.place))
     }
 
     /// Everything found, in order of place, without what a syntax error of the same text explains.

@@ -48,14 +48,28 @@ impl Check<'_, '_> {
         self.reader.places.contains_key(path)
     }
 
+    /// Whether the value of a path was refused already, so that nothing follows from it.
+    fn refused(&self, path: &str) -> bool {
+        self.reader.places.get(path).is_some_and(|place| self.reader.findings.has_error_within(*place))
+    }
+
     fn error(&mut self, path: &str, message: impl Into<String>) {
-        let place = self.place(path);
-        self.reader.findings.push(Found::error(place, message));
+        self.push_error(path, Found::error(self.place(path), message));
     }
 
     fn error_with_help(&mut self, path: &str, message: impl Into<String>, help: impl Into<String>) {
-        let place = self.place(path);
-        self.reader.findings.push(Found::error(place, message).help(help));
+        self.push_error(path, Found::error(self.place(path), message).help(help));
+    }
+
+    fn push_error(&mut self, path: &str, found: Found) {
+        if !self.refused(path) {
+            self.reader.findings.push(found);
+        }
+    }
+
+    /// Whether the first table of a path is there at all.
+    fn has_table(&self, path: &str) -> bool {
+        self.reader.root_entry(path.split(['.', '[']).next().unwrap_or(path)).is_some()
     }
 
     fn warning(&mut self, path: &str, message: impl Into<String>) {
@@ -65,7 +79,7 @@ impl Check<'_, '_> {
 
     /// Something is absent from the table at `path`; perhaps because its value was refused.
     fn missing(&mut self, path: &str, name: &str, message: impl Into<String>) {
-        if self.declared(&format!("{path}.{name}")) {
+        if self.declared(&format!("{path}.{name}")) || !self.has_table(path) {
             return;
         }
         let place = self.place(path);
@@ -81,7 +95,7 @@ impl Check<'_, '_> {
                 let message = format!("both `{first}` and `{second}`: one says it all");
                 self.error(&format!("{path}.{second}"), message);
             }
-            [false, false] => {
+            [false, false] if self.has_table(path) => {
                 let place = self.place(path);
                 let message = format!("missing `{first}` or `{second}` in [{path}]");
                 self.reader.findings.push(Found::error(place, message).consequence());

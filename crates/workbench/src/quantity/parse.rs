@@ -61,7 +61,7 @@ const MAXIMUM_EXPONENT: i32 = 16;
 /// ```
 /// use phea_workbench::quantity::{FLOW, PRESSURE, parse};
 /// assert_eq!(parse("70 bar", &PRESSURE), Ok(70e5));
-/// assert_eq!(parse("10 gpm", &FLOW), Ok(0.003785411784 / 6.0));
+/// assert_eq!(parse("10 gpm", &FLOW), Ok(6.30901964e-4));
 /// assert_eq!(parse("70 mm", &PRESSURE).unwrap_err().message, "expected a pressure, found a length");
 /// ```
 pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {

@@ -114,7 +114,7 @@ pub(crate) fn find(name: &str) -> Option<Unit> {
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     let common = [
         "mm", "cm", "um", "mL", "kg", "ms", "us", "kN", "MN", "kPa", "MPa", "GPa", "mbar", "cSt", "mV", "kV",
-        "mrad", "kHz", "kJ", "kW",
+        "mrad", "kHz", "kJ", "kW", "dB",
     ];
     let plain = UNITS.iter().flat_map(|unit| unit.names.iter().copied()).filter(|name| *name != "1");
     plain.chain(common)

@@ -205,7 +205,9 @@ impl Visitor for Reader<'_> {
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
         let Some(hit) = self.find(key) else { return };
         let Value::List(items) = &hit.node.value else {
-            return self.wrong_kind(key, "a list of tables", hit.node);
+            let message = format!("`{}` must be a list of tables, not {}", key.name, hit.node.kind());
+            let help = format!("write [[{}]] over each", self.path(key.name));
+            return self.findings.push(Found::error(hit.node.place, message).help(help));
         };
         for (index, node) in items.iter().enumerate() {
             let path = format!("{}[{index}]", self.path(key.name));

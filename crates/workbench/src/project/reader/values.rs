@@ -34,7 +34,7 @@ impl Reader<'_> {
             return Some(value);
         }
         // A number that f64 cannot hold was refused where it was read.
-        if value.is_finite() || !self.findings.has_error_at(node.place) {
+        if !self.findings.has_error_within(node.place) {
             self.findings.push(Found::error(node.place, objection(key, value)));
         }
         None

@@ -2,7 +2,8 @@
 
 use super::Check;
 use crate::project::{
-    AntiWindup, Element, ElementKind, Limit, Project, Specification, SpecificationKind, Transfer, Variable,
+    AntiWindup, Discretization, Element, ElementKind, Limit, Project, Specification, SpecificationKind,
+    Transfer, Variable,
 };
 
 pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
@@ -85,7 +86,8 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
             check.warning("controller.anti_windup", "`anti_windup` has no effect without `saturation`");
         }
         let discrete = is_discrete(&controller.transfer);
-        if check.declared("controller.discretization") && (discrete || controller.sample_time.is_none()) {
+        let chosen = controller.discretization != Discretization::default();
+        if chosen && (discrete || controller.sample_time.is_none()) {
             let why = if discrete { "the controller is in `z` already" } else { "there is no `sample_time`" };
             check.warning("controller.discretization", format!("`discretization` has no effect: {why}"));
         }

@@ -214,6 +214,12 @@ impl Check<'_, '_> {
 
     /// Minimum, nominal and maximum in order.
     pub(super) fn bounds(&mut self, path: &str, [minimum, nominal, maximum]: [f64; 3]) {
+        if ["minimum", "nominal", "maximum"].iter().any(|name| {
+            let part = format!("{path}.{name}");
+            self.refused(&part) || !self.declared(&part)
+        }) {
+            return;
+        }
         if minimum > maximum {
             return self.error(&format!("{path}.minimum"), "`minimum` is above `maximum`");
         }

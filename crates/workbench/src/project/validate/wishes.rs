@@ -56,7 +56,8 @@ fn operating_point(project: &Project, actuator: &Actuator, check: &mut Check<'_,
         let message = "`load_pressure` must be below supply less tank pressure";
         check.error("operating_point.load_pressure", message);
     }
-    if point.command.is_some_and(|command| command.abs() > actuator.valve.nominal_voltage) {
+    let full = actuator.valve.nominal_voltage;
+    if point.command.is_some_and(|command| command.abs() > full && full > 0.0) {
         check.error("operating_point.command", "`command` is beyond the valve's `nominal_voltage`");
     }
 }
@@ -153,7 +154,8 @@ pub(super) fn with_plant(project: &Project, plant: &Plant, check: &mut Check<'_,
     }
     let used: Vec<&str> =
         formulas.iter().flat_map(|(_, formula)| formula.parameters()).map(|(name, _)| name).collect();
-    for uncertain in &project.uncertainty {
+    let all_read = !formulas.iter().any(|(path, _)| check.refused(path));
+    for uncertain in project.uncertainty.iter().filter(|_| all_read) {
         if !used.contains(&uncertain.name.as_str()) {
             let message = format!("`{}` does not occur in [plant]", uncertain.name);
             check.warning(&format!("uncertainty.{}", uncertain.name), message);
