@@ -7,6 +7,7 @@ pub mod catalogue;
 pub mod command;
 pub mod control;
 pub mod derived;
+pub mod family;
 pub mod figure;
 pub mod linear_loop;
 pub mod linearize;

@@ -18,6 +18,8 @@ pub struct LinearLoop {
     pub open_loop: TransferFunction,
     /// Gain, phase, modulus and delay margin of L.
     pub margins: Margins,
+    /// Whether the closed loop is stable, where its poles can be had (no dead time in a continuous loop).
+    pub stable: Option<bool>,
     /// F L/(1 + L), where it can be had.
     pub step: Result<StepView, String>,
 }
@@ -84,7 +86,9 @@ pub fn linear_loop(
     };
     let open_loop = plant.series(&feedback)?;
     let step = step_view(&plant, &feedback, &prefilter, band_percent).map_err(|error| error.to_string());
-    Ok(LinearLoop { margins: margins(&open_loop), controller: feedback, prefilter, open_loop, step })
+    let unity = TransferFunction::gain_only(1.0).in_domain(plant.domain())?;
+    let stable = open_loop.feedback(&unity).ok().map(|closed| closed.is_stable());
+    Ok(LinearLoop { margins: margins(&open_loop), controller: feedback, prefilter, open_loop, stable, step })
 }
 
 fn step_view(

@@ -3,6 +3,7 @@
 mod chapter;
 mod derived;
 mod impedance;
+mod load_motion;
 mod models;
 mod page;
 mod provenance;
@@ -50,6 +51,9 @@ pub enum ReportError {
     /// A linear system cannot be computed.
     #[error("the linear models: {0}")]
     Linear(#[from] phea_dynamics::linear::LinearError),
+    /// A response in time cannot be computed.
+    #[error("a response: {0}")]
+    Time(#[from] phea_dynamics::time_response::TimeResponseError),
     /// The loop cannot be closed.
     #[error("the linear loop: {0}")]
     Loop(#[from] crate::linear_loop::LoopError),
@@ -89,7 +93,7 @@ pub fn report(loaded: &Loaded, problem: Option<&SizingProblem>) -> Result<Report
         chapters.push(sizing::chapter(problem, sizing));
     }
     chapters.push(models::chapter(&linearization)?);
-    chapters.push(impedance::chapter(&linearization)?);
+    chapters.push(impedance::chapter(project, &linearization)?);
     chapters.push(response::chapter(given.as_ref(), reference(project)));
     chapters.push(provenance::chapter(loaded));
 

@@ -2,19 +2,27 @@
 
 use maud::{Markup, html};
 use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::time_response::TimeResponseError;
 use phea_hydraulics::impedance::AsymptoteKind;
 
 use super::chapter::{Chapter, cell, place, table};
+use super::load_motion;
+use super::typeset::{prose, typeset};
 use crate::answer::significant;
 use crate::figure::{Asymptote, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance};
 use crate::linearize::{Linearization, PortView, frequency_grid, passivity_sentence};
+use crate::project::Project;
 
-pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearError> {
-    let figures = vec![figure(linearization)?];
+pub(super) fn chapter(
+    project: &Project,
+    linearization: &Linearization,
+) -> Result<Chapter, TimeResponseError> {
+    let (peaks, motion) = load_motion::figure(project, &views(linearization))?;
+    let figures = vec![figure(linearization)?, motion];
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     let body = html! {
         p {
-            "Z = -F_e/(s X_L) is what a load feels that moves the rod: a damper, spring or mass, depending on frequency. Above " (hidden)
+            (typeset("Z = -F_e/(s X_L)")) " is what a load feels that moves the rod: a damper, spring or mass, depending on frequency. Above " (hidden)
             " rad/s the piston's mass hides the hydraulic compliance, and the load meets the sensor's stiffness alone."
         }
         (place(&figures[0]))
@@ -31,7 +39,9 @@ pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearEr
                 }
             }
         }
-        h3 { "A step of the load" }
+        h3 { "The load moves" }
+        (place(&figures[1]))
+        p { "Largest change of the force: " (peaks.iter().map(|(name, peak)| format!("{} kN {name}", significant(peak / 1e3, 3))).collect::<Vec<_>>().join(", ")) "." }
         p { "Proposition 6.2: the zero at the origin makes the force return. After a load step of 1 mm there remains, "
             "open loop " (remains(&linearization.open_loop))
             @if let Some(view) = &linearization.closed_loop { ", closed loop " (remains(view)) }
@@ -85,9 +95,9 @@ fn asymptotes(linearization: &Linearization) -> Markup {
             };
             rows.push(vec![
                 cell(name),
-                cell(regime),
+                prose(regime),
                 cell(behaviour(asymptote.power)),
-                cell(format!("{} {unit}", significant(asymptote.coefficient, 4))),
+                prose(&format!("{} {unit}", significant(asymptote.coefficient, 4))),
                 cell(format!("{} to {}", significant(asymptote.from, 3), significant(asymptote.to, 3))),
             ]);
         }

@@ -28,6 +28,11 @@ pub(super) fn chapter(linear_loop: Option<&LinearLoop>, reference_n: Option<f64>
             Err(reason) => { div.callout.bad-edge { p { "No step response: " (reason) "." } } }
         }
         h3 { "Margins" }
+        p { "The closed loop is " @match linear_loop.stable {
+            Some(true) => span.good { "stable" },
+            Some(false) => span.bad { "unstable" },
+            None => "not judged here: with dead time it has no finite number of poles",
+        } ". Near a lightly damped resonance the loop crosses a gain of one several times: each margin is the smallest of all crossings, and a negative phase margin there is no instability by itself." }
         (margins(&linear_loop.margins))
     };
     Chapter { anchor, title, body, figures }

@@ -36,7 +36,10 @@ impl ResolvedParameter {
 }
 
 /// The one place that says which field of the linear model belongs to which key.
-fn field<'a>(parameters: &'a mut LinearParameters, name: &str) -> Option<&'a mut f64> {
+pub(crate) fn parameter_field<'a, S>(
+    parameters: &'a mut LinearParameters<S>,
+    name: &str,
+) -> Option<&'a mut S> {
     match name {
         "viscous_friction" => Some(&mut parameters.viscous_friction),
         "flow_gain" => Some(&mut parameters.flow_gain),
@@ -56,7 +59,7 @@ pub(super) fn resolve(project: &Project, derived: &LinearParameters) -> Vec<Reso
         .iter()
         .filter_map(|parameter| {
             let name = parameter.key.name;
-            let derived = *field(&mut derived.clone(), name)?;
+            let derived = *parameter_field(&mut derived.clone(), name)?;
             let uncertain = project.uncertainty.iter().find(|uncertain| uncertain.name == name);
             let (value, origin) = match (project.linear.get(name), uncertain) {
                 (Some(value), _) => (value, ParameterOrigin::Linear),
@@ -72,7 +75,7 @@ pub(super) fn resolve(project: &Project, derived: &LinearParameters) -> Vec<Reso
 pub(super) fn linear(parameters: &[ResolvedParameter], derived: &LinearParameters) -> LinearParameters {
     let mut linear = *derived;
     for parameter in parameters {
-        if let Some(slot) = field(&mut linear, parameter.name) {
+        if let Some(slot) = parameter_field(&mut linear, parameter.name) {
             *slot = parameter.value;
         }
     }
@@ -98,7 +101,7 @@ mod tests {
             valve_damping_ratio: one,
         };
         for parameter in &LINEAR_PARAMETERS {
-            let slot = field(&mut parameters, parameter.key.name);
+            let slot = parameter_field(&mut parameters, parameter.key.name);
             // Each field is reached once: a second key for it would find 2.
             assert_eq!(slot.as_deref(), Some(&1.0), "{}", parameter.key.name);
             *slot.unwrap() = 2.0;

@@ -81,6 +81,7 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
     pressure(problem, &candidate, &mut findings);
     bending(&candidate, &mut findings);
     settling(problem, &candidate, &mut findings);
+    stiffening(&candidate, &mut findings);
     findings.sort_by_key(|finding| finding.severity != Severity::Rejects);
     candidate.findings = findings;
     candidate
@@ -238,5 +239,12 @@ fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<F
                 significant(100.0 * at_largest, 3)
             ),
         );
+    }
+}
+
+fn stiffening(candidate: &Candidate, findings: &mut Vec<Finding>) {
+    if candidate.option.hose.dynamic_stiffening.maximum <= 1.0 {
+        let text = "no dynamic stiffening is stated: the hose is counted as soft as at rest, in motion it is stiffer";
+        warns(findings, text.to_string());
     }
 }
