@@ -24,12 +24,14 @@ pub enum Marker {
     Triangle,
     /// Filled square on its corner.
     Diamond,
+    /// Square on its corner without filling.
+    OpenDiamond,
+    /// Square without filling.
+    OpenSquare,
     /// Diagonal cross: a pole of a transfer function, or a rejection.
     Cross,
     /// Upright cross.
     Plus,
-    /// Six-armed star.
-    Star,
 }
 
 /// A marker with colour and size.

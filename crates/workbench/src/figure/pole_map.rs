@@ -81,12 +81,13 @@ fn unstable_fill() -> Fill {
     Fill { role: Role::Bad, opacity: 0.1 }
 }
 
+/// Forms that stay visible when models share a pole.
 fn pole_style(index: usize) -> MarkerStyle {
     let (marker, radius) = match index % 4 {
         0 => (Marker::Cross, 5.0),
         1 => (Marker::Plus, 6.5),
-        2 => (Marker::Diamond, 4.0),
-        _ => (Marker::Star, 5.5),
+        2 => (Marker::OpenDiamond, 7.5),
+        _ => (Marker::OpenSquare, 8.5),
     };
     MarkerStyle { marker, role: series_role(index), radius }
 }

@@ -214,7 +214,7 @@ pub enum Baseline {
     Top,
 }
 
-/// A line of text; [`typeset`](crate::figure::typeset) explains its markup.
+/// A line of text; [`typeset`] explains its markup.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
     /// The point that anchor and baseline refer to.

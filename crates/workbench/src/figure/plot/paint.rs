@@ -125,20 +125,14 @@ pub fn draw_marker(scene: &mut Scene, at: Point, style: MarkerStyle, note: Optio
     };
     let (shape, (stroke, fill)) = match style.marker {
         Marker::Circle => (Shape::Circle(at, r), filled),
-        Marker::Ring => (Shape::Circle(at, r), (open.0, Some(Fill::solid(Role::Background)))),
+        Marker::Ring => (Shape::Circle(at, r), open),
         Marker::Square => (polygon(&[by(-0.9, -0.9), by(0.9, -0.9), by(0.9, 0.9), by(-0.9, 0.9)]), filled),
+        Marker::OpenSquare => (polygon(&[by(-1.0, -1.0), by(1.0, -1.0), by(1.0, 1.0), by(-1.0, 1.0)]), open),
+        Marker::OpenDiamond => (polygon(&[by(0.0, -1.3), by(1.3, 0.0), by(0.0, 1.3), by(-1.3, 0.0)]), open),
         Marker::Triangle => (polygon(&[by(0.0, -1.2), by(1.1, 0.8), by(-1.1, 0.8)]), filled),
         Marker::Diamond => (polygon(&[by(0.0, -1.3), by(1.3, 0.0), by(0.0, 1.3), by(-1.3, 0.0)]), filled),
         Marker::Cross => (arms(&[(by(-1.0, -1.0), by(1.0, 1.0)), (by(-1.0, 1.0), by(1.0, -1.0))]), open),
         Marker::Plus => (arms(&[(by(-1.3, 0.0), by(1.3, 0.0)), (by(0.0, -1.3), by(0.0, 1.3))]), open),
-        Marker::Star => (
-            arms(&[
-                (by(0.0, -1.3), by(0.0, 1.3)),
-                (by(-1.1, -0.65), by(1.1, 0.65)),
-                (by(-1.1, 0.65), by(1.1, -0.65)),
-            ]),
-            open,
-        ),
     };
     let note = note.filter(|text| !text.is_empty()).map(str::to_string);
     scene.items.push(Item::Drawing { shape, stroke, fill, note });

@@ -4,7 +4,7 @@ use super::super::SMALL_SIZE;
 use super::super::colour::Role;
 use super::super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point};
 use super::super::typeset;
-use super::pen::{MOTION, OUTLINE, arrow, block, ground, lines, rows, spring, word};
+use super::pen::{MOTION, OUTLINE, ROW, arrow, block, ground, lines, rows, spring, word};
 use super::{Environment, Rods, SchematicInput};
 
 /// Height of the rod's axis.
@@ -73,7 +73,8 @@ pub(super) fn load(scene: &mut Scene, input: &SchematicInput) {
             lines(scene, &[(MASS + 20.0, AXIS), (CELL - 17.0, AXIS)], heavy);
             block(scene, CELL - 17.0, AXIS - 15.0, 34.0, 30.0);
             word(scene, "F_e", (CELL, AXIS), Role::Text);
-            rows(scene, words, (CELL, 17.0), Anchor::Middle, 80.0, 2);
+            let top = if words.len() > 1 { AXIS - 41.0 - ROW } else { AXIS - 41.0 };
+            rows(scene, words, (CELL, top), Anchor::Middle, 80.0, 2);
             lines(scene, &[(CELL + 17.0, AXIS), (CELL + 26.0, AXIS)], heavy);
         }
         None => lines(scene, &[(MASS + 20.0, AXIS), (CELL + 26.0, AXIS)], heavy),
