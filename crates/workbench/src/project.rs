@@ -51,7 +51,7 @@ pub use valve::*;
 
 pub(crate) use key::{key, plain};
 pub(crate) use reader::Reader;
-pub(crate) use text::{Findings, Found, Place};
+pub(crate) use text::{Findings, Found};
 pub(crate) use tree::{Node, Value as TreeValue, read as read_tree};
 pub(crate) use visitor::Visitor;
 

@@ -3,6 +3,13 @@
 //! `NAME.expect` has one line for each finding, in order: severity, line, column and message, and below it, indented,
 //! the help if there is one.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests may fail the test"
+)]
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 

@@ -3,6 +3,13 @@
 //! The sequence is fixed by its seed. Every input is at most a few kilobytes, so the work for each is bounded; the
 //! limits that bound it for any size (bytes, nesting, listed findings) are checked on their own below.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests may fail the test"
+)]
+
 use std::path::Path;
 use std::thread;
 

@@ -1,5 +1,12 @@
 //! Reading, printing and finding one's way in a project.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests may fail the test"
+)]
+
 use phea_workbench::catalogue::{self, Kind};
 use phea_workbench::project::{self, Loaded, Origin, Project, Report, STARTER};
 use phea_workbench::source::Memory;

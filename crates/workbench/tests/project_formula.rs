@@ -1,5 +1,12 @@
 //! Formulas in text: polynomials, ratios, parameters, and refusals that point at the character.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests may fail the test"
+)]
+
 use phea_dynamics::scalar::Dual;
 use phea_workbench::project::{Formula, Variable};
 

@@ -134,10 +134,10 @@ impl Formula {
     pub fn parameters(&self) -> Vec<(&str, Range<usize>)> {
         let mut found: Vec<(&str, Range<usize>)> = Vec::new();
         for node in &self.nodes {
-            if let Part::Parameter(name) = &node.part {
-                if found.iter().all(|(known, _)| known != name) {
-                    found.push((name, node.range.clone()));
-                }
+            if let Part::Parameter(name) = &node.part
+                && found.iter().all(|(known, _)| known != name)
+            {
+                found.push((name, node.range.clone()));
             }
         }
         found.sort_by_key(|(_, range)| range.start);

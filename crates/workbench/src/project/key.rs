@@ -2,7 +2,7 @@
 
 use crate::quantity::{Dimension, RATIO};
 
-/// One key of the project file. Built at the place where its field is described, see [`super::visitor::Visitor`].
+/// One key of the project file. Built at the place where its field is described, in the `visit` function of its table.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// As written in the file.

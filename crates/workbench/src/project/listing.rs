@@ -62,11 +62,11 @@ impl Listing {
 
     fn number(&mut self, key: Key, field: &mut f64) {
         let path = self.path_of(key.name);
-        if let Some((wanted, value)) = &self.assign {
-            if *wanted == path {
-                *field = *value;
-                self.assigned = true;
-            }
+        if let Some((wanted, value)) = &self.assign
+            && *wanted == path
+        {
+            *field = *value;
+            self.assigned = true;
         }
         self.numbers.insert(path, (key, *field));
     }

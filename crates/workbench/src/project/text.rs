@@ -111,10 +111,6 @@ impl Findings {
         self.texts.get(text).map_or("", |text| &text.content)
     }
 
-    pub(crate) fn name(&self, text: usize) -> &str {
-        self.texts.get(text).map_or("", |text| &text.name)
-    }
-
     pub(crate) fn has_errors(&self) -> bool {
         self.found.iter().any(|found| found.severity == Severity::Error)
     }

@@ -106,10 +106,10 @@ impl Check<'_, '_> {
 
     /// Two numbers must be in order.
     fn ascending(&mut self, path: &str, pair: Option<[f64; 2]>) {
-        if let Some([low, high]) = pair {
-            if low > high {
-                self.error(path, format!("`{}` is reversed: the lower value comes first", last(path)));
-            }
+        if let Some([low, high]) = pair
+            && low > high
+        {
+            self.error(path, format!("`{}` is reversed: the lower value comes first", last(path)));
         }
     }
 

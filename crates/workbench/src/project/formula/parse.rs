@@ -187,10 +187,10 @@ impl<'a> Reader<'a> {
             "z" => Some(Variable::Z),
             _ => None,
         };
-        if let (Some(now), Some(before)) = (variable, self.variable) {
-            if now != before {
-                return Err(FormulaError::new("both `s` and `z` in one formula", start..self.at));
-            }
+        if let (Some(now), Some(before)) = (variable, self.variable)
+            && now != before
+        {
+            return Err(FormulaError::new("both `s` and `z` in one formula", start..self.at));
         }
         self.variable = self.variable.or(variable);
         let part = variable.map_or_else(|| Part::Parameter(name.to_string()), Part::Variable);

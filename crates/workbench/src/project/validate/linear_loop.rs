@@ -37,10 +37,9 @@ fn one_specification(specification: &Specification, path: &str, check: &mut Chec
     }
     if let (Some(Limit::Constant(lower)), Some(Limit::Constant(upper))) =
         (&specification.lower, &specification.upper)
+        && lower > upper
     {
-        if lower > upper {
-            check.error(&format!("{path}.lower"), "`lower` is above `upper`");
-        }
+        check.error(&format!("{path}.lower"), "`lower` is above `upper`");
     }
     let at = format!("{path}.frequencies");
     if specification.frequencies.is_empty() {
@@ -50,13 +49,10 @@ fn one_specification(specification: &Specification, path: &str, check: &mut Chec
         }
     }
     check.increasing(&at, &specification.frequencies);
-    if let Some([low, high]) = specification.band {
-        if low >= high {
-            check.error(
-                &format!("{path}.band"),
-                "`band` is empty or reversed: the lower frequency comes first",
-            );
-        }
+    if let Some([low, high]) = specification.band
+        && low >= high
+    {
+        check.error(&format!("{path}.band"), "`band` is empty or reversed: the lower frequency comes first");
     }
 }
 
@@ -138,10 +134,10 @@ fn polynomial_form(transfer: &Transfer, path: &str, sample_time: Option<f64>, ch
         }
     }
     let (Some(numerator), Some(denominator)) = (&transfer.numerator, &transfer.denominator) else { return };
-    if let (Some(over), Some(under)) = (numerator.variable(), denominator.variable()) {
-        if over != under {
-            check.error(&format!("{path}.denominator"), "numerator and denominator mix `s` and `z`");
-        }
+    if let (Some(over), Some(under)) = (numerator.variable(), denominator.variable())
+        && over != under
+    {
+        check.error(&format!("{path}.denominator"), "numerator and denominator mix `s` and `z`");
     }
     if is_discrete(transfer) && sample_time.is_none() {
         let message = format!("missing `sample_time` in [{path}]: it is written in `z`");

@@ -199,10 +199,10 @@ fn check_hose(line: &Line, path: &str, check: &mut Check<'_, '_>) {
             "a hose needs `volumetric_expansion` with its pressure, or `volumetric_expansion_slope`";
         check.missing(path, "volumetric_expansion_slope", message);
     }
-    if let (Some(working), Some(burst)) = (known.working_pressure, known.burst_pressure) {
-        if burst < working {
-            check.error(&format!("{path}.burst_pressure"), "`burst_pressure` is below `working_pressure`");
-        }
+    if let (Some(working), Some(burst)) = (known.working_pressure, known.burst_pressure)
+        && burst < working
+    {
+        check.error(&format!("{path}.burst_pressure"), "`burst_pressure` is below `working_pressure`");
     }
 }
 

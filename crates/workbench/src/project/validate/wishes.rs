@@ -38,10 +38,10 @@ fn sizing(sizing: &Sizing, check: &mut Check<'_, '_>) {
     }
     check.ascending("sizing.oil_velocity", sizing.oil_velocity);
     check.ascending("sizing.hose_length", sizing.hose_length);
-    if let (Some(minimum), Some(maximum)) = (sizing.minimum_gain, sizing.maximum_gain) {
-        if minimum > maximum {
-            check.error("sizing.minimum_gain", "`minimum_gain` is above `maximum_gain`");
-        }
+    if let (Some(minimum), Some(maximum)) = (sizing.minimum_gain, sizing.maximum_gain)
+        && minimum > maximum
+    {
+        check.error("sizing.minimum_gain", "`minimum_gain` is above `maximum_gain`");
     }
 }
 
@@ -237,7 +237,7 @@ fn depends(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) 
     let Some(parameter) = linear_parameter(&uncertain.name) else { return };
     for other in &project.uncertainty {
         let below = |path: &&str| other.name == **path || other.name.starts_with(&format!("{path}."));
-        if parameter.depends_on.iter().any(|path| below(&path)) {
+        if parameter.depends_on.iter().any(below) {
             let message =
                 format!("`{}` depends on `{}`: both cannot be uncertain", uncertain.name, other.name);
             check.error_with_help(&format!("uncertainty.{}", other.name), message, "list one of the two");
