@@ -208,10 +208,9 @@ fn decades_are_counted_exactly() {
 
 #[test]
 fn numbers_are_short_and_never_negative_zero() {
-    // ORIGIN: analytic, two decimals of the exact binary value, trailing zeros off.
     assert_eq!(number(1.0), "1");
     assert_eq!(number(-0.001), "0");
-    assert_eq!(number(12.345), "12.35");
+    assert_eq!(number(12.345), "12.35"); // ORIGIN: analytic, two decimals
     assert_eq!(number(-100.5), "-100.5");
     assert_eq!(number(f64::NAN), "0");
     assert_eq!(escaped("a<b & \"c\"\u{0}\u{b}"), "a&lt;b &amp; &quot;c&quot;");
@@ -239,7 +238,7 @@ fn markup_takes_symbols_and_leaves_names_alone() {
 
 #[test]
 fn text_has_the_size_of_its_font() {
-    // ORIGIN: data sheet, the hmtx table of DejaVu Sans 2.37, units of 2048 to the em: H 1540, digit 1303, space 651.
+    // ORIGIN: data sheet, the font's own table: advances in DejaVu Sans 2.37, units of 2048 to the em: H 1540, digit 1303, space 651.
     assert!((width("H", 2048.0) - 1540.0).abs() < 0.5);
     assert!((width("07", 2048.0) - 2.0 * 1303.0).abs() < 1.0);
     assert!((width(" ", 2048.0) - 651.0).abs() < 0.5);
