@@ -8,7 +8,8 @@ mod table;
 
 use serde::Serialize;
 
-pub use number::{Number, significant};
+pub use crate::quantity::significant;
+pub use number::Number;
 pub use table::table;
 
 use crate::project::Loaded;

@@ -34,8 +34,8 @@ pub mod svg;
 pub mod ticks;
 pub mod tornado;
 pub mod typeset;
-pub mod unit;
 
+pub use crate::quantity::DisplayUnit;
 pub use bode::{BodeInput, FrequencySeries, bode};
 pub use colour::{Theme, style_sheet};
 pub use impedance::{Asymptote, ImpedanceInput, impedance};
@@ -48,7 +48,6 @@ pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_ch
 pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};
 pub use stiffness_over_stroke::{StiffnessCurve, StiffnessInput, stiffness_over_stroke};
 pub use tornado::{TornadoBar, TornadoInput, tornado};
-pub use unit::DisplayUnit;
 
 use scene::Scene;
 use svg::{Destination, Names};

@@ -211,7 +211,7 @@ fn compare(grid: &[f64], reference: &TransferFunction, other: &TransferFunction)
 
 /// One sentence on the two stiffness models.
 pub fn stiffness_sentence(difference: &ModelDifference) -> String {
-    let number = |value: f64| crate::answer::significant(value / 1e6, 3);
+    let number = |value: f64| crate::quantity::DisplayUnit::MEGANEWTON_PER_METRE.number(value, 3);
     format!(
         "With one modulus for line and chamber (uniform) K_H is {} to {} MN/m over the stroke; with the chamber's oil \
          keeping its own (by_volume) it is {} to {} MN/m, {} times as stiff at its least: {} % of the oil is in the \

@@ -4,12 +4,16 @@
 //! unless the name of their key says `absolute`.
 
 mod dimension;
+mod display_unit;
 mod exact;
 mod parse;
 mod print;
+mod significant;
 mod unit;
 
 pub use dimension::*;
+pub use display_unit::DisplayUnit;
 pub use parse::{QuantityError, parse};
 pub(crate) use print::print_bare;
 pub use print::{display, print};
+pub use significant::significant;

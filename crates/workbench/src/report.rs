@@ -25,6 +25,7 @@ use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, linear_loop};
 use crate::linearize::{Linearization, linearize};
 use crate::project::{Loaded, Project};
+use crate::quantity::DisplayUnit;
 use crate::rig::{Rig, RigError};
 use crate::sizing::{Question, Sizing, SizingProblem, size};
 
@@ -137,7 +138,7 @@ fn summary(
     given: Option<&LinearLoop>,
 ) -> Vec<(&'static str, String)> {
     let stiffness = linearization.stiffness[0];
-    let mega = |value: f64| significant(value / 1e6, 3);
+    let mega = |value: f64| DisplayUnit::MEGANEWTON_PER_METRE.number(value, 3);
     let mut facts = vec![(
         "Hydraulic stiffness",
         format!("{} to {} MN/m", mega(stiffness.minimum), mega(stiffness.maximum)),
@@ -146,7 +147,7 @@ fn summary(
         sizing.candidates.iter().find(|c| c.accepted() && c.branch.model == problem.model)
     });
     if let Some(best) = best {
-        let gain = significant(best.branch.gain_v_per_n * 1e3, 3);
+        let gain = DisplayUnit::MILLIVOLT_PER_NEWTON.number(best.branch.gain_v_per_n, 3);
         facts.push(("Hose", format!("{} m a line at K_p = {gain} mV/N", significant(best.length_m(), 3))));
     } else if sizing.is_some() {
         facts.push(("Hose", "none of the catalogue fits".to_string()));

@@ -14,8 +14,8 @@ use super::legend::LegendEntry;
 use super::plot::{Direction, Mark, Panel, Plot, Side};
 use super::scene::{Dash, Fill, Stroke};
 use super::ticks::plain;
-use super::unit::DisplayUnit;
 use super::{Figure, Verdict, Words};
+use crate::quantity::DisplayUnit;
 
 /// A commercial bore.
 #[derive(Clone, Debug, PartialEq)]

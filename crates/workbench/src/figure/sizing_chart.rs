@@ -5,8 +5,8 @@ use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
 use super::plot::{Direction, Mark, Panel, Plot, Side};
 use super::scene::{Dash, Fill, Stroke};
-use super::unit::DisplayUnit;
 use super::{Figure, Verdict, Words};
+use crate::quantity::DisplayUnit;
 
 /// Stiffness and gain over the length of one hose or pipe; the vectors have one value for each length.
 #[derive(Clone, Debug, Default, PartialEq)]

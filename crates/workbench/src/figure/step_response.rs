@@ -5,8 +5,8 @@ use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
 use super::plot::{Direction, Mark, Panel, Plot};
 use super::scene::{Dash, Fill, Stroke};
-use super::unit::DisplayUnit;
 use super::{Figure, Words};
+use crate::quantity::DisplayUnit;
 
 /// Samples over time.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -6,8 +6,8 @@ use super::legend::LegendEntry;
 use super::plot::{Direction, Mark, Marker, MarkerStyle, Panel, Plot, Side};
 use super::scene::{Dash, Fill, Stroke};
 use super::ticks::plain;
-use super::unit::DisplayUnit;
 use super::{Figure, Words};
+use crate::quantity::DisplayUnit;
 
 /// A curve of stiffness; all vectors have one value for each position.
 #[derive(Clone, Debug, Default, PartialEq)]

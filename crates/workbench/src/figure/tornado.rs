@@ -5,8 +5,8 @@ use super::colour::Role;
 use super::legend::{self, LegendEntry};
 use super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point};
 use super::ticks::plain;
-use super::unit::DisplayUnit;
 use super::{Figure, LABEL_SIZE, SMALL_SIZE, TITLE_SIZE, WIDTH, Words, typeset};
+use crate::quantity::DisplayUnit;
 
 /// One parameter's effect.
 #[derive(Clone, Debug, PartialEq)]

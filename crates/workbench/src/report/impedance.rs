@@ -12,6 +12,7 @@ use crate::answer::significant;
 use crate::figure::{Asymptote, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance};
 use crate::linearize::{Linearization, PortView, frequency_grid, passivity_sentence};
 use crate::project::Project;
+use crate::quantity::DisplayUnit;
 
 pub(super) fn chapter(
     project: &Project,
@@ -41,7 +42,7 @@ pub(super) fn chapter(
         }
         h3 { "The load moves" }
         (place(&figures[1]))
-        p { "Largest change of the force: " (peaks.iter().map(|(name, peak)| format!("{} kN {name}", significant(peak / 1e3, 3))).collect::<Vec<_>>().join(", ")) "." }
+        p { "Largest change of the force: " (peaks.iter().map(|(name, peak)| format!("{} kN {name}", DisplayUnit::KILONEWTON.number(*peak, 3))).collect::<Vec<_>>().join(", ")) "." }
         p { "Proposition 6.2: the zero at the origin makes the force return. After a load step of 1 mm there remains, "
             "open loop " (remains(&linearization.open_loop))
             @if let Some(view) = &linearization.closed_loop { ", closed loop " (remains(view)) }

@@ -67,7 +67,7 @@ pub(super) fn figure(
     }
     let caption = format!(
         "Change of the force while the load moves {} mm in {} s (a smooth step of fifth order), linear and with no limit on the command. In the end nothing remains.",
-        significant(distance * 1e3, 3),
+        DisplayUnit::MILLIMETRE.number(distance, 3),
         significant(duration, 3)
     );
     let input = StepResponseInput {

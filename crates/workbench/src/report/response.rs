@@ -65,7 +65,7 @@ fn figure(view: &StepView, reference: f64) -> Figure {
     };
     let caption = format!(
         "A step of {} kN: force, prefiltered reference and command.",
-        significant(reference / 1e3, 3)
+        DisplayUnit::KILONEWTON.number(reference, 3)
     );
     step_response(Words::new("step", "Step response", caption), &input)
 }
@@ -100,7 +100,11 @@ fn margins(margins: &Margins) -> Markup {
         format!("{}° {}", significant(margin.phase_deg, 3), at(margin.frequency_rad_per_s))
     });
     let delay = margins.critical_delay().map_or("infinite".to_string(), |margin| {
-        format!("{} ms {}", significant(margin.delay_s * 1e3, 3), at(margin.frequency_rad_per_s))
+        format!(
+            "{} ms {}",
+            DisplayUnit::MILLISECOND.number(margin.delay_s, 3),
+            at(margin.frequency_rad_per_s)
+        )
     });
     let modulus = &margins.modulus_margin;
     let rows = vec![

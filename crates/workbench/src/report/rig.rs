@@ -69,7 +69,7 @@ fn circuit(project: &Project, actuator: &project::Actuator) -> Figure {
 }
 
 fn cylinder_words(cylinder: &project::Cylinder) -> String {
-    let millimetres = |length: f64| crate::answer::significant(length * 1e3, 3);
+    let millimetres = |length: f64| quantity::DisplayUnit::MILLIMETRE.number(length, 3);
     let piston = 2.0 * (cylinder.piston_area_m2() / std::f64::consts::PI).sqrt();
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
     let rods = if rod_a == rod_b {

@@ -48,8 +48,8 @@ fn answer_sentence(best: Option<&Candidate>) -> String {
             "{} with {} m a line: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
             candidate.option.name,
             significant(candidate.length_m(), 3),
-            significant(candidate.branch.stiffness.minimum / 1e6, 3),
-            significant(candidate.branch.stiffness.maximum / 1e6, 3),
+            DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.minimum, 3),
+            DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.maximum, 3),
             significant(candidate.branch.gain_v_per_n, 3)
         ),
     }
@@ -66,10 +66,10 @@ fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
         },
     };
     let [slowest, fastest] = problem.oil_velocity;
-    let [smallest, largest] = sizing.bore_range_m.map(|bore| significant(bore * 1e3, 3));
+    let [smallest, largest] = sizing.bore_range_m.map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
     let caption = format!(
         "At {} L/min the recommended velocities of {slowest} to {fastest} m/s take a bore of {smallest} to {largest} mm. A faster bore is rejected, a slower one only warned of.",
-        significant(problem.maximum_flow * 6e4, 3)
+        DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow, 3)
     );
     let input = NomographInput {
         bores: sizing.bores.iter().map(bore).collect(),
@@ -123,7 +123,7 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
     };
     let caption = format!(
         "Least stiffness over the stroke and the proportional gain that makes the time constant {} ms, for each length of hose per line.",
-        significant(problem.time_constant * 1e3, 3)
+        DisplayUnit::MILLISECOND.number(problem.time_constant, 3)
     );
     sizing_chart(Words::new("sizing-length", "Length, stiffness and gain", caption), &input)
 }
@@ -150,8 +150,8 @@ fn candidates(sizing: &Sizing) -> Markup {
 
 fn candidate_rows(candidate: &Candidate) -> Markup {
     let branch = &candidate.branch;
-    let mega = |stiffness: f64| significant(stiffness / 1e6, 3);
-    let milliseconds = candidate.time_constant_s.map(|time| significant(time * 1e3, 3));
+    let mega = |stiffness: f64| DisplayUnit::MEGANEWTON_PER_METRE.number(stiffness, 3);
+    let milliseconds = candidate.time_constant_s.map(|time| DisplayUnit::MILLISECOND.number(time, 3));
     html! {
         tr {
             td { @if candidate.accepted() { span.good { "accepted" } } @else { span.bad { "rejected" } } }
@@ -160,7 +160,7 @@ fn candidate_rows(candidate: &Candidate) -> Markup {
             td { (if branch.by_gain { "by gain" } else { "by length" }) }
             td.number { (significant(branch.length_m, 4)) }
             td.number { (mega(branch.stiffness.minimum)) " to " (mega(branch.stiffness.maximum)) }
-            td.number { (significant(branch.gain_v_per_n * 1e3, 3)) }
+            td.number { (DisplayUnit::MILLIVOLT_PER_NEWTON.number(branch.gain_v_per_n, 3)) }
             td.number { (milliseconds[0]) " and " (milliseconds[1]) }
         }
         @if !candidate.findings.is_empty() { tr { td.reasons colspan="8" { (reasons(candidate)) } } }

@@ -4,6 +4,7 @@ use super::branch::model_name;
 use super::{BoreVerdict, Candidate, Severity, Sizing};
 use crate::answer::{self, Number, OutputFile, significant, table};
 use crate::project::Loaded;
+use crate::quantity::DisplayUnit;
 
 #[derive(Serialize)]
 struct Body<'a> {
@@ -167,7 +168,7 @@ fn candidate_cells(candidate: &Candidate) -> Vec<String> {
         format!("{} m", significant(branch.length_m, 4)),
         format!("{} to {} N/m", significant(stiffness.minimum, 4), significant(stiffness.maximum, 4)),
         format!("{} V/N", significant(branch.gain_v_per_n, 3)),
-        format!("{} ms", significant(candidate.time_constant_s[0] * 1e3, 3)),
+        format!("{} ms", DisplayUnit::MILLISECOND.number(candidate.time_constant_s[0], 3)),
     ]
 }
 

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use super::{Decision, SizingProblem};
-use crate::answer::significant;
+use crate::quantity::DisplayUnit;
 
 /// What the oil velocity says about a bore.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +66,7 @@ pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<Decision>) -> 
         })
         .collect();
     bores.sort_by(|one, other| one.bore_m.total_cmp(&other.bore_m));
-    let [smallest, largest] = range(problem).map(|bore| significant(bore * 1e3, 3));
+    let [smallest, largest] = range(problem).map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
     let feasible: Vec<&str> = bores
         .iter()
         .filter(|bore| bore.verdict == BoreVerdict::Recommended)
@@ -81,7 +81,7 @@ pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<Decision>) -> 
         step: "c.3",
         text: format!(
             "Largest flow {} L/min ({}): bores from {smallest} to {largest} mm, of those on the market {}.",
-            significant(problem.maximum_flow * 6e4, 4),
+            DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow, 4),
             problem.maximum_flow_origin,
             if feasible.is_empty() { "none".to_string() } else { feasible.join(", ") }
         ),

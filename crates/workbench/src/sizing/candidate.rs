@@ -3,7 +3,7 @@ use phea_hydraulics::linear::{LinearParameters, closed_loop_steady_state_gain, c
 
 use super::branch::Branch;
 use super::{BoreVerdict, HoseOption, SizingProblem, bore};
-use crate::answer::significant;
+use crate::quantity::{DisplayUnit, significant};
 
 /// How much a finding weighs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -171,7 +171,7 @@ fn practical_gain(problem: &SizingProblem, candidate: &Candidate, findings: &mut
 }
 
 fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
-    let bar = |pressure: f64| significant(pressure / 1e5, 3);
+    let bar = |pressure: f64| DisplayUnit::BAR.number(pressure, 3);
     let peak = problem.supply_pressure + candidate.surge_pressure_pa;
     match candidate.option.working_pressure {
         None => warns(
@@ -210,7 +210,7 @@ fn bending(candidate: &Candidate, findings: &mut Vec<Finding>) {
             findings,
             format!(
                 "a bend of 90 degrees at the least radius of {} mm takes {} m, more than the hose has",
-                significant(radius * 1e3, 3),
+                DisplayUnit::MILLIMETRE.number(radius, 3),
                 significant(quarter_turn, 3)
             ),
         );

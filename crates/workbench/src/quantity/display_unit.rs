@@ -1,4 +1,6 @@
-//! Units that figures show; values come in SI.
+//! Units that figures and sentences show; values come in SI.
+
+use super::significant;
 
 /// A unit on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +16,8 @@ impl DisplayUnit {
     pub const MILLIMETRE: Self = DisplayUnit { symbol: "mm", in_si: 1e-3 };
     /// Length.
     pub const METRE: Self = DisplayUnit { symbol: "m", in_si: 1.0 };
+    /// Time.
+    pub const MILLISECOND: Self = DisplayUnit { symbol: "ms", in_si: 1e-3 };
     /// Flow.
     pub const LITRE_PER_MINUTE: Self = DisplayUnit { symbol: "L/min", in_si: 1e-3 / 60.0 };
     /// Stiffness.
@@ -32,6 +36,17 @@ impl DisplayUnit {
     /// An SI value in this unit.
     pub fn of(self, value: f64) -> f64 {
         value / self.in_si
+    }
+
+    /// An SI value in this unit with so many significant digits, without the symbol.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_workbench::quantity::DisplayUnit;
+    /// assert_eq!(DisplayUnit::LITRE_PER_MINUTE.number(1.6e-4, 3), "9.60");
+    /// ```
+    pub fn number(self, value: f64, digits: usize) -> String {
+        significant(self.of(value), digits)
     }
 
     /// `quantity (symbol)`.
