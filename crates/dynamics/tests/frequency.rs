@@ -246,7 +246,7 @@ fn phases_start_where_they_should() {
     assert_eq!(at(&rational(&[1.0, 0.0], &[1.0]), 1.0), 90.0);
     // (1 - s)/(1 + s): all-pass from 0 to -180
     close(at(&rational(&[-1.0, 1.0], &[1.0, 1.0]), 1.0), -90.0, 1e-15);
-    // an undamped pair turns the phase by -180 when passed
+    // ORIGIN: analytic, an undamped pair turns the phase by -180 when passed
     let undamped = rational(&[1.0], &[1.0, 0.0, 4.0]);
     assert_eq!((at(&undamped, 1.999), at(&undamped, 2.001)), (0.0, -180.0));
 }

@@ -1,5 +1,5 @@
 use phea_hydraulics::friction::Friction;
-use phea_hydraulics::line::{Line, Member};
+use phea_hydraulics::line::{Hose, Line, Member};
 use phea_hydraulics::linear::{MechanicalDamping, decompose};
 use phea_hydraulics::servovalve::{Direction, velocity_gain};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -58,27 +58,7 @@ fn lines(rig: &Rig, list: &mut List) {
         };
         list.add(name("volume"), "V_ho", line.volume(), "m3", "V_{ho} = π/4 D_{ho}^2 L_{ho}");
         if let Line::Hose { hose, .. } = line {
-            list.add(
-                name("volumetric_expansion"),
-                "E",
-                hose.volumetric_expansion,
-                "m3/m",
-                "E(p_S) = E_1 + ε (p_S - p_1)",
-            );
-            list.add(
-                name("static_modulus"),
-                "β_hoSS",
-                hose.static_modulus(),
-                "Pa",
-                "β_{hoSS} = (A_{ho} + E)/ε",
-            );
-            list.add(
-                name("dynamic_modulus"),
-                "β_ho",
-                hose.wall_modulus(Member::Nominal),
-                "Pa",
-                "β_{ho} = r_β β_{hoSS}",
-            );
+            hose_wall(hose, &name, list);
         }
         let effective = line.effective_modulus(modulus, Member::Nominal);
         list.add(name("effective_modulus"), "β_e", effective, "Pa", "1/β_e = 1/β_0 + 1/β_{ho}");
@@ -106,6 +86,24 @@ fn lines(rig: &Rig, list: &mut List) {
             list.add(name("wave_travel_time"), "T", length / wave_speed, "s", "T = L_{ho}/c");
         }
     }
+}
+
+fn hose_wall(hose: Hose, name: &impl Fn(&str) -> String, list: &mut List) {
+    list.add(
+        name("volumetric_expansion"),
+        "E",
+        hose.volumetric_expansion,
+        "m3/m",
+        "E(p_S) = E_1 + ε (p_S - p_1)",
+    );
+    list.add(name("static_modulus"), "β_hoSS", hose.static_modulus(), "Pa", "β_{hoSS} = (A_{ho} + E)/ε");
+    list.add(
+        name("dynamic_modulus"),
+        "β_ho",
+        hose.wall_modulus(Member::Nominal),
+        "Pa",
+        "β_{ho} = r_β β_{hoSS}",
+    );
 }
 
 fn stiffness(rig: &Rig, list: &mut List) {
@@ -201,6 +199,12 @@ fn valve(rig: &Rig, list: &mut List) {
             ),
         }
     }
+    chamber_slopes(rig, list);
+    let pressure_gain = rig.derived.flow_gain / rig.derived.flow_pressure_coefficient;
+    list.add("valve.pressure_gain", "K_pU", pressure_gain, "Pa/V", "K_{pU} = K_{qU}/K_c");
+}
+
+fn chamber_slopes(rig: &Rig, list: &mut List) {
     let chambers = &rig.two_pressure.chambers;
     list.add(
         "valve.flow_gain_a",
@@ -230,8 +234,6 @@ fn valve(rig: &Rig, list: &mut List) {
         "m3/(s.Pa)",
         "K_{cB} = -dq_B/dp_B at the operating point",
     );
-    let pressure_gain = rig.derived.flow_gain / rig.derived.flow_pressure_coefficient;
-    list.add("valve.pressure_gain", "K_pU", pressure_gain, "Pa/V", "K_{pU} = K_{qU}/K_c");
 }
 
 fn equilibrium(rig: &Rig, list: &mut List) {
