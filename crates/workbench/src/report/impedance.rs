@@ -6,7 +6,7 @@ use phea_dynamics::time_response::TimeResponseError;
 use phea_hydraulics::impedance::AsymptoteKind;
 
 use super::chapter::{Chapter, cell, place, table};
-use super::load_motion;
+use super::load_motion::{self, Moved};
 use super::typeset::{prose, typeset};
 use crate::answer::significant;
 use crate::figure::{Asymptote, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance};
@@ -18,8 +18,8 @@ pub(super) fn chapter(
     project: &Project,
     linearization: &Linearization,
 ) -> Result<Chapter, TimeResponseError> {
-    let (peaks, motion) = load_motion::figure(project, &views(linearization))?;
-    let figures = vec![figure(linearization)?, motion];
+    let forces = load_motion::forces(project, &views(linearization))?;
+    let figures = vec![figure(linearization)?, load_motion::figure(project, &forces)];
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     let body = html! {
         p {
@@ -42,7 +42,7 @@ pub(super) fn chapter(
         }
         h3 { "The load moves" }
         (place(&figures[1]))
-        p { "Largest change of the force: " (peaks.iter().map(|(name, peak)| format!("{} kN {name}", DisplayUnit::KILONEWTON.number(*peak, 3))).collect::<Vec<_>>().join(", ")) "." }
+        p { "Largest change of the force: " (peaks(&forces)) "." }
         p { "Proposition 6.2: the zero at the origin makes the force return. After a load step of 1 mm there remains, "
             "open loop " (remains(&linearization.open_loop))
             @if let Some(view) = &linearization.closed_loop { ", closed loop " (remains(view)) }
@@ -50,6 +50,12 @@ pub(super) fn chapter(
         }
     };
     Ok(Chapter { anchor: "impedance", title: "What the load feels", body, figures })
+}
+
+fn peaks(forces: &[Moved]) -> String {
+    let one =
+        |moved: &Moved| format!("{} kN {}", DisplayUnit::KILONEWTON.number(moved.peak_n, 3), moved.name);
+    forces.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 fn verdict(view: &PortView) -> Markup {

@@ -45,26 +45,39 @@ fn velocity(distance: f64, duration: f64) -> Result<Signal, TimeResponseError> {
     Signal::new(times, velocities, Interpolation::Linear)
 }
 
-/// Peak of the force and the figure, for each port by its name.
-pub(super) fn figure(
+/// The force at one port while the load moves.
+pub(super) struct Moved {
+    /// Which loop.
+    pub(super) name: &'static str,
+    /// Largest change of the force with its sign, N.
+    pub(super) peak_n: f64,
+    series: TimeSeries,
+}
+
+/// The force at each port while the load moves.
+pub(super) fn forces(
     project: &Project,
     ports: &[(&'static str, &PortView)],
-) -> Result<(Vec<(&'static str, f64)>, Figure), TimeResponseError> {
+) -> Result<Vec<Moved>, TimeResponseError> {
     let (distance, duration) = motion(project);
     let times_s = uniform_times(10.0 * duration, SAMPLES)?;
     let input = velocity(distance, duration)?;
-    let (mut peaks, mut responses) = (Vec::new(), Vec::new());
+    let larger = |peak: f64, value: f64| if value.abs() > peak.abs() { value } else { peak };
+    let mut forces = Vec::new();
     for (name, view) in ports {
         // F_e = -Z (s X_L)
         let force = view.impedance.series(&TransferFunction::gain_only(-1.0))?;
         let values = forced_response(&force, &input, &times_s)?;
-        let peak = values
-            .iter()
-            .copied()
-            .fold(0.0, |peak: f64, value| if value.abs() > peak.abs() { value } else { peak });
-        peaks.push((*name, peak));
-        responses.push(TimeSeries { name: name.to_string(), times_s: times_s.clone(), values });
+        let peak_n = values.iter().copied().fold(0.0, larger);
+        let series = TimeSeries { name: name.to_string(), times_s: times_s.clone(), values };
+        forces.push(Moved { name, peak_n, series });
     }
+    Ok(forces)
+}
+
+/// The figure of these forces.
+pub(super) fn figure(project: &Project, forces: &[Moved]) -> Figure {
+    let (distance, duration) = motion(project);
     let caption = format!(
         "Change of the force while the load moves {} mm in {} s (a smooth step of fifth order), linear and with no limit on the command. In the end nothing remains.",
         DisplayUnit::MILLIMETRE.number(distance, 3),
@@ -74,11 +87,11 @@ pub(super) fn figure(
         quantity: "Force F_e".to_string(),
         unit: DisplayUnit::KILONEWTON,
         reference: None,
-        responses,
+        responses: forces.iter().map(|moved| moved.series.clone()).collect(),
         settling_band: None,
         bounds: None,
         events: vec![],
         controls: vec![],
     };
-    Ok((peaks, step_response(Words::new("load-motion", "Load motion", caption), &input)))
+    step_response(Words::new("load-motion", "Load motion", caption), &input)
 }
