@@ -11,8 +11,10 @@ use crate::quantity::{AREA, DAMPING, FORCE, LENGTH, MASS, RATIO, STIFFNESS, VELO
 pub struct Cylinder {
     /// m; this or `piston_area`.
     pub piston_diameter: Option<f64>,
-    /// m², of the whole piston face, from which the rods are subtracted.
+    /// m², on which the pressure acts, the same in both chambers: rods are subtracted already.
     pub piston_area: Option<f64>,
+    /// m², on which the pressure acts in chamber A and in chamber B.
+    pub piston_areas: Option<[f64; 2]>,
     /// m, of the rod through both chambers; this or `rod_diameters`.
     pub rod_diameter: Option<f64>,
     /// m, of the rod in chamber A and in chamber B; zero where there is none.
@@ -30,10 +32,11 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// m², of the whole piston face.
-    pub fn piston_area_m2(&self) -> f64 {
-        let by_diameter = self.piston_diameter.map(|diameter| FRAC_PI_4 * diameter * diameter);
-        self.piston_area.or(by_diameter).unwrap_or(0.0)
+    /// m, of the piston: declared, or from the larger area and the rod on its side.
+    pub fn piston_diameter_m(&self) -> f64 {
+        let faces = self.effective_areas_m2().into_iter().zip(self.rod_diameters_m());
+        let by_area = faces.map(|(area, rod)| (area / FRAC_PI_4 + rod * rod).sqrt()).fold(0.0, f64::max);
+        self.piston_diameter.unwrap_or(by_area)
     }
 
     /// m, of the rods in chamber A and B.
@@ -42,9 +45,11 @@ impl Cylinder {
         self.rod_diameters.unwrap_or([rod, rod])
     }
 
-    /// m², of the piston less the rod, in chamber A and B.
+    /// m², on which the pressure acts in chamber A and B: declared, or the piston less the rod.
     pub fn effective_areas_m2(&self) -> [f64; 2] {
-        self.rod_diameters_m().map(|rod| self.piston_area_m2() - FRAC_PI_4 * rod * rod)
+        let declared = self.piston_areas.or(self.piston_area.map(|area| [area, area]));
+        let piston = self.piston_diameter.unwrap_or(0.0);
+        declared.unwrap_or(self.rod_diameters_m().map(|rod| FRAC_PI_4 * (piston - rod) * (piston + rod)))
     }
 
     /// m³, of chamber A and B.
@@ -54,10 +59,15 @@ impl Cylinder {
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("piston_diameter", &LENGTH, "Diameter of the piston; or `piston_area`.").positive();
+        let k =
+            key("piston_diameter", &LENGTH, "Diameter of the piston; or `piston_area` or `piston_areas`.")
+                .positive();
         v.optional(k, &mut self.piston_diameter);
-        let k = key("piston_area", &AREA, "Area of the whole piston face; the rods are subtracted from it.");
+        let k =
+            key("piston_area", &AREA, "Area the pressure acts on in each chamber, rods already subtracted.");
         v.optional(k.positive(), &mut self.piston_area);
+        let k = key("piston_areas", &AREA, "Areas the pressure acts on in chamber A and in chamber B.");
+        v.pair(k.positive(), &mut self.piston_areas);
         let k = key("rod_diameter", &LENGTH, "Diameter of the rod through both chambers.").not_negative();
         v.optional(k, &mut self.rod_diameter);
         let k = key("rod_diameters", &LENGTH, "Diameters of the rods in chamber A and in chamber B.");
@@ -129,5 +139,24 @@ impl Friction {
         v.optional(k, &mut self.bristle_stiffness);
         let k = key("bristle_damping", &DAMPING, "σ₁ of LuGre.").not_negative();
         v.optional(k, &mut self.bristle_damping);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn areas_come_from_diameters_or_stand_for_themselves() {
+        let diameters = Cylinder { piston_diameter: Some(0.05), rod_diameter: Some(0.022), ..Cylinder::default() };
+        let [area_a, area_b] = diameters.effective_areas_m2();
+        // ORIGIN: analytic, pi/4 (0.05^2 - 0.022^2) = 1.58336e-3
+        assert!((area_a - 1.58336e-3).abs() < 0.5e-8 && area_a == area_b);
+        // An area is what the pressure acts on: a rod given beside it takes nothing away.
+        let area = Cylinder { piston_area: Some(1.583e-3), rod_diameter: Some(0.022), ..Cylinder::default() };
+        assert_eq!(area.effective_areas_m2(), [1.583e-3; 2]);
+        assert!((area.piston_diameter_m() - 0.05).abs() < 1e-5);
+        let areas = Cylinder { piston_areas: Some([2e-3, 1e-3]), ..Cylinder::default() };
+        assert_eq!(areas.effective_areas_m2(), [2e-3, 1e-3]);
     }
 }

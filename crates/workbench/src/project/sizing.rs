@@ -29,6 +29,8 @@ pub struct Sizing {
     pub stock_length: Option<f64>,
     /// m, acceptable range for one hose.
     pub hose_length: Option<[f64; 2]>,
+    /// m, hoses are cut to multiples of this; absent: to any length.
+    pub length_increment: Option<f64>,
 }
 
 impl Sizing {
@@ -53,5 +55,7 @@ impl Sizing {
         v.optional(k, &mut self.stock_length);
         let k = key("hose_length", &LENGTH, "Acceptable range of the length of one hose.").positive();
         v.pair(k, &mut self.hose_length);
+        let k = key("length_increment", &LENGTH, "Hoses are cut to multiples of this.").positive();
+        v.optional(k, &mut self.length_increment);
     }
 }

@@ -70,7 +70,7 @@ fn circuit(project: &Project, actuator: &project::Actuator) -> Figure {
 
 fn cylinder_words(cylinder: &project::Cylinder) -> String {
     let millimetres = |length: f64| quantity::DisplayUnit::MILLIMETRE.number(length, 3);
-    let piston = 2.0 * (cylinder.piston_area_m2() / std::f64::consts::PI).sqrt();
+    let piston = cylinder.piston_diameter_m();
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
     let rods = if rod_a == rod_b {
         millimetres(rod_a)

@@ -12,6 +12,8 @@ use crate::sizing::{HoseOption, SizingProblem};
 const OIL_VELOCITY: [f64; 2] = [2.1, 4.6];
 /// Least practical gain, V/N (Ledezma 2019, section 6.3.2, step j).
 const MINIMUM_GAIN: f64 = 1e-4;
+/// Gain at which the search starts, V/N (the same, step f: a unitary value).
+const MAXIMUM_GAIN: f64 = 1.0;
 /// Acceptable length of a line where the project states none, m.
 const HOSE_LENGTH: [f64; 2] = [0.1, 10.0];
 
@@ -73,6 +75,8 @@ pub fn sizing_problem(
         maximum_flow_origin,
         oil_velocity: wish.oil_velocity.unwrap_or(OIL_VELOCITY),
         minimum_gain: wish.minimum_gain.unwrap_or(MINIMUM_GAIN),
+        maximum_gain: wish.maximum_gain.unwrap_or(MAXIMUM_GAIN),
+        length_increment: wish.length_increment,
         stock_length: wish.stock_length,
         hose_length: wish.hose_length.unwrap_or(HOSE_LENGTH),
         supply_pressure: actuator.supply.pressure,

@@ -72,11 +72,11 @@ fn at_gain(
     Branch { by_gain: true, model, steps, length_m: step.length_m, stiffness, gain_v_per_n: gain }
 }
 
-/// Steps f to j: the gain starts at 1 V/N and is halved until the hose is acceptably short or the gain too small; then
+/// Steps f to j: the gain starts at the largest and is halved until the hose is acceptably short or the gain too small; then
 /// the largest gain whose hose is acceptable lies between the last two trials and is found by bisection.
 fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -> Branch {
     let longest = problem.available_length();
-    let mut gain = 1.0;
+    let mut gain = problem.maximum_gain;
     let mut steps = Vec::new();
     loop {
         let step = gain_step(problem, option, model, gain);
@@ -90,6 +90,9 @@ fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -
         // Even the smallest practical gain asks for too long a hose.
         return at_gain(problem, option, model, steps, problem.minimum_gain.max(problem.pole_gain()));
     }
+    if steps.is_empty() {
+        return at_gain(problem, option, model, steps, gain);
+    }
     let (mut acceptable, mut too_long) = (gain, gain * 2.0);
     // 40 halvings leave a relative interval of 1e-12.
     for _ in 0..40 {
@@ -100,7 +103,20 @@ fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -
             too_long = middle;
         }
     }
-    at_gain(problem, option, model, steps, acceptable)
+    commercial(problem, option, at_gain(problem, option, model, steps, acceptable))
+}
+
+/// The same hose cut to the next multiple of the increment that is still acceptable, with the gain for that length.
+fn commercial(problem: &SizingProblem, option: &HoseOption, exact: Branch) -> Branch {
+    let Some(increment) = problem.length_increment.filter(|_| exact.length_m > 0.0) else { return exact };
+    let tolerance = 1e-9;
+    let up = (exact.length_m / increment - tolerance).ceil() * increment;
+    let down = (problem.available_length() / increment + tolerance).floor() * increment;
+    if down <= 0.0 {
+        return exact;
+    }
+    let cut = at_length(problem, option, exact.model, up.min(down));
+    Branch { by_gain: true, steps: exact.steps, ..cut }
 }
 
 fn gain_step(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel, gain: f64) -> GainStep {

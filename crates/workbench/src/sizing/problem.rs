@@ -33,6 +33,10 @@ pub struct SizingProblem {
     pub oil_velocity: [f64; 2],
     /// The least proportional gain that is practical, V/N.
     pub minimum_gain: f64,
+    /// The gain at which the search starts, V/N.
+    pub maximum_gain: f64,
+    /// Hoses are cut to multiples of this, m.
+    pub length_increment: Option<f64>,
     /// Hose that can be had, for both lines together, m.
     pub stock_length: Option<f64>,
     /// Acceptable length of each line, m.

@@ -1,7 +1,5 @@
 //! The actuator: what geometry and physics forbid.
 
-use std::f64::consts::FRAC_PI_4;
-
 use super::Check;
 use crate::project::{
     Actuator, Cylinder, Friction, FrictionModel, Interval, Line, Lines, Load, LoadModel, SupplyModel, Valve,
@@ -55,22 +53,45 @@ fn valve(valve: &Valve, check: &mut Check<'_, '_>) {
 }
 
 fn cylinder(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
-    let area = [cylinder.piston_diameter.is_some(), cylinder.piston_area.is_some()];
-    check.one_of("cylinder", ["piston_diameter", "piston_area"], area);
+    piston(cylinder, check);
     let rods = [cylinder.rod_diameter.is_some(), cylinder.rod_diameters.is_some()];
     check.one_of("cylinder", ["rod_diameter", "rod_diameters"], rods);
     if cylinder.dead_volume.is_some() && cylinder.dead_volumes.is_some() {
         check.error("cylinder.dead_volumes", "both `dead_volume` and `dead_volumes`: one says it all");
     }
-    let piston = cylinder.piston_area_m2();
-    let too_thick = cylinder.rod_diameters_m().iter().any(|rod| FRAC_PI_4 * rod * rod >= piston);
-    if piston > 0.0 && too_thick {
+    let too_thick = |piston: f64| cylinder.rod_diameters_m().iter().any(|rod| *rod >= piston);
+    if cylinder.piston_diameter.is_some_and(too_thick) {
         let at =
             if cylinder.rod_diameters.is_some() { "cylinder.rod_diameters" } else { "cylinder.rod_diameter" };
         check.error(at, "the rod is as thick as the piston or thicker: no area is left for the oil");
     }
     if let Some(law) = &cylinder.friction {
         friction(law, check);
+    }
+}
+
+/// One of diameter, common area and two areas; one area does for a rod through both chambers only.
+fn piston(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
+    if cylinder.piston_areas.is_some() {
+        for (name, present) in [
+            ("piston_diameter", cylinder.piston_diameter.is_some()),
+            ("piston_area", cylinder.piston_area.is_some()),
+        ] {
+            if present {
+                check.error(
+                    &format!("cylinder.{name}"),
+                    format!("both `piston_areas` and `{name}`: one says it all"),
+                );
+            }
+        }
+        return;
+    }
+    let area = [cylinder.piston_diameter.is_some(), cylinder.piston_area.is_some()];
+    check.one_of("cylinder", ["piston_diameter", "piston_area"], area);
+    let [rod_a, rod_b] = cylinder.rod_diameters_m();
+    if cylinder.piston_area.is_some() && rod_a != rod_b {
+        let message = "with unequal rods `piston_area` is not the same in both chambers: give `piston_diameter`, or `piston_areas`";
+        check.error("cylinder.piston_area", message);
     }
 }
 
