@@ -244,6 +244,7 @@ fn what_has_no_effect_is_told() {
 
 #[test]
 fn a_side_inherits_what_it_does_not_say() {
+    // ORIGIN: the lines written here, and the catalogue's slope
     let [pipe, own] =
         ["[line.b]\npipe = { bore = \"10 mm\" }\n", "[line.b]\nbore = \"9 mm\"\n"].map(|side| {
             let text = HOSE.replace("[force_sensor]", &format!("{side}\n[force_sensor]"));
