@@ -21,6 +21,8 @@ mod read;
 pub use dash_size::DASH_SIZES;
 pub use read::load;
 
+use std::sync::Arc;
+
 use crate::project::{HoseProperties, Node};
 
 /// What a catalogue entry describes.
@@ -46,7 +48,7 @@ impl Kind {
 /// Components by name.
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
-    entries: Vec<Entry>,
+    entries: Vec<Arc<Entry>>,
 }
 
 /// One product.
@@ -83,12 +85,12 @@ impl Entry {
 impl Catalogue {
     /// The entry of that kind and name.
     pub fn find(&self, kind: Kind, name: &str) -> Option<&Entry> {
-        self.entries.iter().find(|entry| entry.kind == kind && entry.name == name)
+        self.entries(kind).find(|entry| entry.name == name)
     }
 
     /// The entries of that kind, built-in ones first, each group by name.
     pub fn entries(&self, kind: Kind) -> impl Iterator<Item = &Entry> {
-        self.entries.iter().filter(move |entry| entry.kind == kind)
+        self.entries.iter().map(Arc::as_ref).filter(move |entry| entry.kind == kind)
     }
 
     /// The names of that kind.

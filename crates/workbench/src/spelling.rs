@@ -20,7 +20,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         length => (length / 3).max(2),
     };
     let mut best: Option<(usize, &str)> = None;
-    for candidate in candidates {
+    for candidate in candidates.into_iter().take(MAXIMUM_CANDIDATES) {
         let letters: Vec<char> = candidate.chars().flat_map(char::to_lowercase).collect();
         if letters.len().abs_diff(wanted.len()) > allowed {
             continue;
@@ -33,6 +33,8 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     best.map(|(_, candidate)| candidate)
 }
 
+/// More candidates are not looked at.
+const MAXIMUM_CANDIDATES: usize = 1000;
 /// Longer names are compared by their beginning only.
 const MAXIMUM_LENGTH: usize = 64;
 

@@ -230,8 +230,47 @@ fn size_and_nesting_are_bounded() {
         let report = project::read(&source, "x.toml", &[], &[]).expect_err("refused");
         assert_eq!(report.diagnostics[0].message, message);
     }
+    work_is_bounded();
     let many = (0..50_000).map(|index| format!("k{index} = 1\n")).collect::<String>();
     let report =
         project::read(&Memory::default().with("x.toml", many), "x.toml", &[], &[]).expect_err("refused");
     assert_eq!((report.diagnostics.len(), report.more > 45_000), (200, true));
+}
+
+/// Files of a megabyte, each made to be slow where work could grow with the square of its size.
+fn work_is_bounded() {
+    let plant = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n";
+    let names =
+        |count: usize, text: &str| (0..count).map(|i| text.replace('#', &i.to_string())).collect::<String>();
+    let long = names(180, "name_# + ");
+    let specification = "[[specification]]\nkind = \"sensitivity\"\nlimit = 1\nfrequencies = ";
+    for input in [
+        format!("{plant}{specification}[{}]", "-1,".repeat(300_000)),
+        format!("{plant}{specification}[{}]", "\"1 bar\",".repeat(100_000)),
+        format!("{plant}[controller]\ngain = 1\nzeros = [{}]", "[1, 2], [1, -2],".repeat(60_000)),
+        format!("{plant}[controller]\nelements = [{}]", "{ kind = \"pole\" },".repeat(50_000)),
+        format!(
+            "{plant}[uncertainty]\n{}",
+            names(15_000, "k# = { nominal = 1, minimum = 1, maximum = 1 }\n")
+        ),
+        format!(
+            "{}[uncertainty]\n{}",
+            plant.replace("\"k\"", &format!("\"{long}1\"")),
+            names(60_000, "nome_# = 1\n")
+        ),
+        format!("{plant}[family]\ncases = [{{ {} }}]", names(60_000, "k# = 1, ")),
+        format!("{plant}[family]\ncases = [{}]", "{ k = 1 },".repeat(90_000)),
+        names(40_000, "[[scenario]]\nname = \"a\"\n"),
+        names(40_000, "[a#.b]\nc = \"1\"\n"),
+        format!("title = \"{}\"", "\\u0041".repeat(150_000)),
+        format!("{plant}{specification}[1]\n\n{}", "[[specification]]\n".repeat(50_000)),
+        "\n".repeat(1_000_000),
+        "[".repeat(1_000_000),
+        "\"\"\"".repeat(300_000),
+        "a.".repeat(500_000),
+    ] {
+        assert!(input.len() <= 1 << 20, "{}", input.len());
+        let source = Memory::default().with("x.toml", input);
+        let _ = project::read(&source, "x.toml", &[], &[]).map_err(|report| report.to_string());
+    }
 }

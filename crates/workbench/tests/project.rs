@@ -214,3 +214,55 @@ fn catalogues_are_added_and_every_number_has_a_source() {
         }
     }
 }
+
+#[track_caller]
+fn warns(text: &str, message: &str) {
+    let loaded = accept(text);
+    assert!(loaded.warnings.iter().any(|found| found.message == message), "{:?}", loaded.warnings);
+    round_trip(&loaded.project);
+}
+
+#[test]
+fn what_has_no_effect_is_told() {
+    let rig = include_str!("project_valid/volumes.toml");
+    let friction = "friction = { model = \"viscous\", viscous = 299";
+    let with_coulomb = rig.replace(friction, &format!("{friction}, coulomb = 80"));
+    warns(&with_coulomb, "`coulomb` has no effect with model \"viscous\"");
+    let stiffness = "\n[linear]\nhydraulic_stiffness = 2.24e6";
+    warns(
+        &rig.replace("\n[linear]", stiffness),
+        "`line.b.volume` does not reach the linear model: [linear] sets what it changes",
+    );
+    warns(&format!("{HOSE}\n[load]\nmass = 2\n"), "`mass` has no effect with model \"prescribed\"");
+    warns(
+        &HOSE.replace("anti_windup = \"none\"", "discretization = \"matched\""),
+        "`discretization` has no effect: there is no `sample_time`",
+    );
+    let weak = HOSE.replace("length = \"1.5 m\"", "length = \"1.5 m\"\nworking_pressure = \"50 bar\"");
+    warns(&weak, "the hose's `working_pressure` is below the supply pressure");
+}
+
+#[test]
+fn a_side_inherits_what_it_does_not_say() {
+    // ORIGIN: the lines written here, and the catalogue's slope
+    let [pipe, own] =
+        ["[line.b]\npipe = { bore = \"10 mm\" }\n", "[line.b]\nbore = \"9 mm\"\n"].map(|side| {
+            let text = HOSE.replace("[force_sensor]", &format!("{side}\n[force_sensor]"));
+            accept(&text.replace("dynamic_stiffening", "bore = \"13 mm\"\ndynamic_stiffening")).project
+        });
+    let lines = |project: &Project| project.actuator.clone().expect("a rig").line;
+    let (piped, narrowed) = (lines(&pipe), lines(&own));
+    assert_eq!(piped.a.hose_properties.bore, Some(0.013));
+    assert_eq!(
+        (piped.b.hose.as_deref(), piped.b.hose_properties.bore, piped.b.length),
+        (None, None, Some(1.5))
+    );
+    assert_eq!(narrowed.b.hose.as_deref(), Some("eaton_synflex_3130_08"));
+    assert_eq!(
+        (narrowed.a.hose_properties.bore, narrowed.b.hose_properties.bore),
+        (Some(0.013), Some(0.009))
+    );
+    assert_eq!(narrowed.b.hose_properties.volumetric_expansion_slope, Some(2.236e-12));
+    round_trip(&pipe);
+    round_trip(&own);
+}

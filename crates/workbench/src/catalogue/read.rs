@@ -1,6 +1,6 @@
 //! Reads catalogue files.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::built_in::BUILT_IN;
 use super::{Catalogue, Entry, Kind};
@@ -63,7 +63,7 @@ impl Catalogue {
 
     fn take(&mut self, file: &str, bytes: &[u8], findings: &mut Findings) {
         let Some(root) = read_tree(file, bytes, findings) else { return };
-        if let Some(entry) = entry(file, root, findings) {
+        if let Some(entry) = entry(file, root, findings).map(Arc::new) {
             match self.entries.iter_mut().find(|known| known.kind == entry.kind && known.name == entry.name) {
                 Some(known) => *known = entry,
                 None => self.entries.push(entry),

@@ -2,7 +2,7 @@
 
 use super::interval::Interval;
 use super::key::{key, plain};
-use super::visitor::Visitor;
+use super::visitor::{Kinds, Visitor};
 use crate::catalogue::Kind;
 use crate::quantity::{EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
 
@@ -127,20 +127,23 @@ pub enum Component<'a> {
 }
 
 impl Line {
-    /// Keys of which one line uses one group; a side that writes one of them hides the inherited ones.
-    const ALTERNATIVES: &'static [&'static str] = &[
-        "hose",
-        "bore",
-        "volumetric_expansion",
-        "volumetric_expansion_pressure",
-        "volumetric_expansion_slope",
-        "minimum_bend_radius",
-        "working_pressure",
-        "burst_pressure",
-        "pipe",
-        "volume",
-        "effective_bulk_modulus",
-    ];
+    /// What a line can be.
+    const KINDS: Kinds = Kinds {
+        chosen_by: &["hose", "pipe", "volume"],
+        keys: &[
+            "hose",
+            "bore",
+            "volumetric_expansion",
+            "volumetric_expansion_pressure",
+            "volumetric_expansion_slope",
+            "minimum_bend_radius",
+            "working_pressure",
+            "burst_pressure",
+            "pipe",
+            "volume",
+            "effective_bulk_modulus",
+        ],
+    };
 
     /// What the line is made of; `None` only for a line that was not read from a valid project.
     pub fn component(&self) -> Option<Component<'_>> {
@@ -231,7 +234,7 @@ impl Lines {
         v.choice(k, words, &mut self.compliance, false);
         let keys = [plain("a", "The line to chamber A."), plain("b", "The line to chamber B.")];
         let mut sides = [std::mem::take(&mut self.a), std::mem::take(&mut self.b)];
-        v.sides(keys, Line::ALTERNATIVES, &mut sides, Line::visit);
+        v.sides(keys, Line::KINDS, &mut sides, Line::visit);
         [self.a, self.b] = sides;
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::Key;
-use super::visitor::{Form, Named, Shape, Visitor};
+use super::visitor::{Form, Kinds, Named, Shape, Visitor};
 use crate::catalogue::Kind;
 
 /// Walks a project without changing it, but for one number if asked to.
@@ -187,13 +187,15 @@ impl Visitor for Listing {
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],
-        _alternatives: &'static [&'static str],
+        _kinds: Kinds,
         fields: &mut [T; 2],
         visit: impl Fn(&mut T, &mut Self),
     ) {
         if fields[0] == fields[1] {
             visit(&mut fields[0], self);
             fields[1] = fields[0].clone();
+        }
+        if self.everything {
             return;
         }
         for (key, field) in keys.into_iter().zip(fields) {

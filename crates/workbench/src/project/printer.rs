@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::Key;
-use super::visitor::{Form, Named, Shape, Visitor};
+use super::visitor::{Form, Kinds, Named, Shape, Visitor};
 use crate::catalogue::Kind;
 use crate::quantity;
 
@@ -262,7 +262,7 @@ impl Visitor for Printer {
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],
-        _alternatives: &'static [&'static str],
+        _kinds: Kinds,
         fields: &mut [T; 2],
         visit: impl Fn(&mut T, &mut Self),
     ) {

@@ -18,6 +18,10 @@ pub(crate) struct Place {
 pub(crate) struct Findings {
     texts: Vec<Text>,
     found: Vec<Found>,
+    /// How many errors and warnings are kept, and how many findings are not.
+    errors: usize,
+    warnings: usize,
+    more: usize,
 }
 
 /// A named text.
@@ -86,8 +90,10 @@ impl Found {
     }
 }
 
-/// More errors than this are counted but not listed.
+/// More findings than this are counted but not listed.
 const MAXIMUM_LISTED: usize = 200;
+/// More errors, or warnings, than this are counted but not kept, so that the work for each stays small.
+const MAXIMUM_KEPT: usize = 400;
 
 impl Findings {
     /// Takes a text in and gives its index.
@@ -104,7 +110,13 @@ impl Findings {
     }
 
     pub(crate) fn push(&mut self, found: Found) {
-        self.found.push(found);
+        let kept = if found.severity == Severity::Error { &mut self.errors } else { &mut self.warnings };
+        if *kept < MAXIMUM_KEPT {
+            *kept += 1;
+            self.found.push(found);
+        } else {
+            self.more += 1;
+        }
     }
 
     pub(crate) fn content(&self, text: usize) -> &str {
@@ -125,7 +137,7 @@ impl Findings {
 
     /// Everything found, in order of place, without what a syntax error of the same text explains.
     pub(crate) fn report(self) -> Report {
-        let Findings { texts, mut found } = self;
+        let Findings { texts, mut found, more, .. } = self;
         let line = |place: &Place| texts.get(place.text).map_or(0, |text| text.line(place.start));
         let broken: Vec<(usize, usize)> =
             found.iter().filter(|f| f.syntax).map(|f| (f.place.text, line(&f.place))).collect();
@@ -135,7 +147,7 @@ impl Findings {
         });
         found.sort_by(|a, b| (a.severity, a.place, &a.message).cmp(&(b.severity, b.place, &b.message)));
         found.dedup_by(|a, b| a.place == b.place && a.message == b.message);
-        let more = found.len().saturating_sub(MAXIMUM_LISTED);
+        let more = more + found.len().saturating_sub(MAXIMUM_LISTED);
         found.truncate(MAXIMUM_LISTED);
         let diagnostics = found.iter().filter_map(|f| Some(texts.get(f.place.text)?.diagnostic(f))).collect();
         Report { diagnostics, more, texts: texts.into_iter().map(|text| (text.name, text.content)).collect() }

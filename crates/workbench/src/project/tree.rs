@@ -154,7 +154,11 @@ fn too_deep(text: usize, content: &str) -> Option<Found> {
 fn syntax_error(text: usize, content: &str, error: &toml::de::Error) -> Found {
     let span = error.span().unwrap_or(0..0);
     let place = Place { text, start: span.start, end: span.end };
-    let found = Found::error(place, error.message().to_string()).syntax();
+    let message = match content.get(span.clone()) {
+        Some(key) if error.message() == "duplicate key" => format!("duplicate key `{key}`"),
+        _ => error.message().to_string(),
+    };
+    let found = Found::error(place, message).syntax();
     let line_start = content[..boundary(content, span.start)].rfind('\n').map_or(0, |at| at + 1);
     let line = content[line_start..].lines().next().unwrap_or_default();
     let help = line.split_once('=').and_then(|(_, value)| quote_help(value.trim()));

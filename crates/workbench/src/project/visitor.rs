@@ -55,17 +55,25 @@ pub(crate) trait Visitor: Sized {
     );
     /// The present table as a list of names and numbers.
     fn numbers(&mut self, key: Key, field: &mut Vec<(String, f64)>);
-    /// Two tables `a` and `b` that inherit what the present table says, except that a key of `alternatives` written
-    /// in one of them hides all inherited alternatives.
+    /// Two tables `a` and `b` that inherit what the present table says, unless they choose their own kind.
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],
-        alternatives: &'static [&'static str],
+        kinds: Kinds,
         fields: &mut [T; 2],
         visit: impl Fn(&mut T, &mut Self),
     );
     /// In which of its forms the key's value is written; a reader looks, everyone else goes by the `field`'s form.
     fn form(&mut self, key: Key, field: Form) -> Form;
+}
+
+/// Kinds of a thing of which one is chosen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kinds {
+    /// Keys that choose.
+    pub(crate) chosen_by: &'static [&'static str],
+    /// Keys that belong to one kind or another; whoever chooses inherits none of them.
+    pub(crate) keys: &'static [&'static str],
 }
 
 /// A number of the project, named by the user.

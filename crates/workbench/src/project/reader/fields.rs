@@ -7,7 +7,7 @@ use crate::project::formula::Formula;
 use crate::project::key::Key;
 use crate::project::text::Found;
 use crate::project::tree::Value;
-use crate::project::visitor::{Form, Named, Shape, Visitor};
+use crate::project::visitor::{Form, Kinds, Named, Shape, Visitor};
 use crate::spelling::nearest;
 
 impl Visitor for Reader<'_> {
@@ -36,6 +36,8 @@ impl Visitor for Reader<'_> {
         let Value::List(items) = &hit.node.value else {
             return self.wrong_kind(key, "a list of two", hit.node);
         };
+        let origin = self.origin(key, hit);
+        self.record_origin(key, origin);
         let [first, second] = items.as_slice() else {
             let message = format!("`{}` must have two values, not {}", key.name, items.len());
             return self.findings.push(Found::error(hit.node.place, message));
@@ -254,8 +256,7 @@ impl Visitor for Reader<'_> {
         let entries =
             self.frames.last().and_then(|frame| frame.layers.first()).map(|layer| layer.node.entries());
         for entry in entries.unwrap_or_default() {
-            let Some(number) = self.named.iter().find(|(name, _)| **name == entry.key).map(|(_, key)| *key)
-            else {
+            let Some(number) = self.named.get(&entry.key).copied() else {
                 let message = format!("`{}` is no uncertain {} of this project", entry.key, key.name);
                 self.findings.push(Found::error(entry.key_place, message));
                 continue;
@@ -272,7 +273,7 @@ impl Visitor for Reader<'_> {
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],
-        alternatives: &'static [&'static str],
+        kinds: Kinds,
         fields: &mut [T; 2],
         visit: impl Fn(&mut T, &mut Self),
     ) {
@@ -291,9 +292,9 @@ impl Visitor for Reader<'_> {
                 }
                 None => (None, path.clone(), place),
             };
-            let own_alternative =
-                own.is_some_and(|node| alternatives.iter().any(|name| node.get(name).is_some()));
-            let hidden = if own_alternative { alternatives } else { &[] };
+            let own_kind =
+                own.is_some_and(|node| kinds.chosen_by.iter().any(|name| node.get(name).is_some()));
+            let hidden = if own_kind { kinds.keys } else { &[] };
             let mut layers: Vec<Layer<'_>> = Vec::new();
             layers.extend(own.map(|node| Layer { node, hidden: &[], entry: None }));
             layers.extend(inherited.iter().map(|layer| Layer { hidden, ..layer.clone() }));

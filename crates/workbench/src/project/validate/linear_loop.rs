@@ -6,6 +6,9 @@ use crate::project::{
     Transfer, Variable,
 };
 
+/// Most zeros, poles or elements of a transfer function.
+const MAXIMUM_ORDER: usize = 50;
+
 pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
     for (index, specification) in project.specifications.iter().enumerate() {
         one_specification(specification, &format!("specification[{index}]"), check);
@@ -122,6 +125,9 @@ fn transfer(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &m
         conjugates(&transfer.zeros, &format!("{path}.zeros"), check);
         conjugates(&transfer.poles, &format!("{path}.poles"), check);
     }
+    if transfer.elements.len() > MAXIMUM_ORDER {
+        check.error(&format!("{path}.elements"), format!("more than {MAXIMUM_ORDER} elements"));
+    }
     for (index, element) in transfer.elements.iter().enumerate() {
         one_element(element, &format!("{path}.elements[{index}]"), check);
     }
@@ -147,6 +153,9 @@ fn polynomial_form(transfer: &Transfer, path: &str, sample_time: Option<f64>, ch
 
 /// Complex numbers must come with their conjugates, since coefficients are real.
 fn conjugates(roots: &[[f64; 2]], path: &str, check: &mut Check<'_, '_>) {
+    if roots.len() > MAXIMUM_ORDER {
+        return check.error(path, format!("more than {MAXIMUM_ORDER} roots"));
+    }
     let count = |wanted: [f64; 2]| roots.iter().filter(|root| **root == wanted).count();
     for &[real, imaginary] in roots {
         if imaginary != 0.0 && count([real, imaginary]) != count([real, -imaginary]) {

@@ -187,7 +187,7 @@ fn line(line: &Line, path: &str, check: &mut Check<'_, '_>) {
             _ => {}
         }
     }
-    if !hose && line.dynamic_stiffening.is_some() {
+    if !hose && line.dynamic_stiffening.is_some() && path == "line" {
         check.warning(
             &format!("{path}.dynamic_stiffening"),
             "`dynamic_stiffening` has no effect without a hose",
@@ -203,7 +203,7 @@ fn check_volume(line: &Line, path: &str, check: &mut Check<'_, '_>) {
     if line.effective_bulk_modulus.is_none() {
         check.missing(path, "effective_bulk_modulus", "`volume` needs `effective_bulk_modulus`");
     }
-    if line.length.is_some() {
+    if line.length.is_some() && path == "line" {
         check.warning(&format!("{path}.length"), "`length` has no effect beside `volume`");
     }
 }

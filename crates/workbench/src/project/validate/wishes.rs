@@ -1,9 +1,11 @@
 //! Sizing, operating point, uncertainty, scenarios and campaign.
 
+use std::collections::BTreeSet;
+
 use super::{Check, linear_parameter};
 use crate::project::{
-    Actuator, Campaign, Distribution, Formula, LoadMotion, LoadMotionKind, Plant, Project, Scenario, Sizing,
-    Spacing, Uncertain,
+    Actuator, Campaign, Distribution, Formula, LINEAR_PARAMETERS, LinearParameter, LoadMotion,
+    LoadMotionKind, Plant, Project, Scenario, Sizing, Spacing, Uncertain,
 };
 
 /// Most rows a scenario may write.
@@ -15,10 +17,11 @@ pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut 
         sizing(wanted, check);
     }
     operating_point(project, actuator, check);
+    let mut names = BTreeSet::new();
     for (index, scenario) in project.scenarios.iter().enumerate() {
         let path = format!("scenario[{index}]");
         one_scenario(scenario, actuator.cylinder.stroke, &path, check);
-        if project.scenarios.iter().take(index).any(|earlier| earlier.name == scenario.name) {
+        if !names.insert(&scenario.name) {
             check.error(&format!("{path}.name"), format!("a second scenario called \"{}\"", scenario.name));
         }
     }
@@ -234,13 +237,29 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
 
 /// A linear parameter beside a path it is derived from would count the same uncertainty twice.
 fn depends(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) {
-    let Some(parameter) = linear_parameter(&uncertain.name) else { return };
+    let Some(parameter) = linear_parameter(&uncertain.name) else {
+        return hidden(&uncertain.name, project, check);
+    };
     for other in &project.uncertainty {
-        let below = |path: &&str| other.name == **path || other.name.starts_with(&format!("{path}."));
-        if parameter.depends_on.iter().any(below) {
+        if parameter.depends_on.iter().any(|path| is_below(&other.name, path)) {
             let message =
                 format!("`{}` depends on `{}`: both cannot be uncertain", uncertain.name, other.name);
             check.error_with_help(&format!("uncertainty.{}", other.name), message, "list one of the two");
         }
     }
+}
+
+/// An uncertain path whose every linear parameter `[linear]` sets has no effect.
+fn hidden(name: &str, project: &Project, check: &mut Check<'_, '_>) {
+    let depends = |parameter: &&LinearParameter| parameter.depends_on.iter().any(|path| is_below(name, path));
+    let mut reached = LINEAR_PARAMETERS.iter().filter(depends).peekable();
+    if reached.peek().is_some() && reached.all(|parameter| project.linear.get(parameter.key.name).is_some()) {
+        let message = format!("`{name}` does not reach the linear model: [linear] sets what it changes");
+        check.warning(&format!("uncertainty.{name}"), message);
+    }
+}
+
+/// Whether a path is the other or a part of what it names.
+fn is_below(path: &str, table: &str) -> bool {
+    path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
