@@ -148,7 +148,8 @@ mod tests {
 
     #[test]
     fn areas_come_from_diameters_or_stand_for_themselves() {
-        let diameters = Cylinder { piston_diameter: Some(0.05), rod_diameter: Some(0.022), ..Cylinder::default() };
+        let diameters =
+            Cylinder { piston_diameter: Some(0.05), rod_diameter: Some(0.022), ..Cylinder::default() };
         let [area_a, area_b] = diameters.effective_areas_m2();
         // ORIGIN: analytic, pi/4 (0.05^2 - 0.022^2) = 1.58336e-3
         assert!((area_a - 1.58336e-3).abs() < 0.5e-8 && area_a == area_b);

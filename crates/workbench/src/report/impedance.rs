@@ -146,7 +146,7 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
         series: views(linearization).iter().map(|(name, view)| series(name, &view.impedance)).collect(),
         asymptotes: lines,
         corners: vec![FrequencyMark {
-            label: "sqrt(K_H/M)".to_string(),
+            label: "√(K_H/M)".to_string(),
             frequency_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
         }],
         non_passive_bands_rad_per_s: bands

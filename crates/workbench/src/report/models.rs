@@ -80,8 +80,8 @@ fn poles(linearization: &Linearization) -> Figure {
             series("decomposed (6.12), corrected", &linearization.decomposed[1]),
         ],
         scale: PoleMapScale::SignedLogarithmic,
-        damping_ratios: vec![],
-        natural_frequencies_rad_per_s: vec![],
+        damping_ratios: vec![0.01, 0.1, 0.5, 0.9],
+        natural_frequencies_rad_per_s: vec![1.0, 10.0, 100.0, 1000.0],
     };
     let caption = "Poles from command to force: the slow hydraulic pole, the piston on the load cell, the valve's spool.";
     pole_map(Words::new("poles", "Pole map", caption), &input)

@@ -101,7 +101,7 @@ fn line(declared: &project::Line) -> LineSymbol {
 fn controller_words(project: &Project, controller: &project::Controller) -> Vec<String> {
     let words = |letter: &str, transfer: &project::Transfer| match transfer.form() {
         Some(project::TransferForm::Polynomials { numerator, denominator }) => {
-            Some(format!("{letter} = ({})/({})", numerator.text(), denominator.text()))
+            Some(format!("{letter} = {}/{}", polynomial(numerator.text()), polynomial(denominator.text())))
         }
         _ => None,
     };
@@ -111,6 +111,12 @@ fn controller_words(project: &Project, controller: &project::Controller) -> Vec<
         rows.push(format!("sampled every {}", shown(sample_time, &quantity::TIME)));
     }
     rows
+}
+
+/// A polynomial for people: products by a space, in parentheses if it is a sum.
+fn polynomial(text: &str) -> String {
+    let spaced = text.replace('*', " ");
+    if spaced.contains(['+', '-', ' ']) { format!("({spaced})") } else { spaced }
 }
 
 fn facts(actuator: &project::Actuator, rig: &Rig) -> Markup {
