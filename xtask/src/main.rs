@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a chore talks to the person who started it")]
 
 mod ci;
+mod reference_systems;
 mod repository;
 mod tidy;
 
@@ -15,6 +16,8 @@ const USAGE: &str = "\
 usage: cargo xtask CHORE
 
   ci [STAGE]...    the test command: every stage, or only those named
+  reference-systems
+                   a hundred random linear systems and what phea computes of them, as JSON
   tidy [FOLDER]    the rules of the house that compiler and clippy do not know, here or in another checkout";
 
 fn main() -> ExitCode {
@@ -22,6 +25,7 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words.as_slice() {
         ["ci", stages @ ..] => ci::run(&root(), stages),
+        ["reference-systems"] => reference_systems::print(),
         ["tidy"] => tidy::report(&root()),
         ["tidy", elsewhere] => tidy::report(Path::new(elsewhere)),
         _ => {

@@ -240,6 +240,7 @@ fn phase_is_continuous_and_right_modulo_a_turn() {
 
 #[test]
 fn phases_start_where_they_should() {
+    // ORIGIN: analytic. Multiples of 90 degrees
     let at = |system: &TransferFunction, w: f64| system.phase_rad(w).to_degrees();
     assert_eq!(at(&rational(&[-1.0], &[1.0]), 1.0), -180.0);
     assert_eq!(at(&rational(&[1.0], &[1.0, 0.0, 0.0]), 1.0), -180.0);

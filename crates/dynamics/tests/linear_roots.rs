@@ -101,7 +101,7 @@ fn wilkinson_like_spread() {
     let truth: Vec<Complex64> = (1..=12).map(|k| real(-f64::from(k))).collect();
     check(&truth, 1e-15);
     // degree 20: every coefficient is rounded, and the roots of the rounded polynomial are those found.
-    // ORIGIN: recomputed in 60-digit arithmetic from the same rounded coefficients
+    // ORIGIN: other tool (mpmath with 60 digits on the same rounded coefficients)
     let truth: Vec<Complex64> = (1..=20).map(|k| real(-f64::from(k))).collect();
     let found = Polynomial::from_roots(1.0, &truth).unwrap().roots().unwrap();
     assert!((found[19].re + 20.000_000_22).abs() < 1e-8, "{}", found[19]);

@@ -1,10 +1,11 @@
 //! From continuous time to samples.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 use super::matrix_exponential::ExactStep;
 use super::realization::whole_samples;
+use super::structure::{Resolvent, widened};
 use super::transfer_function::TransferFunction;
 use super::{LinearError, StateSpace, TimeDomain, realization, zeros};
 use crate::portable::{cos, exp, expm1, sin, tan};
@@ -169,25 +170,24 @@ impl StateSpace {
     /// With kappa = 2/T:  A_d = (kappa + A)(kappa - A)^-1, and inputs and outputs to match.
     fn trapezoidal(&self, kappa: f64, sample_time_s: f64) -> Result<Self, LinearError> {
         let order = self.order();
-        let mut balanced = self.a().clone();
-        let scales = nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced);
-        let b = DMatrix::from_fn(order, self.inputs(), |i, j| self.b()[(i, j)] / scales[i]);
-        let c = DMatrix::from_fn(self.outputs(), order, |i, j| self.c()[(i, j)] * scales[j]);
-        let identity = DMatrix::<f64>::identity(order, order);
-        let shifted = &identity * kappa - &balanced;
-        let lu = shifted.clone().lu();
-        let no_image = || LinearError::NoImage { root_rad_per_s: kappa };
+        let resolvent = Resolvent::new(self.a(), Complex64::new(kappa, 0.0));
         let solve = |right: &DMatrix<f64>| -> Result<DMatrix<f64>, LinearError> {
-            let first = lu.solve(right).ok_or_else(no_image)?;
-            let correction = lu.solve(&(right - &shifted * &first)).ok_or_else(no_image)?;
-            Ok(first + correction)
+            let mut solution = DMatrix::zeros(order, right.ncols());
+            for (index, column) in right.column_iter().enumerate() {
+                let states = resolvent.solve(&widened(column.iter()));
+                let states = states.ok_or(LinearError::NoImage { root_rad_per_s: kappa })?;
+                solution
+                    .set_column(index, &DVector::from_iterator(order, states.iter().map(|x| x.value().re)));
+            }
+            Ok(solution)
         };
         // (kappa + A)(kappa - A)^-1 = 2 kappa (kappa - A)^-1 - I
-        let resolvent = solve(&identity)?;
-        let a = &resolvent * (2.0 * kappa) - &identity;
-        let inputs = solve(&b)?;
-        let d = self.d() + &c * &inputs;
-        let outputs = &c * &resolvent * (2.0 * kappa);
+        let identity = DMatrix::<f64>::identity(order, order);
+        let inverse = solve(&identity)?;
+        let inputs = solve(self.b())?;
+        let a = &inverse * (2.0 * kappa) - &identity;
+        let d = self.d() + self.c() * &inputs;
+        let outputs = self.c() * &inverse * (2.0 * kappa);
         StateSpace::new(a, inputs, outputs, d, TimeDomain::Discrete { sample_time_s })
     }
 }

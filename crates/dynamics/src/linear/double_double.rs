@@ -40,9 +40,14 @@ impl DoubleDouble {
 
     /// The quotient by an `f64`.
     pub(crate) fn divided_by(self, divisor: f64) -> Self {
-        let first = self.high / divisor;
-        let rest = self - DoubleDouble::product_of(first, divisor);
-        DoubleDouble::normalised(first, rest.value() / divisor)
+        self.divided_by_wide(divisor.into())
+    }
+
+    /// The quotient, good to about thirty digits.
+    pub(crate) fn divided_by_wide(self, divisor: Self) -> Self {
+        let first = self.high / divisor.high;
+        let rest = self - divisor * DoubleDouble::from(first);
+        DoubleDouble::normalised(first, rest.value() / divisor.high)
     }
 
     fn normalised(high: f64, low: f64) -> Self {
@@ -113,6 +118,17 @@ impl ComplexDoubleDouble {
         ComplexDoubleDouble { re: scaled(self.re), im: scaled(self.im) }
     }
 
+    /// The quotient, good to about thirty digits.
+    pub(crate) fn divided_by(self, divisor: Self) -> Self {
+        let squares = divisor.re * divisor.re + divisor.im * divisor.im;
+        let conjugate = ComplexDoubleDouble { re: divisor.re, im: -divisor.im };
+        let product = self * conjugate;
+        ComplexDoubleDouble {
+            re: product.re.divided_by_wide(squares),
+            im: product.im.divided_by_wide(squares),
+        }
+    }
+
     /// The nearest ordinary complex number.
     pub(crate) fn value(self) -> Complex64 {
         Complex64::new(self.re.value(), self.im.value())
@@ -141,6 +157,13 @@ impl Add for ComplexDoubleDouble {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         ComplexDoubleDouble { re: self.re + other.re, im: self.im + other.im }
+    }
+}
+
+impl Sub for ComplexDoubleDouble {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        ComplexDoubleDouble { re: self.re - other.re, im: self.im - other.im }
     }
 }
 

@@ -2,13 +2,14 @@
 //!
 //! The matrix is split into the irreducible blocks of its zero pattern (a cascade gives its poles exactly, an
 //! integrator gives an exact zero); each block is balanced (Parlett and Reinsch 1969), reduced by the QR algorithm,
-//! and its eigenvalues are improved as the roots of det(sI - A), whose logarithmic derivative is tr (sI - A)^-1.
+//! and its eigenvalues are brought to full accuracy as the roots of det(sI - A) in twice the working precision.
 
 use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 
 use super::LinearError;
-use super::refinement::{refine, sort, symmetrise};
+use super::double_double::ComplexDoubleDouble;
+use super::refinement::{converge, sort, symmetrise};
 use super::structure::irreducible_blocks;
 use crate::portable::magnitude;
 
@@ -67,12 +68,56 @@ fn of_block(
         return Err(LinearError::EigenvaluesNotConverged { order });
     }
     adjust(&block, &mut values);
-    let complex = block.map(|entry| Complex64::new(entry, 0.0));
-    refine(&mut values, 6, |s| {
-        let shifted = DMatrix::from_diagonal_element(order, order, s) - &complex;
-        Some(shifted.try_inverse().map_or(Complex64::new(0.0, 0.0), |inverse| inverse.trace().inv()))
-    });
+    converge(&mut values, 40, |s| newton_step(&block, s));
     Ok(symmetrise(&values))
+}
+
+/// f/f' for f = det(s I - A), by elimination in twice the working precision on the matrix and its derivative I.
+///
+/// ```text
+/// f'/f = sum of u_k'/u_k over the pivots u
+/// ```
+fn newton_step(matrix: &DMatrix<f64>, s: Complex64) -> Option<Complex64> {
+    let order = matrix.nrows();
+    let zero = ComplexDoubleDouble::default();
+    let mut rows: Vec<Vec<(ComplexDoubleDouble, ComplexDoubleDouble)>> = (0..order)
+        .map(|i| {
+            let entry = |j: usize| match i == j {
+                true => {
+                    let difference = ComplexDoubleDouble::difference_of(s, matrix[(i, j)].into());
+                    (difference, ComplexDoubleDouble::from(1.0))
+                }
+                false => (ComplexDoubleDouble::from(-matrix[(i, j)]), zero),
+            };
+            (0..order).map(entry).collect()
+        })
+        .collect();
+    let mut slope = Complex64::new(0.0, 0.0);
+    for column in 0..order {
+        let size = |row: &usize| magnitude(rows[*row][column].0.value());
+        let pivot_row = (column..order).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        rows.swap(column, pivot_row);
+        let pivots = rows[column].clone();
+        let (pivot, pivot_slope) = pivots[column];
+        if pivot == zero {
+            return Some(Complex64::new(0.0, 0.0));
+        }
+        slope += pivot_slope.value() / pivot.value();
+        for row in rows.iter_mut().skip(column + 1) {
+            let (entry, entry_slope) = row[column];
+            if entry == zero && entry_slope == zero {
+                continue;
+            }
+            let factor = entry.divided_by(pivot);
+            let factor_slope = (entry_slope - factor * pivot_slope).divided_by(pivot);
+            for (target, &(value, value_slope)) in row.iter_mut().zip(&pivots).skip(column + 1) {
+                target.1 = target.1 - factor * value_slope - factor_slope * value;
+                target.0 = target.0 - factor * value;
+            }
+        }
+    }
+    let step = slope.inv();
+    step.is_finite().then_some(step)
 }
 
 /// The eigenvalues on the diagonal blocks of a real Schur form.

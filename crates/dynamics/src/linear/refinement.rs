@@ -37,6 +37,40 @@ where
     }
 }
 
+/// The same iteration without restraint, for steps that are accurate however far they reach; roots without a step, and
+/// exact zeros (put there for a reason), stay.
+///
+/// From real points a real function never leads to complex roots, so points that are still far from a root, or that do
+/// not come to rest, are moved off the real axis.
+pub(crate) fn converge<F>(roots: &mut [Complex64], sweeps: usize, newton_step: F)
+where
+    F: Fn(Complex64) -> Option<Complex64>,
+{
+    let mut done: Vec<bool> = roots.iter().map(|root| *root == Complex64::new(0.0, 0.0)).collect();
+    for sweep in 0..sweeps {
+        for index in 0..roots.len() {
+            if done[index] {
+                continue;
+            }
+            let step = repelled_step(roots, index, newton_step(roots[index])).unwrap_or_default();
+            let (size, scale) = (magnitude(step), magnitude(roots[index]));
+            let side = if index % 2 == 0 { 1.0 } else { -1.0 };
+            if sweep == 0 && size > 1e-3 * scale {
+                roots[index] *= Complex64::new(1.0, 0.1 * side);
+                continue;
+            }
+            roots[index] -= step;
+            if sweep == sweeps / 2 {
+                roots[index].im += side * size;
+            }
+            done[index] = size <= 4.0 * f64::EPSILON * scale;
+        }
+        if done.iter().all(|&flag| flag) {
+            return;
+        }
+    }
+}
+
 /// The step of Ehrlich and Aberth for one root, or nothing when it is undefined or zero.
 pub(crate) fn repelled_step(
     roots: &[Complex64],

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::eigenvalues::eigenvalues;
-use super::structure::Resolvent;
+use super::structure::{Resolvent, product, widened};
 use super::transfer_function::is_stable_pole;
 use super::{LinearError, TimeDomain, TransferFunction, realization, zeros};
 use crate::portable;
@@ -185,15 +185,21 @@ impl StateSpace {
     }
 
     /// C (s I - A)^-1 B + D for all channels at any s (or z); infinite entries where s is an eigenvalue of A.
+    ///
+    /// The solution is refined in twice the working precision: the result is that of the matrices as they stand.
     pub fn responses(&self, s: Complex64) -> DMatrix<Complex64> {
-        let complex = |matrix: &DMatrix<f64>| matrix.map(|entry| Complex64::new(entry, 0.0));
-        match Resolvent::of(&self.a).solve(s, &complex(&self.b)) {
-            Some(states) => complex(&self.c) * states + complex(&self.d),
-            None => {
-                let infinite = Complex64::new(f64::INFINITY, 0.0);
-                DMatrix::from_element(self.outputs(), self.inputs(), infinite)
+        let resolvent = Resolvent::new(&self.a, s);
+        let mut values =
+            DMatrix::from_element(self.outputs(), self.inputs(), Complex64::new(f64::INFINITY, 0.0));
+        for input in 0..self.inputs() {
+            if let Some(states) = resolvent.solve(&widened(self.b.column(input).iter())) {
+                for output in 0..self.outputs() {
+                    let start = self.d[(output, input)];
+                    values[(output, input)] = product(self.c.row(output).iter(), &states, start);
+                }
             }
         }
+        values
     }
 
     /// The transfer function from one input to one output: poles from A, zeros from the system pencil, gain from the

@@ -1,7 +1,10 @@
 //! The block-triangular structure that the zeros of a matrix give it, and solutions that respect it.
 
-use nalgebra::{DMatrix, DVector, linalg::balancing::balance_parlett_reinsch};
+use nalgebra::{DMatrix, DVector, Dyn, LU, linalg::balancing::balance_parlett_reinsch};
 use num_complex::Complex64;
+
+use super::double_double::ComplexDoubleDouble;
+use crate::portable::magnitude;
 
 /// The sets of states that all influence each other, ordered so that each is influenced by earlier ones only.
 pub(crate) fn irreducible_blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
@@ -33,70 +36,100 @@ pub(crate) fn irreducible_blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
     blocks
 }
 
-/// Solves (s I - A) X = R block by block, each block balanced: a slow mode is not mixed with a fast one that it only
-/// feeds.
+/// A column of numbers in twice the working precision.
+pub(crate) type WideVector = Vec<ComplexDoubleDouble>;
+
+/// (s I - A)^-1 at one point, block by block, so that a slow mode is not mixed with a fast one that it only feeds.
+///
+/// Each block is balanced and factored in working precision; its solutions are refined with residuals in twice the
+/// working precision, so that what is lost by the condition of A is regained.
 pub(crate) struct Resolvent<'a> {
     matrix: &'a DMatrix<f64>,
+    s: Complex64,
     blocks: Vec<Block>,
 }
 
 struct Block {
     states: Vec<usize>,
-    balanced: DMatrix<Complex64>,
     units: DVector<f64>,
+    factors: LU<Complex64, Dyn, Dyn>,
 }
 
+const MAXIMUM_REFINEMENTS: usize = 10;
+
 impl<'a> Resolvent<'a> {
-    pub(crate) fn of(matrix: &'a DMatrix<f64>) -> Self {
+    pub(crate) fn new(matrix: &'a DMatrix<f64>, s: Complex64) -> Self {
         let block = |states: Vec<usize>| {
             let size = states.len();
             let mut balanced = DMatrix::from_fn(size, size, |i, j| matrix[(states[i], states[j])]);
             let units = balance_parlett_reinsch(&mut balanced);
-            Block { states, balanced: balanced.map(|entry| Complex64::new(entry, 0.0)), units }
+            let shifted = DMatrix::from_diagonal_element(size, size, s)
+                - balanced.map(|entry| Complex64::new(entry, 0.0));
+            Block { states, units, factors: shifted.lu() }
         };
-        Resolvent { matrix, blocks: irreducible_blocks(matrix).into_iter().map(block).collect() }
+        Resolvent { matrix, s, blocks: irreducible_blocks(matrix).into_iter().map(block).collect() }
     }
 
-    /// X, or nothing where s is an eigenvalue.
-    pub(crate) fn solve(&self, s: Complex64, right: &DMatrix<Complex64>) -> Option<DMatrix<Complex64>> {
-        let mut solution = DMatrix::zeros(right.nrows(), right.ncols());
-        let mut known: Vec<usize> = Vec::with_capacity(right.nrows());
+    /// (s I - A)^-1 r, or nothing where s is an eigenvalue.
+    pub(crate) fn solve(&self, right: &[ComplexDoubleDouble]) -> Option<WideVector> {
+        let mut solution = vec![ComplexDoubleDouble::default(); right.len()];
+        let everything: Vec<usize> = (0..right.len()).collect();
         for block in &self.blocks {
-            let size = block.states.len();
-            let driven = DMatrix::from_fn(size, right.ncols(), |i, column| {
-                let state = block.states[i];
-                let coupled =
-                    known.iter().map(|&other| solution[(other, column)] * self.matrix[(state, other)]);
-                (right[(state, column)] + coupled.sum::<Complex64>()) / block.units[i]
-            });
-            let part = block.solve(s, &driven)?;
-            for (i, &state) in block.states.iter().enumerate() {
-                for column in 0..right.ncols() {
-                    solution[(state, column)] = part[(i, column)] * block.units[i];
+            let mut last = f64::INFINITY;
+            for _ in 0..MAXIMUM_REFINEMENTS {
+                let residual = DVector::from_fn(block.states.len(), |i, _| {
+                    self.residual(block.states[i], right, &solution, &everything) / block.units[i]
+                });
+                let correction = block.factors.solve(&residual)?;
+                let size = correction.iter().map(|entry| magnitude(*entry)).fold(0.0, f64::max);
+                if !size.is_finite() {
+                    return None;
+                }
+                if size == 0.0 || size >= 0.5 * last {
+                    break;
+                }
+                last = size;
+                for (i, &state) in block.states.iter().enumerate() {
+                    let step = ComplexDoubleDouble::from(correction[i] * block.units[i]);
+                    solution[state] = solution[state] + step;
                 }
             }
-            known.extend_from_slice(&block.states);
         }
         Some(solution)
+    }
+
+    /// One row of r - (s I - A) x.
+    fn residual(
+        &self,
+        row: usize,
+        right: &[ComplexDoubleDouble],
+        solution: &[ComplexDoubleDouble],
+        columns: &[usize],
+    ) -> Complex64 {
+        let diagonal =
+            ComplexDoubleDouble::difference_of(Complex64::new(self.matrix[(row, row)], 0.0), self.s);
+        let start = right[row] + diagonal * solution[row];
+        let others = columns.iter().filter(|&&column| column != row && self.matrix[(row, column)] != 0.0);
+        others
+            .fold(start, |sum, &column| {
+                sum + ComplexDoubleDouble::from(self.matrix[(row, column)]) * solution[column]
+            })
+            .value()
     }
 }
 
-impl Block {
-    fn solve(&self, s: Complex64, right: &DMatrix<Complex64>) -> Option<DMatrix<Complex64>> {
-        let size = self.states.len();
-        let shifted = DMatrix::from_diagonal_element(size, size, s) - &self.balanced;
-        if size == 1 {
-            let pivot = shifted[(0, 0)];
-            return (pivot != Complex64::new(0.0, 0.0)).then(|| right.map(|entry| entry / pivot));
-        }
-        let lu = shifted.clone().lu();
-        let mut solution = lu.solve(right)?;
-        // one step of refinement makes the solution backward stable entry by entry (Skeel 1980)
-        if let Some(correction) = lu.solve(&(right - &shifted * &solution))
-            && correction.iter().all(|entry| entry.is_finite())
-        {
-            solution += correction;
-        }
-        Some(solution)
-    }
+/// A real column in twice the working precision.
+pub(crate) fn widened<'a>(column: impl Iterator<Item = &'a f64>) -> WideVector {
+    column.map(|&entry| ComplexDoubleDouble::from(entry)).collect()
+}
+
+/// c x + d, rounded once.
+pub(crate) fn product<'a>(
+    row: impl Iterator<Item = &'a f64>,
+    column: &[ComplexDoubleDouble],
+    start: f64,
+) -> Complex64 {
+    row.zip(column)
+        .fold(ComplexDoubleDouble::from(start), |sum, (&c, &x)| sum + ComplexDoubleDouble::from(c) * x)
+        .value()
 }

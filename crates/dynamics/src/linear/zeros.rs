@@ -6,131 +6,143 @@
 //! ```
 //!
 //! Without feedthrough, the output y = C x = 0 ties one state to the others; that state is eliminated, and what drives
-//! it becomes the new feedthrough, until one is not zero (Emami-Naeini and Van Dooren 1982, for one input and output,
-//! with elimination in place of reflections so that structural zeros stay exact). Then the zeros are eigenvalues of
-//! A - B C/D. Whether a number is zero is judged against the running sum of the magnitudes it was computed from, which
-//! no change of units affects.
+//! it becomes the new feedthrough, until one is not zero. Then the zeros are eigenvalues of A - B C/D, and are brought to
+//! full accuracy on the response itself. How many zeros there are depends on which numbers count as zero, so the result
+//! is compared with the response, and the answer that agrees is taken.
 
-use nalgebra::{DMatrix, DVector, RowDVector};
+mod elimination;
+
 use num_complex::Complex64;
 
 use super::eigenvalues::{eigenvalues_of_computed, index_of_smallest};
-use super::refinement::{refine, symmetrise};
-use super::structure::Resolvent;
-use super::{LinearError, StateSpace};
-use crate::portable::magnitude;
+use super::refinement::{converge, symmetrise};
+use super::structure::{Resolvent, product, widened};
+use super::{LinearError, StateSpace, TransferFunction};
+use crate::portable::{exp, ln, magnitude};
 
-/// A number with the sum of the magnitudes that went into it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Traced {
-    value: f64,
-    scale: f64,
-}
+/// Roundings of the inputs that may make the result of a cancellation count as zero, in the order in which they are
+/// tried: many (matrices are often the result of a computation), a few, none. The first that agrees has the fewest zeros.
+const ROUNDINGS: [f64; 4] = [1e4, 1e2, 4.0, 0.0];
 
-impl Traced {
-    fn of(value: f64) -> Self {
-        Traced { value, scale: value.abs() }
-    }
-
-    /// self + factor * other
-    fn plus(self, factor: Traced, other: Traced) -> Self {
-        Traced {
-            value: self.value + factor.value * other.value,
-            scale: self.scale + factor.scale * other.scale,
-        }
-    }
-
-    fn is_zero(self) -> bool {
-        self.value.abs() <= 64.0 * f64::EPSILON * self.scale
-    }
-}
+/// Agreement of the factors with the response at which no further attempt is made.
+const AGREEMENT: f64 = 1e-11;
 
 /// Gain (leading coefficient) and zeros of a system with one input and one output, whose poles are known.
 pub(crate) fn of_channel(
     system: &StateSpace,
     poles: &[Complex64],
 ) -> Result<(f64, Vec<Complex64>), LinearError> {
-    let (gain, reduced) = reduce(system);
-    let Some(matrix) = reduced else { return Ok((0.0, Vec::new())) };
+    if is_zero_everywhere(system, poles) {
+        return Ok((0.0, Vec::new()));
+    }
+    let mut best: Option<(f64, Vec<Complex64>)> = None;
+    let mut smallest = f64::INFINITY;
+    for roundings in ROUNDINGS {
+        let Some(factors) = attempt(system, poles, roundings)? else { continue };
+        let deviation = deviation(system, &factors, poles);
+        if best.is_none() || deviation < smallest {
+            (best, smallest) = (Some(factors), deviation);
+        }
+        if smallest <= AGREEMENT {
+            break;
+        }
+    }
+    Ok(best.unwrap_or_default())
+}
+
+fn attempt(
+    system: &StateSpace,
+    poles: &[Complex64],
+    roundings: f64,
+) -> Result<Option<(f64, Vec<Complex64>)>, LinearError> {
+    let (gain, Some(matrix)) = elimination::reduce(system, roundings) else { return Ok(None) };
+    if matrix.iter().any(|entry| !entry.is_finite()) {
+        return Ok(None);
+    }
     let mut zeros = eigenvalues_of_computed(&matrix)?;
-    let resolvent = Resolvent::of(system.a());
-    if vanishes_at_origin(system, &resolvent)
+    if vanishes_at_origin(system)
         && let Some(smallest) = index_of_smallest(&zeros)
     {
         zeros[smallest] = Complex64::new(0.0, 0.0);
     }
-    refine(&mut zeros, 6, |s| newton_step(system, &resolvent, poles, s));
-    Ok((gain, symmetrise(&zeros)))
+    converge(&mut zeros, 60, |s| newton_step(system, poles, s));
+    let zeros = symmetrise(&zeros);
+    let matched =
+        matched_gain(system, &zeros, poles).filter(|matched| (matched - gain).abs() > 1e-13 * gain.abs());
+    Ok(Some((matched.unwrap_or(gain), zeros)))
 }
 
-/// The leading coefficient, and the matrix whose eigenvalues are the zeros; none when the channel is zero everywhere.
-fn reduce(system: &StateSpace) -> (f64, Option<DMatrix<f64>>) {
-    let mut balanced = system.a().clone();
-    let units = nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced);
-    let mut a = balanced.map(Traced::of);
-    let mut b = DVector::from_fn(system.order(), |i, _| Traced::of(system.b()[(i, 0)] / units[i]));
-    let mut c = RowDVector::from_fn(system.order(), |_, j| Traced::of(system.c()[(0, j)] * units[j]));
-    let mut d = Traced::of(system.d()[(0, 0)]);
-    let mut gain = 1.0;
-    while d.is_zero() {
-        let present = (0..a.nrows()).filter(|&j| !c[j].is_zero());
-        let pivot = present.max_by(|&i, &j| c[i].value.abs().total_cmp(&c[j].value.abs()));
-        let Some(pivot) = pivot else { return (0.0, None) };
-        gain *= c[pivot].value;
-        (a, b, c, d) = eliminate(&a, &b, &c, pivot);
+/// The response at s, and the sum of the magnitudes of its parts.
+fn response(system: &StateSpace, s: Complex64) -> Option<(Complex64, f64)> {
+    let states = Resolvent::new(system.a(), s).solve(&widened(system.b().iter()))?;
+    let feedthrough = system.d()[(0, 0)];
+    let parts = system.c().iter().zip(&states).map(|(c, x)| c.abs() * magnitude(x.value()));
+    let size = feedthrough.abs() + parts.sum::<f64>();
+    Some((product(system.c().iter(), &states, feedthrough), size))
+}
+
+/// Points off the axes at the magnitudes of the poles.
+fn test_points(poles: &[Complex64]) -> Vec<Complex64> {
+    let sizes = poles.iter().map(|pole| magnitude(*pole)).map(|size| if size > 0.0 { size } else { 1.0 });
+    let mut points: Vec<Complex64> = sizes.map(|size| Complex64::new(0.3 * size, 1.1 * size)).collect();
+    if points.is_empty() {
+        points.push(Complex64::new(0.3, 1.1));
     }
-    let order = a.nrows();
-    let closed = |i: usize, j: usize| a[(i, j)].value - b[i].value * (c[j].value / d.value);
-    (gain * d.value, Some(DMatrix::from_fn(order, order, closed)))
+    points
 }
 
-type System = (DMatrix<Traced>, DVector<Traced>, RowDVector<Traced>, Traced);
+/// Whether the response is nowhere more than the rounding of its parts.
+fn is_zero_everywhere(system: &StateSpace, poles: &[Complex64]) -> bool {
+    test_points(poles).into_iter().all(|s| {
+        response(system, s).is_none_or(|(value, size)| magnitude(value) <= 16.0 * f64::EPSILON * size)
+    })
+}
 
-/// Ties state k by C x = 0. With y' = c_k (x_k + sum m_j x_j) as a new state, m_j = c_j/c_k, the others obey
-/// x_i' = sum (a_ij - a_ik m_j) x_j + b_i u, and y'/c_k is driven by the new output row and feedthrough.
-fn eliminate(a: &DMatrix<Traced>, b: &DVector<Traced>, c: &RowDVector<Traced>, k: usize) -> System {
-    let order = a.nrows();
-    let kept: Vec<usize> = (0..order).filter(|&i| i != k).collect();
-    let ratio = |j: usize| Traced { value: c[j].value / c[k].value, scale: c[j].scale / c[k].value.abs() };
-    let minus = |x: Traced| Traced { value: -x.value, scale: x.scale };
-    let tied = |i: usize, j: usize| a[(i, j)].plus(minus(ratio(j)), a[(i, k)]);
-    let reduced = DMatrix::from_fn(order - 1, order - 1, |i, j| tied(kept[i], kept[j]));
-    let inputs = DVector::from_fn(order - 1, |i, _| b[kept[i]]);
-    // d(x_k + sum m_i x_i)/dt
-    let row = RowDVector::from_fn(order - 1, |_, j| {
-        kept.iter().fold(tied(k, kept[j]), |sum, &i| sum.plus(ratio(i), tied(i, kept[j])))
-    });
-    let feedthrough = kept.iter().fold(b[k], |sum, &i| sum.plus(ratio(i), b[i]));
-    (reduced, inputs, row, feedthrough)
+/// Largest relative difference between factors and response.
+fn deviation(system: &StateSpace, factors: &(f64, Vec<Complex64>), poles: &[Complex64]) -> f64 {
+    let (gain, zeros) = factors;
+    let candidate = TransferFunction::assembled(*gain, zeros.clone(), poles.to_vec(), system.domain());
+    let at = |s: Complex64| {
+        let (value, _) = response(system, s)?;
+        Some(magnitude(candidate.evaluate_rational(s) - value) / magnitude(value))
+    };
+    test_points(poles).into_iter().filter_map(at).fold(0.0, f64::max)
+}
+
+/// The gain that makes the factors agree with the response at a point of the real axis among the poles. (The leading coefficient itself is only as good as what was neglected as zero above it.)
+fn matched_gain(system: &StateSpace, zeros: &[Complex64], poles: &[Complex64]) -> Option<f64> {
+    let logarithms = || poles.iter().map(|root| magnitude(*root)).filter(|size| *size > 0.0).map(ln);
+    let centre = exp(logarithms().sum::<f64>() / logarithms().count().max(1) as f64);
+    let clearance = |point: &f64| {
+        let roots = zeros.iter().chain(poles);
+        roots.map(|root| magnitude(root - point)).fold(f64::INFINITY, f64::min) / point
+    };
+    let candidates = [1.0, 0.77, 1.3, 0.6, 1.7].map(|factor| factor * centre);
+    let point = candidates.into_iter().max_by(|a, b| clearance(a).total_cmp(&clearance(b)))?;
+    let s = Complex64::new(point, 0.0);
+    let (response, _) = response(system, s)?;
+    let shape = TransferFunction::assembled(1.0, zeros.to_vec(), poles.to_vec(), system.domain());
+    let gain = response.re / shape.evaluate_rational(s).re;
+    (gain.is_finite() && gain != 0.0).then_some(gain)
 }
 
 /// Whether the response at s = 0 is no more than the rounding of its parts.
-fn vanishes_at_origin(system: &StateSpace, resolvent: &Resolvent<'_>) -> bool {
-    let inputs = system.b().map(|entry| Complex64::new(entry, 0.0));
-    let Some(states) = resolvent.solve(Complex64::new(0.0, 0.0), &inputs) else { return false };
-    let parts = (0..system.order()).map(|j| system.c()[(0, j)] * states[(j, 0)].re);
-    let feedthrough = system.d()[(0, 0)];
-    let (sum, size) =
-        parts.fold((feedthrough, feedthrough.abs()), |(sum, size), part| (sum + part, size + part.abs()));
-    sum.abs() <= 16.0 * f64::EPSILON * size
+fn vanishes_at_origin(system: &StateSpace) -> bool {
+    let at_origin = response(system, Complex64::new(0.0, 0.0));
+    at_origin.is_some_and(|(value, size)| magnitude(value) <= 16.0 * f64::EPSILON * size)
 }
 
 /// f/f' for the numerator f = g(s) prod (s - p) of the response g; nothing at a pole that cancels.
-fn newton_step(
-    system: &StateSpace,
-    resolvent: &Resolvent<'_>,
-    poles: &[Complex64],
-    s: Complex64,
-) -> Option<Complex64> {
+fn newton_step(system: &StateSpace, poles: &[Complex64], s: Complex64) -> Option<Complex64> {
     if poles.iter().any(|pole| magnitude(pole - s) <= 1e-6 * magnitude(s)) {
         return None;
     }
-    let complex = |matrix: &DMatrix<f64>| matrix.map(|entry| Complex64::new(entry, 0.0));
-    let output = complex(system.c());
-    let states = resolvent.solve(s, &complex(system.b()))?;
-    let slopes = resolvent.solve(s, &states)?;
-    let response = (&output * &states)[(0, 0)] + system.d()[(0, 0)];
-    let slope = -(&output * &slopes)[(0, 0)];
+    // g = C x + D with (s I - A) x = B, and g' = -C x' with (s I - A) x' = x
+    let resolvent = Resolvent::new(system.a(), s);
+    let states = resolvent.solve(&widened(system.b().iter()))?;
+    let slopes = resolvent.solve(&states)?;
+    let response = product(system.c().iter(), &states, system.d()[(0, 0)]);
+    let slope = -product(system.c().iter(), &slopes, 0.0);
     if response == Complex64::new(0.0, 0.0) {
         return Some(response);
     }
