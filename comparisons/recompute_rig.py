@@ -1,4 +1,4 @@
-"""Recomputes the numbers of the thesis' rig that the hydraulics tests hold phea to.
+"""Recomputes the numbers of the thesis' rig that the tests of hydraulics and workbench hold phea to.
 
 Independent of phea: NumPy and SciPy only, from the component equations (matrices of the physical states, roots by
 bracketing), never from the expanded coefficients of Ledezma (2019), equation 6.7. Prints one line a number.
@@ -255,10 +255,101 @@ def leakage_peak():
             show(f"leakage peak, {name}, side {side:+d}: ratio, command", ratio, side * found.x)
 
 
+# Name: bore m, expansion at the supply's pressure m3/m, its slope m3/(m Pa).
+HOSES = {
+    "eaton": (BORE, EXPANSION, EXPANSION_SLOPE),
+    "too fast": (6.4e-3, 1e-12 * SUPPLY, 1e-12),
+    "right": (7.9e-3, 2e-12 * SUPPLY, 2e-12),
+    "rigid": (7.9e-3, 5e-14 * SUPPLY, 5e-14),
+    "stubborn": (9.5e-3, 8e-6 + 2.5e-12 * 35e5, 2.5e-12),
+    "slow": (15.9e-3, 3e-12 * SUPPLY, 3e-12),
+}
+FLOW, DENSITY = 9.8e-3 / 60, 870.0
+SIZING = {"gain": 5.62e-5, "leak": 6.42e-13, "sensor": 2e7, "tau": 0.05}
+
+
+def least_and_greatest(hose, length, model, areas):
+    """Stiffness over the stroke by search, from the compliance of each volume."""
+    bore, expansion, slope = hose
+    section = np.pi / 4 * bore**2
+    wall = STIFFENING * (section + expansion) / slope
+    line = section * length / FLUID_MODULUS + section * length / wall
+    oil = 1 / FLUID_MODULUS + (1 / wall if model == "uniform" else 0.0)
+
+    def total(x):
+        return areas[0] ** 2 / (line + areas[0] * x * oil) + areas[1] ** 2 / (line + areas[1] * (STROKE - x) * oil)
+
+    inside = minimize_scalar(total, bounds=(0, STROKE), method="bounded", options={"xatol": 1e-13})
+    return min(inside.fun, total(0.0), total(STROKE)), max(total(0.0), total(STROKE))
+
+
+def sizing_gain(stiffness, area):
+    """The K_p that makes the slow pole of force feedback -1/tau, found from the pole itself."""
+    equivalent = 1 / (1 / stiffness + 1 / SIZING["sensor"])
+    rate = lambda gain: equivalent / area * (SIZING["gain"] * gain + SIZING["leak"] / area) * SIZING["tau"]
+    return brentq(lambda gain: rate(gain) - 1, -1, 1, xtol=1e-18, rtol=1e-14)
+
+
+def sizing_stiffness(gain, area):
+    """The K_H for this K_p, infinite where the sensor alone is too soft."""
+    flow = SIZING["tau"] / area * (SIZING["gain"] * gain + SIZING["leak"] / area) - 1 / SIZING["sensor"]
+    return 1 / flow if flow > 0 else np.inf
+
+
+def sizing_of_hoses():
+    velocity = lambda bore: FLOW / (np.pi / 4 * bore**2)
+    show("bore at 4.6 and 2.1 m/s", *(brentq(lambda d, v=v: velocity(d) - v, 1e-4, 1) for v in (4.6, 2.1)))
+    full = np.pi / 4 * 0.05**2
+    for name, hose in HOSES.items():
+        wall = STIFFENING * (np.pi / 4 * hose[0] ** 2 + hose[1]) / hose[2]
+        sound = np.sqrt(1 / (1 / FLUID_MODULUS + 1 / wall) / DENSITY)
+        show(f"hose {name}: velocity m/s, surge Pa", velocity(hose[0]), DENSITY * sound * velocity(hose[0]))
+        for kind, areas in (("two rods", (AREA, AREA)), ("one rod", (AREA, full))):
+            for model in ("uniform", "by_volume"):
+                area = sum(areas) / 2
+                least, greatest = least_and_greatest(hose, LENGTH, model, areas)
+                show(f"  {kind}, {model}, 1.5 m: K_H, K_H, K_p", least, greatest, sizing_gain(least, area))
+                wanted = sizing_stiffness(4e-4, area)
+                length = brentq(lambda l: least_and_greatest(hose, l, model, areas)[0] - wanted, 1e-3, 1e3, xtol=1e-12)
+                show(f"  {kind}, {model}, K_p 4e-4: K_H, L_ho", wanted, length)
+    for gain in (1e-4, 3e-5, 2.1e-5):
+        show(f"two rods: K_H for K_p {gain:g}", sizing_stiffness(gain, AREA))
+    for model, oil in (("uniform", 1 / FLUID_MODULUS + 1 / (STIFFENING * 63630085.0)), ("by_volume", 1 / FLUID_MODULUS)):
+        show(f"two rods, no hose, {model}: K_H", 4 * AREA / (STROKE * oil))
+
+
+def table_6_2_closer():
+    """The eight numbers with K_qU 5.625e-5."""
+    SIZING["gain"] = 5.625e-5
+    section = np.pi / 4 * BORE**2
+    for gain in (0.01, 0.001, 0.0005, 0.00025):
+        stiffness = sizing_stiffness(gain, AREA)
+        compliance = 1 / FLUID_MODULUS + EXPANSION_SLOPE / (STIFFENING * (section + EXPANSION))
+        length = (4 * AREA**2 / (compliance * stiffness) - AREA * STROKE) / (2 * section)
+        show(f"Table 6.2 with K_qU 5.625e-5, K_p {gain:g}: K_H, L_ho", stiffness, length)
+
+
+def impedance_asymptotes():
+    """Driving-point impedance far below every corner, and the straight lines it should follow."""
+    kq, kc, friction, sensor, stiffness = 5.4e-5, 6.42e-13, 100.0, 2e7, 2.24e6
+    system = one_pressure(stiffness, kq, kc, friction, sensor)
+    low = 1e-6
+    open_loop = -response(system, low, 1)
+    show("open loop, low frequency: damper", open_loop.real, (AREA**2 + friction * kc) / kc)
+    for name, loop in (("P", 0.001), ("PI", 0.001 + 0.008 / (1j * low))):
+        value = open_loop / (1 + loop * response(system, low, 0))
+        show(f"{name}, low frequency: damper, mass", value.real, value.imag / low)
+    show("P: damper A/(K_qU K_p); PI: mass A/(K_qU K_i)", AREA / (kq * 0.001), AREA / (kq * 0.008))
+    show("plateau K_eq, its end sqrt(K_H/M)", 1 / (1 / stiffness + 1 / sensor), np.sqrt(stiffness / MASS))
+
+
 if __name__ == "__main__":
     modulus, hose_volume = stiffness_chain()
     table_6_1()
     table_6_2(modulus)
+    sizing_of_hoses()
+    table_6_2_closer()
+    impedance_asymptotes()
     decomposition_errors()
     passivity()
     off_centre(modulus, hose_volume)

@@ -37,6 +37,11 @@ pub fn force<S: Scalar>(stiffness: S, deflection: S) -> S {
 /// use phea_hydraulics::force_sensor::in_series;
 /// assert!((in_series(9.81e7, 2.51e7) - 2.0e7_f64).abs() < 0.5e5);
 /// ```
+/// A spring that does not give leaves the other alone
+/// ```
+/// assert_eq!(phea_hydraulics::force_sensor::in_series(f64::INFINITY, 2.0e7), 2.0e7);
+/// ```
 pub fn in_series<S: Scalar>(first: S, second: S) -> S {
-    first * second / (first + second)
+    let one = S::from(1.0);
+    one / (one / first + one / second)
 }

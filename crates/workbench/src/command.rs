@@ -115,7 +115,12 @@ fn check(loaded: &Loaded) -> Result<Answer, CommandError> {
 fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, CommandError> {
     let positive = |option: &'static str, text: &str, dimension: &quantity::Dimension| {
         let refuse = |message: String| CommandError::Option { option, text: text.to_string(), message };
-        let value = quantity::parse(text, dimension).map_err(|error| refuse(error.to_string()))?;
+        // As in a project file, a bare number is SI.
+        let bare = text.trim().parse().ok().filter(|value: &f64| value.is_finite());
+        let value = match bare {
+            Some(value) => value,
+            None => quantity::parse(text, dimension).map_err(|error| refuse(error.to_string()))?,
+        };
         if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string())) }
     };
     match (gain, length) {

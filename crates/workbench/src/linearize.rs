@@ -3,9 +3,12 @@
 
 mod answer;
 
+use std::f64::consts::FRAC_PI_2;
+
 use phea_dynamics::controller::{Controller, Timing};
 use phea_dynamics::frequency::{PassivityReport, logarithmic_grid, passivity};
 use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::portable;
 use phea_hydraulics::impedance::{
     Asymptote, closed_loop_impedance, closed_loop_load_motion, compliance_hidden_above,
     final_force_after_load_step, impedance_asymptotes, open_loop_impedance,
@@ -190,16 +193,29 @@ fn stiffness_models(rig: &Rig) -> ModelDifference {
 }
 
 /// Frequencies for comparing and drawing: from a decade below the slowest pole to a decade above the fastest, at least
-/// 0.01 to 10 000 rad/s, with the resonances themselves.
+/// 0.01 to 10 000 rad/s, with each resonance resolved.
 pub(crate) fn frequency_grid(function: &TransferFunction) -> Result<Vec<f64>, LinearError> {
-    let moduli: Vec<f64> =
-        function.poles().iter().map(|pole| phea_dynamics::portable::magnitude(*pole)).collect();
+    let moduli: Vec<f64> = function.poles().iter().map(|pole| portable::magnitude(*pole)).collect();
     let slowest = moduli.iter().copied().filter(|modulus| *modulus > 0.0).fold(0.1, f64::min);
     let fastest = moduli.iter().copied().fold(1e3, f64::max);
-    let mut grid = logarithmic_grid((slowest / 10.0).max(1e-6), (fastest * 10.0).min(1e9), 600)?;
-    grid.extend(function.poles().iter().filter(|pole| pole.im > 0.0).map(|pole| pole.im));
+    let (first, last) = ((slowest / 10.0).max(1e-6), (fastest * 10.0).min(1e9));
+    let mut grid = logarithmic_grid(first, last, 600)?;
+    grid.extend(function.poles().iter().filter(|pole| pole.im > 0.0).flat_map(resonance_grid));
+    grid.retain(|frequency| (first..=last).contains(frequency));
     grid.sort_by(f64::total_cmp);
+    grid.dedup();
     Ok(grid)
+}
+
+/// Frequencies around a pole over which its phase turns in equal steps: the peak of a lightly damped pole is much
+/// narrower than the steps of a grid over decades.
+fn resonance_grid(pole: &num_complex::Complex64) -> impl Iterator<Item = f64> + use<> {
+    const STEPS: i32 = 64;
+    let (centre, half_width) = (pole.im, pole.re.abs());
+    (1 - STEPS..STEPS).map(move |step| {
+        let turn = FRAC_PI_2 * f64::from(step) / f64::from(STEPS);
+        centre + half_width * portable::sin(turn) / portable::cos(turn)
+    })
 }
 
 fn compare(grid: &[f64], reference: &TransferFunction, other: &TransferFunction) -> Comparison {

@@ -28,6 +28,7 @@ struct Row<'a> {
 struct DeclaredRow {
     value: Number,
     place: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
     bounds: Option<[f64; 2]>,
     difference_percent: Number,
     contradicts: bool,

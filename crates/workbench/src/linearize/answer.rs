@@ -20,7 +20,7 @@ struct Body<'a> {
     impedance: Ports<'a, ImpedanceRow>,
     passivity: Ports<'a, PassivityRow>,
     compliance_hidden_above_rad_per_s: f64,
-    load_step_final_force_n: Ports<'a, Number>,
+    load_step_final_force_n: FinalForce<'a>,
 }
 
 #[derive(Serialize)]
@@ -77,6 +77,16 @@ struct Mode {
 struct Ports<'a, Row> {
     open_loop: Row,
     closed_loop: Option<Row>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    closed_loop_reason: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct FinalForce<'a> {
+    open_loop: Number,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    open_loop_reason: Option<&'a str>,
+    closed_loop: Number,
     #[serde(skip_serializing_if = "Option::is_none")]
     closed_loop_reason: Option<&'a str>,
 }
@@ -161,7 +171,7 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
         impedance: ports(linearization, impedance_row),
         passivity: ports(linearization, |view| passivity_row(&view.passivity)),
         compliance_hidden_above_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
-        load_step_final_force_n: ports(linearization, |view| Number(view.final_force_n.unwrap_or(f64::NAN))),
+        load_step_final_force_n: final_force(linearization),
     };
     answer::json("linearize", loaded, body)
 }
@@ -171,6 +181,20 @@ fn ports<Row>(linearization: &Linearization, row: impl Fn(&PortView) -> Row) -> 
         open_loop: row(&linearization.open_loop),
         closed_loop: linearization.closed_loop.as_ref().map(&row),
         closed_loop_reason: linearization.closed_loop_absent.as_deref(),
+    }
+}
+
+fn final_force(linearization: &Linearization) -> FinalForce<'_> {
+    let unstable = "unstable: the force has no final value";
+    let force =
+        |view: Option<&PortView>| Number(view.and_then(|view| view.final_force_n).unwrap_or(f64::NAN));
+    let reason = |view: &PortView| view.final_force_n.is_none().then_some(unstable);
+    let closed_loop = linearization.closed_loop.as_ref();
+    FinalForce {
+        open_loop: force(Some(&linearization.open_loop)),
+        open_loop_reason: reason(&linearization.open_loop),
+        closed_loop: force(closed_loop),
+        closed_loop_reason: linearization.closed_loop_absent.as_deref().or(closed_loop.and_then(reason)),
     }
 }
 

@@ -122,7 +122,9 @@ fn velocity(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<F
 fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
     let [shortest, longest] = problem.hose_length;
     let length = candidate.length_m();
-    if length == 0.0 {
+    if length == 0.0 && candidate.branch.gain_v_per_n <= problem.pole_gain() {
+        // No stiffness would do; the gain's own finding says so.
+    } else if length == 0.0 {
         rejects(
             findings,
             "no hose is needed: with rigid lines the actuator is already as compliant as this asks for"

@@ -1,0 +1,229 @@
+//! The report: one page that needs nothing else, whatever the project is called, the same every time.
+
+#[path = "truth/ask.rs"]
+mod ask;
+
+use ask::{HOSE, PIPE, answer, load, try_answer};
+use std::sync::OnceLock;
+
+use phea_workbench::answer::Answer;
+use phea_workbench::command::Request;
+use phea_workbench::report::{Report, report};
+use resvg::usvg::roxmltree::{Document, Node};
+
+const PLANT: &str = include_str!("truth/plant.toml");
+
+fn ask_for_report(project: &str) -> Answer {
+    answer(project, &[], &[], &Request::Report)
+}
+
+/// The reports of both rigs as their command writes them, drawn once.
+fn hose() -> &'static Answer {
+    static ANSWER: OnceLock<Answer> = OnceLock::new();
+    ANSWER.get_or_init(|| ask_for_report(HOSE))
+}
+
+fn pipe() -> &'static Answer {
+    static ANSWER: OnceLock<Answer> = OnceLock::new();
+    ANSWER.get_or_init(|| ask_for_report(PIPE))
+}
+
+fn page(answer: &Answer) -> &str {
+    let file = answer.files.iter().find(|file| file.name == "report.html").unwrap();
+    std::str::from_utf8(&file.bytes).unwrap()
+}
+
+/// The report without its sizing chapter and its pictures, which is all that many questions need.
+fn plain_report(project: &str) -> Report {
+    report(&load(project, &[], &[]), None).unwrap()
+}
+
+/// Everything between `<name` and `</name>`, the tags included.
+fn elements<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
+    let (open, close) = (format!("<{name}"), format!("</{name}>"));
+    let mut found = Vec::new();
+    let mut rest = page;
+    while let Some(start) = rest.find(&open) {
+        let end = start + rest[start..].find(&close).expect("an element is closed") + close.len();
+        found.push(&rest[start..end]);
+        rest = &rest[end..];
+    }
+    found
+}
+
+/// The values of an attribute anywhere on the page.
+fn attributes<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
+    let start = format!(" {name}=\"");
+    page.split(&start).skip(1).map(|rest| rest.split('"').next().unwrap()).collect()
+}
+
+#[test]
+fn a_page_needs_nothing_else() {
+    for answer in [hose(), pipe()] {
+        let page = page(answer);
+        for attribute in ["src", "href", "xlink:href", "data", "action", "srcset", "poster"] {
+            for target in attributes(page, attribute) {
+                assert!(target.starts_with('#') || target.starts_with("data:"), "{attribute}={target}");
+            }
+        }
+        for word in ["@import", "<script", "<link", "<iframe", "<object", "<base", "http-equiv"] {
+            assert!(!page.contains(word), "{word}");
+        }
+        for target in page.split("url(").skip(1) {
+            let target = target.trim_start_matches(['"', '\'']);
+            assert!(target.starts_with('#') || target.starts_with("data:"), "url({}", &target[..40]);
+        }
+        // The one address is a name: that of the SVG language.
+        for address in
+            page.split("http").skip(1).filter(|rest| rest.starts_with("://") || rest.starts_with("s://"))
+        {
+            assert!(address.starts_with("://www.w3.org/2000/svg\""), "http{}", &address[..40]);
+        }
+    }
+}
+
+#[test]
+fn every_link_of_the_page_has_its_place() {
+    let page = page(hose());
+    let mut places = attributes(page, "id");
+    for target in attributes(page, "href").iter().filter_map(|target| target.strip_prefix('#')) {
+        assert!(places.contains(&target), "{target}");
+    }
+    let all = places.len();
+    places.sort_unstable();
+    places.dedup();
+    assert_eq!(places.len(), all, "an id stands twice");
+}
+
+/// HTML's void elements, which XML wants closed.
+fn as_xml(page: &str) -> String {
+    let mut xml = page.replacen("<!DOCTYPE html>", "", 1);
+    for name in ["meta", "br", "hr", "img", "link", "col"] {
+        let open = format!("<{name} ");
+        let mut closed = String::new();
+        let mut rest = xml.as_str();
+        while let Some(start) = rest.find(&open) {
+            let end = start + rest[start..].find('>').unwrap();
+            closed.push_str(&rest[..end]);
+            closed.push('/');
+            rest = &rest[end..];
+        }
+        closed.push_str(rest);
+        xml = closed;
+    }
+    // A style sheet has characters of its own.
+    xml.replace("<style>", "<style><![CDATA[").replace("</style>", "]]></style>")
+}
+
+fn text(node: Node) -> String {
+    node.descendants().filter(|inner| inner.is_text()).filter_map(|inner| inner.text()).collect()
+}
+
+#[test]
+fn the_page_and_every_figure_are_well_formed() {
+    for (project, answer) in [(HOSE, hose()), (PIPE, pipe())] {
+        let page = page(answer);
+        let xml = as_xml(page);
+        let document = Document::parse(&xml).unwrap_or_else(|error| panic!("{error}"));
+        let title = document.descendants().find(|node| node.has_tag_name("h1")).unwrap();
+        assert!(project.contains(&format!("title = \"{}\"", text(title))));
+        let figures = elements(page, "svg");
+        assert!(figures.len() >= 7, "{}", figures.len());
+        // Tables: the poles of every model, the asymptotes, the candidates with their reasons, what was assumed.
+    for words in ["6.12", "6.13", "compliance plateau", "rejects", "warns", "SHA-256", "eaton_synflex_3130_08", "section 6.4.1 and Table A.1"] {
+        assert!(page.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn figures_come_as_svg_and_png_under_names_of_their_own() {
+    let answer = hose();
+    let mut names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
+    for figure in ["circuit", "stiffness", "sizing-nomograph", "sizing-length", "bode", "impedance", "step"] {
+        for ending in ["svg", "png"] {
+            assert!(names.contains(&format!("{figure}.{ending}").as_str()), "{figure}.{ending}: {names:?}");
+        }
+    }
+    let all = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), all);
+    for file in &answer.files {
+        if file.name.ends_with(".png") {
+            assert!(file.bytes.starts_with(b"\x89PNG\r\n\x1a\n") && file.bytes.len() > 2000, "{}", file.name);
+        } else if file.name.ends_with(".svg") {
+            Document::parse(std::str::from_utf8(&file.bytes).unwrap()).unwrap();
+        }
+    }
+}
+
+#[test]
+fn the_same_project_gives_the_same_bytes() {
+    let (one, other) = (hose(), ask_for_report(HOSE));
+    assert_eq!(one.json, other.json);
+    for (one, other) in one.files.iter().zip(&other.files) {
+        assert_eq!(one.name, other.name);
+        assert!(one.bytes == other.bytes, "{}", one.name);
+    }
+}
+
+#[test]
+fn it_is_made_for_light_and_dark_and_paper() {
+    let page = plain_report(HOSE).html;
+    for words in
+        ["prefers-color-scheme: dark", "@media print", "color-scheme: light dark", "name=\"viewport\""]
+    {
+        assert!(page.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn a_hostile_title_stays_a_title() {
+    let title = "<script>alert(1)</script> & \\\"quotes\\\" ]]> </svg>";
+    let project = HOSE.replace("title = \"Ybitu rig, 1.5 m of HVE hose\"", &format!("title = \"{title}\""));
+    assert_ne!(project, HOSE);
+    let report = plain_report(&project);
+    assert!(!report.html.contains("<script"));
+    let xml = as_xml(&report.html);
+    let document = Document::parse(&xml).unwrap_or_else(|error| panic!("{error}"));
+    for name in ["h1", "title"] {
+        let node = document.descendants().find(|node| node.has_tag_name(name)).unwrap();
+        assert_eq!(text(node), "<script>alert(1)</script> & \"quotes\" ]]> </svg>");
+    }
+    for figure in &report.figures {
+        Document::parse(&figure.to_svg_standalone()).unwrap_or_else(|error| panic!("{error}"));
+        Document::parse(&figure.to_svg_inline()).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
+#[test]
+fn another_plant_is_checked_and_refused_elsewhere_with_the_reason() {
+    assert!(answer(PLANT, &[], &[], &Request::Check).affirmative);
+    for request in [Request::Report, Request::Linearize, ask::size_request(None, None)] {
+        let error = try_answer(PLANT, &[], &[], &request).unwrap_err().to_string();
+        assert!(error.contains("[plant]") && error.contains("[cylinder]"), "{error}");
+    }
+}
+
+#[test]
+fn a_project_without_sizing_or_controller_has_the_other_chapters() {
+    let (start, rest) = HOSE.split_once("[sizing]").unwrap();
+    let (_, rest) = rest.split_once("[uncertainty]").unwrap();
+    let end = rest.split("[controller]").next().unwrap();
+    let page = plain_report(&format!("{start}[uncertainty]{end}")).html;
+    assert!(!page.contains("id=\"sizing\""));
+    assert!(page.contains("no controller") && page.contains("id=\"impedance\""));
+}
+
+#[test]
+fn the_summary_is_what_the_commands_say() {
+    let answer = hose();
+    // ORIGIN: recomputed by comparisons/recompute_rig.py: 2232961.6 and 4108630.5 N/m, 2.7330293e-4 V/N at 1.5 m
+    for words in [
+        "2.23 to 4.11 MN/m",
+        "1.50 m a line at K_p = 0.273 mV/N",
+        "open loop passive, closed loop not passive",
+    ] {
+        assert!(answer.text.contains(words), "{words}: {}", answer.text);
+    }
+}

@@ -1,0 +1,145 @@
+//! Asks a command about a project held in memory and reads its JSON, as another program would.
+#![allow(dead_code, reason = "each test binary uses its part")]
+
+use phea_workbench::answer::Answer;
+use phea_workbench::command::{self, CommandError, Request};
+use phea_workbench::project::{self, Loaded};
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+pub const HOSE: &str = include_str!("../../../../examples/ybitu/hose.toml");
+pub const PIPE: &str = include_str!("../../../../examples/ybitu/pipe.toml");
+
+/// A folder of hoses that do not exist, and a file that gives another body to a built-in name.
+pub const FICTITIOUS: &str = "fictitious";
+pub const OVERRIDE: &str = "override/eaton_synflex_3130_08.toml";
+
+const FICTITIOUS_FILES: [(&str, &str); 7] = [
+    ("fictitious/rigid.toml", include_str!("../catalogue/fictitious/rigid.toml")),
+    ("fictitious/right.toml", include_str!("../catalogue/fictitious/right.toml")),
+    ("fictitious/slow.toml", include_str!("../catalogue/fictitious/slow.toml")),
+    ("fictitious/stubborn.toml", include_str!("../catalogue/fictitious/stubborn.toml")),
+    ("fictitious/surging.toml", include_str!("../catalogue/fictitious/surging.toml")),
+    ("fictitious/too_fast.toml", include_str!("../catalogue/fictitious/too_fast.toml")),
+    ("fictitious/weak.toml", include_str!("../catalogue/fictitious/weak.toml")),
+];
+
+pub fn source(project: &str) -> Memory {
+    FICTITIOUS_FILES
+        .into_iter()
+        .fold(Memory::default(), |source, (path, text)| source.with(path, text))
+        .with(OVERRIDE, include_str!("../catalogue/override/eaton_synflex_3130_08.toml"))
+        .with("rig.toml", project)
+}
+
+fn owned(texts: &[&str]) -> Vec<String> {
+    texts.iter().map(|text| text.to_string()).collect()
+}
+
+#[track_caller]
+pub fn load(project: &str, settings: &[&str], catalogues: &[&str]) -> Loaded {
+    project::read(&source(project), "rig.toml", &owned(settings), &owned(catalogues))
+        .unwrap_or_else(|report| panic!("{report}"))
+}
+
+#[track_caller]
+pub fn try_answer(
+    project: &str,
+    settings: &[&str],
+    catalogues: &[&str],
+    request: &Request,
+) -> Result<Answer, CommandError> {
+    let loaded = load(project, settings, catalogues);
+    command::answer(&source(project), &loaded, &owned(catalogues), request)
+}
+
+#[track_caller]
+pub fn answer(project: &str, settings: &[&str], catalogues: &[&str], request: &Request) -> Answer {
+    try_answer(project, settings, catalogues, request).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[track_caller]
+pub fn json(project: &str, settings: &[&str], catalogues: &[&str], request: &Request) -> Value {
+    let text = answer(project, settings, catalogues, request).json;
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+#[track_caller]
+pub fn check(project: &str, settings: &[&str]) -> Value {
+    json(project, settings, &[], &Request::Check)
+}
+
+#[track_caller]
+pub fn linearize(project: &str, settings: &[&str]) -> Value {
+    json(project, settings, &[], &Request::Linearize)
+}
+
+#[track_caller]
+pub fn size(project: &str, settings: &[&str]) -> Value {
+    json(project, settings, &[], &size_request(None, None))
+}
+
+#[track_caller]
+pub fn size_for_gain(project: &str, settings: &[&str], gain: &str) -> Value {
+    json(project, settings, &[], &size_request(Some(gain), None))
+}
+
+#[track_caller]
+pub fn size_for_length(project: &str, settings: &[&str], length: &str) -> Value {
+    json(project, settings, &[], &size_request(None, Some(length)))
+}
+
+pub fn size_request(gain: Option<&str>, length: Option<&str>) -> Request {
+    Request::Size { gain: gain.map(str::to_string), length: length.map(str::to_string) }
+}
+
+/// The number at a path such as `stiffness.minimum_n_per_m` or `bands.0.1`; the strings "inf" and "-inf" are infinite.
+#[track_caller]
+pub fn number(value: &Value, path: &str) -> f64 {
+    let found = value.pointer(&format!("/{}", path.replace('.', "/")));
+    match found {
+        Some(Value::Number(number)) => number.as_f64().unwrap(),
+        Some(Value::String(text)) if text == "inf" => f64::INFINITY,
+        Some(Value::String(text)) if text == "-inf" => f64::NEG_INFINITY,
+        other => panic!("no number at {path} but {other:?}"),
+    }
+}
+
+/// The derived quantity of `check` by its name.
+#[track_caller]
+pub fn derived(check: &Value, name: &str) -> f64 {
+    let rows = check["derived"].as_array().unwrap();
+    let row = rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("no {name}"));
+    number(row, "value")
+}
+
+/// The candidates of `size` for a hose and a stiffness model.
+pub fn candidates<'a>(size: &'a Value, hose: &str, compliance: &str) -> Vec<&'a Value> {
+    let all = size["candidates"].as_array().unwrap().iter();
+    all.filter(|row| row["hose"] == hose && row["compliance"] == compliance).collect()
+}
+
+/// The only one of them.
+#[track_caller]
+pub fn candidate<'a>(size: &'a Value, hose: &str, compliance: &str) -> &'a Value {
+    let found = candidates(size, hose, compliance);
+    assert_eq!(found.len(), 1, "{hose}, {compliance}");
+    found[0]
+}
+
+/// The reasons of a candidate, one a line.
+pub fn reasons(candidate: &Value) -> String {
+    let lines: Vec<&str> =
+        candidate["reasons"].as_array().unwrap().iter().map(|line| line.as_str().unwrap()).collect();
+    lines.join("\n")
+}
+
+#[track_caller]
+pub fn within(actual: f64, expected: f64, tolerance: f64) {
+    assert!((actual - expected).abs() <= tolerance, "{actual} is not within {tolerance} of {expected}");
+}
+
+#[track_caller]
+pub fn near(actual: f64, expected: f64, relative: f64) {
+    within(actual, expected, relative * expected.abs());
+}
