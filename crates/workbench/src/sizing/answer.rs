@@ -140,18 +140,45 @@ pub fn text(sizing: &Sizing) -> String {
         candidates.add_row(candidate_cells(candidate));
     }
     out.push_str(&format!("\nCandidates\n{candidates}\n"));
-    for candidate in sizing.candidates.iter().filter(|candidate| !candidate.findings.is_empty()) {
-        let verdict = if candidate.accepted() { "accepted" } else { "rejected" };
-        let model = model_name(candidate.branch.model);
-        let branch = branch_name(candidate.branch.by_gain);
-        out.push_str(&format!("\n{} ({model}, {branch}): {verdict}\n", candidate.option.name));
-        for finding in &candidate.findings {
-            let sign = if finding.severity == Severity::Rejects { "rejects" } else { "warns" };
-            out.push_str(&format!("  {sign}: {}\n", finding.text));
-        }
+    for alike in alike(&sizing.candidates) {
+        out.push_str(&alike_text(&alike));
     }
     if !sizing.influences.is_empty() {
         out.push_str(&format!("\nWhat is uncertain (low, nominal, high)\n{}\n", influence_table(sizing)));
+    }
+    out
+}
+
+/// Candidates of one hose with the same findings, so that these are said once.
+fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
+    let mut groups: Vec<Vec<&Candidate>> = Vec::new();
+    for candidate in candidates.iter().filter(|candidate| !candidate.findings.is_empty()) {
+        let same = |group: &&mut Vec<&Candidate>| {
+            group.first().is_some_and(|first| {
+                first.option.name == candidate.option.name && first.findings == candidate.findings
+            })
+        };
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(candidate),
+            None => groups.push(vec![candidate]),
+        }
+    }
+    groups
+}
+
+fn alike_text(group: &[&Candidate]) -> String {
+    let Some(first) = group.first() else { return String::new() };
+    let verdict = if first.accepted() { "accepted" } else { "rejected" };
+    let names: Vec<String> = group
+        .iter()
+        .map(|candidate| {
+            format!("{} {}", model_name(candidate.branch.model), branch_name(candidate.branch.by_gain))
+        })
+        .collect();
+    let mut out = format!("\n{} ({}): {verdict}\n", first.option.name, names.join(", "));
+    for finding in &first.findings {
+        let sign = if finding.severity == Severity::Rejects { "rejects" } else { "warns" };
+        out.push_str(&format!("  {sign}: {}\n", finding.text));
     }
     out
 }

@@ -80,6 +80,7 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
     practical_gain(problem, &candidate, &mut findings);
     pressure(problem, &candidate, &mut findings);
     bending(&candidate, &mut findings);
+    stiffening(option, &mut findings);
     settling(problem, &candidate, &mut findings);
     findings.sort_by_key(|finding| finding.severity != Severity::Rejects);
     candidate.findings = findings;
@@ -213,6 +214,14 @@ fn bending(candidate: &Candidate, findings: &mut Vec<Finding>) {
                 significant(quarter_turn, 3)
             ),
         );
+    }
+}
+
+/// A wall with its static modulus is softer than the braided hoses that are measured in motion.
+fn stiffening(option: &HoseOption, findings: &mut Vec<Finding>) {
+    if option.hose.dynamic_stiffening.maximum <= 1.0 {
+        let text = "[line] declares no `dynamic_stiffening`: the wall has its static modulus, and a stiffer one takes more hose";
+        warns(findings, text.to_string());
     }
 }
 
