@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::answer::{self, Answer, Number};
+use crate::answer::{self, Answer};
 use crate::control::{ControlError, controller};
 use crate::derived::{self, derive};
 use crate::linearize::{self, linearize};

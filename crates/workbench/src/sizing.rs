@@ -11,6 +11,7 @@ mod candidate;
 mod problem;
 mod sensitivity;
 
+pub(crate) use answer::alike;
 pub use answer::{files, json, text};
 pub use bore::{BoreVerdict, CommercialBore};
 pub use branch::{Branch, GainStep, model_name};

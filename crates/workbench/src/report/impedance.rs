@@ -5,6 +5,7 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_hydraulics::impedance::AsymptoteKind;
 
 use super::chapter::{Chapter, cell, place, table};
+use super::typeset::{prose, typeset};
 use crate::answer::significant;
 use crate::figure::{Asymptote, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance};
 use crate::linearize::{Linearization, PortView, frequency_grid, passivity_sentence};
@@ -14,7 +15,7 @@ pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearEr
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     let body = html! {
         p {
-            "Z = -F_e/(s X_L) is what a load feels that moves the rod: a damper, spring or mass, depending on frequency. Above " (hidden)
+            (typeset("Z = -F_e/(s X_L)")) " is what a load feels that moves the rod: a damper, spring or mass, depending on frequency. Above " (hidden)
             " rad/s the piston's mass hides the hydraulic compliance, and the load meets the sensor's stiffness alone."
         }
         (place(&figures[0]))
@@ -85,9 +86,9 @@ fn asymptotes(linearization: &Linearization) -> Markup {
             };
             rows.push(vec![
                 cell(name),
-                cell(regime),
+                prose(regime),
                 cell(behaviour(asymptote.power)),
-                cell(format!("{} {unit}", significant(asymptote.coefficient, 4))),
+                prose(&format!("{} {}", significant(asymptote.coefficient, 4), unit.replace('.', "·"))),
                 cell(format!("{} to {}", significant(asymptote.from, 3), significant(asymptote.to, 3))),
             ]);
         }

@@ -72,7 +72,7 @@ pub fn json(loaded: &Loaded, sizing: &Sizing) -> String {
         verdict: verdict_name(bore.verdict),
     });
     let influences = sizing.influences.iter().map(|influence| InfluenceRow {
-        quantity: &influence.quantity,
+        quantity: influence.quantity,
         values: influence.values,
         stiffness_n_per_m: influence.stiffness_n_per_m.map(Number),
         length_m: influence.length_m.map(Number),
@@ -144,15 +144,15 @@ pub fn text(sizing: &Sizing) -> String {
         out.push_str(&alike_text(&alike));
     }
     if !sizing.influences.is_empty() {
-        out.push_str(&format!("\nWhat is uncertain (low, nominal, high)\n{}\n", influence_table(sizing)));
+        out.push_str(&format!("\nWhat is uncertain\n{}\n", influence_table(sizing)));
     }
     out
 }
 
-/// Candidates of one hose with the same findings, so that these are said once.
-fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
+/// Candidates of one hose with the same findings, so that these are said once; in the order of the first of each.
+pub(crate) fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
     let mut groups: Vec<Vec<&Candidate>> = Vec::new();
-    for candidate in candidates.iter().filter(|candidate| !candidate.findings.is_empty()) {
+    for candidate in candidates {
         let same = |group: &&mut Vec<&Candidate>| {
             group.first().is_some_and(|first| {
                 first.option.name == candidate.option.name && first.findings == candidate.findings
@@ -175,6 +175,9 @@ fn alike_text(group: &[&Candidate]) -> String {
             format!("{} {}", model_name(candidate.branch.model), branch_name(candidate.branch.by_gain))
         })
         .collect();
+    if first.findings.is_empty() {
+        return String::new();
+    }
     let mut out = format!("\n{} ({}): {verdict}\n", first.option.name, names.join(", "));
     for finding in &first.findings {
         let sign = if finding.severity == Severity::Rejects { "rejects" } else { "warns" };
@@ -199,13 +202,14 @@ fn candidate_cells(candidate: &Candidate) -> Vec<String> {
 }
 
 fn influence_table(sizing: &Sizing) -> String {
-    let mut influences = table(&["quantity", "values", "K_H at this length, N/m", "length for this K_H, m"]);
-    let three = |values: [f64; 3]| values.map(|value| significant(value, 4)).join(", ");
+    let mut influences =
+        table(&["quantity", "low · nominal · high", "K_H at this length, MN/m", "length for this K_H, m"]);
+    let three = |values: [f64; 3]| values.map(|value| significant(value, 4)).join(" · ");
     for influence in &sizing.influences {
         influences.add_row([
-            influence.quantity.clone(),
-            three(influence.values),
-            three(influence.stiffness_n_per_m),
+            influence.quantity.to_string(),
+            influence.setting_words(),
+            three(influence.stiffness_n_per_m.map(|stiffness| stiffness / 1e6)),
             three(influence.length_m),
         ]);
     }
