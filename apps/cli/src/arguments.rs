@@ -24,11 +24,11 @@ pub(crate) enum Command {
     Size {
         #[command(flatten)]
         common: Common,
-        /// Proportional gain K_p in V/N: size every hose for this gain
-        #[arg(long, value_name = "V/N", conflicts_with = "length")]
+        /// Proportional gain K_p, V/N where no unit is given: size every hose for this gain
+        #[arg(long, value_name = "K_P", conflicts_with = "length", allow_hyphen_values = true)]
         gain: Option<String>,
-        /// Hose length per line, with its unit ("1.5 m"): find the gain every hose needs at this length
-        #[arg(long, value_name = "LENGTH")]
+        /// Hose length per line ("1.5 m"): find the gain every hose needs at this length
+        #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
         length: Option<String>,
     },
     /// Linear models: poles, differences, stiffness over the stroke, driving-point impedance, passivity
@@ -48,7 +48,7 @@ pub(crate) struct Common {
     /// Write files (tables, figures, pages) into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Override a value of the project, e.g. --set line.length="2 m"; may be repeated
+    /// Override a value of the project, e.g. --set "line.length=2 m"; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) settings: Vec<String>,
     /// A catalogue file or folder of your own, searched before the built-in one; may be repeated

@@ -1,15 +1,30 @@
 use std::fs;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use phea_workbench::answer::OutputFile;
 use phea_workbench::source::{Source, SourceError};
+
+/// Bytes of the largest file that is read; endless devices end here.
+const LARGEST_FILE: u64 = 256 << 20;
 
 /// The file system as the workbench's source.
 pub(crate) struct FileSystem;
 
 impl Source for FileSystem {
     fn read(&self, path: &str) -> Result<Vec<u8>, SourceError> {
-        fs::read(path).map_err(|error| refused(path, &error))
+        let refuse = |error: &std::io::Error| refused(path, error);
+        let file = fs::File::open(path).map_err(|error| refuse(&error))?;
+        if file.metadata().is_ok_and(|metadata| metadata.is_dir()) {
+            return Err(SourceError { path: path.to_string(), reason: folder_reason(path) });
+        }
+        let mut bytes = Vec::new();
+        file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(|error| refuse(&error))?;
+        if bytes.len() as u64 > LARGEST_FILE {
+            let reason = format!("it is larger than {} MiB", LARGEST_FILE >> 20);
+            return Err(SourceError { path: path.to_string(), reason });
+        }
+        Ok(bytes)
     }
 
     fn list(&self, path: &str) -> Result<Option<Vec<String>>, SourceError> {
@@ -30,12 +45,36 @@ impl Source for FileSystem {
 }
 
 fn refused(path: &str, error: &std::io::Error) -> SourceError {
-    SourceError { path: path.to_string(), reason: error.to_string() }
+    SourceError { path: path.to_string(), reason: reason(error) }
+}
+
+/// A folder where a file was expected; where it holds one project, that is what was meant.
+fn folder_reason(path: &str) -> String {
+    let inside = FileSystem.list(path).ok().flatten().unwrap_or_default();
+    let projects: Vec<&String> = inside.iter().filter(|file| file.ends_with(".toml")).collect();
+    match projects.as_slice() {
+        [only] => format!("it is a folder; did you mean {only}?"),
+        _ => "it is a folder; name a file in it".to_string(),
+    }
+}
+
+/// The usual reasons in words that are the same on every system.
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => "no such file or folder".to_string(),
+        ErrorKind::PermissionDenied => "permission denied".to_string(),
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+            "a file of that name is in the way".to_string()
+        }
+        ErrorKind::ReadOnlyFilesystem => "the file system is read-only".to_string(),
+        _ => error.to_string(),
+    }
 }
 
 /// Writes files into a folder, which is made if need be; gives their paths.
 pub(crate) fn write(folder: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, String> {
-    let explain = |path: &Path, error: std::io::Error| format!("cannot write {}: {error}", path.display());
+    let explain =
+        |path: &Path, error: std::io::Error| format!("cannot write {}: {}", path.display(), reason(&error));
     fs::create_dir_all(folder).map_err(|error| explain(folder, error))?;
     files
         .iter()

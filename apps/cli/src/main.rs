@@ -3,11 +3,15 @@
 mod arguments;
 mod file_system;
 mod run;
+mod voice;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
 fn main() -> ExitCode {
-    run::run(arguments::Arguments::parse())
+    match arguments::Arguments::try_parse() {
+        Ok(arguments) => run::run(arguments),
+        Err(error) => run::misused(&error),
+    }
 }

@@ -4,15 +4,22 @@ use std::process::ExitCode;
 
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, Request};
-use phea_workbench::project::{self, STARTER};
+use phea_workbench::project::{self, Loaded, STARTER};
 
 use crate::arguments::{Arguments, Command, Common};
 use crate::file_system::{FileSystem, write, write_starter};
+use crate::voice::{complain, say};
 
 /// The answer is yes, no, or the input is wrong.
 const DONE: u8 = 0;
 const NO: u8 = 1;
 const WRONG_INPUT: u8 = 2;
+
+/// Why there is no answer: for people, and as one JSON object.
+struct Refused {
+    text: String,
+    json: String,
+}
 
 pub(crate) fn run(arguments: Arguments) -> ExitCode {
     let outcome = match arguments.command {
@@ -22,6 +29,26 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Linearize(common) => on_project(&common, &Request::Linearize),
         Command::Report(common) => on_project(&common, &Request::Report),
     };
+    ended(outcome)
+}
+
+/// A command line that is none, or that asks for help.
+pub(crate) fn misused(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() {
+        return ended(say(&error.render().to_string()).map(|()| DONE));
+    }
+    if std::env::args_os().any(|argument| argument == "--json") {
+        let text = error.to_string();
+        let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+        return ended(
+            say(&format!("{}\n", command::failure_json(None, None, message))).and_then(|()| Err(text)),
+        );
+    }
+    let _ = error.print();
+    ExitCode::from(WRONG_INPUT)
+}
+
+fn ended(outcome: Result<u8, String>) -> ExitCode {
     ExitCode::from(outcome.unwrap_or_else(|message| {
         complain(&message);
         WRONG_INPUT
@@ -29,38 +56,65 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
 }
 
 fn new(folder: &Path) -> Result<u8, String> {
-    let path = write_starter(folder, STARTER)?;
-    say(&format!("Wrote {}. Next: phea check {0}\n", path.display()));
+    let path = write_starter(folder, STARTER).map_err(|message| format!("error: {message}"))?;
+    say(&format!("Wrote {}. Next: phea check {0}\n", path.display()))?;
     Ok(DONE)
 }
 
 fn on_project(common: &Common, request: &Request) -> Result<u8, String> {
-    let path = common.project.to_string_lossy();
-    let loaded = project::read(&FileSystem, &path, &common.settings, &common.catalogues);
-    let loaded = match loaded {
-        Ok(loaded) => loaded,
-        Err(report) => {
-            if common.json {
-                say(&format!("{}\n", command::refusal_json(request, &report)));
-            }
-            return Err(report.render(styled()));
+    match answered(common, request) {
+        Ok((answer, _)) if common.json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
+        Ok((answer, written)) => {
+            say(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
         }
-    };
+        Err(refused) => {
+            if common.json {
+                say(&format!("{}\n", refused.json))?;
+            }
+            Err(refused.text)
+        }
+    }
+}
+
+fn status(answer: &Answer) -> u8 {
+    if answer.affirmative { DONE } else { NO }
+}
+
+/// The answer, and the files that were written.
+fn answered(common: &Common, request: &Request) -> Result<(Answer, Vec<PathBuf>), Refused> {
+    let path = common.project.to_string_lossy();
+    let loaded =
+        project::read(&FileSystem, &path, &common.settings, &common.catalogues).map_err(|report| {
+            Refused {
+                json: command::refusal_json(&FileSystem, &path, request, &report),
+                text: report.render(styled()),
+            }
+        })?;
     if !loaded.warnings.is_empty() {
         complain(&project::render(&loaded.warnings, &loaded.texts, styled()));
     }
     let answer = command::answer(&FileSystem, &loaded, &common.catalogues, request)
-        .map_err(|error| error.to_string())?;
-    let written = write_files(common, request, &answer)?;
-    if common.json {
-        say(&format!("{}\n", answer.json));
-    } else {
-        say(&answer.text);
-        for path in written {
-            say(&format!("Wrote {}\n", path.display()));
+        .map_err(|error| failed(request, &loaded, &error.to_string()))?;
+    let written =
+        write_files(common, request, &answer).map_err(|message| failed(request, &loaded, &message))?;
+    Ok((answer, written))
+}
+
+fn failed(request: &Request, loaded: &Loaded, message: &str) -> Refused {
+    Refused {
+        text: format!("error: {message}"),
+        json: command::failure_json(Some(request.name()), Some(&loaded.sha256), message),
+    }
+}
+
+fn written_sentence(written: &[PathBuf]) -> String {
+    match written {
+        [] => String::new(),
+        [only] => format!("Wrote {}\n", only.display()),
+        [first, more @ ..] => {
+            format!("Wrote {} and {} more files beside it\n", first.display(), more.len())
         }
     }
-    Ok(if answer.affirmative { DONE } else { NO })
 }
 
 /// The report is written even without `--out`, as one page named after the project; other files only when asked for.
@@ -82,14 +136,4 @@ fn write_files(common: &Common, request: &Request, answer: &Answer) -> Result<Ve
 /// Colours for a person at a terminal who has not asked for none.
 fn styled() -> bool {
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
-}
-
-#[expect(clippy::print_stdout, reason = "the command's one voice to standard output")]
-fn say(text: &str) {
-    print!("{text}");
-}
-
-#[expect(clippy::print_stderr, reason = "the command's one voice to standard error")]
-fn complain(text: &str) {
-    eprintln!("{}", text.trim_end());
 }

@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use crate::answer::{self, Answer, Number};
+use crate::answer::{self, Answer};
 use crate::control::{ControlError, controller};
 use crate::derived::{self, derive};
 use crate::linearize::{self, linearize};
-use crate::project::{Loaded, Report as Refusal, Severity};
+use crate::project::{Loaded, Report as Refusal, Severity, sha256};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{ReportError, report};
 use crate::rig::{Rig, RigError, sizing_problem};
@@ -108,18 +108,25 @@ fn check(loaded: &Loaded) -> Result<Answer, CommandError> {
         Err(error) => return Err(error.into()),
     };
     controller(&loaded.project)?;
-    let text = format!("{}\nThe project is valid.\n", derived::text(&derived));
-    Ok(Answer { text, json: derived::json(loaded, &derived), files: vec![], affirmative: true })
+    let text = match derived.as_slice() {
+        [] => "The project is valid. Its plant is a transfer function, from which nothing is derived.\n"
+            .to_string(),
+        derived => format!("{}\nThe project is valid.\n", derived::text(derived)),
+    };
+    let files = derived::files(&derived);
+    Ok(Answer { text, json: derived::json(loaded, &derived), files, affirmative: true })
 }
 
 fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, CommandError> {
     let positive = |option: &'static str, text: &str, dimension: &quantity::Dimension| {
         let refuse = |message: String| CommandError::Option { option, text: text.to_string(), message };
-        // As in a project file, a bare number is SI.
-        let bare = text.trim().parse().ok().filter(|value: &f64| value.is_finite());
+        // A bare number is SI, as everywhere.
+        let bare = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
         let value = match bare {
             Some(value) => value,
-            None => quantity::parse(text, dimension).map_err(|error| refuse(error.to_string()))?,
+            None => {
+                quantity::parse(text, dimension).map_err(|error| refuse(error_words(&error, dimension)))?
+            }
         };
         if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string())) }
     };
@@ -128,6 +135,12 @@ fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, Comman
         (None, Some(text)) => positive("length", text, &LENGTH).map(Question::Length),
         (None, None) => Ok(Question::Both),
     }
+}
+
+/// What is wrong with a quantity, and what would be right.
+fn error_words(error: &quantity::QuantityError, dimension: &quantity::Dimension) -> String {
+    let help = error.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
+    format!("{error}; write {}, such as {}{help}", dimension.name, dimension.examples)
 }
 
 fn size_answer(
@@ -155,7 +168,7 @@ fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
     Ok(Answer {
         text: linearize::text(&linearization),
         json: linearize::json(loaded, &linearization),
-        files: vec![],
+        files: linearize::files(&linearization),
         affirmative: true,
     })
 }
@@ -198,7 +211,8 @@ fn report_answer(
 struct RefusalBody<'a> {
     schema: u32,
     version: &'static str,
-    command: &'static str,
+    command: Option<&'a str>,
+    project_sha256: Option<&'a str>,
     errors: Vec<RefusalRow<'a>>,
 }
 
@@ -206,29 +220,51 @@ struct RefusalBody<'a> {
 struct RefusalRow<'a> {
     severity: &'static str,
     message: &'a str,
-    file: &'a str,
-    line: Number,
-    column: Number,
+    file: Option<&'a str>,
+    line: Option<usize>,
+    column: Option<usize>,
     expected: Option<&'a str>,
     help: Option<&'a str>,
 }
 
-/// The JSON object of a command whose project was refused.
-pub fn refusal_json(request: &Request, refusal: &Refusal) -> String {
+/// The JSON object of a command whose project, at `path`, was refused.
+pub fn refusal_json(source: &dyn Source, path: &str, request: &Request, refusal: &Refusal) -> String {
+    let hash = source.read(path).ok().map(|bytes| sha256(&bytes));
+    let place = |number: usize| Some(number).filter(|number| *number > 0);
     let errors = refusal.diagnostics.iter().map(|diagnostic| RefusalRow {
         severity: if diagnostic.severity == Severity::Error { "error" } else { "warning" },
         message: &diagnostic.message,
-        file: &diagnostic.file,
-        line: Number(diagnostic.line as f64),
-        column: Number(diagnostic.column as f64),
+        file: Some(&diagnostic.file),
+        line: place(diagnostic.line),
+        column: place(diagnostic.column),
         expected: diagnostic.expected.as_deref(),
         help: diagnostic.help.as_deref(),
     });
-    let body = RefusalBody {
-        schema: answer::SCHEMA,
-        version: env!("CARGO_PKG_VERSION"),
-        command: request.name(),
-        errors: errors.collect(),
+    refusal_body(Some(request.name()), hash.as_deref(), errors.collect())
+}
+
+/// The JSON object of a command that failed beyond its project file; `command` is absent where the command line is none.
+///
+/// # Example
+/// ```
+/// let json = phea_workbench::command::failure_json(Some("size"), None, "cannot write out: permission denied");
+/// assert!(json.contains("\"command\": \"size\"") && json.contains("permission denied"));
+/// ```
+pub fn failure_json(command: Option<&str>, project_sha256: Option<&str>, message: &str) -> String {
+    let error = RefusalRow {
+        severity: "error",
+        message,
+        file: None,
+        line: None,
+        column: None,
+        expected: None,
+        help: None,
     };
+    refusal_body(command, project_sha256, vec![error])
+}
+
+fn refusal_body(command: Option<&str>, project_sha256: Option<&str>, errors: Vec<RefusalRow<'_>>) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    let body = RefusalBody { schema: answer::SCHEMA, version, command, project_sha256, errors };
     serde_json::to_string_pretty(&body).unwrap_or_default()
 }

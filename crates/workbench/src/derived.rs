@@ -5,7 +5,7 @@ mod list;
 mod rig;
 
 pub(crate) use answer::sentence;
-pub use answer::{json, text};
+pub use answer::{files, json, text};
 pub use rig::derive;
 
 /// A quantity that follows from the project.

@@ -19,12 +19,12 @@ use phea_hydraulics::linear::{
     first_order_model, linear_model, response_difference, transfer_functions,
 };
 use phea_hydraulics::stiffness::{
-    ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference,
+    ChamberCompliance, ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference,
 };
 use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
 pub(crate) use answer::{comparisons, difference_text, located, models, passivity_sentence, root_list};
-pub use answer::{json, text};
+pub use answer::{files, json, text};
 
 use crate::rig::Rig;
 
@@ -178,18 +178,37 @@ pub(crate) fn stroke_stiffness(rig: &Rig, member: Member) -> StrokeStiffness {
 
 /// Stiffness at a position by either model.
 pub(crate) fn stiffness_at(rig: &Rig, model: StiffnessModel, member: Member, position: f64) -> f64 {
+    phea_hydraulics::stiffness::hydraulic_stiffness(&chambers(rig, model, member), position)
+}
+
+/// Nominal stiffness over the stroke by either model.
+pub(crate) fn stroke_stiffness_of(rig: &Rig, model: StiffnessModel) -> StrokeStiffness {
+    chambers(rig, model, Member::Nominal).over_stroke()
+}
+
+/// The chambers with the fluid's modulus at the operating point.
+fn chambers(rig: &Rig, model: StiffnessModel, member: Member) -> ChamberCompliance {
     let components = rig.actuator.components();
     let moduli =
         [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| components.fluid.modulus_at(pressure));
     let lines = [&components.line_a, &components.line_b];
-    let chambers = chamber_compliance(model, moduli, &components.cylinder, lines, member);
-    phea_hydraulics::stiffness::hydraulic_stiffness(&chambers, position)
+    chamber_compliance(model, moduli, &components.cylinder, lines, member)
 }
 
 fn stiffness_models(rig: &Rig) -> ModelDifference {
     let components = rig.actuator.components();
     let modulus = components.fluid.modulus_at(rig.actuator.mean_pressure());
-    model_difference(modulus, &components.cylinder, [&components.line_a, &components.line_b], Member::Nominal)
+    let lines = [&components.line_a, &components.line_b];
+    let shares = model_difference(modulus, &components.cylinder, lines, Member::Nominal);
+    let uniform = stroke_stiffness_of(rig, StiffnessModel::Uniform);
+    let by_volume = stroke_stiffness_of(rig, StiffnessModel::ByVolume);
+    ModelDifference {
+        minimum_ratio: by_volume.minimum / uniform.minimum,
+        maximum_ratio: by_volume.maximum / uniform.maximum,
+        uniform,
+        by_volume,
+        ..shares
+    }
 }
 
 /// Frequencies for comparing and drawing: from a decade below the slowest pole to a decade above the fastest, at least
@@ -225,19 +244,33 @@ fn compare(grid: &[f64], reference: &TransferFunction, other: &TransferFunction)
     Comparison { low: difference(&low), all: difference(grid) }
 }
 
+/// Share by which the two stiffness models may differ and still be said to agree.
+const AGREEMENT: f64 = 0.005;
+
 /// One sentence on the two stiffness models.
 pub fn stiffness_sentence(difference: &ModelDifference) -> String {
     let number = |value: f64| crate::quantity::DisplayUnit::MEGANEWTON_PER_METRE.number(value, 3);
+    let range = |stiffness: &StrokeStiffness| {
+        format!("{} to {} MN/m", number(stiffness.minimum), number(stiffness.maximum))
+    };
+    let percent = |share: f64| crate::answer::significant(100.0 * share, 2);
+    let ratios = [difference.minimum_ratio, difference.maximum_ratio];
+    if ratios.iter().all(|ratio| (ratio - 1.0).abs() < AGREEMENT) {
+        return format!(
+            "K_H is {} over the stroke, by either stiffness model (uniform, by_volume): the lines are hardly softer \
+             than the oil, and {} % of the oil is in the chambers.",
+            range(&difference.by_volume),
+            percent(difference.chamber_volume_share)
+        );
+    }
     format!(
-        "With one modulus for line and chamber (uniform) K_H is {} to {} MN/m over the stroke; with the chamber's oil \
-         keeping its own (by_volume) it is {} to {} MN/m, {} times as stiff at its least: {} % of the oil is in the \
-         chambers, and only {} % of the compliance is the lines'.",
-        number(difference.uniform.minimum),
-        number(difference.uniform.maximum),
-        number(difference.by_volume.minimum),
-        number(difference.by_volume.maximum),
+        "With one modulus for line and chamber (uniform) K_H is {} over the stroke; with the chamber's oil keeping its \
+         own (by_volume) it is {}, {} times as stiff at its least: {} % of the oil is in the chambers, and only {} % \
+         of the compliance is the lines'.",
+        range(&difference.uniform),
+        range(&difference.by_volume),
         crate::answer::significant(difference.minimum_ratio, 3),
-        crate::answer::significant(100.0 * difference.chamber_volume_share, 2),
-        crate::answer::significant(100.0 * difference.line_compliance_share, 2),
+        percent(difference.chamber_volume_share),
+        percent(difference.line_compliance_share),
     )
 }

@@ -42,6 +42,7 @@ pub use line::*;
 pub use linear::*;
 pub use listing::KeyEntry;
 pub use plant::*;
+pub(crate) use read::sha256;
 pub use read::{keys, print, read};
 pub use scenario::*;
 pub use sizing::*;

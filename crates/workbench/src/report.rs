@@ -147,8 +147,8 @@ fn summary(
         sizing.candidates.iter().find(|c| c.accepted() && c.branch.model == problem.model)
     });
     if let Some(best) = best {
-        let gain = DisplayUnit::MILLIVOLT_PER_NEWTON.number(best.branch.gain_v_per_n, 3);
-        facts.push(("Hose", format!("{} m a line at K_p = {gain} mV/N", significant(best.length_m(), 3))));
+        let gain = significant(best.branch.gain_v_per_n, 3);
+        facts.push(("Hose", format!("{} m a line at K_p = {gain} V/N", significant(best.length_m(), 3))));
     } else if sizing.is_some() {
         facts.push(("Hose", "none of the catalogue fits".to_string()));
     }

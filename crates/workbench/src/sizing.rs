@@ -11,6 +11,7 @@ mod candidate;
 mod problem;
 mod sensitivity;
 
+pub(crate) use answer::alike;
 pub use answer::{files, json, text};
 pub use bore::{BoreVerdict, CommercialBore};
 pub use branch::{Branch, GainStep, model_name};
@@ -61,6 +62,9 @@ pub struct Sizing {
 pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
     let mut decisions = problem.decisions();
     let bores = bore::assess(problem, &mut decisions);
+    if question == Question::Both {
+        decisions.push(problem.search_decision());
+    }
     let mut candidates = Vec::new();
     for option in &problem.hoses {
         for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
@@ -70,9 +74,10 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
             }
         }
     }
-    // Stable: ties keep the catalogue's order.
+    // Lengths that differ by the search's rounding are one length; ties keep the catalogue's order.
+    let micrometres = |candidate: &Candidate| (candidate.length_m() * 1e6).round();
     candidates.sort_by(|one, other| {
-        other.accepted().cmp(&one.accepted()).then(one.length_m().total_cmp(&other.length_m()))
+        other.accepted().cmp(&one.accepted()).then(micrometres(one).total_cmp(&micrometres(other)))
     });
     let best =
         candidates.iter().find(|candidate| candidate.accepted() && candidate.branch.model == problem.model);

@@ -1,7 +1,7 @@
 use serde::Serialize;
 
 use super::Derived;
-use crate::answer::{self, Number, significant, table};
+use crate::answer::{self, Number, OutputFile, significant, table};
 use crate::project::Loaded;
 
 #[derive(Serialize)]
@@ -86,6 +86,10 @@ pub fn text(derived: &[Derived]) -> String {
 /// What is stated beside what follows, in a sentence.
 pub(crate) fn sentence(quantity: &Derived) -> String {
     let Some(stated) = &quantity.stated else { return String::new() };
+    let with_unit = match quantity.unit {
+        "1" => significant(stated.value, 4),
+        unit => format!("{} {unit}", significant(stated.value, 4)),
+    };
     let bounds = stated.bounds.map_or(String::new(), |[minimum, maximum]| {
         format!(", from {} to {}", significant(minimum, 4), significant(maximum, 4))
     });
@@ -95,10 +99,9 @@ pub(crate) fn sentence(quantity: &Derived) -> String {
         (false, _) => "",
     };
     format!(
-        "{} = {} {} in {}{bounds}; derived {} ({:+.1} %){verdict}.",
+        "{} = {} in {}{bounds}; derived {} ({:+.1} %){verdict}.",
         quantity.symbol,
-        significant(stated.value, 4),
-        quantity.unit,
+        with_unit,
         stated.place,
         significant(quantity.value, 4),
         quantity.difference_percent().unwrap_or(f64::NAN)
@@ -108,4 +111,20 @@ pub(crate) fn sentence(quantity: &Derived) -> String {
 /// An equation without the braces that only typesetting needs.
 fn plain(equation: &str) -> String {
     equation.replace(['{', '}'], "")
+}
+
+/// The list as a table for other programs.
+pub fn files(derived: &[Derived]) -> Vec<OutputFile> {
+    let mut csv = String::from("name,value,unit,equation,stated_value\n");
+    for quantity in derived {
+        let stated = quantity.stated.as_ref().map_or(String::new(), |stated| stated.value.to_string());
+        csv.push_str(&format!(
+            "{},{},{},\"{}\",{stated}\n",
+            quantity.name,
+            quantity.value,
+            quantity.unit,
+            plain(quantity.equation)
+        ));
+    }
+    vec![OutputFile { name: "derived.csv".to_string(), bytes: csv.into_bytes() }]
 }

@@ -6,7 +6,7 @@ use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::Derived;
 use super::list::List;
-use crate::linearize::{stiffness_at, stroke_stiffness};
+use crate::linearize::{stroke_stiffness, stroke_stiffness_of};
 use crate::project::Project;
 use crate::rig::{ParameterOrigin, Rig};
 
@@ -115,38 +115,15 @@ fn stiffness(rig: &Rig, list: &mut List) {
     list.add("stiffness.minimum", "K_H", declared.minimum, "N/m", least);
     list.add("stiffness.minimum_position", "x_p", declared.minimum_position, "m", "dK_H/dx = 0");
     list.add("stiffness.maximum", "K_H", declared.maximum, "N/m", greatest);
-    let at = |model, x| stiffness_at(rig, model, Member::Nominal, x);
-    let (end, middle) = (declared.maximum_position, declared.minimum_position);
-    let uniform = StiffnessModel::Uniform;
-    let by_volume = StiffnessModel::ByVolume;
-    list.add(
-        "stiffness.uniform.minimum",
-        "K_H",
-        at(uniform, middle),
-        "N/m",
-        "C_A = (V_{ho} + V_{A0} + A_A x)/β_e",
-    );
-    list.add(
-        "stiffness.uniform.maximum",
-        "K_H",
-        at(uniform, end),
-        "N/m",
-        "C_A = (V_{ho} + V_{A0} + A_A x)/β_e",
-    );
-    list.add(
-        "stiffness.by_volume.minimum",
-        "K_H",
-        at(by_volume, middle),
-        "N/m",
-        "C_A = V_{ho}/β_e + (V_{A0} + A_A x)/β_0",
-    );
-    list.add(
-        "stiffness.by_volume.maximum",
-        "K_H",
-        at(by_volume, end),
-        "N/m",
-        "C_A = V_{ho}/β_e + (V_{A0} + A_A x)/β_0",
-    );
+    // Each model has its own softest position: the two differ when the sides do.
+    let uniform = stroke_stiffness_of(rig, StiffnessModel::Uniform);
+    let by_volume = stroke_stiffness_of(rig, StiffnessModel::ByVolume);
+    let one_modulus = "C_A = (V_{ho} + V_{A0} + A_A x)/β_e";
+    let two_moduli = "C_A = V_{ho}/β_e + (V_{A0} + A_A x)/β_0";
+    list.add("stiffness.uniform.minimum", "K_H", uniform.minimum, "N/m", one_modulus);
+    list.add("stiffness.uniform.maximum", "K_H", uniform.maximum, "N/m", one_modulus);
+    list.add("stiffness.by_volume.minimum", "K_H", by_volume.minimum, "N/m", two_moduli);
+    list.add("stiffness.by_volume.maximum", "K_H", by_volume.maximum, "N/m", two_moduli);
     if let Line::Hose { .. } = components.line_a {
         let soft = stroke_stiffness(rig, Member::Minimum).minimum;
         list.add(
@@ -333,13 +310,15 @@ fn flow(project: &Project, rig: &Rig, list: &mut List) {
     list.group("Flow");
     let speed = flow / cylinder.area_a.max(cylinder.area_b);
     list.add("supply.piston_speed", "v_max", speed, "m/s", "v_{max} = q_{pump}/A");
-    for (name, line) in [("line.oil_velocity", rig.actuator.components().line_a)] {
+    let (a, b) = (rig.actuator.components().line_a, rig.actuator.components().line_b);
+    let lines = if a == b { vec![("line", a)] } else { vec![("line.a", a), ("line.b", b)] };
+    for (name, line) in lines {
         let bore = match line {
             Line::Hose { hose, .. } => hose.bore,
             Line::Pipe { pipe, .. } => pipe.bore,
             Line::Volume { .. } => continue,
         };
         let velocity = 4.0 * flow / (std::f64::consts::PI * bore * bore);
-        list.add(name, "v_oil", velocity, "m/s", "v_{oil} = 4 q/(π D^2)");
+        list.add(format!("{name}.oil_velocity"), "v_oil", velocity, "m/s", "v_{oil} = 4 q_{pump}/(π D^2)");
     }
 }

@@ -6,7 +6,7 @@ use phea_hydraulics::linear::ResponseDifference;
 use serde::Serialize;
 
 use super::{Comparison, Linearization, PortView, stiffness_sentence};
-use crate::answer::{self, Number, significant, table};
+use crate::answer::{self, Number, OutputFile, significant, table};
 use crate::project::Loaded;
 
 #[derive(Serialize)]
@@ -267,6 +267,17 @@ pub fn text(linearization: &Linearization) -> String {
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     out.push_str(&format!("  above {hidden} rad/s the piston's mass hides the compliance\n"));
     out
+}
+
+/// The poles of every model as a table for other programs.
+pub fn files(linearization: &Linearization) -> Vec<OutputFile> {
+    let mut csv = String::from("model,equation,real_rad_per_s,imaginary_rad_per_s\n");
+    for (model, equation, function) in models(linearization) {
+        for pole in function.poles() {
+            csv.push_str(&format!("\"{model}\",{equation},{},{}\n", pole.re, pole.im));
+        }
+    }
+    vec![OutputFile { name: "poles.csv".to_string(), bytes: csv.into_bytes() }]
 }
 
 /// Every model with its equation, the fullest first.

@@ -62,10 +62,15 @@ pub fn read(
     if report.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
         return Err(report);
     }
-    let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    let sha256 = sha256(&bytes);
     let warnings = report.diagnostics;
     let (settings, texts) = (settings.to_vec(), report.texts);
     Ok(Loaded { project, warnings, texts, sha256, settings, catalogue_files, provenance })
+}
+
+/// The hash by which answers name a project.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn project(reader: &mut Reader<'_>, root: &Node) -> Project {

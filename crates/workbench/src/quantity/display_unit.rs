@@ -16,6 +16,10 @@ impl DisplayUnit {
     pub const MILLIMETRE: Self = DisplayUnit { symbol: "mm", in_si: 1e-3 };
     /// Length.
     pub const METRE: Self = DisplayUnit { symbol: "m", in_si: 1.0 };
+    /// Area.
+    pub const SQUARE_CENTIMETRE: Self = DisplayUnit { symbol: "cm2", in_si: 1e-4 };
+    /// Modulus.
+    pub const GIGAPASCAL: Self = DisplayUnit { symbol: "GPa", in_si: 1e9 };
     /// Time.
     pub const MILLISECOND: Self = DisplayUnit { symbol: "ms", in_si: 1e-3 };
     /// Flow.

@@ -30,21 +30,34 @@ fn rows<'a>(quantities: impl Iterator<Item = &'a Derived>) -> Markup {
         .map(|quantity| {
             vec![
                 typeset(quantity.symbol),
-                cell(
-                    quantity
-                        .name
-                        .split_once('.')
-                        .map_or(quantity.name.as_str(), |(_, name)| name)
-                        .replace(['_', '.'], " "),
-                ),
+                cell(words(&quantity.name)),
                 match &quantity.reason {
                     Some(reason) => cell(reason),
                     None => typeset(quantity.equation),
                 },
                 figures(quantity.value, 5),
-                html! { span.unit { (quantity.unit) } },
+                html! { span.unit { (unit(quantity.unit)) } },
             ]
         })
         .collect();
     table(&["", "quantity", "equation", "value", "unit"], 3, &rows)
+}
+
+/// `line.a.wave_speed` as "wave speed, line A": the group's own word is not repeated.
+fn words(name: &str) -> String {
+    let (group, quantity) = name.split_once('.').unwrap_or(("", name));
+    match (group, quantity.split_once('.')) {
+        ("line", Some((side, quantity))) => {
+            format!("{}, line {}", quantity.replace('_', " "), side.to_uppercase())
+        }
+        _ => quantity.replace(['_', '.'], " "),
+    }
+}
+
+/// A unit as it is printed: m3/(s.V) as m³/(s·V).
+fn unit(text: &str) -> String {
+    if text == "1" {
+        return "1".to_string();
+    }
+    text.replace('2', "²").replace('3', "³").replace('.', "·")
 }

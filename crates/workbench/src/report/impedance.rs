@@ -104,7 +104,7 @@ fn asymptotes(linearization: &Linearization) -> Markup {
                 cell(name),
                 prose(regime),
                 cell(behaviour(asymptote.power)),
-                prose(&format!("{} {unit}", significant(asymptote.coefficient, 4))),
+                prose(&format!("{} {}", significant(asymptote.coefficient, 4), unit.replace('.', "·"))),
                 cell(format!("{} to {}", significant(asymptote.from, 3), significant(asymptote.to, 3))),
             ]);
         }

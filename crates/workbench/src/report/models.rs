@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, place, table};
+use super::typeset::prose;
 use crate::answer::significant;
 use crate::figure::{
     BodeInput, Figure, FrequencyMark, FrequencySeries, PoleMapInput, PoleMapScale, PoleSeries, Words, bode,
@@ -46,10 +47,10 @@ fn difference_table(linearization: &Linearization) -> Markup {
     let rows: Vec<Vec<Markup>> = comparisons(linearization)
         .iter()
         .map(|(name, comparison)| {
-            vec![cell(*name), cell(difference_text(&comparison.low)), cell(located(&comparison.all))]
+            vec![cell(*name), prose(&difference_text(&comparison.low)), prose(&located(&comparison.all))]
         })
         .collect();
-    table(&["first for second", "below 1000 rad/s", "everywhere"], 9, &rows)
+    table(&["model, for the fuller one", "below 1000 rad/s", "everywhere"], 9, &rows)
 }
 
 fn dominance_table(linearization: &Linearization) -> Markup {
@@ -59,7 +60,7 @@ fn dominance_table(linearization: &Linearization) -> Markup {
         .map(|mode| {
             vec![
                 cell(root_list(&[mode.pole])),
-                cell(significant(mode.step_share, 3)),
+                prose(&significant(mode.step_share, 3)),
                 cell(significant(mode.decay_ratio, 3)),
             ]
         })

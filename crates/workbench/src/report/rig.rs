@@ -68,16 +68,23 @@ fn circuit(project: &Project, actuator: &project::Actuator) -> Figure {
     schematic(Words::new("circuit", "The rig", caption), &input)
 }
 
+fn shown_in_millimetres(length: f64) -> String {
+    let text = quantity::DisplayUnit::MILLIMETRE.number(length, 4);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+}
+
 fn cylinder_words(cylinder: &project::Cylinder) -> String {
-    let millimetres = |length: f64| quantity::DisplayUnit::MILLIMETRE.number(length, 3);
+    let millimetres = shown_in_millimetres;
     let piston = cylinder.piston_diameter_m();
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
-    let rods = if rod_a == rod_b {
-        millimetres(rod_a)
-    } else {
-        format!("{}/{}", millimetres(rod_a), millimetres(rod_b))
+    let rods = match [rod_a, rod_b] {
+        [0.0, 0.0] => " mm without rod".to_string(),
+        [a, b] if a == b => format!("/{} mm", millimetres(a)),
+        [0.0, b] => format!("/{} mm, rod through B", millimetres(b)),
+        [a, 0.0] => format!("/{} mm, rod through A", millimetres(a)),
+        [a, b] => format!("/{} (A)/{} (B) mm", millimetres(a), millimetres(b)),
     };
-    format!("{}/{rods} mm, stroke {}", millimetres(piston), shown(cylinder.stroke, &LENGTH))
+    format!("{}{rods}, stroke {}", millimetres(piston), shown(cylinder.stroke, &LENGTH))
 }
 
 fn line(declared: &project::Line) -> LineSymbol {
@@ -143,7 +150,7 @@ fn facts(actuator: &project::Actuator, rig: &Rig) -> Markup {
         ("moving mass", shown(actuator.cylinder.moving_mass, &MASS)),
         ("force sensor", shown(actuator.force_sensor.stiffness, &STIFFNESS)),
     ];
-    if components.line_a.volume() == components.line_b.volume() {
+    if components.line_a == components.line_b {
         rows.push(("each line", line(&actuator.line.a).rows.join(", ")));
     } else {
         rows.push(("line A", line(&actuator.line.a).rows.join(", ")));
@@ -155,7 +162,13 @@ fn facts(actuator: &project::Actuator, rig: &Rig) -> Markup {
 
 fn valve_words(actuator: &project::Actuator) -> String {
     let valve = &actuator.valve;
-    let name = valve.model.clone().unwrap_or_else(|| "by coefficients".to_string());
+    let name = match (&valve.model, valve.nominal_flow, valve.nominal_pressure_drop) {
+        (Some(model), _, _) => model.clone(),
+        (None, Some(flow), Some(drop)) => {
+            format!("{} at a drop of {}", shown(flow, &FLOW), shown(drop, &PRESSURE))
+        }
+        _ => "by coefficients".to_string(),
+    };
     format!(
         "{name}, {} and damping {}",
         shown(valve.natural_frequency, &quantity::ANGULAR_FREQUENCY),

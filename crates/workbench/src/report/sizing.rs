@@ -9,7 +9,7 @@ use crate::figure::{
     DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput, SizingCurve,
     TornadoBar, TornadoInput, Verdict, Words, nomograph, sizing_chart, tornado,
 };
-use crate::sizing::{BoreVerdict, Candidate, Severity, Sizing, SizingProblem, model_name};
+use crate::sizing::{BoreVerdict, Candidate, Severity, Sizing, SizingProblem, alike, model_name};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
@@ -18,8 +18,9 @@ pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
     let best = |model| sizing.candidates.iter().find(|c| c.accepted() && c.branch.model == model);
     let body = html! {
         p {
-            "The procedure of Ledezma (2019), section 6.3, walked over " (problem.hoses.len())
-            " hose(s) of the catalogue, once with each stiffness model."
+            "The procedure of Ledezma (2019), section 6.3, walked over "
+            (if problem.hoses.len() == 1 { "the one hose".to_string() } else { format!("the {} hoses", problem.hoses.len()) })
+            " of the catalogue, once with each stiffness model; both lines alike."
         }
         div.callout.good-edge[best(problem.model).is_some()].bad-edge[best(problem.model).is_none()] {
             @for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
@@ -36,7 +37,7 @@ pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
             (place(figure))
             (influences(sizing))
         }
-        details { summary { "Every decision of the procedure" } (decisions(sizing)) }
+        details open { summary { "Every decision of the procedure" } (decisions(sizing)) }
     };
     Chapter { anchor: "sizing", title: "Sizing of the hose", body, figures }
 }
@@ -128,42 +129,40 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
     sizing_chart(Words::new("sizing-length", "Length, stiffness and gain", caption), &input)
 }
 
-/// Two rows a candidate: its numbers, and below them the reasons over the whole width.
+/// One body for candidates that share their findings: a row each, and below them the reasons over the whole width.
 fn candidates(sizing: &Sizing) -> Markup {
-    let headings = [
-        "",
-        "hose",
-        "compliance",
-        "branch",
-        "length, m",
-        "K_H, MN/m",
-        "K_p, mV/N",
-        "τ at K_Hmin and K_Hmax, ms",
-    ];
+    let headings =
+        ["", "hose", "compliance", "branch", "length, m", "K_H, MN/m", "K_p, V/N", "τ over the stroke, ms"];
     html! {
         div.table { table {
-            thead { tr { @for (column, heading) in headings.iter().enumerate() { th.number[(4..8).contains(&column)] { (prose(heading)) } } } }
-            @for candidate in &sizing.candidates { tbody.candidate { (candidate_rows(candidate)) } }
+            thead { tr { @for (column, heading) in headings.iter().enumerate() { th.number[column >= 4] { (prose(heading)) } } } }
+            @for group in alike(&sizing.candidates) { tbody.candidate {
+                @for candidate in &group { (candidate_row(candidate)) }
+                @if let Some(first) = group.first() {
+                    tr { td.reasons colspan="8" { @if !first.findings.is_empty() { (reasons(first)) } } }
+                }
+            } }
         } }
     }
 }
 
-fn candidate_rows(candidate: &Candidate) -> Markup {
+fn candidate_row(candidate: &Candidate) -> Markup {
     let branch = &candidate.branch;
-    let mega = |stiffness: f64| DisplayUnit::MEGANEWTON_PER_METRE.number(stiffness, 3);
-    let milliseconds = candidate.time_constant_s.map(|time| DisplayUnit::MILLISECOND.number(time, 3));
+    let range = |values: [f64; 2], unit: DisplayUnit| {
+        let [from, to] = values.map(|value| unit.number(value, 3));
+        if from == to { from } else { format!("{from} to {to}") }
+    };
     html! {
         tr {
             td { @if candidate.accepted() { span.good { "accepted" } } @else { span.bad { "rejected" } } }
             td { code { (candidate.option.name) } }
             td { code { (model_name(branch.model)) } }
-            td { (if branch.by_gain { "by gain" } else { "by length" }) }
+            td { (if branch.by_gain { "gain" } else { "length" }) }
             td.number { (significant(branch.length_m, 4)) }
-            td.number { (mega(branch.stiffness.minimum)) " to " (mega(branch.stiffness.maximum)) }
-            td.number { (DisplayUnit::MILLIVOLT_PER_NEWTON.number(branch.gain_v_per_n, 3)) }
-            td.number { (milliseconds[0]) " and " (milliseconds[1]) }
+            td.number { (range([branch.stiffness.minimum, branch.stiffness.maximum], DisplayUnit::MEGANEWTON_PER_METRE)) }
+            td.number { (prose(&significant(branch.gain_v_per_n, 3))) }
+            td.number { (range(candidate.time_constant_s, DisplayUnit::MILLISECOND)) }
         }
-        @if !candidate.findings.is_empty() { tr { td.reasons colspan="8" { (reasons(candidate)) } } }
     }
 }
 
@@ -179,9 +178,9 @@ fn reasons(candidate: &Candidate) -> Markup {
 fn uncertain(sizing: &Sizing) -> Option<Figure> {
     let nominal = sizing.influences.first()?.stiffness_n_per_m[1];
     let bars = sizing.influences.iter().map(|influence| TornadoBar {
-        parameter: influence.quantity.clone(),
-        low_setting: significant(influence.values[0], 3),
-        high_setting: significant(influence.values[2], 3),
+        parameter: influence.quantity.to_string(),
+        low_setting: influence.shown(0, 3),
+        high_setting: influence.shown(2, 3),
         low_value: influence.stiffness_n_per_m[0],
         high_value: influence.stiffness_n_per_m[2],
     });
@@ -203,8 +202,8 @@ fn influences(sizing: &Sizing) -> Markup {
         .iter()
         .map(|influence| {
             vec![
-                prose(&influence.quantity),
-                three(influence.values, 1.0),
+                prose(influence.quantity),
+                cell(influence.setting_words()),
                 three(influence.stiffness_n_per_m, 1e6),
                 three(influence.length_m, 1.0),
             ]
@@ -213,7 +212,7 @@ fn influences(sizing: &Sizing) -> Markup {
     table(
         &[
             "quantity",
-            "low · nominal · high (SI)",
+            "low · nominal · high",
             "K_H at the chosen length, MN/m",
             "length for the chosen K_H, m",
         ],

@@ -73,7 +73,7 @@ pub fn json(loaded: &Loaded, sizing: &Sizing) -> String {
         verdict: verdict_name(bore.verdict),
     });
     let influences = sizing.influences.iter().map(|influence| InfluenceRow {
-        quantity: &influence.quantity,
+        quantity: influence.quantity,
         values: influence.values,
         stiffness_n_per_m: influence.stiffness_n_per_m.map(Number),
         length_m: influence.length_m.map(Number),
@@ -141,18 +141,48 @@ pub fn text(sizing: &Sizing) -> String {
         candidates.add_row(candidate_cells(candidate));
     }
     out.push_str(&format!("\nCandidates\n{candidates}\n"));
-    for candidate in sizing.candidates.iter().filter(|candidate| !candidate.findings.is_empty()) {
-        let verdict = if candidate.accepted() { "accepted" } else { "rejected" };
-        let model = model_name(candidate.branch.model);
-        let branch = branch_name(candidate.branch.by_gain);
-        out.push_str(&format!("\n{} ({model}, {branch}): {verdict}\n", candidate.option.name));
-        for finding in &candidate.findings {
-            let sign = if finding.severity == Severity::Rejects { "rejects" } else { "warns" };
-            out.push_str(&format!("  {sign}: {}\n", finding.text));
-        }
+    for alike in alike(&sizing.candidates) {
+        out.push_str(&alike_text(&alike));
     }
     if !sizing.influences.is_empty() {
-        out.push_str(&format!("\nWhat is uncertain (low, nominal, high)\n{}\n", influence_table(sizing)));
+        out.push_str(&format!("\nWhat is uncertain\n{}\n", influence_table(sizing)));
+    }
+    out
+}
+
+/// Candidates of one hose with the same findings, so that these are said once; in the order of the first of each.
+pub(crate) fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
+    let mut groups: Vec<Vec<&Candidate>> = Vec::new();
+    for candidate in candidates {
+        let same = |group: &&mut Vec<&Candidate>| {
+            group.first().is_some_and(|first| {
+                first.option.name == candidate.option.name && first.findings == candidate.findings
+            })
+        };
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(candidate),
+            None => groups.push(vec![candidate]),
+        }
+    }
+    groups
+}
+
+fn alike_text(group: &[&Candidate]) -> String {
+    let Some(first) = group.first() else { return String::new() };
+    let verdict = if first.accepted() { "accepted" } else { "rejected" };
+    let names: Vec<String> = group
+        .iter()
+        .map(|candidate| {
+            format!("{} {}", model_name(candidate.branch.model), branch_name(candidate.branch.by_gain))
+        })
+        .collect();
+    if first.findings.is_empty() {
+        return String::new();
+    }
+    let mut out = format!("\n{} ({}): {verdict}\n", first.option.name, names.join(", "));
+    for finding in &first.findings {
+        let sign = if finding.severity == Severity::Rejects { "rejects" } else { "warns" };
+        out.push_str(&format!("  {sign}: {}\n", finding.text));
     }
     out
 }
@@ -173,13 +203,16 @@ fn candidate_cells(candidate: &Candidate) -> Vec<String> {
 }
 
 fn influence_table(sizing: &Sizing) -> String {
-    let mut influences = table(&["quantity", "values", "K_H at this length, N/m", "length for this K_H, m"]);
-    let three = |values: [f64; 3]| values.map(|value| significant(value, 4)).join(", ");
+    let mut influences =
+        table(&["quantity", "low · nominal · high", "K_H at this length, MN/m", "length for this K_H, m"]);
+    let three = |values: [f64; 3]| values.map(|value| significant(value, 4)).join(" · ");
     for influence in &sizing.influences {
         influences.add_row([
-            influence.quantity.clone(),
-            three(influence.values),
-            three(influence.stiffness_n_per_m),
+            influence.quantity.to_string(),
+            influence.setting_words(),
+            three(
+                influence.stiffness_n_per_m.map(|stiffness| DisplayUnit::MEGANEWTON_PER_METRE.of(stiffness)),
+            ),
             three(influence.length_m),
         ]);
     }

@@ -147,42 +147,37 @@ pub fn model_name(model: StiffnessModel) -> &'static str {
 }
 
 impl Branch {
+    /// The decisions of steps f to l; the single trials stay in `steps`.
     pub(super) fn record(&self, option: &HoseOption, decisions: &mut Vec<Decision>) {
-        let name = &option.name;
-        let model = model_name(self.model);
+        let name = format!("{}, {}", option.name, model_name(self.model));
         let number = |value| significant(value, 4);
-        let mut decide = |step, text| decisions.push(Decision { step, text });
-        if self.by_gain {
-            for trial in &self.steps {
-                decide(
-                    "g, h",
-                    format!(
-                        "{name}, {model}: K_p = {} V/N asks for K_H = {} N/m (6.16), {} m of hose a line.",
-                        number(trial.gain_v_per_n),
-                        number(trial.stiffness_n_per_m),
-                        number(trial.length_m)
-                    ),
-                );
-            }
-            let outcome = if self.length_m == 0.0 { "no hose is needed" } else { "this is the length taken" };
-            decide(
-                "i, j",
-                format!(
-                    "{name}, {model}: {} m a line at K_p = {} V/N; {outcome}.",
-                    number(self.length_m),
-                    number(self.gain_v_per_n)
-                ),
+        let mut decide =
+            |step, text: String| decisions.push(Decision { step, text: format!("{name}: {text}") });
+        if !self.by_gain {
+            let (length, stiffness) = (number(self.length_m), number(self.stiffness.minimum));
+            let gain = number(self.gain_v_per_n);
+            let text = format!(
+                "{length} m a line gives K_H = {stiffness} N/m at its least (6.26), which needs K_p = {gain} V/N (6.27)."
             );
-        } else {
-            decide(
-                "k, l",
-                format!(
-                    "{name}, {model}: {} m a line gives K_H = {} N/m at its least (6.26), which needs K_p = {} V/N (6.27).",
-                    number(self.length_m),
-                    number(self.stiffness.minimum),
-                    number(self.gain_v_per_n)
-                ),
-            );
+            return decide("k, l", text);
         }
+        let Some((end, trials)) = self.steps.split_last() else { return };
+        if let (Some(first), Some(last)) = (trials.first(), trials.last()) {
+            let text = format!(
+                "K_p = {} V/N asks for {} m of hose a line (6.16, 6.25), too long; so does every half of it down to {} V/N with {} m, {} trials.",
+                number(first.gain_v_per_n),
+                number(first.length_m),
+                number(last.gain_v_per_n),
+                number(last.length_m),
+                trials.len()
+            );
+            decide("g, h", text);
+        }
+        let (gain, stiffness) = (number(end.gain_v_per_n), number(end.stiffness_n_per_m));
+        let length = match end.length_m {
+            0.0 => "for which no hose is needed".to_string(),
+            length => format!("which {} m of hose a line gives (6.25)", number(length)),
+        };
+        decide("i, j", format!("K_p = {gain} V/N asks for K_H = {stiffness} N/m (6.16), {length}."));
     }
 }

@@ -80,8 +80,8 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
     practical_gain(problem, &candidate, &mut findings);
     pressure(problem, &candidate, &mut findings);
     bending(&candidate, &mut findings);
+    stiffening(option, &mut findings);
     settling(problem, &candidate, &mut findings);
-    stiffening(&candidate, &mut findings);
     findings.sort_by_key(|finding| finding.severity != Severity::Rejects);
     candidate.findings = findings;
     candidate
@@ -219,6 +219,14 @@ fn bending(candidate: &Candidate, findings: &mut Vec<Finding>) {
     }
 }
 
+/// A wall with its static modulus is softer than the braided hoses that are measured in motion.
+fn stiffening(option: &HoseOption, findings: &mut Vec<Finding>) {
+    if option.hose.dynamic_stiffening.maximum <= 1.0 {
+        let text = "[line] declares no `dynamic_stiffening`: the wall has its static modulus, and a stiffer one takes more hose";
+        warns(findings, text.to_string());
+    }
+}
+
 fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
     let slowest = candidate.time_constant_s.into_iter().fold(0.0, f64::max);
     if slowest > problem.time_constant * (1.0 + 1e-6) {
@@ -241,12 +249,5 @@ fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<F
                 significant(100.0 * at_largest, 3)
             ),
         );
-    }
-}
-
-fn stiffening(candidate: &Candidate, findings: &mut Vec<Finding>) {
-    if candidate.option.hose.dynamic_stiffening.maximum <= 1.0 {
-        let text = "no dynamic stiffening is stated: the hose is counted as soft as at rest, in motion it is stiffer";
-        warns(findings, text.to_string());
     }
 }

@@ -6,7 +6,7 @@ use phea_hydraulics::linear::{
 use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, chamber_compliance};
 
 use super::Decision;
-use crate::answer::significant;
+use crate::quantity::{DisplayUnit, significant};
 
 /// What the procedure needs to know, every value resolved. SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,11 +108,11 @@ impl SizingProblem {
             Decision {
                 step: "a",
                 text: format!(
-                    "System data: A_u = {} m2, stroke {} m, β_0 = {} Pa, K_S = {} N/m, K_qU = {} m3/(s V), K_c0 = {} m3/(s Pa).",
-                    number(self.linear.useful_area),
-                    number(self.cylinder.stroke),
-                    number(self.fluid_modulus),
-                    number(self.linear.sensor_stiffness),
+                    "System data: A_u = {} cm2, stroke {} mm, β_0 = {} GPa, K_S = {} MN/m, K_qU = {} m3/(s.V), K_c0 = {} m3/(s.Pa); both lines alike.",
+                    DisplayUnit::SQUARE_CENTIMETRE.number(self.linear.useful_area, 4),
+                    DisplayUnit::MILLIMETRE.number(self.cylinder.stroke, 4),
+                    DisplayUnit::GIGAPASCAL.number(self.fluid_modulus, 4),
+                    DisplayUnit::MEGANEWTON_PER_METRE.number(self.linear.sensor_stiffness, 4),
                     number(self.linear.flow_gain),
                     number(self.linear.flow_pressure_coefficient)
                 ),
@@ -120,11 +120,22 @@ impl SizingProblem {
             Decision {
                 step: "b",
                 text: format!(
-                    "Time constant τ_d = {} s: {}.",
-                    number(self.time_constant),
+                    "Time constant τ_d = {} ms: {}.",
+                    DisplayUnit::MILLISECOND.number(self.time_constant, 4),
                     self.time_constant_origin
                 ),
             },
         ]
+    }
+
+    /// Step f: where the search over the gain begins, and what bounds it.
+    pub(super) fn search_decision(&self) -> Decision {
+        let text = format!(
+            "K_p starts at 1 V/N and is halved while the hose is longer than {} m, but not below {} V/N; at {} V/N even a rigid transmission would be too slow (K_H infinite).",
+            significant(self.available_length(), 4),
+            significant(self.minimum_gain, 3),
+            significant(self.pole_gain(), 3)
+        );
+        Decision { step: "f", text }
     }
 }

@@ -2,18 +2,37 @@ use phea_hydraulics::line::{Hose, Line, Member, Stiffening};
 use phea_hydraulics::stiffness::{LineLength, line_length_for_stiffness};
 
 use super::{Candidate, SizingProblem};
+use crate::answer::significant;
 
 /// What one uncertain number does to stiffness and length when it goes from low to high, all else nominal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Influence {
     /// What is varied, in words.
-    pub quantity: String,
+    pub quantity: &'static str,
+    /// The unit people read its values in, and how much that is in SI.
+    pub unit: (&'static str, f64),
     /// Its low, nominal and high value in SI.
     pub values: [f64; 3],
     /// Least stiffness over the stroke of the chosen length, N/m, at low, nominal and high.
     pub stiffness_n_per_m: [f64; 3],
     /// Length that keeps the nominal stiffness, m, at low, nominal and high; zero where none is needed.
     pub length_m: [f64; 3],
+}
+
+impl Influence {
+    /// A value with its unit.
+    pub(crate) fn shown(&self, which: usize, digits: usize) -> String {
+        let (name, size) = self.unit;
+        let number = significant(self.values.get(which).map_or(f64::NAN, |value| value / size), digits);
+        if name.is_empty() { number } else { format!("{number} {name}") }
+    }
+
+    /// Low, nominal and high, with their unit.
+    pub(crate) fn setting_words(&self) -> String {
+        let (name, size) = self.unit;
+        let numbers = self.values.map(|value| significant(value / size, 4)).join(" · ");
+        if name.is_empty() { numbers } else { format!("{numbers} {name}") }
+    }
 }
 
 /// Relative variation of numbers for which no interval is stated.
@@ -24,27 +43,31 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
     let hose = candidate.option.hose;
     let Stiffening { nominal, minimum, maximum } = hose.dynamic_stiffening;
     let around = |value: f64| [value * (1.0 - ASSUMED_SPREAD), value, value * (1.0 + ASSUMED_SPREAD)];
-    let influence = |quantity: &str, values: [f64; 3], vary: &dyn Fn(f64) -> (SizingProblem, Hose)| {
+    let influence = |quantity: &'static str,
+                     unit: (&'static str, f64),
+                     values: [f64; 3],
+                     vary: &dyn Fn(f64) -> (SizingProblem, Hose)| {
         let outcomes = values.map(|value| {
             let (varied, hose) = vary(value);
             outcome(&varied, hose, candidate)
         });
         Influence {
-            quantity: quantity.to_string(),
+            quantity,
+            unit,
             values,
             stiffness_n_per_m: outcomes.map(|(stiffness, _)| stiffness),
             length_m: outcomes.map(|(_, length)| length),
         }
     };
     vec![
-        influence("dynamic stiffening r_β", [minimum, nominal, maximum], &|value| {
+        influence("dynamic stiffening r_β", ("", 1.0), [minimum, nominal, maximum], &|value| {
             (problem.clone(), Hose { dynamic_stiffening: Stiffening::certain(value), ..hose })
         }),
-        influence("fluid bulk modulus β_0", around(problem.fluid_modulus), &|value| {
+        influence("fluid bulk modulus β_0", ("GPa", 1e9), around(problem.fluid_modulus), &|value| {
             (SizingProblem { fluid_modulus: value, ..problem.clone() }, hose)
         }),
         // The slope goes with the expansion: a hose that expands more does so at every pressure.
-        influence("volumetric expansion E", around(hose.volumetric_expansion), &|value| {
+        influence("volumetric expansion E", ("cm3/m", 1e-6), around(hose.volumetric_expansion), &|value| {
             let share = value / hose.volumetric_expansion;
             let expansion_slope = hose.expansion_slope * share;
             (problem.clone(), Hose { volumetric_expansion: value, expansion_slope, ..hose })
