@@ -129,8 +129,40 @@ fn the_page_and_every_figure_are_well_formed() {
         assert!(project.contains(&format!("title = \"{}\"", text(title))));
         let figures = elements(page, "svg");
         assert!(figures.len() >= 7, "{}", figures.len());
-        // Tables: the poles of every model, the asymptotes, the candidates with their reasons, what was assumed.
-    for words in ["6.12", "6.13", "compliance plateau", "rejects", "warns", "SHA-256", "eaton_synflex_3130_08", "section 6.4.1 and Table A.1"] {
+        for figure in figures {
+            let document = Document::parse(figure).unwrap_or_else(|error| panic!("{error}: {figure}"));
+            assert_eq!(document.root_element().attribute("role"), Some("img"));
+        }
+    }
+}
+
+#[test]
+fn every_chapter_is_there() {
+    let page = page(hose());
+    let headings = elements(page, "h2").join("\n");
+    for words in [
+        "The rig",
+        "Derived quantities",
+        "Stiffness over the stroke",
+        "Sizing of the hose",
+        "models",
+        "What the load feels",
+        "Step response",
+        "Provenance and assumptions",
+    ] {
+        assert!(headings.contains(words), "{words}: {headings}");
+    }
+    // Tables: the poles of every model, the asymptotes, the candidates with their reasons, what was assumed.
+    for words in [
+        "6.12",
+        "6.13",
+        "compliance plateau",
+        "rejects",
+        "warns",
+        "SHA-256",
+        "eaton_synflex_3130_08",
+        "section 6.4.1 and Table A.1",
+    ] {
         assert!(page.contains(words), "{words}");
     }
 }
