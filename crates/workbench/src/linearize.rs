@@ -179,17 +179,22 @@ pub(crate) fn stroke_stiffness(rig: &Rig, member: Member) -> StrokeStiffness {
 /// Stiffness at a position by either model.
 pub(crate) fn stiffness_at(rig: &Rig, model: StiffnessModel, member: Member, position: f64) -> f64 {
     let components = rig.actuator.components();
-    let moduli =
-        [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| components.fluid.modulus_at(pressure));
     let lines = [&components.line_a, &components.line_b];
-    let chambers = chamber_compliance(model, moduli, &components.cylinder, lines, member);
+    let chambers = chamber_compliance(model, fluid_moduli(rig), &components.cylinder, lines, member);
     phea_hydraulics::stiffness::hydraulic_stiffness(&chambers, position)
 }
 
-fn stiffness_models(rig: &Rig) -> ModelDifference {
+/// Both stiffness models of a rig, nominal.
+pub(crate) fn stiffness_models(rig: &Rig) -> ModelDifference {
     let components = rig.actuator.components();
-    let modulus = components.fluid.modulus_at(rig.actuator.mean_pressure());
-    model_difference(modulus, &components.cylinder, [&components.line_a, &components.line_b], Member::Nominal)
+    let lines = [&components.line_a, &components.line_b];
+    model_difference(fluid_moduli(rig), &components.cylinder, lines, Member::Nominal)
+}
+
+/// Bulk modulus of the fluid on either side at the operating point, Pa.
+fn fluid_moduli(rig: &Rig) -> [f64; 2] {
+    let fluid = &rig.actuator.components().fluid;
+    [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| fluid.modulus_at(pressure))
 }
 
 /// Frequencies for comparing and drawing: from a decade below the slowest pole to a decade above the fastest, at least

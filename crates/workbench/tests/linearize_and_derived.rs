@@ -158,15 +158,28 @@ fn a_band_that_is_not_passive_has_a_negative_real_part_inside_and_none_outside()
 }
 
 #[test]
-fn a_proportional_loop_is_passive_where_the_valve_is_fast() {
-    // An integrator with a spool without delay is a damper and a spring: nothing can give energy away.
-    let settings = [
-        "controller.numerator=\"0.0001\"",
-        "controller.denominator=\"1\"",
-        "linear.valve_natural_frequency=1e7",
-    ];
-    let passivity = linearize(HOSE, &settings)["passivity"].clone();
-    assert_eq!(passivity["closed_loop"]["passive"], true, "{passivity}");
+fn a_proportional_loop_is_passive_up_to_the_gain_that_friction_allows() {
+    // ORIGIN: analytic. With a spool that follows at once and C = A^2/K_H, a = A K_qU K_p,
+    // Re 1/Z has the sign of (K_c + a)(A^2 + f K_c) + w^2 C (f C - a M): never negative for a <= f C/M, and negative
+    // above w_0^2 = (K_c + a)(A^2 + f K_c)/(C (a M - f C)) otherwise.
+    let area = std::f64::consts::FRAC_PI_4 * (0.05_f64.powi(2) - 0.022_f64.powi(2));
+    let (stiffness, mass, friction, flow_gain, leak) = (2.24e6, 13.1, 100.0, 5.4e-5, 6.42e-13);
+    let compliance = area * area / stiffness;
+    let limit = friction * compliance / mass / (area * flow_gain);
+    let passivity = |gain: f64| {
+        let gain = format!("controller.numerator=\"{gain:e}\"");
+        let settings = [&gain, "controller.denominator=\"1\"", "linear.valve_natural_frequency=1e7"];
+        linearize(HOSE, &settings)["passivity"]["closed_loop"].clone()
+    };
+    assert_eq!(passivity(0.99 * limit)["passive"], true);
+    for part in [1.1, 2.0, 10.0] {
+        let found = passivity(part * limit);
+        assert_eq!(found["passive"], false);
+        let push = part * friction * compliance / mass;
+        let surplus = compliance * (push * mass - friction * compliance);
+        let from = ((leak + push) * (area * area + friction * leak) / surplus).sqrt();
+        near(number(&found, "bands.0.0"), from, 1e-3);
+    }
 }
 
 #[test]
