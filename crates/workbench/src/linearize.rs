@@ -19,7 +19,7 @@ use phea_hydraulics::linear::{
     first_order_model, linear_model, response_difference, transfer_functions,
 };
 use phea_hydraulics::stiffness::{
-    ChamberCompliance, ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference,
+    ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference,
 };
 use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
@@ -178,37 +178,23 @@ pub(crate) fn stroke_stiffness(rig: &Rig, member: Member) -> StrokeStiffness {
 
 /// Stiffness at a position by either model.
 pub(crate) fn stiffness_at(rig: &Rig, model: StiffnessModel, member: Member, position: f64) -> f64 {
-    phea_hydraulics::stiffness::hydraulic_stiffness(&chambers(rig, model, member), position)
-}
-
-/// Nominal stiffness over the stroke by either model.
-pub(crate) fn stroke_stiffness_of(rig: &Rig, model: StiffnessModel) -> StrokeStiffness {
-    chambers(rig, model, Member::Nominal).over_stroke()
-}
-
-/// The chambers with the fluid's modulus at the operating point.
-fn chambers(rig: &Rig, model: StiffnessModel, member: Member) -> ChamberCompliance {
     let components = rig.actuator.components();
-    let moduli =
-        [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| components.fluid.modulus_at(pressure));
     let lines = [&components.line_a, &components.line_b];
-    chamber_compliance(model, moduli, &components.cylinder, lines, member)
+    let chambers = chamber_compliance(model, fluid_moduli(rig), &components.cylinder, lines, member);
+    phea_hydraulics::stiffness::hydraulic_stiffness(&chambers, position)
 }
 
-fn stiffness_models(rig: &Rig) -> ModelDifference {
+/// Both stiffness models of a rig, nominal.
+pub(crate) fn stiffness_models(rig: &Rig) -> ModelDifference {
     let components = rig.actuator.components();
-    let modulus = components.fluid.modulus_at(rig.actuator.mean_pressure());
     let lines = [&components.line_a, &components.line_b];
-    let shares = model_difference(modulus, &components.cylinder, lines, Member::Nominal);
-    let uniform = stroke_stiffness_of(rig, StiffnessModel::Uniform);
-    let by_volume = stroke_stiffness_of(rig, StiffnessModel::ByVolume);
-    ModelDifference {
-        minimum_ratio: by_volume.minimum / uniform.minimum,
-        maximum_ratio: by_volume.maximum / uniform.maximum,
-        uniform,
-        by_volume,
-        ..shares
-    }
+    model_difference(fluid_moduli(rig), &components.cylinder, lines, Member::Nominal)
+}
+
+/// Bulk modulus of the fluid on either side at the operating point, Pa.
+fn fluid_moduli(rig: &Rig) -> [f64; 2] {
+    let fluid = &rig.actuator.components().fluid;
+    [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| fluid.modulus_at(pressure))
 }
 
 /// Frequencies for comparing and drawing: from a decade below the slowest pole to a decade above the fastest, at least

@@ -97,7 +97,8 @@ pub struct ModelDifference {
     pub line_compliance_share: f64,
 }
 
-/// Both stiffness models of the same cylinder and lines, and how far they are apart.
+/// Both stiffness models of the same cylinder and lines, and how far they are apart; the fluid's modulus on either side
+/// in Pa.
 ///
 /// # Example
 /// For 1.5 m of the thesis' hose the thesis' model is less than half as stiff as the truth.
@@ -108,20 +109,21 @@ pub struct ModelDifference {
 /// # let dynamic_stiffening = Stiffening::certain(5.0);
 /// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, expansion_slope: 2.236e-12, dynamic_stiffening };
 /// # let line = Line::Hose { hose, length: 1.5 };
-/// let difference = model_difference(1.45e9, &cylinder, [&line, &line], Member::Nominal);
+/// let difference = model_difference([1.45e9; 2], &cylinder, [&line, &line], Member::Nominal);
 /// assert!((difference.minimum_ratio - 2.24).abs() < 0.005);
 /// ```
 pub fn model_difference(
-    fluid_modulus: f64,
+    fluid_moduli: [f64; 2],
     cylinder: &Cylinder,
     lines: [&Line; 2],
     member: Member,
 ) -> ModelDifference {
-    let of = |model| chamber_compliance(model, [fluid_modulus; 2], cylinder, lines, member);
+    let of = |model| chamber_compliance(model, fluid_moduli, cylinder, lines, member);
     let (uniform, chambers) = (of(StiffnessModel::Uniform).over_stroke(), of(StiffnessModel::ByVolume));
     let by_volume = chambers.over_stroke();
     let total_compliance: f64 = compliance_at(&chambers, by_volume.minimum_position).iter().sum();
-    let line_compliance: f64 = lines.iter().map(|line| line.compliance(fluid_modulus, member)).sum();
+    let line_compliance: f64 =
+        lines.iter().zip(fluid_moduli).map(|(line, modulus)| line.compliance(modulus, member)).sum();
     let line_volume: f64 = lines.iter().map(|line| line.volume()).sum();
     let chamber_volume: f64 =
         crate::cylinder::chamber_volumes(cylinder, by_volume.minimum_position).iter().sum();

@@ -2,11 +2,10 @@ use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{Hose, Line, Member};
 use phea_hydraulics::linear::{MechanicalDamping, decompose};
 use phea_hydraulics::servovalve::{Direction, velocity_gain};
-use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::Derived;
 use super::list::List;
-use crate::linearize::{stroke_stiffness, stroke_stiffness_of};
+use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::project::Project;
 use crate::rig::{ParameterOrigin, Rig};
 
@@ -115,15 +114,13 @@ fn stiffness(rig: &Rig, list: &mut List) {
     list.add("stiffness.minimum", "K_H", declared.minimum, "N/m", least);
     list.add("stiffness.minimum_position", "x_p", declared.minimum_position, "m", "dK_H/dx = 0");
     list.add("stiffness.maximum", "K_H", declared.maximum, "N/m", greatest);
-    // Each model has its own softest position: the two differ when the sides do.
-    let uniform = stroke_stiffness_of(rig, StiffnessModel::Uniform);
-    let by_volume = stroke_stiffness_of(rig, StiffnessModel::ByVolume);
-    let one_modulus = "C_A = (V_{ho} + V_{A0} + A_A x)/β_e";
-    let two_moduli = "C_A = V_{ho}/β_e + (V_{A0} + A_A x)/β_0";
-    list.add("stiffness.uniform.minimum", "K_H", uniform.minimum, "N/m", one_modulus);
-    list.add("stiffness.uniform.maximum", "K_H", uniform.maximum, "N/m", one_modulus);
-    list.add("stiffness.by_volume.minimum", "K_H", by_volume.minimum, "N/m", two_moduli);
-    list.add("stiffness.by_volume.maximum", "K_H", by_volume.maximum, "N/m", two_moduli);
+    let models = stiffness_models(rig);
+    let uniform = "C_A = (V_{ho} + V_{A0} + A_A x)/β_e";
+    list.add("stiffness.uniform.minimum", "K_H", models.uniform.minimum, "N/m", uniform);
+    list.add("stiffness.uniform.maximum", "K_H", models.uniform.maximum, "N/m", uniform);
+    let by_volume = "C_A = V_{ho}/β_e + (V_{A0} + A_A x)/β_0";
+    list.add("stiffness.by_volume.minimum", "K_H", models.by_volume.minimum, "N/m", by_volume);
+    list.add("stiffness.by_volume.maximum", "K_H", models.by_volume.maximum, "N/m", by_volume);
     if let Line::Hose { .. } = components.line_a {
         let soft = stroke_stiffness(rig, Member::Minimum).minimum;
         list.add(
