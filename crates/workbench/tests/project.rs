@@ -238,13 +238,15 @@ fn what_has_no_effect_is_told() {
         &HOSE.replace("anti_windup = \"none\"", "discretization = \"matched\""),
         "`discretization` has no effect: there is no `sample_time`",
     );
+    let improper = "[prefilter] has more zeros than poles: it can be verified, but not simulated or sampled";
+    warns(&HOSE.replace("numerator = \"910\"", "numerator = \"s^3 + 910\""), improper);
     let weak = HOSE.replace("length = \"1.5 m\"", "length = \"1.5 m\"\nworking_pressure = \"50 bar\"");
     warns(&weak, "the hose's `working_pressure` is below the supply pressure");
 }
 
 #[test]
 fn a_side_inherits_what_it_does_not_say() {
-    // ORIGIN: the lines written here, and the catalogue's slope
+    // ORIGIN: written by hand in these lines; the slope is Ledezma (2019), Table A.1
     let [pipe, own] =
         ["[line.b]\npipe = { bore = \"10 mm\" }\n", "[line.b]\nbore = \"9 mm\"\n"].map(|side| {
             let text = HOSE.replace("[force_sensor]", &format!("{side}\n[force_sensor]"));

@@ -3,7 +3,7 @@
 use super::Check;
 use crate::project::{
     AntiWindup, Discretization, Element, ElementKind, Limit, Project, Specification, SpecificationKind,
-    Transfer, Variable,
+    Transfer, TransferForm, Variable,
 };
 
 /// Most zeros, poles or elements of a transfer function.
@@ -128,6 +128,11 @@ fn transfer(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &m
     if transfer.elements.len() > MAXIMUM_ORDER {
         check.error(&format!("{path}.elements"), format!("more than {MAXIMUM_ORDER} elements"));
     }
+    if excess(transfer).is_some_and(|excess| excess > 0) {
+        let message =
+            format!("[{path}] has more zeros than poles: it can be verified, but not simulated or sampled");
+        check.warning(path, message);
+    }
     for (index, element) in transfer.elements.iter().enumerate() {
         one_element(element, &format!("{path}.elements[{index}]"), check);
     }
@@ -148,6 +153,27 @@ fn polynomial_form(transfer: &Transfer, path: &str, sample_time: Option<f64>, ch
     if is_discrete(transfer) && sample_time.is_none() {
         let message = format!("missing `sample_time` in [{path}]: it is written in `z`");
         check.missing(path, "sample_time", message);
+    }
+}
+
+/// Power of the numerator less that of the denominator, where both can be told.
+fn excess(transfer: &Transfer) -> Option<i64> {
+    let power = |count: usize| i64::try_from(count).ok();
+    match transfer.form()? {
+        TransferForm::Polynomials { numerator, denominator } => {
+            Some(power(numerator.polynomial()?.len())? - power(denominator.polynomial()?.len())?)
+        }
+        TransferForm::Factors { zeros, poles, .. } => Some(power(zeros.len())? - power(poles.len())?),
+        TransferForm::Elements(elements) => {
+            let one = |element: &Element| match element.kind {
+                ElementKind::Gain | ElementKind::Lead | ElementKind::Notch => 0,
+                ElementKind::Zero | ElementKind::Differentiator => 1,
+                ElementKind::Pole | ElementKind::Integrator => -1,
+                ElementKind::ComplexZeros => 2,
+                ElementKind::ComplexPoles => -2,
+            };
+            Some(elements.iter().map(one).sum())
+        }
     }
 }
 
