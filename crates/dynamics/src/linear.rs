@@ -54,6 +54,9 @@ pub enum TimeDomain {
     },
 }
 
+/// Samples of dead time that may become states of a sampled system.
+const MAXIMUM_DELAY_STATES: f64 = 200.0;
+
 /// Why a linear system cannot be built or computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LinearError {
@@ -134,6 +137,14 @@ pub enum LinearError {
         dead_time_s: f64,
         /// The sample time, s.
         sample_time_s: f64,
+    },
+    /// A dead time of so many samples would need as many states.
+    #[error(
+        "a dead time of {samples} samples is too long to become states; at most {MAXIMUM_DELAY_STATES} may"
+    )]
+    TooManyDelayStates {
+        /// Dead time in samples.
+        samples: f64,
     },
     /// The result would not be a rational function: dead time inside a sum or a loop, or in a state space.
     #[error("{operation} with dead time is not a rational function")]

@@ -312,6 +312,28 @@ fn modes_that_do_not_reach_the_output_cancel() {
     let minimal = full.without_common_factors(1e-12);
     assert_eq!((minimal.gain(), minimal.zeros().len(), minimal.poles()), (2.0, 0, &[c(-1.0, 0.0)][..]));
     assert!(magnitude(minimal.at_frequency(3.0) - full.at_frequency(3.0)) < 1e-15);
+    // a complex pair cancels as a pair, and not with a real root nearby
+    let pair = [c(-2.0, 3.0), c(-2.0, -3.0)];
+    let notch = TransferFunction::from_factors(
+        4.0,
+        vec![pair[0], pair[1], c(-7.0, 0.0)],
+        vec![pair[0], pair[1], c(-7.0, 1e-9), c(-7.0, -1e-9)],
+    );
+    let minimal = notch.unwrap().without_common_factors(1e-6);
+    assert_eq!((minimal.zeros(), minimal.poles().len()), (&[c(-7.0, 0.0)][..], 2));
+}
+
+#[test]
+fn delay_becomes_states() {
+    let sampled = TransferFunction::from_factors(1.0, vec![], vec![c(0.5, 0.0)])
+        .and_then(|lag| lag.in_domain(TimeDomain::Discrete { sample_time_s: 0.1 }))
+        .and_then(|lag| lag.with_dead_time(0.3))
+        .unwrap();
+    let states = StateSpace::from_transfer_function(&sampled).unwrap();
+    assert_eq!(states.poles().unwrap(), [c(0.0, 0.0), c(0.0, 0.0), c(0.0, 0.0), c(0.5, 0.0)]);
+    for w in [0.1, 3.0, 30.0] {
+        assert!(relative(states.at_frequency(w, 0, 0).unwrap(), sampled.at_frequency(w)) < 1e-14);
+    }
 }
 
 #[test]
@@ -365,6 +387,11 @@ fn refusals_are_typed() {
     assert!(matches!(
         lag.clone().in_domain(TimeDomain::Discrete { sample_time_s: 0.0 }),
         Err(LinearError::SampleTime { .. })
+    ));
+    let late = sampled.with_dead_time(1e6).unwrap();
+    assert!(matches!(
+        StateSpace::from_transfer_function(&late),
+        Err(LinearError::TooManyDelayStates { samples }) if samples == 1e7
     ));
     let zero = Polynomial::new(vec![0.0]);
     assert_eq!(TransferFunction::from_polynomials(&zero, &zero), Err(LinearError::ZeroPolynomial));

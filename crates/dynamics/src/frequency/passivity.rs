@@ -193,8 +193,12 @@ fn band(impedance: &TransferFunction, from_rad_per_s: f64, to_rad_per_s: f64) ->
         let value = impedance.at_frequency(frequency);
         value.re / magnitude(value)
     };
-    let high = if to_rad_per_s.is_infinite() { 1e6 * from_rad_per_s.max(1e-6) } else { to_rad_per_s };
-    let low = if from_rad_per_s > 0.0 { from_rad_per_s } else { 1e-6 * high };
+    let corners = || impedance.zeros().iter().chain(impedance.poles()).map(|root| magnitude(*root));
+    let lowest = corners().filter(|size| *size > 0.0).fold(f64::INFINITY, f64::min).min(1e6);
+    let highest = corners().fold(lowest, f64::max);
+    // open ends: a few decades beyond the band's other end and all corners
+    let low = if from_rad_per_s > 0.0 { from_rad_per_s } else { 1e-4 * lowest.min(to_rad_per_s) };
+    let high = if to_rad_per_s.is_finite() { to_rad_per_s } else { 1e4 * highest.max(from_rad_per_s) };
     let (mut left, mut right, mut worst) = (low, high, low.sqrt() * high.sqrt());
     for _ in 0..8 {
         let grid = logarithmic_grid(left, right, 201).unwrap_or_default();

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 use super::matrix_exponential::ExactStep;
-use super::realization::whole_samples;
+use super::realization::delay_states;
 use super::structure::{Resolvent, widened};
 use super::transfer_function::TransferFunction;
 use super::{LinearError, StateSpace, TimeDomain, realization, zeros};
@@ -148,7 +148,8 @@ impl StateSpace {
     /// The exact zero-order hold of the system with dead time at its inputs, which becomes states.
     ///
     /// # Errors
-    /// [`LinearError::WrongDomain`], [`LinearError::SampleTime`], [`LinearError::DeadTime`].
+    /// [`LinearError::WrongDomain`], [`LinearError::SampleTime`], [`LinearError::DeadTime`],
+    /// [`LinearError::TooManyDelayStates`].
     pub fn held_with_dead_time(&self, sample_time_s: f64, dead_time_s: f64) -> Result<Self, LinearError> {
         check_continuous(self.domain(), sample_time_s)?;
         if !(dead_time_s.is_finite() && dead_time_s >= 0.0) {
@@ -158,7 +159,7 @@ impl StateSpace {
         let mut result = held_with_fraction(self, sample_time_s, fraction)?;
         let inputs = self.inputs();
         let identity = DMatrix::identity(inputs, inputs);
-        for _ in 0..whole_samples(whole) {
+        for _ in 0..delay_states(whole)? {
             let none = DMatrix::zeros(inputs, inputs);
             let sample =
                 StateSpace::new(none.clone(), identity.clone(), identity.clone(), none, result.domain())?;

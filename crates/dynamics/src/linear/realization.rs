@@ -14,14 +14,14 @@ use num_complex::Complex64;
 
 use super::double_double::DoubleDouble;
 use super::polynomial::expand;
-use super::{LinearError, StateSpace, TimeDomain, TransferFunction};
+use super::{LinearError, MAXIMUM_DELAY_STATES, StateSpace, TimeDomain, TransferFunction};
 use crate::portable::magnitude;
 
 pub(crate) fn cascade(system: &TransferFunction) -> Result<StateSpace, LinearError> {
     let delay = match system.domain() {
         _ if system.dead_time_s() == 0.0 => 0,
         TimeDomain::Continuous => return Err(LinearError::NotRational { operation: "a state space" }),
-        TimeDomain::Discrete { sample_time_s } => whole_samples(system.dead_time_s() / sample_time_s),
+        TimeDomain::Discrete { sample_time_s } => delay_states(system.dead_time_s() / sample_time_s)?,
     };
     let (zeros, poles) = (system.zeros(), system.poles());
     if zeros.len() > poles.len() {
@@ -43,15 +43,12 @@ pub(crate) fn cascade(system: &TransferFunction) -> Result<StateSpace, LinearErr
     (0..delay).try_fold(result, |result, _| result.series(&sample([0.0, 1.0, 1.0, 0.0])?))
 }
 
-/// The nearest count; a dead time of a sampled system has been checked to be one.
-pub(crate) fn whole_samples(samples: f64) -> usize {
-    let mut count = 0_usize;
-    let mut reached = 0.5;
-    while reached < samples {
-        count += 1;
-        reached += 1.0;
+/// The number of states for this many samples of dead time, a whole number up to rounding.
+pub(crate) fn delay_states(samples: f64) -> Result<usize, LinearError> {
+    if samples > MAXIMUM_DELAY_STATES {
+        return Err(LinearError::TooManyDelayStates { samples });
     }
-    count
+    Ok((0..).map(|count: u32| f64::from(count) + 0.5).take_while(|upper| *upper < samples).count())
 }
 
 /// A real pole or a complex pair (by its upper member), with its digit of the numerator.

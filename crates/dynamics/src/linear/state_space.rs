@@ -82,7 +82,8 @@ impl StateSpace {
     /// A whole number of samples of dead time becomes that many poles at z = 0.
     ///
     /// # Errors
-    /// [`LinearError::Improper`]; [`LinearError::NotRational`] for a continuous system with dead time.
+    /// [`LinearError::Improper`]; [`LinearError::NotRational`] for a continuous system with dead time;
+    /// [`LinearError::TooManyDelayStates`].
     pub fn from_transfer_function(system: &TransferFunction) -> Result<Self, LinearError> {
         realization::cascade(system)
     }

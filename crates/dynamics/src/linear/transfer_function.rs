@@ -253,13 +253,18 @@ impl TransferFunction {
         self.poles.iter().all(|&pole| is_stable_pole(pole, self.domain))
     }
 
-    /// The system without the pole-zero pairs that lie within `relative_tolerance` of each other (relative to the
-    /// pole's magnitude). What is left has the same response to about that tolerance.
+    /// The system without the poles and zeros that lie within `relative_tolerance` of each other (relative to the pole's
+    /// magnitude): real ones with real ones, complex pairs with complex pairs. What is left has the same response to
+    /// about that tolerance.
     pub fn without_common_factors(&self, relative_tolerance: f64) -> Self {
-        let mut zeros = self.zeros.clone();
-        let mut poles = Vec::with_capacity(self.poles.len());
-        for &pole in &self.poles {
-            let distances = zeros.iter().enumerate().map(|(i, zero)| (i, portable::magnitude(zero - pole)));
+        // each pair by its upper member
+        let upper =
+            |roots: &[Complex64]| roots.iter().copied().filter(|root| root.im >= 0.0).collect::<Vec<_>>();
+        let (mut zeros, mut poles) = (upper(&self.zeros), Vec::new());
+        for pole in upper(&self.poles) {
+            let alike = |zero: &Complex64| (zero.im == 0.0) == (pole.im == 0.0);
+            let distances = zeros.iter().enumerate().filter(|(_, zero)| alike(zero));
+            let distances = distances.map(|(index, zero)| (index, portable::magnitude(zero - pole)));
             match distances.min_by(|a, b| a.1.total_cmp(&b.1)) {
                 Some((index, distance)) if distance <= relative_tolerance * portable::magnitude(pole) => {
                     zeros.remove(index);
@@ -267,11 +272,11 @@ impl TransferFunction {
                 _ => poles.push(pole),
             }
         }
-        if roots::conjugate_pairs(&zeros).is_err() || roots::conjugate_pairs(&poles).is_err() {
-            // a pair was torn apart by a real neighbour: keep everything rather than return a complex system
-            return self.clone();
-        }
-        let kept = TransferFunction::assembled(self.gain, zeros, poles, self.domain);
+        let mirrored = |roots: Vec<Complex64>| -> Vec<Complex64> {
+            let lower = roots.iter().filter(|root| root.im > 0.0).map(|root| root.conj()).collect::<Vec<_>>();
+            [roots, lower].concat()
+        };
+        let kept = TransferFunction::assembled(self.gain, mirrored(zeros), mirrored(poles), self.domain);
         TransferFunction { dead_time_s: self.dead_time_s, ..kept }
     }
 

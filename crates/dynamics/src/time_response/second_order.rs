@@ -228,7 +228,7 @@ impl SecondOrder {
                 vec![Complex64::new(real, -damped), Complex64::new(real, damped)]
             }
             None => {
-                let fast = natural * (ratio + ((ratio - 1.0) * (ratio + 1.0)).sqrt());
+                let fast = natural * (ratio + (ratio - 1.0).sqrt() * (ratio + 1.0).sqrt());
                 vec![Complex64::new(-natural * (natural / fast), 0.0), Complex64::new(-fast, 0.0)]
             }
         };
@@ -243,7 +243,7 @@ impl SecondOrder {
             return exp(-sigma * time) * (cos(angle) + sigma / damped * sin(angle));
         }
         let ratio = self.damping_ratio;
-        let spread = self.natural_frequency_rad_per_s * ((ratio - 1.0) * (ratio + 1.0)).sqrt();
+        let spread = self.natural_frequency_rad_per_s * (ratio - 1.0).sqrt() * (ratio + 1.0).sqrt();
         let slow = self.natural_frequency_rad_per_s * (self.natural_frequency_rad_per_s / (sigma + spread));
         if spread * time < 1e-4 {
             // cosh x + sigma t sinh x / x with x = spread t near zero
