@@ -6,7 +6,7 @@ use comfy_table::{Table, presets};
 /// ```
 /// let mut table = phea_workbench::answer::table(&["quantity", "value"]);
 /// table.add_row(["stiffness", "2.233e6 N/m"]);
-/// assert_eq!(table.to_string().lines().last(), Some(" stiffness  2.233e6 N/m "));
+/// assert_eq!(table.trim_fmt().lines().last(), Some(" stiffness  2.233e6 N/m"));
 /// ```
 pub fn table(headings: &[&str]) -> Table {
     let mut table = Table::new();

@@ -64,7 +64,7 @@ pub fn text(derived: &[Derived]) -> String {
     for quantity in derived {
         if quantity.group != group {
             if !group.is_empty() {
-                out.push_str(&format!("{group}\n{rows}\n\n"));
+                out.push_str(&format!("{group}\n{}\n\n", rows.trim_fmt()));
                 rows = table(&["quantity", "value", "unit", "equation"]);
             }
             group = quantity.group;
@@ -72,7 +72,7 @@ pub fn text(derived: &[Derived]) -> String {
         let value = significant(quantity.value, 5);
         rows.add_row([&quantity.name, &value, quantity.unit, &plain(quantity.equation)]);
     }
-    out.push_str(&format!("{group}\n{rows}\n"));
+    out.push_str(&format!("{group}\n{}\n", rows.trim_fmt()));
     let stated: Vec<&Derived> = derived.iter().filter(|quantity| quantity.stated.is_some()).collect();
     if !stated.is_empty() {
         out.push_str("\nStated by the project and used instead of the derived value\n");

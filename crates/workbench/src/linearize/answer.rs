@@ -241,12 +241,12 @@ pub fn text(linearization: &Linearization) -> String {
     for (model, equation, function) in models(linearization) {
         poles.add_row([model, equation, &root_list(function.poles())]);
     }
-    out.push_str(&format!("\nPoles\n{poles}\n"));
+    out.push_str(&format!("\nPoles\n{}\n", poles.trim_fmt()));
     let mut errors = table(&["comparison", "below 1000 rad/s", "everywhere"]);
     for (name, comparison) in comparisons(linearization) {
         errors.add_row([name.to_string(), difference_text(&comparison.low), located(&comparison.all)]);
     }
-    out.push_str(&format!("\nLargest differences\n{errors}\n"));
+    out.push_str(&format!("\nLargest differences\n{}\n", errors.trim_fmt()));
     let mut modes =
         table(&["mode, rad/s", "share of the step response", "decays faster than the slowest by"]);
     for mode in &linearization.modes {
@@ -256,7 +256,7 @@ pub fn text(linearization: &Linearization) -> String {
             significant(mode.decay_ratio, 3),
         ]);
     }
-    out.push_str(&format!("\nDominance\n{modes}\n\nDriving-point impedance Z = -F_e/(s X_L)\n"));
+    out.push_str(&format!("\nDominance\n{}\n\nDriving-point impedance Z = -F_e/(s X_L)\n", modes.trim_fmt()));
     out.push_str(&format!("  open loop:   {}\n", passivity_sentence(&linearization.open_loop.passivity)));
     match (&linearization.closed_loop, &linearization.closed_loop_absent) {
         (Some(view), _) => out.push_str(&format!("  closed loop: {}\n", passivity_sentence(&view.passivity))),

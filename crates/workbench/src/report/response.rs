@@ -97,7 +97,10 @@ fn margins(margins: &Margins) -> Markup {
         format!("{} dB {}", significant(margin.db(), 3), at(margin.frequency_rad_per_s))
     });
     let phase = margins.critical_phase().map_or("infinite".to_string(), |margin| {
-        format!("{}° {}", significant(margin.phase_deg, 3), at(margin.frequency_rad_per_s))
+        // Beyond a resonance it can be lead that the loop does not stand; a bare minus would read as instability.
+        let direction = if margin.phase_deg < 0.0 { "lead" } else { "lag" };
+        let size = significant(margin.phase_deg.abs(), 3);
+        format!("{size}° of {direction} {}", at(margin.frequency_rad_per_s))
     });
     let delay = margins.critical_delay().map_or("infinite".to_string(), |margin| {
         format!(

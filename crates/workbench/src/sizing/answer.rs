@@ -140,7 +140,7 @@ pub fn text(sizing: &Sizing) -> String {
     for candidate in &sizing.candidates {
         candidates.add_row(candidate_cells(candidate));
     }
-    out.push_str(&format!("\nCandidates\n{candidates}\n"));
+    out.push_str(&format!("\nCandidates\n{}\n", candidates.trim_fmt()));
     for alike in alike(&sizing.candidates) {
         out.push_str(&alike_text(&alike));
     }
@@ -216,7 +216,7 @@ fn influence_table(sizing: &Sizing) -> String {
             three(influence.length_m),
         ]);
     }
-    influences.to_string()
+    influences.trim_fmt()
 }
 
 /// The candidates as a table for other programs.

@@ -1,6 +1,8 @@
 use phea_hydraulics::line::{Member, series_modulus};
 use phea_hydraulics::linear::{LinearParameters, closed_loop_steady_state_gain, closed_loop_time_constant};
 
+use phea_hydraulics::stiffness::StiffnessModel;
+
 use super::branch::Branch;
 use super::{BoreVerdict, HoseOption, SizingProblem, bore};
 use crate::quantity::{DisplayUnit, significant};
@@ -75,13 +77,16 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
         findings: Vec::new(),
     };
     let mut findings = Vec::new();
-    velocity(problem, &candidate, &mut findings);
     length(problem, &candidate, &mut findings);
     practical_gain(problem, &candidate, &mut findings);
-    pressure(problem, &candidate, &mut findings);
-    bending(&candidate, &mut findings);
-    stiffening(option, &mut findings);
-    settling(problem, &candidate, &mut findings);
+    // Nothing else can be said of a hose that is not there.
+    if candidate.length_m() > 0.0 {
+        velocity(problem, &candidate, &mut findings);
+        pressure(problem, &candidate, &mut findings);
+        bending(&candidate, &mut findings);
+        stiffening(option, &mut findings);
+        settling(problem, &candidate, &mut findings);
+    }
     findings.sort_by_key(|finding| finding.severity != Severity::Rejects);
     candidate.findings = findings;
     candidate
@@ -125,11 +130,13 @@ fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Fin
     if length == 0.0 && candidate.branch.gain_v_per_n <= problem.pole_gain() {
         // No stiffness would do; the gain's own finding says so.
     } else if length == 0.0 {
-        rejects(
-            findings,
-            "no hose is needed: with rigid lines the actuator is already as compliant as this asks for"
-                .to_string(),
-        );
+        let why = match candidate.branch.model {
+            StiffnessModel::Uniform => {
+                "by this model the oil in the chambers alone, with the hose's modulus,"
+            }
+            StiffnessModel::ByVolume => "with rigid lines the actuator",
+        };
+        rejects(findings, format!("no hose is needed: {why} is already as compliant as this asks for"));
     } else if length < shortest {
         rejects(
             findings,

@@ -1,0 +1,124 @@
+//! The exit status of every kind of outcome, and that `--json` prints one JSON object and nothing else on standard output.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// A folder with the example project, a binary file, an empty one, and a file where a folder is wanted.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(folder.join("only")).expect("a folder");
+    let hose = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/ybitu/hose.toml");
+    let text = std::fs::read_to_string(hose).expect("the example");
+    let plant = "schema = 1\ntitle = \"x\"\n[plant]\nnumerator = \"1\"\ndenominator = \"s + 1\"\n";
+    let (head, tail) = text.split_once("[sizing]").expect("it has a [sizing]");
+    let tail = tail.split_once("[uncertainty]").expect("and an [uncertainty]").1;
+    let files: [(&str, &[u8]); 6] = [
+        ("hose.toml", text.as_bytes()),
+        ("only/hose.toml", text.as_bytes()),
+        ("unsized.toml", &[head.as_bytes(), b"[uncertainty]", tail.as_bytes()].concat()),
+        ("plant.toml", plant.as_bytes()),
+        ("binary.toml", &[0xff, 0xfe, 0x00, 0x9c]),
+        ("empty.toml", b""),
+    ];
+    for (name, bytes) in files {
+        std::fs::write(folder.join(name), bytes).expect("a file");
+    }
+    folder
+}
+
+fn phea(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_phea"));
+    command.current_dir(folder).args(arguments).output().expect("phea starts")
+}
+
+const OUTCOMES: &[(&[&str], i32)] = &[
+    (&["check", "hose.toml"], 0),
+    (&["check", "plant.toml"], 0),
+    (&["size", "hose.toml"], 0),
+    (&["size", "hose.toml", "--gain", "0.00025"], 0),
+    (&["size", "hose.toml", "--length", "1.5 m"], 0),
+    (&["linearize", "hose.toml"], 0),
+    (&["report", "hose.toml", "--out", "out"], 0),
+    (&["size", "hose.toml", "--gain", "0.0005 V/N"], 1),
+    (&["size", "hose.toml", "--length", "200 cm"], 1),
+    (&["size", "hose.toml", "--set", "sizing.oil_velocity=[0.1, 0.2]"], 1),
+    (&["size", "hose.toml", "--gain", "-1"], 2),
+    (&["size", "hose.toml", "--gain", "0"], 2),
+    (&["size", "hose.toml", "--gain", "nan"], 2),
+    (&["size", "hose.toml", "--length", "3 bar"], 2),
+    (&["size", "hose.toml", "--length", "1 m", "--gain", "1"], 2),
+    (&["size", "unsized.toml"], 2),
+    (&["size", "plant.toml"], 2),
+    (&["linearize", "plant.toml"], 2),
+    (&["report", "plant.toml"], 2),
+    (&["check", "missing.toml"], 2),
+    (&["check", "only"], 2),
+    (&["check", "binary.toml"], 2),
+    (&["check", "empty.toml"], 2),
+    (&["check", "hose.toml", "--set", "supply.pressure=70 mm"], 2),
+    (&["check", "hose.toml", "--set", "supply.presure=70 bar"], 2),
+    (&["check", "hose.toml", "--set", "nonsense"], 2),
+    (&["check", "hose.toml", "--catalogue", "nowhere"], 2),
+    (&["check", "hose.toml", "--catalogue", "hose.toml"], 2),
+    (&["check", "hose.toml", "--out", "empty.toml"], 2),
+    (&["report", "hose.toml", "--out", "empty.toml/sub"], 2),
+    (&["check", "hose.toml", "--frobnicate"], 2),
+    (&["check"], 2),
+    (&["chek", "hose.toml"], 2),
+];
+
+#[test]
+fn every_outcome_has_its_exit_status() {
+    let folder = folder("exit_status");
+    for (arguments, expected) in OUTCOMES {
+        let output = phea(&folder, arguments);
+        let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(*expected), "{arguments:?}: {complaint}");
+        assert_eq!(output.stdout.is_empty(), *expected == 2, "{arguments:?}");
+        assert_eq!(complaint.contains("error: "), *expected == 2, "{arguments:?}: {complaint}");
+        assert!(!complaint.contains("panicked"), "{arguments:?}: {complaint}");
+    }
+}
+
+#[test]
+fn json_is_one_object_and_nothing_else() {
+    let folder = folder("json");
+    for (arguments, expected) in OUTCOMES {
+        let output = phea(&folder, &[arguments, ["--json"].as_slice()].concat());
+        assert_eq!(output.status.code(), Some(*expected), "{arguments:?}");
+        let object: serde_json::Value =
+            serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}"));
+        for key in ["schema", "version", "command", "project_sha256"] {
+            assert!(object.get(key).is_some(), "{arguments:?} lacks {key}");
+        }
+        let refused = object.get("errors").and_then(serde_json::Value::as_array);
+        assert_eq!(refused.is_some_and(|errors| !errors.is_empty()), *expected == 2, "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let folder = folder("pipe");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_phea"))
+        .current_dir(&folder)
+        .args(["linearize", "hose.toml", "--json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("phea starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("phea ends");
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn new_writes_a_project_that_passes_and_never_over_another() {
+    let folder = folder("new");
+    assert_eq!(phea(&folder, &["new", "rig"]).status.code(), Some(0));
+    for command in ["check", "size", "linearize"] {
+        assert_eq!(phea(&folder, &[command, "rig/project.toml"]).status.code(), Some(0), "{command}");
+    }
+    assert_eq!(phea(&folder, &["new", "rig"]).status.code(), Some(2));
+    assert_eq!(phea(&folder, &["new", "empty.toml"]).status.code(), Some(2));
+}

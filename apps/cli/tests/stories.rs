@@ -1,0 +1,57 @@
+//! The stories of `examples/` are run: each `console` block is executed and must say what it shows.
+//!
+//! Each story has a folder of its own, with a copy of the example projects in it, so that what a command writes disturbs
+//! neither the repository nor another story. `phea` in a story is the binary that was just built.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+#[test]
+fn stories() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let sandbox = Path::new(env!("CARGO_TARGET_TMPDIR")).join("stories");
+    let stories = laid_out(&examples, &sandbox).expect("the stories are copied");
+    assert!(stories.len() >= 4, "{stories:?}");
+    let cases = trycmd::TestCases::new();
+    cases.register_bin("phea", trycmd::schema::Bin::Path(env!("CARGO_BIN_EXE_phea").into()));
+    cases.env("NO_COLOR", "1");
+    for story in stories {
+        cases.case(story);
+    }
+}
+
+/// Every story with the folder it runs in: `NAME.in` is what it starts from, `NAME.out` makes it run in a copy of that.
+fn laid_out(examples: &Path, sandbox: &Path) -> io::Result<Vec<PathBuf>> {
+    if sandbox.exists() {
+        fs::remove_dir_all(sandbox)?;
+    }
+    let mut stories = Vec::new();
+    for entry in fs::read_dir(examples)? {
+        let source = entry?.path();
+        if source.extension().is_none_or(|extension| extension != "md") {
+            continue;
+        }
+        let story = sandbox.join(source.file_name().unwrap_or_default());
+        copy_folder(examples, &story.with_extension("in").join("examples"))?;
+        fs::create_dir_all(story.with_extension("out"))?;
+        fs::copy(&source, &story)?;
+        stories.push(story);
+    }
+    stories.sort();
+    Ok(stories)
+}
+
+fn copy_folder(from: &Path, to: &Path) -> io::Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let path = entry?.path();
+        let target = to.join(path.file_name().unwrap_or_default());
+        if path.is_dir() {
+            copy_folder(&path, &target)?;
+        } else {
+            fs::copy(&path, &target)?;
+        }
+    }
+    Ok(())
+}
