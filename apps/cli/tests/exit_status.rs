@@ -1,5 +1,7 @@
 //! The exit status of every kind of outcome, and that `--json` prints one JSON object and nothing else on standard output.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 

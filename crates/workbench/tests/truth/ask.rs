@@ -1,5 +1,6 @@
 //! Asks a command about a project held in memory and reads its JSON, as another program would.
-#![allow(dead_code, reason = "each test binary uses its part")]
+#![allow(dead_code, unreachable_pub, reason = "each test binary uses its part")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, Request};
