@@ -4,6 +4,7 @@
 //! knows.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a chore talks to the person who started it")]
 
+mod bench;
 mod ci;
 mod reference_systems;
 mod repository;
@@ -18,6 +19,7 @@ usage: cargo xtask CHORE
   ci [STAGE]...    the test command: every stage, or only those named
   reference-systems
                    a hundred random linear systems and what phea computes of them, as JSON
+  bench [build]    how long the command takes on the examples; with `build`, and to build from scratch
   tidy [FOLDER]    the rules of the house that compiler and clippy do not know, here or in another checkout";
 
 fn main() -> ExitCode {
@@ -26,6 +28,8 @@ fn main() -> ExitCode {
     let done = match words.as_slice() {
         ["ci", stages @ ..] => ci::run(&root(), stages),
         ["reference-systems"] => reference_systems::print(),
+        ["bench"] => bench::run(&root(), false),
+        ["bench", "build"] => bench::run(&root(), true),
         ["tidy"] => tidy::report(&root()),
         ["tidy", elsewhere] => tidy::report(Path::new(elsewhere)),
         _ => {

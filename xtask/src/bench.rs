@@ -1,0 +1,82 @@
+//! Times what is promised of the command, measured and never asserted: `report` and its siblings on the example rigs,
+//! and with `build` the release build from scratch.
+//!
+//! A plain stopwatch around the command itself: what a user waits for is its start, reading, arithmetic, drawing and
+//! writing together, which a statistics harness inside one process would not see.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Runs of each command; the fastest and the median are shown.
+const RUNS: usize = 15;
+
+const COMMANDS: [&[&str]; 6] = [
+    &["check", "examples/ybitu/hose.toml"],
+    &["size", "examples/ybitu/hose.toml"],
+    &["linearize", "examples/ybitu/hose.toml"],
+    &["report", "examples/ybitu/hose.toml"],
+    &["report", "examples/ybitu/hose.toml", "--out"],
+    &["report", "examples/ybitu/pipe.toml"],
+];
+
+/// Benches in a target folder of its own; `from_scratch` empties it first and times the build. Whether all went well.
+pub(crate) fn run(root: &Path, from_scratch: bool) -> bool {
+    let target = root.join("target").join("bench");
+    if from_scratch && target.exists() && std::fs::remove_dir_all(&target).is_err() {
+        eprintln!("cannot empty {}", target.display());
+        return false;
+    }
+    let start = Instant::now();
+    let built = Command::new("cargo")
+        .args(["build", "--release", "-p", "phea-cli", "--target-dir"])
+        .arg(&target)
+        .current_dir(root)
+        .status();
+    if !built.is_ok_and(|status| status.success()) {
+        return false;
+    }
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let kind = if from_scratch { "from scratch" } else { "up to date or incremental" };
+    println!("\n{:>8.1} s  release build, {kind}, {cores} cores", start.elapsed().as_secs_f64());
+    println!("\n{:>10} {:>10}  command ({RUNS} runs)", "fastest", "median");
+    let binary = target.join("release").join("phea");
+    let scratch = target.join("written");
+    COMMANDS.iter().all(|arguments| bench(root, &binary, &scratch, arguments))
+}
+
+/// Times one command; its files go to a scratch folder.
+fn bench(root: &Path, binary: &Path, scratch: &Path, arguments: &[&str]) -> bool {
+    let name = arguments.join(" ");
+    let mut times = Vec::new();
+    for _ in 0..RUNS {
+        match once(root, binary, scratch, arguments) {
+            Some(time) => times.push(time),
+            None => {
+                eprintln!("`phea {name}` failed");
+                return false;
+            }
+        }
+    }
+    times.sort();
+    let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
+    println!("{:>7.1} ms {:>7.1} ms  phea {name}", milliseconds(times[0]), milliseconds(times[RUNS / 2]));
+    true
+}
+
+/// One run. Status 1 is an answer too: no.
+fn once(root: &Path, binary: &Path, scratch: &Path, arguments: &[&str]) -> Option<Duration> {
+    std::fs::create_dir_all(scratch).ok()?;
+    let arguments: Vec<std::path::PathBuf> = arguments
+        .iter()
+        .map(|argument| if argument.ends_with(".toml") { root.join(argument) } else { argument.into() })
+        .collect();
+    let mut command = Command::new(binary);
+    command.args(&arguments).current_dir(scratch).stdout(Stdio::null()).stderr(Stdio::null());
+    if arguments.last().is_some_and(|last| last.as_os_str() == "--out") {
+        command.arg("figures");
+    }
+    let start = Instant::now();
+    let status = command.status().ok()?;
+    matches!(status.code(), Some(0 | 1)).then(|| start.elapsed())
+}
