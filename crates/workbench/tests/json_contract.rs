@@ -1,5 +1,8 @@
 //! The JSON objects that other programs read: their keys, their shapes, and what they do with numbers that do not exist.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
 #[path = "truth/ask.rs"]
 mod ask;
 

@@ -1,5 +1,8 @@
 //! `check` and `linearize` look at one rig: they agree with each other, with closed forms, and with what is set.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
 #[path = "truth/ask.rs"]
 mod ask;
 

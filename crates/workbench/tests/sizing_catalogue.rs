@@ -1,5 +1,8 @@
 //! The sizing procedure over hoses that do not exist: each has one thing wrong with it, and one has nothing.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
 #[path = "truth/ask.rs"]
 mod ask;
 

@@ -8,12 +8,12 @@ use phea_workbench::project::{self, Loaded};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-pub const HOSE: &str = include_str!("../../../../examples/ybitu/hose.toml");
-pub const PIPE: &str = include_str!("../../../../examples/ybitu/pipe.toml");
+pub(crate) const HOSE: &str = include_str!("../../../../examples/ybitu/hose.toml");
+pub(crate) const PIPE: &str = include_str!("../../../../examples/ybitu/pipe.toml");
 
 /// A folder of hoses that do not exist, and a file that gives another body to a built-in name.
-pub const FICTITIOUS: &str = "fictitious";
-pub const OVERRIDE: &str = "override/eaton_synflex_3130_08.toml";
+pub(crate) const FICTITIOUS: &str = "fictitious";
+pub(crate) const OVERRIDE: &str = "override/eaton_synflex_3130_08.toml";
 
 const FICTITIOUS_FILES: [(&str, &str); 7] = [
     ("fictitious/rigid.toml", include_str!("../catalogue/fictitious/rigid.toml")),
@@ -25,7 +25,7 @@ const FICTITIOUS_FILES: [(&str, &str); 7] = [
     ("fictitious/weak.toml", include_str!("../catalogue/fictitious/weak.toml")),
 ];
 
-pub fn source(project: &str) -> Memory {
+pub(crate) fn source(project: &str) -> Memory {
     FICTITIOUS_FILES
         .into_iter()
         .fold(Memory::default(), |source, (path, text)| source.with(path, text))
@@ -38,13 +38,13 @@ fn owned(texts: &[&str]) -> Vec<String> {
 }
 
 #[track_caller]
-pub fn load(project: &str, settings: &[&str], catalogues: &[&str]) -> Loaded {
+pub(crate) fn load(project: &str, settings: &[&str], catalogues: &[&str]) -> Loaded {
     project::read(&source(project), "rig.toml", &owned(settings), &owned(catalogues))
         .unwrap_or_else(|report| panic!("{report}"))
 }
 
 #[track_caller]
-pub fn try_answer(
+pub(crate) fn try_answer(
     project: &str,
     settings: &[&str],
     catalogues: &[&str],
@@ -55,48 +55,48 @@ pub fn try_answer(
 }
 
 #[track_caller]
-pub fn answer(project: &str, settings: &[&str], catalogues: &[&str], request: &Request) -> Answer {
+pub(crate) fn answer(project: &str, settings: &[&str], catalogues: &[&str], request: &Request) -> Answer {
     try_answer(project, settings, catalogues, request).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[track_caller]
-pub fn json(project: &str, settings: &[&str], catalogues: &[&str], request: &Request) -> Value {
+pub(crate) fn json(project: &str, settings: &[&str], catalogues: &[&str], request: &Request) -> Value {
     let text = answer(project, settings, catalogues, request).json;
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
 #[track_caller]
-pub fn check(project: &str, settings: &[&str]) -> Value {
+pub(crate) fn check(project: &str, settings: &[&str]) -> Value {
     json(project, settings, &[], &Request::Check)
 }
 
 #[track_caller]
-pub fn linearize(project: &str, settings: &[&str]) -> Value {
+pub(crate) fn linearize(project: &str, settings: &[&str]) -> Value {
     json(project, settings, &[], &Request::Linearize)
 }
 
 #[track_caller]
-pub fn size(project: &str, settings: &[&str]) -> Value {
+pub(crate) fn size(project: &str, settings: &[&str]) -> Value {
     json(project, settings, &[], &size_request(None, None))
 }
 
 #[track_caller]
-pub fn size_for_gain(project: &str, settings: &[&str], gain: &str) -> Value {
+pub(crate) fn size_for_gain(project: &str, settings: &[&str], gain: &str) -> Value {
     json(project, settings, &[], &size_request(Some(gain), None))
 }
 
 #[track_caller]
-pub fn size_for_length(project: &str, settings: &[&str], length: &str) -> Value {
+pub(crate) fn size_for_length(project: &str, settings: &[&str], length: &str) -> Value {
     json(project, settings, &[], &size_request(None, Some(length)))
 }
 
-pub fn size_request(gain: Option<&str>, length: Option<&str>) -> Request {
+pub(crate) fn size_request(gain: Option<&str>, length: Option<&str>) -> Request {
     Request::Size { gain: gain.map(str::to_string), length: length.map(str::to_string) }
 }
 
 /// The number at a path such as `stiffness.minimum_n_per_m` or `bands.0.1`; the strings "inf" and "-inf" are infinite.
 #[track_caller]
-pub fn number(value: &Value, path: &str) -> f64 {
+pub(crate) fn number(value: &Value, path: &str) -> f64 {
     let found = value.pointer(&format!("/{}", path.replace('.', "/")));
     match found {
         Some(Value::Number(number)) => number.as_f64().unwrap(),
@@ -108,39 +108,39 @@ pub fn number(value: &Value, path: &str) -> f64 {
 
 /// The derived quantity of `check` by its name.
 #[track_caller]
-pub fn derived(check: &Value, name: &str) -> f64 {
+pub(crate) fn derived(check: &Value, name: &str) -> f64 {
     let rows = check["derived"].as_array().unwrap();
     let row = rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("no {name}"));
     number(row, "value")
 }
 
 /// The candidates of `size` for a hose and a stiffness model.
-pub fn candidates<'a>(size: &'a Value, hose: &str, compliance: &str) -> Vec<&'a Value> {
+pub(crate) fn candidates<'a>(size: &'a Value, hose: &str, compliance: &str) -> Vec<&'a Value> {
     let all = size["candidates"].as_array().unwrap().iter();
     all.filter(|row| row["hose"] == hose && row["compliance"] == compliance).collect()
 }
 
 /// The only one of them.
 #[track_caller]
-pub fn candidate<'a>(size: &'a Value, hose: &str, compliance: &str) -> &'a Value {
+pub(crate) fn candidate<'a>(size: &'a Value, hose: &str, compliance: &str) -> &'a Value {
     let found = candidates(size, hose, compliance);
     assert_eq!(found.len(), 1, "{hose}, {compliance}");
     found[0]
 }
 
 /// The reasons of a candidate, one a line.
-pub fn reasons(candidate: &Value) -> String {
+pub(crate) fn reasons(candidate: &Value) -> String {
     let lines: Vec<&str> =
         candidate["reasons"].as_array().unwrap().iter().map(|line| line.as_str().unwrap()).collect();
     lines.join("\n")
 }
 
 #[track_caller]
-pub fn within(actual: f64, expected: f64, tolerance: f64) {
+pub(crate) fn within(actual: f64, expected: f64, tolerance: f64) {
     assert!((actual - expected).abs() <= tolerance, "{actual} is not within {tolerance} of {expected}");
 }
 
 #[track_caller]
-pub fn near(actual: f64, expected: f64, relative: f64) {
+pub(crate) fn near(actual: f64, expected: f64, relative: f64) {
     within(actual, expected, relative * expected.abs());
 }
