@@ -40,9 +40,7 @@ pub(crate) fn misused(error: &clap::Error) -> ExitCode {
     if std::env::args_os().any(|argument| argument == "--json") {
         let text = error.to_string();
         let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
-        return ended(
-            say(&format!("{}\n", command::failure_json(None, None, message))).and_then(|()| Err(text)),
-        );
+        return ended(say(&format!("{}\n", command::failure_json(None, None, message))).and(Err(text)));
     }
     let _ = error.print();
     ExitCode::from(WRONG_INPUT)

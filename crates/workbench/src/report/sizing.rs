@@ -37,7 +37,7 @@ pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
             (place(figure))
             (influences(sizing))
         }
-        details open { summary { "Every decision of the procedure" } (decisions(sizing)) }
+        details open="open" { summary { "Every decision of the procedure" } (decisions(sizing)) }
     };
     Chapter { anchor: "sizing", title: "Sizing of the hose", body, figures }
 }

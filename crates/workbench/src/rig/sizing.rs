@@ -103,20 +103,16 @@ fn time_constant(wish: &project::Sizing) -> Result<(f64, String), SizingError> {
     }
 }
 
-/// The pump's flow, or what the fully open valve passes without load if that is less: q_n sqrt((p_S - p_T)/dp_n).
 fn maximum_flow(actuator: &project::Actuator) -> Result<(f64, String), SizingError> {
-    let supply = &actuator.supply;
-    let drop = supply.pressure - supply.tank_pressure;
-    let open = actuator.valve.nominal_flow.zip(actuator.valve.nominal_pressure_drop);
-    let valve = open.map(|(flow, nominal_drop)| flow * (drop / nominal_drop).sqrt());
-    let (flow, origin) = match (supply.flow, valve) {
-        (Some(pump), Some(valve)) if pump <= valve => (pump, "the pump's, less than the open valve's"),
-        (Some(_), Some(valve)) => (valve, "the open valve's at no load, less than the pump's"),
-        (Some(pump), None) => (pump, "the pump's"),
-        (None, Some(valve)) => (valve, "the open valve's at no load"),
-        (None, None) => return Err(SizingError::Flow),
-    };
-    Ok((flow, origin.to_string()))
+    match (actuator.supply.flow, actuator.valve.nominal_flow) {
+        (Some(pump), Some(valve)) if pump <= valve => {
+            Ok((pump, "the pump's, less than the valve's rated flow".to_string()))
+        }
+        (Some(_), Some(valve)) => Ok((valve, "the valve's rated flow, less than the pump's".to_string())),
+        (Some(pump), None) => Ok((pump, "the pump's".to_string())),
+        (None, Some(valve)) => Ok((valve, "the valve's rated flow".to_string())),
+        (None, None) => Err(SizingError::Flow),
+    }
 }
 
 /// The hoses of the catalogue, with what the project says of one by the same name; its own hose if it has no name.
