@@ -27,7 +27,10 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Check(common) => on_project(&common, &Request::Check),
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }),
         Command::Linearize(common) => on_project(&common, &Request::Linearize),
-        Command::Report(common) => on_project(&common, &Request::Report),
+        Command::Report(common) => {
+            let request = if common.out.is_some() { Request::Report } else { Request::Page };
+            on_project(&common, &request)
+        }
     };
     ended(outcome)
 }
@@ -120,11 +123,11 @@ fn write_files(common: &Common, request: &Request, answer: &Answer) -> Result<Ve
     if let Some(folder) = &common.out {
         return write(folder, &answer.files);
     }
-    if *request != Request::Report {
+    if *request != Request::Page {
         return Ok(vec![]);
     }
     let stem = common.project.file_stem().unwrap_or_default().to_string_lossy();
-    let mut page: Vec<_> = answer.files.iter().filter(|file| file.name == "report.html").cloned().collect();
+    let mut page = answer.files.clone();
     for file in &mut page {
         file.name = format!("{stem}-report.html");
     }

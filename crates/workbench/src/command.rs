@@ -2,13 +2,14 @@
 
 use serde::Serialize;
 
-use crate::answer::{self, Answer};
+use crate::answer::{self, Answer, OutputFile};
 use crate::control::{ControlError, controller};
 use crate::derived::{self, derive};
+use crate::figure::FigureError;
 use crate::linearize::{self, linearize};
 use crate::project::{Loaded, Report as Refusal, Severity, sha256};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
-use crate::report::{ReportError, report};
+use crate::report::{Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
 use crate::sizing::{self, Question, size};
 use crate::source::Source;
@@ -27,8 +28,10 @@ pub enum Request {
     },
     /// Linear models.
     Linearize,
-    /// The page.
+    /// The page with every figure as a file.
     Report,
+    /// The page alone.
+    Page,
 }
 
 impl Request {
@@ -38,7 +41,7 @@ impl Request {
             Request::Check => "check",
             Request::Size { .. } => "size",
             Request::Linearize => "linearize",
-            Request::Report => "report",
+            Request::Report | Request::Page => "report",
         }
     }
 }
@@ -55,12 +58,15 @@ pub enum CommandError {
     /// A linear system cannot be computed.
     #[error("the linear models: {0}")]
     Linear(#[from] phea_dynamics::linear::LinearError),
-    /// There is no report.
-    #[error(transparent)]
-    Report(#[from] ReportError),
+    /// A response in time cannot be computed.
+    #[error("a response: {0}")]
+    Time(#[from] phea_dynamics::time_response::TimeResponseError),
+    /// The loop cannot be closed.
+    #[error("the linear loop: {0}")]
+    Loop(#[from] crate::linear_loop::LoopError),
     /// A figure cannot be drawn.
     #[error("a figure: {0}")]
-    Figure(#[from] crate::figure::FigureError),
+    Figure(#[from] FigureError),
     /// A quantity of the command line is wrong.
     #[error("--{option} {text}: {message}")]
     Option {
@@ -96,7 +102,8 @@ pub fn answer(
             size_answer(source, loaded, catalogues, question)
         }
         Request::Linearize => linearize_answer(loaded),
-        Request::Report => report_answer(source, loaded, catalogues),
+        Request::Report => report_answer(source, loaded, catalogues, Report::files),
+        Request::Page => report_answer(source, loaded, catalogues, |report| Ok(vec![report.page_file()])),
     }
 }
 
@@ -189,6 +196,7 @@ fn report_answer(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
+    files: impl Fn(&Report) -> Result<Vec<OutputFile>, FigureError>,
 ) -> Result<Answer, CommandError> {
     let problem = match loaded.project.sizing {
         None => None,
@@ -204,7 +212,7 @@ fn report_answer(
         summary: report.summary.iter().map(|(name, text)| SummaryRow { name, text: text.clone() }).collect(),
         figures: report.figures.iter().map(|figure| figure.name.clone()).collect(),
     };
-    Ok(Answer { text, json: answer::json("report", loaded, body), files: report.files()?, affirmative: true })
+    Ok(Answer { text, json: answer::json("report", loaded, body), files: files(&report)?, affirmative: true })
 }
 
 #[derive(Serialize)]

@@ -19,7 +19,8 @@ pub use chapter::Chapter;
 pub use typeset::{prose, typeset};
 
 use crate::answer::{OutputFile, significant};
-use crate::control::{ControlError, controller};
+use crate::command::CommandError;
+use crate::control::controller;
 use crate::derived::derive;
 use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, linear_loop};
@@ -40,29 +41,6 @@ pub struct Report {
     pub summary: Vec<(&'static str, String)>,
 }
 
-/// Why there is no report.
-#[derive(Debug, thiserror::Error)]
-pub enum ReportError {
-    /// The rig cannot be computed with.
-    #[error(transparent)]
-    Rig(#[from] RigError),
-    /// The controller is no transfer function.
-    #[error(transparent)]
-    Control(#[from] ControlError),
-    /// A linear system cannot be computed.
-    #[error("the linear models: {0}")]
-    Linear(#[from] phea_dynamics::linear::LinearError),
-    /// A response in time cannot be computed.
-    #[error("a response: {0}")]
-    Time(#[from] phea_dynamics::time_response::TimeResponseError),
-    /// The loop cannot be closed.
-    #[error("the linear loop: {0}")]
-    Loop(#[from] crate::linear_loop::LoopError),
-    /// A figure cannot be drawn.
-    #[error("a figure: {0}")]
-    Figure(#[from] FigureError),
-}
-
 /// Band of the settling time where no scenario states one, percent.
 const SETTLING_BAND: f64 = 1.0;
 
@@ -72,8 +50,8 @@ const PNG_SCALE: f64 = 2.0;
 /// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, provenance.
 ///
 /// # Errors
-/// [`ReportError`] if the project is about another plant or something in it cannot be computed.
-pub fn report(loaded: &Loaded, problem: Option<&SizingProblem>) -> Result<Report, ReportError> {
+/// [`CommandError`] if the project is about another plant or something in it cannot be computed.
+pub fn report(loaded: &Loaded, problem: Option<&SizingProblem>) -> Result<Report, CommandError> {
     let project = &loaded.project;
     let rig = Rig::new(project)?;
     let actuator = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
@@ -105,13 +83,17 @@ pub fn report(loaded: &Loaded, problem: Option<&SizingProblem>) -> Result<Report
 }
 
 impl Report {
+    /// The page.
+    pub fn page_file(&self) -> OutputFile {
+        OutputFile { name: "report.html".to_string(), bytes: self.html.clone().into_bytes() }
+    }
+
     /// The page and every figure as SVG and PNG.
     ///
     /// # Errors
     /// A figure that the rasteriser refuses.
     pub fn files(&self) -> Result<Vec<OutputFile>, FigureError> {
-        let mut files =
-            vec![OutputFile { name: "report.html".to_string(), bytes: self.html.clone().into_bytes() }];
+        let mut files = vec![self.page_file()];
         for figure in &self.figures {
             let svg = figure.to_svg_standalone().into_bytes();
             files.push(OutputFile { name: format!("{}.svg", figure.name), bytes: svg });
