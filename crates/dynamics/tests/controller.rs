@@ -69,6 +69,13 @@ fn a_sampled_compensator_is_taken_as_it_is_and_refused_at_another_sample_time() 
     assert!(controller.sampled(0.02).is_err());
 }
 
+#[test]
+fn an_improper_compensator_cannot_run() {
+    let advance = TransferFunction::from_factors(1.0, vec![Complex64::new(0.5, 0.0)], vec![]).unwrap();
+    let advance = advance.in_domain(TimeDomain::Discrete { sample_time_s: 0.01 }).unwrap();
+    assert!(controller(vec![Element::General(advance)], Discretization::Tustin).sampled(0.01).is_err());
+}
+
 /// Samples an integrating controller needs to come off its limit after the error has changed sign.
 fn samples_to_unwind(anti_windup: AntiWindup) -> usize {
     let elements = vec![Element::ProportionalIntegral { proportional_gain: 0.1, integral_gain: 1.0 }];

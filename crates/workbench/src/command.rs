@@ -164,7 +164,7 @@ fn size_answer(
         text: sizing::text(&sizing),
         json: sizing::json(loaded, &sizing),
         files: sizing::files(&sizing),
-        affirmative: sizing.candidates.iter().any(|candidate| candidate.accepted()),
+        affirmative: sizing.best().is_some(),
     })
 }
 

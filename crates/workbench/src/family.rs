@@ -37,7 +37,8 @@ pub fn uncertain_plant(project: &Project) -> Result<UncertainPlant, FamilyError>
         .iter()
         .map(|uncertain| UncertainParameter {
             name: uncertain.name.clone(),
-            nominal: uncertain.nominal,
+            // What [linear] sets outright goes before the nominal of [uncertainty], as everywhere.
+            nominal: project.linear.get(&uncertain.name).unwrap_or(uncertain.nominal),
             minimum: uncertain.minimum,
             maximum: uncertain.maximum,
         })

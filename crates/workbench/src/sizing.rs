@@ -11,7 +11,7 @@ mod candidate;
 mod problem;
 mod sensitivity;
 
-pub(crate) use answer::alike;
+pub(crate) use answer::{alike, answer_sentence};
 pub use answer::{files, json, text};
 pub use bore::{BoreVerdict, CommercialBore};
 pub use branch::{Branch, GainStep, model_name};
@@ -50,7 +50,9 @@ pub struct Sizing {
     pub bore_range_m: [f64; 2],
     /// Gain at which equation 6.16 asks for an infinitely stiff transmission, V/N.
     pub pole_gain_v_per_n: f64,
-    /// Every candidate: accepted ones first, shorter ones first.
+    /// The stiffness model of the project.
+    pub model: StiffnessModel,
+    /// Every candidate: accepted ones first, of those the project's model, of those shorter ones.
     pub candidates: Vec<Candidate>,
     /// The decisions in order.
     pub decisions: Vec<Decision>,
@@ -76,18 +78,41 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
     }
     // Lengths that differ by the search's rounding are one length; ties keep the catalogue's order.
     let micrometres = |candidate: &Candidate| (candidate.length_m() * 1e6).round();
+    let other_model = |candidate: &Candidate| candidate.branch.model != problem.model;
     candidates.sort_by(|one, other| {
-        other.accepted().cmp(&one.accepted()).then(micrometres(one).total_cmp(&micrometres(other)))
+        let accepted = other.accepted().cmp(&one.accepted());
+        let declared = other_model(one).cmp(&other_model(other));
+        accepted.then(declared).then(micrometres(one).total_cmp(&micrometres(other)))
     });
-    let best =
-        candidates.iter().find(|candidate| candidate.accepted() && candidate.branch.model == problem.model);
-    let influences = best.map(|candidate| sensitivity(problem, candidate)).unwrap_or_default();
-    Sizing {
+    let mut sizing = Sizing {
+        model: problem.model,
         bores,
         bore_range_m: bore::range(problem),
         pole_gain_v_per_n: problem.pole_gain(),
         candidates,
         decisions,
-        influences,
+        influences: vec![],
+    };
+    sizing.influences = sizing.best().map(|candidate| sensitivity(problem, candidate)).unwrap_or_default();
+    sizing
+}
+
+impl Sizing {
+    /// The answer: the first accepted candidate of the project's own stiffness model.
+    pub fn best(&self) -> Option<&Candidate> {
+        self.best_of(self.model)
+    }
+
+    /// The stiffness model that the project does not declare.
+    pub fn other_model(&self) -> StiffnessModel {
+        match self.model {
+            StiffnessModel::Uniform => StiffnessModel::ByVolume,
+            StiffnessModel::ByVolume => StiffnessModel::Uniform,
+        }
+    }
+
+    /// The first accepted candidate of a stiffness model.
+    pub fn best_of(&self, model: StiffnessModel) -> Option<&Candidate> {
+        self.candidates.iter().find(|candidate| candidate.accepted() && candidate.branch.model == model)
     }
 }

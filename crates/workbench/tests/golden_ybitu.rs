@@ -195,12 +195,12 @@ fn bores_and_velocities() {
         (number(row, "oil_velocity_m_per_s"), row["verdict"].as_str().unwrap())
     };
     for (name, velocity, expected) in [
-        ("-4", 5.0772085, "too_fast"),
-        ("-5", 3.3321977, "recommended"),
-        ("-6", 2.3042932, "recommended"),
-        ("-8", 1.2893698, "slow"),
+        ("dash 4", 5.0772085, "too_fast"),
+        ("dash 5", 3.3321977, "recommended"),
+        ("dash 6", 2.3042932, "recommended"),
+        ("dash 8", 1.2893698, "slow"),
         (EATON, 1.2893698, "slow"),
-        ("-10", 0.82260377, "slow"),
+        ("dash 10", 0.82260377, "slow"),
     ] {
         let (found, word) = verdict(name);
         near(found, velocity, 5e-8);

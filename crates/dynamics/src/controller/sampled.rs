@@ -44,6 +44,12 @@ impl Controller {
                 TimeDomain::Discrete { sample_time_s: own } if own == sample_time_s => function,
                 TimeDomain::Discrete { .. } => return Err(LinearError::DomainMismatch),
             };
+            if !sampled.is_proper() {
+                return Err(LinearError::Improper {
+                    zeros: sampled.zeros().len(),
+                    poles: sampled.poles().len(),
+                });
+            }
             Ok(cascade(&sampled))
         };
         Ok(SampledController {

@@ -20,6 +20,8 @@ impl DisplayUnit {
     pub const SQUARE_CENTIMETRE: Self = DisplayUnit { symbol: "cm2", in_si: 1e-4 };
     /// Modulus.
     pub const GIGAPASCAL: Self = DisplayUnit { symbol: "GPa", in_si: 1e9 };
+    /// Volume to a length.
+    pub const CUBIC_CENTIMETRE_PER_METRE: Self = DisplayUnit { symbol: "cm3/m", in_si: 1e-6 };
     /// Time.
     pub const MILLISECOND: Self = DisplayUnit { symbol: "ms", in_si: 1e-3 };
     /// Flow.
@@ -51,6 +53,16 @@ impl DisplayUnit {
     /// ```
     pub fn number(self, value: f64, digits: usize) -> String {
         significant(self.of(value), digits)
+    }
+
+    /// The same with the symbol behind it.
+    pub fn text(self, value: f64, digits: usize) -> String {
+        self.with_symbol(self.number(value, digits))
+    }
+
+    /// Numbers with the symbol behind them; a ratio has none.
+    pub fn with_symbol(self, numbers: String) -> String {
+        if self.symbol == "1" { numbers } else { format!("{numbers} {}", self.symbol) }
     }
 
     /// `quantity (symbol)`.

@@ -9,22 +9,23 @@ use crate::figure::{
     DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput, SizingCurve,
     TornadoBar, TornadoInput, Verdict, Words, nomograph, sizing_chart, tornado,
 };
-use crate::sizing::{BoreVerdict, Candidate, Severity, Sizing, SizingProblem, alike, model_name};
+use crate::sizing::{
+    BoreVerdict, Candidate, Severity, Sizing, SizingProblem, alike, answer_sentence, model_name,
+};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
     let mut figures = vec![bores(problem, sizing), lengths(problem, sizing)];
     figures.extend(uncertain(sizing));
-    let best = |model| sizing.candidates.iter().find(|c| c.accepted() && c.branch.model == model);
     let body = html! {
         p {
             "The procedure of Ledezma (2019), section 6.3, walked over "
             (if problem.hoses.len() == 1 { "the one hose".to_string() } else { format!("the {} hoses", problem.hoses.len()) })
             " of the catalogue, once with each stiffness model; both lines alike."
         }
-        div.callout.good-edge[best(problem.model).is_some()].bad-edge[best(problem.model).is_none()] {
+        div.callout.good-edge[sizing.best().is_some()].bad-edge[sizing.best().is_none()] {
             @for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
-                p { code { (model_name(model)) } ": " (prose(&answer_sentence(best(model)))) }
+                p { code { (model_name(model)) } ": " (prose(&answer_sentence(sizing.best_of(model)))) }
             }
         }
         (place(&figures[0]))
@@ -40,20 +41,6 @@ pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
         details open="open" { summary { "Every decision of the procedure" } (decisions(sizing)) }
     };
     Chapter { anchor: "sizing", title: "Sizing of the hose", body, figures }
-}
-
-fn answer_sentence(best: Option<&Candidate>) -> String {
-    match best {
-        None => "no hose of the catalogue meets every demand; the reasons stand in the table.".to_string(),
-        Some(candidate) => format!(
-            "{} with {} m a line: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
-            candidate.option.name,
-            significant(candidate.length_m(), 3),
-            DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.minimum, 3),
-            DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.maximum, 3),
-            significant(candidate.branch.gain_v_per_n, 3)
-        ),
-    }
 }
 
 fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
@@ -195,8 +182,7 @@ fn uncertain(sizing: &Sizing) -> Option<Figure> {
 }
 
 fn influences(sizing: &Sizing) -> Markup {
-    let three =
-        |values: [f64; 3], scale: f64| cell(values.map(|value| significant(value / scale, 4)).join(" · "));
+    let three = |values: [f64; 3]| cell(values.map(|value| significant(value, 4)).join(" · "));
     let rows: Vec<Vec<Markup>> = sizing
         .influences
         .iter()
@@ -204,8 +190,12 @@ fn influences(sizing: &Sizing) -> Markup {
             vec![
                 prose(influence.quantity),
                 cell(influence.setting_words()),
-                three(influence.stiffness_n_per_m, 1e6),
-                three(influence.length_m, 1.0),
+                three(
+                    influence
+                        .stiffness_n_per_m
+                        .map(|stiffness| DisplayUnit::MEGANEWTON_PER_METRE.of(stiffness)),
+                ),
+                three(influence.length_m),
             ]
         })
         .collect();

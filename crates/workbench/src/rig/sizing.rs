@@ -54,14 +54,16 @@ pub fn sizing_problem(
     if hoses.is_empty() {
         return Err(SizingError::NoHose);
     }
+    // The valve at null, unless [linear] sets it outright; the nominal of [uncertainty] belongs to the controller's plant.
+    let outright = |name: &str, derived: f64| project.linear.get(name).unwrap_or(derived);
     let leakage = rig.parameters.iter().find(|parameter| parameter.name == "flow_pressure_coefficient");
     Ok(SizingProblem {
         cylinder: components.cylinder,
         linear: LinearParameters {
-            flow_gain: wish.flow_gain.unwrap_or(rig.derived.flow_gain),
+            flow_gain: wish.flow_gain.unwrap_or(outright("flow_gain", rig.derived.flow_gain)),
             flow_pressure_coefficient: wish
                 .flow_pressure_coefficient
-                .unwrap_or(rig.derived.flow_pressure_coefficient),
+                .unwrap_or(outright("flow_pressure_coefficient", rig.derived.flow_pressure_coefficient)),
             ..rig.linear
         },
         fluid_modulus: components.fluid.modulus_at(rig.actuator.mean_pressure()),

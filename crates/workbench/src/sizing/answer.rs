@@ -129,6 +129,23 @@ pub(crate) fn branch_name(by_gain: bool) -> &'static str {
     if by_gain { "by_gain" } else { "by_length" }
 }
 
+/// What to buy and which gain to set, in a sentence.
+pub(crate) fn answer_sentence(best: Option<&Candidate>) -> String {
+    match best {
+        None => {
+            "no hose of the catalogue meets every demand; the reasons stand with the candidates.".to_string()
+        }
+        Some(candidate) => format!(
+            "{} with {} m a line: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
+            candidate.option.name,
+            significant(candidate.length_m(), 3),
+            DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.minimum, 3),
+            DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.maximum, 3),
+            significant(candidate.branch.gain_v_per_n, 3)
+        ),
+    }
+}
+
 /// The tables and sentences of `size` for people.
 pub fn text(sizing: &Sizing) -> String {
     let mut out = String::from("Procedure (letters as in the flowchart of Ledezma 2019, section 6.3.2)\n");
@@ -144,6 +161,10 @@ pub fn text(sizing: &Sizing) -> String {
     for alike in alike(&sizing.candidates) {
         out.push_str(&alike_text(&alike));
     }
+    let declared = model_name(sizing.model);
+    let other = model_name(sizing.other_model());
+    out.push_str(&format!("\nAnswer\n  {declared} (the project's): {}\n", answer_sentence(sizing.best())));
+    out.push_str(&format!("  {other}: {}\n", answer_sentence(sizing.best_of(sizing.other_model()))));
     if !sizing.influences.is_empty() {
         out.push_str(&format!("\nWhat is uncertain\n{}\n", influence_table(sizing)));
     }
@@ -198,7 +219,11 @@ fn candidate_cells(candidate: &Candidate) -> Vec<String> {
         format!("{} m", significant(branch.length_m, 4)),
         format!("{} to {} N/m", significant(stiffness.minimum, 4), significant(stiffness.maximum, 4)),
         format!("{} V/N", significant(branch.gain_v_per_n, 3)),
-        format!("{} ms", DisplayUnit::MILLISECOND.number(candidate.time_constant_s[0], 3)),
+        format!(
+            "{} to {} ms",
+            DisplayUnit::MILLISECOND.number(candidate.time_constant_s[0], 3),
+            DisplayUnit::MILLISECOND.number(candidate.time_constant_s[1], 3)
+        ),
     ]
 }
 

@@ -72,43 +72,45 @@ fn at_gain(
     Branch { by_gain: true, model, steps, length_m: step.length_m, stiffness, gain_v_per_n: gain }
 }
 
-/// Steps f to j: the gain starts at the largest and is halved until the hose is acceptably short or the gain too small; then
-/// the largest gain whose hose is acceptable lies between the last two trials and is found by bisection.
+/// Steps f to j: the gain starts at the largest and is halved until the hose is acceptably short or the gain at its floor;
+/// then the largest gain whose hose is acceptable lies between the last two trials and is found by bisection.
 fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -> Branch {
-    let longest = problem.available_length();
-    let mut gain = problem.maximum_gain;
+    let trial = |gain| gain_step(problem, option, model, gain);
+    let fits = |step: &GainStep| step.length_m <= problem.available_length();
+    let floor = problem.minimum_gain.min(problem.maximum_gain);
     let mut steps = Vec::new();
-    loop {
-        let step = gain_step(problem, option, model, gain);
-        if step.length_m <= longest || gain / 2.0 < problem.minimum_gain {
-            break;
+    let mut last = trial(problem.maximum_gain);
+    while !fits(&last) && last.gain_v_per_n > floor {
+        steps.push(last);
+        last = trial((last.gain_v_per_n / 2.0).max(floor));
+    }
+    let gain = match steps.last() {
+        Some(too_long) if fits(&last) => {
+            largest_gain(last.gain_v_per_n, too_long.gain_v_per_n, |gain| fits(&trial(gain)))
         }
-        steps.push(step);
-        gain /= 2.0;
-    }
-    if gain_step(problem, option, model, gain).length_m > longest {
-        // Even the smallest practical gain asks for too long a hose.
-        return at_gain(problem, option, model, steps, problem.minimum_gain.max(problem.pole_gain()));
-    }
-    if steps.is_empty() {
-        return at_gain(problem, option, model, steps, gain);
-    }
-    let (mut acceptable, mut too_long) = (gain, gain * 2.0);
+        _ => last.gain_v_per_n,
+    };
+    commercial(problem, option, at_gain(problem, option, model, steps, gain))
+}
+
+/// The largest gain that fits, between one that does and one that does not.
+fn largest_gain(mut fitting: f64, mut too_large: f64, fits: impl Fn(f64) -> bool) -> f64 {
     // 40 halvings leave a relative interval of 1e-12.
     for _ in 0..40 {
-        let middle = 0.5 * (acceptable + too_long);
-        if gain_step(problem, option, model, middle).length_m <= longest {
-            acceptable = middle;
+        let middle = 0.5 * (fitting + too_large);
+        if fits(middle) {
+            fitting = middle;
         } else {
-            too_long = middle;
+            too_large = middle;
         }
     }
-    commercial(problem, option, at_gain(problem, option, model, steps, acceptable))
+    fitting
 }
 
 /// The same hose cut to the next multiple of the increment that is still acceptable, with the gain for that length.
 fn commercial(problem: &SizingProblem, option: &HoseOption, exact: Branch) -> Branch {
-    let Some(increment) = problem.length_increment.filter(|_| exact.length_m > 0.0) else { return exact };
+    let sound = exact.length_m > 0.0 && exact.length_m <= problem.available_length();
+    let Some(increment) = problem.length_increment.filter(|_| sound) else { return exact };
     let tolerance = 1e-9;
     let up = (exact.length_m / increment - tolerance).ceil() * increment;
     let down = (problem.available_length() / increment + tolerance).floor() * increment;
@@ -164,20 +166,42 @@ impl Branch {
         let Some((end, trials)) = self.steps.split_last() else { return };
         if let (Some(first), Some(last)) = (trials.first(), trials.last()) {
             let text = format!(
-                "K_p = {} V/N asks for {} m of hose a line (6.16, 6.25), too long; so does every half of it down to {} V/N with {} m, {} trials.",
+                "K_p = {} V/N asks for {} m of hose a line (6.16, 6.25), too long{}.",
                 number(first.gain_v_per_n),
                 number(first.length_m),
-                number(last.gain_v_per_n),
-                number(last.length_m),
-                trials.len()
+                if trials.len() > 1 {
+                    format!(
+                        "; so does every half of it down to {} V/N with {} m, {} trials",
+                        number(last.gain_v_per_n),
+                        number(last.length_m),
+                        trials.len()
+                    )
+                } else {
+                    String::new()
+                }
             );
             decide("g, h", text);
         }
         let (gain, stiffness) = (number(end.gain_v_per_n), number(end.stiffness_n_per_m));
+        if end.stiffness_n_per_m == f64::INFINITY {
+            return decide(
+                "i, j",
+                format!("at K_p = {gain} V/N even a rigid transmission is too slow (6.16)."),
+            );
+        }
         let length = match end.length_m {
             0.0 => "for which no hose is needed".to_string(),
             length => format!("which {} m of hose a line gives (6.25)", number(length)),
         };
         decide("i, j", format!("K_p = {gain} V/N asks for K_H = {stiffness} N/m (6.16), {length}."));
+        // Lengths that differ by the search's rounding are one length.
+        if (self.length_m - end.length_m).abs() > 1e-6 {
+            let (length, gain) = (number(self.length_m), number(self.gain_v_per_n));
+            let stiffness = number(self.stiffness.minimum);
+            let text = format!(
+                "cut to {length} m a line, which gives K_H = {stiffness} N/m and needs K_p = {gain} V/N."
+            );
+            decide("i", text);
+        }
     }
 }

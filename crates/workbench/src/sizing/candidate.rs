@@ -247,7 +247,8 @@ fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<F
         );
     }
     let [at_null, at_largest] = candidate.steady_state_gain;
-    if at_largest < 0.95 {
+    // Without a positive gain there is no loop to speak of; the gain itself is refused above.
+    if candidate.branch.gain_v_per_n > 0.0 && at_largest < 0.95 {
         warns(
             findings,
             format!(

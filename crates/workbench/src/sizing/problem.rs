@@ -131,7 +131,8 @@ impl SizingProblem {
     /// Step f: where the search over the gain begins, and what bounds it.
     pub(super) fn search_decision(&self) -> Decision {
         let text = format!(
-            "K_p starts at 1 V/N and is halved while the hose is longer than {} m, but not below {} V/N; at {} V/N even a rigid transmission would be too slow (K_H infinite).",
+            "K_p starts at {} V/N and is halved while the hose is longer than {} m, but not below {} V/N; at {} V/N even a rigid transmission would be too slow (K_H infinite).",
+            significant(self.maximum_gain, 3),
             significant(self.available_length(), 4),
             significant(self.minimum_gain, 3),
             significant(self.pole_gain(), 3)

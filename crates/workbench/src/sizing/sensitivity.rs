@@ -2,15 +2,15 @@ use phea_hydraulics::line::{Hose, Line, Member, Stiffening};
 use phea_hydraulics::stiffness::{LineLength, line_length_for_stiffness};
 
 use super::{Candidate, SizingProblem};
-use crate::answer::significant;
+use crate::quantity::DisplayUnit;
 
 /// What one uncertain number does to stiffness and length when it goes from low to high, all else nominal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Influence {
     /// What is varied, in words.
     pub quantity: &'static str,
-    /// The unit people read its values in, and how much that is in SI.
-    pub unit: (&'static str, f64),
+    /// The unit people read its values in.
+    pub unit: DisplayUnit,
     /// Its low, nominal and high value in SI.
     pub values: [f64; 3],
     /// Least stiffness over the stroke of the chosen length, N/m, at low, nominal and high.
@@ -22,16 +22,12 @@ pub struct Influence {
 impl Influence {
     /// A value with its unit.
     pub(crate) fn shown(&self, which: usize, digits: usize) -> String {
-        let (name, size) = self.unit;
-        let number = significant(self.values.get(which).map_or(f64::NAN, |value| value / size), digits);
-        if name.is_empty() { number } else { format!("{number} {name}") }
+        self.unit.text(self.values.get(which).copied().unwrap_or(f64::NAN), digits)
     }
 
     /// Low, nominal and high, with their unit.
     pub(crate) fn setting_words(&self) -> String {
-        let (name, size) = self.unit;
-        let numbers = self.values.map(|value| significant(value / size, 4)).join(" · ");
-        if name.is_empty() { numbers } else { format!("{numbers} {name}") }
+        self.unit.with_symbol(self.values.map(|value| self.unit.number(value, 4)).join(" · "))
     }
 }
 
@@ -44,7 +40,7 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
     let Stiffening { nominal, minimum, maximum } = hose.dynamic_stiffening;
     let around = |value: f64| [value * (1.0 - ASSUMED_SPREAD), value, value * (1.0 + ASSUMED_SPREAD)];
     let influence = |quantity: &'static str,
-                     unit: (&'static str, f64),
+                     unit: DisplayUnit,
                      values: [f64; 3],
                      vary: &dyn Fn(f64) -> (SizingProblem, Hose)| {
         let outcomes = values.map(|value| {
@@ -60,18 +56,26 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
         }
     };
     vec![
-        influence("dynamic stiffening r_β", ("", 1.0), [minimum, nominal, maximum], &|value| {
+        influence("dynamic stiffening r_β", DisplayUnit::ONE, [minimum, nominal, maximum], &|value| {
             (problem.clone(), Hose { dynamic_stiffening: Stiffening::certain(value), ..hose })
         }),
-        influence("fluid bulk modulus β_0", ("GPa", 1e9), around(problem.fluid_modulus), &|value| {
-            (SizingProblem { fluid_modulus: value, ..problem.clone() }, hose)
-        }),
+        influence(
+            "fluid bulk modulus β_0",
+            DisplayUnit::GIGAPASCAL,
+            around(problem.fluid_modulus),
+            &|value| (SizingProblem { fluid_modulus: value, ..problem.clone() }, hose),
+        ),
         // The slope goes with the expansion: a hose that expands more does so at every pressure.
-        influence("volumetric expansion E", ("cm3/m", 1e-6), around(hose.volumetric_expansion), &|value| {
-            let share = value / hose.volumetric_expansion;
-            let expansion_slope = hose.expansion_slope * share;
-            (problem.clone(), Hose { volumetric_expansion: value, expansion_slope, ..hose })
-        }),
+        influence(
+            "volumetric expansion E",
+            DisplayUnit::CUBIC_CENTIMETRE_PER_METRE,
+            around(hose.volumetric_expansion),
+            &|value| {
+                let share = value / hose.volumetric_expansion;
+                let expansion_slope = hose.expansion_slope * share;
+                (problem.clone(), Hose { volumetric_expansion: value, expansion_slope, ..hose })
+            },
+        ),
     ]
 }
 
