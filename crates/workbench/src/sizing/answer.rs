@@ -39,7 +39,10 @@ struct CandidateRow<'a> {
     time_constant_s: [Number; 2],
     steady_state_gain: [Number; 2],
     accepted: bool,
+    /// Everything that speaks against it, rejections first.
     reasons: Vec<&'a str>,
+    rejections: Vec<&'a str>,
+    warnings: Vec<&'a str>,
     iterations: Vec<IterationRow>,
 }
 
@@ -98,6 +101,10 @@ fn candidate_row(candidate: &Candidate) -> CandidateRow<'_> {
         stiffness_n_per_m: Number(step.stiffness_n_per_m),
         length_m: Number(step.length_m),
     });
+    let of = |severity| {
+        let same = candidate.findings.iter().filter(|finding| finding.severity == severity);
+        same.map(|finding| finding.text.as_str()).collect()
+    };
     CandidateRow {
         hose: &candidate.option.name,
         compliance: model_name(branch.model),
@@ -113,6 +120,8 @@ fn candidate_row(candidate: &Candidate) -> CandidateRow<'_> {
         steady_state_gain: candidate.steady_state_gain.map(Number),
         accepted: candidate.accepted(),
         reasons: candidate.findings.iter().map(|finding| finding.text.as_str()).collect(),
+        rejections: of(Severity::Rejects),
+        warnings: of(Severity::Warns),
         iterations: iterations.collect(),
     }
 }
@@ -253,9 +262,9 @@ pub fn files(sizing: &Sizing) -> Vec<OutputFile> {
         let branch = &candidate.branch;
         let reasons: Vec<&str> = candidate.findings.iter().map(|finding| finding.text.as_str()).collect();
         csv.push_str(&format!(
-            "{},{},{},{},{},{},{},{},{},\"{}\"\n",
+            "{},{},{},{},{},{},{},{},{},{}\n",
             candidate.accepted(),
-            candidate.option.name,
+            quoted(&candidate.option.name),
             model_name(branch.model),
             branch_name(branch.by_gain),
             candidate.option.hose.bore,
@@ -263,8 +272,13 @@ pub fn files(sizing: &Sizing) -> Vec<OutputFile> {
             branch.stiffness.minimum,
             branch.stiffness.maximum,
             branch.gain_v_per_n,
-            reasons.join("; ").replace('"', "\"\"")
+            quoted(&reasons.join("; "))
         ));
     }
     vec![OutputFile { name: "sizing.csv".to_string(), bytes: csv.into_bytes() }]
+}
+
+/// A text as one field of comma-separated values.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
 }
