@@ -175,7 +175,16 @@ fn every_chapter_is_there() {
 fn figures_come_as_svg_and_png_under_names_of_their_own() {
     let answer = hose();
     let mut names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
-    for figure in ["circuit", "stiffness", "sizing-nomograph", "sizing-length", "bode", "impedance", "step"] {
+    for figure in [
+        "circuit",
+        "stiffness",
+        "sizing-nomograph",
+        "sizing-length",
+        "bode",
+        "bode-reduction",
+        "impedance",
+        "step",
+    ] {
         for ending in ["svg", "png"] {
             assert!(names.contains(&format!("{figure}.{ending}").as_str()), "{figure}.{ending}: {names:?}");
         }
@@ -261,5 +270,26 @@ fn the_summary_is_what_the_commands_say() {
         "open loop passive, closed loop not passive",
     ] {
         assert!(answer.text.contains(words), "{words}: {}", answer.text);
+    }
+}
+
+#[test]
+fn only_models_of_the_same_parameters_are_drawn_against_each_other() {
+    let report = plain_report(HOSE);
+    let drawing = |name: &str| {
+        report.figures.iter().find(|figure| figure.name == name).unwrap().to_svg_standalone().to_string()
+    };
+    assert!(!drawing("bode").contains("two-pressure"));
+    let reduction = drawing("bode-reduction");
+    for name in ["two-pressure, derived parameters", "derived parameters"] {
+        assert!(reduction.contains(name), "{name}");
+    }
+    assert!(!reduction.contains("(6.12)") && !reduction.contains("(6.13)"));
+    // Derived K_H of the hose at mid stroke is softer than the value that holds: the table names both fifth orders.
+    let text = answer(HOSE, &[], &[], &Request::Linearize).text;
+    for row in
+        ["two-pressure, derived parameters", "fifth order, derived parameters", "6.7 instead of two-pressure"]
+    {
+        assert!(text.contains(row), "{text}");
     }
 }

@@ -280,10 +280,11 @@ pub fn files(linearization: &Linearization) -> Vec<OutputFile> {
     vec![OutputFile { name: "poles.csv".to_string(), bytes: csv.into_bytes() }]
 }
 
-/// Every model with its equation, the fullest first.
-pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 5] {
+/// Every model with its equation, the fullest first; with the values that hold where nothing else is said.
+pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 6] {
     [
-        ("two-pressure", "4.25 to 4.29", &linearization.two_pressure.command),
+        ("two-pressure, derived parameters", "4.25 to 4.29", &linearization.two_pressure.command),
+        ("fifth order, derived parameters", "6.7", &linearization.derived_full.command),
         ("fifth order", "6.7", &linearization.full.command),
         ("decomposed, as printed", "6.12", &linearization.decomposed[0]),
         ("decomposed, corrected", "6.12", &linearization.decomposed[1]),
@@ -294,10 +295,10 @@ pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static 
 /// Every comparison with its name.
 pub(crate) fn comparisons(linearization: &Linearization) -> [(&'static str, &Comparison); 4] {
     [
-        ("6.7 for two-pressure, derived parameters", &linearization.reduction),
-        ("6.12 as printed for 6.7", &linearization.printed_decomposition),
-        ("6.12 corrected for 6.7", &linearization.corrected_decomposition),
-        ("6.13 for 6.7", &linearization.truncation),
+        ("6.7 instead of two-pressure, both with derived parameters", &linearization.reduction),
+        ("6.12 as printed instead of 6.7", &linearization.printed_decomposition),
+        ("6.12 corrected instead of 6.7", &linearization.corrected_decomposition),
+        ("6.13 instead of 6.7", &linearization.truncation),
     ]
 }
 
