@@ -24,7 +24,9 @@ use phea_hydraulics::stiffness::{
 };
 use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
-pub(crate) use answer::{comparisons, difference_text, located, models, passivity_sentence, root_list};
+pub(crate) use answer::{
+    comparisons, difference_text, located, mode_words, models, passivity_sentence, root_list,
+};
 pub use answer::{files, json, text};
 
 use crate::rig::Rig;

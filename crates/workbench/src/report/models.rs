@@ -4,13 +4,13 @@ use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, place, table};
 use super::typeset::prose;
-use crate::answer::significant;
 use crate::figure::{
     BodeInput, Figure, FrequencyMark, FrequencySeries, PoleMapInput, PoleMapScale, PoleSeries, Words, bode,
     pole_map,
 };
 use crate::linearize::{
-    Linearization, comparisons, difference_text, frequency_grid, located, models, resonance, root_list,
+    Linearization, comparisons, difference_text, frequency_grid, located, mode_words, models, resonance,
+    root_list,
 };
 use phea_dynamics::linear::{LinearError, TransferFunction};
 
@@ -60,11 +60,8 @@ fn dominance_table(linearization: &Linearization) -> Markup {
         .modes
         .iter()
         .map(|mode| {
-            vec![
-                cell(root_list(&[mode.pole])),
-                prose(&significant(mode.step_share, 3)),
-                cell(significant(mode.decay_ratio, 3)),
-            ]
+            let [share, decay] = mode_words(mode);
+            vec![cell(root_list(&[mode.pole])), prose(&share), cell(decay)]
         })
         .collect();
     table(&["mode, rad/s", "share of the step response", "times faster gone than the slowest"], 1, &rows)
