@@ -293,3 +293,47 @@ fn only_models_of_the_same_parameters_are_drawn_against_each_other() {
         assert!(text.contains(row), "{text}");
     }
 }
+
+/// The report of the hose with settings, without its sizing chapter.
+fn report_with(settings: &[&str]) -> Report {
+    report(&load(HOSE, settings, &[]), None).unwrap()
+}
+
+#[test]
+fn an_unstable_loop_is_called_unstable_and_not_measured() {
+    let unstable = report_with(&["controller.numerator=\"s + 8\""]);
+    assert!(
+        unstable.summary.contains(&("Nominal linear loop", "unstable".to_string())),
+        "{:?}",
+        unstable.summary
+    );
+    assert!(
+        unstable
+            .html
+            .contains("The closed loop is unstable: its force grows without bound and is not drawn.")
+    );
+    assert!(unstable.figures.iter().all(|figure| figure.name != "step"));
+    let step =
+        plain_report(HOSE).summary.into_iter().find(|(name, _)| *name == "Nominal linear loop").unwrap().1;
+    assert!(step.contains("% overshoot, settles in "), "{step}");
+    // A proportional loop ends beside its reference: it does not settle in the band.
+    let beside = report_with(&["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
+    assert!(!beside.html.contains("settles in not"));
+}
+
+#[test]
+fn without_leakage_the_force_of_the_open_loop_remains() {
+    let caption = |settings: &[&str]| {
+        let report = report_with(settings);
+        report.figures.iter().find(|figure| figure.name == "load-motion").unwrap().caption.clone()
+    };
+    assert!(caption(&[]).contains("In the end nothing remains."));
+    let tight = caption(&["linear.flow_pressure_coefficient=0"]);
+    assert!(tight.contains("In the end there remains -") && tight.contains("kN open loop"), "{tight}");
+}
+
+#[test]
+fn a_loop_with_dead_time_is_not_judged_and_says_why() {
+    let html = report_with(&["controller.delay=\"1 ms\""]).html;
+    assert!(html.contains("not judged here: with dead time it has no finite number of poles"));
+}
