@@ -17,7 +17,7 @@ pub use decomposed::{
     Decomposition, DecompositionError, MechanicalDamping, decompose, decomposed_model, decomposition_error,
 };
 pub use difference::{ResponseDifference, response_difference};
-pub use dominance::{ModeShare, dominance};
+pub use dominance::{ModeShare, ShareAbsence, dominance};
 pub use first_order::{
     RequiredStiffness, closed_loop_steady_state_gain, closed_loop_time_constant, first_order_model,
     proportional_gain, required_stiffness, rigid_limit_gain,

@@ -146,6 +146,25 @@ fn coefficients_of_the_asymptotes() {
     assert!((compliance_hidden_above(2.233e6, 13.1) - 412.9).abs() < 0.05);
 }
 
+/// No asymptote runs backwards: what is the nearest nowhere is left out.
+#[test]
+fn asymptotes_that_are_nearest_nowhere_are_left_out() {
+    let kinds = |parameters: &LinearParameters, controller: Option<&TransferFunction>| {
+        let asymptotes = impedance_asymptotes(parameters, controller);
+        assert!(asymptotes.iter().all(|line| line.from < line.to && line.coefficient.is_finite()));
+        asymptotes.iter().map(|line| line.kind).collect::<Vec<_>>()
+    };
+    let all = [AsymptoteKind::LowFrequency, AsymptoteKind::CompliancePlateau, AsymptoteKind::SensorLimit];
+    let nominal = nominal_plant();
+    assert_eq!(kinds(&nominal, None), all);
+    // Without leakage the spring holds from the start.
+    let tight = LinearParameters { flow_pressure_coefficient: 0.0, ..nominal };
+    assert_eq!(kinds(&tight, None), all[1..]);
+    // A loop faster than sqrt(K_H/M) leaves no plateau: its damper A/(K_qU K_p) crosses the spring above 413 rad/s.
+    let fast = TransferFunction::gain_only(0.1);
+    assert_eq!(kinds(&nominal, Some(&fast)), [all[0], all[2]]);
+}
+
 /// Above sqrt(K_H/M) a softer fluid no longer softens the contact.
 #[test]
 fn mass_hides_the_compliance() {

@@ -5,7 +5,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 use phea_hydraulics::linear::{
-    LinearParameters, MechanicalDamping, RequiredStiffness, closed_loop_steady_state_gain,
+    LinearParameters, MechanicalDamping, RequiredStiffness, ShareAbsence, closed_loop_steady_state_gain,
     closed_loop_time_constant, decompose, decomposed_model, decomposition_error, dominance,
     first_order_model, linear_model, linear_model_coefficients, proportional_gain, required_stiffness,
     response_difference, rigid_limit_gain,
@@ -248,6 +248,27 @@ fn hydraulic_mode_dominates_more_the_softer_it_is() {
     }
     // ORIGIN: recomputed from Table 6.1, 11.638369/2.9580891
     check("decay ratio of the mechanical mode", stiff[1].decay_ratio, 3.934421, 1e-5);
+}
+
+#[test]
+fn a_share_that_does_not_exist_has_its_reason() {
+    let pole = |re| Complex64::new(re, 0.0);
+    let of = |poles: &[f64]| {
+        let poles = poles.iter().map(|re| pole(*re)).collect();
+        dominance(&TransferFunction::from_factors(1.0, vec![], poles).unwrap())
+    };
+    let double = of(&[-1.0, -5.0, -5.0]);
+    assert!(double[0].absence.is_none() && double[0].step_share.is_finite());
+    for mode in &double[1..] {
+        assert_eq!(mode.absence, Some(ShareAbsence::CoincidentPole));
+        assert!(mode.step_share.is_nan() && mode.decay_ratio == 5.0);
+    }
+    for poles in [[0.0, -5.0], [2.0, -5.0]] {
+        for mode in of(&poles) {
+            assert_eq!(mode.absence, Some(ShareAbsence::NoFinalValue));
+            assert!(mode.step_share.is_nan() && mode.decay_ratio.is_nan());
+        }
+    }
 }
 
 /// The coefficients recorded as an uncertain plant are those computed with numbers.

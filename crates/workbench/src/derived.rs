@@ -47,9 +47,12 @@ const CONTRADICTION: f64 = 0.05;
 const BEYOND_BOUNDS: f64 = 0.01;
 
 impl Derived {
-    /// How far the stated value is from the derived one, in percent of the latter.
+    /// How far the stated value is from the derived one, in percent of the latter; zero where both are zero.
     pub fn difference_percent(&self) -> Option<f64> {
-        self.stated.as_ref().map(|stated| 100.0 * (stated.value - self.value) / self.value)
+        self.stated.as_ref().map(|stated| match stated.value == self.value {
+            true => 0.0,
+            false => 100.0 * (stated.value - self.value) / self.value,
+        })
     }
 
     /// Whether the derived value contradicts what is stated: it lies more than 1 % outside the stated

@@ -18,10 +18,21 @@ pub struct LinearLoop {
     pub open_loop: TransferFunction,
     /// Gain, phase, modulus and delay margin of L.
     pub margins: Margins,
-    /// Whether the closed loop is stable, where its poles can be had (no dead time in a continuous loop).
-    pub stable: Option<bool>,
+    /// Whether the closed loop is stable.
+    pub stability: LoopStability,
     /// F L/(1 + L), where it can be had.
     pub step: Result<StepView, String>,
+}
+
+/// Whether a closed loop is stable.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoopStability {
+    /// Every pole of the closed loop decays.
+    Stable,
+    /// A pole of the closed loop does not decay.
+    Unstable,
+    /// Its poles cannot be had, and why.
+    Unknown(String),
 }
 
 /// A unit step through prefilter and closed loop.
@@ -85,10 +96,35 @@ pub fn linear_loop(
         }
     };
     let open_loop = plant.series(&feedback)?;
-    let step = step_view(&plant, &feedback, &prefilter, band_percent).map_err(|error| error.to_string());
-    let unity = TransferFunction::gain_only(1.0).in_domain(plant.domain())?;
-    let stable = open_loop.feedback(&unity).ok().map(|closed| closed.is_stable());
-    Ok(LinearLoop { margins: margins(&open_loop), controller: feedback, prefilter, open_loop, stable, step })
+    let stability = stability(&open_loop)?;
+    let step = match () {
+        () if stability == LoopStability::Unstable => {
+            Err("the closed loop is unstable, its response grows without bound".to_string())
+        }
+        () if !prefilter.is_stable() => Err("the prefilter is unstable".to_string()),
+        () => step_view(&plant, &feedback, &prefilter, band_percent).map_err(|error| error.to_string()),
+    };
+    Ok(LinearLoop {
+        margins: margins(&open_loop),
+        controller: feedback,
+        prefilter,
+        open_loop,
+        stability,
+        step,
+    })
+}
+
+fn stability(open_loop: &TransferFunction) -> Result<LoopStability, LinearError> {
+    let reason = |words: String| Ok(LoopStability::Unknown(words));
+    if open_loop.dead_time_s() > 0.0 && open_loop.domain() == TimeDomain::Continuous {
+        return reason("with dead time it has no finite number of poles".to_string());
+    }
+    let unity = TransferFunction::gain_only(1.0).in_domain(open_loop.domain())?;
+    match open_loop.feedback(&unity) {
+        Ok(closed) if closed.is_stable() => Ok(LoopStability::Stable),
+        Ok(_) => Ok(LoopStability::Unstable),
+        Err(error) => reason(error.to_string()),
+    }
 }
 
 fn step_view(

@@ -5,6 +5,7 @@ mod answer;
 
 use std::f64::consts::FRAC_PI_2;
 
+use num_complex::Complex64;
 use phea_dynamics::controller::{Controller, Timing};
 use phea_dynamics::frequency::{PassivityReport, logarithmic_grid, passivity};
 use phea_dynamics::linear::{LinearError, TransferFunction};
@@ -23,7 +24,9 @@ use phea_hydraulics::stiffness::{
 };
 use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
-pub(crate) use answer::{comparisons, difference_text, located, models, passivity_sentence, root_list};
+pub(crate) use answer::{
+    comparisons, difference_text, located, mode_words, models, passivity_sentence, root_list,
+};
 pub use answer::{files, json, text};
 
 use crate::rig::Rig;
@@ -42,6 +45,8 @@ pub struct Linearization {
     pub two_pressure: LinearModel,
     /// The fifth-order model of the parameters that hold, equation 6.7.
     pub full: LinearModel,
+    /// The same of the derived parameters: what the two-pressure model is compared with.
+    pub derived_full: LinearModel,
     /// Equation 6.12 as printed, and with the damping corrected.
     pub decomposed: [TransferFunction; 2],
     /// Equation 6.13.
@@ -113,7 +118,11 @@ pub fn linearize(rig: &Rig, controller: Option<&Controller>) -> Result<Lineariza
         stiffness: [Member::Nominal, Member::Minimum, Member::Maximum]
             .map(|member| stroke_stiffness(rig, member)),
         stiffness_models: stiffness_models(rig),
-        reduction: compare(&grid, &two_pressure.command, &derived_full.command),
+        reduction: compare(
+            &frequency_grid(&two_pressure.command)?,
+            &two_pressure.command,
+            &derived_full.command,
+        ),
         printed_decomposition: against_full(&decomposed[0]),
         corrected_decomposition: against_full(&decomposed[1]),
         truncation: against_full(&first_order),
@@ -127,6 +136,7 @@ pub fn linearize(rig: &Rig, controller: Option<&Controller>) -> Result<Lineariza
         ),
         two_pressure,
         full,
+        derived_full,
         decomposed,
         first_order,
     })
@@ -212,9 +222,21 @@ pub(crate) fn frequency_grid(function: &TransferFunction) -> Result<Vec<f64>, Li
     Ok(grid)
 }
 
+/// The lightly damped pole of a system, upper half plane: the complex one with the smallest damping ratio.
+pub(crate) fn resonance(function: &TransferFunction) -> Option<Complex64> {
+    let damping_ratio = |pole: &Complex64| -pole.re / portable::magnitude(*pole);
+    let complex = function.poles().iter().copied().filter(|pole| pole.im > 0.0);
+    complex
+        .filter(|pole| damping_ratio(pole) < LIGHT_DAMPING)
+        .min_by(|one, other| damping_ratio(one).total_cmp(&damping_ratio(other)))
+}
+
+/// Damping ratio from which a pole has no resonance peak, 1/sqrt(2).
+const LIGHT_DAMPING: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
 /// Frequencies around a pole over which its phase turns in equal steps: the peak of a lightly damped pole is much
 /// narrower than the steps of a grid over decades.
-fn resonance_grid(pole: &num_complex::Complex64) -> impl Iterator<Item = f64> + use<> {
+fn resonance_grid(pole: &Complex64) -> impl Iterator<Item = f64> + use<> {
     const STEPS: i32 = 64;
     let (centre, half_width) = (pole.im, pole.re.abs());
     (1 - STEPS..STEPS).map(move |step| {

@@ -23,7 +23,7 @@ use crate::command::CommandError;
 use crate::control::controller;
 use crate::derived::derive;
 use crate::figure::{Figure, FigureError};
-use crate::linear_loop::{LinearLoop, linear_loop};
+use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop, settling_words};
 use crate::linearize::{Linearization, linearize};
 use crate::project::{Loaded, Project};
 use crate::quantity::DisplayUnit;
@@ -141,14 +141,21 @@ fn summary(
         passive.push_str(&format!(", closed loop {}", port(view)));
     }
     facts.push(("Towards the load", passive));
-    if let Some(view) = given.and_then(|given| given.step.as_ref().ok()) {
-        let settling = crate::linear_loop::settling_words(&view.metrics);
-        facts.push((
-            "Nominal linear step",
-            format!("{} % overshoot, settles in {settling}", significant(view.metrics.overshoot_percent, 2)),
-        ));
-    }
+    facts.extend(given.map(|given| ("Nominal linear loop", loop_words(given))));
     facts
+}
+
+/// The linear loop in a few words: its step, or that there is none.
+fn loop_words(given: &LinearLoop) -> String {
+    match (&given.stability, &given.step) {
+        (LoopStability::Unstable, _) => "unstable".to_string(),
+        (_, Err(reason)) => format!("no step response: {reason}"),
+        (_, Ok(StepView { metrics, .. })) => {
+            let verb = if metrics.settling.time_s().is_some() { "settles in " } else { "" };
+            let overshoot = significant(metrics.overshoot_percent, 2);
+            format!("{overshoot} % overshoot, {verb}{}", settling_words(metrics))
+        }
+    }
 }
 
 fn heading(project: &Project, summary: &[(&'static str, String)]) -> Markup {

@@ -175,7 +175,16 @@ fn every_chapter_is_there() {
 fn figures_come_as_svg_and_png_under_names_of_their_own() {
     let answer = hose();
     let mut names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
-    for figure in ["circuit", "stiffness", "sizing-nomograph", "sizing-length", "bode", "impedance", "step"] {
+    for figure in [
+        "circuit",
+        "stiffness",
+        "sizing-nomograph",
+        "sizing-length",
+        "bode",
+        "bode-reduction",
+        "impedance",
+        "step",
+    ] {
         for ending in ["svg", "png"] {
             assert!(names.contains(&format!("{figure}.{ending}").as_str()), "{figure}.{ending}: {names:?}");
         }
@@ -262,4 +271,69 @@ fn the_summary_is_what_the_commands_say() {
     ] {
         assert!(answer.text.contains(words), "{words}: {}", answer.text);
     }
+}
+
+#[test]
+fn only_models_of_the_same_parameters_are_drawn_against_each_other() {
+    let report = plain_report(HOSE);
+    let drawing = |name: &str| {
+        report.figures.iter().find(|figure| figure.name == name).unwrap().to_svg_standalone().to_string()
+    };
+    assert!(!drawing("bode").contains("two-pressure"));
+    let reduction = drawing("bode-reduction");
+    for name in ["two-pressure, derived parameters", "derived parameters"] {
+        assert!(reduction.contains(name), "{name}");
+    }
+    assert!(!reduction.contains("(6.12)") && !reduction.contains("(6.13)"));
+    // Derived K_H of the hose at mid stroke is softer than the value that holds: the table names both fifth orders.
+    let text = answer(HOSE, &[], &[], &Request::Linearize).text;
+    for row in
+        ["two-pressure, derived parameters", "fifth order, derived parameters", "6.7 instead of two-pressure"]
+    {
+        assert!(text.contains(row), "{text}");
+    }
+}
+
+/// The report of the hose with settings, without its sizing chapter.
+fn report_with(settings: &[&str]) -> Report {
+    report(&load(HOSE, settings, &[]), None).unwrap()
+}
+
+#[test]
+fn an_unstable_loop_is_called_unstable_and_not_measured() {
+    let unstable = report_with(&["controller.numerator=\"s + 8\""]);
+    assert!(
+        unstable.summary.contains(&("Nominal linear loop", "unstable".to_string())),
+        "{:?}",
+        unstable.summary
+    );
+    assert!(
+        unstable
+            .html
+            .contains("The closed loop is unstable: its force grows without bound and is not drawn.")
+    );
+    assert!(unstable.figures.iter().all(|figure| figure.name != "step"));
+    let step =
+        plain_report(HOSE).summary.into_iter().find(|(name, _)| *name == "Nominal linear loop").unwrap().1;
+    assert!(step.contains("% overshoot, settles in "), "{step}");
+    // A proportional loop ends beside its reference: it does not settle in the band.
+    let beside = report_with(&["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
+    assert!(!beside.html.contains("settles in not"));
+}
+
+#[test]
+fn without_leakage_the_force_of_the_open_loop_remains() {
+    let caption = |settings: &[&str]| {
+        let report = report_with(settings);
+        report.figures.iter().find(|figure| figure.name == "load-motion").unwrap().caption.clone()
+    };
+    assert!(caption(&[]).contains("In the end nothing remains."));
+    let tight = caption(&["linear.flow_pressure_coefficient=0"]);
+    assert!(tight.contains("In the end there remains -") && tight.contains("kN open loop"), "{tight}");
+}
+
+#[test]
+fn a_loop_with_dead_time_is_not_judged_and_says_why() {
+    let html = report_with(&["controller.delay=\"1 ms\""]).html;
+    assert!(html.contains("not judged here: with dead time it has no finite number of poles"));
 }

@@ -63,7 +63,8 @@ pub fn compliance_hidden_above(hydraulic_stiffness: f64, moving_mass: f64) -> f6
 /// limit           K_S/s                 above sqrt((K_H + K_S)/M): the piston stands still
 /// ```
 ///
-/// The thesis (6.2.2) takes the plateau for the limit.
+/// The thesis (6.2.2) takes the plateau for the limit. An asymptote that is the nearest nowhere is left out: the first
+/// without leakage or feedback, the plateau where the piston's mass comes before the spring.
 pub fn impedance_asymptotes(
     parameters: &LinearParameters,
     controller: Option<&TransferFunction>,
@@ -86,11 +87,13 @@ pub fn impedance_asymptotes(
     let springs = parameters.hydraulic_stiffness + parameters.sensor_stiffness;
     let asymptote = |kind, power, coefficient, from, to| Asymptote { kind, power, coefficient, from, to };
     let limit = compliance_hidden_above(springs, mass);
-    vec![
-        asymptote(AsymptoteKind::LowFrequency, power, coefficient, 0.0, crossing),
+    let mut asymptotes = vec![
+        asymptote(AsymptoteKind::LowFrequency, power, coefficient, 0.0, crossing.min(limit)),
         asymptote(AsymptoteKind::CompliancePlateau, -1, spring, crossing, hidden),
         asymptote(AsymptoteKind::SensorLimit, -1, parameters.sensor_stiffness, limit, f64::INFINITY),
-    ]
+    ];
+    asymptotes.retain(|line| line.coefficient.is_finite() && line.from < line.to);
+    asymptotes
 }
 
 /// G(s) -> gain/s^integrators as s -> 0, for a continuous controller; differentiators count negatively.

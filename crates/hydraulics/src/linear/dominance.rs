@@ -11,6 +11,24 @@ pub struct ModeShare {
     pub step_share: f64,
     /// Decay rate of this mode over that of the slowest: how many times faster it is gone.
     pub decay_ratio: f64,
+    /// Why a number does not exist and is not a number.
+    pub absence: Option<ShareAbsence>,
+}
+
+/// Why a mode has no share of the step response.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ShareAbsence {
+    /// A pole at the origin or to its right: neither share nor decay ratio exists.
+    #[error("a mode does not decay, so that the step response has no final value to share")]
+    NoFinalValue,
+    /// The static gain is zero.
+    #[error("the step response ends at zero")]
+    ZeroFinalValue,
+    /// The pole coincides with another: no share of its own.
+    #[error(
+        "the pole coincides with another: together they decay as a polynomial in time times one exponential"
+    )]
+    CoincidentPole,
 }
 
 /// Dominance of each mode of a stable system as numbers, slowest mode first.
@@ -21,7 +39,8 @@ pub struct ModeShare {
 /// ```
 ///
 /// A mode is dominant when its share is near one and the others' are near zero and their decay ratios are large. Shares of
-/// poles that coincide with another, or of a system with a pole at zero, do not exist and are not a number.
+/// poles that coincide with another (to 1e-6), or of a system with a pole not left of the axis, do not exist and are not a
+/// number; `absence` says why.
 ///
 /// # Example
 /// Over 1/((s + 1)(s + 100)) the slow pole carries 100/99 of the step and the fast one 1/99.
@@ -45,16 +64,31 @@ pub fn dominance(system: &TransferFunction) -> Vec<ModeShare> {
         .filter(|(_, pole)| pole.im >= 0.0)
         .map(|(index, &pole)| {
             let count = if pole.im > 0.0 { 2.0 } else { 1.0 };
-            let residue = residue(system, index, pole);
+            let share = count * portable::magnitude(residue(system, index, pole) / pole) / static_gain.abs();
+            let absence = match () {
+                () if slowest >= 0.0 => Some(ShareAbsence::NoFinalValue),
+                () if static_gain == 0.0 => Some(ShareAbsence::ZeroFinalValue),
+                () if coincides(system, index, pole) => Some(ShareAbsence::CoincidentPole),
+                () => None,
+            };
             ModeShare {
                 pole,
-                step_share: count * portable::magnitude(residue / pole) / static_gain.abs(),
-                decay_ratio: pole.re / slowest,
+                step_share: if absence.is_none() { share } else { f64::NAN },
+                decay_ratio: if slowest < 0.0 { pole.re / slowest } else { f64::NAN },
+                absence,
             }
         })
         .collect();
     modes.sort_by(|a, b| b.pole.re.total_cmp(&a.pole.re));
     modes
+}
+
+/// Distance relative to the pole within which two poles are one: numerical roots of a double pole lie that far apart.
+const COINCIDENCE: f64 = 1e-6;
+
+fn coincides(system: &TransferFunction, index: usize, pole: Complex64) -> bool {
+    let mut others = system.poles().iter().enumerate().filter(|(other, _)| *other != index);
+    others.any(|(_, other)| portable::magnitude(pole - other) <= COINCIDENCE * portable::magnitude(pole))
 }
 
 /// Residue at the simple pole with this index: gain prod(p - z)/prod(p - other poles).

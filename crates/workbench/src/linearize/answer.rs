@@ -2,7 +2,7 @@ use num_complex::Complex64;
 use phea_dynamics::frequency::PassivityReport;
 use phea_dynamics::linear::TransferFunction;
 use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
-use phea_hydraulics::linear::ResponseDifference;
+use phea_hydraulics::linear::{ModeShare, ResponseDifference};
 use serde::Serialize;
 
 use super::{Comparison, Linearization, PortView, stiffness_sentence};
@@ -71,6 +71,8 @@ struct Mode {
     pole: [f64; 2],
     step_share: Number,
     decay_ratio: Number,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -103,7 +105,7 @@ struct ImpedanceRow {
 struct AsymptoteRow {
     kind: &'static str,
     /// Z = coefficient s^power
-    coefficient: f64,
+    coefficient: Number,
     power: i32,
     from_rad_per_s: Number,
     to_rad_per_s: Number,
@@ -143,6 +145,7 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
         pole: [mode.pole.re, mode.pole.im],
         step_share: Number(mode.step_share),
         decay_ratio: Number(mode.decay_ratio),
+        reason: mode.absence.map(|absence| absence.to_string()),
     });
     let body = Body {
         stiffness: StiffnessRow {
@@ -214,7 +217,7 @@ fn asymptote_row(asymptote: &Asymptote) -> AsymptoteRow {
             AsymptoteKind::CompliancePlateau => "compliance_plateau",
             AsymptoteKind::SensorLimit => "sensor_limit",
         },
-        coefficient: asymptote.coefficient,
+        coefficient: Number(asymptote.coefficient),
         power: asymptote.power,
         from_rad_per_s: Number(asymptote.from),
         to_rad_per_s: Number(asymptote.to),
@@ -250,11 +253,8 @@ pub fn text(linearization: &Linearization) -> String {
     let mut modes =
         table(&["mode, rad/s", "share of the step response", "decays faster than the slowest by"]);
     for mode in &linearization.modes {
-        modes.add_row([
-            root_list(&[mode.pole]),
-            significant(mode.step_share, 3),
-            significant(mode.decay_ratio, 3),
-        ]);
+        let [share, decay] = mode_words(mode);
+        modes.add_row([root_list(&[mode.pole]), share, decay]);
     }
     out.push_str(&format!("\nDominance\n{}\n\nDriving-point impedance Z = -F_e/(s X_L)\n", modes.trim_fmt()));
     out.push_str(&format!("  open loop:   {}\n", passivity_sentence(&linearization.open_loop.passivity)));
@@ -280,10 +280,21 @@ pub fn files(linearization: &Linearization) -> Vec<OutputFile> {
     vec![OutputFile { name: "poles.csv".to_string(), bytes: csv.into_bytes() }]
 }
 
-/// Every model with its equation, the fullest first.
-pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 5] {
+/// Share and decay ratio of a mode; in place of a number that does not exist, why.
+pub(crate) fn mode_words(mode: &ModeShare) -> [String; 2] {
+    let absence = mode.absence.map(|absence| absence.to_string()).unwrap_or_default();
+    let words = |value: f64, otherwise: &str| match value.is_nan() {
+        true => otherwise.to_string(),
+        false => significant(value, 3),
+    };
+    [words(mode.step_share, &absence), words(mode.decay_ratio, "none")]
+}
+
+/// Every model with its equation, the fullest first; with the values that hold where nothing else is said.
+pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 6] {
     [
-        ("two-pressure", "4.25 to 4.29", &linearization.two_pressure.command),
+        ("two-pressure, derived parameters", "4.25 to 4.29", &linearization.two_pressure.command),
+        ("fifth order, derived parameters", "6.7", &linearization.derived_full.command),
         ("fifth order", "6.7", &linearization.full.command),
         ("decomposed, as printed", "6.12", &linearization.decomposed[0]),
         ("decomposed, corrected", "6.12", &linearization.decomposed[1]),
@@ -294,10 +305,10 @@ pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static 
 /// Every comparison with its name.
 pub(crate) fn comparisons(linearization: &Linearization) -> [(&'static str, &Comparison); 4] {
     [
-        ("6.7 for two-pressure, derived parameters", &linearization.reduction),
-        ("6.12 as printed for 6.7", &linearization.printed_decomposition),
-        ("6.12 corrected for 6.7", &linearization.corrected_decomposition),
-        ("6.13 for 6.7", &linearization.truncation),
+        ("6.7 instead of two-pressure, both with derived parameters", &linearization.reduction),
+        ("6.12 as printed instead of 6.7", &linearization.printed_decomposition),
+        ("6.12 corrected instead of 6.7", &linearization.corrected_decomposition),
+        ("6.13 instead of 6.7", &linearization.truncation),
     ]
 }
 

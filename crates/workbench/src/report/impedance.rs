@@ -43,7 +43,7 @@ pub(super) fn chapter(
         h3 { "The load moves" }
         (place(&figures[1]))
         p { "Largest change of the force: " (peaks(&forces)) "." }
-        p { "Proposition 6.2: the zero at the origin makes the force return. After a load step of 1 mm there remains, "
+        p { "Proposition 6.2: with leakage or feedback the zero at the origin makes the force return. After a load step of 1 mm there remains, "
             "open loop " (remains(&linearization.open_loop))
             @if let Some(view) = &linearization.closed_loop { ", closed loop " (remains(view)) }
             "."
@@ -53,8 +53,10 @@ pub(super) fn chapter(
 }
 
 fn peaks(forces: &[Moved]) -> String {
-    let one =
-        |moved: &Moved| format!("{} kN {}", DisplayUnit::KILONEWTON.number(moved.peak_n, 3), moved.name);
+    let one = |moved: &Moved| match &moved.force {
+        Some(force) => format!("{} kN {}", DisplayUnit::KILONEWTON.number(force.peak_n, 3), moved.name),
+        None => format!("none {} (unstable)", moved.name),
+    };
     forces.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
@@ -66,7 +68,7 @@ fn verdict(view: &PortView) -> Markup {
 fn remains(view: &PortView) -> String {
     match view.final_force_n {
         Some(force) => format!("{} N", significant(force, 3)),
-        None => "no final value (unstable, or without leakage)".to_string(),
+        None => "no final value (unstable)".to_string(),
     }
 }
 

@@ -49,12 +49,26 @@ fn velocity(distance: f64, duration: f64) -> Result<Signal, TimeResponseError> {
 pub(super) struct Moved {
     /// Which loop.
     pub(super) name: &'static str,
-    /// Largest change of the force with its sign, N.
+    /// Absent where the port is unstable.
+    pub(super) force: Option<MovedForce>,
+}
+
+/// How the force goes, where it does not grow without bound.
+pub(super) struct MovedForce {
+    /// Largest change with its sign, N.
     pub(super) peak_n: f64,
+    /// What remains in the end, N.
+    remains_n: f64,
     series: TimeSeries,
 }
 
-/// The force at each port while the load moves.
+/// Load step that the final force of a port is stated for, m.
+const STATED_STEP: f64 = 1e-3;
+
+/// Final force below which nothing remains, N.
+const NOTHING: f64 = 1e-6;
+
+/// The force at each port while the load moves; an unstable port has none.
 pub(super) fn forces(
     project: &Project,
     ports: &[(&'static str, &PortView)],
@@ -65,29 +79,60 @@ pub(super) fn forces(
     let larger = |peak: f64, value: f64| if value.abs() > peak.abs() { value } else { peak };
     let mut forces = Vec::new();
     for (name, view) in ports {
+        let Some(final_force_n) = view.final_force_n else {
+            forces.push(Moved { name, force: None });
+            continue;
+        };
         // F_e = -Z (s X_L)
         let force = view.impedance.series(&TransferFunction::gain_only(-1.0))?;
         let values = forced_response(&force, &input, &times_s)?;
         let peak_n = values.iter().copied().fold(0.0, larger);
         let series = TimeSeries { name: name.to_string(), times_s: times_s.clone(), values };
-        forces.push(Moved { name, peak_n, series });
+        let remains_n = final_force_n * distance / STATED_STEP;
+        forces.push(Moved { name, force: Some(MovedForce { peak_n, remains_n, series }) });
     }
     Ok(forces)
+}
+
+/// What remains of these forces in the end, in sentences.
+fn end(forces: &[Moved]) -> String {
+    let known: Vec<(&str, f64)> =
+        forces.iter().filter_map(|moved| Some((moved.name, moved.force.as_ref()?.remains_n))).collect();
+    let unstable = forces.iter().filter(|moved| moved.force.is_none()).map(|moved| moved.name);
+    let mut sentences = match known.iter().all(|(_, remains)| remains.abs() < NOTHING) {
+        true if known.is_empty() => vec![],
+        true => vec!["In the end nothing remains.".to_string()],
+        false => {
+            let one = |(name, remains): &(&str, f64)| {
+                format!("{} kN {name}", DisplayUnit::KILONEWTON.number(*remains, 3))
+            };
+            vec![format!(
+                "In the end there remains {}.",
+                known.iter().map(one).collect::<Vec<_>>().join(", ")
+            )]
+        }
+    };
+    sentences.extend(
+        unstable
+            .map(|name| format!("The {name} is unstable: its force grows without bound and is not drawn.")),
+    );
+    sentences.join(" ")
 }
 
 /// The figure of these forces.
 pub(super) fn figure(project: &Project, forces: &[Moved]) -> Figure {
     let (distance, duration) = motion(project);
     let caption = format!(
-        "Change of the force while the load moves {} mm in {} s (a smooth step of fifth order), linear and with no limit on the command. In the end nothing remains.",
+        "Change of the force while the load moves {} mm in {} s (a smooth step of fifth order), linear and with no limit on the command. {}",
         DisplayUnit::MILLIMETRE.number(distance, 3),
-        significant(duration, 3)
+        significant(duration, 3),
+        end(forces)
     );
     let input = StepResponseInput {
         quantity: "Force F_e".to_string(),
         unit: DisplayUnit::KILONEWTON,
         reference: None,
-        responses: forces.iter().map(|moved| moved.series.clone()).collect(),
+        responses: forces.iter().filter_map(|moved| Some(moved.force.as_ref()?.series.clone())).collect(),
         settling_band: None,
         bounds: None,
         events: vec![],

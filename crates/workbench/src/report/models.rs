@@ -4,26 +4,28 @@ use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, place, table};
 use super::typeset::prose;
-use crate::answer::significant;
 use crate::figure::{
     BodeInput, Figure, FrequencyMark, FrequencySeries, PoleMapInput, PoleMapScale, PoleSeries, Words, bode,
     pole_map,
 };
 use crate::linearize::{
-    Linearization, comparisons, difference_text, frequency_grid, located, models, root_list,
+    Linearization, comparisons, difference_text, frequency_grid, located, mode_words, models, resonance,
+    root_list,
 };
 use phea_dynamics::linear::{LinearError, TransferFunction};
 
 pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearError> {
-    let figures = vec![poles(linearization), responses(linearization)?];
+    let figures = vec![poles(linearization), responses(linearization)?, reduction(linearization)?];
     let body = html! {
         p {
-            "The two-pressure model is the linearised truth of the rig as declared; the fifth-order model (6.7) takes one stiffness and one load pressure and uses the values that hold; "
+            "The two-pressure model is the linearised truth of the rig as declared; the fifth-order model (6.7) takes one stiffness and one load pressure. "
+            "What that leaves out is judged with derived parameters in both; everything else here uses the values that hold. "
             "(6.12) splits it into hydraulic, mechanical and valve part; (6.13) keeps the hydraulic part alone."
         }
         (pole_table(linearization))
         (place(&figures[0]))
         (place(&figures[1]))
+        (place(&figures[2]))
         h3 { "Largest differences" }
         (difference_table(linearization))
         h3 { "Dominance" }
@@ -50,7 +52,7 @@ fn difference_table(linearization: &Linearization) -> Markup {
             vec![cell(*name), prose(&difference_text(&comparison.low)), prose(&located(&comparison.all))]
         })
         .collect();
-    table(&["model, for the fuller one", "below 1000 rad/s", "everywhere"], 9, &rows)
+    table(&["model, instead of the fuller one", "below 1000 rad/s", "everywhere"], 9, &rows)
 }
 
 fn dominance_table(linearization: &Linearization) -> Markup {
@@ -58,11 +60,8 @@ fn dominance_table(linearization: &Linearization) -> Markup {
         .modes
         .iter()
         .map(|mode| {
-            vec![
-                cell(root_list(&[mode.pole])),
-                prose(&significant(mode.step_share, 3)),
-                cell(significant(mode.decay_ratio, 3)),
-            ]
+            let [share, decay] = mode_words(mode);
+            vec![cell(root_list(&[mode.pole])), prose(&share), cell(decay)]
         })
         .collect();
     table(&["mode, rad/s", "share of the step response", "times faster gone than the slowest"], 1, &rows)
@@ -76,9 +75,10 @@ fn poles(linearization: &Linearization) -> Figure {
     };
     let input = PoleMapInput {
         series: vec![
-            series("two-pressure", &linearization.two_pressure.command),
             series("fifth order (6.7)", &linearization.full.command),
             series("decomposed (6.12), corrected", &linearization.decomposed[1]),
+            series("two-pressure, derived parameters", &linearization.two_pressure.command),
+            series("fifth order (6.7), derived parameters", &linearization.derived_full.command),
         ],
         scale: PoleMapScale::SignedLogarithmic,
         damping_ratios: vec![0.01, 0.1, 0.5, 0.9],
@@ -88,26 +88,49 @@ fn poles(linearization: &Linearization) -> Figure {
     pole_map(Words::new("poles", "Pole map", caption), &input)
 }
 
+/// The models with the values that hold, the fifth order first.
 fn responses(linearization: &Linearization) -> Result<Figure, LinearError> {
-    let grid = frequency_grid(&linearization.full.command)?;
-    let series = |name: &str, function: &TransferFunction| FrequencySeries {
+    let caption = "Force over command of the models with the values that hold, and how far each is from the fifth-order model.";
+    let words = Words::new("bode", "Frequency response of the models", caption);
+    let models = [
+        ("fifth order (6.7)", &linearization.full.command),
+        ("decomposed (6.12), corrected", &linearization.decomposed[1]),
+        ("first order (6.13)", &linearization.first_order),
+    ];
+    diagram(words, &models, &linearization.full.command)
+}
+
+/// What one load pressure leaves out: both models with derived parameters.
+fn reduction(linearization: &Linearization) -> Result<Figure, LinearError> {
+    let caption = "The fifth-order model instead of the two-pressure model, both with derived parameters.";
+    let words = Words::new("bode-reduction", "What one load pressure leaves out", caption);
+    let models = [
+        ("two-pressure, derived parameters", &linearization.two_pressure.command),
+        ("fifth order (6.7), derived parameters", &linearization.derived_full.command),
+    ];
+    diagram(words, &models, &linearization.two_pressure.command)
+}
+
+/// A Bode diagram with the differences from the first model.
+fn diagram(
+    words: Words,
+    models: &[(&str, &TransferFunction)],
+    reference: &TransferFunction,
+) -> Result<Figure, LinearError> {
+    let grid = frequency_grid(reference)?;
+    let series = models.iter().map(|(name, function)| FrequencySeries {
         name: name.to_string(),
         response: grid.iter().map(|frequency| function.at_frequency(*frequency)).collect(),
         frequencies_rad_per_s: grid.clone(),
-    };
-    let resonance = linearization.full.command.poles().iter().map(|pole| pole.im).fold(0.0, f64::max);
+    });
+    let resonance = resonance(reference)
+        .map(|pole| FrequencyMark { label: "resonance".to_string(), frequency_rad_per_s: pole.im });
     let input = BodeInput {
         quantity: "F_e/U_C".to_string(),
         unit: "N/V".to_string(),
-        series: vec![
-            series("fifth order (6.7)", &linearization.full.command),
-            series("two-pressure", &linearization.two_pressure.command),
-            series("decomposed (6.12), corrected", &linearization.decomposed[1]),
-            series("first order (6.13)", &linearization.first_order),
-        ],
+        series: series.collect(),
         with_difference: true,
-        marks: vec![FrequencyMark { label: "resonance".to_string(), frequency_rad_per_s: resonance }],
+        marks: resonance.into_iter().collect(),
     };
-    let caption = "Force over command of the models, and how far each is from the fifth-order model.";
-    Ok(bode(Words::new("bode", "Frequency response of the models", caption), &input))
+    Ok(bode(words, &input))
 }

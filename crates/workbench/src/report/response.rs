@@ -8,7 +8,7 @@ use crate::answer::significant;
 use crate::figure::{
     DisplayUnit, Figure, SettlingBand, StepResponseInput, TimeEvent, TimeSeries, Words, step_response,
 };
-use crate::linear_loop::{LinearLoop, StepView, settling_words};
+use crate::linear_loop::{LinearLoop, LoopStability, StepView, settling_words};
 
 /// Height of the drawn step where the project's scenarios give none, N.
 const REFERENCE: f64 = 1000.0;
@@ -28,10 +28,10 @@ pub(super) fn chapter(linear_loop: Option<&LinearLoop>, reference_n: Option<f64>
             Err(reason) => { div.callout.bad-edge { p { "No step response: " (reason) "." } } }
         }
         h3 { "Margins" }
-        p { "The closed loop is " @match linear_loop.stable {
-            Some(true) => span.good { "stable" },
-            Some(false) => span.bad { "unstable" },
-            None => "not judged here: with dead time it has no finite number of poles",
+        p { "The closed loop is " @match &linear_loop.stability {
+            LoopStability::Stable => span.good { "stable" },
+            LoopStability::Unstable => span.bad { "unstable" },
+            LoopStability::Unknown(reason) => { "not judged here: " (reason) }
         } ". Near a lightly damped resonance the loop crosses a gain of one several times: each margin is the smallest of all crossings, and a negative phase margin there is no instability by itself." }
         (margins(&linear_loop.margins))
     };
