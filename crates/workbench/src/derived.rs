@@ -3,9 +3,10 @@
 mod answer;
 mod list;
 mod rig;
+mod valve;
 
-pub(crate) use answer::sentence;
 pub use answer::{files, json, text};
+pub(crate) use answer::{sentence, stated};
 pub use rig::derive;
 
 /// A quantity that follows from the project.
@@ -34,7 +35,7 @@ pub struct Derived {
 pub struct Stated {
     /// Value, SI.
     pub value: f64,
-    /// Where it stands: `[linear]`, `[uncertainty]` or `[sizing]`.
+    /// Where it stands, such as `[linear]`, `[uncertainty]` or `[sizing]`.
     pub place: &'static str,
     /// Bounds, where stated.
     pub bounds: Option<[f64; 2]>,
@@ -55,9 +56,22 @@ impl Derived {
         })
     }
 
+    /// Whether the stated value lies outside the bounds that the project states for it.
+    pub fn outside_own_bounds(&self) -> bool {
+        let outside = |stated: &Stated| {
+            stated.bounds.is_some_and(|[minimum, maximum]| !(minimum..=maximum).contains(&stated.value))
+        };
+        self.stated.as_ref().is_some_and(outside)
+    }
+
+    /// Whether what is stated contradicts itself or the derived value.
+    pub fn contradicts(&self) -> bool {
+        self.outside_own_bounds() || self.contradicts_derived()
+    }
+
     /// Whether the derived value contradicts what is stated: it lies more than 1 % outside the stated
     /// bounds, or without bounds more than 5 % away.
-    pub fn contradicts(&self) -> bool {
+    pub fn contradicts_derived(&self) -> bool {
         match self.stated.as_ref() {
             None => false,
             Some(Stated { bounds: Some([minimum, maximum]), .. }) => {

@@ -30,6 +30,8 @@ pub struct Rig {
     pub actuator: Actuator,
     /// Where the linear models are taken.
     pub point: OperatingPoint,
+    /// What is known of that point.
+    pub condition: Condition,
     /// The nonlinear two-pressure model, nominal stiffening.
     pub model: TwoPressureModel,
     /// Its linearisation at the operating point.
@@ -69,7 +71,10 @@ impl Rig {
         let declared = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
         let actuator = assembly::actuator(declared)?;
         let components = actuator.components();
-        let point = point(&actuator, &project.operating_point)?;
+        let condition = condition(&project.operating_point);
+        let stroke = components.cylinder.stroke;
+        let position = project.operating_point.position.unwrap_or(stroke / 2.0);
+        let point = operating_point(&actuator, position, condition)?;
         let friction = components.friction.viscous_slope(ViscousSlope::Viscous).ok_or(RigError::Friction)?;
         let pressures = [point.pressure_a, point.pressure_b];
         let model = TwoPressureModel::new(&actuator, pressures, Member::Nominal, friction);
@@ -77,20 +82,16 @@ impl Rig {
         let derived = reduce(&two_pressure);
         let parameters = parameters::resolve(project, &derived);
         let linear = parameters::linear(&parameters, &derived);
-        Ok(Rig { actuator, point, model, two_pressure, derived, parameters, linear })
+        Ok(Rig { actuator, point, condition, model, two_pressure, derived, parameters, linear })
     }
 }
 
-fn point(
-    actuator: &Actuator,
-    declared: &project::OperatingPoint,
-) -> Result<OperatingPoint, OperatingPointError> {
-    let position = declared.position.unwrap_or(actuator.components().cylinder.stroke / 2.0);
-    let condition = match (declared.command, declared.load_pressure) {
+/// Null blocks the piston; a command moves it, with no load pressure where none is declared, thesis (4.18).
+fn condition(declared: &project::OperatingPoint) -> Condition {
+    match (declared.command, declared.load_pressure) {
         (Some(command), Some(load_pressure)) => Condition::Matched(command, load_pressure),
-        (Some(command), None) => Condition::Command(command),
+        (Some(command), None) if command != 0.0 => Condition::Matched(command, 0.0),
         (None, Some(load_pressure)) => Condition::Load(Load::Pressure(load_pressure)),
-        (None, None) => Condition::Command(0.0),
-    };
-    operating_point(actuator, position, condition)
+        (Some(_) | None, None) => Condition::Command(0.0),
+    }
 }

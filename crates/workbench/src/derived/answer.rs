@@ -73,7 +73,7 @@ pub fn text(derived: &[Derived]) -> String {
         rows.add_row([&quantity.name, &value, quantity.unit, &plain(quantity.equation)]);
     }
     out.push_str(&format!("{group}\n{}\n", rows.trim_fmt()));
-    let stated: Vec<&Derived> = derived.iter().filter(|quantity| quantity.stated.is_some()).collect();
+    let stated = stated(derived);
     if !stated.is_empty() {
         out.push_str("\nStated by the project and used instead of the derived value\n");
     }
@@ -81,6 +81,21 @@ pub fn text(derived: &[Derived]) -> String {
         out.push_str(&format!("  {}\n", sentence(quantity)));
     }
     out
+}
+
+/// Difference in percent below which a stated value is unremarkable: it prints as zero.
+const UNREMARKABLE: f64 = 0.05;
+
+/// What the project states for quantities that also follow from the rest: contradictions first, then what differs, then
+/// the unremarkable.
+pub(crate) fn stated(derived: &[Derived]) -> Vec<&Derived> {
+    let mut stated: Vec<&Derived> = derived.iter().filter(|quantity| quantity.stated.is_some()).collect();
+    stated.sort_by_key(|quantity| match quantity.difference_percent() {
+        _ if quantity.contradicts() => 0,
+        Some(percent) if percent.abs() < UNREMARKABLE => 2,
+        _ => 1,
+    });
+    stated
 }
 
 /// What is stated beside what follows, in a sentence.
@@ -93,18 +108,20 @@ pub(crate) fn sentence(quantity: &Derived) -> String {
     let bounds = stated.bounds.map_or(String::new(), |[minimum, maximum]| {
         format!(", from {} to {}", significant(minimum, 4), significant(maximum, 4))
     });
-    let verdict = match (quantity.contradicts(), stated.bounds) {
+    let own = if quantity.outside_own_bounds() { "; the stated value lies outside these bounds" } else { "" };
+    let verdict = match (quantity.contradicts_derived(), stated.bounds) {
         (true, Some(_)) => "; the derived value lies outside these bounds",
         (true, None) => "; they contradict each other",
         (false, _) => "",
     };
+    let difference = quantity.difference_percent().filter(|percent| percent.is_finite());
+    let percent = difference.map_or(String::new(), |percent| format!(" ({percent:+.1} %)"));
     format!(
-        "{} = {} in {}{bounds}; derived {} ({:+.1} %){verdict}.",
+        "{} = {} in {}{bounds}; derived {}{percent}{own}{verdict}.",
         quantity.symbol,
         with_unit,
         stated.place,
-        significant(quantity.value, 4),
-        quantity.difference_percent().unwrap_or(f64::NAN)
+        significant(quantity.value, 4)
     )
 }
 

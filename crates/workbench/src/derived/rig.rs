@@ -1,10 +1,11 @@
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{Hose, Line, Member};
 use phea_hydraulics::linear::{MechanicalDamping, decompose};
-use phea_hydraulics::servovalve::{Direction, velocity_gain};
+use phea_hydraulics::operating_point::Condition;
 
 use super::Derived;
 use super::list::List;
+use super::valve::valve;
 use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::project::Project;
 use crate::rig::{ParameterOrigin, Rig};
@@ -15,12 +16,13 @@ pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
     cylinder(rig, &mut list);
     lines(rig, &mut list);
     stiffness(rig, &mut list);
-    valve(rig, &mut list);
+    valve(project, rig, &mut list);
     equilibrium(rig, &mut list);
     linear_parameters(rig, &mut list);
     dynamics(rig, &mut list);
     friction(rig, &mut list);
     flow(project, rig, &mut list);
+    sizing(project, rig, &mut list);
     list.into_entries()
 }
 
@@ -141,88 +143,25 @@ fn stiffness(rig: &Rig, list: &mut List) {
     }
 }
 
-fn valve(rig: &Rig, list: &mut List) {
-    let components = rig.actuator.components();
-    let (valve, supply, cylinder) = (&components.valve, &components.supply, &components.cylinder);
-    let areas = [cylinder.area_a, cylinder.area_b];
-    list.group("Servovalve");
-    for (name, direction, area, equation) in [
-        (
-            "extending",
-            Direction::Extending,
-            cylinder.area_a,
-            "K_{qU} = A_A v/U, edges 3 and 6 carrying one flow",
-        ),
-        (
-            "retracting",
-            Direction::Retracting,
-            cylinder.area_b,
-            "K_{qU} = A_B v/U, edges 5 and 4 carrying one flow",
-        ),
-    ] {
-        match velocity_gain(valve, supply, areas, 0.0, direction) {
-            Some(gain) => {
-                list.add(format!("valve.flow_gain_{name}"), "K_qU", area * gain, "m3/(s.V)", equation)
-            }
-            None => list.absent(
-                format!("valve.flow_gain_{name}"),
-                "K_qU",
-                "m3/(s.V)",
-                equation,
-                "the supply cannot move the unloaded piston this way",
-            ),
-        }
-    }
-    chamber_slopes(rig, list);
-    let pressure_gain = rig.derived.flow_gain / rig.derived.flow_pressure_coefficient;
-    list.add("valve.pressure_gain", "K_pU", pressure_gain, "Pa/V", "K_{pU} = K_{qU}/K_c");
-}
-
-fn chamber_slopes(rig: &Rig, list: &mut List) {
-    let chambers = &rig.two_pressure.chambers;
-    list.add(
-        "valve.flow_gain_a",
-        "K_qA",
-        chambers.flow_gain_a,
-        "m3/(s.V)",
-        "K_{qA} = dq_A/dU at the operating point",
-    );
-    list.add(
-        "valve.flow_gain_b",
-        "K_qB",
-        chambers.flow_gain_b,
-        "m3/(s.V)",
-        "K_{qB} = -dq_B/dU at the operating point",
-    );
-    list.add(
-        "valve.flow_pressure_a",
-        "K_cA",
-        chambers.flow_pressure_a,
-        "m3/(s.Pa)",
-        "K_{cA} = -dq_A/dp_A at the operating point",
-    );
-    list.add(
-        "valve.flow_pressure_b",
-        "K_cB",
-        chambers.flow_pressure_b,
-        "m3/(s.Pa)",
-        "K_{cB} = -dq_B/dp_B at the operating point",
-    );
-}
-
 fn equilibrium(rig: &Rig, list: &mut List) {
     let point = &rig.point;
+    let [command, pressure_a, pressure_b] = match rig.condition {
+        Condition::Command(_) => {
+            ["null", "q_A(U, p_A) = 0, blocked piston", "q_B(U, p_B) = 0, blocked piston"]
+        }
+        Condition::Load(_) => [
+            "the command that holds the load",
+            "q_A(U, p_A) = 0, holding the load",
+            "q_B(U, p_B) = 0, holding the load",
+        ],
+        Condition::Motion(..) => ["declared", "q_A(U, p_A) = A_A v", "q_B(U, p_B) = -A_B v"],
+        Condition::Matched(..) => ["declared", "p_A = (p_S + p_T + p_L)/2", "p_B = (p_S + p_T - p_L)/2"],
+    };
     list.group("Operating point");
     list.add("operating_point.position", "x_p", point.position, "m", "declared, or mid stroke");
-    list.add(
-        "operating_point.command",
-        "U_C",
-        point.command,
-        "V",
-        "declared, or the command that holds the load",
-    );
-    list.add("operating_point.pressure_a", "p_A", point.pressure_a, "Pa", "q_A(U, p_A) = A_A v");
-    list.add("operating_point.pressure_b", "p_B", point.pressure_b, "Pa", "q_B(U, p_B) = -A_B v");
+    list.add("operating_point.command", "U_C", point.command, "V", command);
+    list.add("operating_point.pressure_a", "p_A", point.pressure_a, "Pa", pressure_a);
+    list.add("operating_point.pressure_b", "p_B", point.pressure_b, "Pa", pressure_b);
     list.add("operating_point.load_pressure", "p_L", point.load_pressure(), "Pa", "p_L = p_A - p_B");
     list.add("operating_point.hydraulic_force", "F_H", point.hydraulic_force, "N", "F_H = A_A p_A - A_B p_B");
 }
@@ -232,8 +171,8 @@ fn linear_parameters(rig: &Rig, list: &mut List) {
     for parameter in &rig.parameters {
         let (symbol, unit, equation) = match parameter.name {
             "viscous_friction" => ("f_v", "N.s/m", "f_v = slope of the viscous part"),
-            "flow_gain" => ("K_qU", "m3/(s.V)", "K_{qU} = dq_{vC}/dU at the operating point"),
-            "flow_pressure_coefficient" => ("K_c", "m3/(s.Pa)", "K_c = -dq_{vC}/dp_L at the operating point"),
+            "flow_gain" => ("K_qU", "m3/(s.V)", "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H"),
+            "flow_pressure_coefficient" => ("K_c", "m3/(s.Pa)", "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}"),
             "hydraulic_stiffness" => ("K_H", "N/m", "K_H = A_A^2/C_A + A_B^2/C_B at the operating point"),
             "valve_natural_frequency" => ("ω_nv", "rad/s", "declared for the valve"),
             "valve_damping_ratio" => ("ξ_v", "1", "declared for the valve"),
@@ -317,5 +256,22 @@ fn flow(project: &Project, rig: &Rig, list: &mut List) {
         };
         let velocity = 4.0 * flow / (std::f64::consts::PI * bore * bore);
         list.add(format!("{name}.oil_velocity"), "v_oil", velocity, "m/s", "v_{oil} = 4 q_{pump}/(π D^2)");
+    }
+}
+
+/// What `[sizing]` states of the valve, beside what follows from it.
+fn sizing(project: &Project, rig: &Rig, list: &mut List) {
+    let Some(sizing) = &project.sizing else { return };
+    list.group("Sizing");
+    if let Some(flow_gain) = sizing.flow_gain {
+        let equation = "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H";
+        list.add("sizing.flow_gain", "K_qU", rig.derived.flow_gain, "m3/(s.V)", equation);
+        list.stated(flow_gain, "[sizing]", None);
+    }
+    if let Some(coefficient) = sizing.flow_pressure_coefficient {
+        let derived = rig.derived.flow_pressure_coefficient;
+        let equation = "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}";
+        list.add("sizing.flow_pressure_coefficient", "K_c", derived, "m3/(s.Pa)", equation);
+        list.stated(coefficient, "[sizing]", None);
     }
 }

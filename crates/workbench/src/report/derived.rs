@@ -4,12 +4,12 @@ use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, table};
 use super::typeset::{figures, prose, typeset};
-use crate::derived::{Derived, sentence};
+use crate::derived::{Derived, sentence, stated};
 
 pub(super) fn chapter(derived: &[Derived]) -> Chapter {
     let mut groups: Vec<&'static str> = derived.iter().map(|quantity| quantity.group).collect();
     groups.dedup();
-    let stated: Vec<&Derived> = derived.iter().filter(|quantity| quantity.stated.is_some()).collect();
+    let stated = stated(derived);
     let body = html! {
         p { "Everything that follows from the project, in SI units, with the equation it follows from." }
         @for group in groups {
@@ -59,5 +59,5 @@ fn unit(text: &str) -> String {
     if text == "1" {
         return "1".to_string();
     }
-    text.replace('2', "²").replace('3', "³").replace('.', "·")
+    text.replace("Pa^0.5", "√Pa").replace('2', "²").replace('3', "³").replace('.', "·")
 }

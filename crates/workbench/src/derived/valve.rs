@@ -1,0 +1,135 @@
+//! The servovalve's part of the list: its edges as declared or from the data sheet, flow gains, slopes.
+
+use phea_hydraulics::servovalve::{
+    Direction, flow_coefficient_from_rating, leakage_coefficient_from_rating, velocity_gain,
+};
+use phea_hydraulics::two_pressure::{reduce, two_pressure_linear_parameters};
+
+use super::list::List;
+use crate::project::{self, Project};
+use crate::rig::Rig;
+
+/// Unit of the coefficients of the edges.
+const COEFFICIENT: &str = "m3/(s.Pa^0.5)";
+
+/// Edges 3 to 6 with the symbols of their flow and leakage coefficients.
+const EDGES: [(&str, &str, &str); 4] = [
+    ("supply_to_a", "K_v3", "K_vin3"),
+    ("a_to_tank", "K_v4", "K_vin4"),
+    ("supply_to_b", "K_v5", "K_vin5"),
+    ("b_to_tank", "K_v6", "K_vin6"),
+];
+
+/// Equations of the coefficients from a data sheet, thesis (4.12) corrected and (4.13).
+const FROM_RATING: &str = "K_{vp} = q_{vn}/sqrt(Δp_{tn}/2)";
+const FROM_LEAKAGE: &str = "K_{vinp} = (q_0 - q_{tare})/sqrt(2 p_{in})";
+
+/// What follows for the servovalve: edges, flow gains, slopes.
+pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
+    let components = rig.actuator.components();
+    let (valve, supply, cylinder) = (&components.valve, &components.supply, &components.cylinder);
+    let areas = [cylinder.area_a, cylinder.area_b];
+    list.group("Servovalve");
+    if let Some(actuator) = &project.actuator {
+        edges(&actuator.valve, rig, list);
+    }
+    for (name, direction, area, equation) in [
+        (
+            "extending",
+            Direction::Extending,
+            cylinder.area_a,
+            "K_{qU} = A_A v/U unloaded, edges 3 and 6 carrying one flow",
+        ),
+        (
+            "retracting",
+            Direction::Retracting,
+            cylinder.area_b,
+            "K_{qU} = A_B v/U unloaded, edges 5 and 4 carrying one flow",
+        ),
+    ] {
+        match velocity_gain(valve, supply, areas, 0.0, direction) {
+            Some(gain) => {
+                list.add(format!("valve.flow_gain_{name}"), "K_qU", area * gain, "m3/(s.V)", equation)
+            }
+            None => list.absent(
+                format!("valve.flow_gain_{name}"),
+                "K_qU",
+                "m3/(s.V)",
+                equation,
+                "the supply cannot move the unloaded piston this way",
+            ),
+        }
+    }
+    for (name, direction, equation) in [
+        ("extending", Direction::Extending, "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U from above"),
+        ("retracting", Direction::Retracting, "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U from below"),
+    ] {
+        let parameters = reduce(&two_pressure_linear_parameters(&rig.model, &rig.point, direction));
+        let name = format!("valve.flow_pressure_coefficient_{name}");
+        list.add(name, "K_c", parameters.flow_pressure_coefficient, "m3/(s.Pa)", equation);
+    }
+    chamber_slopes(rig, list);
+    let pressure_gain = rig.derived.flow_gain / rig.derived.flow_pressure_coefficient;
+    list.add("valve.pressure_gain", "K_pU", pressure_gain, "Pa/V", "K_{pU} = K_{qU}/K_c");
+}
+
+fn chamber_slopes(rig: &Rig, list: &mut List) {
+    let chambers = &rig.two_pressure.chambers;
+    list.add(
+        "valve.flow_gain_a",
+        "K_qA",
+        chambers.flow_gain_a,
+        "m3/(s.V)",
+        "K_{qA} = dq_A/dU at the operating point",
+    );
+    list.add(
+        "valve.flow_gain_b",
+        "K_qB",
+        chambers.flow_gain_b,
+        "m3/(s.V)",
+        "K_{qB} = -dq_B/dU at the operating point",
+    );
+    list.add(
+        "valve.flow_pressure_a",
+        "K_cA",
+        chambers.flow_pressure_a,
+        "m3/(s.Pa)",
+        "K_{cA} = -dq_A/dp_A at the operating point",
+    );
+    list.add(
+        "valve.flow_pressure_b",
+        "K_cB",
+        chambers.flow_pressure_b,
+        "m3/(s.Pa)",
+        "K_{cB} = -dq_B/dp_B at the operating point",
+    );
+}
+
+/// The coefficients of the edges, and beside what the data sheet says the mean of those declared.
+fn edges(declared: &project::Valve, rig: &Rig, list: &mut List) {
+    let valve = &rig.actuator.components().valve;
+    let origin = |is_declared, equation| if is_declared { "declared" } else { equation };
+    let flow_origin = origin(declared.flow_coefficients.is_some(), FROM_RATING);
+    let leakage_origin = origin(declared.leakage_coefficients.is_some(), FROM_LEAKAGE);
+    for ((name, symbol, _), value) in EDGES.into_iter().zip(valve.flow_coefficients.to_array()) {
+        list.add(format!("valve.flow_coefficient_{name}"), symbol, value, COEFFICIENT, flow_origin);
+    }
+    for ((name, _, symbol), value) in EDGES.into_iter().zip(valve.leakage_coefficients.to_array()) {
+        list.add(format!("valve.leakage_coefficient_{name}"), symbol, value, COEFFICIENT, leakage_origin);
+    }
+    let mean = |edges: [f64; 4]| edges.iter().sum::<f64>() / 4.0;
+    if let (Some(edges), Some(flow), Some(drop)) =
+        (declared.flow_coefficients, declared.nominal_flow, declared.nominal_pressure_drop)
+    {
+        let rated = flow_coefficient_from_rating(flow, drop);
+        list.add("valve.flow_coefficient_rated", "K_vp", rated, COEFFICIENT, FROM_RATING);
+        list.stated(mean(edges.in_order()), "[valve.flow_coefficients], the mean of its edges", None);
+    }
+    if let (Some(edges), Some(leakage), Some(pressure)) =
+        (declared.leakage_coefficients, declared.null_leakage, declared.null_leakage_pressure)
+    {
+        let rated = leakage_coefficient_from_rating(leakage, declared.tare_flow, pressure);
+        list.add("valve.leakage_coefficient_rated", "K_vinp", rated, COEFFICIENT, FROM_LEAKAGE);
+        list.stated(mean(edges.in_order()), "[valve.leakage_coefficients], the mean of its edges", None);
+    }
+}
