@@ -22,9 +22,16 @@ impl OperatingPoint {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("position", &LENGTH, "Position of the piston; absent: mid stroke.").not_negative();
         v.optional(k, &mut self.position);
-        let k = key("load_pressure", &PRESSURE, "p_A - p_B; absent: zero.");
+        let k = key(
+            "load_pressure",
+            &PRESSURE,
+            "p_A - p_B; absent: zero with a command, else what the edges settle at.",
+        );
         v.optional(k, &mut self.load_pressure);
-        v.optional(key("command", &VOLTAGE, "Command of the valve; absent: null."), &mut self.command);
+        v.optional(
+            key("command", &VOLTAGE, "Command of the valve; absent: null, or what holds the load pressure."),
+            &mut self.command,
+        );
     }
 }
 

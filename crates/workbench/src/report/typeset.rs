@@ -59,7 +59,7 @@ pub fn prose(sentence: &str) -> Markup {
         if index > 0 {
             inside.push(' ');
         }
-        let core = word.trim_end_matches([',', '.', ';', ':', ')']);
+        let core = word.trim_end_matches([',', '.', ';', ':', ')', '°']);
         let (core, tail) = word.split_at(core.len());
         let (head, core) = core.split_at(core.len() - core.trim_start_matches('(').len());
         let is_symbol = core.split_once('_').is_some_and(|(base, _)| base.chars().count() == 1);
