@@ -1,5 +1,11 @@
 //! Quantitative Feedback Theory: what a closed loop must keep to, for every plant of an uncertain family.
 //!
-//! This crate knows plants only as `phea_dynamics::uncertain_plant::UncertainPlant`; it never sees a valve or a hose.
+//! This crate knows plants only as `phea_dynamics::uncertain_plant::UncertainPlant` or as measured responses; it never sees a valve
+//! or a hose.
 
+pub mod bound;
+pub mod closed_loop;
+pub mod family;
 pub mod specification;
+pub mod template;
+pub mod verification;

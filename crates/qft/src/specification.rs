@@ -7,7 +7,8 @@ use phea_dynamics::portable;
 
 pub use limit::{Limit, LimitError, LimitTable};
 
-/// What is limited. L = P G is the loop of plant P, controller G; F the prefilter; Pd = F_e/X_L the load-motion path.
+/// What is limited. L = P G H is the loop of plant P, controller G and sensor H; F the prefilter; Pd = F_e/X_L the load-motion
+/// path.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Requirement {
     /// |L/(1+L)| <= limit
@@ -20,7 +21,7 @@ pub enum Requirement {
     ControlEffort(Limit),
     /// |Pd/(1+L)| <= limit
     LoadMotion(Limit),
-    /// lower <= |F L/(1+L)| <= upper
+    /// lower <= |F P G/(1+L)| <= upper; F L/(1+L) where the sensor is 1
     Tracking {
         /// The least magnitude.
         lower: Limit,
@@ -29,7 +30,7 @@ pub enum Requirement {
     },
 }
 
-/// One member of a closed loop at one frequency: plant, load-motion path, controller and prefilter.
+/// One member of a closed loop at one frequency: plant, load-motion path, controller, prefilter and sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopResponse {
     /// P(j w)
@@ -40,6 +41,15 @@ pub struct LoopResponse {
     pub controller: Complex64,
     /// F(j w)
     pub prefilter: Complex64,
+    /// H(j w)
+    pub sensor: Complex64,
+}
+
+impl LoopResponse {
+    /// L = P G H.
+    pub fn open_loop(&self) -> Complex64 {
+        self.plant * self.controller * self.sensor
+    }
 }
 
 /// A requirement with the frequencies at which bounds are drawn and the band over which it must hold, rad/s.
@@ -67,7 +77,7 @@ impl Specification {
     /// use num_complex::Complex64;
     /// use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
     /// let one = Complex64::new(1.0, 0.0);
-    /// let response = LoopResponse { plant: one, load_motion: one, controller: one, prefilter: one };
+    /// let response = LoopResponse { plant: one, load_motion: one, controller: one, prefilter: one, sensor: one };
     /// let specification = Specification {
     ///     requirement: Requirement::RobustStability(Limit::Constant(5.0)),
     ///     frequencies_rad_per_s: vec![1.0],
@@ -80,11 +90,9 @@ impl Specification {
         let below = |limit: &Limit, value: Complex64| {
             Some(decibel(limit.magnitude(frequency_rad_per_s)? / portable::magnitude(value)))
         };
-        let sensitivity = 1.0 / (1.0 + response.plant * response.controller);
+        let sensitivity = 1.0 / (1.0 + response.open_loop());
         match &self.requirement {
-            Requirement::RobustStability(limit) => {
-                below(limit, response.plant * response.controller * sensitivity)
-            }
+            Requirement::RobustStability(limit) => below(limit, response.open_loop() * sensitivity),
             Requirement::Sensitivity(limit) => below(limit, sensitivity),
             Requirement::PlantInputDisturbance(limit) => below(limit, response.plant * sensitivity),
             Requirement::ControlEffort(limit) => below(limit, response.controller * sensitivity),
@@ -112,6 +120,7 @@ mod tests {
             load_motion: real(8.0),
             controller: real(1.0),
             prefilter: real(2.0),
+            sensor: real(1.0),
         };
         let specification =
             Specification { requirement, frequencies_rad_per_s: vec![], band_rad_per_s: [0.0, 1.0] };

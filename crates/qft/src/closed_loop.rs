@@ -1,0 +1,229 @@
+//! The loop around a plant: controller, prefilter, sensor, delay and sampling, and what they make of one member.
+
+use num_complex::Complex64;
+use phea_dynamics::controller::Controller;
+use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::portable;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+
+use crate::family::MeasuredPlant;
+
+/// What is the same for every plant: G, F, H, the delay of the loop, and when it samples.
+///
+/// ```text
+/// continuous:  L = P G H e^(-s T_d),  T = P G e^(-s T_d)/(1 + L)                                   thesis 3.1, 3.2
+/// sampled:     L = Z{(1 - e^(-sT))/s P H e^(-s T_d)} G(z), at z = e^(jwT), up to pi/T
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compensation {
+    feedback: TransferFunction,
+    prefilter: TransferFunction,
+    sensor: TransferFunction,
+    sample_time_s: Option<f64>,
+    delay_s: f64,
+}
+
+/// G, F at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CompensationResponse {
+    /// G
+    pub feedback: Complex64,
+    /// F
+    pub prefilter: Complex64,
+}
+
+/// One plant within a loop, ready to be evaluated.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Member {
+    /// A rational plant with dead time in a continuous loop.
+    Continuous {
+        /// P and Pd as coefficients, the dead time that of plant and loop together.
+        plant: PlantCoefficients<f64>,
+        /// H
+        sensor: TransferFunction,
+    },
+    /// A plant held by a zero-order hold and sampled.
+    Sampled {
+        /// P with hold and delay, in z.
+        command: TransferFunction,
+        /// P H with hold and delay, in z.
+        with_sensor: TransferFunction,
+        /// Pd, continuous: the motion acts on the plant itself.
+        disturbance: Option<RationalCoefficients<f64>>,
+    },
+    /// A measured plant, with the delay of the loop; sampling adds the lag of its hold.
+    Measured {
+        /// The measurement.
+        plant: MeasuredPlant,
+        /// H
+        sensor: TransferFunction,
+        /// Delay of the loop and, when it samples, half a sample, s.
+        delay_s: f64,
+        /// For the magnitude of the hold.
+        sample_time_s: Option<f64>,
+    },
+}
+
+/// P, Pd and H of one member at one frequency; delay and hold are within P.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MemberResponse {
+    /// P
+    pub plant: Complex64,
+    /// Pd; zero where the plant has no such path.
+    pub load_motion: Complex64,
+    /// H
+    pub sensor: Complex64,
+}
+
+impl Compensation {
+    /// The loop of a controller with this sensor (1 where the output itself is fed back).
+    ///
+    /// # Errors
+    /// [`LinearError`] if a part is no transfer function, or cannot be sampled.
+    pub fn new(controller: &Controller, sensor: TransferFunction) -> Result<Compensation, LinearError> {
+        let timing = &controller.timing;
+        let sampled = |function: TransferFunction| match (timing.sample_time_s, function.domain()) {
+            (Some(sample_time_s), TimeDomain::Continuous) => {
+                function.discretized(sample_time_s, timing.discretization)
+            }
+            _ => Ok(function),
+        };
+        Ok(Compensation {
+            feedback: sampled(controller.feedback.transfer_function()?)?,
+            prefilter: sampled(controller.prefilter.transfer_function()?)?,
+            sensor,
+            sample_time_s: timing.sample_time_s,
+            delay_s: timing.delay_s,
+        })
+    }
+
+    /// G, sampled where the loop samples.
+    pub fn feedback(&self) -> &TransferFunction {
+        &self.feedback
+    }
+
+    /// F, sampled where the loop samples.
+    pub fn prefilter(&self) -> &TransferFunction {
+        &self.prefilter
+    }
+
+    /// H, continuous.
+    pub fn sensor(&self) -> &TransferFunction {
+        &self.sensor
+    }
+
+    /// s; `None` for a continuous loop.
+    pub fn sample_time_s(&self) -> Option<f64> {
+        self.sample_time_s
+    }
+
+    /// Computation and transport delay of the loop, s.
+    pub fn delay_s(&self) -> f64 {
+        self.delay_s
+    }
+
+    /// The same loop with another delay.
+    pub fn with_delay(&self, delay_s: f64) -> Compensation {
+        Compensation { delay_s, ..self.clone() }
+    }
+
+    /// The highest frequency that has a meaning, rad/s: pi/T, or infinity.
+    pub fn highest_frequency_rad_per_s(&self) -> f64 {
+        self.sample_time_s.map_or(f64::INFINITY, |sample_time_s| std::f64::consts::PI / sample_time_s)
+    }
+
+    /// G and F at a frequency.
+    pub fn response(&self, frequency_rad_per_s: f64) -> CompensationResponse {
+        CompensationResponse {
+            feedback: self.feedback.at_frequency(frequency_rad_per_s),
+            prefilter: self.prefilter.at_frequency(frequency_rad_per_s),
+        }
+    }
+
+    /// A rational plant within this loop.
+    ///
+    /// # Errors
+    /// [`LinearError`] if the plant cannot be sampled; a continuous loop takes every plant.
+    pub fn member(&self, mut plant: PlantCoefficients<f64>) -> Result<Member, LinearError> {
+        plant.dead_time_s += self.delay_s;
+        let Some(sample_time_s) = self.sample_time_s else {
+            return Ok(Member::Continuous { plant, sensor: self.sensor.clone() });
+        };
+        let rational = TransferFunction::from_polynomials(
+            &Polynomial::new(plant.command.numerator),
+            &Polynomial::new(plant.command.denominator),
+        )?;
+        let held = |function: TransferFunction| {
+            function
+                .with_dead_time(plant.dead_time_s)?
+                .discretized(sample_time_s, Discretization::ZeroOrderHold)
+        };
+        let with_sensor = rational.series(&self.sensor)?;
+        Ok(Member::Sampled {
+            command: held(rational)?,
+            with_sensor: held(with_sensor)?,
+            disturbance: plant.disturbance,
+        })
+    }
+
+    /// A measured plant within this loop.
+    pub fn measured(&self, plant: &MeasuredPlant) -> Member {
+        Member::Measured {
+            plant: plant.clone(),
+            sensor: self.sensor.clone(),
+            delay_s: self.delay_s + self.sample_time_s.unwrap_or(0.0) / 2.0,
+            sample_time_s: self.sample_time_s,
+        }
+    }
+}
+
+impl Member {
+    /// P, Pd and H at a frequency; `None` where a measurement does not reach.
+    ///
+    /// A measured plant in a sampled loop is taken without the images of its response above pi/T, which a measurement up to
+    /// there does not hold.
+    pub fn response(&self, frequency_rad_per_s: f64) -> Option<MemberResponse> {
+        let none = Complex64::new(0.0, 0.0);
+        match self {
+            Member::Continuous { plant, sensor } => Some(MemberResponse {
+                plant: plant.command.at_frequency(frequency_rad_per_s)
+                    * turned(frequency_rad_per_s, plant.dead_time_s),
+                load_motion: plant
+                    .disturbance
+                    .as_ref()
+                    .map_or(none, |path| path.at_frequency(frequency_rad_per_s)),
+                sensor: sensor.at_frequency(frequency_rad_per_s),
+            }),
+            Member::Sampled { command, with_sensor, disturbance } => {
+                let plant = command.at_frequency(frequency_rad_per_s);
+                Some(MemberResponse {
+                    plant,
+                    load_motion: disturbance
+                        .as_ref()
+                        .map_or(none, |path| path.at_frequency(frequency_rad_per_s)),
+                    sensor: with_sensor.at_frequency(frequency_rad_per_s) / plant,
+                })
+            }
+            Member::Measured { plant, sensor, delay_s, sample_time_s } => {
+                let (command, disturbance) = plant.response(frequency_rad_per_s)?;
+                let half =
+                    sample_time_s.map_or(0.0, |sample_time_s| frequency_rad_per_s * sample_time_s / 2.0);
+                let hold = if half == 0.0 { 1.0 } else { portable::sin(half) / half };
+                Some(MemberResponse {
+                    plant: command * turned(frequency_rad_per_s, *delay_s) * hold,
+                    load_motion: disturbance.unwrap_or(none),
+                    sensor: sensor.at_frequency(frequency_rad_per_s),
+                })
+            }
+        }
+    }
+}
+
+/// e^(-j w T)
+fn turned(frequency_rad_per_s: f64, delay_s: f64) -> Complex64 {
+    if delay_s == 0.0 {
+        return Complex64::new(1.0, 0.0);
+    }
+    let angle = -frequency_rad_per_s * delay_s;
+    Complex64::new(portable::cos(angle), portable::sin(angle))
+}

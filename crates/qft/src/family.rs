@@ -1,0 +1,154 @@
+//! Families of plants: the members that are looked at, and what lies between them.
+//!
+//! A family over a box has members at grid points, corners, random points or given cases, and everything between them
+//! belongs to it too; a family of explicit cases or of measured responses has its members and nothing else.
+
+mod coordinate;
+mod measured;
+mod member;
+
+pub use coordinate::{Coordinate, Spacing};
+pub use measured::{MeasuredFamily, MeasuredPlant, MeasurementError};
+pub use member::{grid, vertices};
+
+use phea_dynamics::uncertain_plant::UncertainPlant;
+
+/// The plants that a loop must serve.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Family {
+    /// An uncertain plant and the members of its family.
+    Uncertain(UncertainFamily),
+    /// Frequency responses that were measured: between two of them nothing can be claimed.
+    Measured(MeasuredFamily),
+}
+
+/// Which plants belong to the family.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Every point of the box that the coordinates span, the members being samples of it.
+    Box,
+    /// The members and nothing between them.
+    Members,
+}
+
+/// Why there is no family.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FamilyError {
+    /// A member with another number of values than the plant has parameters.
+    #[error("member {member} has {found} values, the plant has {expected} parameters")]
+    Values {
+        /// Index of the member, from 0.
+        member: usize,
+        /// Its number of values.
+        found: usize,
+        /// The plant's number of parameters.
+        expected: usize,
+    },
+    /// A value that is not finite, or lies outside of its parameter's bounds.
+    #[error("member {member}: `{parameter}` = {value} lies outside of {minimum} to {maximum}")]
+    Outside {
+        /// Index of the member, from 0.
+        member: usize,
+        /// The parameter's name.
+        parameter: String,
+        /// Its value there.
+        value: f64,
+        /// The parameter's lower bound.
+        minimum: f64,
+        /// The parameter's upper bound.
+        maximum: f64,
+    },
+    /// A coordinate that moves a parameter which does not exist, or which another coordinate moves already.
+    #[error("a coordinate moves parameter {0}, which does not exist or is moved already")]
+    Coordinate(usize),
+    /// Equal factors need positive bounds.
+    #[error("parameter `{0}` cannot be spaced by equal factors: its lower bound is not positive")]
+    Logarithmic(String),
+    /// More members than can be looked at.
+    #[error("the family would have {0} members; at most {1} are looked at")]
+    TooManyMembers(f64, usize),
+}
+
+/// Largest number of members that a family may have.
+pub const MEMBERS_MAXIMUM: usize = 2_000_000;
+
+/// An uncertain plant, the coordinates that span its box, and the members looked at; the nominal plant is member 0.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// use phea_qft::family::{Coordinate, Extent, Spacing, UncertainFamily, grid};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let gain = UncertainParameter { name: "k".into(), nominal: 2.0, minimum: 1.0, maximum: 100.0 };
+/// let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+///     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+///     disturbance: None,
+///     dead_time_s: 0.0.into(),
+/// })?;
+/// let coordinate = Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Logarithmic], points: 3 };
+/// let members = grid(&plant, &[coordinate.clone()])?;
+/// let family = UncertainFamily::new(plant, vec![coordinate], members, Extent::Box)?;
+/// let gains: Vec<f64> = family.members().iter().map(|values| values[0].round()).collect();
+/// assert_eq!(gains, [2.0, 1.0, 10.0, 100.0]); // the nominal plant first
+/// assert!((family.values(&[0.5])[0] - 10.0).abs() < 1e-13); // the middle of the box, by equal factors
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct UncertainFamily {
+    plant: UncertainPlant,
+    coordinates: Vec<Coordinate>,
+    members: Vec<Vec<f64>>,
+    extent: Extent,
+}
+
+impl UncertainFamily {
+    /// A family with these members, to which the nominal plant is added in front.
+    ///
+    /// # Errors
+    /// [`FamilyError`] for members that are no plants of the box, and for coordinates that do not fit the plant.
+    pub fn new(
+        plant: UncertainPlant,
+        coordinates: Vec<Coordinate>,
+        members: Vec<Vec<f64>>,
+        extent: Extent,
+    ) -> Result<UncertainFamily, FamilyError> {
+        coordinate::check(&plant, &coordinates)?;
+        member::check(&plant, &members)?;
+        let nominal = plant.nominal();
+        let others = members.into_iter().filter(|values| *values != nominal);
+        let members = std::iter::once(nominal.clone()).chain(others).collect();
+        Ok(UncertainFamily { plant, coordinates, members, extent })
+    }
+
+    /// The plant whose parameters are uncertain.
+    pub fn plant(&self) -> &UncertainPlant {
+        &self.plant
+    }
+
+    /// Parameter values of every member, the nominal plant first.
+    pub fn members(&self) -> &[Vec<f64>] {
+        &self.members
+    }
+
+    /// What belongs to the family.
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// The coordinates that span the box; their number is its dimension.
+    pub fn coordinates(&self) -> &[Coordinate] {
+        &self.coordinates
+    }
+
+    /// Parameter values at a point of the box, given by a share in [0, 1] of each coordinate. Shares outside are brought
+    /// to the nearest end, missing ones count as zero.
+    pub fn values(&self, shares: &[f64]) -> Vec<f64> {
+        coordinate::values(&self.plant, &self.coordinates, shares)
+    }
+
+    /// The shares nearest to these parameter values, one for each coordinate.
+    pub fn shares(&self, values: &[f64]) -> Vec<f64> {
+        self.coordinates.iter().map(|coordinate| coordinate.share(&self.plant, values)).collect()
+    }
+}

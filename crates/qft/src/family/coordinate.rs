@@ -1,0 +1,100 @@
+//! Coordinates of the box: one uncertain parameter each, or several that move together.
+
+use phea_dynamics::portable;
+use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
+
+use super::FamilyError;
+
+/// How the points of a parameter are spread over its range.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spacing {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// By a constant factor; needs a positive lower bound.
+    Logarithmic,
+}
+
+/// One direction of the box, run through by a share from 0 to 1. Several parameters in it are fully correlated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coordinate {
+    /// Indices of the parameters it moves, in the order of the plant.
+    pub parameters: Vec<usize>,
+    /// Indices of those of them that run from their maximum to their minimum.
+    pub opposed: Vec<usize>,
+    /// How each of them is spread, in the order of `parameters`.
+    pub spacing: Vec<Spacing>,
+    /// Points of a grid over it.
+    pub points: usize,
+}
+
+impl Coordinate {
+    /// The share at which the first parameter that moves has its value.
+    pub(super) fn share(&self, plant: &UncertainPlant, values: &[f64]) -> f64 {
+        let found = self.parameters.iter().zip(&self.spacing).find_map(|(&index, &spacing)| {
+            let parameter = plant.parameters().get(index)?;
+            let value = *values.get(index)?;
+            let share = share_of(parameter, spacing, value)?;
+            Some(if self.opposed.contains(&index) { 1.0 - share } else { share })
+        });
+        found.unwrap_or(0.0)
+    }
+}
+
+pub(super) fn check(plant: &UncertainPlant, coordinates: &[Coordinate]) -> Result<(), FamilyError> {
+    let mut moved = vec![false; plant.parameters().len()];
+    for coordinate in coordinates {
+        for (position, &index) in coordinate.parameters.iter().enumerate() {
+            match moved.get_mut(index) {
+                Some(taken) if !*taken => *taken = true,
+                _ => return Err(FamilyError::Coordinate(index)),
+            }
+            let logarithmic = coordinate.spacing.get(position) == Some(&Spacing::Logarithmic);
+            let parameter = &plant.parameters()[index];
+            if logarithmic && parameter.minimum <= 0.0 {
+                return Err(FamilyError::Logarithmic(parameter.name.clone()));
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn values(plant: &UncertainPlant, coordinates: &[Coordinate], shares: &[f64]) -> Vec<f64> {
+    let mut values = plant.nominal();
+    for (number, coordinate) in coordinates.iter().enumerate() {
+        let share = shares.get(number).copied().unwrap_or(0.0).clamp(0.0, 1.0);
+        for (position, &index) in coordinate.parameters.iter().enumerate() {
+            let share = if coordinate.opposed.contains(&index) { 1.0 - share } else { share };
+            let spacing = coordinate.spacing.get(position).copied().unwrap_or_default();
+            if let (Some(slot), Some(parameter)) = (values.get_mut(index), plant.parameters().get(index)) {
+                *slot = value_at(parameter, spacing, share);
+            }
+        }
+    }
+    values
+}
+
+/// The ends of the range come out to the bit.
+fn value_at(parameter: &UncertainParameter, spacing: Spacing, share: f64) -> f64 {
+    let UncertainParameter { minimum, maximum, .. } = *parameter;
+    match (share, spacing) {
+        (0.0, _) => minimum,
+        (1.0, _) => maximum,
+        (_, Spacing::Linear) => minimum + share * (maximum - minimum),
+        (_, Spacing::Logarithmic) => {
+            (minimum * portable::exp(share * portable::ln(maximum / minimum))).clamp(minimum, maximum)
+        }
+    }
+}
+
+fn share_of(parameter: &UncertainParameter, spacing: Spacing, value: f64) -> Option<f64> {
+    let UncertainParameter { minimum, maximum, .. } = *parameter;
+    if maximum <= minimum {
+        return None;
+    }
+    let share = match spacing {
+        Spacing::Linear => (value - minimum) / (maximum - minimum),
+        Spacing::Logarithmic => portable::ln(value / minimum) / portable::ln(maximum / minimum),
+    };
+    Some(share.clamp(0.0, 1.0))
+}

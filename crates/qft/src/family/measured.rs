@@ -1,0 +1,114 @@
+//! Measured frequency responses.
+
+use num_complex::Complex64;
+use phea_dynamics::portable;
+
+/// One measured plant: its response at increasing frequencies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredPlant {
+    /// What it is called, such as the name of its file.
+    pub name: String,
+    /// rad/s, positive and increasing.
+    pub frequencies_rad_per_s: Vec<f64>,
+    /// P(j w) at each frequency.
+    pub command: Vec<Complex64>,
+    /// Pd(j w) at each frequency, where the load-motion path was measured too.
+    pub disturbance: Option<Vec<Complex64>>,
+    /// Open-loop poles in the right half plane, which a response cannot tell.
+    pub unstable_poles: usize,
+}
+
+/// Measured plants, the nominal one first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredFamily {
+    plants: Vec<MeasuredPlant>,
+}
+
+/// Why measurements are no family.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeasurementError {
+    /// There is no plant.
+    #[error("no response was measured")]
+    Empty,
+    /// Frequencies must be positive, finite and increase; responses finite, not zero, and as many.
+    #[error(
+        "{plant}: point {point} is not one of increasing positive frequencies with a finite response that is not zero"
+    )]
+    Point {
+        /// Name of the plant.
+        plant: String,
+        /// Index of the point, from 0.
+        point: usize,
+    },
+}
+
+impl MeasuredFamily {
+    /// A family of these plants.
+    ///
+    /// # Errors
+    /// [`MeasurementError`].
+    pub fn new(plants: Vec<MeasuredPlant>) -> Result<MeasuredFamily, MeasurementError> {
+        if plants.is_empty() {
+            return Err(MeasurementError::Empty);
+        }
+        for plant in &plants {
+            if let Some(point) = plant.unsound_point() {
+                return Err(MeasurementError::Point { plant: plant.name.clone(), point });
+            }
+        }
+        Ok(MeasuredFamily { plants })
+    }
+
+    /// The plants, the nominal one first.
+    pub fn plants(&self) -> &[MeasuredPlant] {
+        &self.plants
+    }
+}
+
+impl MeasuredPlant {
+    fn unsound_point(&self) -> Option<usize> {
+        let count = self.frequencies_rad_per_s.len();
+        let sound = |value: &Complex64| value.is_finite() && *value != Complex64::new(0.0, 0.0);
+        let mut previous = 0.0;
+        for (point, &frequency) in self.frequencies_rad_per_s.iter().enumerate() {
+            let disturbance = self
+                .disturbance
+                .as_ref()
+                .map_or(Some(true), |values| values.get(point).map(|value| value.is_finite()));
+            let good = frequency > previous
+                && frequency.is_finite()
+                && self.command.get(point).is_some_and(sound)
+                && disturbance == Some(true);
+            if !good {
+                return Some(point);
+            }
+            previous = frequency;
+        }
+        let lengths = [self.command.len(), self.disturbance.as_ref().map_or(count, Vec::len)];
+        if count == 0 || lengths.iter().any(|&length| length != count) { Some(count) } else { None }
+    }
+
+    /// P and Pd at a frequency: as measured, or between two points straight in magnitude (dB) and phase over the logarithm of
+    /// frequency, the phase going the shorter way. `None` beyond the ends of the measurement.
+    pub fn response(&self, frequency_rad_per_s: f64) -> Option<(Complex64, Option<Complex64>)> {
+        let upper = self.frequencies_rad_per_s.partition_point(|&w| w < frequency_rad_per_s);
+        let last = *self.frequencies_rad_per_s.get(upper)?;
+        if last == frequency_rad_per_s {
+            return Some((self.command[upper], self.disturbance.as_ref().map(|values| values[upper])));
+        }
+        let lower = upper.checked_sub(1)?;
+        let first = self.frequencies_rad_per_s[lower];
+        let share = portable::ln(frequency_rad_per_s / first) / portable::ln(last / first);
+        let between = |values: &[Complex64]| {
+            let (from, to) = (values[lower], values[upper]);
+            let ratio = to / from;
+            let size = portable::magnitude(ratio);
+            if !(size > 0.0 && size.is_finite()) {
+                return from + (to - from) * share;
+            }
+            let turn = Complex64::new(portable::ln(size), portable::argument(ratio));
+            from * portable::exp_complex(turn * share)
+        };
+        Some((between(&self.command), self.disturbance.as_ref().map(|values| between(values))))
+    }
+}

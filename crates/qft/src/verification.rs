@@ -1,0 +1,120 @@
+//! Verification: whether every plant of a family keeps to every specification, at every frequency that was asked for.
+
+use crate::specification::Requirement;
+
+/// A verdict. `Met` means that the margin is not below the negative of the tolerance, everywhere that was looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every plant keeps to it.
+    Met,
+    /// At least one plant, named with its frequency, does not.
+    Violated,
+    /// It could not be resolved.
+    NotProven,
+}
+
+/// What a verdict rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Evidence {
+    /// The members, at the frequencies of a grid: nothing between them is claimed.
+    Grid,
+    /// The worst case was searched continuously over the box and the band, and not found beyond what is stated; not proven.
+    Search,
+    /// Proven for every plant and every frequency.
+    Proof,
+}
+
+/// One plant of a family.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PlantPoint {
+    /// Parameter values, in the order of the uncertain plant.
+    Parameters(Vec<f64>),
+    /// Index of a measured plant.
+    Measured(usize),
+}
+
+/// A margin with the frequency and the plant at which it was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorstCase {
+    /// Limit over closed loop in dB; negative where it is violated.
+    pub margin_db: f64,
+    /// rad/s; may be zero or infinite, for a limit that was taken.
+    pub frequency_rad_per_s: f64,
+    /// The plant.
+    pub plant: PlantPoint,
+}
+
+/// What was found of the stability of the family.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StabilityFinding {
+    /// `Met` when every plant is stable.
+    pub verdict: Verdict,
+    /// What the verdict rests on.
+    pub evidence: Evidence,
+    /// Largest real part of a closed-loop pole, 1/s (in a sampled loop ln|z|/T); `None` where there are no poles to be had (dead time, measurements).
+    pub largest_real_part: Option<f64>,
+    /// The plant that has it, or that is unstable, or that could not be resolved.
+    pub plant: PlantPoint,
+    /// How it was decided, in words, for a reader.
+    pub reason: String,
+}
+
+/// The least dead time that makes a plant of the family unstable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DelayMargin {
+    /// s, beyond the delay that the loop has already; infinite where none does.
+    pub delay_s: f64,
+    /// The gain crossover where it happens, rad/s.
+    pub frequency_rad_per_s: f64,
+    /// The plant.
+    pub plant: PlantPoint,
+}
+
+/// What was found of one specification.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpecificationFinding {
+    /// What was limited.
+    pub requirement: Requirement,
+    /// Whether it is met.
+    pub verdict: Verdict,
+    /// What the verdict rests on.
+    pub evidence: Evidence,
+    /// The worst margin over the band and the family; `None` where a specification has nothing to be judged by.
+    pub worst: Option<WorstCase>,
+    /// The worst interior minimum of the margin, where the worst one lies at an end of the band.
+    pub interior: Option<WorstCase>,
+    /// Bands in which some plant violates it, with the worst case of each.
+    pub violations: Vec<ViolatedBand>,
+    /// The worst margin of the family at each design frequency.
+    pub at_design_frequencies: Vec<WorstCase>,
+    /// The worst margin over the family at each frequency of a grid, for drawing: (rad/s, dB).
+    pub envelope: Vec<(f64, f64)>,
+    /// What was not looked at, in words; empty where all was.
+    pub remarks: Vec<String>,
+}
+
+/// A band of frequencies in which a specification is violated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ViolatedBand {
+    /// From and to, rad/s.
+    pub band_rad_per_s: [f64; 2],
+    /// The worst case within it.
+    pub worst: WorstCase,
+}
+
+/// The audit of a controller.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Audit {
+    /// `Violated` if the loop is unstable or a specification is violated; `Met` if all are met.
+    pub verdict: Verdict,
+    /// The weakest evidence that the verdict needs.
+    pub evidence: Evidence,
+    /// A margin of minus this much still counts as met, dB.
+    pub tolerance_db: f64,
+    /// Stability of the family.
+    pub stability: StabilityFinding,
+    /// The delay that the family still bears; `None` for an unstable one.
+    pub delay_margin: Option<DelayMargin>,
+    /// The specifications, in order.
+    pub specifications: Vec<SpecificationFinding>,
+}
