@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_qft::closed_loop::Compensation;
 
 use crate::project::{self, ElementKind, Formula, FormulaError, Project, Transfer, TransferForm, Variable};
 
@@ -66,6 +67,17 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
     }))
 }
 
+/// The loop around the plant that the given controller and prefilter make; `None` where the project gives no controller.
+///
+/// # Errors
+/// [`ControlError`] if one of them is no transfer function, or cannot be sampled.
+pub fn compensation(project: &Project) -> Result<Option<Compensation>, ControlError> {
+    let Some(controller) = controller(project)? else { return Ok(None) };
+    let sensor = TransferFunction::gain_only(1.0);
+    let linear = |error| ControlError::Linear { place: "[controller]", error };
+    Compensation::new(&controller, sensor).map(Some).map_err(linear)
+}
+
 fn compensator(
     place: &'static str,
     transfer: &Transfer,
@@ -100,7 +112,8 @@ fn compensator(
     Ok(Compensator::new(elements))
 }
 
-fn from_formulas(
+/// A ratio of two formulas without parameters.
+pub(crate) fn from_formulas(
     numerator: &Formula,
     denominator: &Formula,
 ) -> Result<Result<TransferFunction, LinearError>, FormulaError> {

@@ -1,13 +1,17 @@
-//! From a project to the uncertain plant that robust design works on.
+//! From a project to the family of plants that robust design works on.
+
+mod uncertain;
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant, UncertainPlantError,
 };
 use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
+use phea_qft::family::Family;
 
 use crate::project::{FormulaError, LINEAR_PARAMETERS, Plant, Project, Rational};
 use crate::rig::{Rig, RigError, parameter_field};
+use crate::source::Source;
 
 /// Why a project has no uncertain plant.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -18,6 +22,12 @@ pub enum FamilyError {
     /// The box is empty or its coefficients are.
     #[error("[uncertainty]: {0}")]
     Plant(#[from] UncertainPlantError),
+    /// The members are no plants of the box.
+    #[error("[uncertainty]: {0}")]
+    Members(#[from] phea_qft::family::FamilyError),
+    /// Measured responses.
+    #[error("[family] `measured`: not read yet")]
+    Measured,
     /// The plant's text is no ratio of polynomials.
     #[error("[plant]: {message}", message = .0.message)]
     Formula(FormulaError),
@@ -26,23 +36,36 @@ pub enum FamilyError {
     Path(String),
 }
 
-/// The uncertain plant of a project: the linear model of its actuator, or the transfer function it states, over the box of
-/// `[uncertainty]`.
+/// The family of a project: the linear model of its actuator, or the transfer function it states, over the box of
+/// `[uncertainty]`, gridded; or the explicit cases of `[family]`.
 ///
 /// # Errors
-/// [`FamilyError`] if there is no rig, or an uncertain name is no parameter of the plant.
-pub fn uncertain_plant(project: &Project) -> Result<UncertainPlant, FamilyError> {
-    let parameters: Vec<UncertainParameter> = project
-        .uncertainty
-        .iter()
-        .map(|uncertain| UncertainParameter {
-            name: uncertain.name.clone(),
-            // What [linear] sets outright goes before the nominal of [uncertainty], as everywhere.
-            nominal: project.linear.get(&uncertain.name).unwrap_or(uncertain.nominal),
-            minimum: uncertain.minimum,
-            maximum: uncertain.maximum,
-        })
-        .collect();
+/// [`FamilyError`] if there is no rig, an uncertain name is no parameter of the plant, or a member lies outside of the box.
+///
+/// # Example
+/// ```
+/// use phea_qft::family::Family;
+/// use phea_workbench::source::Memory;
+/// let text = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\
+///             [uncertainty]\nk = { nominal = 2, minimum = 1, maximum = 4, points = 3, spacing = \"log\" }\n";
+/// let source = Memory::default().with("servo.toml", text);
+/// let project = phea_workbench::project::read(&source, "servo.toml", &[], &[])?.project;
+/// let Family::Uncertain(family) = phea_workbench::family::family(&project, &source)? else { panic!("a box") };
+/// let gains: Vec<f64> = family.members().iter().map(|values| values[0].round()).collect();
+/// assert_eq!(gains, [2.0, 1.0, 2.0, 4.0]); // the nominal plant, then the grid
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn family(project: &Project, _source: &dyn Source) -> Result<Family, FamilyError> {
+    if project.family.as_ref().is_some_and(|family| !family.measured.is_empty()) {
+        return Err(FamilyError::Measured);
+    }
+    let plant = uncertain_plant(project)?;
+    Ok(Family::Uncertain(uncertain::family(project, plant)?))
+}
+
+/// The plant over the box of its uncertain parameters.
+fn uncertain_plant(project: &Project) -> Result<UncertainPlant, FamilyError> {
+    let parameters = uncertain::parameters(project);
     match &project.plant {
         Some(plant) => from_formula(plant, parameters),
         None => from_rig(&Rig::new(project)?, parameters),

@@ -17,4 +17,5 @@ pub mod report;
 pub mod rig;
 pub mod sizing;
 pub mod source;
+pub mod specification;
 pub mod spelling;

@@ -1,0 +1,102 @@
+//! The box of a project's uncertain numbers, the coordinates that span it, and the plants looked at.
+
+use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
+use phea_qft::family::{self, Coordinate, Extent, UncertainFamily};
+
+use super::FamilyError;
+use crate::project::{Case, Project, Spacing, Uncertain};
+
+/// The uncertain parameters: those of `[uncertainty]`, then those that only explicit cases give values to.
+///
+/// What `[linear]` sets outright goes before the nominal of `[uncertainty]`, as everywhere, and that before the first case.
+pub(super) fn parameters(project: &Project) -> Vec<UncertainParameter> {
+    let declared = project.uncertainty.iter().map(|uncertain| UncertainParameter {
+        name: uncertain.name.clone(),
+        nominal: project.linear.get(&uncertain.name).unwrap_or(uncertain.nominal),
+        minimum: uncertain.minimum,
+        maximum: uncertain.maximum,
+    });
+    let mut parameters: Vec<UncertainParameter> = declared.collect();
+    for (name, value) in cases(project).iter().flat_map(|case| &case.parameters) {
+        let stated = project.uncertainty.iter().any(|uncertain| uncertain.name == *name);
+        match parameters.iter_mut().find(|parameter| parameter.name == *name) {
+            Some(parameter) if !stated => {
+                parameter.minimum = parameter.minimum.min(*value);
+                parameter.maximum = parameter.maximum.max(*value);
+            }
+            Some(_) => {}
+            None => {
+                let nominal = project.linear.get(name).unwrap_or(*value);
+                parameters.push(UncertainParameter {
+                    name: name.clone(),
+                    nominal,
+                    minimum: value.min(nominal),
+                    maximum: value.max(nominal),
+                });
+            }
+        }
+    }
+    parameters
+}
+
+/// The family of a plant: its explicit cases, or the grid over its box.
+pub(super) fn family(project: &Project, plant: UncertainPlant) -> Result<UncertainFamily, FamilyError> {
+    let coordinates = coordinates(project, &plant);
+    let cases = cases(project);
+    let (members, extent) = if cases.is_empty() {
+        (family::grid(&plant, &coordinates)?, Extent::Box)
+    } else {
+        (cases.iter().map(|case| member(case, &plant)).collect(), Extent::Members)
+    };
+    Ok(UncertainFamily::new(plant, coordinates, members, extent)?)
+}
+
+fn cases(project: &Project) -> &[Case] {
+    project.family.as_ref().map_or(&[], |family| &family.cases)
+}
+
+/// The values of a case; what it does not name is nominal.
+fn member(case: &Case, plant: &UncertainPlant) -> Vec<f64> {
+    let value = |parameter: &UncertainParameter| {
+        let found = case.parameters.iter().find(|(name, _)| *name == parameter.name);
+        found.map_or(parameter.nominal, |(_, value)| *value)
+    };
+    plant.parameters().iter().map(value).collect()
+}
+
+/// One coordinate for each correlated group, and one for every other parameter that has a range, in the order of the
+/// parameters.
+fn coordinates(project: &Project, plant: &UncertainPlant) -> Vec<Coordinate> {
+    let groups = project.family.as_ref().map_or(&[][..], |family| &family.correlation);
+    let group_of =
+        |name: &str| groups.iter().position(|group| group.parameters.iter().any(|one| one == name));
+    let mut coordinates: Vec<(Option<usize>, Coordinate)> = Vec::new();
+    for (index, parameter) in plant.parameters().iter().enumerate() {
+        if parameter.minimum >= parameter.maximum {
+            continue;
+        }
+        let uncertain = project.uncertainty.iter().find(|uncertain| uncertain.name == parameter.name);
+        let group = group_of(&parameter.name);
+        let known = coordinates.iter_mut().find(|(other, _)| other.is_some() && *other == group);
+        if let Some((_, coordinate)) = known {
+            coordinate.parameters.push(index);
+            coordinate.spacing.push(spacing(uncertain));
+        } else {
+            let coordinate = Coordinate {
+                parameters: vec![index],
+                opposed: vec![],
+                spacing: vec![spacing(uncertain)],
+                points: uncertain.map_or(2, |uncertain| uncertain.points as usize),
+            };
+            coordinates.push((group, coordinate));
+        }
+    }
+    coordinates.into_iter().map(|(_, coordinate)| coordinate).collect()
+}
+
+fn spacing(uncertain: Option<&Uncertain>) -> family::Spacing {
+    match uncertain.map(|uncertain| uncertain.spacing) {
+        Some(Spacing::Logarithmic) => family::Spacing::Logarithmic,
+        _ => family::Spacing::Linear,
+    }
+}
