@@ -52,7 +52,7 @@ pub enum FamilyError {
 /// let project = phea_workbench::project::read(&source, "servo.toml", &[], &[])?.project;
 /// let Family::Uncertain(family) = phea_workbench::family::family(&project, &source)? else { panic!("a box") };
 /// let gains: Vec<f64> = family.members().iter().map(|values| values[0].round()).collect();
-/// assert_eq!(gains, [2.0, 1.0, 2.0, 4.0]); // the nominal plant, then the grid
+/// assert_eq!(gains, [2.0, 1.0, 4.0]); // the nominal plant first, then what else is on the grid
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn family(project: &Project, _source: &dyn Source) -> Result<Family, FamilyError> {
