@@ -9,7 +9,7 @@ mod member;
 
 pub use coordinate::{Coordinate, Spacing};
 pub use measured::{MeasuredFamily, MeasuredPlant, MeasurementError};
-pub use member::{grid, vertices};
+pub use member::{grid, random, vertices};
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
 

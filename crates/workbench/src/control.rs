@@ -5,7 +5,9 @@ use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Ti
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_qft::closed_loop::Compensation;
 
-use crate::project::{self, ElementKind, Formula, FormulaError, Project, Transfer, TransferForm, Variable};
+use crate::project::{
+    self, ElementKind, Formula, FormulaError, Project, Rational, Transfer, TransferForm, Variable,
+};
 
 /// Why a declared controller or prefilter is no transfer function.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -13,7 +15,7 @@ pub enum ControlError {
     /// The text is no ratio of polynomials.
     #[error("{place}: {error}", error = error.message)]
     Formula {
-        /// `[controller]` or `[prefilter]`.
+        /// `[controller]`, `[prefilter]` or `[sensor]`.
         place: &'static str,
         /// What is wrong with it.
         error: FormulaError,
@@ -21,7 +23,7 @@ pub enum ControlError {
     /// The factors or polynomials make no transfer function.
     #[error("{place}: {error}")]
     Linear {
-        /// `[controller]` or `[prefilter]`.
+        /// `[controller]`, `[prefilter]` or `[sensor]`.
         place: &'static str,
         /// What is wrong with it.
         error: LinearError,
@@ -29,7 +31,7 @@ pub enum ControlError {
     /// A text in z without a sample time.
     #[error("{place}: a transfer function in z needs `sample_time`")]
     SampleTime {
-        /// `[controller]` or `[prefilter]`.
+        /// `[controller]`, `[prefilter]` or `[sensor]`.
         place: &'static str,
     },
 }
@@ -73,9 +75,22 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
 /// [`ControlError`] if one of them is no transfer function, or cannot be sampled.
 pub fn compensation(project: &Project) -> Result<Option<Compensation>, ControlError> {
     let Some(controller) = controller(project)? else { return Ok(None) };
-    let sensor = TransferFunction::gain_only(1.0);
     let linear = |error| ControlError::Linear { place: "[controller]", error };
-    Compensation::new(&controller, sensor).map(Some).map_err(linear)
+    Compensation::new(&controller, sensor(project)?).map(Some).map_err(linear)
+}
+
+/// H; 1 where the project says nothing of a sensor.
+///
+/// # Errors
+/// [`ControlError`] if what it says is no transfer function.
+pub fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
+    let Some(declared) = &project.sensor else { return Ok(TransferFunction::gain_only(1.0)) };
+    let place = "[sensor]";
+    let Rational { numerator, denominator } = &declared.transfer;
+    let function =
+        from_formulas(numerator, denominator).map_err(|error| ControlError::Formula { place, error })?;
+    let delayed = function.and_then(|function| function.with_dead_time(declared.delay));
+    delayed.map_err(|error| ControlError::Linear { place, error })
 }
 
 fn compensator(

@@ -1,5 +1,6 @@
 //! From a project to the family of plants that robust design works on.
 
+mod measured;
 mod uncertain;
 
 use phea_dynamics::scalar::Scalar;
@@ -7,9 +8,11 @@ use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant, UncertainPlantError,
 };
 use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
-use phea_qft::family::Family;
+use phea_qft::family::{Family, MeasurementError};
 
-use crate::project::{FormulaError, LINEAR_PARAMETERS, Plant, Project, Rational};
+use crate::project::{
+    Delay, FormulaError, LINEAR_PARAMETERS, Plant, Project, Rational, Report, SpecificationKind,
+};
 use crate::rig::{Rig, RigError, parameter_field};
 use crate::source::Source;
 
@@ -25,9 +28,23 @@ pub enum FamilyError {
     /// The members are no plants of the box.
     #[error("[uncertainty]: {0}")]
     Members(#[from] phea_qft::family::FamilyError),
-    /// Measured responses.
-    #[error("[family] `measured`: not read yet")]
-    Measured,
+    /// A dead time that is negative, or no number, at a member.
+    #[error("[plant] `delay` is {delay_s} s at {member}")]
+    Delay {
+        /// What the formula gives, s.
+        delay_s: f64,
+        /// The member's parameters with their values.
+        member: String,
+    },
+    /// Files of measured responses that cannot be taken as they are, with every place.
+    #[error("{0}")]
+    Measurement(Box<Report>),
+    /// Measured responses that are no family.
+    #[error("[family] `measured`: {0}")]
+    Measured(#[from] MeasurementError),
+    /// A limit on load motion, and a measured plant without that path.
+    #[error("\"load_motion\" needs the columns `load_motion_...`, which {0} lacks")]
+    LoadMotion(String),
     /// The plant's text is no ratio of polynomials.
     #[error("[plant]: {message}", message = .0.message)]
     Formula(FormulaError),
@@ -37,14 +54,17 @@ pub enum FamilyError {
 }
 
 /// The family of a project: the linear model of its actuator, or the transfer function it states, over the box of
-/// `[uncertainty]`, gridded; or the explicit cases of `[family]`.
+/// `[uncertainty]`; or the plants that were measured.
+///
+/// `[family]` says which plants of the box are looked at: its `grid`, its `vertices`, points at `random`, explicit `cases`, or several
+/// of them together; the grid where it says nothing. Where the `cases` stand alone nothing between them belongs to the family.
 ///
 /// # Errors
 /// [`FamilyError`] if there is no rig, an uncertain name is no parameter of the plant, or a member lies outside of the box.
 ///
 /// # Example
 /// ```
-/// use phea_qft::family::Family;
+/// use phea_qft::family::{Family, MeasurementError};
 /// use phea_workbench::source::Memory;
 /// let text = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\
 ///             [uncertainty]\nk = { nominal = 2, minimum = 1, maximum = 4, points = 3, spacing = \"log\" }\n";
@@ -55,12 +75,27 @@ pub enum FamilyError {
 /// assert_eq!(gains, [2.0, 1.0, 4.0]); // the nominal plant first, then what else is on the grid
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn family(project: &Project, _source: &dyn Source) -> Result<Family, FamilyError> {
-    if project.family.as_ref().is_some_and(|family| !family.measured.is_empty()) {
-        return Err(FamilyError::Measured);
+pub fn family(project: &Project, source: &dyn Source) -> Result<Family, FamilyError> {
+    let family = match &project.family {
+        Some(declared) if !declared.measured.is_empty() => {
+            Family::Measured(measured::family(project, declared, source)?)
+        }
+        _ => Family::Uncertain(uncertain::family(project, uncertain_plant(project)?)?),
+    };
+    check_second_path(project, &family)?;
+    Ok(family)
+}
+
+/// A limit on load motion needs a path from it.
+fn check_second_path(project: &Project, family: &Family) -> Result<(), FamilyError> {
+    let wanted = project.specifications.iter().any(|one| one.kind == SpecificationKind::LoadMotion);
+    match family {
+        Family::Measured(family) if wanted => {
+            let without = family.plants().iter().find(|plant| plant.disturbance.is_none());
+            without.map_or(Ok(()), |plant| Err(FamilyError::LoadMotion(plant.name.clone())))
+        }
+        _ => Ok(()),
     }
-    let plant = uncertain_plant(project)?;
-    Ok(Family::Uncertain(uncertain::family(project, plant)?))
 }
 
 /// The plant over the box of its uncertain parameters.
@@ -137,7 +172,12 @@ fn coefficients<S: Scalar>(
     Ok(PlantCoefficients {
         command: rational(&plant.transfer)?,
         disturbance: plant.disturbance.as_ref().map(rational).transpose()?,
-        dead_time_s: S::from(plant.delay),
+        dead_time_s: match &plant.delay {
+            Delay::Constant(seconds) => S::from(*seconds),
+            Delay::Formula(formula) => {
+                formula.ratio(&value)?.numerator.first().copied().unwrap_or(S::from(0.0))
+            }
+        },
     })
 }
 

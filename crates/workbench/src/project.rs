@@ -7,6 +7,7 @@ mod controller;
 mod cylinder;
 mod diagnostic;
 mod environment;
+mod family;
 mod fluid;
 mod formula;
 mod interval;
@@ -19,6 +20,7 @@ mod printer;
 mod read;
 mod reader;
 mod scenario;
+mod sensor;
 mod setting;
 mod sizing;
 mod specification;
@@ -34,6 +36,7 @@ pub use controller::*;
 pub use cylinder::*;
 pub use diagnostic::*;
 pub use environment::*;
+pub use family::*;
 pub use fluid::*;
 pub use formula::*;
 pub use interval::*;
@@ -45,6 +48,7 @@ pub use plant::*;
 pub(crate) use read::sha256;
 pub use read::{keys, print, read};
 pub use scenario::*;
+pub use sensor::*;
 pub use sizing::*;
 pub use specification::*;
 pub use uncertainty::*;
@@ -52,23 +56,27 @@ pub use valve::*;
 
 pub(crate) use key::{key, plain};
 pub(crate) use reader::Reader;
-pub(crate) use text::{Findings, Found};
+pub(crate) use text::{Findings, Found, Place};
 pub(crate) use tree::{Node, Value as TreeValue, read as read_tree};
 pub(crate) use visitor::Visitor;
 
 use crate::quantity::RATIO;
 
-/// A project as it was declared. Exactly one of `actuator` and `plant` is there.
+/// A project as it was declared. Exactly one of `actuator`, `plant` and measured plants in `family` is there.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Project {
+    /// What the paths of other files are relative to: the project file's own path up to its name. Not a key.
+    pub folder: String,
     /// One line for people.
     pub title: String,
     /// The hydraulic actuator and what it works against.
     pub actuator: Option<Actuator>,
     /// Any other plant, as a transfer function.
     pub plant: Option<Plant>,
-    /// A family of plants that is not a grid.
+    /// Which plants are looked at; absent: the grid of `uncertainty`.
     pub family: Option<Family>,
+    /// What lies between the controlled output and the controller; absent: 1.
+    pub sensor: Option<Sensor>,
     /// What the compliant component is sized for.
     pub sizing: Option<Sizing>,
     /// Where the linear model is taken.
@@ -186,7 +194,8 @@ impl Project {
                 uncertain.visit(number.key, v);
             },
         );
-        v.table(plain("family", "A family that is not a grid."), &mut self.family, Family::visit);
+        v.table(plain("family", "Which plants are looked at."), &mut self.family, Family::visit);
+        v.table(plain("sensor", "Dynamics of the sensor."), &mut self.sensor, Sensor::visit);
         let k = plain("specification", "What the closed loop must meet.");
         v.tables(k, &mut self.specifications, Specification::visit);
         let k = plain("controller", "Given, to be verified; absent, to be designed.");

@@ -21,6 +21,61 @@ pub fn vertices(plant: &UncertainPlant, coordinates: &[Coordinate]) -> Result<Ve
     combinations(plant, coordinates, &vec![2; coordinates.len()])
 }
 
+/// Points of the box drawn at random: the share of every coordinate evenly over [0, 1], so that a logarithmic one is drawn
+/// evenly in its logarithm. Equal seeds give equal points on every machine, and a longer draw begins with the shorter one.
+///
+/// Source: the generator is SplitMix64, Steele, Lea and Flood (2014).
+///
+/// # Errors
+/// Those of [`grid`].
+///
+/// # Example
+/// ```
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// use phea_qft::family::{Coordinate, Spacing, random};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 100.0 };
+/// # let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+/// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+/// #     disturbance: None,
+/// #     dead_time_s: 0.0.into(),
+/// # })?;
+/// let gain = Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Logarithmic], points: 3 };
+/// let drawn = random(&plant, std::slice::from_ref(&gain), 1000, 7)?; // between 1 and 100
+/// let below = drawn.iter().filter(|values| values[0] < 10.0).count();
+/// assert!(drawn.len() == 1000 && (440..560).contains(&below)); // half of them in either decade
+/// assert_eq!(random(&plant, &[gain], 10, 7)?, drawn[..10]);
+/// # Ok(())
+/// # }
+/// ```
+pub fn random(
+    plant: &UncertainPlant,
+    coordinates: &[Coordinate],
+    count: usize,
+    seed: u64,
+) -> Result<Vec<Vec<f64>>, FamilyError> {
+    coordinate::check(plant, coordinates)?;
+    if count > MEMBERS_MAXIMUM {
+        return Err(FamilyError::TooManyMembers(count as f64, MEMBERS_MAXIMUM));
+    }
+    let mut state = seed;
+    let mut member = || {
+        let shares: Vec<f64> = coordinates.iter().map(|_| share(&mut state)).collect();
+        coordinate::values(plant, coordinates, &shares)
+    };
+    Ok((0..count).map(|_| member()).collect())
+}
+
+/// The next number of SplitMix64, its upper 53 bits as a share in [0, 1).
+fn share(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^= z >> 31;
+    (z >> 11) as f64 / (1_u64 << 53) as f64
+}
+
 fn combinations(
     plant: &UncertainPlant,
     coordinates: &[Coordinate],
@@ -69,4 +124,21 @@ pub(super) fn check(plant: &UncertainPlant, members: &[Vec<f64>]) -> Result<(), 
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::share;
+
+    /// The first numbers of SplitMix64 from seed 1234567, as its reference implementation prints them.
+    #[test]
+    fn the_generator_is_the_published_one() {
+        // ORIGIN: paper, Steele, Lea and Flood (2014): outputs of the reference implementation for seed 1234567
+        let expected: [u64; 3] =
+            [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
+        let mut state = 1_234_567;
+        for number in expected {
+            assert_eq!(share(&mut state), (number >> 11) as f64 / 9_007_199_254_740_992.0);
+        }
+    }
 }

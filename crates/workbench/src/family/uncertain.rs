@@ -1,5 +1,7 @@
 //! The box of a project's uncertain numbers, the coordinates that span it, and the plants looked at.
 
+use std::collections::BTreeSet;
+
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 use phea_qft::family::{self, Coordinate, Extent, UncertainFamily};
 
@@ -39,16 +41,46 @@ pub(super) fn parameters(project: &Project) -> Vec<UncertainParameter> {
     parameters
 }
 
-/// The family of a plant: its explicit cases, or the grid over its box.
+/// The family of a plant: the grid over its box, or what `[family]` chooses instead.
 pub(super) fn family(project: &Project, plant: UncertainPlant) -> Result<UncertainFamily, FamilyError> {
     let coordinates = coordinates(project, &plant);
-    let cases = cases(project);
-    let (members, extent) = if cases.is_empty() {
-        (family::grid(&plant, &coordinates)?, Extent::Box)
-    } else {
-        (cases.iter().map(|case| member(case, &plant)).collect(), Extent::Members)
-    };
-    Ok(UncertainFamily::new(plant, coordinates, members, extent)?)
+    let chosen = project.family.clone().unwrap_or_default();
+    let mut members: Vec<Vec<f64>> = chosen.cases.iter().map(|case| member(case, &plant)).collect();
+    let spans = chosen.grid || chosen.vertices || chosen.random.is_some();
+    let extent = if spans || members.is_empty() { Extent::Box } else { Extent::Members };
+    if chosen.grid || (extent == Extent::Box && !spans) {
+        members.extend(family::grid(&plant, &coordinates)?);
+    }
+    if chosen.vertices {
+        members.extend(family::vertices(&plant, &coordinates)?);
+    }
+    if let Some(random) = &chosen.random {
+        members.extend(family::random(&plant, &coordinates, random.count as usize, random.seed.into())?);
+    }
+    let family = UncertainFamily::new(plant, coordinates, distinct(members), extent)?;
+    check_delay(&family)?;
+    Ok(family)
+}
+
+/// Every member once, where it comes first.
+fn distinct(members: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut seen = BTreeSet::new();
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<u64>>();
+    members.into_iter().filter(|values| seen.insert(bits(values))).collect()
+}
+
+/// No dead time of a member may be negative.
+fn check_delay(family: &UncertainFamily) -> Result<(), FamilyError> {
+    for values in family.members() {
+        let delay_s = family.plant().coefficients(values).dead_time_s;
+        if !(delay_s >= 0.0 && delay_s.is_finite()) {
+            let names = family.plant().parameters().iter().map(|parameter| &parameter.name);
+            let member: Vec<String> =
+                names.zip(values).map(|(name, value)| format!("{name} = {value}")).collect();
+            return Err(FamilyError::Delay { delay_s, member: member.join(", ") });
+        }
+    }
+    Ok(())
 }
 
 fn cases(project: &Project) -> &[Case] {
@@ -77,14 +109,18 @@ fn coordinates(project: &Project, plant: &UncertainPlant) -> Vec<Coordinate> {
         }
         let uncertain = project.uncertainty.iter().find(|uncertain| uncertain.name == parameter.name);
         let group = group_of(&parameter.name);
+        let opposed = group
+            .and_then(|group| groups.get(group))
+            .and_then(|group| group.opposed.contains(&parameter.name).then_some(index));
         let known = coordinates.iter_mut().find(|(other, _)| other.is_some() && *other == group);
         if let Some((_, coordinate)) = known {
             coordinate.parameters.push(index);
             coordinate.spacing.push(spacing(uncertain));
+            coordinate.opposed.extend(opposed);
         } else {
             let coordinate = Coordinate {
                 parameters: vec![index],
-                opposed: vec![],
+                opposed: opposed.into_iter().collect(),
                 spacing: vec![spacing(uncertain)],
                 points: uncertain.map_or(2, |uncertain| uncertain.points as usize),
             };

@@ -107,6 +107,10 @@ impl Visitor for Listing {
         self.list(key, "a whole number", key.default.is_none());
     }
 
+    fn flag(&mut self, key: Key, _field: &mut bool) {
+        self.list(key, "true or false", false);
+    }
+
     fn text(&mut self, key: Key, _field: &mut Option<String>, required: bool) {
         self.list(key, "a text", required);
     }
@@ -131,6 +135,7 @@ impl Visitor for Listing {
             Shape::Polynomial => "a polynomial in s or z, in text",
             Shape::Parametric => "a polynomial in s and named parameters, in text",
             Shape::Ratio => "a ratio of polynomials in s, in text",
+            Shape::Coefficient => "named parameters and numbers, in text",
         };
         self.list(key, takes, required);
     }

@@ -1,19 +1,52 @@
-//! `[plant]` and `[family]`: a plant given as a transfer function instead of an actuator.
+//! `[plant]`: a plant given as a transfer function instead of an actuator.
 
 use super::formula::Formula;
 use super::key::{Key, key, plain};
-use super::visitor::{Shape, Visitor};
-use crate::quantity::{RATIO, TIME};
+use super::visitor::{Form, Shape, Visitor};
+use crate::quantity::TIME;
 
 /// A transfer function in `s` and named parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plant {
     /// Numerator and denominator.
     pub transfer: Rational,
-    /// s, dead time.
-    pub delay: f64,
+    /// Dead time.
+    pub delay: Delay,
     /// The second path, for "load_motion".
     pub disturbance: Option<Rational>,
+}
+
+/// A dead time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Delay {
+    /// s.
+    Constant(f64),
+    /// A formula of the uncertain parameters that gives seconds.
+    Formula(Formula),
+}
+
+impl Default for Delay {
+    fn default() -> Self {
+        Delay::Constant(0.0)
+    }
+}
+
+impl Delay {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let doc = "Dead time, or a formula of the uncertain parameters that gives seconds.";
+        let k = key("delay", &TIME, doc).not_negative().or(0.0);
+        let form = if let Delay::Formula(_) = self { Form::Text } else { Form::Number };
+        if v.form(k, form) == Form::Text {
+            let mut formula =
+                if let Delay::Formula(formula) = self { Some(std::mem::take(formula)) } else { None };
+            v.formula(k, Shape::Coefficient, &mut formula, false);
+            *self = formula.map_or_else(Delay::default, Delay::Formula);
+        } else {
+            let mut seconds = if let Delay::Constant(seconds) = self { *seconds } else { 0.0 };
+            v.quantity(k, &mut seconds);
+            *self = Delay::Constant(seconds);
+        }
+    }
 }
 
 /// Numerator and denominator as written.
@@ -48,58 +81,28 @@ fn required<V: Visitor>(key: Key, shape: Shape, field: &mut Formula, v: &mut V) 
     *field = formula.unwrap_or_default();
 }
 
+/// Path of the dead time.
+pub(crate) const DELAY_PATH: &str = "plant.delay";
+
 impl Plant {
+    /// Every formula with its path.
+    pub(crate) fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        let mut formulas = vec![("plant.numerator", &self.transfer.numerator)];
+        formulas.push(("plant.denominator", &self.transfer.denominator));
+        if let Some(second) = &self.disturbance {
+            formulas.push(("plant.disturbance.numerator", &second.numerator));
+            formulas.push(("plant.disturbance.denominator", &second.denominator));
+        }
+        if let Delay::Formula(formula) = &self.delay {
+            formulas.push((DELAY_PATH, formula));
+        }
+        formulas
+    }
+
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         self.transfer.visit_parametric(v);
-        v.quantity(key("delay", &TIME, "Dead time.").not_negative().or(0.0), &mut self.delay);
+        self.delay.visit(v);
         let k = plain("disturbance", "Transfer function of the second path, for \"load_motion\".");
         v.table(k, &mut self.disturbance, Rational::visit_parametric);
-    }
-}
-
-/// A family of plants that is not a grid.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Family {
-    /// Plants by their parameters: name and value, in file order.
-    pub cases: Vec<Case>,
-    /// Groups of parameters that run through their ranges together.
-    pub correlation: Vec<Correlation>,
-    /// Files with measured frequency responses.
-    pub measured: Vec<String>,
-}
-
-/// Parameters that run through their ranges together.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Correlation {
-    /// Names of uncertain parameters.
-    pub parameters: Vec<String>,
-}
-
-/// One plant of an explicit family.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Case {
-    /// Name and value in SI.
-    pub parameters: Vec<(String, f64)>,
-}
-
-impl Family {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.tables(plain("cases", "Plants by their parameters."), &mut self.cases, Case::visit);
-        let k = plain("correlation", "Groups of parameters that run through their ranges together.");
-        v.tables(k, &mut self.correlation, Correlation::visit);
-        let k = plain("measured", "Files with measured frequency responses.");
-        v.texts(k, &mut self.measured);
-    }
-}
-
-impl Correlation {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.texts(plain("parameters", "Names of uncertain parameters."), &mut self.parameters);
-    }
-}
-
-impl Case {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.numbers(key("parameter", &RATIO, "Value of an uncertain parameter."), &mut self.parameters);
     }
 }

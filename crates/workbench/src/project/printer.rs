@@ -161,6 +161,12 @@ impl Visitor for Printer {
         self.line(key.name, field.to_string());
     }
 
+    fn flag(&mut self, key: Key, field: &mut bool) {
+        if *field {
+            self.line(key.name, field.to_string());
+        }
+    }
+
     fn text(&mut self, key: Key, field: &mut Option<String>, _required: bool) {
         if let Some(text) = field {
             self.line(key.name, quoted(text));

@@ -54,7 +54,8 @@ pub fn read(
         setting::apply(&mut root, text, &mut findings);
     }
     let mut reader = Reader::new(&root, project_text, &catalogue, &mut findings);
-    let project = project(&mut reader, &root);
+    let folder = path.rfind(['/', '\\']).map_or(String::new(), |last| path[..=last].to_string());
+    let project = Project { folder, ..project(&mut reader, &root) };
     let (mut provenance, catalogue_files) = (reader.provenance, reader.catalogue_files);
     provenance.sort_by(|a, b| a.path.cmp(&b.path));
     provenance.dedup_by(|a, b| a.path == b.path);
@@ -76,16 +77,18 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
 fn project(reader: &mut Reader<'_>, root: &Node) -> Project {
     let mut project = Project::default();
     reader.parameters = parameters(root);
-    let is_plant = root.get("plant").is_some();
-    refuse_mixture(reader, root, is_plant);
+    let is_measured = measured(root).is_some();
+    let is_plant = root.get("plant").is_some() && !is_measured;
+    refuse_mixture(reader, root, is_plant, is_measured);
     project.visit_system(reader);
-    if is_plant {
+    if is_plant || is_measured {
         project.actuator = None;
-    } else {
+    }
+    if !is_plant {
         project.plant = None;
     }
     reader.named = numbers(&mut project);
-    if is_plant {
+    if is_plant || is_measured {
         let parameter = key("parameter", &RATIO, "A parameter of the plant.");
         reader.named = reader.parameters.iter().map(|name| (name.clone(), parameter)).collect();
     }
@@ -93,6 +96,11 @@ fn project(reader: &mut Reader<'_>, root: &Node) -> Project {
     reader.close();
     validate::project(&project, reader);
     project
+}
+
+/// The key that names measured plants.
+fn measured(root: &Node) -> Option<&tree::Entry> {
+    root.get("family")?.node.get("measured")
 }
 
 /// Names that formulas of the plant may contain: what `[uncertainty]` and `[family]` give values to.
@@ -108,10 +116,22 @@ fn parameters(root: &Node) -> Vec<String> {
     parameters
 }
 
-/// Either an actuator or a plant, and all of it.
-fn refuse_mixture(reader: &mut Reader<'_>, root: &Node, is_plant: bool) {
+/// Either an actuator, or a plant, or measured ones, and all of it.
+fn refuse_mixture(reader: &mut Reader<'_>, root: &Node, is_plant: bool, is_measured: bool) {
     let tables = Actuator::REQUIRED.iter().chain(&["load"]).copied();
     let present: Vec<_> = tables.clone().filter_map(|name| root.get(name)).collect();
+    if is_measured {
+        for entry in
+            present.into_iter().chain(["plant", "uncertainty"].iter().filter_map(|name| root.get(name)))
+        {
+            let message =
+                format!("[{}] describes a plant, but [family] `measured` gives measured ones", entry.key);
+            reader.findings.push(Found::error(entry.key_place, message).help("remove one of the two"));
+        }
+        reader.parts = false;
+        tables.for_each(|name| reader.know(name));
+        return;
+    }
     if is_plant {
         for entry in present {
             let message = format!("[{}] describes an actuator, but [plant] replaces it", entry.key);
@@ -125,7 +145,7 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &Node, is_plant: bool) {
         reader.parts = false;
         let message = "nothing is described: neither an actuator nor a plant";
         let found = Found::error(root.place, message).consequence();
-        let expected = "[fluid], [supply], [valve], [cylinder], [line] and [force_sensor], or [plant]";
+        let expected = "[fluid], [supply], [valve], [cylinder], [line] and [force_sensor], or [plant], or [family] `measured`";
         return reader.findings.push(found.expected(expected));
     }
     for name in Actuator::REQUIRED.iter().filter(|name| root.get(name).is_none()) {
@@ -173,6 +193,23 @@ pub fn keys() -> Vec<KeyEntry> {
 }
 
 impl Project {
+    /// The path of a file that the project names, as [`Source`] takes it: relative ones start at the project file.
+    ///
+    /// # Example
+    /// ```
+    /// let project = phea_workbench::project::Project { folder: "rigs/".to_string(), ..Default::default() };
+    /// assert_eq!(project.path_of("bench 1.csv"), "rigs/bench 1.csv");
+    /// assert_eq!(project.path_of("/data/bench 1.csv"), "/data/bench 1.csv");
+    /// ```
+    pub fn path_of(&self, name: &str) -> String {
+        let drive = name.chars().nth(1) == Some(':');
+        if drive || name.starts_with(['/', '\\']) {
+            name.to_string()
+        } else {
+            format!("{}{name}", self.folder)
+        }
+    }
+
     /// The number at a dotted path such as `supply.pressure`, in SI.
     pub fn number(&self, path: &str) -> Option<f64> {
         let mut listing = Listing::default();

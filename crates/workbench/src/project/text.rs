@@ -123,6 +123,11 @@ impl Findings {
         self.texts.get(text).map_or("", |text| &text.content)
     }
 
+    /// How many errors are kept.
+    pub(crate) fn error_count(&self) -> usize {
+        self.errors
+    }
+
     pub(crate) fn has_errors(&self) -> bool {
         self.found.iter().any(|found| found.severity == Severity::Error)
     }

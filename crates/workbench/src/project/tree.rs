@@ -19,7 +19,7 @@ pub(crate) struct Node {
 pub(crate) enum Value {
     Text(String),
     Number(f64),
-    Flag,
+    Flag(bool),
     Date,
     List(Vec<Node>),
     Table(Vec<Entry>),
@@ -47,7 +47,7 @@ impl Node {
         match &self.value {
             Value::Text(_) => "a text",
             Value::Number(_) => "a number",
-            Value::Flag => "true or false",
+            Value::Flag(_) => "true or false",
             Value::Date => "a date",
             Value::List(_) => "a list",
             Value::Table(_) => "a table",
@@ -213,7 +213,7 @@ impl Converter<'_> {
                 self.check(number.unwrap_or(f64::INFINITY), place, false)
             }
             DeValue::Float(text) => self.number(text.as_str(), place),
-            DeValue::Boolean(_) => Value::Flag,
+            DeValue::Boolean(value) => Value::Flag(*value),
             DeValue::Datetime(_) => Value::Date,
             DeValue::Array(items) => Value::List(items.iter().map(|item| self.node(item)).collect()),
             DeValue::Table(table) => return self.table(table, place),

@@ -1,5 +1,6 @@
 //! What must hold between the values of a project, beyond the range of each.
 
+mod family;
 mod linear_loop;
 mod rig;
 mod wishes;
@@ -18,7 +19,12 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     if let Some(plant) = &project.plant {
         wishes::with_plant(project, plant, &mut check);
     }
+    if project.actuator.is_none() {
+        wishes::without_actuator(project, &mut check);
+    }
     wishes::uncertainty(project, &mut check);
+    family::family(project, &mut check);
+    linear_loop::sensor(project, &mut check);
     linear_loop::specifications(project, &mut check);
     linear_loop::controllers(project, &mut check);
 }

@@ -21,6 +21,8 @@ pub(crate) trait Visitor: Sized {
     fn complexes(&mut self, key: Key, field: &mut Vec<[f64; 2]>);
     /// A whole number; required unless the key has a default.
     fn count(&mut self, key: Key, field: &mut u32);
+    /// True or false; absent, the field keeps its value.
+    fn flag(&mut self, key: Key, field: &mut bool);
     /// A text; required if `required`.
     fn text(&mut self, key: Key, field: &mut Option<String>, required: bool);
     /// A list of texts.
@@ -94,6 +96,8 @@ pub(crate) enum Shape {
     Parametric,
     /// A ratio of polynomials.
     Ratio,
+    /// Parameters and numbers without the variable.
+    Coefficient,
 }
 
 /// The form of a value, where more than one is accepted.

@@ -76,6 +76,14 @@ impl Visitor for Reader<'_> {
         }
     }
 
+    fn flag(&mut self, key: Key, field: &mut bool) {
+        let Some(hit) = self.find(key) else { return };
+        match hit.node.value {
+            Value::Flag(value) => *field = value,
+            _ => self.wrong_kind(key, "true or false", hit.node),
+        }
+    }
+
     fn text(&mut self, key: Key, field: &mut Option<String>, required: bool) {
         match self.find(key) {
             Some(hit) => match &hit.node.value {
@@ -313,7 +321,7 @@ impl Visitor for Reader<'_> {
         let Some(hit) = self.find(key) else { return Form::Number };
         match &hit.node.value {
             Value::Table(_) => Form::Table,
-            Value::Text(text) if super::values::reads_as_formula(text) => Form::Text,
+            Value::Text(text) if self.reads_as_formula(key, text) => Form::Text,
             _ => Form::Number,
         }
     }

@@ -69,7 +69,16 @@ impl Reader<'_> {
         match checked {
             Ok((formula, ratio)) => {
                 let known = self.check_parameters(&formula, shape, node, text);
-                let plain = self.check_shape(key, ratio.as_ref(), shape, node);
+                let plain = match (shape, formula.variable()) {
+                    (Shape::Coefficient, Some(variable)) => {
+                        let message =
+                            format!("`{}` is a number: `{}` has no meaning here", key.name, variable.name());
+                        self.findings.push(Found::error(node.place, message));
+                        false
+                    }
+                    (Shape::Coefficient, None) => true,
+                    _ => self.check_shape(key, ratio.as_ref(), shape, node),
+                };
                 (known && plain).then_some(formula)
             }
             Err(error) => {
@@ -80,20 +89,34 @@ impl Reader<'_> {
         }
     }
 
+    /// Whether a text is meant as a formula rather than as a number with a unit.
+    pub(super) fn reads_as_formula(&self, key: Key, text: &str) -> bool {
+        if quantity::parse(text, key.dimension).is_ok() {
+            return false;
+        }
+        if std::ptr::eq(key.dimension, &quantity::GAIN) {
+            return text.contains(['*', '(', '/', '+', '^', 's', 'z']);
+        }
+        let mut words = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+        let named = words.any(|word| self.parameters.iter().any(|parameter| parameter == word));
+        named || text.contains(['*', '(', '+', '^']) || text.trim_start().starts_with(char::is_alphabetic)
+    }
+
     fn check_parameters(&mut self, formula: &Formula, shape: Shape, node: &Node, text: &str) -> bool {
         let mut known = true;
+        let parametric = matches!(shape, Shape::Parametric | Shape::Coefficient);
         for (name, range) in formula.parameters() {
-            if shape == Shape::Parametric && self.parameters.iter().any(|parameter| parameter == name) {
+            if parametric && self.parameters.iter().any(|parameter| parameter == name) {
                 continue;
             }
             known = false;
             let place = self.inside(node, text, range);
             let found = Found::error(place, format!("unknown name `{name}`"));
             let near = nearest(name, self.parameters.iter().map(String::as_str));
-            self.findings.push(match (shape, near) {
-                (Shape::Parametric, Some(near)) => found.help(format!("did you mean `{near}`?")),
-                (Shape::Parametric, None) => found.help(format!("give `{name}` its range in [uncertainty]")),
-                _ => found.help("only `s` (or `z`) and numbers have a meaning here"),
+            self.findings.push(match (parametric, near) {
+                (true, Some(near)) => found.help(format!("did you mean `{near}`?")),
+                (true, None) => found.help(format!("give `{name}` its range in [uncertainty]")),
+                (false, _) => found.help("only `s` (or `z`) and numbers have a meaning here"),
             });
         }
         known
@@ -124,11 +147,6 @@ impl Reader<'_> {
         let from = (start + quotes + range.start).min(last);
         Place { text: index, start: from, end: (start + quotes + range.end).clamp(from, last) }
     }
-}
-
-/// Whether a text is meant as a formula rather than as a number with a unit.
-pub(super) fn reads_as_formula(text: &str) -> bool {
-    text.contains(['*', '(', '/', '+', '^', 's', 'z'])
 }
 
 /// Why a number is outside its key's range.

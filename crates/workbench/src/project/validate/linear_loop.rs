@@ -2,8 +2,8 @@
 
 use super::Check;
 use crate::project::{
-    AntiWindup, Discretization, Element, ElementKind, Limit, Project, Specification, SpecificationKind,
-    Transfer, TransferForm, Variable,
+    AntiWindup, Discretization, Element, ElementKind, Formula, Limit, Project, Specification,
+    SpecificationKind, Transfer, TransferForm, Variable,
 };
 
 /// Most zeros, poles or elements of a transfer function.
@@ -93,6 +93,22 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
     }
     if let Some(prefilter) = &project.prefilter {
         transfer(&prefilter.transfer, "prefilter", prefilter.sample_time, check);
+    }
+}
+
+pub(super) fn sensor(project: &Project, check: &mut Check<'_, '_>) {
+    let Some(sensor) = &project.sensor else { return };
+    let formulas = [&sensor.transfer.numerator, &sensor.transfer.denominator];
+    if formulas.iter().any(|formula| formula.variable() == Some(Variable::Z)) {
+        return check.error("sensor", "the sensor is written in `s`, not in `z`");
+    }
+    let constant =
+        |formula: &Formula| formula.polynomial().and_then(|coefficients| coefficients.last().copied());
+    let [Some(over), Some(under)] = formulas.map(constant) else { return };
+    if over != under {
+        let message =
+            format!("[sensor] is {} at zero frequency, not 1: the loop follows what it shows", over / under);
+        check.warning("sensor", message);
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::{Check, linear_parameter};
 use crate::project::{
-    Actuator, Campaign, Distribution, Formula, LINEAR_PARAMETERS, LinearParameter, LoadMotion,
+    Actuator, Campaign, DELAY_PATH, Distribution, Formula, LINEAR_PARAMETERS, LinearParameter, LoadMotion,
     LoadMotionKind, Plant, Project, Scenario, Sizing, Spacing, Uncertain,
 };
 
@@ -27,9 +27,6 @@ pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut 
     }
     if let Some(varied) = &project.campaign {
         campaign(varied, check);
-    }
-    if project.family.as_ref().is_some_and(|family| !family.cases.is_empty()) {
-        family(project, &[], check);
     }
 }
 
@@ -135,8 +132,8 @@ fn campaign(campaign: &Campaign, check: &mut Check<'_, '_>) {
     }
 }
 
-/// What only a project with a plant has.
-pub(super) fn with_plant(project: &Project, plant: &Plant, check: &mut Check<'_, '_>) {
+/// What needs an actuator.
+pub(super) fn without_actuator(project: &Project, check: &mut Check<'_, '_>) {
     let foreign = [
         ("sizing", project.sizing.is_some()),
         ("campaign", project.campaign.is_some()),
@@ -144,17 +141,21 @@ pub(super) fn with_plant(project: &Project, plant: &Plant, check: &mut Check<'_,
         ("operating_point", check.declared("operating_point")),
         ("linear", check.declared("linear")),
     ];
+    let system = match (&project.plant, &project.family) {
+        (Some(_), _) => "has a [plant]",
+        (None, Some(family)) if !family.measured.is_empty() => "has measured plants",
+        _ => return,
+    };
     for (name, present) in foreign {
         if present {
-            check.error(name, format!("[{name}] needs an actuator, but this project has a [plant]"));
+            check.error(name, format!("[{name}] needs an actuator, but this project {system}"));
         }
     }
-    let mut formulas = vec![("plant.numerator", &plant.transfer.numerator)];
-    formulas.push(("plant.denominator", &plant.transfer.denominator));
-    if let Some(second) = &plant.disturbance {
-        formulas.push(("plant.disturbance.numerator", &second.numerator));
-        formulas.push(("plant.disturbance.denominator", &second.denominator));
-    }
+}
+
+/// What only a project with a plant has.
+pub(super) fn with_plant(project: &Project, plant: &Plant, check: &mut Check<'_, '_>) {
+    let formulas = plant.formulas();
     let used: Vec<&str> =
         formulas.iter().flat_map(|(_, formula)| formula.parameters()).map(|(name, _)| name).collect();
     let all_read = !formulas.iter().any(|(path, _)| check.refused(path));
@@ -164,7 +165,6 @@ pub(super) fn with_plant(project: &Project, plant: &Plant, check: &mut Check<'_,
             check.warning(&format!("uncertainty.{}", uncertain.name), message);
         }
     }
-    family(project, &used, check);
     for (path, formula) in formulas {
         nominal_formula(project, formula, path, check);
     }
@@ -183,35 +183,13 @@ fn nominal_formula(project: &Project, formula: &Formula, path: &str, check: &mut
         return check
             .error(path, format!("`{}` must be a polynomial: here `s` is divided by", super::last(path)));
     }
+    let delay = path == DELAY_PATH;
     if ratio.numerator.iter().any(|c| !c.is_finite()) {
         check.error(path, "this has no value at the nominal parameters");
-    } else if ratio.numerator.iter().all(|c| *c == 0.0) {
+    } else if delay && ratio.numerator.iter().any(|c| *c < 0.0) {
+        check.error(path, "this is negative at the nominal parameters");
+    } else if !delay && ratio.numerator.iter().all(|c| *c == 0.0) {
         check.error(path, "this is zero at the nominal parameters");
-    }
-}
-
-fn family(project: &Project, used: &[&str], check: &mut Check<'_, '_>) {
-    let Some(family) = &project.family else { return };
-    for (index, case) in family.cases.iter().enumerate() {
-        for name in used {
-            if !case.parameters.iter().any(|(known, _)| known == name) {
-                check.error(
-                    &format!("family.cases[{index}]"),
-                    format!("this case gives no value to `{name}`"),
-                );
-            }
-        }
-    }
-    for (index, group) in family.correlation.iter().enumerate() {
-        let path = format!("family.correlation[{index}]");
-        let member = |name: &String| project.uncertainty.iter().find(|uncertain| uncertain.name == *name);
-        let points: Vec<Option<u32>> =
-            group.parameters.iter().map(|name| member(name).map(|uncertain| uncertain.points)).collect();
-        if points.iter().any(Option::is_none) {
-            check.error(&path, "only parameters of [uncertainty] can be correlated");
-        } else if points.len() < 2 || points.windows(2).any(|pair| pair[0] != pair[1]) {
-            check.error(&path, "correlated parameters are two or more with the same number of points");
-        }
     }
 }
 

@@ -1,0 +1,220 @@
+//! Measured frequency responses: what is read is what was written, and every unsound row is named with its place.
+
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests may fail the test"
+)]
+
+use num_complex::Complex64;
+use phea_dynamics::portable;
+use phea_qft::family::{Family, MeasuredFamily};
+use phea_workbench::family::{FamilyError, family};
+use phea_workbench::project;
+use phea_workbench::source::Memory;
+
+const PROJECT: &str = "schema = 1\n[family]\nmeasured = [\"a.csv\"]\n";
+
+fn read(text: &str, csv: impl Into<Vec<u8>>) -> Result<Family, FamilyError> {
+    let source = Memory::default().with("rigs/p.toml", text).with("rigs/a.csv", csv);
+    let loaded = project::read(&source, "rigs/p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
+    family(&loaded.project, &source)
+}
+
+#[track_caller]
+fn measured(csv: impl Into<Vec<u8>>) -> MeasuredFamily {
+    match read(PROJECT, csv) {
+        Ok(Family::Measured(family)) => family,
+        Ok(other) => panic!("{other:?}"),
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// 40 e^(-0.02 s)/(s^2 + 0.4 s + 4) and the load motion's -s/(s + 1).
+fn truth(frequency: f64) -> [Complex64; 2] {
+    let s = Complex64::new(0.0, frequency);
+    [40.0 * portable::exp_complex(-s * 0.02) / (s * s + 0.4 * s + 4.0), -s / (s + 1.0)]
+}
+
+fn frequencies() -> Vec<f64> {
+    (0..60).map(|k| 0.1 * portable::exp(f64::from(k) * 0.15)).collect()
+}
+
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+#[track_caller]
+fn same(csv: impl Into<Vec<u8>>, with_load_motion: bool) {
+    let family = measured(csv);
+    let plant = &family.plants()[0];
+    assert_eq!((plant.name.as_str(), plant.unstable_poles), ("a.csv", 0));
+    assert_eq!(plant.frequencies_rad_per_s.len(), 60);
+    assert_eq!(plant.disturbance.is_some(), with_load_motion);
+    for (index, frequency) in frequencies().into_iter().enumerate() {
+        assert!((plant.frequencies_rad_per_s[index] / frequency - 1.0).abs() < 1e-12);
+        let [command, load_motion] = truth(frequency);
+        assert!(portable::magnitude(plant.command[index] / command - 1.0) < 1e-12);
+        if let Some(values) = &plant.disturbance {
+            assert!(portable::magnitude(values[index] / load_motion - 1.0) < 1e-12);
+        }
+    }
+}
+
+/// Every way to write a response gives it back to 1e-12: units, wrapped and unwrapped phases, comments, line ends, byte order
+/// mark, quotes and spaces.
+#[test]
+fn what_is_written_is_read() {
+    let rows = |header: &str, row: &dyn Fn(f64, [Complex64; 2], f64) -> String| {
+        let mut turns = 0.0;
+        let lines: Vec<String> = frequencies()
+            .into_iter()
+            .map(|frequency| {
+                turns += 360.0;
+                row(frequency, truth(frequency), turns)
+            })
+            .collect();
+        format!("{header}\n{}\n", lines.join("\n"))
+    };
+    let decibel = |value: Complex64| 20.0 * portable::log10(portable::magnitude(value));
+    let degrees = |value: Complex64| portable::argument(value) * DEGREES;
+    let cartesian =
+        rows("frequency_rad_per_s,real,imaginary", &|w, [p, _], _| format!("{w:e},{},{}", p.re, p.im));
+    same(cartesian.clone(), false);
+    same(format!("\u{feff}# swept sine, 2 kN\r\n\r\n{}", cartesian.replace('\n', "\r\n")), false);
+    same(cartesian.replace("real,imaginary", " \"real\" , \"imaginary\" ").replace(',', " , "), false);
+    let bode = rows("phase_deg,frequency_hz,magnitude_db", &|w, [p, _], turns| {
+        format!("{},{},{}", degrees(p) - turns, w / std::f64::consts::TAU, decibel(p))
+    });
+    same(bode, false);
+    let both = rows(
+        "frequency_rad_per_s,magnitude,phase_rad,load_motion_magnitude_db,load_motion_phase_deg",
+        &|w, [p, d], _| {
+            format!("{w},{},{},{},{}", portable::magnitude(p), portable::argument(p), decibel(d), degrees(d))
+        },
+    );
+    same(both, true);
+    let halves =
+        rows("frequency_rad_per_s,real,imaginary,load_motion_real,load_motion_imaginary", &|w, [p, d], _| {
+            format!("{w},{},{},{},{}", p.re, p.im, d.re, d.im)
+        });
+    same(halves, true);
+}
+
+#[test]
+fn the_first_file_is_the_nominal_plant_and_poles_are_counted() {
+    let text = "schema = 1\n[family]\nmeasured = [\"b.csv\", \"/data/a.csv\"]\nunstable_poles = 2\n";
+    let row = |gain: f64| format!("frequency_hz,real,imaginary\n1,{gain},0\n2,{gain},-1\n");
+    let source = Memory::default()
+        .with("rigs/p.toml", text)
+        .with("rigs/b.csv", row(2.0))
+        .with("/data/a.csv", row(1.0));
+    let loaded = project::read(&source, "rigs/p.toml", &[], &[]).unwrap();
+    let Family::Measured(family) = family(&loaded.project, &source).unwrap() else { panic!("measured") };
+    let names: Vec<&str> = family.plants().iter().map(|plant| plant.name.as_str()).collect();
+    assert_eq!(names, ["b.csv", "/data/a.csv"]);
+    assert!(family.plants().iter().all(|plant| plant.unstable_poles == 2));
+    assert_eq!(family.plants()[0].command[0].re, 2.0);
+}
+
+/// Findings as `line:column message; expected; help`.
+#[track_caller]
+fn refuses(csv: impl Into<Vec<u8>>, expected: &[&str]) {
+    let Err(FamilyError::Measurement(report)) = read(PROJECT, csv) else { panic!("accepted") };
+    let found: Vec<String> = report
+        .diagnostics
+        .iter()
+        .map(|found| {
+            let parts = [found.expected.clone(), found.help.clone()].into_iter().flatten();
+            let text = format!("{}:{} {}", found.line, found.column, found.message);
+            assert_eq!(found.file, "rigs/a.csv");
+            parts.fold(text, |text, part| format!("{text}; {part}"))
+        })
+        .collect();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn every_unsound_row_is_named() {
+    refuses(
+        "# measured\nfrequency_hz,magnitude_db,phase_deg\n1,0,0\n2,abc,0\n3,0,1e999\n2.5,0,0\n4,0\n5,0,0,0\n-1,0,0\n6,nan,0\n",
+        &[
+            "4:3 `abc` is no number; a number in dB",
+            "5:5 `1e999` is no number; a number in deg",
+            "7:1 2 values for 3 columns; separate values with commas, and write the decimal sign as a point",
+            "8:1 4 values for 3 columns; write the decimal sign as a point",
+            "9:1 frequencies must be positive; a higher frequency in Hz",
+            "10:3 `nan` is no number; a number in dB",
+        ],
+    );
+    refuses(
+        "frequency_rad_per_s,magnitude,phase_deg\n1,1,0\n1,1,0\n0.5,1,0\n2,-1,0\n3,0,0\n",
+        &[
+            "3:1 frequencies must increase from row to row; a higher frequency in rad/s",
+            "4:1 frequencies must increase from row to row; a higher frequency in rad/s",
+            "5:3 a magnitude is not negative; the sign in the phase, as 180 degrees",
+            "6:3 the response is zero: it has no logarithm to interpolate; a response that is not zero, or no row for this frequency",
+        ],
+    );
+}
+
+#[test]
+fn decimal_commas_are_told() {
+    refuses(
+        "frequency_hz;real;imaginary\n1,0;2,0;3,0\n",
+        &[
+            "1:1 unknown column `frequency_hz;real;imaginary`; separate columns with commas, and write the decimal sign as a point",
+        ],
+    );
+    refuses(
+        "frequency_hz,real,imaginary\n1,0,2,0,3,0\n",
+        &["2:1 6 values for 3 columns; write the decimal sign as a point"],
+    );
+}
+
+#[test]
+fn columns_must_say_what_they_hold() {
+    refuses(
+        "frequency_hz,magnitude_dB,phase_deg\n1,0,0\n",
+        &["1:14 unknown column `magnitude_dB`; did you mean `magnitude_db`?"],
+    );
+    refuses(
+        "frequency_hz,frequency_rad_per_s,real,imaginary\n1,1,1,1\n",
+        &["1:14 `frequency_rad_per_s` is there twice, here in another unit or again"],
+    );
+    refuses(
+        "real,imaginary\n1,0\n",
+        &["1:1 the columns lack a frequency: `frequency_hz` or `frequency_rad_per_s`"],
+    );
+    let pair = "a magnitude and a phase (`magnitude_db` or `magnitude`, `phase_deg` or `phase_rad`), or `real` and `imaginary`";
+    refuses(
+        "frequency_hz,real,phase_deg\n1,0,0\n",
+        &[&format!("1:1 the columns lack {pair}, one pair of them")],
+    );
+    refuses(
+        "frequency_hz,real,imaginary,load_motion_real\n1,0,0,0\n",
+        &[&format!(
+            "1:1 the columns lack half of the load motion's pair: {pair}, each with `load_motion_` before it"
+        )],
+    );
+}
+
+#[test]
+fn files_that_are_none_are_told() {
+    refuses("", &["0:0 the file is empty; a row with the names of the columns"]);
+    refuses(
+        "frequency_hz,real,imaginary\n# nothing\n",
+        &["1:1 the file has no rows below the names of its columns"],
+    );
+    refuses([0x66, 0xff, 0x0a], &["0:0 the file is no UTF-8 text"]);
+    let source = Memory::default().with("p.toml", PROJECT);
+    let project = project::read(&source, "p.toml", &[], &[]).unwrap().project;
+    let error = family(&project, &source).unwrap_err().to_string();
+    assert!(error.contains("cannot read a.csv: no such file"), "{error}");
+}
+
+#[test]
+fn a_limit_on_load_motion_needs_its_columns() {
+    let wish = "[[specification]]\nkind = \"load_motion\"\nlimit = 1\nfrequencies = [1]\n";
+    let error = read(&format!("{PROJECT}{wish}"), "frequency_hz,real,imaginary\n1,1,0\n").unwrap_err();
+    assert_eq!(error, FamilyError::LoadMotion("a.csv".to_string()));
+}
