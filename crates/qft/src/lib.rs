@@ -7,5 +7,6 @@ pub mod bound;
 pub mod closed_loop;
 pub mod family;
 pub mod specification;
+pub mod stability;
 pub mod template;
 pub mod verification;

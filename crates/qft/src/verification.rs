@@ -55,8 +55,21 @@ pub struct StabilityFinding {
     pub largest_real_part: Option<f64>,
     /// The plant that has it, or that is unstable, or that could not be resolved.
     pub plant: PlantPoint,
+    /// How near the family comes to -1; `None` unless it is stable.
+    pub closest_approach: Option<ClosestApproach>,
     /// How it was decided, in words, for a reader.
     pub reason: String,
+}
+
+/// The smallest |1 + L| over family and frequency, the inverse of the largest sensitivity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosestApproach {
+    /// |1 + L|
+    pub distance: f64,
+    /// rad/s; infinite where it is a limit.
+    pub frequency_rad_per_s: f64,
+    /// The plant.
+    pub plant: PlantPoint,
 }
 
 /// The least dead time that makes a plant of the family unstable.

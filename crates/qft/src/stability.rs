@@ -1,0 +1,272 @@
+//! Whether every plant of a family is stable within its loop, how close it comes to not being so, and how much further dead
+//! time it bears.
+//!
+//! ```text
+//! poles:             zeros of c + n, of c z^k + n: their largest real part                  no dead time, or whole samples
+//! argument:          turns of c + n e^(-s T) on the boundary of stability                   every loop, dead time included
+//! Nyquist:           turns of 1 + L                                                         measured plants
+//! zero exclusion:    min |1 + L| over box and frequency: while it is not zero, no pole crosses from one plant to the next
+//! ```
+//!
+//! Nothing is cancelled: an unstable mode of plant, controller or sensor that the loop does not move counts. Prefilter and load-motion
+//! path lie outside of the loop; of the prefilter the audit of the family asks that it be stable by itself.
+
+mod characteristic;
+mod crossover;
+mod encirclement;
+mod family;
+mod measured;
+mod poles;
+mod search;
+
+use phea_dynamics::linear::LinearError;
+
+pub use crossover::CriticalDelay;
+pub use family::{FamilyStability, StabilityAudit};
+
+use crate::closed_loop::{Compensation, Member};
+use characteristic::{Characteristic, FeedbackPath};
+
+/// Stability of one loop.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StabilityStatus {
+    /// All closed-loop poles lie inside the stable region.
+    Stable,
+    /// At least one does not.
+    Unstable(Instability),
+    /// It could not be decided.
+    NotResolved(Irresolution),
+}
+
+/// How a loop is unstable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Instability {
+    /// A closed-loop pole with this real part, 1/s, not negative.
+    Pole {
+        /// ln|z|/T in a sampled loop.
+        real_part: f64,
+    },
+    /// So many closed-loop poles outside of the stable region.
+    Poles {
+        /// Their number.
+        count: usize,
+    },
+    /// Dead time in a loop whose gain stays above one however high the frequency: infinitely many unstable poles.
+    GainAtInfinity,
+}
+
+/// Why the stability of a loop could not be decided.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Irresolution {
+    /// The loop is no loop, or cannot be computed.
+    #[error("{0}")]
+    Linear(LinearError),
+    /// A closed-loop pole lies so near the boundary of stability that rounding hides its side.
+    #[error(
+        "a closed-loop pole near {frequency_rad_per_s} rad/s cannot be told from the boundary of stability"
+    )]
+    NearBoundary {
+        /// Where on the boundary, rad/s.
+        frequency_rad_per_s: f64,
+    },
+    /// Too many steps along the boundary of stability.
+    #[error(
+        "the turns of the characteristic function could not be counted beyond {frequency_rad_per_s} rad/s"
+    )]
+    Budget {
+        /// Where the count stopped, rad/s.
+        frequency_rad_per_s: f64,
+    },
+    /// Dead time in a loop whose gain tends to one: its poles approach the boundary of stability.
+    #[error(
+        "with dead time and a gain of one at infinite frequency, poles approach the boundary of stability"
+    )]
+    GainAtInfinity,
+    /// A controller or sensor with undamped poles beside the origin, in a loop that is known by measured points only.
+    #[error(
+        "controller or sensor has poles on the boundary of stability, which measured points cannot go around"
+    )]
+    UndampedController,
+    /// Fewer than two points were measured below half the sampling rate.
+    #[error("there are fewer than two points to count turns between")]
+    Points,
+    /// Between two measured points 1 + L turns further than can be followed.
+    #[error(
+        "1 + L turns by {turn_deg:.0} degrees between {from_rad_per_s} and {to_rad_per_s} rad/s; the measurement is too coarse there"
+    )]
+    Coarse {
+        /// rad/s
+        from_rad_per_s: f64,
+        /// rad/s
+        to_rad_per_s: f64,
+        /// The angle, degrees.
+        turn_deg: f64,
+    },
+    /// The measurement ends while the gain is not small.
+    #[error(
+        "the measurement ends at {frequency_rad_per_s} rad/s where |L| = {gain:.2} is not well below one"
+    )]
+    HighEnd {
+        /// rad/s
+        frequency_rad_per_s: f64,
+        /// |L|
+        gain: f64,
+    },
+    /// What the loop does below the first measured point cannot be told from it.
+    #[error(
+        "below {frequency_rad_per_s} rad/s, where the measurement begins, the loop's integrators cannot be told"
+    )]
+    LowEnd {
+        /// rad/s
+        frequency_rad_per_s: f64,
+    },
+    /// The turns do not add up to a number of poles.
+    #[error("the turns of 1 + L add up to {count:.2} unstable poles, which is no number of poles")]
+    Count {
+        /// What they add up to.
+        count: f64,
+    },
+}
+
+/// The smallest |1 + L| along the frequency axis, the inverse of the largest sensitivity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// |1 + L|
+    pub distance: f64,
+    /// rad/s; infinite where it is a limit.
+    pub frequency_rad_per_s: f64,
+}
+
+/// What was found of one loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MemberStability {
+    /// Stable or not.
+    pub status: StabilityStatus,
+    /// Largest real part of a closed-loop pole in 1/s, ln|z|/T in a sampled loop; minus infinity where there are no poles,
+    /// `None` where dead time or measurement leave none to be computed.
+    pub largest_real_part: Option<f64>,
+    /// How near L comes to -1; of a stable loop.
+    pub closest_approach: Option<Approach>,
+    /// The further dead time that it bears; of a stable loop.
+    pub critical_delay: Option<CriticalDelay>,
+}
+
+/// Stability of one plant within its loop.
+///
+/// A rational loop must be stable by its poles and by the turns of its characteristic function alike, or it is not
+/// resolved. In a sampled loop the critical delay is phase over frequency at the crossovers of the sampled L: exact where it is a whole
+/// number of samples; between, a real delay also changes what the hold and the sampler make of the plant.
+///
+/// # Example
+/// k e^(-s)/s is stable for 0 < k < pi/2, and bears pi/(2 k) of dead time:
+/// ```
+/// use phea_dynamics::controller::Controller;
+/// use phea_dynamics::linear::TransferFunction;
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+/// use phea_qft::closed_loop::Compensation;
+/// use phea_qft::stability::{StabilityStatus, member_stability};
+/// # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
+/// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+/// let found = |gain: f64| {
+///     let command = RationalCoefficients { numerator: vec![gain], denominator: vec![1.0, 0.0] };
+///     let member = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 1.0 })?;
+///     Ok::<_, phea_dynamics::linear::LinearError>(member_stability(&member, &compensation))
+/// };
+/// let stable = found(1.0)?;
+/// assert_eq!(stable.status, StabilityStatus::Stable);
+/// let delay = stable.critical_delay.map(|critical| critical.delay_s);
+/// assert!(delay.is_some_and(|delay| (delay - (std::f64::consts::FRAC_PI_2 - 1.0)).abs() < 1e-12));
+/// assert!(matches!(found(1.6)?.status, StabilityStatus::Unstable(_)));
+/// # Ok(())
+/// # }
+/// ```
+pub fn member_stability(member: &Member, compensation: &Compensation) -> MemberStability {
+    match FeedbackPath::new(compensation) {
+        Ok(path) => of_member(member, compensation, &path),
+        Err(reason) => MemberStability::not_resolved(reason),
+    }
+}
+
+fn of_member(member: &Member, compensation: &Compensation, path: &FeedbackPath) -> MemberStability {
+    match characteristic(member, path) {
+        Some(Ok(characteristic)) => of_characteristic(&characteristic),
+        Some(Err(reason)) => MemberStability::not_resolved(reason),
+        None => measured::stability(member, compensation),
+    }
+}
+
+/// `None` for a plant that is known by measured points only.
+fn characteristic(member: &Member, path: &FeedbackPath) -> Option<Result<Characteristic, Irresolution>> {
+    match member {
+        Member::Continuous { plant, .. } => Some(path.around(plant)),
+        Member::Sampled { with_sensor, .. } => Some(path.around_sampled(with_sensor)),
+        Member::Measured { .. } => None,
+    }
+}
+
+fn of_characteristic(characteristic: &Characteristic) -> MemberStability {
+    let real_part = match characteristic.largest_real_part() {
+        Ok(real_part) => real_part,
+        Err(reason) => return MemberStability::not_resolved(reason),
+    };
+    let found = |status| MemberStability {
+        status,
+        largest_real_part: real_part,
+        closest_approach: None,
+        critical_delay: None,
+    };
+    if let Some(real_part) = real_part.filter(|real_part| *real_part >= 0.0) {
+        return found(StabilityStatus::Unstable(Instability::Pole { real_part }));
+    }
+    if characteristic.has_gain_above_one_at_infinity() {
+        return found(StabilityStatus::Unstable(Instability::GainAtInfinity));
+    }
+    let encirclement = match characteristic.encirclement() {
+        Ok(encirclement) => encirclement,
+        Err(reason) => return found(StabilityStatus::NotResolved(reason)),
+    };
+    let (distance, angle) = encirclement.closest;
+    let frequency_rad_per_s = characteristic.frequency(angle);
+    match (encirclement.unstable_poles, real_part) {
+        (0, _) => match characteristic.critical_delay() {
+            Ok(critical_delay) => MemberStability {
+                closest_approach: Some(Approach { distance, frequency_rad_per_s }),
+                critical_delay: Some(critical_delay),
+                ..found(StabilityStatus::Stable)
+            },
+            Err(reason) => found(StabilityStatus::NotResolved(reason)),
+        },
+        (count, None) => found(StabilityStatus::Unstable(Instability::Poles { count })),
+        // the poles say stable, the turns do not: rounding
+        (_, Some(_)) => {
+            found(StabilityStatus::NotResolved(Irresolution::NearBoundary { frequency_rad_per_s }))
+        }
+    }
+}
+
+impl MemberStability {
+    fn not_resolved(reason: Irresolution) -> MemberStability {
+        MemberStability {
+            status: StabilityStatus::NotResolved(reason),
+            largest_real_part: None,
+            closest_approach: None,
+            critical_delay: None,
+        }
+    }
+}
+
+impl std::fmt::Display for Instability {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Instability::Pole { real_part } => {
+                write!(formatter, "a closed-loop pole has the real part {real_part:.3e} 1/s")
+            }
+            Instability::Poles { count } => {
+                write!(formatter, "{count} closed-loop poles lie outside of the stable region")
+            }
+            Instability::GainAtInfinity => {
+                write!(formatter, "dead time in a loop whose gain stays above one at every high frequency")
+            }
+        }
+    }
+}

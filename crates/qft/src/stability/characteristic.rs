@@ -1,0 +1,169 @@
+use num_complex::Complex64;
+use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::portable;
+use phea_dynamics::uncertain_plant::PlantCoefficients;
+
+use super::Irresolution;
+use crate::closed_loop::Compensation;
+
+/// What leads from the output back to the plant, as polynomials: G H of a continuous loop, G of a sampled one (there the
+/// sensor is sampled together with the plant).
+#[derive(Clone, Debug)]
+pub(super) struct FeedbackPath {
+    numerator: Polynomial,
+    denominator: Polynomial,
+    dead_time_s: f64,
+    domain: TimeDomain,
+}
+
+/// The characteristic equation of one loop, from which no factor was cancelled.
+///
+/// ```text
+/// continuous:  c(s) + n(s) e^(-s T) = 0            c = D Gd Hd,  n = N Gn Hn
+/// sampled:     c(v) + n(v) z^(-k) = 0,  v = z - 1
+/// ```
+///
+/// Around z = 1, where slow poles crowd, v keeps the digits that z has lost. `delay` is T in s or k in samples; the boundary of
+/// stability is run through by an angle, w in rad/s or w T in rad.
+#[derive(Clone, Debug)]
+pub(super) struct Characteristic {
+    pub(super) denominator: Polynomial,
+    pub(super) numerator: Polynomial,
+    pub(super) delay: f64,
+    pub(super) domain: TimeDomain,
+}
+
+impl FeedbackPath {
+    pub(super) fn new(compensation: &Compensation) -> Result<FeedbackPath, Irresolution> {
+        let (feedback, sensor) = (compensation.feedback(), compensation.sensor());
+        let domain = match compensation.sample_time_s() {
+            None => TimeDomain::Continuous,
+            Some(sample_time_s) => TimeDomain::Discrete { sample_time_s },
+        };
+        if feedback.domain() != domain || sensor.domain() != TimeDomain::Continuous {
+            return Err(Irresolution::Linear(LinearError::DomainMismatch));
+        }
+        let (numerator, denominator) = polynomials(feedback)?;
+        if domain != TimeDomain::Continuous {
+            return Ok(FeedbackPath { numerator, denominator, dead_time_s: feedback.dead_time_s(), domain });
+        }
+        let (sensor_numerator, sensor_denominator) = polynomials(sensor)?;
+        Ok(FeedbackPath {
+            numerator: numerator.product(&sensor_numerator),
+            denominator: denominator.product(&sensor_denominator),
+            dead_time_s: feedback.dead_time_s() + sensor.dead_time_s(),
+            domain,
+        })
+    }
+
+    /// The loop around a continuous plant, whose dead time includes that of the loop.
+    pub(super) fn around(&self, plant: &PlantCoefficients<f64>) -> Result<Characteristic, Irresolution> {
+        if self.domain != TimeDomain::Continuous {
+            return Err(Irresolution::Linear(LinearError::DomainMismatch));
+        }
+        let denominator = Polynomial::new(plant.command.denominator.clone()).product(&self.denominator);
+        let numerator = Polynomial::new(plant.command.numerator.clone()).product(&self.numerator);
+        self.closed(numerator, denominator, plant.dead_time_s + self.dead_time_s)
+    }
+
+    /// The loop around a plant with its sensor, held and sampled.
+    pub(super) fn around_sampled(&self, plant: &TransferFunction) -> Result<Characteristic, Irresolution> {
+        let TimeDomain::Discrete { sample_time_s } = self.domain else {
+            return Err(Irresolution::Linear(LinearError::DomainMismatch));
+        };
+        if plant.domain() != self.domain {
+            return Err(Irresolution::Linear(LinearError::DomainMismatch));
+        }
+        let (numerator, denominator) = polynomials(plant)?;
+        let samples = ((plant.dead_time_s() + self.dead_time_s) / sample_time_s).round();
+        self.closed(numerator.product(&self.numerator), denominator.product(&self.denominator), samples)
+    }
+
+    fn closed(
+        &self,
+        numerator: Polynomial,
+        denominator: Polynomial,
+        delay: f64,
+    ) -> Result<Characteristic, Irresolution> {
+        if denominator.is_zero() {
+            return Err(Irresolution::Linear(LinearError::ZeroPolynomial));
+        }
+        Ok(Characteristic { denominator, numerator, delay, domain: self.domain })
+    }
+}
+
+/// Numerator and denominator in s, or in v = z - 1.
+fn polynomials(function: &TransferFunction) -> Result<(Polynomial, Polynomial), Irresolution> {
+    if function.domain() == TimeDomain::Continuous {
+        return Ok((function.numerator(), function.denominator()));
+    }
+    let shifted = |roots: &[Complex64]| roots.iter().map(|root| root - 1.0).collect::<Vec<_>>();
+    Ok((
+        Polynomial::from_roots(function.gain(), &shifted(function.zeros())).map_err(Irresolution::Linear)?,
+        Polynomial::from_roots(1.0, &shifted(function.poles())).map_err(Irresolution::Linear)?,
+    ))
+}
+
+impl Characteristic {
+    /// s = j w, or v = e^(j w T) - 1 without cancellation.
+    pub(super) fn boundary_point(&self, angle: f64) -> Complex64 {
+        match self.domain {
+            TimeDomain::Continuous => Complex64::new(0.0, angle),
+            TimeDomain::Discrete { .. } => {
+                let half = portable::sin(angle / 2.0);
+                Complex64::new(-2.0 * half * half, portable::sin(angle))
+            }
+        }
+    }
+
+    /// e^(-j angle delay)
+    pub(super) fn lag(&self, angle: f64) -> Complex64 {
+        if self.delay == 0.0 {
+            return Complex64::new(1.0, 0.0);
+        }
+        let turn = -angle * self.delay;
+        Complex64::new(portable::cos(turn), portable::sin(turn))
+    }
+
+    /// c and n with its delay, on the boundary of stability.
+    pub(super) fn at(&self, angle: f64) -> (Complex64, Complex64) {
+        let point = self.boundary_point(angle);
+        (evaluate(&self.denominator, point), evaluate(&self.numerator, point) * self.lag(angle))
+    }
+
+    /// rad/s
+    pub(super) fn frequency(&self, angle: f64) -> f64 {
+        angle / self.time_unit()
+    }
+
+    /// 1 s, or the sample time: what `delay` counts in, and the inverse of what the angle counts in.
+    pub(super) fn time_unit(&self) -> f64 {
+        match self.domain {
+            TimeDomain::Continuous => 1.0,
+            TimeDomain::Discrete { sample_time_s } => sample_time_s,
+        }
+    }
+
+    /// n_0/c_0, the gain of the loop at infinite frequency; `None` for a loop that is improper.
+    pub(super) fn gain_at_infinity(&self) -> Option<f64> {
+        match self.numerator.degree().cmp(&self.denominator.degree()) {
+            std::cmp::Ordering::Less => Some(0.0),
+            std::cmp::Ordering::Equal => {
+                Some(self.numerator.leading_coefficient() / self.denominator.leading_coefficient())
+            }
+            std::cmp::Ordering::Greater => None,
+        }
+    }
+
+    /// Whether a dead time makes infinitely many poles unstable.
+    pub(super) fn has_gain_above_one_at_infinity(&self) -> bool {
+        self.domain == TimeDomain::Continuous
+            && self.delay > 0.0
+            && self.gain_at_infinity().is_none_or(|gain| gain.abs() > 1.0)
+    }
+}
+
+/// Horner's rule in working precision.
+pub(super) fn evaluate(polynomial: &Polynomial, point: Complex64) -> Complex64 {
+    polynomial.coefficients().iter().fold(Complex64::new(0.0, 0.0), |sum, &c| sum * point + c)
+}

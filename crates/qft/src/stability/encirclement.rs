@@ -1,0 +1,247 @@
+//! Counting closed-loop poles outside the stable region by the turns of the characteristic function on its boundary.
+//!
+//! ```text
+//! f(s) = c(s) + n(s) e^(-s T)          has no poles, so neither integrators nor an unstable plant need a detour
+//! Z = N/2 - (1/pi) (change of arg f(j w), w = 0 .. infinity)       N = degree of c
+//! Z = N - (1/pi) (change of arg f, w T = 0 .. pi)                  sampled: zeros on or outside of the unit circle
+//! ```
+//!
+//! One step follows another such that f, expanded at the left end, stays within a disc that does not hold zero: no turn is missed.
+
+use num_complex::Complex64;
+use phea_dynamics::linear::{Polynomial, TimeDomain};
+use phea_dynamics::portable;
+
+use super::Irresolution;
+use super::characteristic::Characteristic;
+
+/// Expansions that one loop may take.
+const STEPS_MAXIMUM: usize = 50_000;
+/// Radius of the disc around f that a step may fill, as a share of |f|: below 1 the disc does not hold zero.
+const DISC: f64 = 0.95;
+
+/// What a walk along the boundary of stability found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Encirclement {
+    /// Z
+    pub(super) unstable_poles: usize,
+    /// The smallest |1 + L| = |f/c|, and the angle where it is.
+    pub(super) closest: (f64, f64),
+}
+
+impl Characteristic {
+    /// Walks along the boundary of stability.
+    ///
+    /// # Errors
+    /// [`Irresolution::NearBoundary`] where |f| is not above its rounding, [`Irresolution::Budget`],
+    /// [`Irresolution::GainAtInfinity`] for a delayed loop with |L| >= 1 at infinite frequency.
+    pub(super) fn encirclement(&self) -> Result<Encirclement, Irresolution> {
+        let walk = Walk::new(self)?;
+        let mut angle = 0.0;
+        let mut reach = walk.end;
+        let mut turned = 0.0;
+        let mut previous: Option<Complex64> = None;
+        let mut visited: Vec<(f64, f64)> = Vec::new();
+        while visited.len() < STEPS_MAXIMUM {
+            let local = walk.expanded(angle);
+            turned += previous.map_or(0.0, |previous| portable::argument(local.value / previous));
+            previous = Some(local.value);
+            visited.push((self.distance(angle), angle));
+            if angle >= walk.end {
+                let unstable_poles = walk.unstable_poles(turned, local.value, angle)?;
+                return Ok(Encirclement { unstable_poles, closest: self.closest(&visited) });
+            }
+            reach = (2.0 * reach).min(walk.end - angle);
+            let size = portable::magnitude(local.value);
+            while local.change(reach, self.delay) + local.rounding >= DISC * size {
+                reach *= 0.7;
+                if reach <= 1e-14 * angle || reach < f64::MIN_POSITIVE {
+                    return Err(Irresolution::NearBoundary { frequency_rad_per_s: self.frequency(angle) });
+                }
+            }
+            angle = if reach >= walk.end - angle { walk.end } else { angle + reach };
+        }
+        Err(Irresolution::Budget { frequency_rad_per_s: self.frequency(angle) })
+    }
+
+    /// |1 + L|; infinite at a pole of L.
+    pub(super) fn distance(&self, angle: f64) -> f64 {
+        let (denominator, numerator) = self.at(angle);
+        let distance = portable::magnitude(denominator + numerator) / portable::magnitude(denominator);
+        if distance.is_nan() { f64::INFINITY } else { distance }
+    }
+
+    /// The smallest distance, refined between the neighbours of the smallest that was visited.
+    fn closest(&self, visited: &[(f64, f64)]) -> (f64, f64) {
+        let smallest = visited.iter().enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0));
+        let Some((index, &found)) = smallest else { return (f64::INFINITY, 0.0) };
+        let angle_of = |index: usize| visited.get(index).map_or(found.1, |visit| visit.1);
+        let refined = self.golden_section(angle_of(index.saturating_sub(1)), angle_of(index + 1));
+        let best = if refined.0 < found.0 { refined } else { found };
+        match self.gain_at_infinity() {
+            Some(gain) if self.domain == TimeDomain::Continuous && gain != 0.0 => {
+                let limit = if self.delay > 0.0 { (1.0 - gain.abs()).abs() } else { (1.0 + gain).abs() };
+                if limit < best.0 { (limit, f64::INFINITY) } else { best }
+            }
+            _ => best,
+        }
+    }
+
+    fn golden_section(&self, low: f64, high: f64) -> (f64, f64) {
+        const SHARE: f64 = 0.381_966_011_250_105_1;
+        let (mut low, mut high) = (low, high);
+        let at = |angle: f64| (self.distance(angle), angle);
+        let (mut left, mut right) = (at(low + SHARE * (high - low)), at(high - SHARE * (high - low)));
+        for _ in 0..40 {
+            if left.0 < right.0 {
+                (high, right) = (right.1, left);
+                left = at(low + SHARE * (high - low));
+            } else {
+                (low, left) = (left.1, right);
+                right = at(high - SHARE * (high - low));
+            }
+        }
+        if left.0 < right.0 { left } else { right }
+    }
+}
+
+/// f split into what the delay does not turn and what it does, and the end of the walk.
+struct Walk<'a> {
+    characteristic: &'a Characteristic,
+    prompt: Polynomial,
+    delayed: Polynomial,
+    end: f64,
+}
+
+/// f around one point of the boundary, f(s + u) = sum a_k u^k + e^(-u T) sum b_k u^k: the sizes of a_k and b_k.
+struct Expansion {
+    value: Complex64,
+    rounding: f64,
+    prompt: Vec<f64>,
+    delayed: Vec<f64>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(characteristic: &'a Characteristic) -> Result<Walk<'a>, Irresolution> {
+        let Characteristic { denominator, numerator, delay, domain } = characteristic;
+        let (prompt, delayed) = if *delay > 0.0 {
+            (denominator.clone(), numerator.clone())
+        } else {
+            (denominator.sum(numerator), Polynomial::new(vec![0.0]))
+        };
+        let end = match domain {
+            TimeDomain::Continuous => end_of_axis(&prompt, &delayed)?,
+            TimeDomain::Discrete { .. } => std::f64::consts::PI,
+        };
+        Ok(Walk { characteristic, prompt, delayed, end })
+    }
+
+    fn expanded(&self, angle: f64) -> Expansion {
+        let point = self.characteristic.boundary_point(angle);
+        let (prompt, delayed) = (taylor(&self.prompt, point), taylor(&self.delayed, point));
+        let first = |terms: &[Complex64]| terms.first().copied().unwrap_or_default();
+        let radius = portable::magnitude(point);
+        let scale = |polynomial: &Polynomial| {
+            polynomial.coefficients().iter().fold(0.0, |sum, c| sum * radius + c.abs())
+        };
+        let degree = self.prompt.degree().max(self.delayed.degree()) as f64;
+        let turn = angle * self.characteristic.delay;
+        Expansion {
+            value: first(&prompt) + first(&delayed) * self.characteristic.lag(angle),
+            rounding: f64::EPSILON
+                * (4.0 * (degree + 1.0) * (scale(&self.prompt) + scale(&self.delayed))
+                    + turn * scale(&self.delayed)),
+            prompt: prompt.iter().map(size).collect(),
+            delayed: delayed.iter().map(size).collect(),
+        }
+    }
+
+    /// Z, from the change of arg f along the upper half of the boundary.
+    fn unstable_poles(&self, turned: f64, last: Complex64, end: f64) -> Result<usize, Irresolution> {
+        let pi = std::f64::consts::PI;
+        let count = match self.characteristic.domain {
+            TimeDomain::Continuous => {
+                // beyond the end f stays within a half plane around c_0 (j w)^N
+                let mut direction = Complex64::new(self.prompt.leading_coefficient(), 0.0);
+                for _ in 0..self.prompt.degree() {
+                    direction *= Complex64::new(0.0, 1.0);
+                }
+                self.prompt.degree() as f64 / 2.0 + (portable::argument(last / direction) - turned) / pi
+            }
+            TimeDomain::Discrete { .. } => {
+                let delayed = self.delayed.degree() as f64 - self.characteristic.delay;
+                let delayed = if self.delayed.is_zero() { 0.0 } else { delayed };
+                (self.prompt.degree() as f64).max(delayed) - turned / pi
+            }
+        };
+        let whole = count.round();
+        if (count - whole).abs() > 1e-6 || whole < 0.0 {
+            return Err(Irresolution::Budget { frequency_rad_per_s: self.characteristic.frequency(end) });
+        }
+        Ok(whole as usize)
+    }
+}
+
+impl Expansion {
+    /// The most by which f may differ from its value within a distance along the boundary.
+    fn change(&self, distance: f64, delay: f64) -> f64 {
+        let sum = |sizes: &[f64]| sizes.iter().skip(1).rev().fold(0.0, |sum, size| (sum + size) * distance);
+        let turned = self.delayed.first().copied().unwrap_or(0.0) * (delay * distance).min(2.0);
+        sum(&self.prompt) + sum(&self.delayed) + turned
+    }
+}
+
+/// |Re| + |Im|, which is never below the magnitude.
+fn size(value: &Complex64) -> f64 {
+    value.re.abs() + value.im.abs()
+}
+
+/// Coefficients of p(s + u) in u, lowest power first, by repeated synthetic division.
+fn taylor(polynomial: &Polynomial, point: Complex64) -> Vec<Complex64> {
+    let mut terms: Vec<Complex64> =
+        polynomial.coefficients().iter().map(|&c| Complex64::new(c, 0.0)).collect();
+    for last in (0..terms.len()).rev() {
+        let mut sum = Complex64::new(0.0, 0.0);
+        for term in terms.iter_mut().take(last + 1) {
+            sum = sum * point + *term;
+            *term = sum;
+        }
+    }
+    terms.reverse();
+    terms
+}
+
+/// Where the highest power takes over: beyond it |f/(c_0 s^N) - 1| stays below 1 in the whole right half plane.
+fn end_of_axis(prompt: &Polynomial, delayed: &Polynomial) -> Result<f64, Irresolution> {
+    let leading = prompt.leading_coefficient().abs();
+    let improper = delayed.degree() > prompt.degree();
+    let same = delayed.degree() == prompt.degree();
+    let gain = if same { delayed.leading_coefficient().abs() / leading } else { 0.0 };
+    if improper || gain >= 1.0 {
+        return Err(Irresolution::GainAtInfinity);
+    }
+    // (|c_1| s^(N-1) + ... + |n_0| s^m + ...)/(|c_0| s^N)
+    let share = |frequency: f64| {
+        let rest = |polynomial: &Polynomial, skipped: usize| {
+            let kept = polynomial.coefficients().iter().skip(skipped);
+            let sum = kept.rev().fold(0.0, |sum, c| sum / frequency + c.abs());
+            (0..prompt.degree() - polynomial.degree() + skipped).fold(sum, |sum, _| sum / frequency)
+        };
+        (rest(prompt, 1) + rest(delayed, 0)) / leading
+    };
+    let allowed = (0.9_f64).max(0.5 * (1.0 + gain));
+    let mut end = 1.0;
+    for _ in 0..1000 {
+        if share(end) <= allowed {
+            break;
+        }
+        end *= 2.0;
+    }
+    for _ in 0..1000 {
+        if share(0.5 * end) > allowed {
+            break;
+        }
+        end *= 0.5;
+    }
+    if share(end) <= allowed { Ok(end) } else { Err(Irresolution::GainAtInfinity) }
+}

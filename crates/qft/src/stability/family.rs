@@ -1,0 +1,344 @@
+//! Stability of a family: every member, then the worst of what lies between them.
+
+use phea_dynamics::linear::LinearError;
+
+use super::characteristic::{Characteristic, FeedbackPath};
+use super::search::climb;
+use super::{Irresolution, MemberStability, StabilityStatus, characteristic, of_member};
+use crate::closed_loop::{Compensation, Member};
+use crate::family::{Extent, Family, UncertainFamily};
+use crate::verification::{ClosestApproach, DelayMargin, Evidence, PlantPoint, StabilityFinding, Verdict};
+
+/// Starts of the search for each worst case.
+const STARTS: usize = 4;
+/// Two starts lie farther apart than this, as a share of at least one coordinate.
+const START_DISTANCE: f64 = 0.3;
+/// A smallest |1 + L| below which it is not told from zero.
+const ZERO: f64 = 1e-6;
+
+/// What was found of a family.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FamilyStability {
+    /// The verdict, what it rests on, and the plant nearest to instability.
+    pub finding: StabilityFinding,
+    /// The least further dead time that makes a plant unstable; `None` unless the family is stable.
+    pub delay_margin: Option<DelayMargin>,
+}
+
+/// Stability of a family, one member or one search a step.
+///
+/// Over a box, a search starts from the worst members for the largest real part (where there are poles), for the smallest
+/// |1 + L|, and for the least critical delay.
+///
+/// # Example
+/// s^2 = 2.5 with an uncertain gain and zero, k (s + a)/(s^2 - 2.5), needs C k a > 2.5:
+/// ```
+/// use phea_dynamics::controller::{Compensator, Controller, Element};
+/// use phea_dynamics::linear::TransferFunction;
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// use phea_qft::closed_loop::Compensation;
+/// use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
+/// use phea_qft::stability::StabilityAudit;
+/// use phea_qft::verification::Verdict;
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let parameter =
+///     |name: &str, minimum, maximum| UncertainParameter { name: name.into(), nominal: minimum, minimum, maximum };
+/// let parameters = vec![parameter("k", 1.0, 10.0), parameter("a", 0.1, 1.0)];
+/// let plant = UncertainPlant::record(parameters, |p| PlantCoefficients {
+///     command: RationalCoefficients {
+///         numerator: vec![p[0], p[0] * p[1]],
+///         denominator: vec![1.0.into(), 0.0.into(), (-2.5).into()],
+///     },
+///     disturbance: None,
+///     dead_time_s: 0.0.into(),
+/// })?;
+/// let coordinate =
+///     |index| Coordinate { parameters: vec![index], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
+/// let coordinates = vec![coordinate(0), coordinate(1)];
+/// let members = vertices(&plant, &coordinates)?;
+/// let family = Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box)?);
+/// let verdict = |gain: f64| {
+///     let feedback = Compensator::new(vec![Element::Gain(gain)]);
+///     let controller = Controller { feedback, ..Controller::default() };
+///     let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0))?;
+///     let mut audit = StabilityAudit::new(&family, &compensation);
+///     while audit.step() {}
+///     Ok::<_, phea_dynamics::linear::LinearError>(audit.result().finding.verdict)
+/// };
+/// assert_eq!(verdict(24.9)?, Verdict::Violated);
+/// assert_eq!(verdict(25.1)?, Verdict::Met);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct StabilityAudit<'a> {
+    family: &'a Family,
+    compensation: &'a Compensation,
+    path: Result<FeedbackPath, Irresolution>,
+    /// How bad each member is, by each of [`Badness`]; as far as it was looked at.
+    members: Vec<[f64; 3]>,
+    searches: Option<Vec<(Badness, Vec<f64>)>>,
+    record: Record,
+}
+
+/// What the search makes as large as it can.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Badness {
+    RealPart,
+    Closeness,
+    DelaySensitivity,
+}
+
+/// The worst found so far.
+#[derive(Clone, Debug, Default)]
+struct Record {
+    unstable: Option<(f64, String, PlantPoint)>,
+    unresolved: Option<(String, PlantPoint)>,
+    real_part: Option<(f64, PlantPoint)>,
+    closest: Option<ClosestApproach>,
+    delay: Option<DelayMargin>,
+}
+
+impl<'a> StabilityAudit<'a> {
+    /// An audit of this family within this loop; nothing is computed yet.
+    pub fn new(family: &'a Family, compensation: &'a Compensation) -> StabilityAudit<'a> {
+        StabilityAudit {
+            family,
+            compensation,
+            path: FeedbackPath::new(compensation),
+            members: Vec::new(),
+            searches: None,
+            record: Record::default(),
+        }
+    }
+
+    /// Looks at one more member, or searches from one more start; whether there is more to do.
+    pub fn step(&mut self) -> bool {
+        if self.members.len() < self.member_count() {
+            let index = self.members.len();
+            let (plant, found) = self.judged_member(index);
+            self.record.take(plant, &found);
+            self.members.push(badness_of(&found));
+            return true;
+        }
+        let Family::Uncertain(family) = self.family else { return false };
+        let mut searches = self.searches.take().unwrap_or_else(|| self.starts(family));
+        let next = searches.pop();
+        self.searches = Some(searches);
+        let Some((badness, start)) = next else { return false };
+        let (shares, _) = climb(&start, &mut |shares| self.badness_at(family, badness, shares));
+        let values = family.values(&shares);
+        let found = self.judged(self.rational_member(family, &values));
+        self.record.take(PlantPoint::Parameters(values), &found);
+        true
+    }
+
+    /// The share of members that were looked at, from 0 to 1.
+    pub fn progress(&self) -> f64 {
+        self.members.len() as f64 / self.member_count() as f64
+    }
+
+    fn member_count(&self) -> usize {
+        match self.family {
+            Family::Uncertain(family) => family.members().len(),
+            Family::Measured(family) => family.plants().len(),
+        }
+    }
+
+    fn judged_member(&self, index: usize) -> (PlantPoint, MemberStability) {
+        match self.family {
+            Family::Uncertain(family) => {
+                let values = family.members().get(index).cloned().unwrap_or_default();
+                let found = self.judged(self.rational_member(family, &values));
+                (PlantPoint::Parameters(values), found)
+            }
+            Family::Measured(family) => {
+                let member = family.plants().get(index).map(|plant| self.compensation.measured(plant));
+                let member = member.ok_or(LinearError::ZeroPolynomial);
+                (PlantPoint::Measured(index), self.judged(member))
+            }
+        }
+    }
+
+    fn rational_member(&self, family: &UncertainFamily, values: &[f64]) -> Result<Member, LinearError> {
+        self.compensation.member(family.plant().coefficients(values))
+    }
+
+    fn judged(&self, member: Result<Member, LinearError>) -> MemberStability {
+        match (&self.path, member) {
+            (Ok(path), Ok(member)) => of_member(&member, self.compensation, path),
+            (Err(reason), _) => MemberStability::not_resolved(reason.clone()),
+            (_, Err(error)) => MemberStability::not_resolved(Irresolution::Linear(error)),
+        }
+    }
+
+    /// The worst members that lie apart from each other, for each badness that all members have; the last is searched first.
+    fn starts(&self, family: &UncertainFamily) -> Vec<(Badness, Vec<f64>)> {
+        if family.extent() == Extent::Members || family.coordinates().is_empty() {
+            return Vec::new();
+        }
+        let mut starts = Vec::new();
+        for badness in [Badness::DelaySensitivity, Badness::Closeness, Badness::RealPart] {
+            let value = |member: &[f64; 3]| member[badness as usize];
+            let mut order: Vec<usize> = (0..self.members.len()).collect();
+            order.retain(|&index| self.members.get(index).is_some_and(|member| value(member).is_finite()));
+            order.sort_by(|&a, &b| value(&self.members[b]).total_cmp(&value(&self.members[a])));
+            let mut chosen: Vec<Vec<f64>> = Vec::new();
+            for index in order {
+                let shares = family.shares(&family.members()[index]);
+                if chosen.iter().all(|earlier| apart(earlier, &shares)) {
+                    chosen.push(shares);
+                }
+                if chosen.len() == STARTS {
+                    break;
+                }
+            }
+            starts.extend(chosen.into_iter().rev().map(|shares| (badness, shares)));
+        }
+        starts
+    }
+
+    fn badness_at(&self, family: &UncertainFamily, badness: Badness, shares: &[f64]) -> f64 {
+        let values = family.values(shares);
+        let Ok(path) = &self.path else { return f64::NAN };
+        let Ok(member) = self.rational_member(family, &values) else { return f64::NAN };
+        match characteristic(&member, path) {
+            Some(Ok(characteristic)) => badness.of(&characteristic).unwrap_or(f64::NAN),
+            _ => f64::NAN,
+        }
+    }
+
+    /// What was found, once all steps are done; before, what was found so far.
+    pub fn result(&self) -> FamilyStability {
+        let record = &self.record;
+        let (verdict, plant, reason) = self.judgement();
+        let stable = verdict == Verdict::Met;
+        let searched = self.searches.is_some() && self.searched();
+        FamilyStability {
+            finding: StabilityFinding {
+                verdict,
+                evidence: if searched { Evidence::Search } else { Evidence::Grid },
+                largest_real_part: record.real_part.as_ref().map(|(real_part, _)| *real_part),
+                plant,
+                closest_approach: record.closest.clone().filter(|_| stable),
+                reason,
+            },
+            delay_margin: record.delay.clone().filter(|_| stable),
+        }
+    }
+
+    fn judgement(&self) -> (Verdict, PlantPoint, String) {
+        let record = &self.record;
+        if let Some((_, reason, plant)) = &record.unstable {
+            return (Verdict::Violated, plant.clone(), reason.clone());
+        }
+        if !self.compensation.prefilter().is_stable() {
+            let reason = "the prefilter itself is unstable".to_owned();
+            return (Verdict::Violated, self.nominal(), reason);
+        }
+        if let Some((reason, plant)) = &record.unresolved {
+            return (Verdict::NotProven, plant.clone(), reason.clone());
+        }
+        if let Some(closest) = record.closest.as_ref().filter(|closest| closest.distance < ZERO) {
+            let reason = Irresolution::NearBoundary { frequency_rad_per_s: closest.frequency_rad_per_s };
+            return (Verdict::NotProven, closest.plant.clone(), reason.to_string());
+        }
+        let plants = self.members.len();
+        let way = match (&record.real_part, self.family) {
+            (_, Family::Measured(_)) => "by Nyquist's count on the measured points",
+            (Some(_), _) => "by their closed-loop poles",
+            (None, _) => "by the turns of their characteristic function",
+        };
+        let mut reason = format!("all {plants} plants are stable {way}");
+        if let Some(closest) = &record.closest {
+            let ClosestApproach { distance, frequency_rad_per_s, .. } = closest;
+            let where_found = if self.searched() { "searched between them, " } else { "" };
+            reason += &format!(
+                "; {where_found}|1 + L| is never below {distance:.4} (at {frequency_rad_per_s:.4} rad/s)"
+            );
+        }
+        let nearest = record.real_part.as_ref().map(|(_, plant)| plant.clone());
+        let nearest = nearest.or(record.closest.as_ref().map(|closest| closest.plant.clone()));
+        (Verdict::Met, nearest.unwrap_or_else(|| self.nominal()), reason)
+    }
+
+    fn nominal(&self) -> PlantPoint {
+        match self.family {
+            Family::Uncertain(family) => PlantPoint::Parameters(family.plant().nominal()),
+            Family::Measured(_) => PlantPoint::Measured(0),
+        }
+    }
+
+    fn searched(&self) -> bool {
+        match self.family {
+            Family::Uncertain(family) => family.extent() == Extent::Box,
+            Family::Measured(_) => false,
+        }
+    }
+}
+
+impl Badness {
+    fn of(self, characteristic: &Characteristic) -> Option<f64> {
+        match self {
+            Badness::RealPart => characteristic.largest_real_part().ok()?,
+            Badness::Closeness => {
+                let found = characteristic.encirclement().ok()?;
+                Some(if found.unstable_poles > 0 { f64::INFINITY } else { -found.closest.0 })
+            }
+            Badness::DelaySensitivity => Some(-characteristic.critical_delay().ok()?.delay_s),
+        }
+    }
+}
+
+fn badness_of(found: &MemberStability) -> [f64; 3] {
+    [
+        found.largest_real_part.unwrap_or(f64::NAN),
+        found.closest_approach.map_or(f64::NAN, |closest| -closest.distance),
+        found.critical_delay.map_or(f64::NAN, |critical| -critical.delay_s),
+    ]
+}
+
+fn apart(one: &[f64], other: &[f64]) -> bool {
+    one.iter().zip(other).any(|(a, b)| (a - b).abs() > START_DISTANCE)
+}
+
+impl Record {
+    fn take(&mut self, plant: PlantPoint, found: &MemberStability) {
+        let real_part = found.largest_real_part.filter(|real_part| real_part.is_finite());
+        if let Some(real_part) = real_part
+            && self.real_part.as_ref().is_none_or(|(largest, _)| real_part > *largest)
+        {
+            self.real_part = Some((real_part, plant.clone()));
+        }
+        match &found.status {
+            StabilityStatus::Unstable(instability) => {
+                let size = real_part.unwrap_or(0.0);
+                if self.unstable.as_ref().is_none_or(|(largest, ..)| size > *largest) {
+                    self.unstable = Some((size, instability.to_string(), plant.clone()));
+                }
+            }
+            StabilityStatus::NotResolved(reason) if self.unresolved.is_none() => {
+                self.unresolved = Some((reason.to_string(), plant.clone()));
+            }
+            _ => {}
+        }
+        if let Some(closest) = found.closest_approach
+            && self.closest.as_ref().is_none_or(|nearest| closest.distance < nearest.distance)
+        {
+            self.closest = Some(ClosestApproach {
+                distance: closest.distance,
+                frequency_rad_per_s: closest.frequency_rad_per_s,
+                plant: plant.clone(),
+            });
+        }
+        if let Some(critical) = found.critical_delay
+            && self.delay.as_ref().is_none_or(|least| critical.delay_s < least.delay_s)
+        {
+            self.delay = Some(DelayMargin {
+                delay_s: critical.delay_s,
+                frequency_rad_per_s: critical.frequency_rad_per_s,
+                plant,
+            });
+        }
+    }
+}

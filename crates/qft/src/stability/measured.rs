@@ -1,0 +1,180 @@
+//! Nyquist's count on measured points.
+//!
+//! ```text
+//! Z = P - (1/pi) (change of arg(1 + L), w = 0 .. infinity)        P: open-loop poles in the right half plane, stated with the measurement
+//! ```
+//!
+//! What the points do not show is not assumed: turns between two of them, the loop below the first, and the loop above the last.
+
+use num_complex::Complex64;
+use phea_dynamics::linear::{TimeDomain, TransferFunction};
+use phea_dynamics::portable;
+
+use super::{Approach, CriticalDelay, Instability, Irresolution, MemberStability, StabilityStatus};
+use crate::closed_loop::{Compensation, Member};
+
+/// Largest turn between two points, rad.
+const TURN_MAXIMUM: f64 = std::f64::consts::FRAC_PI_3;
+/// |L| that is well below one.
+const SMALL_GAIN: f64 = 0.5;
+/// |L| that is well above one.
+const LARGE_GAIN: f64 = 2.0;
+/// How near to a whole number of integrators the slope of ln|L| must be at the low end.
+const SLOPE_TOLERANCE: f64 = 0.3;
+
+/// L at the frequencies of the measurement, up to half the sampling rate.
+struct OpenLoop<'a> {
+    member: &'a Member,
+    compensation: &'a Compensation,
+    points: Vec<(f64, Complex64)>,
+    unstable_poles: usize,
+}
+
+pub(super) fn stability(member: &Member, compensation: &Compensation) -> MemberStability {
+    let count = OpenLoop::new(member, compensation).and_then(|open_loop| {
+        let unstable = open_loop.unstable_closed_loop_poles()?;
+        Ok((open_loop, unstable))
+    });
+    let (open_loop, unstable) = match count {
+        Ok(counted) => counted,
+        Err(reason) => return MemberStability::not_resolved(reason),
+    };
+    let stable = unstable == 0;
+    MemberStability {
+        status: if stable {
+            StabilityStatus::Stable
+        } else {
+            StabilityStatus::Unstable(Instability::Poles { count: unstable })
+        },
+        largest_real_part: None,
+        closest_approach: stable.then(|| open_loop.closest_approach()),
+        critical_delay: stable.then(|| open_loop.critical_delay()),
+    }
+}
+
+impl<'a> OpenLoop<'a> {
+    fn new(member: &'a Member, compensation: &'a Compensation) -> Result<OpenLoop<'a>, Irresolution> {
+        let Member::Measured { plant, sensor, .. } = member else { return Err(Irresolution::Points) };
+        let outside = outside_of_stable_region(compensation.feedback())?
+            + outside_of_stable_region(sensor)?
+            + plant.unstable_poles;
+        let mut open_loop = OpenLoop { member, compensation, points: Vec::new(), unstable_poles: outside };
+        let highest = compensation.highest_frequency_rad_per_s();
+        for &frequency in plant.frequencies_rad_per_s.iter().take_while(|&&frequency| frequency <= highest) {
+            open_loop.points.extend(open_loop.at(frequency).map(|value| (frequency, value)));
+        }
+        Ok(open_loop)
+    }
+
+    fn at(&self, frequency: f64) -> Option<Complex64> {
+        let response = self.member.response(frequency)?;
+        Some(response.plant * response.sensor * self.compensation.feedback().at_frequency(frequency))
+    }
+
+    fn unstable_closed_loop_poles(&self) -> Result<usize, Irresolution> {
+        let &[first, second, ..] = self.points.as_slice() else { return Err(Irresolution::Points) };
+        let mut turned = turn_below(first, second)?;
+        for pair in self.points.windows(2) {
+            let &[(from, before), (to, after)] = pair else { continue };
+            let turn = portable::argument((1.0 + after) / (1.0 + before));
+            let open_turn = portable::argument(after / before).abs();
+            let widest = if portable::magnitude(before).max(portable::magnitude(after)) > SMALL_GAIN {
+                turn.abs().max(open_turn)
+            } else {
+                turn.abs()
+            };
+            if widest.is_nan() || widest > TURN_MAXIMUM {
+                return Err(Irresolution::Coarse {
+                    from_rad_per_s: from,
+                    to_rad_per_s: to,
+                    turn_deg: widest.to_degrees(),
+                });
+            }
+            turned += turn;
+        }
+        let &(frequency_rad_per_s, last) = self.points.last().ok_or(Irresolution::Points)?;
+        let gain = portable::magnitude(last);
+        if gain.is_nan() || gain > SMALL_GAIN {
+            return Err(Irresolution::HighEnd { frequency_rad_per_s, gain });
+        }
+        turned -= portable::argument(1.0 + last);
+        let count = self.unstable_poles as f64 - turned / std::f64::consts::PI;
+        if (count - count.round()).abs() > 1e-6 || count.round() < 0.0 {
+            return Err(Irresolution::Count { count });
+        }
+        Ok(count.round() as usize)
+    }
+
+    fn closest_approach(&self) -> Approach {
+        let distances = self.points.iter().map(|&(frequency_rad_per_s, value)| Approach {
+            distance: portable::magnitude(1.0 + value),
+            frequency_rad_per_s,
+        });
+        let none = Approach { distance: f64::INFINITY, frequency_rad_per_s: f64::INFINITY };
+        distances.fold(none, |nearest, next| if next.distance < nearest.distance { next } else { nearest })
+    }
+
+    /// Crossovers lie where the line between two points crosses one.
+    fn critical_delay(&self) -> CriticalDelay {
+        let above = |value: Complex64| portable::magnitude(value) >= 1.0;
+        let mut least = CriticalDelay::NONE;
+        for pair in self.points.windows(2) {
+            let &[(mut low, before), (mut high, after)] = pair else { continue };
+            if above(before) == above(after) {
+                continue;
+            }
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if self.at(middle).is_some_and(|value| above(value) == above(before)) {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            let Some(value) = self.at(high) else { continue };
+            let lag = portable::argument(-value);
+            let lag = if lag < 0.0 { lag + 2.0 * std::f64::consts::PI } else { lag };
+            if lag / high < least.delay_s {
+                least = CriticalDelay { delay_s: lag / high, frequency_rad_per_s: high };
+            }
+        }
+        least
+    }
+}
+
+/// Poles outside of the stable region; those at zero frequency show in the measured loop.
+fn outside_of_stable_region(function: &TransferFunction) -> Result<usize, Irresolution> {
+    let continuous = function.domain() == TimeDomain::Continuous;
+    let excess = |pole: &Complex64| if continuous { pole.re } else { portable::magnitude(*pole) - 1.0 };
+    let at_zero_frequency = if continuous { Complex64::new(0.0, 0.0) } else { Complex64::new(1.0, 0.0) };
+    let poles = || function.poles().iter().filter(|pole| **pole != at_zero_frequency);
+    if poles().any(|pole| excess(pole) == 0.0) {
+        return Err(Irresolution::UndampedController);
+    }
+    Ok(poles().filter(|pole| excess(pole) > 0.0).count())
+}
+
+/// The change of arg(1 + L) from zero frequency, where 1 + L is real, to the first point, around m integrators by the right:
+/// -m pi/2 and the little by which the first point is off. The slope of |L| there tells m.
+fn turn_below(first: (f64, Complex64), second: (f64, Complex64)) -> Result<f64, Irresolution> {
+    let unknown = Err(Irresolution::LowEnd { frequency_rad_per_s: first.0 });
+    let gain = portable::magnitude(first.1);
+    let slope = portable::ln(portable::magnitude(second.1) / gain) / portable::ln(second.0 / first.0);
+    let integrators = (-slope).round();
+    if gain <= SMALL_GAIN && integrators <= 0.0 {
+        return Ok(portable::argument(1.0 + first.1));
+    }
+    let whole = (slope + integrators).abs() <= SLOPE_TOLERANCE;
+    if !whole || integrators < 0.0 || (integrators > 0.0 && gain < LARGE_GAIN) {
+        return unknown;
+    }
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let mut rest = 1.0 + first.1;
+    let mut done = 0.0;
+    while done < integrators {
+        rest *= Complex64::new(0.0, 1.0);
+        done += 1.0;
+    }
+    let off = portable::argument(if rest.re < 0.0 { -rest } else { rest });
+    if off.abs() > TURN_MAXIMUM { unknown } else { Ok(off - integrators * quarter) }
+}
