@@ -343,6 +343,9 @@ def limits():
     lower_denominator = np.polymul([1.0, 40.0000004, 400.000004], [1.0, 50.0])
     _, settling = metrics(step_response([20000.0], lower_denominator, times), times, 0.01)
     expect("6.29 settling time", settling, 0.356, 5e-4)
+    expect("6.30 gain margin of 1.3 in dB", 20 * math.log10(1 + 1 / 1.3), 4.96, 5e-3)
+    expect("6.30 phase margin of 1.3 in degrees", math.degrees(2 * math.asin(0.5 / 1.3)), 45.2, 0.05)
+    expect("6.30 limit for 5 dB", 1 / (10 ** (5 / 20) - 1), 1.285, 5e-4)
 
 
 def sources_of_constants():

@@ -1,11 +1,28 @@
 //! Specifications: a closed-loop magnitude, its limit over frequency, where bounds are drawn and where it must hold.
 
 mod limit;
+mod margin;
+mod minimum;
+mod time_domain;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
 pub use limit::{Limit, LimitError, LimitTable};
+pub use margin::{
+    DelayGuarantee, GuaranteedMargins, MarginError, delay_margin_limit, delay_margin_limit_table,
+    guaranteed_delay, guaranteed_margins, guaranteed_margins_of_robust_stability,
+    guaranteed_margins_of_sensitivity, robust_stability_limit_for_gain_increase,
+    robust_stability_limit_for_gain_reduction, robust_stability_limit_for_modulus_margin,
+    robust_stability_limit_for_phase_margin, sensitivity_limit_for_gain_increase,
+    sensitivity_limit_for_gain_reduction, sensitivity_limit_for_modulus_margin,
+    sensitivity_limit_for_phase_margin,
+};
+pub use time_domain::{
+    ExtraRoot, LimitOrder, LowerWish, Reached, TimeDomainError, TrackingLimit, TrackingSpread, Translation,
+    UpperWish, WishCheck, WishOutcome, Wished, check_lower, check_upper, tracking_lower, tracking_spread,
+    tracking_upper,
+};
 
 /// What is limited. L = P G H is the loop of plant P, controller G and sensor H; F the prefilter; Pd = F_e/X_L the load-motion
 /// path.

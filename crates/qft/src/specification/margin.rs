@@ -1,0 +1,291 @@
+//! Stability margins and the limits that guarantee them, both ways.
+//!
+//! A limit on |L/(1+L)| or |1/(1+L)| keeps L out of a circle near -1, and so guarantees margins: each formula here is the
+//! place where that circle meets the negative real axis, the unit circle, or the point nearest to -1. All are attained by
+//! some L, so none can be sharpened. They hold for a loop that is stable when closed and keeps to the limit at every frequency.
+//!
+//! # Example
+//! The thesis' limit of 1.3 on |L/(1+L)| (6.30) stands for a gain margin of 5 dB, almost:
+//! ```
+//! use phea_dynamics::frequency::decibels;
+//! use phea_qft::specification::{
+//!     guaranteed_margins_of_robust_stability, robust_stability_limit_for_gain_increase,
+//! };
+//! let margins = guaranteed_margins_of_robust_stability(1.3)?;
+//! assert!((decibels(margins.gain_increase) - 4.96).abs() < 0.005);
+//! assert!((margins.phase_rad.to_degrees() - 45.2).abs() < 0.05);
+//! let five_decibel = 10.0_f64.powf(0.25);
+//! assert!((robust_stability_limit_for_gain_increase(five_decibel)? - 1.285).abs() < 5e-4);
+//! # Ok::<(), phea_qft::specification::MarginError>(())
+//! ```
+
+mod delay;
+
+use std::f64::consts::PI;
+
+use phea_dynamics::portable::{asin, sin};
+
+use super::{Limit, Requirement};
+
+pub use delay::{DelayGuarantee, delay_margin_limit, delay_margin_limit_table, guaranteed_delay};
+
+/// Why a margin has no limit, or a limit no margin.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MarginError {
+    /// A number outside the range in which the formula has a meaning.
+    #[error("{what} is {value}; it must be {expected}")]
+    OutOfRange {
+        /// What the number is.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The range, in words.
+        expected: &'static str,
+    },
+    /// The limit is given as a table that says nothing at this frequency.
+    #[error("the limit says nothing at {frequency_rad_per_s} rad/s, where a guarantee is asked for")]
+    Silent {
+        /// The frequency, rad/s.
+        frequency_rad_per_s: f64,
+    },
+}
+
+/// The margins that a limit guarantees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GuaranteedMargins {
+    /// Factor above one by which the gain may grow; infinity where no increase is excluded.
+    pub gain_increase: f64,
+    /// Factor below one to which the gain may fall; zero where no reduction is excluded.
+    pub gain_reduction: f64,
+    /// Angle in rad, up to pi, from -1 to where |L| = 1; infinity where |L| can never be one.
+    pub phase_rad: f64,
+    /// Least distance |1 + L|.
+    pub modulus: f64,
+}
+
+/// The margins that |L/(1+L)| <= W guarantees. W is a positive ratio.
+///
+/// ```text
+/// gain may grow by       1 + 1/W
+/// gain may fall to       1 - 1/W        (W > 1; to zero for W <= 1: L never crosses beyond -1)
+/// phase margin           2 asin(1/(2W)) (W >= 1/2; below, |L| < 1 everywhere)
+/// |1 + L|                1/(1 + W)      from |1/(1+L)| = |1 - L/(1+L)|
+/// ```
+///
+/// # Errors
+/// [`MarginError::OutOfRange`] for a limit that is not positive and finite.
+///
+/// # Example
+/// ```
+/// let margins = phea_qft::specification::guaranteed_margins_of_robust_stability(1.0)?;
+/// assert_eq!((margins.gain_increase, margins.gain_reduction, margins.modulus), (2.0, 0.0, 0.5));
+/// assert!((margins.phase_rad.to_degrees() - 60.0).abs() < 1e-12);
+/// # Ok::<(), phea_qft::specification::MarginError>(())
+/// ```
+pub fn guaranteed_margins_of_robust_stability(limit: f64) -> Result<GuaranteedMargins, MarginError> {
+    let limit = positive("the limit", limit)?;
+    Ok(GuaranteedMargins {
+        gain_increase: 1.0 + 1.0 / limit,
+        gain_reduction: if limit > 1.0 { (limit - 1.0) / limit } else { 0.0 },
+        phase_rad: phase_margin(limit),
+        modulus: 1.0 / (1.0 + limit),
+    })
+}
+
+/// The margins that |1/(1+L)| <= W guarantees. W is a positive ratio.
+///
+/// ```text
+/// gain may grow by       W/(W - 1)      (W > 1; without bound for W <= 1: L never crosses between -1 and 0)
+/// gain may fall to       W/(W + 1)
+/// phase margin           2 asin(1/(2W)) (W >= 1/2; below, |L| > 1 everywhere)
+/// |1 + L|                1/W            the modulus margin
+/// ```
+///
+/// # Errors
+/// [`MarginError::OutOfRange`] for a limit that is not positive and finite.
+///
+/// # Example
+/// ```
+/// let margins = phea_qft::specification::guaranteed_margins_of_sensitivity(2.0)?;
+/// assert_eq!((margins.gain_increase, margins.gain_reduction), (2.0, 2.0 / 3.0));
+/// assert_eq!(margins.modulus, 0.5);
+/// # Ok::<(), phea_qft::specification::MarginError>(())
+/// ```
+pub fn guaranteed_margins_of_sensitivity(limit: f64) -> Result<GuaranteedMargins, MarginError> {
+    let limit = positive("the limit", limit)?;
+    Ok(GuaranteedMargins {
+        gain_increase: if limit > 1.0 { limit / (limit - 1.0) } else { f64::INFINITY },
+        gain_reduction: limit / (limit + 1.0),
+        phase_rad: phase_margin(limit),
+        modulus: 1.0 / limit,
+    })
+}
+
+/// The margins that a requirement guarantees where it holds at every frequency; `None` for a requirement that says nothing about
+/// them: another closed loop than |L/(1+L)| and |1/(1+L)|, or a limit that depends on frequency.
+///
+/// # Errors
+/// [`MarginError::OutOfRange`] for a constant that is not positive and finite.
+///
+/// # Example
+/// ```
+/// use phea_qft::specification::{Limit, Requirement, guaranteed_margins};
+/// let stability = Requirement::RobustStability(Limit::Constant(1.0));
+/// assert_eq!(guaranteed_margins(&stability)?.map(|margins| margins.gain_increase), Some(2.0));
+/// assert_eq!(guaranteed_margins(&Requirement::ControlEffort(Limit::Constant(1.0)))?, None);
+/// # Ok::<(), phea_qft::specification::MarginError>(())
+/// ```
+pub fn guaranteed_margins(requirement: &Requirement) -> Result<Option<GuaranteedMargins>, MarginError> {
+    match requirement {
+        Requirement::RobustStability(Limit::Constant(limit)) => {
+            guaranteed_margins_of_robust_stability(*limit).map(Some)
+        }
+        Requirement::Sensitivity(Limit::Constant(limit)) => {
+            guaranteed_margins_of_sensitivity(*limit).map(Some)
+        }
+        _ => Ok(None),
+    }
+}
+
+/// The limit on |L/(1+L)| that lets the gain grow by this factor (above one): W = 1/(factor - 1).
+///
+/// # Errors
+/// [`MarginError::OutOfRange`].
+///
+/// # Example
+/// ```
+/// assert_eq!(phea_qft::specification::robust_stability_limit_for_gain_increase(3.0), Ok(0.5));
+/// ```
+pub fn robust_stability_limit_for_gain_increase(factor: f64) -> Result<f64, MarginError> {
+    Ok(1.0 / (above_one("the increase of gain", factor)? - 1.0))
+}
+
+/// The limit on |L/(1+L)| that lets the gain fall to this factor (above zero, below one): W = 1/(1 - factor).
+///
+/// # Errors
+/// [`MarginError::OutOfRange`].
+///
+/// # Example
+/// ```
+/// assert_eq!(phea_qft::specification::robust_stability_limit_for_gain_reduction(0.5), Ok(2.0));
+/// ```
+pub fn robust_stability_limit_for_gain_reduction(factor: f64) -> Result<f64, MarginError> {
+    Ok(1.0 / (1.0 - between_zero_and_one("the reduction of gain", factor)?))
+}
+
+/// The limit on |L/(1+L)| for this phase margin in rad (above zero, up to pi): W = 1/(2 sin(phase/2)).
+///
+/// # Errors
+/// [`MarginError::OutOfRange`].
+///
+/// # Example
+/// ```
+/// let limit = phea_qft::specification::robust_stability_limit_for_phase_margin(45.0_f64.to_radians())?;
+/// assert!((limit - 1.3066).abs() < 5e-5);
+/// # Ok::<(), phea_qft::specification::MarginError>(())
+/// ```
+pub fn robust_stability_limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginError> {
+    limit_for_phase_margin(phase_rad)
+}
+
+/// The limit on |L/(1+L)| that keeps |1 + L| at this distance (above zero, below one) or more: W = 1/distance - 1.
+///
+/// # Errors
+/// [`MarginError::OutOfRange`].
+///
+/// # Example
+/// ```
+/// assert_eq!(phea_qft::specification::robust_stability_limit_for_modulus_margin(0.5), Ok(1.0));
+/// ```
+pub fn robust_stability_limit_for_modulus_margin(distance: f64) -> Result<f64, MarginError> {
+    let distance = between_zero_and_one("the modulus margin", distance)?;
+    Ok((1.0 - distance) / distance)
+}
+
+/// The limit on |1/(1+L)| that lets the gain grow by this factor (above one): W = factor/(factor - 1).
+///
+/// # Errors
+/// [`MarginError::OutOfRange`].
+///
+/// # Example
+/// ```
+/// assert_eq!(phea_qft::specification::sensitivity_limit_for_gain_increase(2.0), Ok(2.0));
+/// ```
+pub fn sensitivity_limit_for_gain_increase(factor: f64) -> Result<f64, MarginError> {
+    let factor = above_one("the increase of gain", factor)?;
+    Ok(factor / (factor - 1.0))
+}
+
+/// The limit on |1/(1+L)| that lets the gain fall to this factor (above zero, below one): W = factor/(1 - factor).
+///
+/// # Errors
+/// [`MarginError::OutOfRange`].
+///
+/// # Example
+/// ```
+/// assert_eq!(phea_qft::specification::sensitivity_limit_for_gain_reduction(0.5), Ok(1.0));
+/// ```
+pub fn sensitivity_limit_for_gain_reduction(factor: f64) -> Result<f64, MarginError> {
+    let factor = between_zero_and_one("the reduction of gain", factor)?;
+    Ok(factor / (1.0 - factor))
+}
+
+/// The limit on |1/(1+L)| for this phase margin in rad (above zero, up to pi): W = 1/(2 sin(phase/2)), as for
+/// |L/(1+L)|, since both are equal where |L| = 1.
+///
+/// # Errors
+/// [`MarginError::OutOfRange`].
+///
+/// # Example
+/// ```
+/// let limit = phea_qft::specification::sensitivity_limit_for_phase_margin(60.0_f64.to_radians())?;
+/// assert!((limit - 1.0).abs() < 1e-15);
+/// # Ok::<(), phea_qft::specification::MarginError>(())
+/// ```
+pub fn sensitivity_limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginError> {
+    limit_for_phase_margin(phase_rad)
+}
+
+/// The limit on |1/(1+L)| that keeps |1 + L| at this distance (above zero) or more: W = 1/distance. A loop that vanishes
+/// at high frequency cannot keep more than one.
+///
+/// # Errors
+/// [`MarginError::OutOfRange`].
+///
+/// # Example
+/// ```
+/// assert_eq!(phea_qft::specification::sensitivity_limit_for_modulus_margin(0.5), Ok(2.0));
+/// ```
+pub fn sensitivity_limit_for_modulus_margin(distance: f64) -> Result<f64, MarginError> {
+    Ok(1.0 / positive("the modulus margin", distance)?)
+}
+
+/// The angle at which |L| = 1 meets |1 + L| = 1/W: 2 sin(phase/2) = 1/W; infinity where it cannot.
+fn phase_margin(limit: f64) -> f64 {
+    let sine = 0.5 / limit;
+    if sine > 1.0 { f64::INFINITY } else { 2.0 * asin(sine) }
+}
+
+fn limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginError> {
+    if !(phase_rad > 0.0 && phase_rad <= PI) {
+        let expected = "above 0 and at most pi";
+        return Err(MarginError::OutOfRange { what: "the phase margin in rad", value: phase_rad, expected });
+    }
+    Ok(0.5 / sin(phase_rad / 2.0))
+}
+
+fn positive(what: &'static str, value: f64) -> Result<f64, MarginError> {
+    in_range(what, value, value > 0.0 && value.is_finite(), "positive and finite")
+}
+
+fn above_one(what: &'static str, value: f64) -> Result<f64, MarginError> {
+    in_range(what, value, value > 1.0 && value.is_finite(), "above 1 and finite")
+}
+
+fn between_zero_and_one(what: &'static str, value: f64) -> Result<f64, MarginError> {
+    in_range(what, value, value > 0.0 && value < 1.0, "above 0 and below 1")
+}
+
+fn in_range(what: &'static str, value: f64, fits: bool, expected: &'static str) -> Result<f64, MarginError> {
+    if fits { Ok(value) } else { Err(MarginError::OutOfRange { what, value, expected }) }
+}

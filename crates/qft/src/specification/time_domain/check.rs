@@ -1,0 +1,163 @@
+use std::fmt;
+
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable::log10;
+use phea_dynamics::time_response::Settling;
+
+use super::step::reached;
+use super::{LowerWish, TimeDomainError, UpperWish};
+
+/// What is equal up to this share counts as equal: a peak that touches the band stays in it, a wish met to it is met.
+pub(super) const TOLERANCE: f64 = 1e-9;
+
+/// What was wished.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wished {
+    /// Largest overshoot, percent of the step.
+    pub overshoot_percent: f64,
+    /// Settling time, s.
+    pub settling_time_s: f64,
+    /// The band of the settling time: plus or minus this percentage of the step.
+    pub settling_band_percent: f64,
+}
+
+/// What the step response does, against a reference of one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached {
+    /// By how much it exceeds one, percent; zero when it does not.
+    pub overshoot_percent: f64,
+    /// Whether and when it stays within the band around one.
+    pub settling: Settling,
+}
+
+/// A limit of tracking held against the wish it was made for.
+///
+/// Displayed, it is a sentence of a report: see the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WishCheck {
+    /// What was wished.
+    pub wished: Wished,
+    /// What the response of the limit itself does.
+    pub reached: Reached,
+}
+
+/// Whether the response of a limit meets the wish.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WishOutcome {
+    /// To a billionth.
+    Met,
+    /// Not so.
+    Missed {
+        /// Overshoot beyond the wish, percent of the step; zero where it is kept.
+        overshoot_excess_percent: f64,
+        /// Settling time beyond the wish, s; zero where it is kept, infinity when it never settles.
+        settling_excess_s: f64,
+    },
+}
+
+/// Holds any upper limit against a wish.
+///
+/// # Errors
+/// [`TimeDomainError::OutOfRange`] for the wish; [`TimeDomainError::NotContinuous`], [`TimeDomainError::NotStable`],
+/// [`TimeDomainError::RingsTooLong`] or an improper function for the limit.
+///
+/// # Example
+/// See the [module](super).
+pub fn check_upper(function: &TransferFunction, wish: &UpperWish) -> Result<WishCheck, TimeDomainError> {
+    wish.check()?;
+    let UpperWish { overshoot_percent, settling_time_s, settling_band_percent } = *wish;
+    let wished = Wished { overshoot_percent, settling_time_s, settling_band_percent };
+    Ok(WishCheck { wished, reached: reached(function, settling_band_percent)? })
+}
+
+/// Holds any lower limit against a wish, which allows no overshoot.
+///
+/// # Errors
+/// As [`check_upper`].
+///
+/// # Example
+/// A lag settles within 1 % after ln 100 time constants:
+/// ```
+/// use num_complex::Complex64;
+/// use phea_dynamics::linear::TransferFunction;
+/// use phea_qft::specification::{LowerWish, WishOutcome, check_lower};
+/// let lag = TransferFunction::from_factors(10.0, vec![], vec![Complex64::new(-10.0, 0.0)])?;
+/// let check = check_lower(&lag, &LowerWish { settling_time_s: 0.4, settling_band_percent: 1.0 })?;
+/// let late = 100.0_f64.ln() / 10.0 - 0.4;
+/// match check.outcome() {
+///     WishOutcome::Missed { settling_excess_s, .. } => assert!((settling_excess_s - late).abs() < 1e-9),
+///     WishOutcome::Met => unreachable!(),
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn check_lower(function: &TransferFunction, wish: &LowerWish) -> Result<WishCheck, TimeDomainError> {
+    wish.check()?;
+    let LowerWish { settling_time_s, settling_band_percent } = *wish;
+    let wished = Wished { overshoot_percent: 0.0, settling_time_s, settling_band_percent };
+    Ok(WishCheck { wished, reached: reached(function, settling_band_percent)? })
+}
+
+impl WishCheck {
+    /// Whether the wish is met, and by how much not.
+    pub fn outcome(&self) -> WishOutcome {
+        let beyond = |reached: f64, wished: f64| {
+            if reached <= wished * (1.0 + TOLERANCE) + TOLERANCE * 1e-3 { 0.0 } else { reached - wished }
+        };
+        let overshoot_excess_percent = beyond(self.reached.overshoot_percent, self.wished.overshoot_percent);
+        let settling_time_s = self.reached.settling.time_s().unwrap_or(f64::INFINITY);
+        let settling_excess_s = beyond(settling_time_s, self.wished.settling_time_s);
+        if overshoot_excess_percent == 0.0 && settling_excess_s == 0.0 {
+            WishOutcome::Met
+        } else {
+            WishOutcome::Missed { overshoot_excess_percent, settling_excess_s }
+        }
+    }
+}
+
+/// One sentence, without a full stop: "wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself reaches
+/// 2.19 % overshoot and settles in 0.126 s".
+impl fmt::Display for WishCheck {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Wished { overshoot_percent, settling_time_s, settling_band_percent } = self.wished;
+        formatter.write_str("wished: ")?;
+        match overshoot_percent == 0.0 {
+            true => formatter.write_str("no overshoot")?,
+            false => write!(formatter, "at most {overshoot_percent} % overshoot")?,
+        }
+        write!(formatter, ", settled within {settling_band_percent} % in {settling_time_s} s; ")?;
+        if self.outcome() == WishOutcome::Met {
+            return formatter.write_str("the limit itself keeps to it");
+        }
+        match self.reached.overshoot_percent {
+            0.0 => formatter.write_str("the limit itself has no overshoot and ")?,
+            reached => {
+                let reached = beside(reached, overshoot_percent);
+                write!(formatter, "the limit itself reaches {reached} % overshoot and ")?;
+            }
+        }
+        match self.reached.settling {
+            Settling::Settled { time_s } => {
+                write!(formatter, "settles in {} s", beside(time_s, settling_time_s))
+            }
+            Settling::NotSettled { deviation_percent } => {
+                write!(formatter, "stays {} % off", significant(deviation_percent, 3))
+            }
+        }
+    }
+}
+
+/// The value in three digits, or as many more as tell it from the other.
+fn beside(value: f64, other: f64) -> String {
+    let differs = |digits: &i32| value == other || significant(value, *digits) != significant(other, *digits);
+    significant(value, (3..12).find(differs).unwrap_or(12))
+}
+
+/// The value with this many digits, trailing zeros left out.
+fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let decimals = (digits - 1 - log10(value.abs()).floor() as i32).max(0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+}

@@ -1,0 +1,317 @@
+use std::f64::consts::PI;
+
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable::{atan2, exp, log1p};
+use phea_dynamics::time_response::{SecondOrder, step_response};
+
+use super::check::{TOLERANCE, check_lower, check_upper};
+use super::{ExtraRoot, LowerWish, TimeDomainError, TrackingLimit, Translation, UpperWish};
+
+/// The upper limit of tracking for a wish.
+///
+/// ```text
+/// B_U(s) = w_n^2/(s^2 + 2 xi w_n s + w_n^2) (s + z)/z                       thesis (6.28)
+/// ```
+///
+/// Exact: with sigma = xi w_n and w_d = w_n sqrt(1 - xi^2) the first extreme of the response is at
+///
+/// ```text
+/// t_1 = (pi - atan2(w_d, z - sigma))/w_d,   overshoot = exp(-sigma t_1) sqrt(1 - 2 sigma/z + (w_n/z)^2)
+/// ```
+///
+/// which gives xi for each z/w_n (above one where z is below w_n); w_n follows by bisection on whether the response stays in the band
+/// from the settling time on. Where the settling time jumps, since an extreme leaves the band, the faster side is taken.
+///
+/// # Errors
+/// [`TimeDomainError::OutOfRange`], [`TimeDomainError::RuleBand`], and [`TimeDomainError::ExtraRootTooSlow`] when the slow decay behind a fixed
+/// zero keeps the response out of the band.
+///
+/// # Example
+/// ```
+/// use phea_qft::specification::{ExtraRoot, Translation, UpperWish, WishOutcome, tracking_upper};
+/// let wish = UpperWish { overshoot_percent: 1.0, settling_time_s: 0.1, settling_band_percent: 1.0 };
+/// let limit = tracking_upper(&wish, ExtraRoot::At { rad_per_s: 75.0 }, Translation::Exact)?;
+/// assert_eq!(limit.check.outcome(), WishOutcome::Met);
+/// assert!((limit.check.reached.overshoot_percent - 1.0).abs() < 1e-9);
+/// assert!((limit.natural_frequency_rad_per_s - 36.13).abs() < 0.005);
+/// # Ok::<(), phea_qft::specification::TimeDomainError>(())
+/// ```
+pub fn tracking_upper(
+    wish: &UpperWish,
+    extra_zero: ExtraRoot,
+    translation: Translation,
+) -> Result<TrackingLimit, TimeDomainError> {
+    wish.check()?;
+    extra_zero.check()?;
+    let model = match translation {
+        Translation::Rule(rule) => {
+            same_band(rule.band_percent(), wish.settling_band_percent)?;
+            SecondOrder::from_overshoot_and_settling_rule(wish.overshoot_percent, wish.settling_time_s, rule)?
+        }
+        Translation::Exact => {
+            let model = |natural: f64| {
+                let ratio = damping_ratio(wish.overshoot_percent / 100.0, extra_zero.share(natural));
+                SecondOrder::new(natural, ratio)
+            };
+            let settled = |natural: f64| upper_settles(wish, extra_zero, &model(natural)?);
+            model(least_natural_frequency(wish.settling_time_s, extra_zero, settled)?)?
+        }
+    };
+    let zero = extra_zero.place(model.natural_frequency_rad_per_s());
+    let function = with_zero(&model, zero)?;
+    let check = check_upper(&function, wish)?;
+    Ok(limit(function, &model, zero, check))
+}
+
+/// The lower limit of tracking for a wish: critically damped, with or without an extra pole.
+///
+/// ```text
+/// B_L(s) = w_n^2/(s + w_n)^2 p/(s + p)                                      thesis (6.29)
+/// ```
+///
+/// Exact: the response rises monotonically, so w_n follows by bisection on its value at the settling time.
+///
+/// # Errors
+/// [`TimeDomainError::OutOfRange`], [`TimeDomainError::RuleBand`], and [`TimeDomainError::ExtraRootTooSlow`] when a fixed pole alone takes longer:
+/// p t_s must exceed ln(100/band).
+///
+/// # Example
+/// ```
+/// use phea_qft::specification::{ExtraRoot, LowerWish, Translation, WishOutcome, tracking_lower};
+/// let wish = LowerWish { settling_time_s: 0.3, settling_band_percent: 1.0 };
+/// let limit = tracking_lower(&wish, ExtraRoot::At { rad_per_s: 50.0 }, Translation::Exact)?;
+/// assert_eq!(limit.check.outcome(), WishOutcome::Met);
+/// assert!((limit.natural_frequency_rad_per_s - 24.19).abs() < 0.005);
+/// # Ok::<(), phea_qft::specification::TimeDomainError>(())
+/// ```
+pub fn tracking_lower(
+    wish: &LowerWish,
+    extra_pole: ExtraRoot,
+    translation: Translation,
+) -> Result<TrackingLimit, TimeDomainError> {
+    wish.check()?;
+    extra_pole.check()?;
+    let model = match translation {
+        Translation::Rule(rule) => {
+            same_band(rule.band_percent(), wish.settling_band_percent)?;
+            SecondOrder::from_overshoot_and_settling_rule(0.0, wish.settling_time_s, rule)?
+        }
+        Translation::Exact => {
+            let settled = |natural: f64| {
+                let function = with_pole(&SecondOrder::new(natural, 1.0)?, extra_pole.place(natural))?;
+                Ok(deviation(&function, wish.settling_time_s)? <= wish.settling_band_percent / 100.0)
+            };
+            SecondOrder::new(least_natural_frequency(wish.settling_time_s, extra_pole, settled)?, 1.0)?
+        }
+    };
+    let pole = extra_pole.place(model.natural_frequency_rad_per_s());
+    let function = with_pole(&model, pole)?;
+    let check = check_lower(&function, wish)?;
+    Ok(limit(function, &model, pole, check))
+}
+
+fn limit(
+    function: TransferFunction,
+    model: &SecondOrder,
+    extra_root_rad_per_s: Option<f64>,
+    check: super::WishCheck,
+) -> TrackingLimit {
+    TrackingLimit {
+        function,
+        natural_frequency_rad_per_s: model.natural_frequency_rad_per_s(),
+        damping_ratio: model.damping_ratio(),
+        extra_root_rad_per_s,
+        check,
+    }
+}
+
+fn same_band(rule_percent: f64, wish_percent: f64) -> Result<(), TimeDomainError> {
+    if rule_percent == wish_percent {
+        Ok(())
+    } else {
+        Err(TimeDomainError::RuleBand { rule_percent, wish_percent })
+    }
+}
+
+fn with_zero(model: &SecondOrder, zero: Option<f64>) -> Result<TransferFunction, TimeDomainError> {
+    let function = model.transfer_function();
+    let Some(zero) = zero else { return Ok(function) };
+    let factor = TransferFunction::from_factors(1.0 / zero, vec![Complex64::new(-zero, 0.0)], Vec::new())?;
+    Ok(function.series(&factor)?)
+}
+
+fn with_pole(model: &SecondOrder, pole: Option<f64>) -> Result<TransferFunction, TimeDomainError> {
+    let function = model.transfer_function();
+    let Some(pole) = pole else { return Ok(function) };
+    let lag = TransferFunction::from_factors(pole, Vec::new(), vec![Complex64::new(-pole, 0.0)])?;
+    Ok(function.series(&lag)?)
+}
+
+/// |1 - y(t)| of the unit step response.
+fn deviation(function: &TransferFunction, time_s: f64) -> Result<f64, TimeDomainError> {
+    let value = step_response(function, &[time_s])?.iter().sum::<f64>();
+    Ok((1.0 - value).abs())
+}
+
+/// Whether the response of the model with its zero stays in the band from the settling time on.
+fn upper_settles(
+    wish: &UpperWish,
+    extra_zero: ExtraRoot,
+    model: &SecondOrder,
+) -> Result<bool, TimeDomainError> {
+    let natural = model.natural_frequency_rad_per_s();
+    let band = wish.settling_band_percent / 100.0;
+    let function = with_zero(model, extra_zero.place(natural))?;
+    if deviation(&function, wish.settling_time_s)? > band {
+        return Ok(false);
+    }
+    // in the band now: it stays there if the next extreme does
+    let (ratio, share) = (model.damping_ratio(), extra_zero.share(natural));
+    let time = natural * wish.settling_time_s;
+    let next = first_extreme(ratio, share).and_then(|first| {
+        let half_period = PI / ((1.0 - ratio) * (1.0 + ratio)).sqrt();
+        let passed = ((time - first) / half_period).ceil();
+        match ratio < 1.0 && passed > 0.0 {
+            true => Some(first + passed * half_period),
+            false => (time <= first).then_some(first),
+        }
+    });
+    Ok(next.is_none_or(|next| extreme(ratio, share, next) <= band * (1.0 + TOLERANCE)))
+}
+
+/// The first time, in units of 1/w_n, at which the response with zero z = w_n/share is at rest; none where it only rises.
+///
+/// The slope is proportional to exp(-xi t) ((1 - xi share) S + share C), with C = cos, S = sin/sqrt(1 - xi^2) of sqrt(1 - xi^2) t,
+/// or their hyperbolic twins.
+fn first_extreme(ratio: f64, share: f64) -> Option<f64> {
+    let (rise, square) = (ratio * share - 1.0, (1.0 - ratio) * (1.0 + ratio));
+    if square > 0.0 {
+        let damped = square.sqrt();
+        return Some(atan2(damped * share, rise) / damped);
+    }
+    let spread = (-square).sqrt();
+    if rise <= spread * share {
+        return None;
+    }
+    if spread == 0.0 {
+        return Some(share / rise);
+    }
+    let tangent = spread * share / rise;
+    Some((log1p(tangent) - log1p(-tangent)) / (2.0 * spread))
+}
+
+/// How far the response is from its final value when it is at rest at this time (in units of 1/w_n).
+fn extreme(ratio: f64, share: f64, time: f64) -> f64 {
+    exp(-ratio * time) * (1.0 - 2.0 * ratio * share + share * share).max(0.0).sqrt()
+}
+
+/// The damping ratio with which the response with zero z = w_n/share overshoots by this ratio.
+fn damping_ratio(overshoot: f64, share: f64) -> f64 {
+    // from here on there is none: critically damped, or the slow pole meets the zero
+    let most = if share <= 1.0 { 1.0 } else { (share + 1.0 / share) / 2.0 };
+    let overshoots = |ratio: f64| first_extreme(ratio, share).map_or(0.0, |time| extreme(ratio, share, time));
+    if overshoot == 0.0 {
+        return most;
+    }
+    let (mut low, mut high) = (0.0, most);
+    loop {
+        let middle = low + 0.5 * (high - low);
+        if middle <= low || middle >= high {
+            return high;
+        }
+        if overshoots(middle) > overshoot { low = middle } else { high = middle }
+    }
+}
+
+/// The natural frequency from which on the response has settled by the wished time, by doubling and bisection.
+fn least_natural_frequency<F: Fn(f64) -> Result<bool, TimeDomainError>>(
+    settling_time_s: f64,
+    extra_root: ExtraRoot,
+    settled: F,
+) -> Result<f64, TimeDomainError> {
+    const DOUBLINGS: usize = 30;
+    let mut high = 1.0 / settling_time_s;
+    let mut doublings = 0;
+    while !settled(high)? {
+        high *= 2.0;
+        doublings += 1;
+        if doublings > DOUBLINGS {
+            let extra_root_rad_per_s = extra_root.place(high).unwrap_or(f64::INFINITY);
+            return Err(TimeDomainError::ExtraRootTooSlow { extra_root_rad_per_s, settling_time_s });
+        }
+    }
+    let mut low = 0.5 * high;
+    while settled(low)? {
+        (high, low) = (low, 0.5 * low);
+    }
+    loop {
+        let middle = low + 0.5 * (high - low);
+        if middle <= low || middle >= high {
+            return Ok(high);
+        }
+        if settled(middle)? { high = middle } else { low = middle }
+    }
+}
+
+impl ExtraRoot {
+    fn check(self) -> Result<(), TimeDomainError> {
+        match self {
+            ExtraRoot::None => Ok(()),
+            ExtraRoot::At { rad_per_s } => positive("the extra root in rad/s", rad_per_s),
+            ExtraRoot::Times { natural_frequencies } => {
+                positive("the extra root over the natural frequency", natural_frequencies)
+            }
+        }
+    }
+
+    /// z or p in rad/s for this natural frequency in rad/s.
+    fn place(self, natural: f64) -> Option<f64> {
+        match self {
+            ExtraRoot::None => None,
+            ExtraRoot::At { rad_per_s } => Some(rad_per_s),
+            ExtraRoot::Times { natural_frequencies } => Some(natural_frequencies * natural),
+        }
+    }
+
+    /// w_n/z; zero without a zero.
+    fn share(self, natural: f64) -> f64 {
+        match self {
+            ExtraRoot::None => 0.0,
+            ExtraRoot::At { rad_per_s } => natural / rad_per_s,
+            ExtraRoot::Times { natural_frequencies } => 1.0 / natural_frequencies,
+        }
+    }
+}
+
+impl UpperWish {
+    pub(super) fn check(&self) -> Result<(), TimeDomainError> {
+        if !(0.0..100.0).contains(&self.overshoot_percent) {
+            let expected = "from 0 up to but not 100";
+            let what = "the overshoot in percent";
+            return Err(TimeDomainError::OutOfRange { what, value: self.overshoot_percent, expected });
+        }
+        let (settling_time_s, settling_band_percent) = (self.settling_time_s, self.settling_band_percent);
+        LowerWish { settling_time_s, settling_band_percent }.check()
+    }
+}
+
+impl LowerWish {
+    pub(super) fn check(&self) -> Result<(), TimeDomainError> {
+        positive("the settling time in s", self.settling_time_s)?;
+        let value = self.settling_band_percent;
+        if value > 0.0 && value < 100.0 {
+            return Ok(());
+        }
+        let what = "the settling band in percent";
+        Err(TimeDomainError::OutOfRange { what, value, expected: "between 0 and 100" })
+    }
+}
+
+fn positive(what: &'static str, value: f64) -> Result<(), TimeDomainError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(TimeDomainError::OutOfRange { what, value, expected: "positive and finite" })
+    }
+}

@@ -1,0 +1,295 @@
+//! Limits and the margins they guarantee, against the loops themselves.
+#![cfg(test)]
+
+use std::f64::consts::PI;
+
+use num_complex::Complex64;
+use phea_dynamics::frequency::{logarithmic_grid, margins};
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable::{cos, magnitude, sin};
+use phea_qft::specification::{
+    GuaranteedMargins, Limit, LimitTable, MarginError, Requirement, delay_margin_limit,
+    delay_margin_limit_table, guaranteed_delay, guaranteed_margins, guaranteed_margins_of_robust_stability,
+    guaranteed_margins_of_sensitivity, robust_stability_limit_for_gain_increase,
+    robust_stability_limit_for_gain_reduction, robust_stability_limit_for_modulus_margin,
+    robust_stability_limit_for_phase_margin, sensitivity_limit_for_gain_increase,
+    sensitivity_limit_for_gain_reduction, sensitivity_limit_for_modulus_margin,
+    sensitivity_limit_for_phase_margin,
+};
+
+const LIMITS: [f64; 8] = [0.3, 0.5, 0.7, 1.0, 1.2, 1.3, 2.0, 6.0];
+
+fn c(re: f64, im: f64) -> Complex64 {
+    Complex64::new(re, im)
+}
+
+fn close(value: f64, expected: f64, tolerance: f64) -> bool {
+    value == expected || (value / expected - 1.0).abs() <= tolerance
+}
+
+/// A loop k prod(s - zero)/prod(s - pole) with real roots.
+fn real_loop(gain: f64, zeros: &[f64], poles: &[f64]) -> TransferFunction {
+    let complex = |roots: &[f64]| roots.iter().map(|root| c(*root, 0.0)).collect();
+    TransferFunction::from_factors(gain, complex(zeros), complex(poles)).unwrap()
+}
+
+fn complementary(open: Complex64) -> f64 {
+    magnitude(open / (1.0 + open))
+}
+
+fn sensitivity(open: Complex64) -> f64 {
+    1.0 / magnitude(1.0 + open)
+}
+
+/// Whether a loop through this point keeps to the limit is read off the margins alone, on the whole negative axis and the whole
+/// unit circle.
+fn margins_draw_the_line(closed: fn(Complex64) -> f64, limit: f64, guaranteed: &GuaranteedMargins) {
+    for step in 1..4000 {
+        let crossing = 0.002 * f64::from(step) - 0.0007;
+        // the gain may grow by 1/crossing, if that is above one, or fall to it
+        let factor = 1.0 / crossing;
+        let apart = if factor > 1.0 {
+            factor >= guaranteed.gain_increase
+        } else {
+            factor < 1.0 && factor <= guaranteed.gain_reduction
+        };
+        assert_eq!(closed(c(-crossing, 0.0)) <= limit, apart, "{limit} at -{crossing}");
+        let angle = PI * f64::from(step) / 4000.0 + 1e-5;
+        let on_circle = c(-cos(angle), -sin(angle));
+        assert_eq!(closed(on_circle) <= limit, angle >= guaranteed.phase_rad, "{limit} at {angle}");
+    }
+}
+
+/// The least |1 + L| among points where the closed loop is exactly at the limit, by brute force.
+fn nearest_on_the_circle(limit: f64, open_of_closed: fn(Complex64) -> Complex64) -> f64 {
+    let points = (0..20_000).map(|step| PI * (f64::from(step) + 0.5) / 10_000.0);
+    points.fold(f64::INFINITY, |nearest, angle| {
+        let closed = limit * c(cos(angle), sin(angle));
+        nearest.min(magnitude(1.0 + open_of_closed(closed)))
+    })
+}
+
+#[test]
+fn each_margin_is_where_the_limit_meets_axis_circle_and_critical_point() {
+    for limit in LIMITS {
+        let guaranteed = guaranteed_margins_of_robust_stability(limit).unwrap();
+        margins_draw_the_line(complementary, limit, &guaranteed);
+        let nearest = nearest_on_the_circle(limit, |closed| closed / (1.0 - closed));
+        assert!(close(nearest, guaranteed.modulus, 1e-6), "{limit}: {nearest}");
+        let guaranteed = guaranteed_margins_of_sensitivity(limit).unwrap();
+        margins_draw_the_line(sensitivity, limit, &guaranteed);
+        let nearest = nearest_on_the_circle(limit, |closed| closed.inv() - 1.0);
+        assert!(close(nearest, guaranteed.modulus, 1e-12), "{limit}: {nearest}");
+    }
+}
+
+#[test]
+fn limits_give_margins_and_margins_give_the_limits_back() {
+    for limit in LIMITS {
+        let stability = guaranteed_margins_of_robust_stability(limit).unwrap();
+        let back = [
+            robust_stability_limit_for_gain_increase(stability.gain_increase),
+            robust_stability_limit_for_modulus_margin(stability.modulus),
+        ];
+        assert!(back.iter().all(|value| close(*value.as_ref().unwrap(), limit, 1e-14)), "{back:?}");
+        let sensitive = guaranteed_margins_of_sensitivity(limit).unwrap();
+        let back = [
+            sensitivity_limit_for_gain_reduction(sensitive.gain_reduction),
+            sensitivity_limit_for_modulus_margin(sensitive.modulus),
+        ];
+        assert!(back.iter().all(|value| close(*value.as_ref().unwrap(), limit, 1e-14)), "{back:?}");
+        if limit >= 0.5 {
+            let back = [
+                robust_stability_limit_for_phase_margin(stability.phase_rad).unwrap(),
+                sensitivity_limit_for_phase_margin(sensitive.phase_rad).unwrap(),
+            ];
+            assert!(back.iter().all(|value| close(*value, limit, 1e-14)), "{back:?}");
+        } else {
+            assert_eq!([stability.phase_rad, sensitive.phase_rad], [f64::INFINITY; 2]);
+        }
+        if limit > 1.0 {
+            let back = [
+                robust_stability_limit_for_gain_reduction(stability.gain_reduction).unwrap(),
+                sensitivity_limit_for_gain_increase(sensitive.gain_increase).unwrap(),
+            ];
+            assert!(back.iter().all(|value| close(*value, limit, 1e-14)), "{back:?}");
+        } else {
+            assert_eq!((stability.gain_reduction, sensitive.gain_increase), (0.0, f64::INFINITY));
+        }
+    }
+}
+
+#[test]
+fn no_loop_has_less_than_its_own_peaks_guarantee() {
+    let mut gains_bound = 0;
+    for (poles, top) in [(vec![0.0], 20.0), (vec![0.0, -1.0], 20.0), (vec![0.0, -1.0, -2.0], 5.9)] {
+        for share in [0.01, 0.1, 0.3, 0.6, 0.8, 0.9] {
+            let open = real_loop(top * share, &[], &poles);
+            let grid = logarithmic_grid(1e-4, 1e4, 40_000).unwrap();
+            // the peak between the points of the grid is higher by less than this
+            let peak = |closed: fn(Complex64) -> f64| {
+                grid.iter().map(|w| closed(open.at_frequency(*w))).fold(0.0, f64::max) * (1.0 + 1e-4)
+            };
+            let actual = margins(&open);
+            let of_stability = guaranteed_margins_of_robust_stability(peak(complementary)).unwrap();
+            let of_sensitivity = guaranteed_margins_of_sensitivity(peak(sensitivity)).unwrap();
+            for guaranteed in [of_stability, of_sensitivity] {
+                assert!(actual.gain_increase_factor() >= guaranteed.gain_increase);
+                assert!(actual.gain_decrease_factor() <= guaranteed.gain_reduction);
+                assert!(actual.phase_margin_deg().to_radians() >= guaranteed.phase_rad);
+                assert!(actual.modulus_margin.distance >= guaranteed.modulus);
+                gains_bound += usize::from(actual.gain_increase_factor().is_finite());
+            }
+            // the modulus margin is the sensitivity's peak, neither more nor less
+            assert!(close(of_sensitivity.modulus, actual.modulus_margin.distance, 2e-4));
+        }
+    }
+    assert_eq!(gains_bound, 12);
+}
+
+#[test]
+fn only_constant_limits_on_the_two_loop_functions_say_something() {
+    let rational = Limit::Rational(real_loop(1.0, &[], &[-1.0]));
+    for (requirement, expected) in [
+        (
+            Requirement::RobustStability(Limit::Constant(1.3)),
+            guaranteed_margins_of_robust_stability(1.3).ok(),
+        ),
+        (Requirement::Sensitivity(Limit::Constant(1.3)), guaranteed_margins_of_sensitivity(1.3).ok()),
+        (Requirement::RobustStability(rational.clone()), None),
+        (Requirement::PlantInputDisturbance(Limit::Constant(1.3)), None),
+        (Requirement::LoadMotion(Limit::Constant(1.3)), None),
+    ] {
+        assert_eq!(guaranteed_margins(&requirement), Ok(expected), "{requirement:?}");
+    }
+}
+
+// ORIGIN: recomputed by comparisons/recompute_specifications.py
+#[test]
+fn the_thesis_limit_of_one_point_three_is_a_little_less_than_its_five_decibels() {
+    let guaranteed = guaranteed_margins_of_robust_stability(1.3).unwrap();
+    assert!(close(phea_dynamics::frequency::decibels(guaranteed.gain_increase), 4.95568967, 1e-8));
+    assert!(close(guaranteed.phase_rad.to_degrees(), 45.2397299, 1e-8));
+}
+
+#[test]
+fn the_delay_limits_allow_no_loop_more_delay_than_it_bears() {
+    let loops = [
+        real_loop(1.0, &[], &[0.0]),
+        real_loop(30.0, &[], &[0.0]),
+        real_loop(0.2, &[], &[0.0, -1.0]),
+        real_loop(3.0, &[], &[0.0, -1.0]),
+        real_loop(1.5, &[], &[0.0, -1.0, -2.0]),
+        real_loop(8.0, &[-2.0], &[0.0, 0.0, -9.0]),
+        real_loop(320.0, &[-1.5], &[1.0, -9.0, -20.0]),
+    ];
+    let band = [1e-4, 1e4];
+    let grid = logarithmic_grid(band[0], band[1], 20_000).unwrap();
+    for open in loops {
+        let closed = open.feedback(&TransferFunction::gain_only(1.0)).unwrap();
+        assert!(closed.is_stable());
+        let true_margin = margins(&open).delay_margin_s();
+        // its own |L/(1+L)| as the limit
+        let own = guaranteed_delay(&Limit::Rational(closed), band).unwrap().delay_s;
+        assert!(own <= true_margin * (1.0 + 1e-9) && own > 0.5 * true_margin, "{own} {true_margin}");
+        // the longest delay whose limit it keeps to, by halving, for either form of the limit
+        let longest = |limit_of: &dyn Fn(f64) -> Limit| {
+            let keeps = |delay: f64| {
+                let limit = limit_of(delay);
+                grid.iter().all(|w| {
+                    let allowed = limit.magnitude(*w).unwrap();
+                    complementary(open.at_frequency(*w)) <= allowed * (1.0 + 1e-12)
+                })
+            };
+            let (mut kept, mut broken) = (0.0, 4.0 * true_margin);
+            for _ in 0..20 {
+                let middle = 0.5 * (kept + broken);
+                if keeps(middle) { kept = middle } else { broken = middle }
+            }
+            kept
+        };
+        let simple = longest(&|delay| delay_margin_limit(delay).unwrap());
+        let sharp = longest(&|delay| delay_margin_limit_table(delay, band).unwrap());
+        assert!(0.0 < simple && simple <= sharp, "{simple} {sharp}");
+        assert!(sharp <= own * (1.0 + 1e-3) && own <= sharp * 1.01, "{sharp} {own}");
+    }
+}
+
+// ORIGIN: recomputed by comparisons/recompute_specifications.py
+#[test]
+fn an_integrator_bears_a_quarter_turn_and_is_promised_one_radian() {
+    let gain = 7.0;
+    let open = real_loop(gain, &[], &[0.0]);
+    assert!(close(margins(&open).delay_margin_s(), PI / 2.0 / gain, 1e-12));
+    // |L/(1+L)| = k/sqrt(w^2 + k^2) tends to k/w from below: the limit 1/(w tau) with tau = 1/k is met, no longer delay's is
+    let kept = |delay: f64| {
+        let limit = delay_margin_limit(delay).unwrap();
+        [1e-3, 1.0, 1e3, 1e6]
+            .iter()
+            .all(|w| complementary(open.at_frequency(*w)) <= limit.magnitude(*w).unwrap())
+    };
+    assert!(kept(1.0 / gain) && !kept(1.01 / gain));
+    // the sharp limit promises nearly half as much again
+    let closed = Limit::Rational(real_loop(gain, &[], &[-gain]));
+    assert!(close(guaranteed_delay(&closed, [0.01, 1e4]).unwrap().delay_s, 1.47749502 / gain, 1e-8));
+}
+
+#[test]
+fn the_table_of_tangents_lies_close_below_the_limit_and_gives_its_delay_back() {
+    let delay = 0.8e-3;
+    for band in [[0.1, 1e5], [2000.0, 3000.0], [5000.0, 6000.0], [1e-3, 1.0]] {
+        let limit = delay_margin_limit_table(delay, band).unwrap();
+        for w in logarithmic_grid(band[0], band[1], 5000).unwrap() {
+            let exact = if w * delay < PI { 0.5 / sin(w * delay / 2.0) } else { 0.5 };
+            let share = limit.magnitude(w).unwrap() / exact;
+            assert!(share <= 1.0 + 1e-12 && share > 1.0 - 1.15e-3, "{w}: {share}");
+        }
+    }
+    let table = delay_margin_limit_table(delay, [0.1, 1e5]).unwrap();
+    let guarantee = guaranteed_delay(&table, [0.1, 1e5]).unwrap();
+    assert!(close(guarantee.delay_s, delay, 1e-6) && guarantee.delay_s >= delay * (1.0 - 1e-12));
+    let simple = guaranteed_delay(&delay_margin_limit(delay).unwrap(), [0.1, 1e5]).unwrap();
+    assert!(close(simple.delay_s, delay, 1e-8));
+}
+
+#[test]
+fn a_constant_limit_guarantees_its_phase_margin_at_the_end_of_the_band() {
+    let guarantee = guaranteed_delay(&Limit::Constant(1.0), [0.1, 50.0]).unwrap();
+    assert!(close(guarantee.delay_s, PI / 3.0 / 50.0, 1e-12));
+    assert_eq!(guarantee.frequency_rad_per_s, 50.0);
+    // below one half the loop never has size one; at one half it may, half a turn away
+    let delay = |limit: f64| guaranteed_delay(&Limit::Constant(limit), [0.1, 50.0]).unwrap().delay_s;
+    assert_eq!(delay(0.49), f64::INFINITY);
+    assert!(close(delay(0.5), PI / 50.0, 1e-12));
+}
+
+#[test]
+fn what_is_no_margin_has_no_limit() {
+    let refused = |result: Result<f64, MarginError>| matches!(result, Err(MarginError::OutOfRange { .. }));
+    for value in [1.0, 0.5, -2.0, f64::NAN, f64::INFINITY] {
+        assert!(refused(robust_stability_limit_for_gain_increase(value)), "{value}");
+        assert!(refused(sensitivity_limit_for_gain_increase(value)), "{value}");
+    }
+    for value in [0.0, 1.0, 2.0, f64::NAN] {
+        assert!(refused(robust_stability_limit_for_gain_reduction(value)), "{value}");
+        assert!(refused(sensitivity_limit_for_gain_reduction(value)), "{value}");
+        assert!(refused(robust_stability_limit_for_modulus_margin(value)), "{value}");
+    }
+    for value in [0.0, 3.2, -1.0, f64::NAN] {
+        assert!(refused(robust_stability_limit_for_phase_margin(value)), "{value}");
+        assert!(refused(sensitivity_limit_for_phase_margin(value)), "{value}");
+    }
+    for value in [0.0, f64::INFINITY, f64::NAN] {
+        assert!(refused(sensitivity_limit_for_modulus_margin(value)), "{value}");
+        assert!(guaranteed_margins_of_robust_stability(value).is_err());
+        assert!(guaranteed_margins_of_sensitivity(value).is_err());
+        assert!(delay_margin_limit(value).is_err());
+        assert!(delay_margin_limit_table(value, [1.0, 2.0]).is_err());
+    }
+    for band in [[0.0, 1.0], [2.0, 1.0], [1.0, f64::INFINITY]] {
+        assert!(delay_margin_limit_table(1.0, band).is_err());
+        assert!(guaranteed_delay(&Limit::Constant(1.0), band).is_err());
+    }
+    let table = Limit::Table(LimitTable::new(vec![(1.0, 1.0), (2.0, 1.0)]).unwrap());
+    assert!(matches!(guaranteed_delay(&table, [1.5, 3.0]), Err(MarginError::Silent { .. })));
+}

@@ -1,0 +1,307 @@
+//! A wish in time, the limits made of it, and what those do in time.
+#![cfg(test)]
+
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable::ln;
+use phea_dynamics::time_response::{
+    SecondOrder, Settling, SettlingRule, StepBaseline, step_metrics, step_response, uniform_times,
+};
+use phea_qft::specification::{
+    ExtraRoot, LowerWish, TimeDomainError, Translation, UpperWish, WishCheck, WishOutcome, check_lower,
+    check_upper, tracking_lower, tracking_upper,
+};
+
+const UPPER: UpperWish =
+    UpperWish { overshoot_percent: 1.0, settling_time_s: 0.1, settling_band_percent: 1.0 };
+const LOWER: LowerWish = LowerWish { settling_time_s: 0.3, settling_band_percent: 1.0 };
+
+fn c(re: f64, im: f64) -> Complex64 {
+    Complex64::new(re, im)
+}
+
+fn factored(gain: f64, zeros: &[Complex64], poles: &[Complex64]) -> TransferFunction {
+    TransferFunction::from_factors(gain, zeros.to_vec(), poles.to_vec()).unwrap()
+}
+
+fn settling(check: &WishCheck) -> f64 {
+    check.reached.settling.time_s().unwrap()
+}
+
+fn close(value: f64, expected: f64, tolerance: f64) -> bool {
+    (value - expected).abs() <= tolerance
+}
+
+/// Reproducible numbers in [0, 1).
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+}
+
+// ORIGIN: recomputed by comparisons/recompute_specifications.py
+#[test]
+fn the_printed_limits_do_not_meet_their_wish() {
+    let pair = [c(-36.8, 27.6), c(-36.8, -27.6)];
+    let upper = check_upper(&factored(2116.0 / 75.0, &[c(-75.0, 0.0)], &pair), &UPPER).unwrap();
+    assert!(close(upper.reached.overshoot_percent, 2.194563521, 1e-8));
+    assert!(close(settling(&upper), 0.126368769, 1e-8));
+    match upper.outcome() {
+        WishOutcome::Missed { overshoot_excess_percent, settling_excess_s } => {
+            assert!(close(overshoot_excess_percent, 1.194563521, 1e-8));
+            assert!(close(settling_excess_s, 0.026368769, 1e-8));
+        }
+        WishOutcome::Met => panic!("6.28 meets its wish"),
+    }
+    let triple = [c(-20.0, 0.0), c(-20.0, 0.0), c(-50.0, 0.0)];
+    let lower = check_lower(&factored(20_000.0, &[], &triple), &LOWER).unwrap();
+    assert_eq!(lower.reached.overshoot_percent, 0.0);
+    assert!(close(settling(&lower), 0.356268974, 1e-8));
+    // nor do the second-order models without the extra zero and pole
+    let upper = check_upper(&factored(2116.0, &[], &pair), &UPPER).unwrap();
+    assert!(close(upper.reached.overshoot_percent, 1.516461986, 1e-8));
+    assert!(close(settling(&upper), 0.138114725, 1e-8));
+    let lower = check_lower(&factored(400.0, &[], &triple[..2]), &LOWER).unwrap();
+    assert!(close(settling(&lower), 0.331917603, 1e-8));
+}
+
+// ORIGIN: recomputed by comparisons/recompute_specifications.py
+#[test]
+fn exact_limits_are_those_of_an_independent_root_finder() {
+    let at = |rad_per_s| ExtraRoot::At { rad_per_s };
+    let times = |natural_frequencies| ExtraRoot::Times { natural_frequencies };
+    let wide = UpperWish { overshoot_percent: 5.0, settling_band_percent: 2.0, ..UPPER };
+    for (wish, zero, damping, natural) in [
+        (UPPER, ExtraRoot::None, 0.826085055, 41.9161150),
+        (UPPER, at(75.0), 0.837470485, 36.1277855),
+        (UPPER, times(1.5), 0.852504940, 33.4499794),
+        (wide, at(75.0), 0.739041262, 52.2683398),
+    ] {
+        let limit = tracking_upper(&wish, zero, Translation::Exact).unwrap();
+        assert!(close(limit.damping_ratio, damping, 2e-9), "{limit:?}");
+        assert!(close(limit.natural_frequency_rad_per_s, natural, 1e-6), "{limit:?}");
+        assert!(close(limit.check.reached.overshoot_percent, wish.overshoot_percent, 1e-8));
+        assert!(close(settling(&limit.check), 0.1, 1e-9));
+        assert_eq!(limit.check.outcome(), WishOutcome::Met);
+    }
+    for (pole, natural) in [(ExtraRoot::None, 22.1278402), (at(50.0), 24.1901582), (times(2.5), 23.7512649)] {
+        let limit = tracking_lower(&LOWER, pole, Translation::Exact).unwrap();
+        assert!(close(limit.natural_frequency_rad_per_s, natural, 1e-6), "{limit:?}");
+        assert_eq!(limit.damping_ratio, 1.0);
+        assert!(close(settling(&limit.check), 0.3, 1e-9));
+        assert_eq!(limit.check.outcome(), WishOutcome::Met);
+    }
+}
+
+#[test]
+fn exact_limits_meet_any_wish_whatever_the_extra_root() {
+    let mut numbers = Numbers(7);
+    for _ in 0..20 {
+        let overshoot_percent = numbers.between(0.1, 40.0);
+        let settling_time_s = numbers.between(0.01, 10.0);
+        let settling_band_percent = numbers.between(0.5, 8.0);
+        let wish = UpperWish { overshoot_percent, settling_time_s, settling_band_percent };
+        // zeros below the natural frequency make the second-order part overdamped
+        let extra = [
+            ExtraRoot::None,
+            ExtraRoot::At { rad_per_s: numbers.between(6.0, 100.0) / settling_time_s },
+            ExtraRoot::Times { natural_frequencies: numbers.between(0.3, 4.0) },
+        ];
+        for zero in extra {
+            let limit = tracking_upper(&wish, zero, Translation::Exact).unwrap();
+            assert_eq!(limit.check.outcome(), WishOutcome::Met, "{wish:?} {zero:?} {limit:?}");
+            let overshoot = limit.check.reached.overshoot_percent;
+            assert!(close(overshoot, overshoot_percent, 1e-7), "{overshoot} {wish:?} {zero:?}");
+            // a little slower in frequency is too late in time
+            let (settled, slower) = (settling(&limit.check), 1.0 - 1e-6);
+            assert!(settled <= settling_time_s * (1.0 + 1e-9));
+            if zero == ExtraRoot::None {
+                let natural = limit.natural_frequency_rad_per_s * slower;
+                let late = SecondOrder::new(natural, limit.damping_ratio).unwrap().transfer_function();
+                let late = check_upper(&late, &wish).unwrap();
+                assert!(settling(&late) > settling_time_s, "{late:?}");
+            }
+        }
+        let wish = LowerWish { settling_time_s, settling_band_percent };
+        for pole in extra {
+            let limit = tracking_lower(&wish, pole, Translation::Exact).unwrap();
+            assert_eq!(limit.check.outcome(), WishOutcome::Met, "{wish:?} {pole:?} {limit:?}");
+            assert!(close(settling(&limit.check) / settling_time_s, 1.0, 1e-8), "{wish:?} {pole:?}");
+        }
+    }
+}
+
+#[test]
+fn a_wish_ten_times_as_fast_has_limits_ten_times_as_fast() {
+    let fast = UpperWish { settling_time_s: UPPER.settling_time_s / 10.0, ..UPPER };
+    for (zero, scaled) in [
+        (ExtraRoot::None, ExtraRoot::None),
+        (ExtraRoot::Times { natural_frequencies: 1.5 }, ExtraRoot::Times { natural_frequencies: 1.5 }),
+        (ExtraRoot::At { rad_per_s: 75.0 }, ExtraRoot::At { rad_per_s: 750.0 }),
+    ] {
+        let slow = tracking_upper(&UPPER, zero, Translation::Exact).unwrap();
+        let fast = tracking_upper(&fast, scaled, Translation::Exact).unwrap();
+        assert!(close(fast.damping_ratio, slow.damping_ratio, 1e-9));
+        let ratio = fast.natural_frequency_rad_per_s / slow.natural_frequency_rad_per_s;
+        assert!(close(ratio, 10.0, 1e-8), "{ratio}");
+    }
+    // a zero that stays where it is, far above, is as good as none; so the damping changes
+    let fixed = ExtraRoot::At { rad_per_s: 75.0 };
+    let [slow, fast] = [UPPER, fast].map(|wish| tracking_upper(&wish, fixed, Translation::Exact).unwrap());
+    assert!((fast.damping_ratio - slow.damping_ratio).abs() > 0.01);
+}
+
+#[test]
+fn no_overshoot_means_critical_damping_or_a_zero_that_cancels_the_slow_pole() {
+    let wish = UpperWish { overshoot_percent: 0.0, ..UPPER };
+    let none = tracking_upper(&wish, ExtraRoot::None, Translation::Exact).unwrap();
+    let lower = tracking_lower(
+        &LowerWish { settling_time_s: 0.1, settling_band_percent: 1.0 },
+        ExtraRoot::None,
+        Translation::Exact,
+    );
+    assert_eq!(none.function, lower.unwrap().function);
+    let slow = ExtraRoot::Times { natural_frequencies: 0.5 };
+    let limit = tracking_upper(&wish, slow, Translation::Exact).unwrap();
+    let natural = limit.natural_frequency_rad_per_s;
+    // (s + w/2) cancels, w^2/(w/2) = 2 w remains: a lag that settles after ln 100 of its time constants
+    assert!(close(limit.damping_ratio, 1.25, 1e-12));
+    assert!(close(natural * 2.0 * 0.1, ln(100.0), 1e-7), "{natural}");
+    assert_eq!(limit.check.outcome(), WishOutcome::Met);
+}
+
+#[test]
+fn rules_of_thumb_follow_the_thesis_and_keep_to_their_band() {
+    let rule = Translation::Rule(SettlingRule::OnePercentThesis);
+    let upper = tracking_upper(&UPPER, ExtraRoot::At { rad_per_s: 75.0 }, rule).unwrap();
+    assert!(close(upper.natural_frequency_rad_per_s * upper.damping_ratio * 0.1, 5.0, 1e-12));
+    assert_eq!(upper.extra_root_rad_per_s, Some(75.0));
+    // the zero adds overshoot that the rule does not see
+    assert!(matches!(upper.check.outcome(), WishOutcome::Missed { settling_excess_s: 0.0, .. }));
+    // critical damping settles later than an envelope of the same sigma
+    let lower = tracking_lower(&LOWER, ExtraRoot::None, rule).unwrap();
+    assert!(matches!(lower.check.outcome(), WishOutcome::Missed { overshoot_excess_percent: 0.0, .. }));
+    let two = Translation::Rule(SettlingRule::TwoPercent);
+    assert_eq!(
+        tracking_lower(&LOWER, ExtraRoot::None, two),
+        Err(TimeDomainError::RuleBand { rule_percent: 2.0, wish_percent: 1.0 })
+    );
+}
+
+#[test]
+fn a_root_too_slow_is_refused_at_its_own_settling_time() {
+    let lower = |pole: f64| tracking_lower(&LOWER, ExtraRoot::At { rad_per_s: pole }, Translation::Exact);
+    // the lag alone settles after ln(100)/p
+    let fastest = ln(100.0) / LOWER.settling_time_s;
+    assert!(lower(fastest * (1.0 + 1e-4)).is_ok());
+    assert!(matches!(lower(fastest * (1.0 - 1e-4)), Err(TimeDomainError::ExtraRootTooSlow { .. })));
+    // the tail behind a zero is as large as the overshoot: it takes ln(overshoot/band)/z
+    let upper = |zero: f64, overshoot_percent: f64| {
+        let wish = UpperWish { overshoot_percent, ..UPPER };
+        tracking_upper(&wish, ExtraRoot::At { rad_per_s: zero }, Translation::Exact)
+    };
+    assert!(matches!(upper(1.0, 5.0), Err(TimeDomainError::ExtraRootTooSlow { .. })));
+    assert_eq!(upper(1.0, 1.0).unwrap().check.outcome(), WishOutcome::Met);
+}
+
+#[test]
+fn the_check_agrees_with_dense_samples_of_any_response() {
+    let mut numbers = Numbers(3);
+    for _ in 0..15 {
+        let mut poles = vec![c(-numbers.between(1.0, 30.0), 0.0)];
+        let (natural, ratio) = (numbers.between(2.0, 40.0), numbers.between(0.08, 0.95));
+        let imaginary = natural * (1.0 - ratio * ratio).sqrt();
+        poles.extend([c(-natural * ratio, imaginary), c(-natural * ratio, -imaginary)]);
+        // as many zeros as poles now and then: a response that jumps
+        let zeros: Vec<Complex64> =
+            (0..(4.0 * numbers.next()) as usize).map(|_| c(-numbers.between(5.0, 60.0), 0.0)).collect();
+        let unscaled = factored(1.0, &zeros, &poles);
+        let function = factored(1.0 / unscaled.dc_gain(), &zeros, &poles).with_dead_time(0.05).unwrap();
+        let wish = UpperWish { overshoot_percent: 10.0, settling_time_s: 1.0, settling_band_percent: 2.0 };
+        let check = check_upper(&function, &wish).unwrap();
+        let times = uniform_times(20.0, 80_001).unwrap();
+        let values = step_response(&function, &times).unwrap();
+        let metrics = step_metrics(&times, &values, StepBaseline::unit(), 2.0).unwrap();
+        let overshoot = check.reached.overshoot_percent;
+        assert!(overshoot >= metrics.overshoot_percent - 1e-9, "{overshoot} {metrics:?}");
+        assert!(close(overshoot, metrics.overshoot_percent, 1e-2), "{overshoot} {metrics:?}");
+        let sampled = metrics.settling.time_s().unwrap();
+        assert!(close(settling(&check), sampled, 2.6e-4), "{check:?} {sampled} {function:?}");
+    }
+}
+
+#[test]
+fn modes_far_apart_and_light_damping_are_followed_to_the_end() {
+    // a lag of ten seconds behind one of ten microseconds
+    let spread = factored(0.1 * 1e5, &[], &[c(-0.1, 0.0), c(-1e5, 0.0)]);
+    let check =
+        check_lower(&spread, &LowerWish { settling_time_s: 50.0, settling_band_percent: 1.0 }).unwrap();
+    assert!(close(settling(&check), 10.0 * ln(100.0), 1e-3));
+    assert_eq!(check.outcome(), WishOutcome::Met);
+    let ringing = SecondOrder::new(10.0, 0.004).unwrap();
+    let check = check_upper(&ringing.transfer_function(), &UPPER).unwrap();
+    assert!(close(check.reached.overshoot_percent, ringing.overshoot_percent(), 1e-8));
+    assert!(close(settling(&check), ringing.settling_time_s(1.0).unwrap().unwrap(), 1e-6));
+    let endless = SecondOrder::new(10.0, 1e-5).unwrap().transfer_function();
+    assert!(matches!(check_upper(&endless, &UPPER), Err(TimeDomainError::RingsTooLong { .. })));
+}
+
+#[test]
+fn what_has_no_answer_is_refused_and_what_never_settles_says_so() {
+    let half = factored(5.0, &[], &[c(-10.0, 0.0)]);
+    let check = check_lower(&half, &LOWER).unwrap();
+    assert!(
+        matches!(check.reached.settling, Settling::NotSettled { deviation_percent } if close(deviation_percent, 50.0, 1e-6))
+    );
+    assert_eq!(
+        check.outcome(),
+        WishOutcome::Missed { overshoot_excess_percent: 0.0, settling_excess_s: f64::INFINITY }
+    );
+    let integrator = factored(1.0, &[], &[c(0.0, 0.0)]);
+    assert_eq!(check_lower(&integrator, &LOWER), Err(TimeDomainError::NotStable { real_part: 0.0 }));
+    let improper = factored(1.0, &[c(-1.0, 0.0)], &[]);
+    assert!(matches!(check_lower(&improper, &LOWER), Err(TimeDomainError::Response(_))));
+    for wish in [
+        UpperWish { overshoot_percent: 100.0, ..UPPER },
+        UpperWish { overshoot_percent: -1.0, ..UPPER },
+        UpperWish { overshoot_percent: f64::NAN, ..UPPER },
+        UpperWish { settling_time_s: 0.0, ..UPPER },
+        UpperWish { settling_band_percent: 100.0, ..UPPER },
+    ] {
+        let refused = tracking_upper(&wish, ExtraRoot::None, Translation::Exact);
+        assert!(matches!(refused, Err(TimeDomainError::OutOfRange { .. })), "{wish:?}");
+    }
+    for zero in [ExtraRoot::At { rad_per_s: 0.0 }, ExtraRoot::Times { natural_frequencies: f64::INFINITY }] {
+        let refused = tracking_upper(&UPPER, zero, Translation::Exact);
+        assert!(matches!(refused, Err(TimeDomainError::OutOfRange { .. })), "{zero:?}");
+    }
+}
+
+// ORIGIN: written by hand
+#[test]
+fn checks_read_as_sentences() {
+    let lag = |gain: f64| check_lower(&factored(gain, &[], &[c(-10.0, 0.0)]), &LOWER).unwrap().to_string();
+    let wished = "wished: no overshoot, settled within 1 % in 0.3 s; the limit itself";
+    assert_eq!(lag(10.0), format!("{wished} has no overshoot and settles in 0.461 s"));
+    assert_eq!(lag(5.0), format!("{wished} has no overshoot and stays 50 % off"));
+    // as many digits as it takes to see the difference
+    let late = LowerWish { settling_time_s: 0.4605, settling_band_percent: 1.0 };
+    let check = check_lower(&factored(10.0, &[], &[c(-10.0, 0.0)]), &late).unwrap();
+    assert_eq!(
+        check.to_string(),
+        "wished: no overshoot, settled within 1 % in 0.4605 s; the limit itself has no overshoot and settles in \
+         0.46052 s"
+    );
+    let kept = tracking_upper(&UPPER, ExtraRoot::None, Translation::Exact).unwrap().check.to_string();
+    assert_eq!(
+        kept,
+        "wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself keeps to it"
+    );
+}
