@@ -138,6 +138,24 @@ fn exact_limits_meet_any_wish_whatever_the_extra_root() {
     }
 }
 
+/// The settling time jumps where an extreme of the response reaches the band; no natural frequency settles at the wished time then,
+/// and the faster side of the jump is taken.
+#[test]
+fn where_the_settling_time_jumps_the_wish_is_met_with_time_to_spare() {
+    let wish = UpperWish { overshoot_percent: 99.9, settling_time_s: 0.1, settling_band_percent: 1.0 };
+    let zero = ExtraRoot::At { rad_per_s: 30.0 };
+    let limit = tracking_upper(&wish, zero, Translation::Exact).unwrap();
+    assert_eq!(limit.check.outcome(), WishOutcome::Met);
+    assert!(settling(&limit.check) < 0.099, "{limit:?}");
+    // the third extreme, half a period after the second, is as large as the band
+    let damped = limit.natural_frequency_rad_per_s * (1.0 - limit.damping_ratio * limit.damping_ratio).sqrt();
+    let times = uniform_times(0.1 + 4.0 / damped, 40_001).unwrap();
+    let values = step_response(&limit.function, &times).unwrap();
+    let later =
+        times.iter().zip(&values).filter(|(time, _)| **time > 0.1).map(|(_, value)| (value - 1.0).abs());
+    assert!(close(later.fold(0.0, f64::max), 0.01, 1e-8));
+}
+
 #[test]
 fn a_wish_ten_times_as_fast_has_limits_ten_times_as_fast() {
     let fast = UpperWish { settling_time_s: UPPER.settling_time_s / 10.0, ..UPPER };

@@ -50,7 +50,8 @@ pub enum MarginError {
     },
 }
 
-/// The margins that a limit guarantees.
+/// The margins that a limit guarantees, for a loop that is stable when closed and keeps to the limit at every frequency. Each is
+/// attained by some loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuaranteedMargins {
     /// Factor above one by which the gain may grow; infinity where no increase is excluded.

@@ -7,23 +7,6 @@
 //!
 //! A magnitude below the upper limit does not make a response that stays below the limit's own: the translation is the custom of
 //! the method, not a theorem. What the loop does in time is simulated.
-//!
-//! # Example
-//! The limit 6.28 against what it was to give:
-//! ```
-//! use num_complex::Complex64;
-//! use phea_dynamics::linear::TransferFunction;
-//! use phea_qft::specification::{UpperWish, check_upper};
-//! let poles = vec![Complex64::new(-36.8, 27.6), Complex64::new(-36.8, -27.6)];
-//! let printed = TransferFunction::from_factors(2116.0 / 75.0, vec![Complex64::new(-75.0, 0.0)], poles)?;
-//! let wish = UpperWish { overshoot_percent: 1.0, settling_time_s: 0.1, settling_band_percent: 1.0 };
-//! assert_eq!(
-//!     check_upper(&printed, &wish)?.to_string(),
-//!     "wished: at most 1 % overshoot, settled within 1 % in 0.1 s; \
-//!      the limit itself reaches 2.19 % overshoot and settles in 0.126 s"
-//! );
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
 
 mod check;
 mod spread;
@@ -129,6 +112,9 @@ pub enum TimeDomainError {
         /// The settling time wished, s.
         settling_time_s: f64,
     },
+    /// Tables that have no frequency in common, or none in the band.
+    #[error("there is no frequency of the band at which both limits are demanded")]
+    NeverTogether,
     /// A sampled function where a limit is continuous.
     #[error("a limit of tracking is a continuous transfer function")]
     NotContinuous,

@@ -1,6 +1,8 @@
-use phea_dynamics::linear::{Polynomial, TransferFunction};
-use phea_dynamics::portable::log10;
+use num_complex::Complex64;
+use phea_dynamics::linear::{Polynomial, TimeDomain};
+use phea_dynamics::portable::{ln, log10};
 
+use super::super::Limit;
 use super::TimeDomainError;
 
 /// How far apart the limits of tracking are over frequency.
@@ -38,25 +40,29 @@ pub enum LimitOrder {
     },
 }
 
-/// Compares the magnitudes of two limits of tracking over a band `[from, to]` in rad/s (`to` may be infinite).
+/// Compares two limits of tracking over a band `[from, to]` in rad/s (`to` may be infinite), where both are demanded: a table
+/// demands nothing beyond its ends.
 ///
 /// ```text
-/// spread(w) = 20 log10(|B_U(jw)|/|B_L(jw)|)
+/// spread(w) = 20 log10(B_U(w)/B_L(w))
 /// ```
 ///
-/// The squared ratio is a rational function of w^2; between the roots of its derivative it rises or falls throughout, so
-/// those roots and the ends of the band tell everything.
+/// The squared ratio is a rational function of x = w^2, times a power of x between the points of tables; between the roots of its
+/// derivative it rises or falls throughout, so those roots and the ends of the pieces tell everything.
 ///
 /// # Errors
-/// [`TimeDomainError::OutOfRange`] for the band, [`TimeDomainError::NotContinuous`], and where the roots cannot be found.
+/// [`TimeDomainError::OutOfRange`] for the band, [`TimeDomainError::NeverTogether`], [`TimeDomainError::NotContinuous`], and where the
+/// roots cannot be found.
 ///
 /// # Example
 /// Two lags part by 20 dB, from the corner of the slow one to that of the fast one:
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::linear::TransferFunction;
-/// use phea_qft::specification::{LimitOrder, tracking_spread};
-/// let lag = |pole: f64| TransferFunction::from_factors(pole, vec![], vec![Complex64::new(-pole, 0.0)]);
+/// use phea_qft::specification::{Limit, LimitOrder, tracking_spread};
+/// let lag = |pole: f64| {
+///     TransferFunction::from_factors(pole, vec![], vec![Complex64::new(-pole, 0.0)]).map(Limit::Rational)
+/// };
 /// let spread = tracking_spread(&lag(1.0)?, &lag(10.0)?, [0.0, f64::INFINITY])?;
 /// assert_eq!(spread.order, LimitOrder::Kept { least_db: 0.0, frequency_rad_per_s: 0.0 });
 /// assert_eq!((spread.grows_from_rad_per_s, spread.at_end_db), (Some(0.0), 20.0));
@@ -65,20 +71,18 @@ pub enum LimitOrder {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn tracking_spread(
-    lower: &TransferFunction,
-    upper: &TransferFunction,
+    lower: &Limit,
+    upper: &Limit,
     band_rad_per_s: [f64; 2],
 ) -> Result<TrackingSpread, TimeDomainError> {
-    let [from, to] = band_rad_per_s;
-    if !(from >= 0.0 && from.is_finite() && to >= from) {
-        let (what, expected) = ("the band in rad/s", "zero or positive, and increasing");
-        return Err(TimeDomainError::OutOfRange { what, value: from, expected });
-    }
+    let [from, to] = common_band(lower, upper, band_rad_per_s)?;
     let ratio = SquaredRatio::new(lower, upper)?;
-    let mut knots = vec![from];
-    knots.extend(ratio.extremes()?.into_iter().filter(|w| from < *w && *w < to));
-    knots.push(to);
-    let spread: Vec<(f64, f64)> = knots.into_iter().map(|w| (w, ratio.decibels(w))).collect();
+    let mut spread = vec![(from, ratio.decibels(from))];
+    for piece in pieces(lower, upper, [from, to]).windows(2) {
+        let &[start, end] = piece else { continue };
+        let turns = ratio.extremes(start, end)?.into_iter().filter(|w| start < *w && *w < end);
+        spread.extend(turns.chain([end]).map(|w| (w, ratio.decibels(w))));
+    }
     let falls = |pair: &[(f64, f64)]| matches!(pair, [a, b] if b.1 < a.1 - ROUNDING_DB);
     let grows_from = match spread.windows(2).rposition(falls) {
         None => Some(from),
@@ -88,10 +92,41 @@ pub fn tracking_spread(
     Ok(TrackingSpread { order: order(&ratio, &spread), grows_from_rad_per_s: grows_from, at_end_db })
 }
 
+/// The part of the band in which no table has ended.
+fn common_band(lower: &Limit, upper: &Limit, [from, to]: [f64; 2]) -> Result<[f64; 2], TimeDomainError> {
+    if !(from >= 0.0 && from.is_finite() && to >= from) {
+        let (what, expected) = ("the band in rad/s", "zero or positive, and increasing");
+        return Err(TimeDomainError::OutOfRange { what, value: from, expected });
+    }
+    let ends = [lower, upper].into_iter().filter_map(|limit| {
+        let points = table(limit);
+        points.first().zip(points.last()).map(|(first, last)| (first.0, last.0))
+    });
+    let [from, to] = ends.fold([from, to], |[from, to], (first, last)| [from.max(first), to.min(last)]);
+    if from <= to { Ok([from, to]) } else { Err(TimeDomainError::NeverTogether) }
+}
+
+/// The points of a table; none for another limit.
+fn table(limit: &Limit) -> &[(f64, f64)] {
+    match limit {
+        Limit::Table(table) => table.points(),
+        Limit::Constant(_) | Limit::Rational(_) => &[],
+    }
+}
+
+/// The ends of the band, and between them the points of tables.
+fn pieces(lower: &Limit, upper: &Limit, [from, to]: [f64; 2]) -> Vec<f64> {
+    let points = table(lower).iter().chain(table(upper)).map(|point| point.0);
+    let mut ends: Vec<f64> = points.filter(|w| from < *w && *w < to).chain([from, to]).collect();
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    ends
+}
+
 /// Differences below this are rounding, dB.
 const ROUNDING_DB: f64 = 1e-9;
 
-fn order(ratio: &SquaredRatio, spread: &[(f64, f64)]) -> LimitOrder {
+fn order(ratio: &SquaredRatio<'_>, spread: &[(f64, f64)]) -> LimitOrder {
     let least = spread.iter().copied().fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
     let Some(first) = spread.iter().position(|knot| knot.1 < -ROUNDING_DB) else {
         return LimitOrder::Kept { least_db: least.1, frequency_rad_per_s: least.0 };
@@ -104,7 +139,7 @@ fn order(ratio: &SquaredRatio, spread: &[(f64, f64)]) -> LimitOrder {
 }
 
 /// Where the limits meet, between a frequency where they are apart and one, perhaps infinite, where they have crossed.
-fn crossing(ratio: &SquaredRatio, apart: f64, crossed: f64) -> f64 {
+fn crossing(ratio: &SquaredRatio<'_>, apart: f64, crossed: f64) -> f64 {
     let (mut apart, mut crossed) = (apart, crossed);
     loop {
         let middle = if crossed.is_finite() { apart + 0.5 * (crossed - apart) } else { 2.0 * apart.max(1.0) };
@@ -115,28 +150,25 @@ fn crossing(ratio: &SquaredRatio, apart: f64, crossed: f64) -> f64 {
     }
 }
 
-/// |upper|^2/|lower|^2 as a quotient of polynomials in x = w^2.
-struct SquaredRatio {
+/// B_U^2/B_L^2: a quotient of polynomials in x = w^2, times the quotient of tables.
+struct SquaredRatio<'a> {
     above: Polynomial,
     below: Polynomial,
+    lower: &'a Limit,
+    upper: &'a Limit,
 }
 
-impl SquaredRatio {
-    fn new(lower: &TransferFunction, upper: &TransferFunction) -> Result<SquaredRatio, TimeDomainError> {
-        use phea_dynamics::linear::TimeDomain::Continuous;
-        if lower.domain() != Continuous || upper.domain() != Continuous {
-            return Err(TimeDomainError::NotContinuous);
-        }
-        let square = |gain: f64| gain * gain;
-        let above = squared(upper.zeros()).product(&squared(lower.poles())).scaled(square(upper.gain()));
-        let below = squared(lower.zeros()).product(&squared(upper.poles())).scaled(square(lower.gain()));
-        Ok(SquaredRatio { above, below })
+impl<'a> SquaredRatio<'a> {
+    fn new(lower: &'a Limit, upper: &'a Limit) -> Result<SquaredRatio<'a>, TimeDomainError> {
+        let ((upper_zeros, upper_poles), (lower_zeros, lower_poles)) = (squared(upper)?, squared(lower)?);
+        let (above, below) = (upper_zeros.product(&lower_poles), lower_zeros.product(&upper_poles));
+        Ok(SquaredRatio { above, below, lower, upper })
     }
 
     fn decibels(&self, frequency: f64) -> f64 {
         let (above, below) = (&self.above, &self.below);
         let ratio = if frequency.is_finite() {
-            let x = num_complex::Complex64::new(frequency * frequency, 0.0);
+            let x = Complex64::new(frequency * frequency, 0.0);
             above.evaluate(x).re / below.evaluate(x).re
         } else {
             match above.degree().cmp(&below.degree()) {
@@ -145,13 +177,31 @@ impl SquaredRatio {
                 std::cmp::Ordering::Greater => f64::INFINITY,
             }
         };
-        10.0 * log10(ratio)
+        10.0 * log10(ratio) + 20.0 * log10(self.tables(frequency))
     }
 
-    /// Frequencies at which the ratio is at rest, rad/s, increasing.
-    fn extremes(&self) -> Result<Vec<f64>, TimeDomainError> {
+    /// The quotient of the tables; one where there are none.
+    fn tables(&self, frequency: f64) -> f64 {
+        let value = |limit: &Limit| match limit {
+            Limit::Table(_) => limit.magnitude(frequency).unwrap_or(f64::NAN),
+            Limit::Constant(_) | Limit::Rational(_) => 1.0,
+        };
+        value(self.upper) / value(self.lower)
+    }
+
+    /// Frequencies at which the ratio may be at rest within a piece, rad/s, increasing.
+    ///
+    /// With the ratio x^m A/B the slope over ln x vanishes with x (A' B - A B') + m A B.
+    fn extremes(&self, start: f64, end: f64) -> Result<Vec<f64>, TimeDomainError> {
         let (above, below) = (&self.above, &self.below);
-        let slope = above.derivative().product(below).sum(&above.product(&below.derivative()).scaled(-1.0));
+        let turn = above.derivative().product(below).sum(&above.product(&below.derivative()).scaled(-1.0));
+        let rational_only = table(self.lower).is_empty() && table(self.upper).is_empty();
+        let slope = if rational_only {
+            turn
+        } else {
+            let power = ln(self.tables(end) / self.tables(start)) / ln(end / start);
+            turn.product(&Polynomial::new(vec![1.0, 0.0])).sum(&above.product(below).scaled(power))
+        };
         if slope.is_zero() {
             return Ok(Vec::new());
         }
@@ -163,8 +213,22 @@ impl SquaredRatio {
     }
 }
 
+/// Numerator and denominator of the squared magnitude of a limit as polynomials in x = w^2; one for a table.
+fn squared(limit: &Limit) -> Result<(Polynomial, Polynomial), TimeDomainError> {
+    let one = || Polynomial::new(vec![1.0]);
+    match limit {
+        Limit::Table(_) => Ok((one(), one())),
+        Limit::Constant(value) => Ok((one().scaled(value * value), one())),
+        Limit::Rational(function) if function.domain() == TimeDomain::Continuous => {
+            let square = function.gain() * function.gain();
+            Ok((of_roots(function.zeros()).scaled(square), of_roots(function.poles())))
+        }
+        Limit::Rational(_) => Err(TimeDomainError::NotContinuous),
+    }
+}
+
 /// The product of |jw - root|^2 as a polynomial in x = w^2, pair by pair.
-fn squared(roots: &[num_complex::Complex64]) -> Polynomial {
+fn of_roots(roots: &[Complex64]) -> Polynomial {
     roots.iter().filter(|root| root.im >= 0.0).fold(Polynomial::new(vec![1.0]), |product, root| {
         let (re, im) = (root.re * root.re, root.im * root.im);
         let factor =
