@@ -1,0 +1,140 @@
+//! The quadratic inequality that one plant puts on the nominal loop.
+
+use num_complex::Complex64;
+
+use super::quadratic::negative_gains;
+
+/// Which closed loop is held against its limit W; q = P0 H0/(P H), weights r are set plant by plant.
+///
+/// ```text
+/// Complementary    W |q + L0| >= r |L0|              |T| = |L0|/|q + L0|
+/// Sensitivity      W |q + L0| >= r |q|               |S| = |q|/|q + L0|
+/// Spread           W |q_i + L0| >= r_k |q_k + L0|    |T_i|/|T_k| for every k
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    Complementary,
+    Sensitivity,
+    Spread,
+}
+
+/// One plant with its limit and weight, both divided by the same power of two so that neither squares to overflow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Plant {
+    /// q
+    pub(super) inverse: Complex64,
+    /// |q|
+    pub(super) modulus: f64,
+    /// W
+    pub(super) limit: f64,
+    /// r
+    pub(super) weight: f64,
+}
+
+impl Plant {
+    /// (r/W)^2
+    pub(super) fn share(&self) -> f64 {
+        let ratio = self.weight / self.limit;
+        ratio * ratio
+    }
+
+    /// |q|^2 (1 - (r/W)^2), free of cancellation.
+    pub(super) fn sensitivity_constant(&self) -> f64 {
+        let ratio = self.weight / self.limit;
+        (self.limit - self.weight) / self.limit * (1.0 + ratio) * self.modulus * self.modulus
+    }
+}
+
+/// A ray L0 = g e^(j phi) from the origin, and the plant whose |q + L0| all others are held against along it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray {
+    pub(super) form: Form,
+    /// e^(j phi)
+    pub(super) direction: Complex64,
+    /// q_k; zero in forms other than `Spread`.
+    pub(super) other: Complex64,
+    /// |q_k|
+    pub(super) other_modulus: f64,
+    /// r_k; one in forms other than `Spread`.
+    pub(super) other_weight: f64,
+    /// The gains along which q_k holds.
+    pub(super) window: [f64; 2],
+}
+
+impl Ray {
+    /// c = Re(conj(q) e^(j phi))
+    pub(super) fn along(&self, inverse: Complex64) -> f64 {
+        inverse.re * self.direction.re + inverse.im * self.direction.im
+    }
+
+    /// s = Im(conj(q) e^(j phi))
+    fn across(&self, inverse: Complex64) -> f64 {
+        inverse.re * self.direction.im - inverse.im * self.direction.re
+    }
+
+    /// The gains that this plant forbids along the ray.
+    ///
+    /// ```text
+    /// Complementary, Spread:   a = W^2 - r^2    b = W^2 c - r^2 c_k    c = W^2 |q|^2 - r^2 |q_k|^2
+    ///                          b^2 - a c = W^2 r^2 |q - q_k|^2 - (W^2 s - r^2 s_k)^2
+    /// Sensitivity:             a = W^2          b = W^2 c              c = (W^2 - r^2) |q|^2
+    ///                          b^2 - a c = W^2 (r^2 |q|^2 - W^2 s^2)
+    /// ```
+    ///
+    /// The differences of squares are taken as products of sum and difference.
+    pub(super) fn forbidden_by(&self, plant: &Plant) -> [[f64; 2]; 2] {
+        let Plant { inverse, modulus, limit, .. } = *plant;
+        let weight = plant.weight * self.other_weight;
+        let (along, across) = (self.along(inverse), self.across(inverse));
+        let square = limit * limit;
+        let found = match self.form {
+            Form::Complementary => {
+                let (radius, distance) = (limit * weight * modulus, square * across.abs());
+                negative_gains(
+                    (limit - weight) * (limit + weight),
+                    square * along,
+                    square * modulus * modulus,
+                    (radius - distance) * (radius + distance),
+                )
+            }
+            Form::Sensitivity => {
+                let (radius, distance) = (limit * weight * modulus, square * across.abs());
+                negative_gains(
+                    square,
+                    square * along,
+                    (limit - weight) * (limit + weight) * modulus * modulus,
+                    (radius - distance) * (radius + distance),
+                )
+            }
+            Form::Spread => {
+                let other = weight * weight;
+                let apart = inverse - self.other;
+                let radius = limit * weight * (apart.re * apart.re + apart.im * apart.im).sqrt();
+                let distance = (square * across - other * self.across(self.other)).abs();
+                let (ours, theirs) = (limit * modulus, weight * self.other_modulus);
+                negative_gains(
+                    (limit - weight) * (limit + weight),
+                    square * along - other * self.along(self.other),
+                    (ours - theirs) * (ours + theirs),
+                    (radius - distance) * (radius + distance),
+                )
+            }
+        };
+        found.map(|interval| self.within_window(interval))
+    }
+
+    /// The part of an interval inside the window. An end that rounding has put beside an end of the window is moved onto it: what goes
+    /// on beyond that end must meet it there.
+    pub(super) fn within_window(&self, interval: [f64; 2]) -> [f64; 2] {
+        const ROUNDING: f64 = 1e-12;
+        let [from, to] = self.window;
+        let [mut low, mut high] = interval;
+        if low <= from * (1.0 + ROUNDING) {
+            low = from;
+        }
+        if high >= to * (1.0 - ROUNDING) {
+            high = to;
+        }
+        [low, high]
+    }
+}

@@ -1,0 +1,159 @@
+//! What a requirement says of one plant: its limit and weight in the q-plane.
+
+use num_complex::Complex64;
+use phea_dynamics::portable;
+
+use super::BoundError;
+use super::ceiling::Candidate;
+use super::fill::Edge;
+use super::inequality::{Form, Plant};
+use crate::specification::{Limit, Requirement};
+use crate::template::{Template, TemplatePoint};
+
+/// A requirement at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rule {
+    kind: Kind,
+    /// W; upper/lower for tracking.
+    limit: f64,
+    /// P0 H0
+    nominal: Complex64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    RobustStability,
+    Sensitivity,
+    PlantInputDisturbance,
+    ControlEffort,
+    LoadMotion,
+    Tracking,
+}
+
+impl Rule {
+    pub(super) fn new(requirement: &Requirement, template: &Template) -> Result<Rule, BoundError> {
+        let frequency_rad_per_s = template.frequency_rad_per_s;
+        let at = |limit: &Limit| {
+            limit.magnitude(frequency_rad_per_s).ok_or(BoundError::NoLimit { frequency_rad_per_s })
+        };
+        let (kind, limit) = match requirement {
+            Requirement::RobustStability(limit) => (Kind::RobustStability, at(limit)?),
+            Requirement::Sensitivity(limit) => (Kind::Sensitivity, at(limit)?),
+            Requirement::PlantInputDisturbance(limit) => (Kind::PlantInputDisturbance, at(limit)?),
+            Requirement::ControlEffort(limit) => (Kind::ControlEffort, at(limit)?),
+            Requirement::LoadMotion(limit) => (Kind::LoadMotion, at(limit)?),
+            Requirement::Tracking { lower, upper } => (Kind::Tracking, at(upper)? / at(lower)?),
+        };
+        if limit.is_nan() || limit < 0.0 {
+            return Err(BoundError::Limit { frequency_rad_per_s, limit });
+        }
+        if !is_response(template.nominal) {
+            return Err(BoundError::Nominal { frequency_rad_per_s });
+        }
+        Ok(Rule { kind, limit, nominal: template.nominal })
+    }
+
+    /// Whether nothing is demanded.
+    pub(super) fn is_idle(&self) -> bool {
+        self.limit == f64::INFINITY
+    }
+
+    pub(super) fn form(&self) -> Form {
+        match self.kind {
+            Kind::RobustStability | Kind::ControlEffort => Form::Complementary,
+            Kind::Sensitivity | Kind::PlantInputDisturbance | Kind::LoadMotion => Form::Sensitivity,
+            Kind::Tracking => Form::Spread,
+        }
+    }
+
+    /// Whether more of a plant is needed than P H.
+    pub(super) fn needs_paths(&self) -> bool {
+        matches!(self.kind, Kind::PlantInputDisturbance | Kind::LoadMotion | Kind::Tracking)
+    }
+
+    /// A plant with its limit and weight.
+    ///
+    /// ```text
+    /// |T| <= W: (W, 1)    |S| <= W: (W, 1)    |P S| <= W: (W, |P|)    |Pd S| <= W: (W, |Pd|)
+    /// |G S| = |T|/|P H| <= W: (W |P H|, 1)    |T_i| <= d |T_k|: (d |H_i|, 1), and |H_k| goes with |q_k + L0|
+    /// ```
+    ///
+    /// `None` for a response that is zero or not finite.
+    pub(super) fn plant(&self, point: &TemplatePoint) -> Option<Plant> {
+        let inverse = self.nominal / point.response;
+        let response = portable::magnitude(point.response);
+        let sensor = portable::magnitude(point.sensor);
+        let (limit, weight) = match self.kind {
+            Kind::RobustStability | Kind::Sensitivity => scaled(self.limit, 1.0),
+            Kind::PlantInputDisturbance => scaled(self.limit, response / sensor),
+            Kind::LoadMotion => scaled(self.limit, portable::magnitude(point.load_motion)),
+            Kind::ControlEffort => scaled(self.limit * response, 1.0),
+            Kind::Tracking => (self.limit / self.tracking_scale() * sensor, 1.0),
+        };
+        let sound =
+            is_response(point.response) && is_response(inverse) && limit.is_finite() && weight.is_finite();
+        sound.then(|| Plant { inverse, modulus: portable::magnitude(inverse), limit, weight })
+    }
+
+    /// What the plants are held against: for tracking every plant with its |H|, otherwise |L0| itself.
+    pub(super) fn candidate(&self, plant: &Plant, point: &TemplatePoint) -> Candidate {
+        let weight = portable::magnitude(point.sensor) / self.tracking_scale();
+        Candidate { inverse: plant.inverse, modulus: plant.modulus, weight }
+    }
+
+    /// The contour between two plants.
+    pub(super) fn edge(&self, ends: [&Plant; 2], points: [&TemplatePoint; 2]) -> Edge {
+        let [from, to] = points;
+        match self.kind {
+            Kind::RobustStability | Kind::Tracking => Edge::of_complementary(ends),
+            Kind::ControlEffort => {
+                Edge::of_control_effort(ends, self.limit * portable::magnitude(self.nominal))
+            }
+            Kind::Sensitivity => Edge::of_sensitivity(ends, ends.map(|plant| plant.inverse), self.limit),
+            Kind::PlantInputDisturbance => {
+                Edge::of_sensitivity(ends, [from, to].map(|point| self.nominal / point.sensor), self.limit)
+            }
+            Kind::LoadMotion => Edge::of_sensitivity(
+                ends,
+                [from, to].map(|point| point.load_motion * self.nominal / point.response),
+                self.limit,
+            ),
+        }
+    }
+
+    /// Common to all plants, since they are held against each other.
+    fn tracking_scale(&self) -> f64 {
+        power_of_two(self.limit.max(1.0))
+    }
+}
+
+/// A number that a plant can be: neither zero nor without bound.
+fn is_response(value: Complex64) -> bool {
+    value.is_finite() && value != Complex64::new(0.0, 0.0)
+}
+
+/// Limit and weight over a power of two common to both, so that neither squares to overflow. Where neither a limit nor anything to
+/// limit is left, nothing can be violated.
+fn scaled(limit: f64, weight: f64) -> (f64, f64) {
+    let scale = power_of_two(limit.max(weight));
+    if limit == 0.0 && weight == 0.0 { (1.0, 0.0) } else { (limit / scale, weight / scale) }
+}
+
+/// The greatest power of two that is not above a positive number, by which dividing is exact.
+fn power_of_two(value: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    f64::from_bits(value.max(f64::MIN_POSITIVE).to_bits() & EXPONENT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::power_of_two;
+
+    #[test]
+    fn powers_of_two_lie_at_or_below() {
+        for (value, power) in [(1.0, 1.0), (1.99, 1.0), (2.0, 2.0), (0.3, 0.25), (1e3, 512.0)] {
+            assert_eq!(power_of_two(value), power);
+        }
+        assert_eq!(power_of_two(0.0), f64::MIN_POSITIVE);
+    }
+}

@@ -1,0 +1,6 @@
+//! Bounds: against published examples, against the plain method, and against the closed loops themselves.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod plain;
+mod published;
+mod random;
