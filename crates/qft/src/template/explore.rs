@@ -53,7 +53,7 @@ impl Exploration {
 }
 
 /// Rounds of growth of a family that does not close.
-const ROUNDS_BESIDE_A_GAP: usize = 2;
+const ROUNDS_BESIDE_A_GAP: usize = 1;
 
 /// Shortest line, in tolerances, that is more than rounding.
 const LENGTH_MINIMUM: f64 = 1e-9;

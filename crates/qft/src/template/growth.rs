@@ -19,7 +19,10 @@ use super::region::{Corner, Region};
 /// Outward gain, in tolerances, that is worth a push.
 const GAIN_MINIMUM: f64 = 0.1;
 
-/// Pushes of one plant.
+/// Longest outward gain of one push, in tolerances: towards a pole there would be no end.
+const STRIDE_MAXIMUM: f64 = 20.0;
+
+/// Pushes of one plant in a round.
 const PUSHES: usize = 6;
 
 /// Share over which a slope is taken.
@@ -146,7 +149,8 @@ fn further(
         let next = plants.at(shares.iter().zip(&moves).map(|(share, step)| share + step).collect())?;
         let step = plants.step(from, next);
         let (out, along) = (dot(step, normal), dot(step, [-normal[1], normal[0]]).abs());
-        if plants.is_finite(next) && out > GAIN_MINIMUM / 2.0 && along < 2.0 * out + 2.0 {
+        let onward = out > GAIN_MINIMUM / 2.0 && out < STRIDE_MAXIMUM;
+        if plants.is_finite(next) && onward && along < 2.0 * out + 2.0 {
             return Ok(Some(next));
         }
         reach /= 4.0;
