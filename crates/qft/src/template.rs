@@ -1,6 +1,159 @@
 //! Templates: what the responses of a family look like at one frequency.
+//!
+//! The members come first. A family over a box is then refined: lines along the edges of the box until neighbouring
+//! plants are close, what the edges of its two-dimensional faces wind around, growth of that region over all coordinates, and
+//! witnesses (members and evenly spread probes) that must lie within it.
+
+mod build;
+mod cell;
+mod explore;
+mod growth;
+mod plants;
+mod region;
+mod witness;
 
 use num_complex::Complex64;
+use phea_dynamics::linear::LinearError;
+
+use crate::closed_loop::Compensation;
+use crate::family::Family;
+
+pub use build::template;
+
+/// How finely a template is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TemplateOptions {
+    /// Largest distance of neighbouring plants, degrees; above 0 and below 90.
+    pub phase_deg: f64,
+    /// Largest distance of neighbouring plants, dB; above 0.
+    pub magnitude_db: f64,
+    /// Plants evaluated beyond the members before refinement gives up.
+    pub evaluations_maximum: usize,
+    /// Plants spread evenly over the box that must lie within the outline, beside the members.
+    pub probes: usize,
+    /// Rounds of growth; each pushes what the round before uncovered.
+    pub rounds_maximum: usize,
+}
+
+impl Default for TemplateOptions {
+    /// 2 degrees, 0.5 dB, 50000 plants, 128 probes, 16 rounds.
+    fn default() -> TemplateOptions {
+        TemplateOptions {
+            phase_deg: 2.0,
+            magnitude_db: 0.5,
+            evaluations_maximum: 50_000,
+            probes: 128,
+            rounds_maximum: 16,
+        }
+    }
+}
+
+/// Why there is no template.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TemplateError {
+    /// A tolerance that is not a positive number, or a phase tolerance of 90 degrees and more.
+    #[error("templates cannot be refined to {phase_deg} degrees and {magnitude_db} dB")]
+    Tolerance {
+        /// The tolerance asked for, degrees.
+        phase_deg: f64,
+        /// The tolerance asked for, dB.
+        magnitude_db: f64,
+    },
+    /// A plant that cannot be put into the loop.
+    #[error("the plant with parameters {values:?} cannot be sampled: {reason}")]
+    Plant {
+        /// Its parameters.
+        values: Vec<f64>,
+        /// Why.
+        reason: LinearError,
+    },
+    /// A measurement that does not reach the frequency.
+    #[error("a measured response does not reach {frequency_rad_per_s} rad/s")]
+    OutOfReach {
+        /// rad/s
+        frequency_rad_per_s: f64,
+    },
+    /// A response that is zero or not finite, of the nominal plant or in a family of nothing but members.
+    #[error("member {member} has the response {response} at {frequency_rad_per_s} rad/s")]
+    NotFinite {
+        /// Index of the member in its family.
+        member: usize,
+        /// P H there.
+        response: Complex64,
+        /// rad/s
+        frequency_rad_per_s: f64,
+    },
+}
+
+/// A template and the work that it took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BuiltTemplate {
+    /// The template.
+    pub template: Template,
+    /// Plants evaluated, members included.
+    pub evaluations: usize,
+}
+
+/// Templates of a family at many frequencies: an iterator, so that whoever owns the loop decides when the next one is built.
+///
+/// # Example
+/// A gain between 1 and 2 before an integrator is a segment of the negative imaginary axis:
+/// ```
+/// # use phea_dynamics::controller::Controller;
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// # use phea_qft::closed_loop::Compensation;
+/// # use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
+/// use phea_qft::template::{TemplateOptions, Templates};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 2.0 };
+/// # let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+/// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+/// #     disturbance: None,
+/// #     dead_time_s: 0.0.into(),
+/// # })?;
+/// # let coordinate = Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
+/// # let members = vertices(&plant, &[coordinate.clone()])?;
+/// # let family = Family::Uncertain(UncertainFamily::new(plant, vec![coordinate], members, Extent::Box)?);
+/// # let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+/// let mut templates = Templates::new(&family, &compensation, &[0.5, 1.0], TemplateOptions::default());
+/// let built = templates.next().ok_or("one for each frequency")??;
+/// assert_eq!(built.template.frequency_rad_per_s, 0.5);
+/// // from -2j to -4j and back
+/// let outline = &built.template.outlines[0];
+/// assert!(outline.iter().all(|response| response.re.abs() < 1e-12 && (-4.0..=-2.0).contains(&response.im)));
+/// assert_eq!(templates.count(), 1);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Templates<'a> {
+    family: &'a Family,
+    compensation: &'a Compensation,
+    frequencies_rad_per_s: std::slice::Iter<'a, f64>,
+    options: TemplateOptions,
+}
+
+impl<'a> Templates<'a> {
+    /// Templates at these frequencies, rad/s, none of them built yet.
+    pub fn new(
+        family: &'a Family,
+        compensation: &'a Compensation,
+        frequencies_rad_per_s: &'a [f64],
+        options: TemplateOptions,
+    ) -> Templates<'a> {
+        Templates { family, compensation, frequencies_rad_per_s: frequencies_rad_per_s.iter(), options }
+    }
+}
+
+impl Iterator for Templates<'_> {
+    type Item = Result<BuiltTemplate, TemplateError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let &frequency_rad_per_s = self.frequencies_rad_per_s.next()?;
+        Some(template(self.family, self.compensation, frequency_rad_per_s, &self.options))
+    }
+}
 
 /// The response of the family at one frequency: points that are plants, and the region that they fill.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,200 @@
+//! The template of a family at one frequency.
+
+use std::collections::BTreeSet;
+
+use num_complex::Complex64;
+
+use super::explore::{Exploration, explore};
+use super::plants::{Plants, Stop};
+use super::region::Corner;
+use super::{BuiltTemplate, Resolution, Template, TemplateError, TemplateOptions, TemplatePoint};
+use crate::closed_loop::{Compensation, MemberResponse};
+use crate::family::{Extent, Family, MeasuredFamily};
+
+/// The template of a family at one frequency.
+///
+/// ```text
+/// template(w) = { P(jw) H(jw) : P in the family }                                                    thesis 3.1.1
+/// ```
+///
+/// `points` are the members in order, then the plants that refinement found on the outline. The outline is known from within: what it
+/// encloses is filled by plants of the family, to the tolerance of its chords; that nothing lies beyond it was searched, from every
+/// point of the outline and with all witnesses, and not found. Magnitude and phase are looked at, with the phase continued
+/// from plant to plant. A member whose response is zero or infinite is no point; `NotResolved` names it.
+///
+/// # Errors
+/// [`TemplateError`] for tolerances that cannot be met, plants that cannot be sampled, measurements that do not reach, and a
+/// nominal plant that is zero or infinite.
+pub fn template(
+    family: &Family,
+    compensation: &Compensation,
+    frequency_rad_per_s: f64,
+    options: &TemplateOptions,
+) -> Result<BuiltTemplate, TemplateError> {
+    let TemplateOptions { phase_deg, magnitude_db, .. } = *options;
+    let possible = phase_deg > 0.0 && phase_deg < 90.0 && magnitude_db > 0.0 && magnitude_db.is_finite();
+    if !possible {
+        return Err(TemplateError::Tolerance { phase_deg, magnitude_db });
+    }
+    match family {
+        Family::Measured(family) => measured(family, compensation, frequency_rad_per_s),
+        Family::Uncertain(family) => {
+            let mut plants = Plants::new(family, compensation, frequency_rad_per_s, *options);
+            uncertain(&mut plants, frequency_rad_per_s)
+        }
+    }
+}
+
+fn measured(
+    family: &MeasuredFamily,
+    compensation: &Compensation,
+    frequency_rad_per_s: f64,
+) -> Result<BuiltTemplate, TemplateError> {
+    let mut points = vec![];
+    for (member, plant) in family.plants().iter().enumerate() {
+        let response = compensation.measured(plant).response(frequency_rad_per_s);
+        let response = response.ok_or(TemplateError::OutOfReach { frequency_rad_per_s })?;
+        points.push(finite(point(Some(member), vec![], response), frequency_rad_per_s)?);
+    }
+    let evaluations = points.len();
+    built(frequency_rad_per_s, points, vec![], Resolution::Members, evaluations)
+}
+
+fn uncertain(plants: &mut Plants, frequency_rad_per_s: f64) -> Result<BuiltTemplate, TemplateError> {
+    let family = plants.family;
+    let mut points = vec![];
+    let mut infinite = None;
+    for (member, values) in family.members().iter().enumerate() {
+        let point = point(Some(member), values.clone(), plants.response(values)?);
+        match finite(point, frequency_rad_per_s) {
+            Ok(point) => points.push(point),
+            Err(_) if member > 0 && family.extent() == Extent::Box => infinite = Some(values.clone()),
+            Err(error) => return Err(error),
+        }
+    }
+    if family.extent() == Extent::Members {
+        let evaluations = plants.evaluations;
+        return built(frequency_rad_per_s, points, vec![], Resolution::Members, evaluations);
+    }
+    let mut exploration = Exploration::new(member_witnesses(plants, &points));
+    let exhausted = match explore(plants, &mut exploration) {
+        Ok(()) => false,
+        Err(Stop::Exhausted) => true,
+        Err(Stop::Failed(error)) => return Err(error),
+    };
+    let outlines = exploration.outlines(plants);
+    let resolution = match infinite {
+        Some(near) => Resolution::NotResolved { phase_deg: 180.0, magnitude_db: f64::INFINITY, near },
+        None => resolution(plants, &exploration, &outlines, exhausted),
+    };
+    let refined = outline_points(plants, &outlines, &points);
+    points.extend(refined);
+    let response = |corner: &Corner| match corner.plant {
+        Some(plant) => loop_response(plants.list[plant].response),
+        None => corner.place.response(),
+    };
+    let outlines = outlines.iter().map(|outline| outline.iter().map(response).collect()).collect();
+    built(frequency_rad_per_s, points, outlines, resolution, plants.evaluations)
+}
+
+fn built(
+    frequency_rad_per_s: f64,
+    points: Vec<TemplatePoint>,
+    outlines: Vec<Vec<Complex64>>,
+    resolution: Resolution,
+    evaluations: usize,
+) -> Result<BuiltTemplate, TemplateError> {
+    let nothing = TemplateError::OutOfReach { frequency_rad_per_s };
+    let nominal = points.first().ok_or(nothing)?.response;
+    let template = Template { frequency_rad_per_s, nominal, points, outlines, resolution };
+    Ok(BuiltTemplate { template, evaluations })
+}
+
+/// P H
+fn loop_response(response: MemberResponse) -> Complex64 {
+    response.plant * response.sensor
+}
+
+fn point(member: Option<usize>, values: Vec<f64>, response: MemberResponse) -> TemplatePoint {
+    let MemberResponse { load_motion, sensor, .. } = response;
+    TemplatePoint { member, values, response: loop_response(response), load_motion, sensor }
+}
+
+fn finite(point: TemplatePoint, frequency_rad_per_s: f64) -> Result<TemplatePoint, TemplateError> {
+    let TemplatePoint { member, response, .. } = point;
+    let square = response.norm_sqr();
+    if response.re.is_finite() && response.im.is_finite() && square > 0.0 {
+        return Ok(point);
+    }
+    Err(TemplateError::NotFinite { member: member.unwrap_or(0), response, frequency_rad_per_s })
+}
+
+/// The members that are points of the box; a nominal plant need not be one where parameters are correlated.
+fn member_witnesses(plants: &mut Plants, points: &[TemplatePoint]) -> Vec<usize> {
+    let family = plants.family;
+    let mut witnesses = vec![];
+    for point in points {
+        let shares = family.shares(&point.values);
+        let same = family
+            .values(&shares)
+            .iter()
+            .zip(&point.values)
+            .all(|(&back, &value)| (back - value).abs() <= 1e-9 * value.abs());
+        if same {
+            let plant = point.response / point.sensor;
+            let response = MemberResponse { plant, load_motion: point.load_motion, sensor: point.sensor };
+            witnesses.push(plants.keep(shares, response));
+        }
+    }
+    witnesses
+}
+
+/// Plants on the outlines, each once, without those that are members.
+fn outline_points(
+    plants: &Plants,
+    outlines: &[Vec<Corner>],
+    members: &[TemplatePoint],
+) -> Vec<TemplatePoint> {
+    let bits = |response: Complex64| (response.re.to_bits(), response.im.to_bits());
+    let mut seen: BTreeSet<(u64, u64)> = members.iter().map(|member| bits(member.response)).collect();
+    let found = outlines.iter().flatten().filter_map(|corner| plants.list.get(corner.plant?));
+    let fresh = found.filter(|plant| seen.insert(bits(loop_response(plant.response))));
+    fresh.map(|plant| point(None, plants.family.values(&plant.shares), plant.response)).collect()
+}
+
+fn resolution(
+    plants: &Plants,
+    exploration: &Exploration,
+    outlines: &[Vec<Corner>],
+    exhausted: bool,
+) -> Resolution {
+    let values = |plant: usize| plants.family.values(&plants.list[plant].shares);
+    if let Some(gap) = &plants.gap {
+        let near = values(gap.plant);
+        return Resolution::NotResolved { phase_deg: gap.phase_deg, magnitude_db: gap.magnitude_db, near };
+    }
+    let (mut phase_deg, mut magnitude_db, mut widest) = (0.0_f64, 0.0_f64, 0);
+    for outline in outlines {
+        for (from, to) in outline.iter().zip(outline.iter().cycle().skip(1)) {
+            let magnitude = (to.place.magnitude_db - from.place.magnitude_db).abs();
+            if magnitude > magnitude_db {
+                widest = from.plant.unwrap_or(widest);
+            }
+            magnitude_db = magnitude_db.max(magnitude);
+            phase_deg = phase_deg.max((to.place.phase_deg - from.place.phase_deg).abs());
+        }
+    }
+    match &exploration.outside {
+        Some(outside) => Resolution::NotResolved {
+            phase_deg: outside.distance * plants.options.phase_deg,
+            magnitude_db: outside.distance * plants.options.magnitude_db,
+            near: values(outside.plant),
+        },
+        None if exhausted => {
+            let near =
+                plants.list.get(widest).map_or_else(|| plants.family.plant().nominal(), |_| values(widest));
+            Resolution::NotResolved { phase_deg, magnitude_db, near }
+        }
+        None => Resolution::Resolved { phase_deg, magnitude_db },
+    }
+}

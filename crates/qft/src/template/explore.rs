@@ -1,0 +1,152 @@
+//! The exploration of a box: edges, faces, growth, witnesses.
+
+use std::collections::BTreeSet;
+
+use super::cell::{Edges, walks};
+use super::growth::grow;
+use super::plants::{Place, Plants, Stop};
+use super::region::{Corner, Region};
+use super::witness::{Outside, outside, probes, take_in};
+
+/// What is known of the image of a box.
+pub(super) struct Exploration {
+    witnesses: Vec<usize>,
+    edges: Option<Edges>,
+    walks: Vec<Vec<usize>>,
+    region: Option<Region>,
+    /// The witness farthest outside of the region, if there is one.
+    pub(super) outside: Option<Outside>,
+}
+
+impl Exploration {
+    /// Nothing but witnesses.
+    pub(super) fn new(witnesses: Vec<usize>) -> Exploration {
+        Exploration { witnesses, edges: None, walks: vec![], region: None, outside: None }
+    }
+
+    /// Polygons with corners no farther apart than the tolerance: pieces of the region, or lines there and back where the template has
+    /// no area.
+    pub(super) fn outlines(&self, plants: &Plants) -> Vec<Vec<Corner>> {
+        match &self.region {
+            Some(region) if region.has_area() => {
+                region.pieces().iter().map(|piece| divided(plants, piece)).collect()
+            }
+            _ => self.lines(plants),
+        }
+    }
+
+    fn lines(&self, plants: &Plants) -> Vec<Vec<Corner>> {
+        let mut lines = vec![];
+        for line in self.edges.iter().flat_map(Edges::iter) {
+            for part in plants.unbroken(&line.plants) {
+                let corner = |&plant: &usize| Corner { place: plants.place(plant), plant: Some(plant) };
+                let there = part.iter().map(corner);
+                let back = part.iter().rev().skip(1).take(part.len().saturating_sub(2)).map(corner);
+                let length: f64 = part.windows(2).map(|pair| plants.apart(pair[0], pair[1])).sum();
+                if length > LENGTH_MINIMUM {
+                    lines.push(there.chain(back).collect());
+                }
+            }
+        }
+        lines
+    }
+}
+
+/// Rounds of growth of a family that does not close.
+const ROUNDS_BESIDE_A_GAP: usize = 1;
+
+/// Shortest line, in tolerances, that is more than rounding.
+const LENGTH_MINIMUM: f64 = 1e-9;
+
+/// Explores until nothing moves and all witnesses lie within, or until the budget is spent; what was found until then stays.
+pub(super) fn explore(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
+    let dimension = plants.family.coordinates().len();
+    if dimension == 0 {
+        return Ok(());
+    }
+    found.edges = Some(Edges::new(plants, dimension)?);
+    let faces: Vec<_> = found.edges.iter().flat_map(Edges::faces).collect();
+    let mut outcome = Ok(());
+    for face in faces {
+        outcome = walks(plants, face, &mut found.walks);
+        if outcome.is_err() {
+            break;
+        }
+    }
+    let mut region = empty_region(plants);
+    let closed: Vec<_> = found.walks.iter().filter_map(|walk| plants.closed_walk(walk)).collect();
+    region.fill(&closed);
+    let has_area = region.has_area();
+    let region = found.region.insert(region);
+    outcome?;
+    if has_area {
+        for shares in probes(dimension, plants.options.probes) {
+            let probe = plants.at(shares)?;
+            if plants.is_finite(probe) {
+                found.witnesses.push(probe);
+            }
+        }
+        refine(plants, region, &found.witnesses, &mut found.outside)?;
+    }
+    Ok(())
+}
+
+/// Rounds of growth; where nothing moves any more, witnesses outside are taken in.
+fn refine(
+    plants: &mut Plants,
+    region: &mut Region,
+    witnesses: &[usize],
+    farthest: &mut Option<Outside>,
+) -> Result<(), Stop> {
+    let mut tried = BTreeSet::new();
+    // towards a pole of the family growth would never end
+    let rounds = plants.options.rounds_maximum.min(if plants.gap.is_some() {
+        ROUNDS_BESIDE_A_GAP
+    } else {
+        usize::MAX
+    });
+    for _ in 0..rounds {
+        if grow(plants, region, &mut tried)? {
+            continue;
+        }
+        let beyond = outside(plants, region, witnesses);
+        if beyond.is_empty() {
+            return Ok(());
+        }
+        take_in(plants, region, &beyond)?;
+    }
+    *farthest = outside(plants, region, witnesses).into_iter().next();
+    Ok(())
+}
+
+/// A region for places as far apart as those that were found.
+fn empty_region(plants: &Plants) -> Region {
+    let places = || plants.list.iter().map(|plant| plant.place).filter(|place| place.is_finite());
+    let corner = |start: f64, choose: fn(f64, f64) -> f64| Place {
+        phase_deg: places().map(|place| place.phase_deg).fold(start, choose),
+        magnitude_db: places().map(|place| place.magnitude_db).fold(start, choose),
+    };
+    let tolerance = [plants.options.phase_deg, plants.options.magnitude_db];
+    Region::new(corner(f64::INFINITY, f64::min), corner(f64::NEG_INFINITY, f64::max), tolerance)
+}
+
+/// The same polygon with places between corners that lie farther apart than the tolerance: seams along which a piece was cut.
+fn divided(plants: &Plants, piece: &[Corner]) -> Vec<Corner> {
+    let mut corners = vec![];
+    for (from, to) in piece.iter().zip(piece.iter().cycle().skip(1)) {
+        corners.push(*from);
+        let [phase, magnitude] = plants.steps(from.place, to.place);
+        let parts = phase.abs().max(magnitude.abs()).ceil();
+        let mut part = 1.0;
+        while part < parts {
+            let between = |from: f64, to: f64| from + part / parts * (to - from);
+            let place = Place {
+                phase_deg: between(from.place.phase_deg, to.place.phase_deg),
+                magnitude_db: between(from.place.magnitude_db, to.place.magnitude_db),
+            };
+            corners.push(Corner { place, plant: None });
+            part += 1.0;
+        }
+    }
+    corners
+}
