@@ -19,7 +19,9 @@ pub mod clip;
 pub mod colour;
 pub mod impedance;
 pub mod legend;
+pub mod nichols;
 pub mod nomograph;
+mod open_loop;
 pub mod placement;
 pub mod plot;
 pub mod png;
@@ -31,6 +33,7 @@ pub mod sizing_chart;
 pub mod step_response;
 pub mod stiffness_over_stroke;
 pub mod svg;
+pub mod templates;
 pub mod ticks;
 pub mod tornado;
 pub mod typeset;
@@ -39,6 +42,7 @@ pub use crate::quantity::DisplayUnit;
 pub use bode::{BodeInput, FrequencySeries, bode};
 pub use colour::{Theme, style_sheet};
 pub use impedance::{Asymptote, ImpedanceInput, impedance};
+pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, nichols};
 pub use nomograph::{NomographBore, NomographInput, nomograph};
 pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
 pub use schematic::{
@@ -47,6 +51,7 @@ pub use schematic::{
 pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};
 pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};
 pub use stiffness_over_stroke::{StiffnessCurve, StiffnessInput, stiffness_over_stroke};
+pub use templates::templates;
 pub use tornado::{TornadoBar, TornadoInput, tornado};
 
 use scene::Scene;

@@ -4,7 +4,7 @@
 
 use phea_dynamics::portable::{cbrt, pow};
 use phea_workbench::figure::Theme;
-use phea_workbench::figure::colour::{ROLES, Role, SERIES_COUNT, series_stroke, style_sheet};
+use phea_workbench::figure::colour::{RAMP_COUNT, ROLES, Role, SERIES_COUNT, series_stroke, style_sheet};
 
 type Rgb = [f64; 3];
 
@@ -43,7 +43,7 @@ fn text_and_lines_stand_out_and_decoration_stays_behind() {
                 Role::Text | Role::Muted | Role::Accent | Role::Good | Role::Warning | Role::Bad => {
                     (4.5, 21.1)
                 }
-                Role::Axis | Role::Series(_) => (3.0, 21.1),
+                Role::Axis | Role::Series(_) | Role::Ramp(_) => (3.0, 21.1),
                 Role::Grid => (1.3, 2.0),
                 Role::MinorGrid => (1.1, 1.4),
                 Role::Surface => (1.02, 1.3),
@@ -122,6 +122,21 @@ fn series_stay_apart_for_every_kind_of_sight() {
                     let least = if i < 4 { FIRST_APART } else { APART };
                     assert!(distance >= least, "{i} and {j}, {sight}, {theme:?}: {distance:.4}");
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn steps_of_the_ramp_grow_lighter_and_stay_apart() {
+    for theme in THEMES {
+        for i in 1..RAMP_COUNT {
+            let (below, above) = (Role::Ramp(i - 1), Role::Ramp(i));
+            let [dark, light] = [below, above].map(|role| oklab(of(role, theme))[0]);
+            assert!(light > dark + 0.05, "{i}, {theme:?}: {dark:.3} {light:.3}");
+            for (sight, matrix) in &SIGHT {
+                let distance = seen_distance(below, above, theme, matrix);
+                assert!(distance >= 0.05, "{i}, {sight}, {theme:?}: {distance:.4}");
             }
         }
     }

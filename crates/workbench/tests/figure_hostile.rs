@@ -6,6 +6,8 @@ mod legibility;
 use legibility::check;
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
+use phea_qft::bound::{Bound, GainIntervals};
+use phea_qft::template::{Resolution, Template, TemplatePoint};
 use phea_workbench::figure::*;
 
 struct Random(u64);
@@ -80,6 +82,41 @@ impl Random {
 
     fn mark(&mut self) -> FrequencyMark {
         FrequencyMark { label: self.name(), frequency_rad_per_s: self.number() }
+    }
+
+    fn response(&mut self) -> Complex64 {
+        Complex64::new(self.number(), self.number())
+    }
+
+    /// Gains that may be negative, infinite or in the wrong order, at phases that may be anything.
+    fn bound(&mut self) -> Bound {
+        let phases = self.below(9);
+        let phase = |r: &mut Random| if r.unit() < 0.1 { r.number() } else { -7.0 * r.unit() };
+        let mut phases_rad: Vec<f64> = (0..phases).map(|_| phase(self)).collect();
+        if self.unit() < 0.7 {
+            phases_rad.sort_by(f64::total_cmp);
+        }
+        let gain = |r: &mut Random| if r.unit() < 0.2 { r.number() } else { 10.0 * r.unit() };
+        let spans = |r: &mut Random| r.many(4, |r| [gain(r), gain(r)]);
+        let forbidden = (0..self.below(9)).map(|_| GainIntervals::union_of(spans(self))).collect();
+        Bound { frequency_rad_per_s: self.number(), phases_rad, forbidden }
+    }
+
+    fn template(&mut self) -> Template {
+        let point = |r: &mut Random| TemplatePoint {
+            member: r.maybe(|r| r.below(9)),
+            values: r.numbers(),
+            response: r.response(),
+            load_motion: r.response(),
+            sensor: r.response(),
+        };
+        Template {
+            frequency_rad_per_s: self.number(),
+            nominal: self.response(),
+            points: self.many(9, point),
+            outlines: self.many(3, Random::complex),
+            resolution: Resolution::Members,
+        }
     }
 
     fn time_series(&mut self) -> TimeSeries {
@@ -275,4 +312,31 @@ fn circuits() {
         };
         schematic(r.words(), &input)
     });
+}
+
+#[test]
+fn nichols_charts() {
+    repeat(10, |r| {
+        let bounds = r.many(4, |r| r.many(5, Random::bound));
+        let templates = r.many(4, Random::template);
+        let violation = |r: &mut Random| OpenLoopViolation {
+            frequency_rad_per_s: r.number(),
+            open_loop: r.response(),
+            text: r.name(),
+        };
+        let input = NicholsInput {
+            loops: r.many(3, Random::frequency_series),
+            design_frequencies_rad_per_s: r.numbers(),
+            bounds: bounds.iter().map(|bounds| BoundGroup { name: r.name(), bounds }).collect(),
+            templates: &templates,
+            violations: r.many(3, violation),
+            contours_db: r.numbers(),
+        };
+        nichols(r.words(), &input)
+    });
+}
+
+#[test]
+fn template_charts() {
+    repeat(11, |r| templates(r.words(), &r.many(6, Random::template)));
 }

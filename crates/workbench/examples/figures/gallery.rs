@@ -1,13 +1,16 @@
 //! Figures with numbers near those of Ledezma (2019): stiffness 2.2 to 4.1 MN/m over 0.5 m, mechanical resonance at
 //! 2938 rad/s, valve at 1099 rad/s.
 
+#[path = "gallery_qft.rs"]
+mod gallery_qft;
+
 use num_complex::Complex64;
 use phea_dynamics::portable::{cos, exp, pow, sin};
 use phea_workbench::figure::*;
 
 /// Every figure once.
 pub(crate) fn all() -> Vec<Figure> {
-    vec![
+    let mut figures = vec![
         circuit(),
         asymmetric_circuit(),
         bode_of_models(),
@@ -20,7 +23,9 @@ pub(crate) fn all() -> Vec<Figure> {
         force_step(),
         lengths(),
         sensitivities(),
-    ]
+    ];
+    figures.extend(gallery_qft::all());
+    figures
 }
 
 fn frequencies(from: f64, to: f64, count: usize) -> Vec<f64> {

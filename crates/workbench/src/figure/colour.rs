@@ -8,7 +8,8 @@
 //! series 3 or more. Grid lines and surfaces are decoration: visible, and well below the data. The eight series
 //! start from the hues of Okabe and Ito (2008), moved until every pair stays apart for normal, protanope, deuteranope and
 //! tritanope sight (simulated after Machado, Oliveira and Fernandes 2009, distance in Oklab). Dash patterns and markers carry the
-//! same distinction into a grey print.
+//! same distinction into a grey print. The eight steps of the ramp, for curves that have an order, change their hue and
+//! grow lighter in equal steps, so neighbours stay apart for all of these and in grey.
 
 use super::plot::{Marker, MarkerStyle};
 use super::scene::{Dash, Stroke};
@@ -32,6 +33,8 @@ pub enum Role {
     Muted,
     /// Data series, counted from 0; the colours repeat after eight.
     Series(u8),
+    /// Members of an ordered set such as frequencies, counted from 0, dark to light; the colours repeat after eight.
+    Ramp(u8),
     /// The design value, the operating point: what the reader should find first.
     Accent,
     /// Accepted.
@@ -54,8 +57,11 @@ pub enum Theme {
 /// Number of distinct series colours.
 pub const SERIES_COUNT: u8 = 8;
 
+/// Number of steps of the ramp.
+pub const RAMP_COUNT: u8 = 8;
+
 /// Every role once, in a fixed order.
-pub const ROLES: [Role; 19] = [
+pub const ROLES: [Role; 27] = [
     Role::Background,
     Role::Surface,
     Role::Axis,
@@ -71,6 +77,14 @@ pub const ROLES: [Role; 19] = [
     Role::Series(5),
     Role::Series(6),
     Role::Series(7),
+    Role::Ramp(0),
+    Role::Ramp(1),
+    Role::Ramp(2),
+    Role::Ramp(3),
+    Role::Ramp(4),
+    Role::Ramp(5),
+    Role::Ramp(6),
+    Role::Ramp(7),
     Role::Accent,
     Role::Good,
     Role::Warning,
@@ -97,6 +111,16 @@ impl Role {
                 5 => "series-6",
                 6 => "series-7",
                 _ => "series-8",
+            },
+            Role::Ramp(index) => match index % RAMP_COUNT {
+                0 => "ramp-1",
+                1 => "ramp-2",
+                2 => "ramp-3",
+                3 => "ramp-4",
+                4 => "ramp-5",
+                5 => "ramp-6",
+                6 => "ramp-7",
+                _ => "ramp-8",
             },
             Role::Accent => "accent",
             Role::Good => "good",
@@ -125,6 +149,16 @@ impl Role {
                 6 => ("#20293a", "#ffffff"),
                 _ => ("#3c96c4", "#6d7cae"),
             },
+            Role::Ramp(index) => match index % RAMP_COUNT {
+                0 => ("#330044", "#983dbc"),
+                1 => ("#59012e", "#cc409e"),
+                2 => ("#6b2200", "#f34f71"),
+                3 => ("#644902", "#ff7743"),
+                4 => ("#4d6b00", "#fda102"),
+                5 => ("#048466", "#eacb02"),
+                6 => ("#0b92a6", "#bdf64e"),
+                _ => ("#3c95fe", "#d8ffe4"),
+            },
             Role::Accent => ("#b3136f", "#ff7ac6"),
             Role::Good => ("#187a3c", "#58d08a"),
             Role::Warning => ("#96570a", "#ffb84d"),
@@ -139,7 +173,12 @@ impl Role {
 
 /// Line of the series with this index: colour and dash pattern together.
 pub const fn series_stroke(index: usize) -> Stroke {
-    let dash = match index % 8 {
+    Stroke { role: series_role(index), width: 2.0, dash: series_dash(index) }
+}
+
+/// Dash pattern of the series with this index.
+pub const fn series_dash(index: usize) -> Dash {
+    match index % 8 {
         0 => Dash::Solid,
         1 => Dash::Dashed,
         2 => Dash::DashDot,
@@ -148,8 +187,22 @@ pub const fn series_stroke(index: usize) -> Stroke {
         5 => Dash::DashDotDot,
         6 => Dash::ShortDash,
         _ => Dash::LongShort,
-    };
-    Stroke { role: series_role(index), width: 2.0, dash }
+    }
+}
+
+/// Colour of member `index` of an ordered set of `count`: spread over the ramp, repeated where there are more members than
+/// steps.
+///
+/// # Example
+/// ```
+/// use phea_workbench::figure::colour::{Role, ramp_role};
+/// assert_eq!([0, 1, 2].map(|index| ramp_role(index, 3)), [Role::Ramp(0), Role::Ramp(3), Role::Ramp(7)]);
+/// assert_eq!(ramp_role(8, 9), Role::Ramp(0));
+/// ```
+pub const fn ramp_role(index: usize, count: usize) -> Role {
+    let steps = RAMP_COUNT as usize;
+    let step = if count > 1 && count <= steps { index * (steps - 1) / (count - 1) } else { index };
+    Role::Ramp((step % steps) as u8)
 }
 
 /// Colour of the series with this index.

@@ -32,6 +32,11 @@ impl LegendEntry {
         LegendEntry { text: text.into(), stroke: Some(stroke), marker: None, fill: None }
     }
 
+    /// Words about the whole figure, without a sample.
+    pub fn note(text: impl Into<String>) -> Self {
+        LegendEntry { text: text.into(), stroke: None, marker: None, fill: None }
+    }
+
     /// An entry for a marker.
     pub fn marker(text: impl Into<String>, marker: MarkerStyle) -> Self {
         LegendEntry { text: text.into(), stroke: None, marker: Some(marker), fill: None }
@@ -43,8 +48,13 @@ impl LegendEntry {
     }
 }
 
+/// Width of the sample with the gap after it.
 fn swatch(entry: &LegendEntry) -> f64 {
-    if entry.stroke.is_none() && entry.fill.is_none() { NARROW } else { SWATCH }
+    match (entry.stroke.is_none() && entry.fill.is_none(), entry.marker) {
+        (true, None) => 0.0,
+        (true, Some(_)) => NARROW + GAP,
+        (false, _) => SWATCH + GAP,
+    }
 }
 
 /// Entries distributed over rows of the given width: each with its offset from the left.
@@ -52,8 +62,8 @@ fn rows(entries: &[LegendEntry], width: f64) -> Vec<Vec<(f64, String, &LegendEnt
     let mut result: Vec<Vec<(f64, String, &LegendEntry)>> = Vec::new();
     let mut x = 0.0;
     for entry in entries {
-        let text = typeset::fitted(&entry.text, LABEL_SIZE, width - swatch(entry) - GAP);
-        let length = swatch(entry) + GAP + typeset::width(&text, LABEL_SIZE);
+        let text = typeset::fitted(&entry.text, LABEL_SIZE, width - swatch(entry));
+        let length = swatch(entry) + typeset::width(&text, LABEL_SIZE);
         if result.is_empty() || x + length > width {
             result.push(Vec::new());
             x = 0.0;
@@ -86,9 +96,9 @@ pub fn draw(scene: &mut Scene, entries: &[LegendEntry], left: f64, top: f64, wid
                 scene.line(point(x, middle), point(x + SWATCH, middle), stroke);
             }
             if let Some(marker) = entry.marker {
-                draw_marker(scene, point(x + 0.5 * swatch(entry), middle), marker, None);
+                draw_marker(scene, point(x + 0.5 * (swatch(entry) - GAP), middle), marker, None);
             }
-            let at = point(x + swatch(entry) + GAP, middle);
+            let at = point(x + swatch(entry), middle);
             scene.text(Text::new(at, text, LABEL_SIZE).held(Anchor::Start, Baseline::Middle));
         }
     }

@@ -55,6 +55,22 @@ pub enum Mark {
         /// Line.
         stroke: Stroke,
     },
+    /// Short strokes on the right-hand side of a line, seen along it: the side that is forbidden.
+    Fringe {
+        /// (x, y).
+        points: Vec<(f64, f64)>,
+        /// Strokes.
+        stroke: Stroke,
+    },
+    /// Small dots; those that would lie upon another are left out.
+    Dots {
+        /// (x, y).
+        points: Vec<(f64, f64)>,
+        /// Colour.
+        role: Role,
+        /// Radius.
+        radius: f64,
+    },
     /// A closed area, cut at the frame.
     Area {
         /// (x, y) around it.
@@ -99,6 +115,15 @@ pub enum Mark {
     EdgeLabel {
         /// Value of y.
         at: f64,
+        /// Text with markup.
+        text: String,
+        /// Colour.
+        role: Role,
+    },
+    /// A text that belongs to a point, led to it by a thin line where it does not stand beside it.
+    Callout {
+        /// (x, y) of the point, or of several to choose from.
+        at: Vec<(f64, f64)>,
         /// Text with markup.
         text: String,
         /// Colour.

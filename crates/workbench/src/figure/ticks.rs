@@ -18,6 +18,8 @@ pub enum Steps {
     Angle,
     /// 10, 20, 40, 60, 80, 100 decibels: 20 to a factor of ten.
     Decibel,
+    /// This step whatever the room: a chart with customary numbers.
+    Every(u16),
 }
 
 /// The smallest round step that divides `span` into at most `count` intervals.
@@ -27,8 +29,12 @@ pub enum Steps {
 /// use phea_workbench::figure::ticks::{Steps, round_step};
 /// assert_eq!(round_step(0.5, 5, Steps::Decimal), 0.1);
 /// assert_eq!(round_step(360.0, 5, Steps::Angle), 90.0);
+/// assert_eq!(round_step(360.0, 5, Steps::Every(45)), 45.0);
 /// ```
 pub fn round_step(span: f64, count: usize, steps: Steps) -> f64 {
+    if let Steps::Every(step) = steps {
+        return f64::from(step.max(1));
+    }
     let least = span / count.max(1) as f64;
     let listed: &[f64] = match steps {
         Steps::Angle if least > 5.0 => &[15.0, 30.0, 45.0, 90.0, 180.0, 360.0],

@@ -1,8 +1,8 @@
 //! Labels of marks, each at the first free place that suits its kind.
 
 use super::super::colour::Role;
-use super::super::placement::Occupancy;
-use super::super::scene::{Anchor, Baseline, Point, Rectangle, Scene, Text, point};
+use super::super::placement::{Led, Occupancy};
+use super::super::scene::{Anchor, Baseline, Point, Rectangle, Scene, Stroke, Text, point};
 use super::super::{LABEL_SIZE, WIDTH, typeset};
 use super::layout::{EDGE_GAP, Placed};
 use super::paint::{band_area, reference_line};
@@ -28,6 +28,12 @@ pub(super) fn draw(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occup
                 let points = at.iter().map(|(x, y)| placed.at(*x, *y));
                 let visible = points.filter(|p| placed.frame.contains_point(*p));
                 (text, *role, visible.flat_map(|p| around(p, *side)).collect())
+            }
+            Mark::Callout { at, text, role } => {
+                let points = at.iter().map(|(x, y)| placed.at(*x, *y));
+                let visible: Vec<Point> = points.filter(|p| placed.frame.contains_point(*p)).collect();
+                call_out(scene, occupancy, placed.frame, text, *role, &visible);
+                continue;
             }
             _ => continue,
         };
@@ -88,6 +94,60 @@ fn place(
         occupancy.add_text(*bounds);
         scene.text(text.clone());
     }
+}
+
+/// Farthest a text may stand from its point without a line.
+const BESIDE: f64 = 10.0;
+
+/// A text beside one of the points, or farther away at the end of a line.
+fn call_out(
+    scene: &mut Scene,
+    occupancy: &mut Occupancy,
+    frame: Rectangle,
+    text: &str,
+    role: Role,
+    points: &[Point],
+) {
+    let mut texts = Vec::new();
+    let mut candidates = Vec::new();
+    for &from in points {
+        for away in [9.0, 16.0, 26.0, 38.0, 52.0, 70.0] {
+            for (at, anchor, baseline) in directions(from, away) {
+                let label = Text::new(at, text, LABEL_SIZE).held(anchor, baseline);
+                let bounds = label.bounds();
+                let to =
+                    point(from.x.clamp(bounds.left, bounds.right), from.y.clamp(bounds.top, bounds.bottom));
+                let line = (away > BESIDE).then_some((from, to));
+                candidates.push(Led { bounds, line });
+                texts.push(label.coloured(legible(role)).with_halo());
+            }
+        }
+    }
+    let Some(index) = occupancy.choose_led(&candidates, &frame.grown(-2.0)) else { return };
+    if let (Some(text), Some(Led { bounds, line })) = (texts.get(index), candidates.get(index)) {
+        if let Some((from, to)) = *line {
+            scene.line(from, to, Stroke::solid(legible(role), 0.8));
+            occupancy.add_polyline(&[from, to]);
+        }
+        occupancy.add_text(*bounds);
+        scene.text(text.clone());
+    }
+}
+
+/// The eight directions from a point, beside it first.
+fn directions(at: Point, away: f64) -> [Hold; 8] {
+    let (right, left) = (at.x + away, at.x - away);
+    let slant = 0.75 * away;
+    [
+        (point(right, at.y), Anchor::Start, Baseline::Middle),
+        (point(left, at.y), Anchor::End, Baseline::Middle),
+        (point(at.x + slant, at.y - slant), Anchor::Start, Baseline::Letters),
+        (point(at.x + slant, at.y + slant), Anchor::Start, Baseline::Top),
+        (point(at.x - slant, at.y - slant), Anchor::End, Baseline::Letters),
+        (point(at.x - slant, at.y + slant), Anchor::End, Baseline::Top),
+        (point(at.x, at.y - away), Anchor::Middle, Baseline::Letters),
+        (point(at.x, at.y + away), Anchor::Middle, Baseline::Top),
+    ]
 }
 
 fn rows(top: f64, bottom: f64) -> impl Iterator<Item = f64> {

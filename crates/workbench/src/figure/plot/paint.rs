@@ -1,5 +1,9 @@
 //! Marks of a panel as primitives.
 
+use std::collections::BTreeMap;
+
+use phea_dynamics::portable::hypot;
+
 use super::super::colour::Role;
 use super::super::placement::Occupancy;
 use super::super::scene::{Fill, Item, PathStep, Point, Rectangle, Scene, Shape, Stroke, point, run};
@@ -42,6 +46,26 @@ pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occu
                     runs.iter().flat_map(|piece| run(&simplify::polyline(piece), false)).collect();
                 if !steps.is_empty() {
                     scene.shape(Shape::Path(steps), Some(*stroke), None);
+                }
+            }
+            Mark::Fringe { points, stroke } => {
+                let points: Vec<Point> = points.iter().map(|&(x, y)| placed.at(x, y)).collect();
+                let runs = clip::polyline(&points, &placed.frame);
+                let steps: Vec<PathStep> = runs.iter().flat_map(|run| fringe(run, &placed.frame)).collect();
+                if !steps.is_empty() {
+                    scene.shape(Shape::Path(steps), Some(*stroke), None);
+                }
+            }
+            Mark::Dots { points, role, radius } => {
+                let points = points.iter().map(|&(x, y)| placed.at(x, y));
+                let seen = thinned(points.filter(|p| placed.frame.contains_point(*p)));
+                let extent = |p: Point| Rectangle::from_corners(p, p).grown(*radius);
+                seen.iter().for_each(|p| occupancy.add_obstacle(extent(*p)));
+                // A line without length under round ends is a dot.
+                let steps: Vec<PathStep> =
+                    seen.into_iter().flat_map(|p| [PathStep::Move(p), PathStep::Line(p)]).collect();
+                if !steps.is_empty() {
+                    scene.shape(Shape::Path(steps), Some(Stroke::solid(*role, 2.0 * radius)), None);
                 }
             }
             Mark::Reference { direction, at, stroke, .. } => {
@@ -94,6 +118,43 @@ pub(super) fn reference_line(placed: &Placed<'_>, direction: Direction, at: f64)
             (y >= frame.top && y <= frame.bottom).then(|| (point(frame.left, y), point(frame.right, y)))
         }
     }
+}
+
+/// Strokes at equal distances along a run of points, slanted backwards to its right-hand side, cut at the frame.
+fn fringe(run: &[Point], frame: &Rectangle) -> Vec<PathStep> {
+    const SPACING: f64 = 11.0;
+    const LENGTH: f64 = 4.5;
+    let mut steps = Vec::new();
+    let mut ahead = 0.5 * SPACING;
+    for pair in run.windows(2) {
+        let &[from, to] = pair else { continue };
+        let (dx, dy) = (to.x - from.x, to.y - from.y);
+        let length = hypot(dx, dy);
+        if length == 0.0 {
+            continue;
+        }
+        let (ux, uy) = (LENGTH * dx / length, LENGTH * dy / length);
+        while ahead <= length {
+            let foot = point(from.x + ahead / length * dx, from.y + ahead / length * dy);
+            let tip = point(foot.x - uy - 0.7 * ux, foot.y + ux - 0.7 * uy);
+            if let Some((a, b)) = clip::segment(foot, tip, frame) {
+                steps.extend([PathStep::Move(a), PathStep::Line(b)]);
+            }
+            ahead += SPACING;
+        }
+        ahead -= length;
+    }
+    steps
+}
+
+/// The first of those points that share a cell of the size of a unit, in order of place.
+fn thinned(points: impl Iterator<Item = Point>) -> Vec<Point> {
+    let mut cells: BTreeMap<(i32, i32), Point> = BTreeMap::new();
+    for p in points {
+        // Within a figure coordinates are small.
+        cells.entry((p.x.round() as i32, p.y.round() as i32)).or_insert(p);
+    }
+    cells.into_values().collect()
 }
 
 /// Diagonal lines over an area.

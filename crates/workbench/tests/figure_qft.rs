@@ -1,0 +1,142 @@
+//! What the figures of the robust method promise: contours that are contours, edges that enclose what is forbidden.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use num_complex::Complex64;
+use phea_dynamics::portable::{cos, log10, magnitude, pow, sin};
+use phea_qft::bound::{Bound, GainIntervals};
+use phea_workbench::figure::nichols::{Boundary, USUAL_CONTOURS_DB, boundaries, magnitude_contour};
+
+fn open_loop((phase_deg, magnitude_db): (f64, f64)) -> Complex64 {
+    let (gain, phase) = (pow(10.0, magnitude_db / 20.0), phase_deg.to_radians());
+    Complex64::new(gain * cos(phase), gain * sin(phase))
+}
+
+fn complementary_db(open_loop: Complex64) -> f64 {
+    20.0 * log10(magnitude(open_loop / (1.0 + open_loop)))
+}
+
+#[test]
+fn every_point_of_a_contour_has_its_magnitude() {
+    for contour in USUAL_CONTOURS_DB.into_iter().chain([20.0, 1e-3, -1e-3, -80.0]) {
+        let points = magnitude_contour(contour);
+        assert!(points.len() > 100);
+        for point in points {
+            let found = complementary_db(open_loop(point));
+            assert!((found - contour).abs() < 1e-6, "{contour} dB at {point:?}: {found}");
+            assert!((-360.0..=0.0).contains(&point.0));
+        }
+    }
+    assert!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].iter().all(|c| magnitude_contour(*c).is_empty()));
+}
+
+fn bound(phases_deg: &[f64], forbidden: impl Fn(f64) -> Vec<[f64; 2]>) -> Bound {
+    Bound {
+        frequency_rad_per_s: 1.0,
+        phases_rad: phases_deg.iter().map(|phase| phase.to_radians()).collect(),
+        forbidden: phases_deg.iter().map(|phase| GainIntervals::union_of(forbidden(*phase))).collect(),
+    }
+}
+
+fn every(step_deg: f64) -> Vec<f64> {
+    (0..=(360.0 / step_deg) as usize).map(|i| i as f64 * step_deg - 360.0).collect()
+}
+
+/// Twice the area to the left, in degrees times dB: negative when what is enclosed lies to the right.
+fn area(edge: &Boundary) -> f64 {
+    edge.points.windows(2).map(|pair| pair[0].0 * pair[1].1 - pair[1].0 * pair[0].1).sum()
+}
+
+/// |T| <= M for one plant forbids exactly the inside of the contour of M (its discriminant is that of the quadratic in the
+/// gain), so the traced edge and the contour are two ways to the same curve, tips included.
+#[test]
+fn the_bound_of_one_plant_is_the_contour() {
+    let limit: f64 = 1.2;
+    let square = limit * limit;
+    let roots = |phase: f64| {
+        let part = square * cos(phase.to_radians());
+        let discriminant = part * part - square * (square - 1.0);
+        if part >= 0.0 || discriminant <= 0.0 {
+            return vec![];
+        }
+        let root = discriminant.sqrt();
+        vec![[(-part - root) / (square - 1.0), (-part + root) / (square - 1.0)]]
+    };
+    let edges = boundaries(&bound(&every(1.0), roots));
+    assert_eq!(edges.len(), 1);
+    assert!(edges[0].closed && area(&edges[0]) < 0.0);
+    let limit_db = 20.0 * log10(limit);
+    for &point in &edges[0].points {
+        let found = complementary_db(open_loop(point));
+        assert!((found - limit_db).abs() < 0.02, "{point:?}: {found} against {limit_db}");
+    }
+    // The tips: cos(phi) = -sqrt(1 - 1/M^2), reached to a tenth of the step.
+    let widest = phea_dynamics::portable::acos((1.0 - 1.0 / square).sqrt()).to_degrees();
+    let rightmost = edges[0].points.iter().map(|point| point.0 + 180.0).fold(-180.0, f64::max);
+    let leftmost = edges[0].points.iter().map(|point| point.0 + 180.0).fold(180.0, f64::min);
+    assert!((rightmost - widest).abs() < 0.1 && (leftmost + widest).abs() < 0.1, "{leftmost} {rightmost}");
+}
+
+#[test]
+fn an_open_bound_has_one_edge_with_the_forbidden_side_below() {
+    let edges = boundaries(&bound(&every(5.0), |phase| vec![[0.0, 2.0 + sin(phase.to_radians())]]));
+    let visible: Vec<&Boundary> = edges.iter().filter(|edge| edge.points[0].1 > -1000.0).collect();
+    assert_eq!((edges.len(), visible.len()), (2, 1));
+    assert!(visible.iter().all(|edge| !edge.closed && edge.points.windows(2).all(|p| p[1].0 > p[0].0)));
+}
+
+/// A ring: an island with an allowed hole, which spans split and join around.
+#[test]
+fn a_hole_is_an_edge_of_its_own() {
+    let circle = |phase: f64, radius: f64| {
+        let square = radius * radius - (phase + 180.0) * (phase + 180.0);
+        (square > 0.0).then(|| square.sqrt() / 10.0)
+    };
+    let gain = |decibel: f64| pow(10.0, decibel / 20.0);
+    let ring = |phase: f64| match (circle(phase, 100.0), circle(phase, 40.0)) {
+        (Some(outer), Some(inner)) => vec![[gain(-outer), gain(-inner)], [gain(inner), gain(outer)]],
+        (Some(outer), None) => vec![[gain(-outer), gain(outer)]],
+        (None, _) => vec![],
+    };
+    let edges = boundaries(&bound(&every(4.0), ring));
+    let areas: Vec<f64> = edges.iter().map(area).collect();
+    assert!(edges.len() == 2 && edges.iter().all(|edge| edge.closed), "{areas:?}");
+    // Twice the area of an ellipse with half axes r degrees and r/10 dB; polygons fall short of it.
+    let ellipse = |radius: f64| 2.0 * std::f64::consts::PI * radius * radius / 10.0;
+    for (found, truth) in areas.iter().zip([-ellipse(100.0), ellipse(40.0)]) {
+        assert!((found / truth - 1.0).abs() < 0.02, "{found} against {truth}");
+    }
+}
+
+/// Whatever the spans, every one of their ends lies on exactly one edge, and an edge is closed or begins and ends at the
+/// outermost phases.
+#[test]
+fn every_end_lies_on_one_edge() {
+    let mut state = 7_u64;
+    let mut unit = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for _ in 0..300 {
+        let phases = every(40.0);
+        let spans: Vec<Vec<[f64; 2]>> =
+            phases.iter().map(|_| (0..4).map(|_| [20.0 * unit(), 20.0 * unit()]).collect()).collect();
+        let mut next = spans.into_iter();
+        let mut bound = bound(&phases, |_| vec![]);
+        bound.forbidden = phases.iter().map(|_| GainIntervals::union_of(next.next().unwrap())).collect();
+        let edges = boundaries(&bound);
+        for edge in &edges {
+            let (first, last) = (edge.points[0], *edge.points.last().unwrap());
+            assert_eq!(edge.closed, first == last);
+            assert!(edge.closed || [first.0, last.0].iter().all(|phase| *phase == 0.0 || *phase == -360.0));
+        }
+        for (phase, forbidden) in phases.iter().zip(&bound.forbidden) {
+            for gain in forbidden.intervals().iter().flatten() {
+                let is_end =
+                    |p: &&(f64, f64)| (p.0 - phase).abs() < 1e-9 && (p.1 - 20.0 * log10(*gain)).abs() < 1e-9;
+                let met = edges.iter().flat_map(|edge| edge.points.iter().skip(usize::from(edge.closed)));
+                assert_eq!(met.filter(is_end).count(), 1, "{gain} at {phase}");
+            }
+        }
+    }
+}
