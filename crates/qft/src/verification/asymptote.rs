@@ -137,6 +137,13 @@ pub(super) fn margin_db(
     })
 }
 
+/// Where the asymptote of the loop at zero frequency has unit magnitude, rad/s.
+pub(super) fn crossing(compensation: &Compensation, member: &Member) -> Option<f64> {
+    let open_loop = parts(compensation, member, false, End::Zero)?.open_loop;
+    let frequency = portable::pow(open_loop.coefficient.abs(), -1.0 / f64::from(open_loop.power));
+    (open_loop.power != 0 && frequency > 0.0 && frequency < f64::INFINITY).then_some(frequency)
+}
+
 impl LoopAsymptotes {
     /// 1 + L. Where L neither grows nor vanishes and dead time turns it, the magnitude that is worse for the side.
     fn one_plus_loop(&self, side: Side, end: End) -> Option<Asymptote> {

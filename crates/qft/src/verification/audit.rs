@@ -7,8 +7,9 @@ use super::evaluator::{Evaluator, FREQUENCY_TOLERANCE};
 use super::finding::{self, Case, Part};
 use super::frequencies::{Features, common_grid, features};
 use super::minimum;
-use super::scan::{Plant, Scan};
-use super::search::{Task, search};
+use super::response::decibels;
+use super::scan::{Peak, Plant, Scan, WORTH_POLISHING};
+use super::search::{Outcome, Task, search};
 use super::start::{interior_range, tasks};
 use super::{PlantPoint, SpecificationFinding};
 use crate::closed_loop::Compensation;
@@ -17,7 +18,7 @@ use crate::specification::{Requirement, Specification};
 
 /// A margin of minus this much still counts as met unless another tolerance is asked for, dB.
 pub const TOLERANCE_DB: f64 = 0.001;
-/// Plants looked at in one step.
+/// Plants looked at, or peaks polished, in one step.
 const PLANTS_A_STEP: usize = 32;
 /// Corners of a box are looked at up to this dimension.
 const CORNERS_DIMENSION_MAXIMUM: usize = 8;
@@ -55,6 +56,7 @@ enum Stage {
     Preparing(usize),
     Looking(usize),
     Polishing(usize),
+    Gathering(usize),
     Searching(usize),
     Joining(usize),
     Done,
@@ -115,8 +117,12 @@ pub struct SpecificationAudit {
     scan: Scan,
     /// What was found of each specification, beyond the family's worst at the common frequencies.
     cases: Vec<Vec<Case>>,
+    /// Peaks to be polished, each with its specification and criterion, the highest of a criterion first.
+    peaks: Vec<(usize, usize, Peak)>,
     /// Each with the specification it serves.
     tasks: Vec<(usize, Task)>,
+    /// By specification: a frequency at which a plant met in a search has no margin.
+    undefined: Vec<Option<f64>>,
     finished: Vec<SpecificationFinding>,
     stage: Stage,
 }
@@ -153,6 +159,8 @@ impl SpecificationAudit {
             evaluator,
             specifications: specifications.to_vec(),
             cases: vec![Vec::new(); parts.len()],
+            undefined: vec![None; parts.len()],
+            peaks: Vec::new(),
             parts,
             tolerance_db,
             values,
@@ -169,6 +177,7 @@ impl SpecificationAudit {
             Stage::Preparing(next) => self.prepare(next),
             Stage::Looking(next) => self.look(next),
             Stage::Polishing(next) => self.polish(next),
+            Stage::Gathering(next) => self.gather(next),
             Stage::Searching(next) => self.search(next),
             Stage::Joining(next) => self.join(next),
             Stage::Done => Stage::Done,
@@ -182,8 +191,9 @@ impl SpecificationAudit {
         match self.stage {
             Stage::Preparing(next) => 0.2 * share(next, self.count()),
             Stage::Looking(next) => 0.2 + 0.4 * share(next, self.count()),
-            Stage::Polishing(next) => 0.6 + 0.1 * share(next, self.parts.len()),
-            Stage::Searching(next) => 0.7 + 0.25 * share(next, self.tasks.len()),
+            Stage::Polishing(next) => 0.6 + 0.1 * share(next, self.peaks.len()),
+            Stage::Gathering(next) => 0.7 + 0.05 * share(next, self.parts.len()),
+            Stage::Searching(next) => 0.75 + 0.2 * share(next, self.tasks.len()),
             Stage::Joining(next) => 0.95 + 0.05 * share(next, self.parts.len()),
             Stage::Done => 1.0,
         }
@@ -201,7 +211,7 @@ impl SpecificationAudit {
         Work {
             plants: self.plants.len() as u64,
             searches: match self.stage {
-                Stage::Preparing(_) | Stage::Looking(_) | Stage::Polishing(_) => 0,
+                Stage::Preparing(_) | Stage::Looking(_) | Stage::Polishing(_) | Stage::Gathering(_) => 0,
                 Stage::Searching(next) => next as u64,
                 Stage::Joining(_) | Stage::Done => self.tasks.len() as u64,
             },
@@ -258,31 +268,52 @@ impl SpecificationAudit {
         for (index, plant) in self.plants.iter().enumerate().take(until).skip(next) {
             self.scan.look_at(&self.evaluator, plant, index);
         }
-        if until < self.plants.len() { Stage::Looking(until) } else { Stage::Polishing(0) }
+        if until < self.plants.len() {
+            return Stage::Looking(until);
+        }
+        for (number, part) in self.parts.iter().enumerate() {
+            for criterion in part.criteria() {
+                let peaks = self.scan.peaks(criterion);
+                self.peaks.extend(peaks.into_iter().map(|peak| (number, criterion, peak)));
+            }
+        }
+        Stage::Polishing(0)
     }
 
-    /// Polishes the peaks of one specification's criteria; with a spread, the minima of the family's margin.
-    fn polish(&mut self, number: usize) -> Stage {
-        let Some(&part) = self.parts.get(number) else {
+    /// Polishes some peaks, as long as they can become the worst of their criterion.
+    fn polish(&mut self, next: usize) -> Stage {
+        let until = (next + PLANTS_A_STEP).min(self.peaks.len());
+        for (number, criterion, peak) in self.peaks.iter().take(until).skip(next) {
+            let (Some(plant), Some(cases)) = (self.plants.get(peak.plant), self.cases.get_mut(*number))
+            else {
+                continue;
+            };
+            let own = cases.iter().filter(|case| case.criteria.contains(criterion));
+            let worst = own.map(|case| case.margin_db).fold(f64::INFINITY, f64::min);
+            if decibels(peak.excess / WORTH_POLISHING) > worst {
+                continue;
+            }
+            let member = plant.member.as_ref();
+            let polished =
+                member.and_then(|member| self.evaluator.polished(*criterion, member, peak.bracket));
+            cases.extend(polished.map(|(frequency, margin_db)| Case {
+                margin_db,
+                frequency,
+                criteria: vec![*criterion],
+                points: vec![plant.point.clone()],
+                interior: true,
+            }));
+        }
+        if until < self.peaks.len() { Stage::Polishing(until) } else { Stage::Gathering(0) }
+    }
+
+    /// Looks at the whole family where one specification is worst; with a spread, polishes the family's margin there.
+    fn gather(&mut self, number: usize) -> Stage {
+        let (Some(&part), Some(cases)) = (self.parts.get(number), self.cases.get(number)) else {
             self.tasks = self.starts();
             return Stage::Searching(0);
         };
-        let mut cases = Vec::new();
-        for criterion in part.criteria() {
-            for peak in self.scan.peaks(criterion) {
-                let Some(plant) = self.plants.get(peak.plant) else { continue };
-                let polished = plant
-                    .member
-                    .as_ref()
-                    .and_then(|member| self.evaluator.polished(criterion, member, peak.bracket));
-                cases.extend(polished.map(|(frequency, margin_db)| Case {
-                    margin_db,
-                    frequency,
-                    points: vec![plant.point.clone()],
-                    interior: true,
-                }));
-            }
-        }
+        let mut cases = cases.clone();
         self.look_at_worst(&mut cases);
         if part.spread {
             cases = self.polished_spread(part);
@@ -291,7 +322,7 @@ impl SpecificationAudit {
         if let Some(slot) = self.cases.get_mut(number) {
             *slot = cases;
         }
-        Stage::Polishing(number + 1)
+        Stage::Gathering(number + 1)
     }
 
     /// Looks at the whole family where the worst cases are.
@@ -308,18 +339,20 @@ impl SpecificationAudit {
         let mut cases = Vec::new();
         for bracket in finding::local_minima(&envelope).into_iter().take(STARTS) {
             let mut margin = |logarithm: f64| {
-                let worst = self.scan.family_at(&self.evaluator, &self.plants, portable::exp(logarithm));
-                part.combined(&worst).map_or(f64::INFINITY, |(margin, _)| margin)
+                let frequency = portable::exp(logarithm);
+                let worst = self.scan.family_at(&self.evaluator, &self.plants, frequency);
+                part.combined(frequency, &worst).map_or(f64::INFINITY, |point| point.margin_db)
             };
             let [low, middle, high] = bracket.map(portable::ln);
             let start = (middle, margin(middle));
             let (logarithm, _) = minimum::between(margin, [low, high], start, FREQUENCY_TOLERANCE);
             let frequency = portable::exp(logarithm);
             let worst = self.scan.family_at(&self.evaluator, &self.plants, frequency);
-            cases.extend(part.combined(&worst).map(|(margin_db, plants)| Case {
-                margin_db,
+            cases.extend(part.combined(frequency, &worst).map(|point| Case {
+                margin_db: point.margin_db,
                 frequency,
-                points: finding::points(&self.plants, &plants),
+                criteria: point.criteria,
+                points: finding::points(&self.plants, &point.plants),
                 interior: true,
             }));
         }
@@ -335,10 +368,12 @@ impl SpecificationAudit {
         for (number, part) in self.parts.iter().enumerate() {
             let design = self.specifications.get(number).map(|one| one.frequencies_rad_per_s.as_slice());
             let cases = self.cases.get(number).map_or(&[][..], Vec::as_slice);
-            let range = interior_range(*part, &self.evaluator, &self.scan);
-            let tasks =
-                tasks(*part, family, (&self.scan, &self.plants), cases, design.unwrap_or_default(), range);
-            starts.extend(tasks.into_iter().map(|task| (number, task)));
+            for part in part.searched() {
+                let range = interior_range(part, &self.evaluator, &self.scan);
+                let seen = (&self.scan, self.plants.as_slice());
+                let tasks = tasks(part, family, seen, cases, design.unwrap_or_default(), range);
+                starts.extend(tasks.into_iter().map(|task| (number, task)));
+            }
         }
         starts
     }
@@ -347,7 +382,11 @@ impl SpecificationAudit {
         let (Some((number, task)), Family::Uncertain(family)) = (self.tasks.get(next), &self.family) else {
             return Stage::Joining(0);
         };
-        if let Some(found) = search(&self.evaluator, family, task) {
+        let Outcome { found, undefined } = search(&self.evaluator, family, task);
+        if let Some(slot @ None) = self.undefined.get_mut(*number) {
+            *slot = undefined;
+        }
+        if let Some(found) = found {
             let inside = |[low, high]: [f64; 2]| low < found.frequency && found.frequency < high;
             let points: Vec<PlantPoint> =
                 found.values.iter().map(|values| PlantPoint::Parameters(values.clone())).collect();
@@ -355,6 +394,7 @@ impl SpecificationAudit {
                 cases.push(Case {
                     margin_db: found.margin_db,
                     frequency: found.frequency,
+                    criteria: task.criteria.clone(),
                     points: points.clone(),
                     interior: task.range.is_some_and(inside),
                 });
@@ -389,6 +429,7 @@ impl SpecificationAudit {
             evaluator: &self.evaluator,
             plants: &self.plants,
             cases: &cases,
+            undefined: self.undefined.get(number).copied().flatten(),
             tolerance_db: self.tolerance_db,
         }
         .finding(&mut self.scan);

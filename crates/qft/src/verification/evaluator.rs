@@ -20,8 +20,10 @@ pub(super) struct Evaluator {
     pub(super) compensation: Compensation,
     pub(super) criteria: Vec<Criterion>,
     pub(super) with_prefilter: bool,
-    /// Numerator and denominator of G H, where both are continuous.
+    /// Numerator and denominator of G H without its dead time, where both are continuous.
     pub(super) compensator: Option<(Polynomial, Polynomial)>,
+    /// Dead time of G H, s.
+    pub(super) compensator_dead_time_s: f64,
     responses: Cell<u64>,
 }
 
@@ -32,14 +34,19 @@ impl Evaluator {
         with_prefilter: bool,
     ) -> Evaluator {
         let (feedback, sensor) = (compensation.feedback(), compensation.sensor());
-        let rational = compensation.sample_time_s().is_none()
-            && feedback.dead_time_s() == 0.0
-            && sensor.dead_time_s() == 0.0;
-        let compensator = rational.then(|| {
+        let compensator_dead_time_s = feedback.dead_time_s() + sensor.dead_time_s();
+        let compensator = compensation.sample_time_s().is_none().then(|| {
             let numerator = feedback.numerator().product(&sensor.numerator());
             (numerator, feedback.denominator().product(&sensor.denominator()))
         });
-        Evaluator { compensation, criteria, with_prefilter, compensator, responses: Cell::new(0) }
+        Evaluator {
+            compensation,
+            criteria,
+            with_prefilter,
+            compensator,
+            compensator_dead_time_s,
+            responses: Cell::new(0),
+        }
     }
 
     /// Responses of a plant that were evaluated so far.
@@ -84,12 +91,12 @@ impl Evaluator {
         member: &Member,
         [low, middle, high]: [f64; 3],
     ) -> Option<(f64, f64)> {
-        let margin = |logarithm: f64| {
-            self.margin_db(criterion, member, portable::exp(logarithm)).unwrap_or(f64::INFINITY)
-        };
+        let within = |logarithm: f64| portable::exp(logarithm).clamp(low, high);
+        let margin =
+            |logarithm: f64| self.margin_db(criterion, member, within(logarithm)).unwrap_or(f64::INFINITY);
         let start = (portable::ln(middle), self.margin_db(criterion, member, middle)?);
         let ends = [portable::ln(low), portable::ln(high)];
         let (logarithm, value) = minimum::between(margin, ends, start, FREQUENCY_TOLERANCE);
-        Some(if value < start.1 { (portable::exp(logarithm), value) } else { (middle, start.1) })
+        Some(if value < start.1 { (within(logarithm), value) } else { (middle, start.1) })
     }
 }

@@ -28,6 +28,8 @@ pub(super) struct Part {
 pub(super) struct Case {
     pub(super) margin_db: f64,
     pub(super) frequency: f64,
+    /// The criterion; of a spread both.
+    pub(super) criteria: Vec<usize>,
     /// The plant; of a spread, that with the greatest |T| and that with the least.
     pub(super) points: Vec<PlantPoint>,
     /// Whether the margin has a minimum here, at a frequency inside the band.
@@ -48,34 +50,36 @@ impl Part {
         self.first..self.first + self.count
     }
 
-    /// The worst of the family at one frequency: the margin, and the criteria with their plants.
-    pub(super) fn combined(self, worst: &[Option<Worst>]) -> Option<(f64, Vec<(usize, usize)>)> {
-        let mut own = self
+    /// What is searched for by itself: a spread as a whole, otherwise each criterion.
+    pub(super) fn searched(self) -> Vec<Part> {
+        if self.spread {
+            return vec![self];
+        }
+        self.criteria().map(|first| Part { first, count: 1, spread: false }).collect()
+    }
+
+    /// The worst of the family at one frequency; `None` where nothing is demanded or resolved.
+    pub(super) fn combined(self, frequency: f64, worst: &[Option<Worst>]) -> Option<EnvelopePoint> {
+        let own = self
             .criteria()
             .map(|criterion| worst.get(criterion).copied().flatten().map(|worst| (criterion, worst)));
-        if self.spread {
-            let all: Option<Vec<(usize, Worst)>> = own.collect();
-            let all = all?;
-            let margin_db = all.iter().map(|(_, worst)| decibels(worst.excess)).sum();
-            return Some((
-                margin_db,
-                all.iter().map(|(criterion, worst)| (*criterion, worst.plant)).collect(),
-            ));
-        }
-        let (criterion, worst) =
-            own.by_ref().flatten().max_by(|left, right| left.1.excess.total_cmp(&right.1.excess))?;
-        Some((decibels(worst.excess), vec![(criterion, worst.plant)]))
+        let chosen: Vec<(usize, Worst)> = if self.spread {
+            own.collect::<Option<_>>()?
+        } else {
+            vec![own.flatten().max_by(|left, right| left.1.excess.total_cmp(&right.1.excess))?]
+        };
+        Some(EnvelopePoint {
+            frequency,
+            margin_db: chosen.iter().map(|(_, worst)| decibels(worst.excess)).sum(),
+            criteria: chosen.iter().map(|(criterion, _)| *criterion).collect(),
+            plants: chosen.iter().map(|(_, worst)| worst.plant).collect(),
+        })
     }
 }
 
 /// The worst margin of the family at the common frequencies.
 pub(super) fn envelope(part: Part, scan: &Scan) -> Vec<EnvelopePoint> {
-    let point = |(frequency, worst): (f64, &[Option<Worst>])| {
-        let (margin_db, chosen) = part.combined(worst)?;
-        let (criteria, plants) = chosen.into_iter().unzip();
-        Some(EnvelopePoint { frequency, margin_db, criteria, plants })
-    };
-    scan.envelope().filter_map(point).collect()
+    scan.envelope().filter_map(|(frequency, worst)| part.combined(frequency, worst)).collect()
 }
 
 /// Frequencies of the local minima inside, each with its neighbours, the worst first.
@@ -97,8 +101,8 @@ pub(super) fn local_minima(envelope: &[EnvelopePoint]) -> Vec<[f64; 3]> {
     minima.into_iter().map(|minimum| minimum.1).collect()
 }
 
-pub(super) fn points(plants: &[Plant], chosen: &[(usize, usize)]) -> Vec<PlantPoint> {
-    chosen.iter().filter_map(|(_, plant)| plants.get(*plant)).map(|plant| plant.point.clone()).collect()
+pub(super) fn points(plants: &[Plant], chosen: &[usize]) -> Vec<PlantPoint> {
+    chosen.iter().filter_map(|plant| plants.get(*plant)).map(|plant| plant.point.clone()).collect()
 }
 
 /// All that a finding is made of.
@@ -108,6 +112,8 @@ pub(super) struct Joining<'a> {
     pub(super) evaluator: &'a Evaluator,
     pub(super) plants: &'a [Plant],
     pub(super) cases: &'a [Case],
+    /// A frequency at which a plant met in a search has no margin.
+    pub(super) undefined: Option<f64>,
     pub(super) tolerance_db: f64,
 }
 
@@ -126,7 +132,7 @@ impl Joining<'_> {
         let violated = worst.is_some_and(|worst| worst.margin_db < -self.tolerance());
         SpecificationFinding {
             requirement: self.specification.requirement.clone(),
-            verdict: match (violated, unresolved.is_none() && worst.is_some()) {
+            verdict: match (violated, unresolved.is_none() && self.undefined.is_none() && worst.is_some()) {
                 (true, _) => Verdict::Violated,
                 (false, true) => Verdict::Met,
                 (false, false) => Verdict::NotProven,
@@ -155,11 +161,11 @@ impl Joining<'_> {
     }
 
     fn case(&self, point: &EnvelopePoint) -> Case {
-        let chosen: Vec<(usize, usize)> = point.plants.iter().map(|plant| (0, *plant)).collect();
         Case {
             margin_db: point.margin_db,
             frequency: point.frequency,
-            points: points(self.plants, &chosen),
+            criteria: point.criteria.clone(),
+            points: points(self.plants, &point.plants),
             interior: false,
         }
     }
@@ -213,8 +219,8 @@ impl Joining<'_> {
         while (violated - kept).abs() > EDGE_TOLERANCE * violated {
             let middle = (violated * kept).sqrt();
             let worst = scan.family_at(self.evaluator, self.plants, middle);
-            match self.part.combined(&worst) {
-                Some((margin_db, _)) if margin_db < -self.tolerance() => violated = middle,
+            match self.part.combined(middle, &worst) {
+                Some(point) if point.margin_db < -self.tolerance() => violated = middle,
                 _ => kept = middle,
             }
         }

@@ -5,6 +5,7 @@ use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 
+use super::asymptote;
 use super::criterion::Quantity;
 use super::evaluator::Evaluator;
 use crate::closed_loop::Member;
@@ -68,24 +69,29 @@ pub(super) fn features(evaluator: &Evaluator, member: &Member) -> Features {
         Member::Continuous { plant, .. } => {
             let numerator = Polynomial::new(plant.command.numerator.clone());
             let denominator = Polynomial::new(plant.command.denominator.clone());
-            let characteristic = evaluator.compensator.as_ref().filter(|_| plant.dead_time_s == 0.0);
-            let characteristic =
-                characteristic.map(|(n, d)| denominator.product(d).sum(&numerator.product(n)));
+            let characteristic = evaluator
+                .compensator
+                .as_ref()
+                .map(|(n, d)| denominator.product(d).sum(&numerator.product(n)));
+            let dead_time_s = plant.dead_time_s + evaluator.compensator_dead_time_s;
             let has_load_motion =
                 evaluator.criteria.iter().any(|criterion| criterion.quantity == Quantity::LoadMotion);
             let load = plant.disturbance.as_ref().filter(|_| has_load_motion);
             let load = load.filter(|path| path.denominator != plant.command.denominator);
             let load = load.map(|path| Polynomial::new(path.denominator.clone()));
-            let rational = characteristic.is_some();
+            let rational = characteristic.is_some() && dead_time_s == 0.0;
             let polynomials = [Some(numerator), Some(denominator), characteristic, load];
             let roots: Option<Vec<Vec<Complex64>>> =
                 polynomials.into_iter().flatten().map(|polynomial| roots(&polynomial)).collect();
             let complete = rational && roots.is_some();
-            Features::of_roots(&roots.unwrap_or_default().concat(), complete, plant.dead_time_s)
+            Features::of_roots(&roots.unwrap_or_default().concat(), complete, dead_time_s)
         }
         Member::Sampled { command, with_sensor, .. } => {
             let roots = [roots_of(command), roots_of(with_sensor)].concat();
-            Features::of_roots(&roots, false, 0.0)
+            let own = Features::of_roots(&roots, false, 0.0);
+            let crossing = asymptote::crossing(&evaluator.compensation, member);
+            let crossing = crossing.map(|frequency| [frequency, frequency]);
+            Features { range: [own.range, crossing].into_iter().flatten().reduce(joined), ..own }
         }
         Member::Measured { plant, delay_s, .. } => {
             let ends = plant.frequencies_rad_per_s.first().zip(plant.frequencies_rad_per_s.last());

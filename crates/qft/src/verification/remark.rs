@@ -51,5 +51,10 @@ pub(super) fn remarks(joining: &Joining, unresolved: Option<(f64, usize)>) -> Ve
         };
         remarks.push(format!("at {frequency} rad/s a {plant} has no response that could be judged"));
     }
+    if let Some(frequency) = joining.undefined {
+        remarks.push(format!(
+            "inside the box a plant has no response that could be judged at {frequency} rad/s"
+        ));
+    }
     remarks
 }

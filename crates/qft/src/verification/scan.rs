@@ -13,8 +13,8 @@ use crate::closed_loop::Member;
 const TURN_COSINE: f64 = 0.5;
 /// How often an interval is halved in search of a resonance.
 const HALVINGS: usize = 40;
-/// Peaks are kept if polishing could make them the worst: by this factor of the squared excess, 1.5 dB.
-const WORTH_POLISHING: f64 = 0.7;
+/// Peaks are worth polishing if that could make them the worst: by this factor of the squared excess, 1.5 dB.
+pub(super) const WORTH_POLISHING: f64 = 0.7;
 
 /// A plant that is looked at.
 #[derive(Clone, Debug)]

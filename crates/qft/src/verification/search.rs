@@ -1,5 +1,7 @@
 //! The worst case inside the box: a local search over the shares of its coordinates, the frequency following its minimum.
 
+use std::cell::Cell;
+
 use phea_dynamics::portable;
 
 use super::evaluator::{Evaluator, FREQUENCY_TOLERANCE};
@@ -29,7 +31,14 @@ pub(super) struct Task {
     pub(super) range: Option<[f64; 2]>,
 }
 
-/// What a search ended at.
+/// What a search ended at, and the first plant on its way that has no margin at some frequency.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Outcome {
+    pub(super) found: Option<Found>,
+    pub(super) undefined: Option<f64>,
+}
+
+/// Where a search ended.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Found {
     pub(super) margin_db: f64,
@@ -47,33 +56,18 @@ struct Place {
     frequency: f64,
 }
 
-/// Goes downhill from a start until a sweep over all coordinates gains nothing. `None` where the start has no margin.
-pub(super) fn search(evaluator: &Evaluator, family: &UncertainFamily, task: &Task) -> Option<Found> {
-    let descent = Descent { evaluator, family, task };
-    let mut place = descent.start()?;
-    let mut radius = 0.25;
-    for sweep in 0..SWEEPS_MAXIMUM {
-        let before = place.clone();
-        for block in 0..place.shares.len() {
-            for coordinate in 0..family.coordinates().len() {
-                place = descent.along(place, block, coordinate, radius, sweep == 0);
-            }
-        }
-        place = descent.onwards(&before, place);
-        let gained = before.margin_db - place.margin_db;
-        if gained.is_nan() || gained < GAIN_MINIMUM {
-            break;
-        }
-        radius = (radius / 2.0).max(0.01);
-    }
-    let values = place.shares.iter().map(|shares| family.values(shares)).collect();
-    Some(Found { margin_db: place.margin_db, frequency: place.frequency, values })
+/// Goes downhill from a start until a sweep over all coordinates gains nothing.
+pub(super) fn search(evaluator: &Evaluator, family: &UncertainFamily, task: &Task) -> Outcome {
+    let descent = Descent { evaluator, family, task, undefined: Cell::new(None) };
+    let found = descent.start().map(|start| descent.descended(start));
+    Outcome { found, undefined: descent.undefined.get() }
 }
 
 struct Descent<'a> {
     evaluator: &'a Evaluator,
     family: &'a UncertainFamily,
     task: &'a Task,
+    undefined: Cell<Option<f64>>,
 }
 
 impl Descent<'_> {
@@ -89,23 +83,50 @@ impl Descent<'_> {
         Some(Place { shares: self.task.shares.clone(), members, margin_db, frequency })
     }
 
+    fn descended(&self, start: Place) -> Found {
+        let mut place = start;
+        let mut radius = 0.25;
+        for sweep in 0..SWEEPS_MAXIMUM {
+            let before = place.clone();
+            for block in 0..place.shares.len() {
+                for coordinate in 0..self.family.coordinates().len() {
+                    place = self.along(place, block, coordinate, radius, sweep == 0);
+                }
+            }
+            place = self.onwards(&before, place);
+            let gained = before.margin_db - place.margin_db;
+            if gained.is_nan() || gained < GAIN_MINIMUM {
+                break;
+            }
+            radius = (radius / 2.0).max(0.01);
+        }
+        let values = place.shares.iter().map(|shares| self.family.values(shares)).collect();
+        Found { margin_db: place.margin_db, frequency: place.frequency, values }
+    }
+
     /// The margin at the frequency nearest to this one at which it has a minimum: (rad/s, dB).
     fn margin(&self, members: &[Option<Member>], frequency: f64) -> Option<At> {
         let at = |frequency: f64| {
-            self.task.criteria.iter().zip(members).try_fold(0.0, |sum, (&criterion, member)| {
+            let mut margins = self.task.criteria.iter().zip(members);
+            let sum = margins.try_fold(0.0, |sum, (&criterion, member)| {
                 Some(sum + self.evaluator.margin_db(criterion, member.as_ref()?, frequency)?)
-            })
+            });
+            if sum.is_none() && self.undefined.get().is_none() {
+                self.undefined.set(Some(frequency));
+            }
+            sum
         };
         let here = at(frequency)?;
         let Some([low, high]) = self.task.range else {
             return Some((frequency, here));
         };
-        let logarithmic = |logarithm: f64| at(portable::exp(logarithm)).unwrap_or(f64::INFINITY);
+        let within = |logarithm: f64| portable::exp(logarithm).clamp(low, high);
+        let logarithmic = |logarithm: f64| at(within(logarithm)).unwrap_or(f64::INFINITY);
         let ends = [portable::ln(low), portable::ln(high)];
         let start = (portable::ln(frequency), here);
         let (logarithm, margin) =
             minimum::downhill(logarithmic, ends, start, FREQUENCY_STEP, FREQUENCY_TOLERANCE);
-        Some(if margin < here { (portable::exp(logarithm), margin) } else { (frequency, here) })
+        Some(if margin < here { (within(logarithm), margin) } else { (frequency, here) })
     }
 
     /// The same place with another share of one coordinate, and its margin.

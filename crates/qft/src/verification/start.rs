@@ -24,7 +24,7 @@ pub(super) fn interior_range(part: Part, evaluator: &Evaluator, scan: &Scan) -> 
 }
 
 /// Searches for one specification: at each design frequency and each end of the band, from its worst local minima, from the
-/// plants with the worst peaks, and from the middle of the box.
+/// middle of the box, and from the plants with the worst peaks.
 pub(super) fn tasks(
     part: Part,
     family: &UncertainFamily,
@@ -34,10 +34,7 @@ pub(super) fn tasks(
     range: Option<[f64; 2]>,
 ) -> Vec<Task> {
     let envelope = envelope(part, scan);
-    let shares = |index: &usize| match plants.get(*index).map(|plant| &plant.point) {
-        Some(PlantPoint::Parameters(values)) => family.shares(values),
-        _ => vec![0.5; family.coordinates().len()],
-    };
+    let shares = |index: &usize| shares(family, plants.get(*index).map(|plant| &plant.point));
     let from = |point: &EnvelopePoint, range: Option<[f64; 2]>| Task {
         criteria: point.criteria.clone(),
         shares: point.plants.iter().map(shares).collect(),
@@ -46,40 +43,36 @@ pub(super) fn tasks(
     };
     let ends = [envelope.first(), envelope.last()].into_iter().flatten().map(|point| point.frequency);
     let fixed: Vec<f64> = ends.chain(design_frequencies.iter().copied()).collect();
-    let mut tasks: Vec<Task> = envelope
-        .iter()
-        .filter(|point| fixed.contains(&point.frequency))
-        .map(|point| from(point, None))
-        .collect();
+    let fixed = envelope.iter().filter(|point| fixed.contains(&point.frequency));
+    let mut tasks: Vec<Task> = fixed.map(|point| from(point, None)).collect();
     let Some(range) = range else { return tasks };
     let minima: Vec<f64> = local_minima(&envelope).iter().take(STARTS).map(|bracket| bracket[1]).collect();
-    let mut starts: Vec<Task> = Vec::new();
     for point in envelope.iter().filter(|point| minima.contains(&point.frequency)) {
-        starts.push(from(point, Some(range)));
-        let middle = vec![0.5; family.coordinates().len()];
-        starts.push(Task { shares: vec![middle; point.plants.len()], ..from(point, Some(range)) });
+        let middle = vec![vec![0.5; family.coordinates().len()]; point.plants.len()];
+        tasks.push(from(point, Some(range)));
+        tasks.push(Task { shares: middle, ..from(point, Some(range)) });
     }
-    for case in diverse(cases) {
-        let values = |point: &PlantPoint| match point {
-            PlantPoint::Parameters(values) => Some(family.shares(values)),
-            PlantPoint::Measured(_) => None,
-        };
-        let shares: Vec<Vec<f64>> = case.points.iter().filter_map(values).collect();
-        let nearest = envelope.iter().find(|point| point.frequency >= case.frequency);
-        starts.extend(nearest.map(|point| Task {
-            criteria: point.criteria.clone(),
-            shares,
-            frequency: case.frequency,
-            range: Some(range),
-        }));
-    }
-    starts.dedup();
-    tasks.extend(starts);
+    let of_part = |case: &&Case| case.criteria.iter().all(|criterion| part.criteria().contains(criterion));
+    tasks.extend(diverse(cases.iter().filter(of_part)).into_iter().map(|case| Task {
+        criteria: case.criteria.clone(),
+        shares: case.points.iter().map(|point| self::shares(family, Some(point))).collect(),
+        frequency: case.frequency,
+        range: Some(range),
+    }));
+    tasks.dedup();
     tasks
 }
 
+/// Where a plant lies in the box; the middle for one that does not.
+fn shares(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
+    match point {
+        Some(PlantPoint::Parameters(values)) => family.shares(values),
+        Some(PlantPoint::Measured(_)) | None => vec![0.5; family.coordinates().len()],
+    }
+}
+
 /// The worst cases, each with a plant of its own, after the first few each with a frequency of its own.
-fn diverse(cases: &[Case]) -> Vec<&Case> {
+fn diverse<'a>(cases: impl Iterator<Item = &'a Case>) -> Vec<&'a Case> {
     let apart = |case: &Case, other: &&Case| {
         let ratio = case.frequency / other.frequency;
         !(1.0 / FREQUENCY_RATIO..=FREQUENCY_RATIO).contains(&ratio)
