@@ -194,11 +194,10 @@ impl Compensation {
             function.with_dead_time(dead_time_s)?.discretized(sample_time_s, Discretization::ZeroOrderHold)
         };
         let with_sensor = rational.series(&self.sensor)?;
-        Ok(Member::Sampled {
-            command: held(rational)?,
-            with_sensor: held(with_sensor)?,
-            disturbance: plant.disturbance,
-        })
+        let command = held(rational)?;
+        let same = self.sensor == TransferFunction::gain_only(1.0);
+        let with_sensor = if same { command.clone() } else { held(with_sensor)? };
+        Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance })
     }
 
     /// A measured plant within this loop.

@@ -1,5 +1,20 @@
 //! Verification: whether every plant of a family keeps to every specification, at every frequency that was asked for.
 
+mod asymptote;
+mod audit;
+mod criterion;
+mod evaluator;
+mod finding;
+mod frequencies;
+mod minimum;
+mod remark;
+mod response;
+mod scan;
+mod search;
+mod start;
+
+pub use audit::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Work};
+
 use crate::specification::Requirement;
 
 /// A verdict. `Met` means that the margin is not below the negative of the tolerance, everywhere that was looked at.
@@ -42,6 +57,8 @@ pub struct WorstCase {
     pub frequency_rad_per_s: f64,
     /// The plant.
     pub plant: PlantPoint,
+    /// The second plant of a spread: `plant` has the greatest |T| there, this one the least.
+    pub other: Option<PlantPoint>,
 }
 
 /// What was found of the stability of the family.

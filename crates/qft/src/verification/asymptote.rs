@@ -1,0 +1,201 @@
+//! Limits at zero and infinite frequency: every function behaves there like one power of s.
+
+use phea_dynamics::linear::{TimeDomain, TransferFunction};
+use phea_dynamics::portable;
+
+use num_complex::Complex64;
+
+use super::criterion::{Criterion, Quantity, Side};
+use crate::closed_loop::{Compensation, Member};
+use crate::specification::Limit;
+
+/// Which end of the frequency axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    /// w -> 0
+    Zero,
+    /// w -> infinity
+    Infinity,
+}
+
+/// coefficient s^power
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Asymptote {
+    coefficient: f64,
+    power: i32,
+}
+
+/// Sums of two asymptotes that cancel to this share of either are not resolved.
+const CANCELLED: f64 = 1e-12;
+
+impl Asymptote {
+    const ONE: Asymptote = Asymptote { coefficient: 1.0, power: 0 };
+
+    fn times(self, other: Asymptote) -> Asymptote {
+        Asymptote { coefficient: self.coefficient * other.coefficient, power: self.power + other.power }
+    }
+
+    fn over(self, other: Asymptote) -> Asymptote {
+        Asymptote { coefficient: self.coefficient / other.coefficient, power: self.power - other.power }
+    }
+
+    /// Of a polynomial, highest power first; zero if it is zero.
+    fn of_polynomial(coefficients: &[f64], end: End) -> Asymptote {
+        let degree = coefficients.len() as i32 - 1;
+        let mut powers = coefficients.iter().zip(0..).filter(|(coefficient, _)| **coefficient != 0.0);
+        let dominant = match end {
+            End::Zero => powers.last(),
+            End::Infinity => powers.next(),
+        };
+        dominant.map_or(Asymptote { coefficient: 0.0, power: 0 }, |(&coefficient, index)| Asymptote {
+            coefficient,
+            power: degree - index,
+        })
+    }
+
+    /// Of a transfer function; in a sampled one z - 1 counts as s T, and there is no infinite frequency.
+    pub(super) fn of_transfer_function(function: &TransferFunction, end: End) -> Option<Asymptote> {
+        let (point, step) = match (function.domain(), end) {
+            (TimeDomain::Continuous, End::Infinity) => {
+                let power = function.zeros().len() as i32 - function.poles().len() as i32;
+                return Some(Asymptote { coefficient: function.gain(), power });
+            }
+            (TimeDomain::Continuous, End::Zero) => (Complex64::new(0.0, 0.0), 1.0),
+            (TimeDomain::Discrete { sample_time_s }, End::Zero) => (Complex64::new(1.0, 0.0), sample_time_s),
+            (TimeDomain::Discrete { .. }, End::Infinity) => return None,
+        };
+        let product = |roots: &[Complex64]| {
+            let factor =
+                |root: &Complex64| if *root == point { Complex64::new(step, 0.0) } else { point - root };
+            roots.iter().map(factor).product::<Complex64>().re
+        };
+        let here = |roots: &[Complex64]| roots.iter().filter(|&&root| root == point).count() as i32;
+        let coefficient = function.gain() * product(function.zeros()) / product(function.poles());
+        Some(Asymptote { coefficient, power: here(function.zeros()) - here(function.poles()) })
+    }
+
+    fn of_limit(limit: &Limit, end: End) -> Option<Asymptote> {
+        match limit {
+            Limit::Constant(value) => Some(Asymptote { coefficient: *value, power: 0 }),
+            Limit::Rational(function) => Asymptote::of_transfer_function(function, end),
+            Limit::Table(_) => None,
+        }
+    }
+
+    /// Whether this one is greater than a constant at the end, like it, or less.
+    fn order(self, end: End) -> std::cmp::Ordering {
+        match end {
+            End::Zero => 0.cmp(&self.power),
+            End::Infinity => self.power.cmp(&0),
+        }
+    }
+}
+
+/// P, Pd, G, F, H of one plant at an end; `spun` where dead time turns the loop without end.
+struct LoopAsymptotes {
+    plant: Asymptote,
+    load_motion: Asymptote,
+    feedback: Asymptote,
+    prefilter: Asymptote,
+    open_loop: Asymptote,
+    spun: bool,
+}
+
+/// The limit of the margin, in dB; `None` where there is none.
+pub(super) fn margin_db(
+    criterion: &Criterion,
+    compensation: &Compensation,
+    member: &Member,
+    with_prefilter: bool,
+    end: End,
+) -> Option<f64> {
+    let parts = parts(compensation, member, with_prefilter, end)?;
+    let numerator = match criterion.quantity {
+        Quantity::Complementary => parts.open_loop,
+        Quantity::Sensitivity => Asymptote::ONE,
+        Quantity::PlantInput => parts.plant,
+        Quantity::Effort => parts.feedback,
+        Quantity::LoadMotion => parts.load_motion,
+        Quantity::Tracking => parts.prefilter.times(parts.plant).times(parts.feedback),
+    };
+    let closed = numerator.over(parts.one_plus_loop(criterion.side, end)?);
+    let limit = Asymptote::of_limit(&criterion.limit, end)?;
+    let ratio = match criterion.side {
+        Side::Below => limit.over(closed),
+        Side::Above => closed.over(limit),
+    };
+    let size = ratio.coefficient.abs();
+    if size.is_nan() {
+        return None;
+    }
+    Some(match ratio.order(end) {
+        _ if size == 0.0 => f64::NEG_INFINITY,
+        _ if size == f64::INFINITY => f64::INFINITY,
+        std::cmp::Ordering::Less => f64::NEG_INFINITY,
+        std::cmp::Ordering::Equal => 20.0 * portable::log10(size),
+        std::cmp::Ordering::Greater => f64::INFINITY,
+    })
+}
+
+/// Where the asymptote of the loop at zero frequency has unit magnitude, rad/s.
+pub(super) fn crossing(compensation: &Compensation, member: &Member) -> Option<f64> {
+    let open_loop = parts(compensation, member, false, End::Zero)?.open_loop;
+    let frequency = portable::pow(open_loop.coefficient.abs(), -1.0 / f64::from(open_loop.power));
+    (open_loop.power != 0 && frequency > 0.0 && frequency < f64::INFINITY).then_some(frequency)
+}
+
+impl LoopAsymptotes {
+    /// 1 + L. Where L neither grows nor vanishes and dead time turns it, the magnitude that is worse for the side.
+    fn one_plus_loop(&self, side: Side, end: End) -> Option<Asymptote> {
+        let open_loop = self.open_loop;
+        if open_loop.coefficient == 0.0 {
+            return Some(Asymptote::ONE);
+        }
+        match open_loop.order(end) {
+            std::cmp::Ordering::Less => Some(Asymptote::ONE),
+            std::cmp::Ordering::Greater => Some(open_loop),
+            std::cmp::Ordering::Equal => {
+                let size = open_loop.coefficient.abs();
+                let sum = match (self.spun, side) {
+                    (false, _) => 1.0 + open_loop.coefficient,
+                    (true, Side::Below) => 1.0 - size,
+                    (true, Side::Above) => 1.0 + size,
+                };
+                (sum.abs() > CANCELLED * size.max(1.0)).then_some(Asymptote { coefficient: sum, power: 0 })
+            }
+        }
+    }
+}
+
+fn parts(
+    compensation: &Compensation,
+    member: &Member,
+    with_prefilter: bool,
+    end: End,
+) -> Option<LoopAsymptotes> {
+    let zero = Asymptote { coefficient: 0.0, power: 0 };
+    let of = |function: &TransferFunction| Asymptote::of_transfer_function(function, end);
+    let rational = |numerator: &[f64], denominator: &[f64]| {
+        Asymptote::of_polynomial(numerator, end).over(Asymptote::of_polynomial(denominator, end))
+    };
+    let (plant, load, with_sensor, dead_time) = match member {
+        Member::Continuous { plant, sensor } => {
+            let command = rational(&plant.command.numerator, &plant.command.denominator);
+            (command, &plant.disturbance, command.times(of(sensor)?), plant.dead_time_s)
+        }
+        Member::Sampled { command, with_sensor, disturbance } => {
+            (of(command)?, disturbance, of(with_sensor)?, 0.0)
+        }
+        Member::Measured { .. } => return None,
+    };
+    let load_motion = load.as_ref().map_or(zero, |path| rational(&path.numerator, &path.denominator));
+    let feedback = of(compensation.feedback())?;
+    Some(LoopAsymptotes {
+        plant,
+        load_motion,
+        feedback,
+        prefilter: if with_prefilter { of(compensation.prefilter())? } else { Asymptote::ONE },
+        open_loop: with_sensor.times(feedback),
+        spun: dead_time > 0.0 && end == End::Infinity,
+    })
+}

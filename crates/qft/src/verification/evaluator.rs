@@ -1,0 +1,102 @@
+//! Margins of one plant: everything about a loop and its specifications but the family, and a count of the work.
+
+use std::cell::Cell;
+
+use phea_dynamics::linear::Polynomial;
+use phea_dynamics::portable;
+
+use super::asymptote::{self, End};
+use super::criterion::Criterion;
+use super::minimum;
+use super::response::{ClosedLoop, LoopAt, decibels};
+use crate::closed_loop::{Compensation, Member};
+
+/// Frequencies are polished to this share of themselves.
+pub(super) const FREQUENCY_TOLERANCE: f64 = 1e-7;
+
+/// A loop without its plant, and what is demanded of it.
+#[derive(Clone, Debug)]
+pub(super) struct Evaluator {
+    pub(super) compensation: Compensation,
+    pub(super) criteria: Vec<Criterion>,
+    pub(super) with_prefilter: bool,
+    /// Numerator and denominator of G H without its dead time, where both are continuous.
+    pub(super) compensator: Option<(Polynomial, Polynomial)>,
+    /// Dead time of G H, s.
+    pub(super) compensator_dead_time_s: f64,
+    responses: Cell<u64>,
+}
+
+impl Evaluator {
+    pub(super) fn new(
+        compensation: Compensation,
+        criteria: Vec<Criterion>,
+        with_prefilter: bool,
+    ) -> Evaluator {
+        let (feedback, sensor) = (compensation.feedback(), compensation.sensor());
+        let compensator_dead_time_s = feedback.dead_time_s() + sensor.dead_time_s();
+        let compensator = compensation.sample_time_s().is_none().then(|| {
+            let numerator = feedback.numerator().product(&sensor.numerator());
+            (numerator, feedback.denominator().product(&sensor.denominator()))
+        });
+        Evaluator {
+            compensation,
+            criteria,
+            with_prefilter,
+            compensator,
+            compensator_dead_time_s,
+            responses: Cell::new(0),
+        }
+    }
+
+    /// Responses of a plant that were evaluated so far.
+    pub(super) fn responses(&self) -> u64 {
+        self.responses.get()
+    }
+
+    pub(super) fn loop_at(&self, frequency: f64) -> LoopAt {
+        LoopAt::new(&self.compensation, &self.criteria, self.with_prefilter, frequency)
+    }
+
+    pub(super) fn closed(&self, at: &LoopAt, member: &Member) -> Option<ClosedLoop> {
+        self.responses.set(self.responses.get() + 1);
+        at.closed(member)
+    }
+
+    /// The margin of one plant to one criterion, in dB; at zero and infinite frequency its limit. `None` where it is not defined
+    /// or nothing is demanded.
+    pub(super) fn margin_db(&self, criterion: usize, member: &Member, frequency: f64) -> Option<f64> {
+        let criterion = self.criteria.get(criterion)?;
+        let end = match frequency {
+            0.0 => Some(End::Zero),
+            f64::INFINITY => Some(End::Infinity),
+            _ => None,
+        };
+        if let Some(end) = end {
+            self.responses.set(self.responses.get() + 1);
+            return criterion.demands(frequency).then(|| {
+                asymptote::margin_db(criterion, &self.compensation, member, self.with_prefilter, end)
+            })?;
+        }
+        let only = std::slice::from_ref(criterion);
+        let at = LoopAt::new(&self.compensation, only, self.with_prefilter, frequency);
+        let excess = at.excess(0, criterion, &self.closed(&at, member)?)?;
+        (!excess.is_nan()).then(|| decibels(excess))
+    }
+
+    /// The local minimum of a margin between two frequencies, from one between them: (rad/s, dB).
+    pub(super) fn polished(
+        &self,
+        criterion: usize,
+        member: &Member,
+        [low, middle, high]: [f64; 3],
+    ) -> Option<(f64, f64)> {
+        let within = |logarithm: f64| portable::exp(logarithm).clamp(low, high);
+        let margin =
+            |logarithm: f64| self.margin_db(criterion, member, within(logarithm)).unwrap_or(f64::INFINITY);
+        let start = (portable::ln(middle), self.margin_db(criterion, member, middle)?);
+        let ends = [portable::ln(low), portable::ln(high)];
+        let (logarithm, value) = minimum::between(margin, ends, start, FREQUENCY_TOLERANCE);
+        Some(if value < start.1 { (within(logarithm), value) } else { (middle, start.1) })
+    }
+}

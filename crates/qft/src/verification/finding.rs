@@ -1,0 +1,243 @@
+//! From margins to findings.
+
+use std::ops::Range;
+
+use super::evaluator::Evaluator;
+use super::remark::remarks;
+use super::response::decibels;
+use super::scan::{Plant, Scan, Worst};
+use super::{Evidence, PlantPoint, SpecificationFinding, Verdict, ViolatedBand, WorstCase};
+use crate::specification::Specification;
+
+/// Margins above minus this much are rounding, dB.
+const ROUNDING_DB: f64 = 1e-9;
+/// Ends of violated bands are found to this share of themselves.
+const EDGE_TOLERANCE: f64 = 1e-4;
+
+/// The criteria of one specification.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Part {
+    pub(super) first: usize,
+    pub(super) count: usize,
+    /// Whether their margins are summed, each with a plant of its own.
+    pub(super) spread: bool,
+}
+
+/// A margin that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Case {
+    pub(super) margin_db: f64,
+    pub(super) frequency: f64,
+    /// The criterion; of a spread both.
+    pub(super) criteria: Vec<usize>,
+    /// The plant; of a spread, that with the greatest |T| and that with the least.
+    pub(super) points: Vec<PlantPoint>,
+    /// Whether the margin has a minimum here, at a frequency inside the band.
+    pub(super) interior: bool,
+}
+
+/// The worst margin of the family at one frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct EnvelopePoint {
+    pub(super) frequency: f64,
+    pub(super) margin_db: f64,
+    pub(super) criteria: Vec<usize>,
+    pub(super) plants: Vec<usize>,
+}
+
+impl Part {
+    pub(super) fn criteria(self) -> Range<usize> {
+        self.first..self.first + self.count
+    }
+
+    /// What is searched for by itself: a spread as a whole, otherwise each criterion.
+    pub(super) fn searched(self) -> Vec<Part> {
+        if self.spread {
+            return vec![self];
+        }
+        self.criteria().map(|first| Part { first, count: 1, spread: false }).collect()
+    }
+
+    /// The worst of the family at one frequency; `None` where nothing is demanded or resolved.
+    pub(super) fn combined(self, frequency: f64, worst: &[Option<Worst>]) -> Option<EnvelopePoint> {
+        let own = self
+            .criteria()
+            .map(|criterion| worst.get(criterion).copied().flatten().map(|worst| (criterion, worst)));
+        let chosen: Vec<(usize, Worst)> = if self.spread {
+            own.collect::<Option<_>>()?
+        } else {
+            vec![own.flatten().max_by(|left, right| left.1.excess.total_cmp(&right.1.excess))?]
+        };
+        Some(EnvelopePoint {
+            frequency,
+            margin_db: chosen.iter().map(|(_, worst)| decibels(worst.excess)).sum(),
+            criteria: chosen.iter().map(|(criterion, _)| *criterion).collect(),
+            plants: chosen.iter().map(|(_, worst)| worst.plant).collect(),
+        })
+    }
+}
+
+/// The worst margin of the family at the common frequencies.
+pub(super) fn envelope(part: Part, scan: &Scan) -> Vec<EnvelopePoint> {
+    scan.envelope().filter_map(|(frequency, worst)| part.combined(frequency, worst)).collect()
+}
+
+/// Frequencies of the local minima inside, each with its neighbours, the worst first.
+pub(super) fn local_minima(envelope: &[EnvelopePoint]) -> Vec<[f64; 3]> {
+    let mut minima: Vec<(f64, [f64; 3])> = envelope
+        .windows(3)
+        .filter_map(|triple| match triple {
+            [before, here, after]
+                if here.margin_db <= before.margin_db && here.margin_db < after.margin_db =>
+            {
+                let low = if before.frequency > 0.0 { before.frequency } else { here.frequency / 10.0 };
+                let high = after.frequency.min(here.frequency * 10.0);
+                Some((here.margin_db, [low, here.frequency, high]))
+            }
+            _ => None,
+        })
+        .collect();
+    minima.sort_by(|left, right| left.0.total_cmp(&right.0));
+    minima.into_iter().map(|minimum| minimum.1).collect()
+}
+
+pub(super) fn points(plants: &[Plant], chosen: &[usize]) -> Vec<PlantPoint> {
+    chosen.iter().filter_map(|plant| plants.get(*plant)).map(|plant| plant.point.clone()).collect()
+}
+
+/// All that a finding is made of.
+pub(super) struct Joining<'a> {
+    pub(super) part: Part,
+    pub(super) specification: &'a Specification,
+    pub(super) evaluator: &'a Evaluator,
+    pub(super) plants: &'a [Plant],
+    pub(super) cases: &'a [Case],
+    /// A frequency at which a plant met in a search has no margin.
+    pub(super) undefined: Option<f64>,
+    pub(super) tolerance_db: f64,
+}
+
+impl Joining<'_> {
+    pub(super) fn finding(&self, scan: &mut Scan) -> SpecificationFinding {
+        let envelope = envelope(self.part, scan);
+        let all: Vec<Case> =
+            envelope.iter().map(|point| self.case(point)).chain(self.cases.iter().cloned()).collect();
+        let worst = least(all.iter());
+        let ends = [envelope.first(), envelope.last()].map(|end| end.map(|point| point.frequency));
+        let at_an_end = worst.is_some_and(|worst| ends.contains(&Some(worst.frequency)));
+        let minima: Vec<f64> = local_minima(&envelope).iter().map(|bracket| bracket[1]).collect();
+        let interior = |case: &&Case| case.interior || minima.contains(&case.frequency);
+        let interior = least(all.iter().filter(interior)).filter(|_| at_an_end);
+        let unresolved = self.part.criteria().find_map(|criterion| scan.unresolved(criterion));
+        let violated = worst.is_some_and(|worst| worst.margin_db < -self.tolerance());
+        SpecificationFinding {
+            requirement: self.specification.requirement.clone(),
+            verdict: match (violated, unresolved.is_none() && self.undefined.is_none() && worst.is_some()) {
+                (true, _) => Verdict::Violated,
+                (false, true) => Verdict::Met,
+                (false, false) => Verdict::NotProven,
+            },
+            evidence: match worst.and_then(|worst| worst.points.first()) {
+                Some(PlantPoint::Parameters(_)) => Evidence::Search,
+                Some(PlantPoint::Measured(_)) | None => Evidence::Grid,
+            },
+            worst: worst.map(worst_case),
+            interior: interior.map(worst_case),
+            violations: self.violations(scan, &envelope, &all),
+            at_design_frequencies: self
+                .specification
+                .frequencies_rad_per_s
+                .iter()
+                .filter_map(|&frequency| least(all.iter().filter(|case| case.frequency == frequency)))
+                .map(worst_case)
+                .collect(),
+            envelope: self.drawn(&envelope),
+            remarks: remarks(self, unresolved),
+        }
+    }
+
+    fn tolerance(&self) -> f64 {
+        self.tolerance_db.max(ROUNDING_DB)
+    }
+
+    fn case(&self, point: &EnvelopePoint) -> Case {
+        Case {
+            margin_db: point.margin_db,
+            frequency: point.frequency,
+            criteria: point.criteria.clone(),
+            points: points(self.plants, &point.plants),
+            interior: false,
+        }
+    }
+
+    /// The envelope, with what searches found beyond the plants.
+    fn drawn(&self, envelope: &[EnvelopePoint]) -> Vec<(f64, f64)> {
+        let margin = |point: &EnvelopePoint| {
+            let here = self.cases.iter().filter(|case| case.frequency == point.frequency);
+            here.map(|case| case.margin_db).fold(point.margin_db, f64::min)
+        };
+        envelope.iter().map(|point| (point.frequency, margin(point))).collect()
+    }
+
+    /// Runs of frequencies at which some plant violates the specification, their ends refined.
+    fn violations(&self, scan: &mut Scan, envelope: &[EnvelopePoint], all: &[Case]) -> Vec<ViolatedBand> {
+        let violated = |point: &EnvelopePoint| point.margin_db < -self.tolerance();
+        let mut bands = Vec::new();
+        let mut from: Option<usize> = None;
+        for (index, point) in envelope.iter().enumerate() {
+            match (from, violated(point)) {
+                (None, true) => from = Some(index),
+                (Some(first), false) => {
+                    bands.push((first, index - 1));
+                    from = None;
+                }
+                _ => {}
+            }
+        }
+        bands.extend(from.map(|first| (first, envelope.len() - 1)));
+        let frequency = |index: usize| envelope.get(index).map(|point| point.frequency);
+        let mut found = Vec::new();
+        for (first, last) in bands {
+            let (Some(low), Some(high)) = (frequency(first), frequency(last)) else { continue };
+            let band = [
+                self.edge(scan, low, first.checked_sub(1).and_then(frequency)),
+                self.edge(scan, high, frequency(last + 1)),
+            ];
+            let within = all.iter().filter(|case| band[0] <= case.frequency && case.frequency <= band[1]);
+            found.extend(
+                least(within).map(|case| ViolatedBand { band_rad_per_s: band, worst: worst_case(case) }),
+            );
+        }
+        found
+    }
+
+    /// The last violated frequency between one that is and one that is not.
+    fn edge(&self, scan: &mut Scan, violated: f64, kept: Option<f64>) -> f64 {
+        let finite = |frequency: f64| frequency > 0.0 && frequency < f64::INFINITY;
+        let Some(mut kept) = kept.filter(|kept| finite(*kept) && finite(violated)) else { return violated };
+        let mut violated = violated;
+        while (violated - kept).abs() > EDGE_TOLERANCE * violated {
+            let middle = (violated * kept).sqrt();
+            let worst = scan.family_at(self.evaluator, self.plants, middle);
+            match self.part.combined(middle, &worst) {
+                Some(point) if point.margin_db < -self.tolerance() => violated = middle,
+                _ => kept = middle,
+            }
+        }
+        violated
+    }
+}
+
+fn least<'a>(cases: impl Iterator<Item = &'a Case>) -> Option<&'a Case> {
+    cases.min_by(|left, right| left.margin_db.total_cmp(&right.margin_db))
+}
+
+fn worst_case(case: &Case) -> WorstCase {
+    let mut points = case.points.iter().cloned();
+    WorstCase {
+        margin_db: case.margin_db,
+        frequency_rad_per_s: case.frequency,
+        plant: points.next().unwrap_or(PlantPoint::Parameters(Vec::new())),
+        other: points.next(),
+    }
+}

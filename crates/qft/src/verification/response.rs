@@ -1,0 +1,190 @@
+//! Closed-loop magnitudes of one plant at one frequency, from numerators and denominators, so that a pole of the plant on the
+//! imaginary axis is an ordinary point.
+//!
+//! ```text
+//! L = N_l/D_l N_g/D_g,    a = D_l D_g,    b = N_l N_g,    1 + L = (a + b)/a
+//! ```
+
+use num_complex::Complex64;
+use phea_dynamics::linear::{TimeDomain, TransferFunction};
+use phea_dynamics::portable;
+use phea_dynamics::uncertain_plant::RationalCoefficients;
+
+use super::criterion::{Criterion, Quantity, Side};
+use crate::closed_loop::{Compensation, Member};
+
+/// A complex number as a quotient whose denominator may be zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fraction {
+    pub(super) numerator: Complex64,
+    pub(super) denominator: Complex64,
+}
+
+/// What is the same for every plant at one frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LoopAt {
+    pub(super) frequency: f64,
+    feedback: Fraction,
+    prefilter: Complex64,
+    sensor: Complex64,
+    /// The square of the limit of each criterion; `None` where nothing is demanded.
+    limits_squared: Vec<Option<f64>>,
+    load_motion: bool,
+}
+
+/// The closed loop around one plant at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ClosedLoop {
+    /// a + b, whose zeros are the poles of the closed loop.
+    pub(super) characteristic: Complex64,
+    a: Complex64,
+    b: Complex64,
+    plant_numerator: Complex64,
+    loop_denominator: Complex64,
+    load_motion: Fraction,
+}
+
+impl Fraction {
+    fn of_value(value: Complex64) -> Fraction {
+        Fraction { numerator: value, denominator: Complex64::new(1.0, 0.0) }
+    }
+
+    /// Of a quotient of polynomials at s = j w.
+    fn of_coefficients(coefficients: &RationalCoefficients<f64>, frequency: f64) -> Fraction {
+        Fraction {
+            numerator: at_imaginary(&coefficients.numerator, frequency),
+            denominator: at_imaginary(&coefficients.denominator, frequency),
+        }
+    }
+
+    /// Of a factored function at s = j w, or z = e^(j w T).
+    pub(super) fn of_transfer_function(function: &TransferFunction, frequency: f64) -> Fraction {
+        let point = match function.domain() {
+            TimeDomain::Continuous => Complex64::new(0.0, frequency),
+            TimeDomain::Discrete { sample_time_s } => turned(frequency * sample_time_s),
+        };
+        let product = |roots: &[Complex64]| roots.iter().map(|root| point - root).product::<Complex64>();
+        let delay = function.dead_time_s();
+        let turn = if delay == 0.0 { Complex64::new(1.0, 0.0) } else { turned(-frequency * delay) };
+        Fraction {
+            numerator: product(function.zeros()) * function.gain() * turn,
+            denominator: product(function.poles()),
+        }
+    }
+}
+
+/// Horner's rule at s = j w: one multiplication for each part.
+fn at_imaginary(coefficients: &[f64], frequency: f64) -> Complex64 {
+    let mut value = Complex64::new(0.0, 0.0);
+    for coefficient in coefficients {
+        value = Complex64::new(coefficient - value.im * frequency, value.re * frequency);
+    }
+    value
+}
+
+fn turned(angle: f64) -> Complex64 {
+    Complex64::new(portable::cos(angle), portable::sin(angle))
+}
+
+impl LoopAt {
+    /// G, F, H and the limits at a frequency that is neither zero nor infinite. Without a prefilter F counts as 1.
+    pub(super) fn new(
+        compensation: &Compensation,
+        criteria: &[Criterion],
+        with_prefilter: bool,
+        frequency: f64,
+    ) -> LoopAt {
+        let limit = |criterion: &Criterion| {
+            let limit = criterion.demands(frequency).then(|| criterion.limit.magnitude(frequency)).flatten();
+            limit.map(|limit| limit * limit)
+        };
+        let one = Complex64::new(1.0, 0.0);
+        LoopAt {
+            frequency,
+            feedback: Fraction::of_transfer_function(compensation.feedback(), frequency),
+            prefilter: if with_prefilter { compensation.prefilter().at_frequency(frequency) } else { one },
+            sensor: compensation.sensor().at_frequency(frequency),
+            limits_squared: criteria.iter().map(limit).collect(),
+            load_motion: criteria.iter().any(|criterion| criterion.quantity == Quantity::LoadMotion),
+        }
+    }
+
+    /// The loop closed around a plant; `None` where a measurement does not reach.
+    pub(super) fn closed(&self, member: &Member) -> Option<ClosedLoop> {
+        let frequency = self.frequency;
+        let none = Fraction::of_value(Complex64::new(0.0, 0.0));
+        let load = |path: &Option<RationalCoefficients<f64>>| match path {
+            Some(path) if self.load_motion => Fraction::of_coefficients(path, frequency),
+            _ => none,
+        };
+        let (plant_numerator, around, load_motion) = match member {
+            Member::Continuous { plant, .. } => {
+                let Fraction { mut numerator, denominator } =
+                    Fraction::of_coefficients(&plant.command, frequency);
+                if plant.dead_time_s != 0.0 {
+                    numerator *= turned(-frequency * plant.dead_time_s);
+                }
+                (
+                    numerator,
+                    Fraction { numerator: numerator * self.sensor, denominator },
+                    load(&plant.disturbance),
+                )
+            }
+            Member::Sampled { command, with_sensor, disturbance } => {
+                let around = Fraction::of_transfer_function(with_sensor, frequency);
+                let plant = Fraction::of_transfer_function(command, frequency);
+                let same = command.poles() == with_sensor.poles();
+                let numerator = if same {
+                    plant.numerator
+                } else {
+                    plant.numerator * around.denominator / plant.denominator
+                };
+                (numerator, around, load(disturbance))
+            }
+            Member::Measured { .. } => {
+                let response = member.response(frequency)?;
+                let around = Fraction::of_value(response.plant * response.sensor);
+                (response.plant, around, Fraction::of_value(response.load_motion))
+            }
+        };
+        let a = around.denominator * self.feedback.denominator;
+        let b = around.numerator * self.feedback.numerator;
+        let loop_denominator = around.denominator;
+        Some(ClosedLoop { characteristic: a + b, a, b, plant_numerator, loop_denominator, load_motion })
+    }
+
+    /// The square of how far a criterion is exceeded: (quantity/limit)^2 for an upper limit, its inverse for a lower one. `None`
+    /// where nothing is demanded; NaN where it is not defined.
+    pub(super) fn excess(&self, index: usize, criterion: &Criterion, closed: &ClosedLoop) -> Option<f64> {
+        let limit = (*self.limits_squared.get(index)?)?;
+        let numerator = match criterion.quantity {
+            Quantity::Complementary => closed.b.norm_sqr(),
+            Quantity::Sensitivity => closed.a.norm_sqr(),
+            Quantity::PlantInput => (closed.plant_numerator * self.feedback.denominator).norm_sqr(),
+            Quantity::Effort => (closed.loop_denominator * self.feedback.numerator).norm_sqr(),
+            Quantity::LoadMotion => self.load_motion_squared(closed),
+            Quantity::Tracking => {
+                (self.prefilter * closed.plant_numerator * self.feedback.numerator).norm_sqr()
+            }
+        };
+        let characteristic = closed.characteristic.norm_sqr();
+        Some(match criterion.side {
+            Side::Below => numerator / (characteristic * limit),
+            Side::Above => characteristic * limit / numerator,
+        })
+    }
+
+    /// |Pd a|^2; a denominator that Pd shares with P drops out.
+    fn load_motion_squared(&self, closed: &ClosedLoop) -> f64 {
+        let Fraction { numerator, denominator } = closed.load_motion;
+        if denominator == closed.loop_denominator {
+            return (numerator * self.feedback.denominator).norm_sqr();
+        }
+        numerator.norm_sqr() / denominator.norm_sqr() * closed.a.norm_sqr()
+    }
+}
+
+/// The margin in dB that belongs to a squared excess.
+pub(super) fn decibels(excess: f64) -> f64 {
+    0.0 - 10.0 * portable::log10(excess)
+}

@@ -1,0 +1,252 @@
+//! The look at every plant: the family's worst margin at each common frequency, and the peaks of each plant between them.
+
+use num_complex::Complex64;
+use phea_dynamics::portable;
+
+use super::PlantPoint;
+use super::evaluator::Evaluator;
+use super::frequencies::Features;
+use super::response::LoopAt;
+use crate::closed_loop::Member;
+
+/// A characteristic value that turns by more than this from one point to the next has a resonance between them: cos of it.
+const TURN_COSINE: f64 = 0.5;
+/// How often an interval is halved in search of a resonance.
+const HALVINGS: usize = 40;
+/// Peaks are worth polishing if that could make them the worst: by this factor of the squared excess, 1.5 dB.
+pub(super) const WORTH_POLISHING: f64 = 0.7;
+
+/// A plant that is looked at.
+#[derive(Clone, Debug)]
+pub(super) struct Plant {
+    pub(super) point: PlantPoint,
+    /// `None` where it cannot be sampled.
+    pub(super) member: Option<Member>,
+    pub(super) features: Features,
+}
+
+/// The worst of the family at one frequency for one criterion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Worst {
+    /// (quantity/limit)^2, or its inverse.
+    pub(super) excess: f64,
+    pub(super) plant: usize,
+}
+
+/// A local maximum of the excess of one plant, with the frequencies beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Peak {
+    pub(super) excess: f64,
+    pub(super) plant: usize,
+    pub(super) bracket: [f64; 3],
+}
+
+/// What was seen so far.
+#[derive(Clone, Debug)]
+pub(super) struct Scan {
+    grid: Vec<(f64, Option<LoopAt>)>,
+    /// By frequency and criterion; `None` where nothing is demanded or resolved.
+    worst: Vec<Vec<Option<Worst>>>,
+    /// By criterion.
+    peaks: Vec<Vec<Peak>>,
+    /// By criterion: where a margin was demanded and not to be had, as frequency and plant.
+    unresolved: Vec<Option<(f64, usize)>>,
+}
+
+/// One plant at one frequency: an excess for each criterion, `None` where nothing is demanded or resolved.
+struct Sample {
+    frequency: f64,
+    characteristic: Option<Complex64>,
+    excess: Vec<Option<f64>>,
+}
+
+impl Scan {
+    pub(super) fn new(evaluator: &Evaluator, frequencies: &[f64]) -> Scan {
+        let criteria = evaluator.criteria.len();
+        let at = |&frequency: &f64| (frequency, loop_at(evaluator, frequency));
+        Scan {
+            grid: frequencies.iter().map(at).collect(),
+            worst: vec![vec![None; criteria]; frequencies.len()],
+            peaks: vec![Vec::new(); criteria],
+            unresolved: vec![None; criteria],
+        }
+    }
+
+    /// The common frequencies with the worst of each criterion.
+    pub(super) fn envelope(&self) -> impl Iterator<Item = (f64, &[Option<Worst>])> {
+        self.grid.iter().map(|point| point.0).zip(self.worst.iter().map(Vec::as_slice))
+    }
+
+    pub(super) fn unresolved(&self, criterion: usize) -> Option<(f64, usize)> {
+        self.unresolved.get(criterion).copied().flatten()
+    }
+
+    /// Peaks of a criterion that may be its worst, the highest first.
+    pub(super) fn peaks(&self, criterion: usize) -> Vec<Peak> {
+        let mut peaks = self.peaks.get(criterion).cloned().unwrap_or_default();
+        let highest = peaks.iter().map(|peak| peak.excess).fold(0.0, f64::max);
+        peaks.retain(|peak| peak.excess >= WORTH_POLISHING * highest);
+        peaks.sort_by(|left, right| right.excess.total_cmp(&left.excess));
+        peaks
+    }
+
+    /// Adds a frequency at which the whole family is looked at.
+    pub(super) fn add_frequency(&mut self, evaluator: &Evaluator, plants: &[Plant], frequency: f64) {
+        let place = self.grid.partition_point(|point| point.0 < frequency);
+        if self.grid.get(place).is_some_and(|point| point.0 == frequency) {
+            return;
+        }
+        let worst = self.family_at(evaluator, plants, frequency);
+        self.grid.insert(place, (frequency, loop_at(evaluator, frequency)));
+        self.worst.insert(place, worst);
+    }
+
+    /// The worst of the family at any frequency, by criterion.
+    pub(super) fn family_at(
+        &mut self,
+        evaluator: &Evaluator,
+        plants: &[Plant],
+        frequency: f64,
+    ) -> Vec<Option<Worst>> {
+        let at = loop_at(evaluator, frequency);
+        let mut worst = vec![None; evaluator.criteria.len()];
+        for (index, plant) in plants.iter().enumerate() {
+            let sample = self.sample(evaluator, plant, index, frequency, &at);
+            for (slot, excess) in worst.iter_mut().zip(sample.excess) {
+                *slot = worse(*slot, excess, index);
+            }
+        }
+        worst
+    }
+
+    /// Looks at one plant at all common frequencies and at its own.
+    pub(super) fn look_at(&mut self, evaluator: &Evaluator, plant: &Plant, index: usize) {
+        let common = std::mem::take(&mut self.grid);
+        let mut samples = Vec::with_capacity(common.len() + plant.features.frequencies.len());
+        for (place, (frequency, at)) in common.iter().enumerate() {
+            let sample = self.sample(evaluator, plant, index, *frequency, at);
+            if let Some(slots) = self.worst.get_mut(place) {
+                for (slot, excess) in slots.iter_mut().zip(&sample.excess) {
+                    *slot = worse(*slot, *excess, index);
+                }
+            }
+            samples.push(sample);
+        }
+        let ends = common.first().zip(common.last()).map(|(first, last)| [first.0, last.0]);
+        self.grid = common;
+        let [from, to] = ends.unwrap_or([0.0, 0.0]);
+        for &frequency in &plant.features.frequencies {
+            if from < frequency && frequency < to {
+                let at = loop_at(evaluator, frequency);
+                samples.push(self.sample(evaluator, plant, index, frequency, &at));
+            }
+        }
+        samples.sort_by(|left, right| left.frequency.total_cmp(&right.frequency));
+        if !plant.features.complete {
+            samples = self.with_resonances(evaluator, plant, index, samples);
+        }
+        self.keep_peaks(index, &samples);
+    }
+
+    fn sample(
+        &mut self,
+        evaluator: &Evaluator,
+        plant: &Plant,
+        index: usize,
+        frequency: f64,
+        at: &Option<LoopAt>,
+    ) -> Sample {
+        let closed = plant.member.as_ref().zip(at.as_ref());
+        let closed = closed.and_then(|(member, at)| Some((at, evaluator.closed(at, member)?)));
+        let mut excess = Vec::with_capacity(evaluator.criteria.len());
+        for (number, criterion) in evaluator.criteria.iter().enumerate() {
+            let value = match (&closed, &plant.member) {
+                (Some((at, closed)), _) => at.excess(number, criterion, closed),
+                (None, Some(member)) if at.is_none() => evaluator
+                    .margin_db(number, member, frequency)
+                    .map(|margin| portable::pow(10.0, -margin / 10.0)),
+                (None, _) => None,
+            };
+            let value = value.filter(|value| !value.is_nan());
+            if value.is_none() && criterion.demands(frequency) {
+                self.note_unresolved(number, frequency, index);
+            }
+            excess.push(value);
+        }
+        Sample { frequency, characteristic: closed.map(|(_, closed)| closed.characteristic), excess }
+    }
+
+    fn note_unresolved(&mut self, criterion: usize, frequency: f64, plant: usize) {
+        if let Some(slot @ None) = self.unresolved.get_mut(criterion) {
+            *slot = Some((frequency, plant));
+        }
+    }
+
+    /// Halves each interval over which the characteristic value turns too far to be without a resonance.
+    fn with_resonances(
+        &mut self,
+        evaluator: &Evaluator,
+        plant: &Plant,
+        index: usize,
+        samples: Vec<Sample>,
+    ) -> Vec<Sample> {
+        let mut found: Vec<Sample> = Vec::with_capacity(samples.len());
+        for sample in samples {
+            let mut ahead = vec![sample];
+            let mut halvings = 0;
+            while let Some(next) = ahead.pop() {
+                match found.last().and_then(|behind| halved(behind, &next)) {
+                    Some(frequency) if halvings < HALVINGS => {
+                        halvings += 1;
+                        let at = loop_at(evaluator, frequency);
+                        ahead.push(next);
+                        ahead.push(self.sample(evaluator, plant, index, frequency, &at));
+                    }
+                    _ => found.push(next),
+                }
+            }
+        }
+        found
+    }
+
+    fn keep_peaks(&mut self, plant: usize, samples: &[Sample]) {
+        for (criterion, peaks) in self.peaks.iter_mut().enumerate() {
+            let excess = |sample: &Sample| sample.excess.get(criterion).copied().flatten();
+            let highest = peaks.iter().map(|peak| peak.excess).fold(0.0, f64::max);
+            for triple in samples.windows(3) {
+                let [before, here, after] = triple else { continue };
+                let (Some(left), Some(excess), Some(right)) = (excess(before), excess(here), excess(after))
+                else {
+                    continue;
+                };
+                if excess >= left && excess > right && excess >= WORTH_POLISHING * highest {
+                    let low = if before.frequency > 0.0 { before.frequency } else { here.frequency / 10.0 };
+                    let high = after.frequency.min(here.frequency * 10.0);
+                    peaks.push(Peak { excess, plant, bracket: [low, here.frequency, high] });
+                }
+            }
+        }
+    }
+}
+
+/// G, F, H and limits at a frequency; `None` at the ends of the axis.
+fn loop_at(evaluator: &Evaluator, frequency: f64) -> Option<LoopAt> {
+    (frequency > 0.0 && frequency < f64::INFINITY).then(|| evaluator.loop_at(frequency))
+}
+
+fn worse(so_far: Option<Worst>, excess: Option<f64>, plant: usize) -> Option<Worst> {
+    match (so_far, excess) {
+        (Some(worst), Some(excess)) if excess <= worst.excess => Some(worst),
+        (_, Some(excess)) => Some(Worst { excess, plant }),
+        (so_far, None) => so_far,
+    }
+}
+
+/// A frequency between two samples if the characteristic value turns too far from one to the other.
+fn halved(behind: &Sample, ahead: &Sample) -> Option<f64> {
+    let (from, to) = (behind.characteristic?, ahead.characteristic?);
+    let (from, to) = (from / portable::magnitude(from), to / portable::magnitude(to));
+    let middle = (behind.frequency * ahead.frequency).sqrt();
+    let turns = (from.conj() * to).re < TURN_COSINE;
+    (turns && behind.frequency < middle && middle < ahead.frequency).then_some(middle)
+}

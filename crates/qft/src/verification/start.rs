@@ -1,0 +1,89 @@
+//! Where the searches inside the box begin.
+
+use super::PlantPoint;
+use super::audit::STARTS;
+use super::evaluator::Evaluator;
+use super::finding::{Case, EnvelopePoint, Part, envelope, local_minima};
+use super::scan::{Plant, Scan};
+use super::search::Task;
+use crate::family::UncertainFamily;
+
+/// Frequencies further apart than by this factor count as different.
+const FREQUENCY_RATIO: f64 = 1.1;
+
+/// Between which finite frequencies a search may move.
+pub(super) fn interior_range(part: Part, evaluator: &Evaluator, scan: &Scan) -> Option<[f64; 2]> {
+    let demanded = |frequency: &f64| {
+        let mut bands = evaluator.criteria.iter().skip(part.first).take(part.count);
+        *frequency > 0.0 && *frequency < f64::INFINITY && bands.all(|criterion| criterion.demands(*frequency))
+    };
+    let mut frequencies = scan.envelope().map(|(frequency, _)| frequency).filter(demanded);
+    let first = frequencies.next()?;
+    let last = frequencies.last()?;
+    Some([first, last])
+}
+
+/// Searches for one specification: at each design frequency and each end of the band, from its worst local minima, from the
+/// middle of the box, and from the plants with the worst peaks.
+pub(super) fn tasks(
+    part: Part,
+    family: &UncertainFamily,
+    (scan, plants): (&Scan, &[Plant]),
+    cases: &[Case],
+    design_frequencies: &[f64],
+    range: Option<[f64; 2]>,
+) -> Vec<Task> {
+    let envelope = envelope(part, scan);
+    let shares = |index: &usize| shares(family, plants.get(*index).map(|plant| &plant.point));
+    let from = |point: &EnvelopePoint, range: Option<[f64; 2]>| Task {
+        criteria: point.criteria.clone(),
+        shares: point.plants.iter().map(shares).collect(),
+        frequency: point.frequency,
+        range,
+    };
+    let ends = [envelope.first(), envelope.last()].into_iter().flatten().map(|point| point.frequency);
+    let fixed: Vec<f64> = ends.chain(design_frequencies.iter().copied()).collect();
+    let fixed = envelope.iter().filter(|point| fixed.contains(&point.frequency));
+    let mut tasks: Vec<Task> = fixed.map(|point| from(point, None)).collect();
+    let Some(range) = range else { return tasks };
+    let minima: Vec<f64> = local_minima(&envelope).iter().take(STARTS).map(|bracket| bracket[1]).collect();
+    for point in envelope.iter().filter(|point| minima.contains(&point.frequency)) {
+        let middle = vec![vec![0.5; family.coordinates().len()]; point.plants.len()];
+        tasks.push(from(point, Some(range)));
+        tasks.push(Task { shares: middle, ..from(point, Some(range)) });
+    }
+    let of_part = |case: &&Case| case.criteria.iter().all(|criterion| part.criteria().contains(criterion));
+    tasks.extend(diverse(cases.iter().filter(of_part)).into_iter().map(|case| Task {
+        criteria: case.criteria.clone(),
+        shares: case.points.iter().map(|point| self::shares(family, Some(point))).collect(),
+        frequency: case.frequency,
+        range: Some(range),
+    }));
+    tasks.dedup();
+    tasks
+}
+
+/// Where a plant lies in the box; the middle for one that does not.
+fn shares(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
+    match point {
+        Some(PlantPoint::Parameters(values)) => family.shares(values),
+        Some(PlantPoint::Measured(_)) | None => vec![0.5; family.coordinates().len()],
+    }
+}
+
+/// The worst cases, each with a plant of its own, after the first few each with a frequency of its own.
+fn diverse<'a>(cases: impl Iterator<Item = &'a Case>) -> Vec<&'a Case> {
+    let apart = |case: &Case, other: &&Case| {
+        let ratio = case.frequency / other.frequency;
+        !(1.0 / FREQUENCY_RATIO..=FREQUENCY_RATIO).contains(&ratio)
+    };
+    let mut chosen: Vec<&Case> = Vec::new();
+    for case in cases {
+        let new_plant = chosen.iter().all(|other| other.points != case.points);
+        let wanted = chosen.len() < STARTS || chosen.iter().all(|other| apart(case, other));
+        if new_plant && wanted && chosen.len() < 2 * STARTS {
+            chosen.push(case);
+        }
+    }
+    chosen
+}

@@ -1,0 +1,11 @@
+//! Verification: verdicts that hold between the frequencies and between the grid points.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+#[path = "verification/examples.rs"]
+mod examples;
+#[path = "verification/plants.rs"]
+mod plants;
+#[path = "verification/thesis.rs"]
+mod thesis;
