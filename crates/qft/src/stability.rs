@@ -17,6 +17,7 @@ mod encirclement;
 mod family;
 mod measured;
 mod poles;
+mod resampled;
 mod search;
 
 use phea_dynamics::linear::LinearError;
@@ -155,7 +156,8 @@ pub struct MemberStability {
 ///
 /// A rational loop must be stable by its poles and by the turns of its characteristic function alike, or it is not
 /// resolved. In a sampled loop the critical delay is phase over frequency at the crossovers of the sampled L: exact where it is a whole
-/// number of samples; between, a real delay also changes what the hold and the sampler make of the plant.
+/// number of samples; between, a delay also changes what hold and sampler make of the plant. [`StabilityAudit`] samples the worst
+/// plants anew.
 ///
 /// # Example
 /// k e^(-s)/s is stable for 0 < k < pi/2, and bears pi/(2 k) of dead time:

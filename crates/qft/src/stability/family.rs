@@ -4,7 +4,9 @@ use phea_dynamics::linear::LinearError;
 
 use super::characteristic::{Characteristic, FeedbackPath};
 use super::search::climb;
-use super::{Irresolution, MemberStability, StabilityStatus, characteristic, of_member};
+use super::{
+    CriticalDelay, Irresolution, MemberStability, StabilityStatus, characteristic, of_member, resampled,
+};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::verification::{ClosestApproach, DelayMargin, Evidence, PlantPoint, StabilityFinding, Verdict};
@@ -77,8 +79,20 @@ pub struct StabilityAudit<'a> {
     path: Result<FeedbackPath, Irresolution>,
     /// How bad each member is, by each of [`Badness`]; as far as it was looked at.
     members: Vec<[f64; 3]>,
-    searches: Option<Vec<(Badness, Vec<f64>)>>,
+    /// What is left to do after the members, the last first; `None` before.
+    tasks: Option<Vec<Task>>,
+    /// Plants of a sampled loop whose critical delay is still an estimate.
+    estimated: Vec<Vec<f64>>,
     record: Record,
+}
+
+/// What is done once every member was looked at.
+#[derive(Clone, Debug)]
+enum Task {
+    /// A search for the worst plant, from these shares of the box.
+    Search(Badness, Vec<f64>),
+    /// The worst delays of a sampled loop, sampled anew.
+    Resample,
 }
 
 /// What the search makes as large as it can.
@@ -107,7 +121,8 @@ impl<'a> StabilityAudit<'a> {
             compensation,
             path: FeedbackPath::new(compensation),
             members: Vec::new(),
-            searches: None,
+            tasks: None,
+            estimated: Vec::new(),
             record: Record::default(),
         }
     }
@@ -122,15 +137,45 @@ impl<'a> StabilityAudit<'a> {
             return true;
         }
         let Family::Uncertain(family) = self.family else { return false };
-        let mut searches = self.searches.take().unwrap_or_else(|| self.starts(family));
-        let next = searches.pop();
-        self.searches = Some(searches);
-        let Some((badness, start)) = next else { return false };
-        let (shares, _) = climb(&start, &mut |shares| self.badness_at(family, badness, shares));
+        let mut tasks = self.tasks.take().unwrap_or_else(|| self.tasks_after_members(family));
+        let next = tasks.pop();
+        self.tasks = Some(tasks);
+        match next {
+            None => return false,
+            Some(Task::Search(badness, start)) => self.search(family, badness, &start),
+            Some(Task::Resample) => self.resample(family),
+        }
+        true
+    }
+
+    fn search(&mut self, family: &UncertainFamily, badness: Badness, start: &[f64]) {
+        let (shares, _) = climb(start, &mut |shares| self.badness_at(family, badness, shares));
         let values = family.values(&shares);
         let found = self.judged(self.rational_member(family, &values));
+        if badness == Badness::DelaySensitivity {
+            self.estimated.push(values.clone());
+        }
         self.record.take(PlantPoint::Parameters(values), &found);
-        true
+    }
+
+    /// Replaces the delay margin by the least that the worst plants bear when they are sampled anew with every delay.
+    fn resample(&mut self, family: &UncertainFamily) {
+        let Ok(path) = &self.path else { return };
+        let worst = self.record.delay.as_ref().map(|margin| margin.plant.clone());
+        if let Some(PlantPoint::Parameters(values)) = worst {
+            self.estimated.push(values);
+        }
+        let mut least: Option<DelayMargin> = None;
+        for values in self.estimated.drain(..) {
+            let plant = family.plant().coefficients(&values);
+            let Some(found) = resampled::critical_delay(&plant, self.compensation, path) else { continue };
+            if least.as_ref().is_none_or(|least| found.delay_s < least.delay_s) {
+                let CriticalDelay { delay_s, frequency_rad_per_s } = found;
+                let plant = PlantPoint::Parameters(values);
+                least = Some(DelayMargin { delay_s, frequency_rad_per_s, plant });
+            }
+        }
+        self.record.delay = least.or(self.record.delay.take());
     }
 
     /// The share of members that were looked at, from 0 to 1.
@@ -172,30 +217,37 @@ impl<'a> StabilityAudit<'a> {
         }
     }
 
-    /// The worst members that lie apart from each other, for each badness that all members have; the last is searched first.
-    fn starts(&self, family: &UncertainFamily) -> Vec<(Badness, Vec<f64>)> {
-        if family.extent() == Extent::Members || family.coordinates().is_empty() {
-            return Vec::new();
+    fn tasks_after_members(&self, family: &UncertainFamily) -> Vec<Task> {
+        let mut tasks = Vec::new();
+        if self.compensation.sample_time_s().is_some() {
+            tasks.push(Task::Resample);
         }
-        let mut starts = Vec::new();
-        for badness in [Badness::DelaySensitivity, Badness::Closeness, Badness::RealPart] {
-            let value = |member: &[f64; 3]| member[badness as usize];
-            let mut order: Vec<usize> = (0..self.members.len()).collect();
-            order.retain(|&index| self.members.get(index).is_some_and(|member| value(member).is_finite()));
-            order.sort_by(|&a, &b| value(&self.members[b]).total_cmp(&value(&self.members[a])));
-            let mut chosen: Vec<Vec<f64>> = Vec::new();
-            for index in order {
-                let shares = family.shares(&family.members()[index]);
-                if chosen.iter().all(|earlier| apart(earlier, &shares)) {
-                    chosen.push(shares);
-                }
-                if chosen.len() == STARTS {
-                    break;
-                }
+        if family.extent() == Extent::Box {
+            for badness in [Badness::DelaySensitivity, Badness::Closeness, Badness::RealPart] {
+                let starts = self.starts(family, badness);
+                tasks.extend(starts.into_iter().rev().map(|shares| Task::Search(badness, shares)));
             }
-            starts.extend(chosen.into_iter().rev().map(|shares| (badness, shares)));
         }
-        starts
+        tasks
+    }
+
+    /// The worst members that lie apart from each other, as shares of the box.
+    fn starts(&self, family: &UncertainFamily, badness: Badness) -> Vec<Vec<f64>> {
+        let mut order: Vec<(f64, &Vec<f64>)> =
+            self.members.iter().map(|member| member[badness as usize]).zip(family.members()).collect();
+        order.retain(|(value, _)| value.is_finite());
+        order.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let mut chosen: Vec<Vec<f64>> = Vec::new();
+        for (_, values) in order {
+            let shares = family.shares(values);
+            if chosen.iter().all(|earlier| apart(earlier, &shares)) {
+                chosen.push(shares);
+            }
+            if chosen.len() == STARTS {
+                break;
+            }
+        }
+        chosen
     }
 
     fn badness_at(&self, family: &UncertainFamily, badness: Badness, shares: &[f64]) -> f64 {
@@ -213,7 +265,7 @@ impl<'a> StabilityAudit<'a> {
         let record = &self.record;
         let (verdict, plant, reason) = self.judgement();
         let stable = verdict == Verdict::Met;
-        let searched = self.searches.is_some() && self.searched();
+        let searched = self.tasks.is_some() && self.searched();
         FamilyStability {
             finding: StabilityFinding {
                 verdict,
