@@ -17,6 +17,7 @@ mod encirclement;
 mod family;
 mod measured;
 mod poles;
+mod record;
 mod resampled;
 mod search;
 
@@ -64,7 +65,7 @@ pub enum Irresolution {
     Linear(LinearError),
     /// A closed-loop pole lies so near the boundary of stability that rounding hides its side.
     #[error(
-        "a closed-loop pole near {frequency_rad_per_s} rad/s cannot be told from the boundary of stability"
+        "a closed-loop pole near {frequency_rad_per_s:.6} rad/s cannot be told from the boundary of stability"
     )]
     NearBoundary {
         /// Where on the boundary, rad/s.
@@ -72,7 +73,7 @@ pub enum Irresolution {
     },
     /// Too many steps along the boundary of stability.
     #[error(
-        "the turns of the characteristic function could not be counted beyond {frequency_rad_per_s} rad/s"
+        "the turns of the characteristic function could not be counted beyond {frequency_rad_per_s:.6} rad/s"
     )]
     Budget {
         /// Where the count stopped, rad/s.

@@ -133,6 +133,14 @@ fn nothing_is_cancelled() {
 }
 
 #[test]
+fn a_dead_time_that_cannot_be_is_not_resolved() {
+    for delay in [-1.0, f64::NAN, f64::INFINITY] {
+        let status = found(&[1.0], &[1.0, 1.0], delay).status;
+        assert!(matches!(status, StabilityStatus::NotResolved(Irresolution::Linear(_))), "{status:?}");
+    }
+}
+
+#[test]
 fn a_loop_that_has_no_solution_is_not_resolved() {
     let status = found(&[-1.0, 1.0], &[1.0, 1.0], 0.0).status;
     assert!(matches!(status, StabilityStatus::NotResolved(Irresolution::Linear(_))), "{status:?}");

@@ -130,10 +130,18 @@ fn slow_poles_keep_their_digits() {
     assert!((found.largest_real_part.unwrap() / expected - 1.0).abs() < 1e-5);
 }
 
+/// A plant that was made for one loop is no part of another.
 #[test]
-fn a_controller_in_another_time_is_not_resolved() {
-    let sampled = TransferFunction::from_factors(1.0, vec![], vec![]).unwrap();
-    let sampled = sampled.in_domain(TimeDomain::Discrete { sample_time_s: 2.0 * SAMPLE }).unwrap();
-    let found = found(vec![Element::General(sampled)], (&[1.0], &[1.0, 1.0]), 0.0);
-    assert_eq!(found.status, StabilityStatus::NotResolved(Irresolution::Linear(LinearError::DomainMismatch)));
+fn a_plant_of_another_time_is_not_resolved() {
+    let continuous = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap();
+    let command = RationalCoefficients { numerator: vec![1.0], denominator: vec![1.0, 1.0] };
+    let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 };
+    let timing = Timing { sample_time_s: Some(SAMPLE), ..Timing::default() };
+    let controller = Controller { timing, ..Controller::default() };
+    let sampled = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
+    let mismatch = StabilityStatus::NotResolved(Irresolution::Linear(LinearError::DomainMismatch));
+    for (of, within) in [(&continuous, &sampled), (&sampled, &continuous)] {
+        let member = of.member(plant.clone()).unwrap();
+        assert_eq!(member_stability(&member, within).status, mismatch);
+    }
 }

@@ -3,10 +3,9 @@
 use phea_dynamics::linear::LinearError;
 
 use super::characteristic::{Characteristic, FeedbackPath};
+use super::record::Record;
 use super::search::climb;
-use super::{
-    CriticalDelay, Irresolution, MemberStability, StabilityStatus, characteristic, of_member, resampled,
-};
+use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_member, resampled};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::verification::{ClosestApproach, DelayMargin, Evidence, PlantPoint, StabilityFinding, Verdict};
@@ -77,7 +76,7 @@ pub struct StabilityAudit<'a> {
     family: &'a Family,
     compensation: &'a Compensation,
     path: Result<FeedbackPath, Irresolution>,
-    /// How bad each member is, by each of [`Badness`]; as far as it was looked at.
+    /// Real part, closeness and delay sensitivity of each member, as far as it was looked at.
     members: Vec<[f64; 3]>,
     /// What is left to do after the members, the last first; `None` before.
     tasks: Option<Vec<Task>>,
@@ -89,8 +88,8 @@ pub struct StabilityAudit<'a> {
 /// What is done once every member was looked at.
 #[derive(Clone, Debug)]
 enum Task {
-    /// A search for the worst plant, from these shares of the box.
-    Search(Badness, Vec<f64>),
+    /// Searches one after the other for the worst plant, the first from these shares of the box.
+    Search(&'static [Badness], Vec<f64>),
     /// The worst delays of a sampled loop, sampled anew.
     Resample,
 }
@@ -101,16 +100,8 @@ enum Badness {
     RealPart,
     Closeness,
     DelaySensitivity,
-}
-
-/// The worst found so far.
-#[derive(Clone, Debug, Default)]
-struct Record {
-    unstable: Option<(f64, String, PlantPoint)>,
-    unresolved: Option<(String, PlantPoint)>,
-    real_part: Option<(f64, PlantPoint)>,
-    closest: Option<ClosestApproach>,
-    delay: Option<DelayMargin>,
+    /// The largest |L| of a resonance: where it reaches one there is a further crossover, which may bear much less delay.
+    Peak,
 }
 
 impl<'a> StabilityAudit<'a> {
@@ -142,17 +133,19 @@ impl<'a> StabilityAudit<'a> {
         self.tasks = Some(tasks);
         match next {
             None => return false,
-            Some(Task::Search(badness, start)) => self.search(family, badness, &start),
+            Some(Task::Search(searches, start)) => self.search(family, searches, start),
             Some(Task::Resample) => self.resample(family),
         }
         true
     }
 
-    fn search(&mut self, family: &UncertainFamily, badness: Badness, start: &[f64]) {
-        let (shares, _) = climb(start, &mut |shares| self.badness_at(family, badness, shares));
+    fn search(&mut self, family: &UncertainFamily, searches: &[Badness], mut shares: Vec<f64>) {
+        for &badness in searches {
+            (shares, _) = climb(&shares, &mut |shares| self.badness_at(family, badness, shares));
+        }
         let values = family.values(&shares);
         let found = self.judged(self.rational_member(family, &values));
-        if badness == Badness::DelaySensitivity {
+        if searches.last() == Some(&Badness::DelaySensitivity) {
             self.estimated.push(values.clone());
         }
         self.record.take(PlantPoint::Parameters(values), &found);
@@ -223,9 +216,15 @@ impl<'a> StabilityAudit<'a> {
             tasks.push(Task::Resample);
         }
         if family.extent() == Extent::Box {
-            for badness in [Badness::DelaySensitivity, Badness::Closeness, Badness::RealPart] {
-                let starts = self.starts(family, badness);
-                tasks.extend(starts.into_iter().rev().map(|shares| Task::Search(badness, shares)));
+            let searches: [(Badness, &'static [Badness]); 4] = [
+                (Badness::Closeness, &[Badness::Peak, Badness::DelaySensitivity]),
+                (Badness::DelaySensitivity, &[Badness::DelaySensitivity]),
+                (Badness::Closeness, &[Badness::Closeness]),
+                (Badness::RealPart, &[Badness::RealPart]),
+            ];
+            for (ranked_by, searches) in searches {
+                let starts = self.starts(family, ranked_by);
+                tasks.extend(starts.into_iter().rev().map(|shares| Task::Search(searches, shares)));
             }
         }
         tasks
@@ -234,7 +233,7 @@ impl<'a> StabilityAudit<'a> {
     /// The worst members that lie apart from each other, as shares of the box.
     fn starts(&self, family: &UncertainFamily, badness: Badness) -> Vec<Vec<f64>> {
         let mut order: Vec<(f64, &Vec<f64>)> =
-            self.members.iter().map(|member| member[badness as usize]).zip(family.members()).collect();
+            self.members.iter().map(|member| badness.among(member)).zip(family.members()).collect();
         order.retain(|(value, _)| value.is_finite());
         order.sort_by(|one, other| other.0.total_cmp(&one.0));
         let mut chosen: Vec<Vec<f64>> = Vec::new();
@@ -304,9 +303,9 @@ impl<'a> StabilityAudit<'a> {
         let mut reason = format!("all {plants} plants are stable {way}");
         if let Some(closest) = &record.closest {
             let ClosestApproach { distance, frequency_rad_per_s, .. } = closest;
-            let where_found = if self.searched() { "searched between them, " } else { "" };
+            let between = if self.searched() { " between them, too," } else { "" };
             reason += &format!(
-                "; {where_found}|1 + L| is never below {distance:.4} (at {frequency_rad_per_s:.4} rad/s)"
+                "; the smallest |1 + L| found{between} is {distance:.4} (at {frequency_rad_per_s:.4} rad/s)"
             );
         }
         let nearest = record.real_part.as_ref().map(|(_, plant)| plant.clone());
@@ -338,6 +337,18 @@ impl Badness {
                 Some(if found.unstable_poles > 0 { f64::INFINITY } else { -found.closest.0 })
             }
             Badness::DelaySensitivity => Some(-characteristic.critical_delay().ok()?.delay_s),
+            Badness::Peak => characteristic.largest_peak(),
+        }
+    }
+
+    /// What was kept of a member.
+    fn among(self, member: &[f64; 3]) -> f64 {
+        let &[real_part, closeness, delay_sensitivity] = member;
+        match self {
+            Badness::RealPart => real_part,
+            Badness::Closeness => closeness,
+            Badness::DelaySensitivity => delay_sensitivity,
+            Badness::Peak => f64::NAN,
         }
     }
 }
@@ -352,45 +363,4 @@ fn badness_of(found: &MemberStability) -> [f64; 3] {
 
 fn apart(one: &[f64], other: &[f64]) -> bool {
     one.iter().zip(other).any(|(a, b)| (a - b).abs() > START_DISTANCE)
-}
-
-impl Record {
-    fn take(&mut self, plant: PlantPoint, found: &MemberStability) {
-        let real_part = found.largest_real_part.filter(|real_part| real_part.is_finite());
-        if let Some(real_part) = real_part
-            && self.real_part.as_ref().is_none_or(|(largest, _)| real_part > *largest)
-        {
-            self.real_part = Some((real_part, plant.clone()));
-        }
-        match &found.status {
-            StabilityStatus::Unstable(instability) => {
-                let size = real_part.unwrap_or(0.0);
-                if self.unstable.as_ref().is_none_or(|(largest, ..)| size > *largest) {
-                    self.unstable = Some((size, instability.to_string(), plant.clone()));
-                }
-            }
-            StabilityStatus::NotResolved(reason) if self.unresolved.is_none() => {
-                self.unresolved = Some((reason.to_string(), plant.clone()));
-            }
-            _ => {}
-        }
-        if let Some(closest) = found.closest_approach
-            && self.closest.as_ref().is_none_or(|nearest| closest.distance < nearest.distance)
-        {
-            self.closest = Some(ClosestApproach {
-                distance: closest.distance,
-                frequency_rad_per_s: closest.frequency_rad_per_s,
-                plant: plant.clone(),
-            });
-        }
-        if let Some(critical) = found.critical_delay
-            && self.delay.as_ref().is_none_or(|least| critical.delay_s < least.delay_s)
-        {
-            self.delay = Some(DelayMargin {
-                delay_s: critical.delay_s,
-                frequency_rad_per_s: critical.frequency_rad_per_s,
-                plant,
-            });
-        }
-    }
 }
