@@ -193,10 +193,12 @@ impl Compensation {
             let dead_time_s = function.dead_time_s() + plant.dead_time_s;
             function.with_dead_time(dead_time_s)?.discretized(sample_time_s, Discretization::ZeroOrderHold)
         };
-        let with_sensor = rational.series(&self.sensor)?;
-        let command = held(rational)?;
-        let same = self.sensor == TransferFunction::gain_only(1.0);
-        let with_sensor = if same { command.clone() } else { held(with_sensor)? };
+        let command = held(rational.clone())?;
+        let with_sensor = if self.sensor == TransferFunction::gain_only(1.0) {
+            command.clone()
+        } else {
+            held(rational.series(&self.sensor)?)?
+        };
         Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance })
     }
 

@@ -17,6 +17,8 @@ mod encirclement;
 mod family;
 mod measured;
 mod poles;
+mod record;
+mod resampled;
 mod search;
 
 use phea_dynamics::linear::LinearError;
@@ -63,7 +65,7 @@ pub enum Irresolution {
     Linear(LinearError),
     /// A closed-loop pole lies so near the boundary of stability that rounding hides its side.
     #[error(
-        "a closed-loop pole near {frequency_rad_per_s} rad/s cannot be told from the boundary of stability"
+        "a closed-loop pole near {frequency_rad_per_s:.6} rad/s cannot be told from the boundary of stability"
     )]
     NearBoundary {
         /// Where on the boundary, rad/s.
@@ -71,7 +73,7 @@ pub enum Irresolution {
     },
     /// Too many steps along the boundary of stability.
     #[error(
-        "the turns of the characteristic function could not be counted beyond {frequency_rad_per_s} rad/s"
+        "the turns of the characteristic function could not be counted beyond {frequency_rad_per_s:.6} rad/s"
     )]
     Budget {
         /// Where the count stopped, rad/s.
@@ -155,7 +157,8 @@ pub struct MemberStability {
 ///
 /// A rational loop must be stable by its poles and by the turns of its characteristic function alike, or it is not
 /// resolved. In a sampled loop the critical delay is phase over frequency at the crossovers of the sampled L: exact where it is a whole
-/// number of samples; between, a real delay also changes what the hold and the sampler make of the plant.
+/// number of samples; between, a delay also changes what hold and sampler make of the plant. [`StabilityAudit`] samples the worst
+/// plants anew.
 ///
 /// # Example
 /// k e^(-s)/s is stable for 0 < k < pi/2, and bears pi/(2 k) of dead time:

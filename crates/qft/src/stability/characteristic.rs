@@ -36,13 +36,7 @@ pub(super) struct Characteristic {
 impl FeedbackPath {
     pub(super) fn new(compensation: &Compensation) -> Result<FeedbackPath, Irresolution> {
         let (feedback, sensor) = (compensation.feedback(), compensation.sensor());
-        let domain = match compensation.sample_time_s() {
-            None => TimeDomain::Continuous,
-            Some(sample_time_s) => TimeDomain::Discrete { sample_time_s },
-        };
-        if feedback.domain() != domain || sensor.domain() != TimeDomain::Continuous {
-            return Err(Irresolution::Linear(LinearError::DomainMismatch));
-        }
+        let domain = feedback.domain();
         let (numerator, denominator) = polynomials(feedback)?;
         if domain != TimeDomain::Continuous {
             return Ok(FeedbackPath { numerator, denominator, dead_time_s: feedback.dead_time_s(), domain });
@@ -87,6 +81,10 @@ impl FeedbackPath {
     ) -> Result<Characteristic, Irresolution> {
         if denominator.is_zero() {
             return Err(Irresolution::Linear(LinearError::ZeroPolynomial));
+        }
+        if !(delay.is_finite() && delay >= 0.0) {
+            let dead_time_s = delay * time_unit(self.domain);
+            return Err(Irresolution::Linear(LinearError::DeadTime { dead_time_s }));
         }
         Ok(Characteristic { denominator, numerator, delay, domain: self.domain })
     }
@@ -138,10 +136,7 @@ impl Characteristic {
 
     /// 1 s, or the sample time: what `delay` counts in, and the inverse of what the angle counts in.
     pub(super) fn time_unit(&self) -> f64 {
-        match self.domain {
-            TimeDomain::Continuous => 1.0,
-            TimeDomain::Discrete { sample_time_s } => sample_time_s,
-        }
+        time_unit(self.domain)
     }
 
     /// n_0/c_0, the gain of the loop at infinite frequency; `None` for a loop that is improper.
@@ -160,6 +155,13 @@ impl Characteristic {
         self.domain == TimeDomain::Continuous
             && self.delay > 0.0
             && self.gain_at_infinity().is_none_or(|gain| gain.abs() > 1.0)
+    }
+}
+
+fn time_unit(domain: TimeDomain) -> f64 {
+    match domain {
+        TimeDomain::Continuous => 1.0,
+        TimeDomain::Discrete { sample_time_s } => sample_time_s,
     }
 }
 

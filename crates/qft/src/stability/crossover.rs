@@ -4,7 +4,7 @@
 //! real polynomial, in w^2 or in |z - 1|^2: none of them is overlooked between the points of a grid.
 
 use num_complex::Complex64;
-use phea_dynamics::linear::{Polynomial, TimeDomain};
+use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain};
 use phea_dynamics::portable;
 
 use super::Irresolution;
@@ -53,14 +53,31 @@ impl Characteristic {
         if difference.is_zero() {
             return Ok(Vec::new());
         }
-        let roots = difference.roots().map_err(Irresolution::Linear)?;
+        let angles = self.angles_of_roots(&difference).map_err(Irresolution::Linear)?;
+        Ok(angles.into_iter().map(|angle| self.polished(angle)).collect())
+    }
+
+    /// The largest |L| where |L| is stationary over frequency, such as at a resonance; `None` where it is nowhere.
+    pub(super) fn largest_peak(&self) -> Option<f64> {
+        let (c, n) = (self.squared_magnitude(&self.denominator), self.squared_magnitude(&self.numerator));
+        let slope = n.derivative().product(&c).sum(&n.product(&c.derivative()).scaled(-1.0));
+        let peaks = self.angles_of_roots(&slope).ok()?.into_iter().map(|angle| {
+            let (denominator, numerator) = self.at(angle);
+            portable::magnitude(numerator) / portable::magnitude(denominator)
+        });
+        peaks.reduce(f64::max)
+    }
+
+    /// The angles at which a polynomial in q has its positive roots.
+    fn angles_of_roots(&self, polynomial: &Polynomial) -> Result<Vec<f64>, LinearError> {
+        let roots = polynomial.roots()?;
         let squares = roots.iter().filter(|root| root.im == 0.0 && root.re > 0.0).map(|root| root.re);
         let angles = squares.filter_map(|square| match self.domain {
             TimeDomain::Continuous => Some(square.sqrt()),
             // |z - 1| = 2 sin(angle/2)
             TimeDomain::Discrete { .. } => (square <= 4.0).then(|| 2.0 * portable::asin(0.5 * square.sqrt())),
         });
-        Ok(angles.map(|angle| self.polished(angle)).collect())
+        Ok(angles.collect())
     }
 
     /// |p|^2 on the boundary of stability as a polynomial in q = |s|^2 or q = |v|^2.

@@ -71,17 +71,25 @@ impl Characteristic {
         if distance.is_nan() { f64::INFINITY } else { distance }
     }
 
-    /// The smallest distance, refined between the neighbours of the smallest that was visited.
+    /// The smallest distance: of the minima among those visited, each that comes near the smallest is refined between its
+    /// neighbours.
     fn closest(&self, visited: &[(f64, f64)]) -> (f64, f64) {
-        let smallest = visited.iter().enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0));
-        let Some((index, &found)) = smallest else { return (f64::INFINITY, 0.0) };
-        let angle_of = |index: usize| visited.get(index).map_or(found.1, |visit| visit.1);
-        let refined = self.golden_section(angle_of(index.saturating_sub(1)), angle_of(index + 1));
-        let best = if refined.0 < found.0 { refined } else { found };
+        const NEAR: f64 = 1.25;
+        let nearer = |best: (f64, f64), next: (f64, f64)| if next.0 < best.0 { next } else { best };
+        let smallest = visited.iter().copied().fold((f64::INFINITY, 0.0), nearer);
+        let mut best = smallest;
+        for (index, visit) in visited.iter().enumerate() {
+            let &(distance, _) = visit;
+            let before = index.checked_sub(1).and_then(|before| visited.get(before)).unwrap_or(visit);
+            let after = visited.get(index + 1).unwrap_or(visit);
+            if distance <= NEAR * smallest.0 && distance <= before.0 && distance <= after.0 {
+                best = nearer(best, self.golden_section(before.1, after.1));
+            }
+        }
         match self.gain_at_infinity() {
             Some(gain) if self.domain == TimeDomain::Continuous && gain != 0.0 => {
                 let limit = if self.delay > 0.0 { (1.0 - gain.abs()).abs() } else { (1.0 + gain).abs() };
-                if limit < best.0 { (limit, f64::INFINITY) } else { best }
+                nearer(best, (limit, f64::INFINITY))
             }
             _ => best,
         }
@@ -244,4 +252,70 @@ fn end_of_axis(prompt: &Polynomial, delayed: &Polynomial) -> Result<f64, Irresol
         end *= 0.5;
     }
     if share(end) <= allowed { Ok(end) } else { Err(Irresolution::GainAtInfinity) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Roots with real parts of either sign over six decades, some of them hard by the axis.
+    fn random_roots(random: &mut impl FnMut() -> f64, count: usize) -> Vec<Complex64> {
+        let mut roots = Vec::new();
+        while roots.len() < count {
+            let size = portable::exp(13.8 * (random() - 0.5));
+            let damping = if random() < 0.3 { 1e-6 } else { random() };
+            let real = size * damping * if random() < 0.2 { 1.0 } else { -1.0 };
+            if count - roots.len() > 1 && random() < 0.6 {
+                let imaginary = size * (1.0 - damping * damping).sqrt();
+                roots.extend([Complex64::new(real, imaginary), Complex64::new(real, -imaginary)]);
+            } else {
+                roots.push(Complex64::new(real, 0.0));
+            }
+        }
+        roots
+    }
+
+    /// The turns count the roots that were put there, whatever part of the polynomial is called numerator.
+    #[test]
+    fn turns_count_the_roots_outside() {
+        let mut seed = 7_u64;
+        let mut random = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut resolved = 0;
+        for trial in 0..300 {
+            let roots = random_roots(&mut random, 1 + trial % 7);
+            let closed = Polynomial::from_roots(2.0, &roots).unwrap();
+            let outside = roots.iter().filter(|root| root.re > 0.0).count();
+            // any part of the polynomial may be the numerator
+            let part = |kept: &dyn Fn(usize) -> bool| {
+                let terms = closed.coefficients().iter().enumerate();
+                Polynomial::new(terms.map(|(i, &c)| if kept(i) { c } else { 0.0 }).collect())
+            };
+            let continuous = Characteristic {
+                denominator: part(&|index| index <= trial % 5),
+                numerator: part(&|index| index > trial % 5),
+                delay: 0.0,
+                domain: TimeDomain::Continuous,
+            };
+            let found = continuous.encirclement().unwrap();
+            assert_eq!(found.unstable_poles, outside, "{roots:?}");
+
+            // the same roots mapped to samples by (2 + s)/(2 - s), less one
+            let shifted: Vec<Complex64> = roots.iter().map(|root| 2.0 * root / (2.0 - root)).collect();
+            let sampled = Characteristic {
+                denominator: Polynomial::from_roots(1.0, &shifted).unwrap(),
+                numerator: Polynomial::new(vec![0.0]),
+                delay: 0.0,
+                domain: TimeDomain::Discrete { sample_time_s: 1.0 },
+            };
+            // fast roots crowd around z = -1, where some cannot be told from the circle
+            if let Ok(found) = sampled.encirclement() {
+                assert_eq!(found.unstable_poles, outside, "{roots:?}");
+                resolved += 1;
+            }
+        }
+        assert!(resolved > 270, "{resolved}");
+    }
 }

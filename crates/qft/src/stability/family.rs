@@ -3,8 +3,9 @@
 use phea_dynamics::linear::LinearError;
 
 use super::characteristic::{Characteristic, FeedbackPath};
+use super::record::Record;
 use super::search::climb;
-use super::{Irresolution, MemberStability, StabilityStatus, characteristic, of_member};
+use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_member, resampled};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::verification::{ClosestApproach, DelayMargin, Evidence, PlantPoint, StabilityFinding, Verdict};
@@ -75,10 +76,22 @@ pub struct StabilityAudit<'a> {
     family: &'a Family,
     compensation: &'a Compensation,
     path: Result<FeedbackPath, Irresolution>,
-    /// How bad each member is, by each of [`Badness`]; as far as it was looked at.
+    /// Real part, closeness and delay sensitivity of each member, as far as it was looked at.
     members: Vec<[f64; 3]>,
-    searches: Option<Vec<(Badness, Vec<f64>)>>,
+    /// What is left to do after the members, the last first; `None` before.
+    tasks: Option<Vec<Task>>,
+    /// Plants of a sampled loop whose critical delay is still an estimate.
+    estimated: Vec<Vec<f64>>,
     record: Record,
+}
+
+/// What is done once every member was looked at.
+#[derive(Clone, Debug)]
+enum Task {
+    /// Searches one after the other for the worst plant, the first from these shares of the box.
+    Search(&'static [Badness], Vec<f64>),
+    /// The worst delays of a sampled loop, sampled anew.
+    Resample,
 }
 
 /// What the search makes as large as it can.
@@ -87,16 +100,8 @@ enum Badness {
     RealPart,
     Closeness,
     DelaySensitivity,
-}
-
-/// The worst found so far.
-#[derive(Clone, Debug, Default)]
-struct Record {
-    unstable: Option<(f64, String, PlantPoint)>,
-    unresolved: Option<(String, PlantPoint)>,
-    real_part: Option<(f64, PlantPoint)>,
-    closest: Option<ClosestApproach>,
-    delay: Option<DelayMargin>,
+    /// The largest |L| of a resonance: where it reaches one there is a further crossover, which may bear much less delay.
+    Peak,
 }
 
 impl<'a> StabilityAudit<'a> {
@@ -107,7 +112,8 @@ impl<'a> StabilityAudit<'a> {
             compensation,
             path: FeedbackPath::new(compensation),
             members: Vec::new(),
-            searches: None,
+            tasks: None,
+            estimated: Vec::new(),
             record: Record::default(),
         }
     }
@@ -122,15 +128,47 @@ impl<'a> StabilityAudit<'a> {
             return true;
         }
         let Family::Uncertain(family) = self.family else { return false };
-        let mut searches = self.searches.take().unwrap_or_else(|| self.starts(family));
-        let next = searches.pop();
-        self.searches = Some(searches);
-        let Some((badness, start)) = next else { return false };
-        let (shares, _) = climb(&start, &mut |shares| self.badness_at(family, badness, shares));
+        let mut tasks = self.tasks.take().unwrap_or_else(|| self.tasks_after_members(family));
+        let next = tasks.pop();
+        self.tasks = Some(tasks);
+        match next {
+            None => return false,
+            Some(Task::Search(searches, start)) => self.search(family, searches, start),
+            Some(Task::Resample) => self.resample(family),
+        }
+        true
+    }
+
+    fn search(&mut self, family: &UncertainFamily, searches: &[Badness], mut shares: Vec<f64>) {
+        for &badness in searches {
+            (shares, _) = climb(&shares, &mut |shares| self.badness_at(family, badness, shares));
+        }
         let values = family.values(&shares);
         let found = self.judged(self.rational_member(family, &values));
+        if searches.last() == Some(&Badness::DelaySensitivity) {
+            self.estimated.push(values.clone());
+        }
         self.record.take(PlantPoint::Parameters(values), &found);
-        true
+    }
+
+    /// Replaces the delay margin by the least that the worst plants bear when they are sampled anew with every delay.
+    fn resample(&mut self, family: &UncertainFamily) {
+        let Ok(path) = &self.path else { return };
+        let worst = self.record.delay.as_ref().map(|margin| margin.plant.clone());
+        if let Some(PlantPoint::Parameters(values)) = worst {
+            self.estimated.push(values);
+        }
+        let mut least: Option<DelayMargin> = None;
+        for values in self.estimated.drain(..) {
+            let plant = family.plant().coefficients(&values);
+            let Some(found) = resampled::critical_delay(&plant, self.compensation, path) else { continue };
+            if least.as_ref().is_none_or(|least| found.delay_s < least.delay_s) {
+                let CriticalDelay { delay_s, frequency_rad_per_s } = found;
+                let plant = PlantPoint::Parameters(values);
+                least = Some(DelayMargin { delay_s, frequency_rad_per_s, plant });
+            }
+        }
+        self.record.delay = least.or(self.record.delay.take());
     }
 
     /// The share of members that were looked at, from 0 to 1.
@@ -172,30 +210,43 @@ impl<'a> StabilityAudit<'a> {
         }
     }
 
-    /// The worst members that lie apart from each other, for each badness that all members have; the last is searched first.
-    fn starts(&self, family: &UncertainFamily) -> Vec<(Badness, Vec<f64>)> {
-        if family.extent() == Extent::Members || family.coordinates().is_empty() {
-            return Vec::new();
+    fn tasks_after_members(&self, family: &UncertainFamily) -> Vec<Task> {
+        let mut tasks = Vec::new();
+        if self.compensation.sample_time_s().is_some() {
+            tasks.push(Task::Resample);
         }
-        let mut starts = Vec::new();
-        for badness in [Badness::DelaySensitivity, Badness::Closeness, Badness::RealPart] {
-            let value = |member: &[f64; 3]| member[badness as usize];
-            let mut order: Vec<usize> = (0..self.members.len()).collect();
-            order.retain(|&index| self.members.get(index).is_some_and(|member| value(member).is_finite()));
-            order.sort_by(|&a, &b| value(&self.members[b]).total_cmp(&value(&self.members[a])));
-            let mut chosen: Vec<Vec<f64>> = Vec::new();
-            for index in order {
-                let shares = family.shares(&family.members()[index]);
-                if chosen.iter().all(|earlier| apart(earlier, &shares)) {
-                    chosen.push(shares);
-                }
-                if chosen.len() == STARTS {
-                    break;
-                }
+        if family.extent() == Extent::Box {
+            let searches: [(Badness, &'static [Badness]); 4] = [
+                (Badness::Closeness, &[Badness::Peak, Badness::DelaySensitivity]),
+                (Badness::DelaySensitivity, &[Badness::DelaySensitivity]),
+                (Badness::Closeness, &[Badness::Closeness]),
+                (Badness::RealPart, &[Badness::RealPart]),
+            ];
+            for (ranked_by, searches) in searches {
+                let starts = self.starts(family, ranked_by);
+                tasks.extend(starts.into_iter().rev().map(|shares| Task::Search(searches, shares)));
             }
-            starts.extend(chosen.into_iter().rev().map(|shares| (badness, shares)));
         }
-        starts
+        tasks
+    }
+
+    /// The worst members that lie apart from each other, as shares of the box.
+    fn starts(&self, family: &UncertainFamily, badness: Badness) -> Vec<Vec<f64>> {
+        let mut order: Vec<(f64, &Vec<f64>)> =
+            self.members.iter().map(|member| badness.among(member)).zip(family.members()).collect();
+        order.retain(|(value, _)| value.is_finite());
+        order.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let mut chosen: Vec<Vec<f64>> = Vec::new();
+        for (_, values) in order {
+            let shares = family.shares(values);
+            if chosen.iter().all(|earlier| apart(earlier, &shares)) {
+                chosen.push(shares);
+            }
+            if chosen.len() == STARTS {
+                break;
+            }
+        }
+        chosen
     }
 
     fn badness_at(&self, family: &UncertainFamily, badness: Badness, shares: &[f64]) -> f64 {
@@ -213,7 +264,7 @@ impl<'a> StabilityAudit<'a> {
         let record = &self.record;
         let (verdict, plant, reason) = self.judgement();
         let stable = verdict == Verdict::Met;
-        let searched = self.searches.is_some() && self.searched();
+        let searched = self.tasks.is_some() && self.searched();
         FamilyStability {
             finding: StabilityFinding {
                 verdict,
@@ -252,9 +303,9 @@ impl<'a> StabilityAudit<'a> {
         let mut reason = format!("all {plants} plants are stable {way}");
         if let Some(closest) = &record.closest {
             let ClosestApproach { distance, frequency_rad_per_s, .. } = closest;
-            let where_found = if self.searched() { "searched between them, " } else { "" };
+            let between = if self.searched() { " between them, too," } else { "" };
             reason += &format!(
-                "; {where_found}|1 + L| is never below {distance:.4} (at {frequency_rad_per_s:.4} rad/s)"
+                "; the smallest |1 + L| found{between} is {distance:.4} (at {frequency_rad_per_s:.4} rad/s)"
             );
         }
         let nearest = record.real_part.as_ref().map(|(_, plant)| plant.clone());
@@ -286,6 +337,18 @@ impl Badness {
                 Some(if found.unstable_poles > 0 { f64::INFINITY } else { -found.closest.0 })
             }
             Badness::DelaySensitivity => Some(-characteristic.critical_delay().ok()?.delay_s),
+            Badness::Peak => characteristic.largest_peak(),
+        }
+    }
+
+    /// What was kept of a member.
+    fn among(self, member: &[f64; 3]) -> f64 {
+        let &[real_part, closeness, delay_sensitivity] = member;
+        match self {
+            Badness::RealPart => real_part,
+            Badness::Closeness => closeness,
+            Badness::DelaySensitivity => delay_sensitivity,
+            Badness::Peak => f64::NAN,
         }
     }
 }
@@ -300,45 +363,4 @@ fn badness_of(found: &MemberStability) -> [f64; 3] {
 
 fn apart(one: &[f64], other: &[f64]) -> bool {
     one.iter().zip(other).any(|(a, b)| (a - b).abs() > START_DISTANCE)
-}
-
-impl Record {
-    fn take(&mut self, plant: PlantPoint, found: &MemberStability) {
-        let real_part = found.largest_real_part.filter(|real_part| real_part.is_finite());
-        if let Some(real_part) = real_part
-            && self.real_part.as_ref().is_none_or(|(largest, _)| real_part > *largest)
-        {
-            self.real_part = Some((real_part, plant.clone()));
-        }
-        match &found.status {
-            StabilityStatus::Unstable(instability) => {
-                let size = real_part.unwrap_or(0.0);
-                if self.unstable.as_ref().is_none_or(|(largest, ..)| size > *largest) {
-                    self.unstable = Some((size, instability.to_string(), plant.clone()));
-                }
-            }
-            StabilityStatus::NotResolved(reason) if self.unresolved.is_none() => {
-                self.unresolved = Some((reason.to_string(), plant.clone()));
-            }
-            _ => {}
-        }
-        if let Some(closest) = found.closest_approach
-            && self.closest.as_ref().is_none_or(|nearest| closest.distance < nearest.distance)
-        {
-            self.closest = Some(ClosestApproach {
-                distance: closest.distance,
-                frequency_rad_per_s: closest.frequency_rad_per_s,
-                plant: plant.clone(),
-            });
-        }
-        if let Some(critical) = found.critical_delay
-            && self.delay.as_ref().is_none_or(|least| critical.delay_s < least.delay_s)
-        {
-            self.delay = Some(DelayMargin {
-                delay_s: critical.delay_s,
-                frequency_rad_per_s: critical.frequency_rad_per_s,
-                plant,
-            });
-        }
-    }
 }

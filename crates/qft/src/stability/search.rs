@@ -2,6 +2,8 @@
 
 /// The smallest step, as a share of the box, at which a climb still looks around.
 const SMALLEST_STEP: f64 = 1e-7;
+/// A step below which a climb that ended in a corner looks around no more.
+const SMALL_STEP: f64 = 1e-3;
 /// Values that one climb may ask for.
 const VALUES_MAXIMUM: usize = 2000;
 
@@ -17,10 +19,15 @@ struct Climb<'a> {
 /// parabola over three values, with steps that shrink once they are longer than the way.
 pub(super) fn climb(start: &[f64], objective: &mut dyn FnMut(&[f64]) -> f64) -> (Vec<f64>, f64) {
     let value = objective(start);
+    let value = if value.is_nan() { f64::NEG_INFINITY } else { value };
     let mut climb = Climb { objective, shares: start.to_vec(), value, values_asked: 1 };
     let mut step = 0.25;
     while step >= SMALLEST_STEP && climb.values_asked < VALUES_MAXIMUM {
         let way = (0..start.len()).map(|coordinate| climb.along(coordinate, step)).fold(0.0, f64::max);
+        let in_corner = climb.shares.iter().all(|&share| share <= 0.0 || share >= 1.0);
+        if way == 0.0 && in_corner && step < SMALL_STEP {
+            break;
+        }
         if way < 0.5 * step {
             step *= 0.25;
         }

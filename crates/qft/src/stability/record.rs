@@ -1,0 +1,55 @@
+//! The worst that was found of a family.
+
+use super::{MemberStability, StabilityStatus};
+use crate::verification::{ClosestApproach, DelayMargin, PlantPoint};
+
+/// The worst found so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Record {
+    pub(super) unstable: Option<(f64, String, PlantPoint)>,
+    pub(super) unresolved: Option<(String, PlantPoint)>,
+    pub(super) real_part: Option<(f64, PlantPoint)>,
+    pub(super) closest: Option<ClosestApproach>,
+    pub(super) delay: Option<DelayMargin>,
+}
+
+impl Record {
+    pub(super) fn take(&mut self, plant: PlantPoint, found: &MemberStability) {
+        let real_part = found.largest_real_part.filter(|real_part| real_part.is_finite());
+        if let Some(real_part) = real_part
+            && self.real_part.as_ref().is_none_or(|(largest, _)| real_part > *largest)
+        {
+            self.real_part = Some((real_part, plant.clone()));
+        }
+        match &found.status {
+            StabilityStatus::Unstable(instability) => {
+                let size = real_part.unwrap_or(0.0);
+                if self.unstable.as_ref().is_none_or(|(largest, ..)| size > *largest) {
+                    self.unstable = Some((size, instability.to_string(), plant.clone()));
+                }
+            }
+            StabilityStatus::NotResolved(reason) if self.unresolved.is_none() => {
+                self.unresolved = Some((reason.to_string(), plant.clone()));
+            }
+            _ => {}
+        }
+        if let Some(closest) = found.closest_approach
+            && self.closest.as_ref().is_none_or(|nearest| closest.distance < nearest.distance)
+        {
+            self.closest = Some(ClosestApproach {
+                distance: closest.distance,
+                frequency_rad_per_s: closest.frequency_rad_per_s,
+                plant: plant.clone(),
+            });
+        }
+        if let Some(critical) = found.critical_delay
+            && self.delay.as_ref().is_none_or(|least| critical.delay_s < least.delay_s)
+        {
+            self.delay = Some(DelayMargin {
+                delay_s: critical.delay_s,
+                frequency_rad_per_s: critical.frequency_rad_per_s,
+                plant,
+            });
+        }
+    }
+}

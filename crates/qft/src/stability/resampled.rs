@@ -1,0 +1,46 @@
+//! The critical delay of a sampled loop, its plant held and sampled anew with each delay.
+//!
+//! Phase over frequency at the crossovers of the sampled L is that delay where it is a whole number of samples. Between, a delay also
+//! changes |L|: for k/s with k T = 1.25 it says 0.66 samples where the truth is 0.8. Each time the loop is sampled anew nearer to
+//! its limit the estimate of what remains errs by less.
+
+use phea_dynamics::uncertain_plant::PlantCoefficients;
+
+use super::characteristic::FeedbackPath;
+use super::{CriticalDelay, StabilityStatus, of_member};
+use crate::closed_loop::Compensation;
+
+/// What remains of the delay, as a share of the whole, when the search stops.
+const TOLERANCE: f64 = 1e-9;
+/// Steps of the search, and then of halving.
+const STEPS_MAXIMUM: usize = 60;
+
+/// `None` for a loop that is not stable to begin with.
+pub(super) fn critical_delay(
+    plant: &PlantCoefficients<f64>,
+    compensation: &Compensation,
+    path: &FeedbackPath,
+) -> Option<CriticalDelay> {
+    let remaining = |delay_s: f64| {
+        let delayed = compensation.with_delay(compensation.delay_s() + delay_s);
+        let found = of_member(&delayed.member(plant.clone()).ok()?, &delayed, path);
+        found.critical_delay.filter(|_| found.status == StabilityStatus::Stable)
+    };
+    let mut rest = remaining(0.0)?;
+    let mut borne = 0.0;
+    let mut too_long = f64::INFINITY;
+    for _ in 0..STEPS_MAXIMUM {
+        let estimate = borne + rest.delay_s;
+        let next = if estimate < too_long { estimate } else { 0.5 * (borne + too_long) };
+        let open = (next - borne).min(too_long - borne);
+        if next.is_infinite() || open <= TOLERANCE * next {
+            break;
+        }
+        match remaining(next) {
+            Some(found) => (borne, rest) = (next, found),
+            None => too_long = next,
+        }
+    }
+    let delay_s = (borne + rest.delay_s).min(too_long);
+    Some(CriticalDelay { delay_s, frequency_rad_per_s: rest.frequency_rad_per_s })
+}

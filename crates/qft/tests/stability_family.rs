@@ -1,0 +1,117 @@
+//! What lies between the members of a family.
+#![cfg(test)]
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable::atan2;
+use phea_dynamics::uncertain_plant::{
+    PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
+};
+use phea_qft::closed_loop::Compensation;
+use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
+use phea_qft::stability::{FamilyStability, StabilityAudit};
+use phea_qft::verification::{Evidence, PlantPoint, Verdict};
+
+/// 1e-3/(s^2 + d s + 1) with d = (p - 0.3)^2 + least: among members at p = 0, 0.5 and 1 nothing shows how small d becomes.
+fn dip(least: f64, extent: Extent) -> Family {
+    let parameter = UncertainParameter { name: "p".into(), nominal: 1.0, minimum: 0.0, maximum: 1.0 };
+    let plant = UncertainPlant::record(vec![parameter], |p| {
+        let off = p[0] - 0.3.into();
+        PlantCoefficients {
+            command: RationalCoefficients {
+                numerator: vec![1e-3.into()],
+                denominator: vec![1.0.into(), off * off + least.into(), 1.0.into()],
+            },
+            disturbance: None,
+            dead_time_s: 0.0.into(),
+        }
+    });
+    let coordinate =
+        Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Linear], points: 3 };
+    let plant = plant.unwrap();
+    let members = grid(&plant, std::slice::from_ref(&coordinate)).unwrap();
+    Family::Uncertain(UncertainFamily::new(plant, vec![coordinate], members, extent).unwrap())
+}
+
+fn audited(family: &Family, prefilter: Vec<Element>, timing: Timing) -> FamilyStability {
+    let controller = Controller { prefilter: Compensator::new(prefilter), timing, ..Controller::default() };
+    let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
+    let mut audit = StabilityAudit::new(family, &compensation);
+    while audit.step() {}
+    audit.result()
+}
+
+fn timings() -> [Timing; 3] {
+    let late = Timing { delay_s: 0.5, ..Timing::default() };
+    let sampled = Timing { sample_time_s: Some(0.01), ..Timing::default() };
+    [Timing::default(), late, sampled]
+}
+
+#[test]
+fn an_unstable_plant_between_stable_members_is_found() {
+    for timing in timings() {
+        let found = audited(&dip(-0.01, Extent::Box), vec![], timing).finding;
+        assert_eq!((found.verdict, found.evidence), (Verdict::Violated, Evidence::Search), "{timing:?}");
+        let PlantPoint::Parameters(values) = found.plant else { panic!("a plant of the box") };
+        assert!((values[0] - 0.3).abs() < 0.1, "{values:?}");
+        // the members alone are stable, and nothing more is claimed of them
+        let members = audited(&dip(-0.01, Extent::Members), vec![], timing).finding;
+        assert_eq!((members.verdict, members.evidence), (Verdict::Met, Evidence::Grid));
+    }
+}
+
+/// The poles of s^2 + d s + 1.001 have the real part -d/2.
+#[test]
+fn the_largest_real_part_lies_inside() {
+    let found = audited(&dip(0.02, Extent::Box), vec![], Timing::default()).finding;
+    assert_eq!((found.verdict, found.evidence), (Verdict::Met, Evidence::Search));
+    assert!((found.largest_real_part.unwrap() + 0.01).abs() < 1e-12);
+    let PlantPoint::Parameters(values) = found.plant else { panic!("a plant of the box") };
+    assert!((values[0] - 0.3).abs() < 1e-5, "{values:?}");
+}
+
+/// With dead time the smallest |1 + L| leads there: 1 - 1e-3/d at the resonance, after a quarter of a turn.
+#[test]
+fn the_closest_approach_lies_inside() {
+    let timing = Timing { delay_s: std::f64::consts::FRAC_PI_2, ..Timing::default() };
+    let found = audited(&dip(0.002, Extent::Box), vec![], timing);
+    assert_eq!((found.finding.verdict, found.finding.largest_real_part), (Verdict::Met, None));
+    let closest = found.finding.closest_approach.unwrap();
+    assert!((closest.distance - 0.5).abs() < 1e-3, "{closest:?}");
+    assert!((closest.frequency_rad_per_s - 1.0).abs() < 1e-3);
+    assert_eq!(found.delay_margin.unwrap().delay_s, f64::INFINITY);
+}
+
+/// |L| reaches one, at 1e-3/d, near p = 0.3 only.
+#[test]
+fn a_crossover_that_no_member_has_is_found() {
+    let found = audited(&dip(0.0008, Extent::Box), vec![], Timing::default());
+    let margin = found.delay_margin.unwrap();
+    // |L| = 1 at (1 - w^2)^2 + (d w)^2 = 1e-6; the higher of both crossovers has less left to turn
+    let (d, level) = (0.0008, 1e-6_f64);
+    let half = 1.0 - d * d / 2.0;
+    let w = (half + (half * half - 1.0 + level).sqrt()).sqrt();
+    let lag = std::f64::consts::PI - atan2(d * w, 1.0 - w * w);
+    assert!((margin.delay_s / (lag / w) - 1.0).abs() < 1e-6, "{margin:?} {}", lag / w);
+    assert!((margin.frequency_rad_per_s / w - 1.0).abs() < 1e-6);
+    let PlantPoint::Parameters(values) = margin.plant else { panic!("a plant of the box") };
+    assert!((values[0] - 0.3).abs() < 1e-3, "{values:?}");
+}
+
+#[test]
+fn an_unstable_prefilter_makes_the_whole_unstable() {
+    let unstable = TransferFunction::from_factors(-1.0, vec![], vec![Complex64::new(1.0, 0.0)]).unwrap();
+    let found = audited(&dip(0.1, Extent::Box), vec![Element::General(unstable)], Timing::default());
+    assert_eq!((found.finding.verdict, found.delay_margin), (Verdict::Violated, None));
+    assert!(found.finding.reason.contains("prefilter"));
+}
+
+/// The same audit twice gives the same bits.
+#[test]
+fn the_audit_is_repeatable() {
+    for timing in timings() {
+        let family = dip(0.02, Extent::Box);
+        assert_eq!(audited(&family, vec![], timing), audited(&family, vec![], timing));
+    }
+}
