@@ -13,6 +13,7 @@ import json
 import pathlib
 import subprocess
 import sys
+import time
 import warnings
 
 import numpy as np
@@ -47,6 +48,7 @@ LOOPS = [
     ("qft/dead_time.toml", {}, True, [None, None, None], True),
     ("qft/dead_time.toml", {"controller.sample_time": "0.05 s", "controller.delay": "0.02 s"}, True, [None] * 3, True),
     ("qft/dead_time.toml", {"controller.sample_time": "0.2 s", "controller.delay": "0.2 s"}, True, [None] * 3, True),
+    ("qft/load_frame.toml", {}, True, [None] * 3, True),
     ("qft/measured.toml", {}, True, [None] * 3, True),
     # the audit of Ledezma (2019): |T| = 11.887 and, with delay, 1.42, 1.13 and 1.52 against 1.3
     ("ybitu/hose.toml", {}, True, ["-19.222", "-8.2", "-6.08"], True),
@@ -190,8 +192,10 @@ def main(arguments):
         same = (measured_plants.FOLDER / f"{name}.csv").read_text() == measured_plants.text(name)
         findings.demand(same, f"{name}.csv is not what measured_plants.py writes")
     for path, settings, stable, margins, at_design in LOOPS:
+        began = time.process_time()
         print(path, *(f"{place}={value}" for place, value in settings.items()), flush=True)
         search, *mine = recomputed(Project(EXAMPLES / path, settings), (stable, margins), at_design, findings)
+        print(f"  {time.process_time() - began:.1f} s", flush=True)
         if not alone:
             compare(program, search, mine, findings)
     print(f"{len(LOOPS)} loops, {len(findings.wrong)} wrong")

@@ -96,12 +96,15 @@ class Project:
             for folder in folders:
                 table = table.setdefault(folder, {})
             table[last] = value
+        self.names, self.direction = [], np.zeros(0, dtype=int)
         self.read_family()
         controller = self.table["controller"]
         self.controller, self.prefilter = Transfer(controller), Transfer(self.table.get("prefilter"))
         self.has_prefilter = "prefilter" in self.table
         self.sample_time = number(controller["sample_time"]) if "sample_time" in controller else None
-        self.delay = number(self.plant.get("delay", 0.0)) + number(controller.get("delay", 0.0))
+        self.loop_delay = number(controller.get("delay", 0.0))
+        sensor = self.table.get("sensor")
+        self.sensor, self.sensor_delay = Transfer(sensor), number((sensor or {}).get("delay", 0.0))
         self.specifications = self.table["specification"]
 
     def read_family(self):
@@ -118,14 +121,27 @@ class Project:
         self.low = np.array([number(uncertainty[name]["minimum"]) for name in self.names])
         self.high = np.array([number(uncertainty[name]["maximum"]) for name in self.names])
         self.nominal = np.array([number(uncertainty[name]["nominal"]) for name in self.names])
-        # Searched by equal factors wherever that is possible; it changes the path of a search, not its end.
-        self.logarithmic = self.low > 0
         cases = self.table.get("family", {}).get("cases")
         self.cases = None
         if cases:
             self.names = self.names or list(cases[0])
             listed = [[number(case[name]) for name in self.names] for case in cases]
             self.cases = np.unique(np.array(listed + ([list(self.nominal)] if len(self.nominal) else [])), axis=0)
+        self.correlate(self.table.get("family", {}).get("correlation", []))
+
+    def correlate(self, groups):
+        """Which share each parameter follows, and whether it falls while the share rises."""
+        leaders = {name: name for name in self.names}
+        for group in groups:
+            leaders |= {name: group["parameters"][0] for name in group["parameters"]}
+        directions = list(dict.fromkeys(leaders[name] for name in self.names))
+        self.direction = np.array([directions.index(leaders[name]) for name in self.names], dtype=int)
+        opposed = {name for group in groups for name in group.get("opposed", [])}
+        self.falling = np.array([name in opposed for name in self.names], dtype=bool)
+        # equal factors only where a file asks for them: along a correlated direction it matters
+        spacing = self.table.get("uncertainty", {})
+        asked = np.array([spacing.get(name, {}).get("spacing") == "log" for name in self.names], dtype=bool)
+        self.logarithmic = asked if groups else self.low > 0
 
     def read_measured(self, files):
         """Each plant as logarithms of frequency and magnitude, and its phase in radians; its one parameter is its number."""
@@ -136,7 +152,6 @@ class Project:
             frequency, magnitude, phase = np.array(rows).T
             self.measured.append((np.log(frequency), magnitude * np.log(10) / 20, np.unwrap(np.radians(phase))))
         self.names, self.low, self.high, self.nominal = ["plant"], np.zeros(1), np.zeros(1), np.zeros(1)
-        self.logarithmic = self.low > 0
         self.cases = np.arange(len(files), dtype=float)[:, None]
 
     def measured_responses(self, values, frequency):
@@ -151,7 +166,8 @@ class Project:
 
     def values(self, shares):
         """Parameters at shares of the box in [0, 1], along the last axis."""
-        shares = np.clip(np.asarray(shares, dtype=float), 0.0, 1.0)
+        shares = np.clip(np.asarray(shares, dtype=float), 0.0, 1.0)[..., self.direction]
+        shares = np.where(self.falling, 1 - shares, shares)
         positive = np.where(self.logarithmic, self.low, 1.0)
         ratio = np.where(self.logarithmic, self.high / np.where(self.logarithmic, self.low, 1.0), 1.0)
         linear = self.low + shares * (self.high - self.low)
@@ -161,30 +177,49 @@ class Project:
         """Each parameter by its name, from an array with the parameters along its first axis."""
         return self.fixed | {name: values[index] for index, name in enumerate(self.names)}
 
+    @property
+    def directions(self):
+        """Number of shares that span the box."""
+        return int(self.direction.max()) + 1 if len(self.direction) else 0
+
+    @property
+    def has_delay(self):
+        return bool(self.loop_delay or self.sensor_delay or self.plant.get("delay"))
+
+    def delay(self, values):
+        """Dead time of plant and loop, without the sensor's, s."""
+        text = self.plant.get("delay", 0.0)
+        if isinstance(text, str) and not text[0].isdigit():
+            return self.loop_delay + evaluate(text, **self.named(values))
+        return self.loop_delay + number(text)
+
     def plant_polynomials(self, values):
         # plain floats: a NumPy scalar times a polynomial is an array
         named = {name: float(value) for name, value in self.named(values).items()}
         return polynomial(self.plant["numerator"], **named), polynomial(self.plant["denominator"], **named)
 
     def responses(self, values, frequency):
-        """P, Pd, G, F for arrays of parameters (parameters along the last axis) and frequencies that broadcast."""
+        """P, Pd, G, F, H for arrays of parameters (parameters along the last axis) and frequencies that broadcast."""
         values, frequency = np.asarray(values), np.asarray(frequency, dtype=float)
         if self.sample_time:
             return self.sampled_responses(values, frequency)
         s = 1j * frequency
         feedback = self.controller.numerator(s) / self.controller.denominator(s)
         prefilter = self.prefilter.numerator(s) / self.prefilter.denominator(s)
+        sensor = self.sensor.numerator(s) / self.sensor.denominator(s) * np.exp(-s * self.sensor_delay)
         if self.measured:
-            return self.measured_responses(values, frequency) * np.exp(-s * self.delay), 0.0, feedback, prefilter
-        named = self.named(np.moveaxis(values, -1, 0))
+            plant = self.measured_responses(values, frequency) * np.exp(-s * self.loop_delay)
+            return plant, 0.0, feedback, prefilter, sensor
+        each = np.moveaxis(values, -1, 0)
+        named = self.named(each)
         denominator = evaluate(self.plant["denominator"], s=s, **named)
-        plant = evaluate(self.plant["numerator"], s=s, **named) / denominator * np.exp(-s * self.delay)
+        plant = evaluate(self.plant["numerator"], s=s, **named) / denominator * np.exp(-s * self.delay(each))
         second = self.plant.get("disturbance")
         motion = 0.0
         if second:
             under = evaluate(second["denominator"], s=s, **named) if "denominator" in second else denominator
             motion = evaluate(second["numerator"], s=s, **named) / under
-        return plant, motion, feedback, prefilter
+        return plant, motion, feedback, prefilter, sensor
 
     def sampled_responses(self, values, frequency):
         shape = np.broadcast_shapes(values.shape[:-1], frequency.shape)
@@ -196,17 +231,17 @@ class Project:
         for start, end in zip(first, [*first[1:], z.size]):
             a, b, c, d = self.held_plant(rows[start])
             states = np.linalg.solve(z[start:end, None, None] * np.eye(len(a)) - a, np.broadcast_to(b, (end - start, *b.shape)))
-            whole = np.floor(self.delay / self.sample_time + 1e-9)
+            whole = np.floor(self.delay(rows[start]) / self.sample_time + 1e-9)
             plant[start:end] = ((c @ states)[:, 0, 0] + d) * z[start:end] ** -whole
         feedback, prefilter = (t.sampled(self.sample_time) for t in (self.controller, self.prefilter))
         z = z.reshape(shape)
-        return plant.reshape(shape), 0.0, feedback[0](z) / feedback[1](z), prefilter[0](z) / prefilter[1](z)
+        return plant.reshape(shape), 0.0, feedback[0](z) / feedback[1](z), prefilter[0](z) / prefilter[1](z), 1.0
 
     def held_plant(self, values):
         """States of the plant between hold and sampler, with the part of a sample of its dead time."""
         over, under = self.plant_polynomials(values)
         a, b, c, d = companion(over, under)
-        fraction = self.delay % self.sample_time
+        fraction = self.delay(values) % self.sample_time
         if min(fraction, self.sample_time - fraction) < 1e-9 * self.sample_time:
             fraction = 0.0
         return held(a, b, c, d, self.sample_time, fraction)
@@ -214,12 +249,13 @@ class Project:
     def loop_polynomials(self, values):
         """n and c with 1 + L = (n + c)/c of a continuous loop, its dead time left out."""
         over, under = self.plant_polynomials(values)
-        return over * self.controller.numerator, under * self.controller.denominator
+        parts = self.controller, self.sensor
+        return over * parts[0].numerator * parts[1].numerator, under * parts[0].denominator * parts[1].denominator
 
     def sampled_loop_matrix(self, values):
         """State matrix of the closed sampled loop: plant, whole samples of delay, controller."""
         a, b, c, d = self.held_plant(values)
-        for _ in range(int(np.floor(self.delay / self.sample_time + 1e-9))):
+        for _ in range(int(np.floor(self.delay(values) / self.sample_time + 1e-9))):
             # the plant's input is what the controller gave a sample ago
             a = np.block([[a, b], [np.zeros((1, len(a) + 1))]])
             b = np.vstack([np.zeros((len(a) - 1, 1)), [[1.0]]])

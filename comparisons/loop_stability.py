@@ -20,10 +20,11 @@ def unstable_count(project, values, top):
     Along the imaginary axis from 0 to infinity it grows by order pi/2 less pi for each of them (Mikhailov).
     """
     over, under = project.loop_polynomials(values)
+    delay = project.delay(values) + project.sensor_delay
     frequencies = np.concatenate([np.geomspace(top * 1e-7, top * 1e-2, 2000), np.linspace(top * 1e-2, top, 8000)])
     for _ in range(12):
         s = 1j * frequencies
-        value = under(s) + over(s) * np.exp(-s * project.delay)
+        value = under(s) + over(s) * np.exp(-s * delay)
         step = np.angle(value[1:] / value[:-1])
         coarse = np.flatnonzero(np.abs(step) > 0.5)
         if len(coarse) == 0:
@@ -41,7 +42,7 @@ def unstable_count(project, values, top):
 def stability(search):
     """(stable, largest real part or None, plant)."""
     project = search.project
-    if project.delay and not project.sample_time:
+    if project.has_delay and not project.sample_time:
         top = 1e3 * search.characteristic[-1]
         plants = search.plants[:: max(1, len(search.plants) // 60)]
         counts = [unstable_count(project, values, top) for values in plants]
@@ -84,8 +85,8 @@ def member_delay_margin(project, values, frequencies):
     """Least (pi + arg L) mod 2 pi over w, of all w with |L| = 1."""
 
     def loop(w):
-        plant, _, feedback, _ = project.responses(np.asarray(values), w)
-        return plant * feedback
+        plant, _, feedback, _, sensor = project.responses(np.asarray(values), w)
+        return plant * feedback * sensor
 
     level = np.log(np.abs(loop(frequencies)))
     crossing = np.flatnonzero(np.diff(np.sign(level)) != 0)
@@ -102,12 +103,12 @@ def member_delay_margin(project, values, frequencies):
 
 def sampled_delay_margin(search):
     """By the poles themselves, with the delay grown until one leaves the unit circle."""
-    project, before = search.project, search.project.delay
+    project, before = search.project, search.project.loop_delay
 
     def unstable(values, extra):
-        project.delay = before + extra
+        project.loop_delay = before + extra
         answer = abscissa(project, values) >= 0
-        project.delay = before
+        project.loop_delay = before
         return answer
 
     best, plant = np.inf, None

@@ -32,10 +32,10 @@ def decibel(ratio):
 
 
 def closed_loop(kind, responses):
-    plant, motion, feedback, prefilter = responses
-    sensitivity = 1 / (1 + plant * feedback)
+    plant, motion, feedback, prefilter, sensor = responses
+    sensitivity = 1 / (1 + plant * feedback * sensor)
     return {
-        "robust_stability": lambda: plant * feedback * sensitivity,
+        "robust_stability": lambda: plant * feedback * sensor * sensitivity,
         "sensitivity": lambda: sensitivity,
         "plant_input_disturbance": lambda: plant * sensitivity,
         "control_effort": lambda: feedback * sensitivity,
@@ -66,7 +66,7 @@ class Search:
 
     def __init__(self, project):
         self.project = project
-        self.dimension = len(project.names) if project.cases is None else 0
+        self.dimension = project.directions if project.cases is None else 0
         self.shares = self.grid()
         self.plants = project.cases if project.cases is not None else project.values(self.shares)
         self.characteristic = np.array(sorted(self.roots()))
@@ -87,7 +87,7 @@ class Search:
             return {np.exp(logarithm[end]) for logarithm, _, _ in self.project.measured for end in (0, -1)}
         for values in self.plants[:: max(1, len(self.plants) // 20)]:
             parts = [*self.project.plant_polynomials(values)]
-            for transfer in (self.project.controller, self.project.prefilter):
+            for transfer in (self.project.controller, self.project.prefilter, self.project.sensor):
                 if transfer.variable == "s":
                     parts += [transfer.numerator, transfer.denominator]
             found |= {abs(root) for part in parts for root in part.roots if abs(root) > 0}
@@ -101,12 +101,13 @@ class Search:
 
     def frequencies(self, values, low, high, count=DENSE):
         """A grid, and the resonances of this plant's closed loop."""
-        base = np.geomspace(low, high, count)
+        # a sampled plant costs more, and has no resonance that its samples do not see
+        base = np.geomspace(low, high, count // 3 if self.project.sample_time else count)
         roots = np.zeros(0)
         if not self.project.sample_time and not self.project.measured:
             over, under = self.project.loop_polynomials(values)
             # with dead time those of the plant, which the delay does not move
-            roots = scaled_roots(under if self.project.delay else over + under)
+            roots = scaled_roots(under if self.project.has_delay else over + under)
         near = np.abs(roots.imag[roots.imag > 0])
         widths = np.abs(roots.real[roots.imag > 0])
         peaks = np.concatenate([near + step * widths for step in (-2, -1, -0.5, 0, 0.5, 1, 2)]) if len(near) else near
@@ -231,8 +232,8 @@ def single_starts(search, side, low, high, count=10):
         taken.add(key)
         case = search.plants[row] if search.project.cases is not None else None
         starts.append((margin, search.shares[row] if case is None else np.zeros(0), frequency, case))
-    starts = starts[: 3 if low == high else count]
-    if low < high and search.dimension >= 4:
+    starts = starts[: 3 if low == high or search.project.sample_time else count]
+    if low < high and search.dimension >= 4 and not search.project.sample_time:
         starts.append(evolved(search, side, low, high))
     return starts
 
