@@ -1,4 +1,4 @@
-//! The stories of `examples/` are run: each `console` block is executed and must say what it shows.
+//! The stories of `examples/` and `examples/qft/` are run: each `console` block is executed and must say what it shows.
 //!
 //! Each story has a folder of its own, with a copy of the example projects in it, so that what a command writes disturbs
 //! neither the repository nor another story. `phea` in a story is the binary that was just built.
@@ -12,7 +12,7 @@ fn stories() {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
     let sandbox = Path::new(env!("CARGO_TARGET_TMPDIR")).join("stories");
     let stories = laid_out(&examples, &sandbox).expect("the stories are copied");
-    assert!(stories.len() >= 4, "{stories:?}");
+    assert!(stories.len() >= 10, "{stories:?}");
     let cases = trycmd::TestCases::new();
     cases.register_bin("phea", trycmd::schema::Bin::Path(env!("CARGO_BIN_EXE_phea").into()));
     cases.env("NO_COLOR", "1");
@@ -27,7 +27,8 @@ fn laid_out(examples: &Path, sandbox: &Path) -> io::Result<Vec<PathBuf>> {
         fs::remove_dir_all(sandbox)?;
     }
     let mut stories = Vec::new();
-    for entry in fs::read_dir(examples)? {
+    let (rig, robust) = (fs::read_dir(examples)?, fs::read_dir(examples.join("qft"))?);
+    for entry in rig.chain(robust) {
         let source = entry?.path();
         if source.extension().is_none_or(|extension| extension != "md") {
             continue;
