@@ -111,6 +111,20 @@ fn dead_time_around_a_gain_at_infinity() {
     assert!((approach.distance - 0.2).abs() < 1e-3);
 }
 
+/// A sensor acts as the same factor of the plant would, its dead time too.
+#[test]
+fn a_sensor_is_part_of_the_loop() {
+    let sensor = function(&[3.0], &[1.0, 5.0]);
+    let series = found(&[30.0], &[1.0, 7.0, 10.0], 0.2);
+    let beside = found_in(&loop_of(function(&[1.0], &[1.0]), sensor.clone()), &[10.0], &[1.0, 2.0], 0.2);
+    let late = loop_of(function(&[1.0], &[1.0]), sensor.with_dead_time(0.2).unwrap());
+    let late = found_in(&late, &[10.0], &[1.0, 2.0], 0.0);
+    let expected = series.critical_delay.unwrap().delay_s;
+    for found in [beside, late] {
+        assert!((found.critical_delay.unwrap().delay_s / expected - 1.0).abs() < 1e-12);
+    }
+}
+
 /// Modes that the loop does not move count, wherever they hide.
 #[test]
 fn nothing_is_cancelled() {

@@ -99,6 +99,35 @@ fn a_crossover_that_no_member_has_is_found() {
     assert!((values[0] - 0.3).abs() < 1e-3, "{values:?}");
 }
 
+/// k e^(-s T)/s with uncertain k and T: the margin is pi/(2 k) - T of the corner where it is least.
+#[test]
+fn an_uncertain_dead_time_counts() {
+    let parameter = |name: &str, minimum, maximum| UncertainParameter {
+        name: name.into(),
+        nominal: minimum,
+        minimum,
+        maximum,
+    };
+    let parameters = vec![parameter("k", 0.5, 1.2), parameter("T", 0.1, 0.9)];
+    let plant = UncertainPlant::record(parameters, |p| PlantCoefficients {
+        command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+        disturbance: None,
+        dead_time_s: p[1],
+    });
+    let coordinate = |index| Coordinate {
+        parameters: vec![index],
+        opposed: vec![],
+        spacing: vec![Spacing::Linear],
+        points: 1,
+    };
+    let coordinates = vec![coordinate(0), coordinate(1)];
+    // no member but the nominal plant: the search alone finds the corner
+    let family = UncertainFamily::new(plant.unwrap(), coordinates, vec![], Extent::Box).unwrap();
+    let margin = audited(&Family::Uncertain(family), vec![], Timing::default()).delay_margin.unwrap();
+    assert!((margin.delay_s - (std::f64::consts::FRAC_PI_2 / 1.2 - 0.9)).abs() < 1e-12, "{margin:?}");
+    assert_eq!(margin.plant, PlantPoint::Parameters(vec![1.2, 0.9]));
+}
+
 #[test]
 fn an_unstable_prefilter_makes_the_whole_unstable() {
     let unstable = TransferFunction::from_factors(-1.0, vec![], vec![Complex64::new(1.0, 0.0)]).unwrap();
