@@ -13,6 +13,7 @@ mod scan;
 mod search;
 mod start;
 
+pub(crate) use audit::corners;
 pub use audit::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Work};
 
 use crate::specification::Requirement;

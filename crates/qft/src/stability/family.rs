@@ -8,7 +8,9 @@ use super::search::climb;
 use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_member, resampled};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{Extent, Family, UncertainFamily};
-use crate::verification::{ClosestApproach, DelayMargin, Evidence, PlantPoint, StabilityFinding, Verdict};
+use crate::verification::{
+    ClosestApproach, DelayMargin, Evidence, PlantPoint, StabilityFinding, Verdict, corners,
+};
 
 /// Starts of the search for each worst case.
 const STARTS: usize = 4;
@@ -26,7 +28,7 @@ pub struct FamilyStability {
     pub delay_margin: Option<DelayMargin>,
 }
 
-/// Stability of a family, one member or one search a step.
+/// Stability of a family, one plant or one search a step.
 ///
 /// Over a box, a search starts from the worst members for the largest real part (where there are poles), for the smallest
 /// |1 + L|, and for the least critical delay.
@@ -72,13 +74,15 @@ pub struct FamilyStability {
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct StabilityAudit<'a> {
-    family: &'a Family,
-    compensation: &'a Compensation,
+pub struct StabilityAudit {
+    family: Family,
+    compensation: Compensation,
     path: Result<FeedbackPath, Irresolution>,
-    /// Real part, closeness and delay sensitivity of each member, as far as it was looked at.
-    members: Vec<[f64; 3]>,
-    /// What is left to do after the members, the last first; `None` before.
+    /// The members, and the corners of the box.
+    plants: Vec<PlantPoint>,
+    /// Real part, closeness and delay sensitivity of each plant, as far as it was looked at.
+    badness: Vec<[f64; 3]>,
+    /// What is left to do after the plants, the last first; `None` before.
     tasks: Option<Vec<Task>>,
     /// Plants of a sampled loop whose critical delay is still an estimate.
     estimated: Vec<Vec<f64>>,
@@ -104,56 +108,93 @@ enum Badness {
     Peak,
 }
 
-impl<'a> StabilityAudit<'a> {
-    /// An audit of this family within this loop; nothing is computed yet.
-    pub fn new(family: &'a Family, compensation: &'a Compensation) -> StabilityAudit<'a> {
+impl StabilityAudit {
+    /// An audit that has not begun.
+    pub fn new(family: &Family, compensation: &Compensation) -> StabilityAudit {
+        let plants = match family {
+            Family::Uncertain(family) => {
+                let members = family.members().iter().cloned();
+                members.chain(corners(family)).map(PlantPoint::Parameters).collect()
+            }
+            Family::Measured(family) => (0..family.plants().len()).map(PlantPoint::Measured).collect(),
+        };
         StabilityAudit {
-            family,
-            compensation,
+            family: family.clone(),
+            compensation: compensation.clone(),
             path: FeedbackPath::new(compensation),
-            members: Vec::new(),
+            plants,
+            badness: Vec::new(),
             tasks: None,
             estimated: Vec::new(),
             record: Record::default(),
         }
     }
 
-    /// Looks at one more member, or searches from one more start; whether there is more to do.
+    /// Looks at one more plant, or searches from one more start; false when there is nothing left to do.
     pub fn step(&mut self) -> bool {
-        if self.members.len() < self.member_count() {
-            let index = self.members.len();
-            let (plant, found) = self.judged_member(index);
-            self.record.take(plant, &found);
-            self.members.push(badness_of(&found));
+        if let Some(plant) = self.plants.get(self.badness.len()) {
+            let found = self.judged(plant);
+            self.record.take(plant.clone(), &found);
+            self.badness.push(badness_of(&found));
             return true;
         }
-        let Family::Uncertain(family) = self.family else { return false };
-        let mut tasks = self.tasks.take().unwrap_or_else(|| self.tasks_after_members(family));
+        let mut tasks = self.tasks.take().unwrap_or_else(|| self.tasks_after_plants());
         let next = tasks.pop();
         self.tasks = Some(tasks);
         match next {
             None => return false,
-            Some(Task::Search(searches, start)) => self.search(family, searches, start),
-            Some(Task::Resample) => self.resample(family),
+            Some(Task::Search(searches, start)) => self.search(searches, start),
+            Some(Task::Resample) => self.resample(),
         }
         true
     }
 
-    fn search(&mut self, family: &UncertainFamily, searches: &[Badness], mut shares: Vec<f64>) {
+    /// The share of the work that is done, as far as it can be foreseen; 1 when all is.
+    pub fn progress(&self) -> f64 {
+        match &self.tasks {
+            None => 0.8 * self.badness.len() as f64 / self.plants.len() as f64,
+            Some(left) => 1.0 - 0.2 * (left.len() as f64 / (4 * STARTS + 1) as f64),
+        }
+    }
+
+    fn judged(&self, plant: &PlantPoint) -> MemberStability {
+        match (&self.path, self.member(plant)) {
+            (Ok(path), Ok(member)) => of_member(&member, &self.compensation, path),
+            (Err(reason), _) => MemberStability::not_resolved(reason.clone()),
+            (_, Err(error)) => MemberStability::not_resolved(Irresolution::Linear(error)),
+        }
+    }
+
+    fn member(&self, plant: &PlantPoint) -> Result<Member, LinearError> {
+        match (&self.family, plant) {
+            (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
+                self.compensation.member(family.plant().coefficients(values))
+            }
+            (Family::Measured(family), PlantPoint::Measured(index)) => {
+                let plant = family.plants().get(*index).ok_or(LinearError::ZeroPolynomial)?;
+                Ok(self.compensation.measured(plant))
+            }
+            _ => Err(LinearError::ZeroPolynomial),
+        }
+    }
+
+    fn search(&mut self, searches: &[Badness], mut shares: Vec<f64>) {
+        let Family::Uncertain(family) = &self.family else { return };
         for &badness in searches {
-            (shares, _) = climb(&shares, &mut |shares| self.badness_at(family, badness, shares));
+            (shares, _) = climb(&shares, &mut |shares| self.badness_at(badness, family.values(shares)));
         }
         let values = family.values(&shares);
-        let found = self.judged(self.rational_member(family, &values));
         if searches.last() == Some(&Badness::DelaySensitivity) {
             self.estimated.push(values.clone());
         }
-        self.record.take(PlantPoint::Parameters(values), &found);
+        let plant = PlantPoint::Parameters(values);
+        let found = self.judged(&plant);
+        self.record.take(plant, &found);
     }
 
     /// Replaces the delay margin by the least that the worst plants bear when they are sampled anew with every delay.
-    fn resample(&mut self, family: &UncertainFamily) {
-        let Ok(path) = &self.path else { return };
+    fn resample(&mut self) {
+        let (Family::Uncertain(family), Ok(path)) = (&self.family, &self.path) else { return };
         let worst = self.record.delay.as_ref().map(|margin| margin.plant.clone());
         if let Some(PlantPoint::Parameters(values)) = worst {
             self.estimated.push(values);
@@ -161,7 +202,7 @@ impl<'a> StabilityAudit<'a> {
         let mut least: Option<DelayMargin> = None;
         for values in self.estimated.drain(..) {
             let plant = family.plant().coefficients(&values);
-            let Some(found) = resampled::critical_delay(&plant, self.compensation, path) else { continue };
+            let Some(found) = resampled::critical_delay(&plant, &self.compensation, path) else { continue };
             if least.as_ref().is_none_or(|least| found.delay_s < least.delay_s) {
                 let CriticalDelay { delay_s, frequency_rad_per_s } = found;
                 let plant = PlantPoint::Parameters(values);
@@ -171,46 +212,8 @@ impl<'a> StabilityAudit<'a> {
         self.record.delay = least.or(self.record.delay.take());
     }
 
-    /// The share of members that were looked at, from 0 to 1.
-    pub fn progress(&self) -> f64 {
-        self.members.len() as f64 / self.member_count() as f64
-    }
-
-    fn member_count(&self) -> usize {
-        match self.family {
-            Family::Uncertain(family) => family.members().len(),
-            Family::Measured(family) => family.plants().len(),
-        }
-    }
-
-    fn judged_member(&self, index: usize) -> (PlantPoint, MemberStability) {
-        match self.family {
-            Family::Uncertain(family) => {
-                let values = family.members().get(index).cloned().unwrap_or_default();
-                let found = self.judged(self.rational_member(family, &values));
-                (PlantPoint::Parameters(values), found)
-            }
-            Family::Measured(family) => {
-                let member = family.plants().get(index).map(|plant| self.compensation.measured(plant));
-                let member = member.ok_or(LinearError::ZeroPolynomial);
-                (PlantPoint::Measured(index), self.judged(member))
-            }
-        }
-    }
-
-    fn rational_member(&self, family: &UncertainFamily, values: &[f64]) -> Result<Member, LinearError> {
-        self.compensation.member(family.plant().coefficients(values))
-    }
-
-    fn judged(&self, member: Result<Member, LinearError>) -> MemberStability {
-        match (&self.path, member) {
-            (Ok(path), Ok(member)) => of_member(&member, self.compensation, path),
-            (Err(reason), _) => MemberStability::not_resolved(reason.clone()),
-            (_, Err(error)) => MemberStability::not_resolved(Irresolution::Linear(error)),
-        }
-    }
-
-    fn tasks_after_members(&self, family: &UncertainFamily) -> Vec<Task> {
+    fn tasks_after_plants(&self) -> Vec<Task> {
+        let Family::Uncertain(family) = &self.family else { return Vec::new() };
         let mut tasks = Vec::new();
         if self.compensation.sample_time_s().is_some() {
             tasks.push(Task::Resample);
@@ -230,14 +233,15 @@ impl<'a> StabilityAudit<'a> {
         tasks
     }
 
-    /// The worst members that lie apart from each other, as shares of the box.
+    /// The worst plants that lie apart from each other, as shares of the box.
     fn starts(&self, family: &UncertainFamily, badness: Badness) -> Vec<Vec<f64>> {
-        let mut order: Vec<(f64, &Vec<f64>)> =
-            self.members.iter().map(|member| badness.among(member)).zip(family.members()).collect();
+        let mut order: Vec<(f64, &PlantPoint)> =
+            self.badness.iter().map(|plant| badness.among(plant)).zip(&self.plants).collect();
         order.retain(|(value, _)| value.is_finite());
         order.sort_by(|one, other| other.0.total_cmp(&one.0));
         let mut chosen: Vec<Vec<f64>> = Vec::new();
-        for (_, values) in order {
+        for (_, plant) in order {
+            let PlantPoint::Parameters(values) = plant else { continue };
             let shares = family.shares(values);
             if chosen.iter().all(|earlier| apart(earlier, &shares)) {
                 chosen.push(shares);
@@ -249,10 +253,9 @@ impl<'a> StabilityAudit<'a> {
         chosen
     }
 
-    fn badness_at(&self, family: &UncertainFamily, badness: Badness, shares: &[f64]) -> f64 {
-        let values = family.values(shares);
+    fn badness_at(&self, badness: Badness, values: Vec<f64>) -> f64 {
         let Ok(path) = &self.path else { return f64::NAN };
-        let Ok(member) = self.rational_member(family, &values) else { return f64::NAN };
+        let Ok(member) = self.member(&PlantPoint::Parameters(values)) else { return f64::NAN };
         match characteristic(&member, path) {
             Some(Ok(characteristic)) => badness.of(&characteristic).unwrap_or(f64::NAN),
             _ => f64::NAN,
@@ -294,13 +297,19 @@ impl<'a> StabilityAudit<'a> {
             let reason = Irresolution::NearBoundary { frequency_rad_per_s: closest.frequency_rad_per_s };
             return (Verdict::NotProven, closest.plant.clone(), reason.to_string());
         }
-        let plants = self.members.len();
-        let way = match (&record.real_part, self.family) {
+        let which = match &self.family {
+            Family::Uncertain(family) if self.plants.len() > family.members().len() => {
+                let corners = self.plants.len() - family.members().len();
+                format!("{} members and {corners} corners of the box", family.members().len())
+            }
+            _ => format!("{} plants", self.plants.len()),
+        };
+        let way = match (&record.real_part, &self.family) {
             (_, Family::Measured(_)) => "by Nyquist's count on the measured points",
             (Some(_), _) => "by their closed-loop poles",
             (None, _) => "by the turns of their characteristic function",
         };
-        let mut reason = format!("all {plants} plants are stable {way}");
+        let mut reason = format!("all {which} are stable {way}");
         if let Some(closest) = &record.closest {
             let ClosestApproach { distance, frequency_rad_per_s, .. } = closest;
             let between = if self.searched() { " between them, too," } else { "" };
@@ -314,14 +323,11 @@ impl<'a> StabilityAudit<'a> {
     }
 
     fn nominal(&self) -> PlantPoint {
-        match self.family {
-            Family::Uncertain(family) => PlantPoint::Parameters(family.plant().nominal()),
-            Family::Measured(_) => PlantPoint::Measured(0),
-        }
+        self.plants.first().cloned().unwrap_or(PlantPoint::Measured(0))
     }
 
     fn searched(&self) -> bool {
-        match self.family {
+        match &self.family {
             Family::Uncertain(family) => family.extent() == Extent::Box,
             Family::Measured(_) => false,
         }
@@ -341,9 +347,9 @@ impl Badness {
         }
     }
 
-    /// What was kept of a member.
-    fn among(self, member: &[f64; 3]) -> f64 {
-        let &[real_part, closeness, delay_sensitivity] = member;
+    /// What was kept of a plant.
+    fn among(self, plant: &[f64; 3]) -> f64 {
+        let &[real_part, closeness, delay_sensitivity] = plant;
         match self {
             Badness::RealPart => real_part,
             Badness::Closeness => closeness,

@@ -439,7 +439,7 @@ impl SpecificationAudit {
 }
 
 /// The corners of a family's box, if it has one and they are not too many.
-fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
+pub(crate) fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
     let dimension = family.coordinates().len();
     if family.extent() == Extent::Members || dimension == 0 || dimension > CORNERS_DIMENSION_MAXIMUM {
         return Vec::new();
