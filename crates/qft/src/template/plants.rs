@@ -126,10 +126,8 @@ impl<'a> Plants<'a> {
     pub(super) fn response(&mut self, values: &[f64]) -> Result<MemberResponse, TemplateError> {
         self.evaluations += 1;
         let coefficients = self.family.plant().coefficients(values);
-        let member = self.compensation.member(coefficients);
-        let member = member.map_err(|reason| TemplateError::Plant { values: values.to_vec(), reason })?;
-        let unreachable = TemplateError::OutOfReach { frequency_rad_per_s: self.frequency_rad_per_s };
-        member.response(self.frequency_rad_per_s).ok_or(unreachable)
+        let response = self.compensation.plant_response(coefficients, self.frequency_rad_per_s);
+        response.map_err(|reason| TemplateError::Plant { values: values.to_vec(), reason })
     }
 
     /// Adds a plant whose response is known.
