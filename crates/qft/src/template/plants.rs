@@ -199,6 +199,18 @@ impl<'a> Plants<'a> {
         self.gap = Some(Gap { phase_deg, magnitude_db, plant, apart });
     }
 
+    /// Remembers that a pole or a zero is near; of several plants the one with the largest magnitude.
+    pub(super) fn remember_pole(&mut self, plant: usize) {
+        let magnitude_db = self.place(plant).magnitude_db;
+        let kept = self.gap.as_ref().is_some_and(|gap| {
+            gap.apart == f64::INFINITY && self.place(gap.plant).magnitude_db >= magnitude_db
+        });
+        if !kept {
+            let (phase_deg, apart) = (180.0, f64::INFINITY);
+            self.gap = Some(Gap { phase_deg, magnitude_db: f64::INFINITY, plant, apart });
+        }
+    }
+
     /// The straight line between two plants, halved until neighbours are at most a tolerance apart, or no longer divided.
     pub(super) fn line(&mut self, from: usize, to: usize, pieces: usize) -> Result<Line, Stop> {
         let mut line = Line { plants: vec![from], positions: vec![0.0] };
