@@ -31,7 +31,7 @@ pub struct TemplateOptions {
     pub evaluations_maximum: usize,
     /// Plants spread evenly over the box that must lie within the outline, beside the members.
     pub probes: usize,
-    /// Rounds of growth; each pushes what the round before uncovered.
+    /// Rounds of growth before refinement gives up; each pushes what the round before uncovered.
     pub rounds_maximum: usize,
 }
 
@@ -233,8 +233,8 @@ pub enum Resolution {
         /// Largest distance of two neighbours, dB.
         magnitude_db: f64,
     },
-    /// A gap did not close (an undamped resonance inside the family never does), or the budget was spent. The outlines hold what was
-    /// found until then.
+    /// A gap did not close (an undamped resonance inside the family never does), or the plants or rounds allowed were spent. The outlines
+    /// hold what was found until then.
     NotResolved {
         /// Largest distance of two neighbours, degrees; 180 where a response is infinite or zero.
         phase_deg: f64,

@@ -60,7 +60,7 @@ const ROUNDS_BESIDE_A_GAP: usize = 1;
 /// Shortest line, in tolerances, that is more than rounding.
 const LENGTH_MINIMUM: f64 = 1e-9;
 
-/// Explores until nothing moves and all witnesses lie within, or until the budget is spent; what was found until then stays.
+/// Explores until nothing moves and all witnesses lie within, or until plants or rounds are spent; what was found until then stays.
 pub(super) fn explore(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
     let dimension = plants.family.coordinates().len();
     if dimension == 0 {
@@ -104,7 +104,7 @@ fn branch(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
         found.branches.push(plants.line(start, beyond.plant, 1)?);
     }
     found.outside = outside(plants, &found.lines(plants), &found.witnesses).into_iter().next();
-    Ok(())
+    Err(Stop::Exhausted)
 }
 
 /// Rounds of growth; where nothing moves any more, witnesses outside are taken in.
@@ -116,11 +116,10 @@ fn refine(
 ) -> Result<(), Stop> {
     let mut tried = BTreeSet::new();
     // towards a pole of the family growth would never end
-    let rounds = plants.options.rounds_maximum.min(if plants.gap.is_some() {
-        ROUNDS_BESIDE_A_GAP
-    } else {
-        usize::MAX
-    });
+    let rounds = match plants.gap {
+        Some(_) => plants.options.rounds_maximum.min(ROUNDS_BESIDE_A_GAP),
+        None => plants.options.rounds_maximum,
+    };
     for _ in 0..rounds {
         if grow(plants, region, &mut tried)? {
             continue;
@@ -132,7 +131,7 @@ fn refine(
         take_in(plants, region, &beyond)?;
     }
     *farthest = outside(plants, &region.contours(), witnesses).into_iter().next();
-    Ok(())
+    Err(Stop::Exhausted)
 }
 
 /// A region for places as far apart as those that were found.

@@ -64,7 +64,7 @@ pub(super) struct Gap {
 
 /// Why refinement stopped.
 pub(super) enum Stop {
-    /// The budget is spent.
+    /// The plants or the rounds that were allowed are spent.
     Exhausted,
     /// A plant cannot be evaluated.
     Failed(TemplateError),

@@ -98,3 +98,18 @@ fn a_spent_budget_is_said() {
         assert!(built.evaluations <= family.members().len() + evaluations_maximum);
     }
 }
+
+/// Folds inside a box are reached in several rounds; with fewer the template says that it had not settled.
+#[test]
+fn rounds_that_do_not_settle_are_said() {
+    let unsettled = |rounds_maximum: usize| {
+        let options = TemplateOptions { rounds_maximum, ..TemplateOptions::default() };
+        let resolutions = (101..107).map(|seed| {
+            built_with(&crate::support::quadratic_family(4, seed), 1.0, options).template.resolution
+        });
+        resolutions.filter(|resolution| matches!(resolution, Resolution::NotResolved { .. })).count()
+    };
+    assert_eq!(unsettled(0), 6);
+    assert!(unsettled(1) > 0);
+    assert_eq!(unsettled(16), 0);
+}
