@@ -2,7 +2,9 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
-use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::linear::{
+    Discretization, LinearError, Polynomial, StateSpace, TimeDomain, TransferFunction,
+};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 
@@ -202,6 +204,61 @@ impl Compensation {
         Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance })
     }
 
+    /// P, Pd and H of a plant at one frequency: what its [`Compensation::member`] gives there, for a tenth of the work in a sampled
+    /// loop, whose member looks for its zeros first.
+    ///
+    /// # Errors
+    /// Those of [`Compensation::member`].
+    ///
+    /// # Example
+    /// ```
+    /// # use phea_dynamics::controller::{Controller, Timing};
+    /// # use phea_dynamics::linear::TransferFunction;
+    /// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+    /// # use phea_qft::closed_loop::Compensation;
+    /// # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
+    /// let timing = Timing { sample_time_s: Some(0.1), delay_s: 0.13, ..Timing::default() };
+    /// let controller = Controller { timing, ..Controller::default() };
+    /// let compensation = Compensation::new(&controller, TransferFunction::gain_only(2.0))?;
+    /// let command = RationalCoefficients { numerator: vec![3.0], denominator: vec![1.0, 0.4, 9.0] };
+    /// let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.02 };
+    /// let response = compensation.plant_response(plant.clone(), 2.0)?;
+    /// let member = compensation.member(plant)?.response(2.0).unwrap();
+    /// assert!((response.plant - member.plant).norm_sqr() < 1e-24 && response.sensor.re == 2.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn plant_response(
+        &self,
+        plant: PlantCoefficients<f64>,
+        frequency_rad_per_s: f64,
+    ) -> Result<MemberResponse, LinearError> {
+        let dead_time_s = plant.dead_time_s + self.delay_s;
+        let Some(sample_time_s) = self.sample_time_s else {
+            return Ok(continuous(&plant, dead_time_s, &self.sensor, frequency_rad_per_s));
+        };
+        let load_motion = load_motion(plant.disturbance.as_ref(), frequency_rad_per_s);
+        let rational = TransferFunction::from_polynomials(
+            &Polynomial::new(plant.command.numerator),
+            &Polynomial::new(plant.command.denominator),
+        )?;
+        // whole samples only turn the phase; what is left of a sample becomes a state
+        let held = |function: TransferFunction| {
+            let dead_time_s = function.dead_time_s() + dead_time_s;
+            let whole_s = (dead_time_s / sample_time_s).floor() * sample_time_s;
+            let states = StateSpace::from_transfer_function(&function.with_dead_time(0.0)?)?;
+            let part_s = (dead_time_s - whole_s).max(0.0);
+            let response =
+                states.held_with_dead_time(sample_time_s, part_s)?.at_frequency(frequency_rad_per_s, 0, 0)?;
+            Ok::<Complex64, LinearError>(response * turned(frequency_rad_per_s, whole_s))
+        };
+        let is_gain = self.sensor.poles().is_empty() && self.sensor.dead_time_s() == 0.0;
+        let with_sensor = if is_gain { None } else { Some(held(rational.series(&self.sensor)?)?) };
+        let plant = held(rational)?;
+        let sensor = with_sensor.map_or(Complex64::new(self.sensor.gain(), 0.0), |response| response / plant);
+        Ok(MemberResponse { plant, load_motion, sensor })
+    }
+
     /// A measured plant within this loop.
     pub fn measured(&self, plant: &MeasuredPlant) -> Member {
         Member::Measured {
@@ -219,24 +276,15 @@ impl Member {
     /// A measured plant in a sampled loop is taken without the images of its response above pi/T, which a measurement up to
     /// there does not hold.
     pub fn response(&self, frequency_rad_per_s: f64) -> Option<MemberResponse> {
-        let none = Complex64::new(0.0, 0.0);
         match self {
-            Member::Continuous { plant, sensor } => Some(MemberResponse {
-                plant: plant.command.at_frequency(frequency_rad_per_s)
-                    * turned(frequency_rad_per_s, plant.dead_time_s),
-                load_motion: plant
-                    .disturbance
-                    .as_ref()
-                    .map_or(none, |path| path.at_frequency(frequency_rad_per_s)),
-                sensor: sensor.at_frequency(frequency_rad_per_s),
-            }),
+            Member::Continuous { plant, sensor } => {
+                Some(continuous(plant, plant.dead_time_s, sensor, frequency_rad_per_s))
+            }
             Member::Sampled { command, with_sensor, disturbance } => {
                 let plant = command.at_frequency(frequency_rad_per_s);
                 Some(MemberResponse {
                     plant,
-                    load_motion: disturbance
-                        .as_ref()
-                        .map_or(none, |path| path.at_frequency(frequency_rad_per_s)),
+                    load_motion: load_motion(disturbance.as_ref(), frequency_rad_per_s),
                     sensor: with_sensor.at_frequency(frequency_rad_per_s) / plant,
                 })
             }
@@ -247,12 +295,29 @@ impl Member {
                 let hold = if half == 0.0 { 1.0 } else { portable::sin(half) / half };
                 Some(MemberResponse {
                     plant: command * turned(frequency_rad_per_s, *delay_s) * hold,
-                    load_motion: disturbance.unwrap_or(none),
+                    load_motion: disturbance.unwrap_or(Complex64::new(0.0, 0.0)),
                     sensor: sensor.at_frequency(frequency_rad_per_s),
                 })
             }
         }
     }
+}
+
+fn continuous(
+    plant: &PlantCoefficients<f64>,
+    dead_time_s: f64,
+    sensor: &TransferFunction,
+    frequency_rad_per_s: f64,
+) -> MemberResponse {
+    MemberResponse {
+        plant: plant.command.at_frequency(frequency_rad_per_s) * turned(frequency_rad_per_s, dead_time_s),
+        load_motion: load_motion(plant.disturbance.as_ref(), frequency_rad_per_s),
+        sensor: sensor.at_frequency(frequency_rad_per_s),
+    }
+}
+
+fn load_motion(path: Option<&RationalCoefficients<f64>>, frequency_rad_per_s: f64) -> Complex64 {
+    path.map_or(Complex64::new(0.0, 0.0), |path| path.at_frequency(frequency_rad_per_s))
 }
 
 /// e^(-j w T)

@@ -31,7 +31,7 @@ pub struct TemplateOptions {
     pub evaluations_maximum: usize,
     /// Plants spread evenly over the box that must lie within the outline, beside the members.
     pub probes: usize,
-    /// Rounds of growth; each pushes what the round before uncovered.
+    /// Rounds of growth before refinement gives up; each pushes what the round before uncovered.
     pub rounds_maximum: usize,
 }
 
@@ -156,16 +156,53 @@ impl Iterator for Templates<'_> {
 }
 
 /// The response of the family at one frequency: points that are plants, and the region that they fill.
+///
+/// # Example
+/// Why the region has to be known as filled. P = k e^(-sT) with k between 1 and 2 is a bent strip; a controller puts the plant in its
+/// middle on L = -1, and yet every plant on the outline keeps to |T| <= 4:
+/// ```
+/// # use num_complex::Complex64;
+/// # use phea_dynamics::controller::Controller;
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// # use phea_qft::closed_loop::Compensation;
+/// # use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
+/// use phea_qft::template::{TemplateOptions, template};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let range = |name: &str, minimum: f64, maximum: f64| {
+/// #     UncertainParameter { name: name.into(), nominal: minimum, minimum, maximum }
+/// # };
+/// # let plant = UncertainPlant::record(vec![range("k", 1.0, 2.0), range("T", 0.1, 1.0)], |p| PlantCoefficients {
+/// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into()] },
+/// #     disturbance: None,
+/// #     dead_time_s: p[1],
+/// # })?;
+/// # let along = |index| Coordinate { parameters: vec![index], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
+/// # let coordinates = vec![along(0), along(1)];
+/// # let members = vertices(&plant, &coordinates)?;
+/// # let middle = plant.response(&[2_f64.sqrt(), 0.55], 5.0);
+/// # let family = Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box)?);
+/// # let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+/// let strip = template(&family, &compensation, 5.0, &TemplateOptions::default())?.template;
+/// let controller = -1.0 / middle; // middle = P(j 5) at k = 1.414, T = 0.55
+/// for &plant in strip.outlines.iter().flatten() {
+///     let open_loop = controller * plant;
+///     assert!((open_loop / (1.0 + open_loop)).norm_sqr() < 4.0 * 4.0);
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Template {
     /// rad/s
     pub frequency_rad_per_s: f64,
     /// P0 H0, the nominal plant with its sensor.
     pub nominal: Complex64,
-    /// Plants, the nominal one first.
+    /// Plants: the members in order, the nominal one first, then those that refinement found on the outlines.
     pub points: Vec<TemplatePoint>,
-    /// Closed polygons of responses P H (the last point joins the first) around the region whose interior is known to be filled; more
-    /// than one where the family falls into pieces, empty for a family without anything between its members.
+    /// Closed polygons of responses P H (the last point joins the first) around the region whose interior is known to be filled: without
+    /// holes, side by side, corners no farther apart than the tolerance. More than one where the family falls into pieces or
+    /// has a hollow; a line there and back where it has no area; none for a family without anything between its members.
     pub outlines: Vec<Vec<Complex64>>,
     /// How well the region is known.
     pub resolution: Resolution,
@@ -189,18 +226,19 @@ pub struct TemplatePoint {
 /// How far neighbouring plants of a template lie apart.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Resolution {
-    /// Neighbours are closer than the tolerance everywhere.
+    /// Neighbours are closer than the tolerance everywhere along the outlines, and no witness lies farther outside.
     Resolved {
         /// Largest distance of two neighbours, degrees.
         phase_deg: f64,
         /// Largest distance of two neighbours, dB.
         magnitude_db: f64,
     },
-    /// The budget of plants was spent; an undamped resonance inside the family never closes.
+    /// A gap did not close (an undamped resonance inside the family never does), or the plants or rounds allowed were spent. The outlines
+    /// hold what was found until then.
     NotResolved {
-        /// Largest distance of two neighbours, degrees.
+        /// Largest distance of two neighbours, degrees; 180 where a response is infinite or zero.
         phase_deg: f64,
-        /// Largest distance of two neighbours, dB.
+        /// Largest distance of two neighbours, dB; infinite where a response is infinite or zero.
         magnitude_db: f64,
         /// Parameters of the plant beside the widest gap.
         near: Vec<f64>,

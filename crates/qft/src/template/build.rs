@@ -20,7 +20,7 @@ use crate::family::{Extent, Family, MeasuredFamily};
 /// `points` are the members in order, then the plants that refinement found on the outline. The outline is known from within: what it
 /// encloses is filled by plants of the family, to the tolerance of its chords; that nothing lies beyond it was searched, from every
 /// point of the outline and with all witnesses, and not found. Magnitude and phase are looked at, with the phase continued
-/// from plant to plant. A member whose response is zero or infinite is no point; `NotResolved` names it.
+/// from plant to plant; [`Template`] has an example. A member whose response is zero or infinite is no point; `NotResolved` names it.
 ///
 /// # Errors
 /// [`TemplateError`] for tolerances that cannot be met, plants that cannot be sampled, measurements that do not reach, and a

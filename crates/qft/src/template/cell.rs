@@ -112,13 +112,17 @@ pub(super) fn walks(plants: &mut Plants, face: Cell, found: &mut Vec<Vec<usize>>
     Ok(())
 }
 
-/// A walk that does not close although neighbours are close goes around a pole or a zero.
+/// A walk without a gap that does not close goes around a pole or a zero; the plant of it that stands out is near.
 fn remember_open(plants: &mut Plants, walk: &[usize]) {
-    let highest = walk.iter().copied().max_by(|&first, &second| {
-        plants.place(first).magnitude_db.total_cmp(&plants.place(second).magnitude_db)
-    });
-    if let (Some(highest), None) = (highest, &plants.gap) {
-        plants.remember_gap(highest, highest);
+    if plants.unbroken(walk).len() > 1 {
+        return;
+    }
+    let magnitude = |plant: usize| plants.place(plant).magnitude_db;
+    let mean = walk.iter().map(|&plant| magnitude(plant)).sum::<f64>() / walk.len() as f64;
+    let distance = |plant: usize| (magnitude(plant) - mean).abs();
+    let farthest = walk.iter().copied().max_by(|&one, &other| distance(one).total_cmp(&distance(other)));
+    if let Some(farthest) = farthest {
+        plants.remember_pole(farthest);
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::cell::{Edges, walks};
 use super::growth::grow;
-use super::plants::{Place, Plants, Stop};
+use super::plants::{Line, Place, Plants, Stop};
 use super::region::{Corner, Region};
 use super::witness::{Outside, outside, probes, take_in};
 
@@ -12,6 +12,8 @@ use super::witness::{Outside, outside, probes, take_in};
 pub(super) struct Exploration {
     witnesses: Vec<usize>,
     edges: Option<Edges>,
+    /// Lines to witnesses away from the edges of a template without area.
+    branches: Vec<Line>,
     walks: Vec<Vec<usize>>,
     region: Option<Region>,
     /// The witness farthest outside of the region, if there is one.
@@ -21,7 +23,7 @@ pub(super) struct Exploration {
 impl Exploration {
     /// Nothing but witnesses.
     pub(super) fn new(witnesses: Vec<usize>) -> Exploration {
-        Exploration { witnesses, edges: None, walks: vec![], region: None, outside: None }
+        Exploration { witnesses, edges: None, branches: vec![], walks: vec![], region: None, outside: None }
     }
 
     /// Polygons with corners no farther apart than the tolerance: pieces of the region, or lines there and back where the template has
@@ -37,7 +39,7 @@ impl Exploration {
 
     fn lines(&self, plants: &Plants) -> Vec<Vec<Corner>> {
         let mut lines = vec![];
-        for line in self.edges.iter().flat_map(Edges::iter) {
+        for line in self.edges.iter().flat_map(Edges::iter).chain(&self.branches) {
             for part in plants.unbroken(&line.plants) {
                 let corner = |&plant: &usize| Corner { place: plants.place(plant), plant: Some(plant) };
                 let there = part.iter().map(corner);
@@ -58,7 +60,7 @@ const ROUNDS_BESIDE_A_GAP: usize = 1;
 /// Shortest line, in tolerances, that is more than rounding.
 const LENGTH_MINIMUM: f64 = 1e-9;
 
-/// Explores until nothing moves and all witnesses lie within, or until the budget is spent; what was found until then stays.
+/// Explores until nothing moves and all witnesses lie within, or until plants or rounds are spent; what was found until then stays.
 pub(super) fn explore(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
     let dimension = plants.family.coordinates().len();
     if dimension == 0 {
@@ -79,16 +81,30 @@ pub(super) fn explore(plants: &mut Plants, found: &mut Exploration) -> Result<()
     let has_area = region.has_area();
     let region = found.region.insert(region);
     outcome?;
-    if has_area {
-        for shares in probes(dimension, plants.options.probes) {
-            let probe = plants.at(shares)?;
-            if plants.is_finite(probe) {
-                found.witnesses.push(probe);
-            }
+    for shares in probes(dimension, plants.options.probes) {
+        let probe = plants.at(shares)?;
+        if plants.is_finite(probe) {
+            found.witnesses.push(probe);
         }
-        refine(plants, region, &found.witnesses, &mut found.outside)?;
     }
-    Ok(())
+    if has_area {
+        refine(plants, region, &found.witnesses, &mut found.outside)
+    } else {
+        branch(plants, found)
+    }
+}
+
+/// A template without area is a line; a witness that is not on it is joined to it by a line of the box.
+fn branch(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
+    for _ in 0..plants.options.rounds_maximum {
+        let Some(beyond) = outside(plants, &found.lines(plants), &found.witnesses).into_iter().next() else {
+            return Ok(());
+        };
+        let Some(start) = beyond.beside.map(|[start, _]| start) else { break };
+        found.branches.push(plants.line(start, beyond.plant, 1)?);
+    }
+    found.outside = outside(plants, &found.lines(plants), &found.witnesses).into_iter().next();
+    Err(Stop::Exhausted)
 }
 
 /// Rounds of growth; where nothing moves any more, witnesses outside are taken in.
@@ -100,23 +116,22 @@ fn refine(
 ) -> Result<(), Stop> {
     let mut tried = BTreeSet::new();
     // towards a pole of the family growth would never end
-    let rounds = plants.options.rounds_maximum.min(if plants.gap.is_some() {
-        ROUNDS_BESIDE_A_GAP
-    } else {
-        usize::MAX
-    });
+    let rounds = match plants.gap {
+        Some(_) => plants.options.rounds_maximum.min(ROUNDS_BESIDE_A_GAP),
+        None => plants.options.rounds_maximum,
+    };
     for _ in 0..rounds {
         if grow(plants, region, &mut tried)? {
             continue;
         }
-        let beyond = outside(plants, region, witnesses);
+        let beyond = outside(plants, &region.contours(), witnesses);
         if beyond.is_empty() {
             return Ok(());
         }
         take_in(plants, region, &beyond)?;
     }
-    *farthest = outside(plants, region, witnesses).into_iter().next();
-    Ok(())
+    *farthest = outside(plants, &region.contours(), witnesses).into_iter().next();
+    Err(Stop::Exhausted)
 }
 
 /// A region for places as far apart as those that were found.

@@ -64,7 +64,7 @@ pub(super) struct Gap {
 
 /// Why refinement stopped.
 pub(super) enum Stop {
-    /// The budget is spent.
+    /// The plants or the rounds that were allowed are spent.
     Exhausted,
     /// A plant cannot be evaluated.
     Failed(TemplateError),
@@ -126,10 +126,8 @@ impl<'a> Plants<'a> {
     pub(super) fn response(&mut self, values: &[f64]) -> Result<MemberResponse, TemplateError> {
         self.evaluations += 1;
         let coefficients = self.family.plant().coefficients(values);
-        let member = self.compensation.member(coefficients);
-        let member = member.map_err(|reason| TemplateError::Plant { values: values.to_vec(), reason })?;
-        let unreachable = TemplateError::OutOfReach { frequency_rad_per_s: self.frequency_rad_per_s };
-        member.response(self.frequency_rad_per_s).ok_or(unreachable)
+        let response = self.compensation.plant_response(coefficients, self.frequency_rad_per_s);
+        response.map_err(|reason| TemplateError::Plant { values: values.to_vec(), reason })
     }
 
     /// Adds a plant whose response is known.
@@ -199,6 +197,18 @@ impl<'a> Plants<'a> {
             _ => [180.0, f64::INFINITY],
         };
         self.gap = Some(Gap { phase_deg, magnitude_db, plant, apart });
+    }
+
+    /// Remembers that a pole or a zero is near; of several plants the one with the largest magnitude.
+    pub(super) fn remember_pole(&mut self, plant: usize) {
+        let magnitude_db = self.place(plant).magnitude_db;
+        let kept = self.gap.as_ref().is_some_and(|gap| {
+            gap.apart == f64::INFINITY && self.place(gap.plant).magnitude_db >= magnitude_db
+        });
+        if !kept {
+            let (phase_deg, apart) = (180.0, f64::INFINITY);
+            self.gap = Some(Gap { phase_deg, magnitude_db: f64::INFINITY, plant, apart });
+        }
     }
 
     /// The straight line between two plants, halved until neighbours are at most a tolerance apart, or no longer divided.

@@ -10,7 +10,7 @@ const TAKEN_IN: usize = 8;
 pub(super) struct Outside {
     pub(super) plant: usize,
     pub(super) distance: f64,
-    beside: Option<[usize; 2]>,
+    pub(super) beside: Option<[usize; 2]>,
 }
 
 /// Points spread evenly over the box: multiples of powers of the generalised golden ratio (Roberts 2018), modulo 1.
@@ -27,11 +27,10 @@ pub(super) fn probes(dimension: usize, count: usize) -> Vec<Vec<f64>> {
     (1..=count).map(|number| (0..dimension).map(|axis| share(number, axis)).collect()).collect()
 }
 
-/// Witnesses more than a tolerance outside of the region, the farthest first.
-pub(super) fn outside(plants: &Plants, region: &Region, witnesses: &[usize]) -> Vec<Outside> {
-    let contours = region.contours();
+/// Witnesses more than a tolerance outside of what the contours enclose, the farthest first.
+pub(super) fn outside(plants: &Plants, contours: &[Vec<Corner>], witnesses: &[usize]) -> Vec<Outside> {
     let found = witnesses.iter().filter_map(|&plant| {
-        let (distance, beside) = distance(plants, &contours, plants.place(plant));
+        let (distance, beside) = distance(plants, contours, plants.place(plant));
         (distance > 1.0).then_some(Outside { plant, distance, beside })
     });
     let mut found: Vec<Outside> = found.collect();

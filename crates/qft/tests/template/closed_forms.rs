@@ -95,6 +95,20 @@ fn two_gains_in_series_are_a_segment_too() {
     }
 }
 
+/// -(x^2 + y^2) - 1 on x, y from -1 to 1: the edges of the box reach from -3 to -2, its middle -1.
+#[test]
+fn a_line_reaches_beyond_the_edges_of_the_box() {
+    let family = family(&[("x", -1.0, 1.0, Linear), ("y", -1.0, 1.0, Linear)], 2, |p| {
+        coefficients(vec![-(p[0] * p[0] + p[1] * p[1] + 1.0.into())], vec![1.0.into()])
+    });
+    let template = built(&family, 1.0).template;
+    assert_resolved(&template);
+    let highest = template.outlines.iter().flatten().map(|response| response.re).fold(-9.0, f64::max);
+    let lowest = template.outlines.iter().flatten().map(|response| response.re).fold(0.0, f64::min);
+    assert!((lowest + 3.0).abs() < 1e-12 && (-1.06..=-1.0).contains(&highest), "{lowest} to {highest}");
+    assert!(template.outlines.iter().flatten().all(|response| response.im.abs() < 1e-12));
+}
+
 #[test]
 fn a_dead_time_is_an_arc() {
     let family = family(&[("T", 0.1, 0.5, Linear)], 2, |p| {

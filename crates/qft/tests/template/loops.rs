@@ -35,6 +35,42 @@ fn sampling_delay_and_sensor_are_within_the_points() {
     }
 }
 
+/// A plant's response at one frequency is that of its member, which is factored first.
+#[test]
+fn a_response_needs_no_factors() {
+    let lag =
+        TransferFunction::from_polynomials(&Polynomial::new(vec![2.0]), &Polynomial::new(vec![0.1, 1.0]));
+    let motor = motor();
+    for sensor in [TransferFunction::gain_only(3.0), lag.unwrap().with_dead_time(0.013).unwrap()] {
+        for sample_time_s in [None, Some(0.05)] {
+            for delay_s in [0.0, 0.02, 0.05, 0.135] {
+                let timing = Timing { sample_time_s, delay_s, ..Timing::default() };
+                let controller = Controller { timing, ..Controller::default() };
+                let compensation = Compensation::new(&controller, sensor.clone()).unwrap();
+                let mut plant = motor.plant().coefficients(&[3.0, 1.5]);
+                plant.disturbance = Some(plant.command.clone());
+                for frequency in [0.01, 1.0, 10.0, 55.0] {
+                    let member = compensation.member(plant.clone()).unwrap().response(frequency).unwrap();
+                    let response = compensation.plant_response(plant.clone(), frequency).unwrap();
+                    assert!(magnitude(response.plant / member.plant - 1.0) < 1e-11);
+                    assert!(magnitude(response.sensor / member.sensor - 1.0) < 1e-11);
+                    assert_eq!(response.load_motion, member.load_motion);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_box_without_uncertainty_is_its_nominal_plant() {
+    let motor = motor();
+    let family = UncertainFamily::new(motor.plant().clone(), vec![], vec![], Extent::Box).unwrap();
+    let built =
+        template(&Family::Uncertain(family), &plain_loop(), 1.0, &TemplateOptions::default()).unwrap();
+    assert_eq!((built.template.points.len(), built.template.outlines.len(), built.evaluations), (1, 0, 1));
+    assert_eq!(built.template.resolution, Resolution::Resolved { phase_deg: 0.0, magnitude_db: 0.0 });
+}
+
 #[test]
 fn between_members_nothing_is_claimed() {
     let motor = motor();

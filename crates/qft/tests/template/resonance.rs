@@ -82,7 +82,8 @@ fn a_pole_inside_the_box_is_noticed() {
         coefficients(vec![p[1] * p[1]], vec![1.0.into(), p[0] * p[1] * 2.0.into(), p[1] * p[1]])
     });
     let built = built(&family, 6.0);
-    let (_, _, near) = unresolved_near(&built.template.resolution);
+    let (_, magnitude, near) = unresolved_near(&built.template.resolution);
+    assert_eq!(magnitude, f64::INFINITY);
     assert!(near[0].abs() < 0.02 && (near[1] - 6.0).abs() < 0.3, "{near:?}");
     assert!(built.evaluations < 30_000, "{}", built.evaluations);
 }
@@ -96,4 +97,19 @@ fn a_spent_budget_is_said() {
         assert!(matches!(built.template.resolution, Resolution::NotResolved { .. }));
         assert!(built.evaluations <= family.members().len() + evaluations_maximum);
     }
+}
+
+/// Folds inside a box are reached in several rounds; with fewer the template says that it had not settled.
+#[test]
+fn rounds_that_do_not_settle_are_said() {
+    let unsettled = |rounds_maximum: usize| {
+        let options = TemplateOptions { rounds_maximum, ..TemplateOptions::default() };
+        let resolutions = (101..107).map(|seed| {
+            built_with(&crate::support::quadratic_family(4, seed), 1.0, options).template.resolution
+        });
+        resolutions.filter(|resolution| matches!(resolution, Resolution::NotResolved { .. })).count()
+    };
+    assert_eq!(unsettled(0), 6);
+    assert!(unsettled(1) > 0);
+    assert_eq!(unsettled(16), 0);
 }
