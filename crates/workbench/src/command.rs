@@ -89,8 +89,14 @@ pub enum CommandError {
     #[error("{0}")]
     Sizing(#[from] crate::rig::SizingError),
     /// There is nothing that could be audited.
-    #[error("{0}")]
+    #[error(transparent)]
     Audit(#[from] AuditError),
+    /// There is no family of plants.
+    #[error(transparent)]
+    Family(#[from] crate::family::FamilyError),
+    /// A specification is none.
+    #[error(transparent)]
+    Specification(#[from] crate::specification::SpecificationError),
     /// Whoever watched a long command stopped it.
     #[error("stopped")]
     Stopped,
@@ -219,7 +225,7 @@ fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
 }
 
 fn verify_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
-    let view = audit_project(source, loaded, watch)?;
+    let view = audit_project(source, &loaded.project, watch)?;
     Ok(Answer {
         text: audit::text(&view),
         json: audit::json(loaded, &view),
