@@ -98,7 +98,9 @@ impl<'a> AuditRun<'a> {
         let stability = self.stability.result();
         let mut specifications = self.specifications.findings().to_vec();
         if stability.finding.verdict != Verdict::Met {
-            specifications.iter_mut().for_each(|finding| without_stability(finding, stability.finding.verdict));
+            specifications
+                .iter_mut()
+                .for_each(|finding| without_stability(finding, stability.finding.verdict));
         }
         let verdicts = specifications.iter().map(|finding| finding.verdict);
         let verdict = verdicts.fold(stability.finding.verdict, worse);

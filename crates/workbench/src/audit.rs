@@ -68,9 +68,9 @@ pub fn audit_project(
 
 fn names(family: &Family) -> PlantNames {
     match family {
-        Family::Uncertain(family) => {
-            PlantNames::of_parameters(family.plant().parameters().iter().map(|parameter| parameter.name.as_str()))
-        }
+        Family::Uncertain(family) => PlantNames::of_parameters(
+            family.plant().parameters().iter().map(|parameter| parameter.name.as_str()),
+        ),
         Family::Measured(family) => {
             PlantNames::Measured(family.plants().iter().map(|plant| plant.name.clone()).collect())
         }

@@ -1,9 +1,9 @@
 use phea_qft::verification::{SpecificationFinding, Verdict, ViolatedBand, WorstCase};
 use serde::Serialize;
 
+use super::ProjectAudit;
 use super::plant::{NamedPlant, PlantNames};
 use super::words::{evidence_key, kind_key, verdict_key};
-use super::ProjectAudit;
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 
@@ -130,7 +130,9 @@ pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
             reason: &stability.reason,
         },
         delay_margin_s: Number(margin.map_or(f64::NAN, |margin| margin.delay_s)),
-        delay_margin_reason: margin.is_none().then_some("there is none: not every plant is known to be stable"),
+        delay_margin_reason: margin
+            .is_none()
+            .then_some("there is none: not every plant is known to be stable"),
         delay_margin: margin.map(|margin| DelayMarginRow {
             frequency_rad_per_s: Number(margin.frequency_rad_per_s),
             plant: names.named(&margin.plant),

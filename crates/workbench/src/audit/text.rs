@@ -82,7 +82,8 @@ fn margin_at(worst: Option<&WorstCase>) -> [String; 2] {
 }
 
 fn specifications(view: &ProjectAudit) -> String {
-    let headings = ["", "specification", "limits", "verdict", "worst margin", "rad/s", "at design frequencies", "rad/s"];
+    let headings =
+        ["", "specification", "limits", "verdict", "worst margin", "rad/s", "at design frequencies", "rad/s"];
     let mut rows = table(&headings);
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         let [margin, frequency] = margin_at(finding.worst.as_ref());
@@ -100,7 +101,16 @@ fn specifications(view: &ProjectAudit) -> String {
         if let Some(interior) = finding.interior.as_ref().filter(|_| rests_on_the_end(finding)) {
             let [margin, frequency] = margin_at(Some(interior));
             let blank = String::new();
-            rows.add_row([&blank, &blank, &blank, &"within the band".to_string(), &margin, &frequency, &blank, &blank]);
+            rows.add_row([
+                &blank,
+                &blank,
+                &blank,
+                &"within the band".to_string(),
+                &margin,
+                &frequency,
+                &blank,
+                &blank,
+            ]);
         }
     }
     rows.trim_fmt()

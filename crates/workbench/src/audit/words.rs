@@ -116,6 +116,8 @@ pub(crate) fn finding_sentence(finding: &SpecificationFinding) -> String {
         }
         Verdict::Met if worst.margin_db < 5e-4 => format!("{kind} is met, just so, {place}"),
         Verdict::Met => format!("{kind} is met, with {size} dB to spare {place}"),
-        Verdict::NotProven => format!("{kind} is not proven; worst margin found {} {place}", margin_words(worst.margin_db)),
+        Verdict::NotProven => {
+            format!("{kind} is not proven; worst margin found {} {place}", margin_words(worst.margin_db))
+        }
     }
 }
