@@ -11,10 +11,11 @@ use std::time::{Duration, Instant};
 /// Runs of each command; the fastest and the median are shown.
 const RUNS: usize = 15;
 
-const COMMANDS: [&[&str]; 6] = [
+const COMMANDS: [&[&str]; 7] = [
     &["check", "examples/ybitu/hose.toml"],
     &["size", "examples/ybitu/hose.toml"],
     &["linearize", "examples/ybitu/hose.toml"],
+    &["verify", "examples/ybitu/hose.toml"],
     &["report", "examples/ybitu/hose.toml"],
     &["report", "examples/ybitu/hose.toml", "--out"],
     &["report", "examples/ybitu/pipe.toml"],

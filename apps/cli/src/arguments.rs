@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-/// Hydraulic force control through added compliance: size the hose, see the models, get the report.
+/// Hydraulic force control through added compliance: size the hose, see the models, audit the controller, get the report.
 #[derive(Debug, Parser)]
 #[command(name = "phea", version, arg_required_else_help = true)]
 #[command(after_help = "Exit status: 0 done, 1 the answer is no or not proven, 2 the input is wrong.")]
@@ -33,6 +33,8 @@ pub(crate) enum Command {
     },
     /// Linear models: poles, differences, stiffness over the stroke, driving-point impedance, passivity
     Linearize(Common),
+    /// Audit the given controller and prefilter: every plant of the family, every specification, its whole band
+    Verify(Common),
     /// Everything above as one self-contained HTML page
     Report(Common),
 }

@@ -8,7 +8,7 @@ use phea_workbench::project::{self, Loaded, STARTER};
 
 use crate::arguments::{Arguments, Command, Common};
 use crate::file_system::{FileSystem, write, write_starter};
-use crate::voice::{complain, say};
+use crate::voice::{ProgressLine, complain, say};
 
 /// The answer is yes, no, or the input is wrong.
 const DONE: u8 = 0;
@@ -27,6 +27,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Check(common) => on_project(&common, &Request::Check),
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }),
         Command::Linearize(common) => on_project(&common, &Request::Linearize),
+        Command::Verify(common) => on_project(&common, &Request::Verify),
         Command::Report(common) => {
             let request = if common.out.is_some() { Request::Report } else { Request::Page };
             on_project(&common, &request)
@@ -94,8 +95,13 @@ fn answered(common: &Common, request: &Request) -> Result<(Answer, Vec<PathBuf>)
     if !loaded.warnings.is_empty() {
         complain(&project::render(&loaded.warnings, &loaded.texts, styled()));
     }
-    let answer = command::answer(&FileSystem, &loaded, &common.catalogues, request)
-        .map_err(|error| failed(request, &loaded, &error.to_string()))?;
+    let mut line = ProgressLine::default();
+    let answer =
+        command::answer_watched(&FileSystem, &loaded, &common.catalogues, request, &mut |progress| {
+            line.show(progress)
+        });
+    line.clear();
+    let answer = answer.map_err(|error| failed(request, &loaded, &error.to_string()))?;
     let written =
         write_files(common, request, &answer).map_err(|message| failed(request, &loaded, &message))?;
     Ok((answer, written))

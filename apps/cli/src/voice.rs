@@ -1,6 +1,9 @@
 //! What the command says, and where.
 
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+use phea_workbench::command::Progress;
 
 /// Says it on standard output. A reader that has gone away (`phea check rig.toml | head`) has what it wanted.
 pub(crate) fn say(text: &str) -> Result<(), String> {
@@ -16,4 +19,42 @@ pub(crate) fn say(text: &str) -> Result<(), String> {
 /// Says it on standard error; nobody is left to be told if that fails.
 pub(crate) fn complain(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
+}
+
+/// Time after which a person wants to know that something happens, and between two lines about it.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// One line on standard error that follows a long command; nothing where nobody looks.
+pub(crate) struct ProgressLine {
+    next: Option<Instant>,
+    shown: bool,
+}
+
+impl Default for ProgressLine {
+    fn default() -> Self {
+        let next = io::stderr().is_terminal().then(|| Instant::now() + PATIENCE);
+        ProgressLine { next, shown: false }
+    }
+}
+
+impl ProgressLine {
+    /// Shows how far it is, not too often; always answers that it shall go on (Ctrl-C ends the command before anything
+    /// is written).
+    pub(crate) fn show(&mut self, progress: Progress) -> bool {
+        let now = Instant::now();
+        if self.next.is_some_and(|next| now >= next) {
+            self.next = Some(now + PATIENCE);
+            self.shown = true;
+            let percent = (100.0 * progress.share).clamp(0.0, 100.0);
+            let _ = write!(io::stderr().lock(), "\r{}: {percent:.0} %\x1b[K", progress.stage);
+        }
+        true
+    }
+
+    /// Takes the line away.
+    pub(crate) fn clear(&mut self) {
+        if self.shown {
+            let _ = write!(io::stderr().lock(), "\r\x1b[K");
+        }
+    }
 }

@@ -15,11 +15,16 @@ fn folder(name: &str) -> PathBuf {
     let plant = "schema = 1\ntitle = \"x\"\n[plant]\nnumerator = \"1\"\ndenominator = \"s + 1\"\n";
     let (head, tail) = text.split_once("[sizing]").expect("it has a [sizing]");
     let tail = tail.split_once("[uncertainty]").expect("and an [uncertainty]").1;
-    let files: [(&str, &[u8]); 6] = [
+    let closed = format!(
+        "{plant}[controller]\nnumerator = \"1\"\ndenominator = \"s\"\n[[specification]]\nkind = \"robust_stability\"\n\
+         limit = 1.2\nfrequencies = [1]\nband = [0, inf]\n"
+    );
+    let files: [(&str, &[u8]); 7] = [
         ("hose.toml", text.as_bytes()),
         ("only/hose.toml", text.as_bytes()),
         ("unsized.toml", &[head.as_bytes(), b"[uncertainty]", tail.as_bytes()].concat()),
         ("plant.toml", plant.as_bytes()),
+        ("loop.toml", closed.as_bytes()),
         ("binary.toml", &[0xff, 0xfe, 0x00, 0x9c]),
         ("empty.toml", b""),
     ];
@@ -42,6 +47,10 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["size", "hose.toml", "--length", "1.5 m"], 0),
     (&["linearize", "hose.toml"], 0),
     (&["report", "hose.toml", "--out", "out"], 0),
+    (&["verify", "hose.toml"], 1),
+    (&["verify", "hose.toml", "--set", "controller.numerator=\"1000\""], 1),
+    (&["verify", "loop.toml"], 0),
+    (&["verify", "plant.toml"], 2),
     (&["size", "hose.toml", "--gain", "0.0005 V/N"], 1),
     (&["size", "hose.toml", "--length", "200 cm"], 1),
     (&["size", "hose.toml", "--set", "sizing.oil_velocity=[0.1, 0.2]"], 1),

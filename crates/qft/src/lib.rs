@@ -3,6 +3,7 @@
 //! This crate knows plants only as `phea_dynamics::uncertain_plant::UncertainPlant` or as measured responses; it never sees a valve
 //! or a hose.
 
+pub mod audit;
 pub mod bound;
 pub mod closed_loop;
 pub mod family;

@@ -1,8 +1,10 @@
 //! The commands on a project: what is asked, and the answer that a shell prints and writes.
 
+use phea_qft::verification::Verdict;
 use serde::Serialize;
 
 use crate::answer::{self, Answer, OutputFile};
+use crate::audit::{self, AuditError, audit_project};
 use crate::control::{ControlError, controller};
 use crate::derived::{self, derive};
 use crate::figure::FigureError;
@@ -28,6 +30,8 @@ pub enum Request {
     },
     /// Linear models.
     Linearize,
+    /// The audit of the given controller.
+    Verify,
     /// The page with every figure as a file.
     Report,
     /// The page alone.
@@ -41,6 +45,7 @@ impl Request {
             Request::Check => "check",
             Request::Size { .. } => "size",
             Request::Linearize => "linearize",
+            Request::Verify => "verify",
             Request::Report | Request::Page => "report",
         }
     }
@@ -83,7 +88,31 @@ pub enum CommandError {
     /// The project does not say what to size for.
     #[error("{0}")]
     Sizing(#[from] crate::rig::SizingError),
+    /// There is nothing that could be audited.
+    #[error(transparent)]
+    Audit(#[from] AuditError),
+    /// There is no family of plants.
+    #[error(transparent)]
+    Family(#[from] crate::family::FamilyError),
+    /// A specification is none.
+    #[error(transparent)]
+    Specification(#[from] crate::specification::SpecificationError),
+    /// Whoever watched a long command stopped it.
+    #[error("stopped")]
+    Stopped,
 }
+
+/// How far a long command is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// What is being done.
+    pub stage: &'static str,
+    /// Share of it that is done, 0 to 1.
+    pub share: f64,
+}
+
+/// Told the progress of a long command from time to time; it stops where the answer is `false`.
+pub type Watch<'a> = &'a mut dyn FnMut(Progress) -> bool;
 
 /// Answers a request on a project; `catalogues` are the user's files and folders.
 ///
@@ -95,6 +124,20 @@ pub fn answer(
     catalogues: &[String],
     request: &Request,
 ) -> Result<Answer, CommandError> {
+    answer_watched(source, loaded, catalogues, request, &mut |_| true)
+}
+
+/// The same, telling its progress.
+///
+/// # Errors
+/// Those of [`answer`], and [`CommandError::Stopped`].
+pub fn answer_watched(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    request: &Request,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
     match request {
         Request::Check => check(loaded),
         Request::Size { gain, length } => {
@@ -102,6 +145,7 @@ pub fn answer(
             size_answer(source, loaded, catalogues, question)
         }
         Request::Linearize => linearize_answer(loaded),
+        Request::Verify => verify_answer(source, loaded, watch),
         Request::Report => report_answer(source, loaded, catalogues, Report::files),
         Request::Page => report_answer(source, loaded, catalogues, |report| Ok(vec![report.page_file()])),
     }
@@ -177,6 +221,16 @@ fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
         json: linearize::json(loaded, &linearization),
         files: linearize::files(&linearization),
         affirmative: true,
+    })
+}
+
+fn verify_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
+    let view = audit_project(source, &loaded.project, watch)?;
+    Ok(Answer {
+        text: audit::text(&view),
+        json: audit::json(loaded, &view),
+        files: audit::files(&view),
+        affirmative: view.audit.verdict == Verdict::Met,
     })
 }
 

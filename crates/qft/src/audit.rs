@@ -1,0 +1,139 @@
+//! The audit of a controller: stability, delay margin and specifications of a family put together into one verdict.
+
+use crate::closed_loop::Compensation;
+use crate::family::Family;
+use crate::specification::Specification;
+use crate::stability::StabilityAudit;
+use crate::verification::{
+    Audit, Evidence, SpecificationAudit, SpecificationFinding, TrackingJudgement, Verdict,
+};
+
+/// Share of the work that stability takes, for the progress.
+const STABILITY_SHARE: f64 = 0.4;
+
+/// An audit stepped by its owner, who may show its progress or stop it at any step.
+///
+/// # Example
+/// The integrator 1/s closed with gain 1 is stable, bears pi/2 s of delay, and keeps |T| <= 1.2 everywhere:
+/// ```
+/// use phea_dynamics::controller::Controller;
+/// use phea_dynamics::linear::TransferFunction;
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
+/// use phea_qft::audit::AuditRun;
+/// use phea_qft::closed_loop::Compensation;
+/// use phea_qft::family::{Extent, Family, UncertainFamily};
+/// use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::verification::{TOLERANCE_DB, TrackingJudgement, Verdict};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {
+///     command: RationalCoefficients { numerator: vec![1.0.into()], denominator: vec![1.0.into(), 0.0.into()] },
+///     disturbance: None,
+///     dead_time_s: 0.0.into(),
+/// })?;
+/// let family = Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?);
+/// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+/// let specifications = [Specification {
+///     requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+///     frequencies_rad_per_s: vec![1.0],
+///     band_rad_per_s: [0.0, f64::INFINITY],
+/// }];
+/// let mut run =
+///     AuditRun::new(&family, &compensation, &specifications, TrackingJudgement::Magnitude, TOLERANCE_DB);
+/// while run.step() {}
+/// let audit = run.audit();
+/// assert_eq!(audit.verdict, Verdict::Met);
+/// let bears = audit.delay_margin.ok_or("it is stable")?.delay_s;
+/// assert!((bears - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct AuditRun<'a> {
+    stability: StabilityAudit<'a>,
+    stability_done: bool,
+    specifications: SpecificationAudit,
+    tolerance_db: f64,
+}
+
+impl<'a> AuditRun<'a> {
+    /// An audit that has not begun. A margin of minus `tolerance_db` still counts as met.
+    pub fn new(
+        family: &'a Family,
+        compensation: &'a Compensation,
+        specifications: &[Specification],
+        tracking: TrackingJudgement,
+        tolerance_db: f64,
+    ) -> AuditRun<'a> {
+        AuditRun {
+            stability: StabilityAudit::new(family, compensation),
+            stability_done: false,
+            specifications: SpecificationAudit::new(
+                family,
+                compensation,
+                specifications,
+                tracking,
+                tolerance_db,
+            ),
+            tolerance_db,
+        }
+    }
+
+    /// Does a small part of the work; whether there is more to do.
+    pub fn step(&mut self) -> bool {
+        if !self.stability_done {
+            self.stability_done = !self.stability.step();
+            return true;
+        }
+        self.specifications.step()
+    }
+
+    /// The share of the work that is done, 0 to 1.
+    pub fn progress(&self) -> f64 {
+        let stability = if self.stability_done { 1.0 } else { self.stability.progress() };
+        STABILITY_SHARE * stability + (1.0 - STABILITY_SHARE) * self.specifications.progress()
+    }
+
+    /// What was found; complete once [`AuditRun::step`] has answered that there is nothing left.
+    pub fn audit(&self) -> Audit {
+        let stability = self.stability.result();
+        let mut specifications = self.specifications.findings().to_vec();
+        if stability.finding.verdict != Verdict::Met {
+            specifications
+                .iter_mut()
+                .for_each(|finding| without_stability(finding, stability.finding.verdict));
+        }
+        let verdicts = specifications.iter().map(|finding| finding.verdict);
+        let verdict = verdicts.fold(stability.finding.verdict, worse);
+        let evidences = specifications.iter().map(|finding| finding.evidence);
+        let evidence = evidences.fold(stability.finding.evidence, Evidence::min);
+        Audit {
+            verdict,
+            evidence,
+            tolerance_db: self.tolerance_db,
+            delay_margin: stability.delay_margin,
+            stability: stability.finding,
+            specifications,
+        }
+    }
+}
+
+/// A violation outweighs what is not proven, and that what is met.
+fn worse(one: Verdict, other: Verdict) -> Verdict {
+    match (one, other) {
+        (Verdict::Violated, _) | (_, Verdict::Violated) => Verdict::Violated,
+        (Verdict::NotProven, _) | (_, Verdict::NotProven) => Verdict::NotProven,
+        (Verdict::Met, Verdict::Met) => Verdict::Met,
+    }
+}
+
+/// The magnitude of an unstable loop is the response of nothing: no specification is met by it.
+fn without_stability(finding: &mut SpecificationFinding, stability: Verdict) {
+    if finding.verdict == Verdict::Met {
+        finding.verdict = Verdict::NotProven;
+    }
+    let reason = match stability {
+        Verdict::Violated => "the loop is unstable: its magnitudes are those of no response",
+        _ => "the loop is not known to be stable: its magnitudes may be those of no response",
+    };
+    finding.remarks.push(reason.to_string());
+}

@@ -1,0 +1,126 @@
+//! The audit of a given controller: family, loop and specifications from the project, findings from `phea_qft`, and how
+//! they are told.
+
+mod answer;
+mod plant;
+mod text;
+mod words;
+
+pub use answer::{files, json};
+pub use plant::{NamedPlant, PlantNames};
+pub use text::text;
+
+use phea_qft::audit::AuditRun;
+use phea_qft::family::{Extent, Family};
+use phea_qft::verification::{Audit, TOLERANCE_DB, TrackingJudgement};
+
+use crate::command::{CommandError, Progress, Watch};
+use crate::control::compensation;
+use crate::family::family;
+use crate::project::Project;
+use crate::quantity::DisplayUnit;
+use crate::source::Source;
+use crate::specification::specifications;
+
+/// Why there is nothing to audit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AuditError {
+    /// There is no controller.
+    #[error("the project gives no [controller] to be verified")]
+    NoController,
+}
+
+/// Audits the given controller and prefilter over the whole family and band.
+///
+/// # Errors
+/// [`CommandError`] for a project without a controller, a part of it that is no transfer function, a family that cannot be
+/// built, or a watcher that stops.
+pub fn audit_project(
+    source: &dyn Source,
+    project: &Project,
+    watch: Watch<'_>,
+) -> Result<ProjectAudit, CommandError> {
+    let compensation = compensation(project)?.ok_or(AuditError::NoController)?;
+    let family = family(project, source)?;
+    let specifications = specifications(project)?;
+    let tracking = match project.prefilter {
+        Some(_) => TrackingJudgement::Magnitude,
+        None => TrackingJudgement::Spread,
+    };
+    let mut run = AuditRun::new(&family, &compensation, &specifications, tracking, TOLERANCE_DB);
+    while run.step() {
+        if !watch(Progress { stage: "auditing", share: run.progress() }) {
+            return Err(CommandError::Stopped);
+        }
+    }
+    Ok(ProjectAudit {
+        audit: run.audit(),
+        names: names(&family),
+        members: match &family {
+            Family::Uncertain(family) => family.members().len(),
+            Family::Measured(family) => family.plants().len(),
+        },
+        whole_box: matches!(&family, Family::Uncertain(family) if family.extent() == Extent::Box),
+        sample_time_s: compensation.sample_time_s(),
+        delay_s: compensation.delay_s(),
+    })
+}
+
+fn names(family: &Family) -> PlantNames {
+    match family {
+        Family::Uncertain(family) => PlantNames::of_parameters(
+            family.plant().parameters().iter().map(|parameter| parameter.name.as_str()),
+        ),
+        Family::Measured(family) => {
+            PlantNames::Measured(family.plants().iter().map(|plant| plant.name.clone()).collect())
+        }
+    }
+}
+
+/// An audit with the names of its project.
+#[derive(Clone, Debug)]
+pub struct ProjectAudit {
+    /// What was found.
+    pub audit: Audit,
+    /// What the numbers of a plant are called.
+    pub names: PlantNames,
+    /// Number of plants of the family.
+    pub members: usize,
+    /// Whether everything between them belongs to the family.
+    pub whole_box: bool,
+    /// s; `None` for a continuous controller.
+    pub sample_time_s: Option<f64>,
+    /// Delay of the loop, s.
+    pub delay_s: f64,
+}
+
+impl ProjectAudit {
+    fn family_sentence(&self) -> String {
+        match &self.names {
+            PlantNames::Measured(names) => format!("Family: {} measured responses.", names.len()),
+            PlantNames::Parameters(names) if names.is_empty() => "Family: one plant.".to_string(),
+            PlantNames::Parameters(names) if self.whole_box => format!(
+                "Family: {} plants of a box over {} uncertain parameters, and what lies between them.",
+                self.members,
+                names.len()
+            ),
+            PlantNames::Parameters(names) => {
+                format!("Family: {} given plants with {} uncertain parameters.", self.members, names.len())
+            }
+        }
+    }
+
+    fn loop_sentence(&self) -> String {
+        let delay = match self.delay_s {
+            0.0 => "without delay".to_string(),
+            delay => format!("with a delay of {}", DisplayUnit::MILLISECOND.text(delay, 3)),
+        };
+        match self.sample_time_s {
+            None => format!("Loop: continuous, {delay}."),
+            Some(sample_time) => format!(
+                "Loop: sampled every {} with a zero-order hold, {delay}.",
+                DisplayUnit::MILLISECOND.text(sample_time, 3)
+            ),
+        }
+    }
+}

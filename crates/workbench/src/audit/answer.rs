@@ -1,0 +1,161 @@
+use phea_qft::verification::{SpecificationFinding, Verdict, ViolatedBand, WorstCase};
+use serde::Serialize;
+
+use super::ProjectAudit;
+use super::plant::{NamedPlant, PlantNames};
+use super::words::{evidence_key, kind_key, verdict_key};
+use crate::answer::{self, Number, OutputFile};
+use crate::project::Loaded;
+
+#[derive(Serialize)]
+struct Body<'a> {
+    verdict: &'static str,
+    evidence: &'static str,
+    tolerance_db: f64,
+    stable: Option<bool>,
+    stability: StabilityRow<'a>,
+    delay_margin_s: Number,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    delay_margin_reason: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    delay_margin: Option<DelayMarginRow>,
+    members: usize,
+    parameters: Vec<&'a str>,
+    timing: TimingRow,
+    specifications: Vec<SpecificationRow<'a>>,
+}
+
+#[derive(Serialize)]
+struct TimingRow {
+    sample_time_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sample_time_reason: Option<&'static str>,
+    delay_s: f64,
+}
+
+#[derive(Serialize)]
+struct StabilityRow<'a> {
+    verdict: &'static str,
+    evidence: &'static str,
+    largest_real_part_per_s: Number,
+    plant: NamedPlant,
+    reason: &'a str,
+}
+
+#[derive(Serialize)]
+struct DelayMarginRow {
+    frequency_rad_per_s: Number,
+    plant: NamedPlant,
+}
+
+#[derive(Serialize)]
+struct SpecificationRow<'a> {
+    kind: &'static str,
+    verdict: &'static str,
+    evidence: &'static str,
+    worst_margin_db: Number,
+    frequency_rad_per_s: Number,
+    plant: Option<NamedPlant>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interior: Option<CaseRow>,
+    violations: Vec<ViolationRow>,
+    at_design_frequencies: Vec<CaseRow>,
+    remarks: Vec<&'a str>,
+}
+
+#[derive(Serialize)]
+struct CaseRow {
+    frequency_rad_per_s: Number,
+    margin_db: Number,
+    plant: NamedPlant,
+}
+
+#[derive(Serialize)]
+struct ViolationRow {
+    band_rad_per_s: [Number; 2],
+    #[serde(flatten)]
+    worst: CaseRow,
+}
+
+fn case(names: &PlantNames, worst: &WorstCase) -> CaseRow {
+    CaseRow {
+        frequency_rad_per_s: Number(worst.frequency_rad_per_s),
+        margin_db: Number(worst.margin_db),
+        plant: names.named(&worst.plant),
+    }
+}
+
+fn specification<'a>(names: &PlantNames, finding: &'a SpecificationFinding) -> SpecificationRow<'a> {
+    let worst = finding.worst.as_ref();
+    let violation = |band: &ViolatedBand| ViolationRow {
+        band_rad_per_s: band.band_rad_per_s.map(Number),
+        worst: case(names, &band.worst),
+    };
+    SpecificationRow {
+        kind: kind_key(&finding.requirement),
+        verdict: verdict_key(finding.verdict),
+        evidence: evidence_key(finding.evidence),
+        worst_margin_db: Number(worst.map_or(f64::NAN, |worst| worst.margin_db)),
+        frequency_rad_per_s: Number(worst.map_or(f64::NAN, |worst| worst.frequency_rad_per_s)),
+        plant: worst.map(|worst| names.named(&worst.plant)),
+        reason: worst.is_none().then_some("nothing could be judged; see remarks"),
+        interior: finding.interior.as_ref().map(|worst| case(names, worst)),
+        violations: finding.violations.iter().map(violation).collect(),
+        at_design_frequencies: finding.at_design_frequencies.iter().map(|worst| case(names, worst)).collect(),
+        remarks: finding.remarks.iter().map(String::as_str).collect(),
+    }
+}
+
+/// The JSON object of `verify`.
+pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
+    let (audit, names) = (&view.audit, &view.names);
+    let stability = &audit.stability;
+    let margin = audit.delay_margin.as_ref();
+    let body = Body {
+        verdict: verdict_key(audit.verdict),
+        evidence: evidence_key(audit.evidence),
+        tolerance_db: audit.tolerance_db,
+        stable: match stability.verdict {
+            Verdict::Met => Some(true),
+            Verdict::Violated => Some(false),
+            Verdict::NotProven => None,
+        },
+        stability: StabilityRow {
+            verdict: verdict_key(stability.verdict),
+            evidence: evidence_key(stability.evidence),
+            largest_real_part_per_s: Number(stability.largest_real_part.unwrap_or(f64::NAN)),
+            plant: names.named(&stability.plant),
+            reason: &stability.reason,
+        },
+        delay_margin_s: Number(margin.map_or(f64::NAN, |margin| margin.delay_s)),
+        delay_margin_reason: margin
+            .is_none()
+            .then_some("there is none: not every plant is known to be stable"),
+        delay_margin: margin.map(|margin| DelayMarginRow {
+            frequency_rad_per_s: Number(margin.frequency_rad_per_s),
+            plant: names.named(&margin.plant),
+        }),
+        members: view.members,
+        parameters: names.headings(),
+        timing: TimingRow {
+            sample_time_s: view.sample_time_s,
+            sample_time_reason: view.sample_time_s.is_none().then_some("the controller is continuous"),
+            delay_s: view.delay_s,
+        },
+        specifications: audit.specifications.iter().map(|finding| specification(names, finding)).collect(),
+    };
+    answer::json("verify", loaded, body)
+}
+
+/// The family's worst margins over frequency as a table for other programs.
+pub fn files(view: &ProjectAudit) -> Vec<OutputFile> {
+    let mut csv = String::from("specification,kind,frequency_rad_per_s,worst_margin_db\n");
+    for (index, finding) in view.audit.specifications.iter().enumerate() {
+        for (frequency, margin) in &finding.envelope {
+            csv.push_str(&format!("{index},{},{frequency},{margin}\n", kind_key(&finding.requirement)));
+        }
+    }
+    vec![OutputFile { name: "margins.csv".to_string(), bytes: csv.into_bytes() }]
+}

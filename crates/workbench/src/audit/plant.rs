@@ -1,0 +1,104 @@
+//! How the plants of a family are named to people and programs.
+
+use phea_qft::verification::PlantPoint;
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use crate::project::LINEAR_PARAMETERS;
+use crate::quantity::{Dimension, RATIO, display};
+
+/// What the numbers of a plant are called.
+#[derive(Clone, Debug)]
+pub enum PlantNames {
+    /// Uncertain parameters in the order of the plant, with what they measure.
+    Parameters(Vec<(String, &'static Dimension)>),
+    /// Names of the measurements.
+    Measured(Vec<String>),
+}
+
+/// One plant with its names, as JSON shows it: an object of name to SI value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedPlant(Vec<(String, NamedValue)>);
+
+#[derive(Clone, Debug, PartialEq)]
+enum NamedValue {
+    Number(f64),
+    Text(String),
+}
+
+impl PlantNames {
+    /// Names of the parameters of an uncertain plant, with the dimension of those of the linear model.
+    pub fn of_parameters<'a>(names: impl Iterator<Item = &'a str>) -> PlantNames {
+        let dimension = |name: &str| {
+            LINEAR_PARAMETERS
+                .iter()
+                .find(|parameter| parameter.key.name == name)
+                .map_or(&RATIO, |parameter| parameter.key.dimension)
+        };
+        PlantNames::Parameters(names.map(|name| (name.to_string(), dimension(name))).collect())
+    }
+
+    /// `viscous_friction 100 N.s/m, flow_gain 5.61e-5 m3/(s.V)`, or the name of the measurement.
+    pub fn text(&self, plant: &PlantPoint) -> String {
+        match (self, plant) {
+            (PlantNames::Parameters(names), PlantPoint::Parameters(values)) => {
+                let parts: Vec<String> = names
+                    .iter()
+                    .zip(values)
+                    .map(|((name, dimension), &value)| format!("{name} {}", display(value, dimension, 4)))
+                    .collect();
+                if parts.is_empty() { "the nominal plant".to_string() } else { parts.join(", ") }
+            }
+            (PlantNames::Measured(names), PlantPoint::Measured(index)) => {
+                names.get(*index).cloned().unwrap_or_default()
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// The values of a plant one by one, as the columns of a table; in the order of [`PlantNames::headings`].
+    pub fn cells(&self, plant: &PlantPoint) -> Vec<String> {
+        match (self, plant) {
+            (PlantNames::Parameters(names), PlantPoint::Parameters(values)) => names
+                .iter()
+                .zip(values)
+                .map(|((_, dimension), &value)| display(value, dimension, 4))
+                .collect(),
+            _ => vec![self.text(plant)],
+        }
+    }
+
+    /// What stands above the columns of [`PlantNames::cells`].
+    pub fn headings(&self) -> Vec<&str> {
+        match self {
+            PlantNames::Parameters(names) => names.iter().map(|(name, _)| name.as_str()).collect(),
+            PlantNames::Measured(_) => vec!["measurement"],
+        }
+    }
+
+    /// The plant for JSON.
+    pub fn named(&self, plant: &PlantPoint) -> NamedPlant {
+        match (self, plant) {
+            (PlantNames::Parameters(names), PlantPoint::Parameters(values)) => NamedPlant(
+                names
+                    .iter()
+                    .zip(values)
+                    .map(|((name, _), &value)| (name.clone(), NamedValue::Number(value)))
+                    .collect(),
+            ),
+            _ => NamedPlant(vec![("measured".to_string(), NamedValue::Text(self.text(plant)))]),
+        }
+    }
+}
+
+impl Serialize for NamedPlant {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            match value {
+                NamedValue::Number(number) => map.serialize_entry(name, number)?,
+                NamedValue::Text(text) => map.serialize_entry(name, text)?,
+            }
+        }
+        map.end()
+    }
+}

@@ -1,0 +1,167 @@
+use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
+
+use super::ProjectAudit;
+use super::words::{
+    closed_loop_symbol, evidence_sentence, finding_sentence, frequency_words, kind_words, margin_words,
+    verdict_words, worst_at_design,
+};
+use crate::answer::{significant, table};
+use crate::quantity::DisplayUnit;
+
+/// The tables and sentences of `verify` for people: the verdict first, then what it rests on.
+pub fn text(view: &ProjectAudit) -> String {
+    let audit = &view.audit;
+    let mut out = format!("Verdict: {}\n", verdict_words(audit.verdict));
+    for sentence in summary(view) {
+        out.push_str(&format!("  {sentence}\n"));
+    }
+    out.push_str(&format!("\nSpecifications\n{}\n", specifications(view)));
+    if let Some(plants) = plants(view) {
+        out.push_str(&format!("\nWorst plants\n{plants}\n"));
+    }
+    if let Some(violations) = violations(view) {
+        out.push_str(&format!("\nWhere it is violated\n{violations}\n"));
+    }
+    out.push_str("\nWhat this rests on\n");
+    for sentence in basis(view) {
+        out.push_str(&format!("  {sentence}\n"));
+    }
+    out
+}
+
+/// Stability, delay margin and each specification, a sentence each.
+pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
+    let mut sentences = vec![stability_sentence(view)];
+    sentences.extend(delay_sentence(view));
+    sentences.extend(view.audit.specifications.iter().map(finding_sentence));
+    sentences
+}
+
+fn stability_sentence(view: &ProjectAudit) -> String {
+    let stability = &view.audit.stability;
+    let plant = view.names.text(&stability.plant);
+    let rate = |value: f64| significant(value, 3);
+    match (stability.verdict, stability.largest_real_part) {
+        (Verdict::Met, Some(real)) => {
+            format!("every plant is stable: no closed-loop pole has a real part above {} 1/s", rate(real))
+        }
+        (Verdict::Met, None) => format!("every plant is stable: {}", stability.reason),
+        (Verdict::Violated, Some(real)) => {
+            format!("unstable: a closed-loop pole has the real part {} 1/s with {plant}", rate(real))
+        }
+        (Verdict::Violated, None) => format!("unstable with {plant}: {}", stability.reason),
+        (Verdict::NotProven, _) => format!("stability is not proven: {} ({plant})", stability.reason),
+    }
+}
+
+fn delay_sentence(view: &ProjectAudit) -> Option<String> {
+    let margin = view.audit.delay_margin.as_ref()?;
+    if margin.delay_s == f64::INFINITY {
+        return Some("no delay makes a plant unstable".to_string());
+    }
+    Some(format!(
+        "the loop bears {} ms more delay before a plant becomes unstable ({})",
+        DisplayUnit::MILLISECOND.number(margin.delay_s, 3),
+        frequency_words(margin.frequency_rad_per_s)
+    ))
+}
+
+fn place(worst: &WorstCase) -> String {
+    match worst.frequency_rad_per_s {
+        0.0 => "0".to_string(),
+        f64::INFINITY => "inf".to_string(),
+        frequency => significant(frequency, 4),
+    }
+}
+
+fn margin_at(worst: Option<&WorstCase>) -> [String; 2] {
+    match worst {
+        Some(worst) => [margin_words(worst.margin_db), place(worst)],
+        None => ["-".to_string(), "-".to_string()],
+    }
+}
+
+fn specifications(view: &ProjectAudit) -> String {
+    let headings =
+        ["", "specification", "limits", "verdict", "worst margin", "rad/s", "at design frequencies", "rad/s"];
+    let mut rows = table(&headings);
+    for (index, finding) in view.audit.specifications.iter().enumerate() {
+        let [margin, frequency] = margin_at(finding.worst.as_ref());
+        let [design, design_frequency] = margin_at(worst_at_design(finding));
+        rows.add_row([
+            (index + 1).to_string(),
+            kind_words(&finding.requirement),
+            closed_loop_symbol(&finding.requirement).to_string(),
+            verdict_words(finding.verdict).to_string(),
+            margin,
+            frequency,
+            design,
+            design_frequency,
+        ]);
+        if let Some(interior) = finding.interior.as_ref().filter(|_| rests_on_the_end(finding)) {
+            let [margin, frequency] = margin_at(Some(interior));
+            let blank = String::new();
+            rows.add_row([
+                &blank,
+                &blank,
+                &blank,
+                &"within the band".to_string(),
+                &margin,
+                &frequency,
+                &blank,
+                &blank,
+            ]);
+        }
+    }
+    rows.trim_fmt()
+}
+
+/// Whether the worst margin says little because it lies at an end of the band.
+fn rests_on_the_end(finding: &SpecificationFinding) -> bool {
+    finding.worst.as_ref().zip(finding.interior.as_ref()).is_some_and(|(worst, interior)| worst != interior)
+}
+
+fn plants(view: &ProjectAudit) -> Option<String> {
+    let mut headings = vec!["specification"];
+    headings.extend(view.names.headings());
+    let mut rows = table(&headings);
+    let mut any = false;
+    for finding in &view.audit.specifications {
+        let Some(worst) = &finding.worst else { continue };
+        let mut row = vec![kind_words(&finding.requirement)];
+        row.extend(view.names.cells(&worst.plant));
+        rows.add_row(row);
+        any = true;
+    }
+    any.then(|| rows.trim_fmt())
+}
+
+fn violations(view: &ProjectAudit) -> Option<String> {
+    let mut rows = table(&["specification", "from", "to rad/s", "worst margin", "at rad/s"]);
+    let mut any = false;
+    for finding in &view.audit.specifications {
+        for band in &finding.violations {
+            let [from, to] = band.band_rad_per_s.map(|edge| significant(edge, 4));
+            let [margin, frequency] = margin_at(Some(&band.worst));
+            rows.add_row([kind_words(&finding.requirement), from, to, margin, frequency]);
+            any = true;
+        }
+    }
+    any.then(|| rows.trim_fmt())
+}
+
+/// Family, loop, tolerance and everything that was not looked at.
+pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
+    let audit = &view.audit;
+    let mut sentences = vec![
+        view.family_sentence(),
+        view.loop_sentence(),
+        evidence_sentence(audit.evidence).to_string(),
+        format!("A margin of -{} dB still counts as met.", significant(audit.tolerance_db, 1)),
+    ];
+    for finding in &audit.specifications {
+        let kind = kind_words(&finding.requirement);
+        sentences.extend(finding.remarks.iter().map(|remark| format!("{kind}: {remark}")));
+    }
+    sentences
+}

@@ -1,0 +1,123 @@
+//! Verdicts, requirements and worst cases in words.
+
+use phea_qft::specification::Requirement;
+use phea_qft::verification::{Evidence, SpecificationFinding, Verdict, WorstCase};
+
+use crate::answer::significant;
+
+/// The word of a verdict in JSON.
+pub(crate) fn verdict_key(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Met => "met",
+        Verdict::Violated => "violated",
+        Verdict::NotProven => "not_proven",
+    }
+}
+
+/// The same for people.
+pub(crate) fn verdict_words(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NotProven => "not proven",
+        other => verdict_key(other),
+    }
+}
+
+/// The word of the evidence in JSON.
+pub(crate) fn evidence_key(evidence: Evidence) -> &'static str {
+    match evidence {
+        Evidence::Grid => "grid",
+        Evidence::Search => "search",
+        Evidence::Proof => "proof",
+    }
+}
+
+/// What a verdict rests on, in a sentence.
+pub(crate) fn evidence_sentence(evidence: Evidence) -> &'static str {
+    match evidence {
+        Evidence::Grid => "Looked at the plants of the family one by one; nothing between them is claimed.",
+        Evidence::Search => {
+            "The worst case was searched over the whole parameter box and band, not only on the grid; a search is no proof."
+        }
+        Evidence::Proof => "Proven for every plant of the box and every frequency of the band.",
+    }
+}
+
+/// The word of a kind, as the project file spells it.
+pub(crate) fn kind_key(requirement: &Requirement) -> &'static str {
+    match requirement {
+        Requirement::RobustStability(_) => "robust_stability",
+        Requirement::Sensitivity(_) => "sensitivity",
+        Requirement::PlantInputDisturbance(_) => "plant_input_disturbance",
+        Requirement::ControlEffort(_) => "control_effort",
+        Requirement::LoadMotion(_) => "load_motion",
+        Requirement::Tracking { .. } => "tracking",
+    }
+}
+
+/// The kind for people.
+pub(crate) fn kind_words(requirement: &Requirement) -> String {
+    kind_key(requirement).replace('_', " ")
+}
+
+/// The closed loop that a kind limits.
+pub(crate) fn closed_loop_symbol(requirement: &Requirement) -> &'static str {
+    match requirement {
+        Requirement::RobustStability(_) => "|L/(1+L)|",
+        Requirement::Sensitivity(_) => "|1/(1+L)|",
+        Requirement::PlantInputDisturbance(_) => "|P/(1+L)|",
+        Requirement::ControlEffort(_) => "|G/(1+L)|",
+        Requirement::LoadMotion(_) => "|Pd/(1+L)|",
+        Requirement::Tracking { .. } => "|F L/(1+L)|",
+    }
+}
+
+/// `4.31 dB`, with its sign; the zero of a limit that is just reached without one.
+pub(crate) fn margin_words(margin_db: f64) -> String {
+    match margin_db {
+        _ if margin_db == f64::INFINITY => "unlimited".to_string(),
+        _ if margin_db.abs() < 5e-4 => "0.000 dB".to_string(),
+        _ if margin_db.abs() < 1.0 => format!("{margin_db:+.3} dB"),
+        _ => format!("{margin_db:+.2} dB"),
+    }
+}
+
+/// `at 1304 rad/s`, `towards zero frequency`, `towards infinite frequency`.
+pub(crate) fn frequency_words(frequency_rad_per_s: f64) -> String {
+    match frequency_rad_per_s {
+        0.0 => "towards zero frequency".to_string(),
+        f64::INFINITY => "towards infinite frequency".to_string(),
+        _ => format!("at {} rad/s", significant(frequency_rad_per_s, 4)),
+    }
+}
+
+/// The worst margin among the design frequencies.
+pub(crate) fn worst_at_design(finding: &SpecificationFinding) -> Option<&WorstCase> {
+    finding.at_design_frequencies.iter().min_by(|a, b| a.margin_db.total_cmp(&b.margin_db))
+}
+
+/// One sentence on a specification: what it says, whether it holds, and where it is worst.
+pub(crate) fn finding_sentence(finding: &SpecificationFinding) -> String {
+    let kind = kind_words(&finding.requirement);
+    let symbol = closed_loop_symbol(&finding.requirement);
+    let Some(worst) = &finding.worst else {
+        return format!("{kind}: nothing could be judged");
+    };
+    let place = frequency_words(worst.frequency_rad_per_s);
+    let size = significant(worst.margin_db.abs(), 3);
+    match finding.verdict {
+        Verdict::Violated => {
+            let hidden = match worst_at_design(finding) {
+                Some(design) if design.margin_db >= 0.0 => {
+                    "; at the design frequencies alone it would have passed"
+                }
+                _ => "",
+            };
+            format!("{kind} is violated by {size} dB {place}: {symbol} leaves its limit{hidden}")
+        }
+        Verdict::Met if worst.margin_db < 5e-4 => format!("{kind} is met, just so, {place}"),
+        Verdict::Met => format!("{kind} is met, with {size} dB to spare {place}"),
+        Verdict::NotProven => {
+            format!("{kind} is not proven; worst margin found {} {place}", margin_words(worst.margin_db))
+        }
+    }
+}
