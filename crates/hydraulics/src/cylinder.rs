@@ -8,19 +8,19 @@ use crate::parameter::{ParameterError, Problems};
 ///
 /// The piston position x runs from 0 at the A end to the stroke at the B end, so chamber A grows with x.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cylinder {
+pub struct Cylinder<S = f64> {
     /// Piston area on the A side, A_A, in m2.
-    pub area_a: f64,
+    pub area_a: S,
     /// Piston area on the B side, A_B, in m2.
-    pub area_b: f64,
+    pub area_b: S,
     /// Stroke L in m.
-    pub stroke: f64,
+    pub stroke: S,
     /// Mass of piston, rods and everything fixed to them up to the force sensor, M, in kg.
-    pub moving_mass: f64,
+    pub moving_mass: S,
     /// Volume of chamber A that the piston never sweeps, without the line, in m3.
-    pub dead_volume_a: f64,
+    pub dead_volume_a: S,
     /// Volume of chamber B that the piston never sweeps, without the line, in m3.
-    pub dead_volume_b: f64,
+    pub dead_volume_b: S,
 }
 
 impl Cylinder {
@@ -39,6 +39,18 @@ impl Cylinder {
         problems.not_negative("dead_volume_a", self.dead_volume_a);
         problems.not_negative("dead_volume_b", self.dead_volume_b);
         problems.into_vec()
+    }
+
+    /// The same numbers as constants of another scalar.
+    pub fn map<S: Scalar>(&self) -> Cylinder<S> {
+        Cylinder {
+            area_a: S::from(self.area_a),
+            area_b: S::from(self.area_b),
+            stroke: S::from(self.stroke),
+            moving_mass: S::from(self.moving_mass),
+            dead_volume_a: S::from(self.dead_volume_a),
+            dead_volume_b: S::from(self.dead_volume_b),
+        }
     }
 }
 
@@ -70,8 +82,23 @@ pub fn areas_from_diameters(piston: f64, rods: [f64; 2]) -> Result<[f64; 2], Par
     }
     match problems.into_vec().into_iter().next() {
         Some(problem) => Err(problem),
-        None => Ok(rods.map(|rod| std::f64::consts::FRAC_PI_4 * (piston - rod) * (piston + rod))),
+        None => Ok(rods.map(|rod| annulus_area(piston, rod))),
     }
+}
+
+/// Area between piston and rod in m2, from their diameters in m.
+///
+/// ```text
+/// A = pi/4 (D_p - D_r) (D_p + D_r)
+/// ```
+///
+/// # Example
+/// ```
+/// use phea_hydraulics::cylinder::annulus_area;
+/// assert!((annulus_area(0.05, 0.022) - 1.58336e-3_f64).abs() < 0.5e-8);
+/// ```
+pub fn annulus_area<S: Scalar>(piston: S, rod: S) -> S {
+    S::from(std::f64::consts::FRAC_PI_4) * (piston - rod) * (piston + rod)
 }
 
 /// Swept and dead volumes of both chambers at piston position `x`, in m3, lines not included.

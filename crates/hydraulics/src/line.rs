@@ -14,27 +14,27 @@ use crate::parameter::{ParameterError, Problems};
 
 /// A line between one valve port and its chamber. Units: m, m3, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Line {
+pub enum Line<S = f64> {
     /// A hose of this length.
     Hose {
         /// The hose.
-        hose: Hose,
+        hose: Hose<S>,
         /// Length L_ho in m.
-        length: f64,
+        length: S,
     },
     /// A pipe of this length.
     Pipe {
         /// The pipe.
-        pipe: Pipe,
+        pipe: Pipe<S>,
         /// Length in m.
-        length: f64,
+        length: S,
     },
     /// Any capacity whose effective modulus (fluid and wall together) is known.
     Volume {
         /// Volume in m3.
-        volume: f64,
+        volume: S,
         /// Effective bulk modulus in Pa.
-        effective_bulk_modulus: f64,
+        effective_bulk_modulus: S,
     },
 }
 
@@ -70,11 +70,25 @@ impl Line {
         problems.into_vec()
     }
 
-    /// Volume of the fluid in the unexpanded line, V_ho, in m3.
-    pub fn volume(&self) -> f64 {
+    /// The same numbers as constants of another scalar.
+    pub fn map<S: Scalar>(&self) -> Line<S> {
         match *self {
-            Line::Hose { hose, length } => FRAC_PI_4 * hose.bore * hose.bore * length,
-            Line::Pipe { pipe, length } => FRAC_PI_4 * pipe.bore * pipe.bore * length,
+            Line::Hose { hose, length } => Line::Hose { hose: hose.map(), length: S::from(length) },
+            Line::Pipe { pipe, length } => Line::Pipe { pipe: pipe.map(), length: S::from(length) },
+            Line::Volume { volume, effective_bulk_modulus } => Line::Volume {
+                volume: S::from(volume),
+                effective_bulk_modulus: S::from(effective_bulk_modulus),
+            },
+        }
+    }
+}
+
+impl<S: Scalar> Line<S> {
+    /// Volume of the fluid in the unexpanded line, V_ho, in m3.
+    pub fn volume(&self) -> S {
+        match *self {
+            Line::Hose { hose, length } => S::from(FRAC_PI_4) * hose.bore * hose.bore * length,
+            Line::Pipe { pipe, length } => S::from(FRAC_PI_4) * pipe.bore * pipe.bore * length,
             Line::Volume { volume, .. } => volume,
         }
     }
@@ -93,16 +107,19 @@ impl Line {
     /// let line = Line::Hose { hose, length: 1.5 };
     /// assert!((line.effective_modulus(1.45e9, Member::Nominal) - 2.609e8).abs() < 0.5e5);
     /// ```
-    pub fn effective_modulus(&self, fluid_modulus: f64, member: Member) -> f64 {
+    pub fn effective_modulus(&self, fluid_modulus: S, member: Member) -> S {
         match *self {
             Line::Hose { hose, .. } => series_modulus(fluid_modulus, hose.wall_modulus(member)),
-            Line::Pipe { pipe, .. } => 1.0 / (1.0 / fluid_modulus + pipe.wall_compliance()),
+            Line::Pipe { pipe, .. } => {
+                let one = S::from(1.0);
+                one / (one / fluid_modulus + pipe.wall_compliance())
+            }
             Line::Volume { effective_bulk_modulus, .. } => effective_bulk_modulus,
         }
     }
 
     /// Compliance dV/dp = V_ho/beta_e in m3/Pa: what the line takes up per pascal.
-    pub fn compliance(&self, fluid_modulus: f64, member: Member) -> f64 {
+    pub fn compliance(&self, fluid_modulus: S, member: Member) -> S {
         self.volume() / self.effective_modulus(fluid_modulus, member)
     }
 }

@@ -75,14 +75,14 @@ pub struct ChamberCompliance<S = f64> {
 /// assert!((uniform - 2.233e6).abs() < 0.5e3 && (by_volume - 5.01e6).abs() < 0.5e4);
 /// # Ok::<(), phea_hydraulics::parameter::ParameterError>(())
 /// ```
-pub fn chamber_compliance(
+pub fn chamber_compliance<S: Scalar>(
     model: StiffnessModel,
-    fluid_moduli: [f64; 2],
-    cylinder: &Cylinder,
-    lines: [&Line; 2],
+    fluid_moduli: [S; 2],
+    cylinder: &Cylinder<S>,
+    lines: [&Line<S>; 2],
     member: Member,
-) -> ChamberCompliance {
-    let one_side = |area: f64, dead_volume: f64, line: &Line, fluid_modulus: f64| {
+) -> ChamberCompliance<S> {
+    let one_side = |area: S, dead_volume: S, line: &Line<S>, fluid_modulus: S| {
         let chamber_modulus = match model {
             StiffnessModel::Uniform => line.effective_modulus(fluid_modulus, member),
             StiffnessModel::ByVolume => fluid_modulus,

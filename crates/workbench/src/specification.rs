@@ -1,9 +1,13 @@
 //! From the specifications of a project to those of robust design.
 
-use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
-use phea_qft::specification::{Limit, LimitError, LimitTable, Requirement, Specification};
+mod limit;
 
-use crate::control::from_formulas;
+use phea_dynamics::linear::LinearError;
+use phea_qft::specification::{
+    LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck,
+};
+
+use self::limit::{MarginOf, Side};
 use crate::project::{self, FormulaError, Project, SpecificationKind};
 
 /// Why a declared specification cannot be judged by.
@@ -33,6 +37,26 @@ pub enum SpecificationProblem {
     /// The table is none.
     #[error(transparent)]
     Table(#[from] LimitError),
+    /// No limit guarantees the margins.
+    #[error(transparent)]
+    Margin(#[from] MarginError),
+    /// The wish in time has no limit, or the limit no response to check.
+    #[error(transparent)]
+    TimeDomain(#[from] TimeDomainError),
+    /// A form of limit that another kind of specification takes.
+    #[error("this kind of specification does not take {0}")]
+    Form(&'static str),
+}
+
+/// A limit of tracking that was wished in time, and what its own step response does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CheckedWish {
+    /// Place of the specification in the file, from 1.
+    pub number: usize,
+    /// `upper` or `lower`.
+    pub key: &'static str,
+    /// Wished and reached.
+    pub check: WishCheck,
 }
 
 /// The specifications of a project, in file order.
@@ -58,48 +82,75 @@ pub fn specifications(project: &Project) -> Result<Vec<Specification>, Specifica
     numbered.map(|(index, declared)| specification(declared, index + 1)).collect()
 }
 
+/// Every limit of tracking that was wished in time, held against its wish; in file order.
+///
+/// # Errors
+/// [`SpecificationError`] for a wish without a limit, or a limit whose step response has no end.
+///
+/// # Example
+/// The thesis' upper limit (6.28), given outright, and what it was to reach:
+/// ```
+/// use phea_workbench::source::Memory;
+/// let text = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s\"\n\
+///             [[specification]]\nkind = \"tracking\"\nfrequencies = [1]\nlower = 1e-3\n[specification.upper]\n\
+///             numerator = \"2116*(s + 75)/75\"\ndenominator = \"s^2 + 73.6*s + 2116\"\n\
+///             overshoot_percent = 1\nsettling_time = \"0.1 s\"\nsettling_band_percent = 1\n";
+/// let source = Memory::default().with("servo.toml", text);
+/// let project = phea_workbench::project::read(&source, "servo.toml", &[], &[])?.project;
+/// let wishes = phea_workbench::specification::wishes(&project)?;
+/// assert_eq!((wishes[0].number, wishes[0].key), (1, "upper"));
+/// assert!((wishes[0].check.reached.overshoot_percent - 2.19).abs() < 0.005); // thesis: 1 %
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn wishes(project: &Project) -> Result<Vec<CheckedWish>, SpecificationError> {
+    let mut checked = Vec::new();
+    for (index, declared) in project.specifications.iter().enumerate() {
+        let number = index + 1;
+        for (key, side, limit) in
+            [("upper", Side::Upper, &declared.upper), ("lower", Side::Lower, &declared.lower)]
+        {
+            if let Some(project::Limit::Response(wish)) = limit {
+                let (_, check) = limit::of_wish(wish, side).map_err(|reason| SpecificationError {
+                    number,
+                    key,
+                    reason,
+                })?;
+                checked.push(CheckedWish { number, key, check });
+            }
+        }
+    }
+    Ok(checked)
+}
+
 fn specification(
     declared: &project::Specification,
     number: usize,
 ) -> Result<Specification, SpecificationError> {
-    let limit_of = |key: &'static str, limit: &Option<project::Limit>| {
-        let found = limit.as_ref().ok_or(SpecificationProblem::Missing).and_then(limit_over_frequency);
+    let found = |key: &'static str, limit: &Option<project::Limit>, takes: limit::Takes| {
+        let found = limit.as_ref().ok_or(SpecificationProblem::Missing);
+        let found = found.and_then(|limit| limit::over_frequency(limit, takes));
         found.map_err(|reason| SpecificationError { number, key, reason })
     };
-    let limit = || limit_of("limit", &declared.limit);
+    let limit = |takes| found("limit", &declared.limit, takes);
+    let plain = || limit(limit::Takes::Neither);
     let requirement = match declared.kind {
-        SpecificationKind::RobustStability => Requirement::RobustStability(limit()?),
-        SpecificationKind::Sensitivity => Requirement::Sensitivity(limit()?),
-        SpecificationKind::PlantInputDisturbance => Requirement::PlantInputDisturbance(limit()?),
-        SpecificationKind::ControlEffort => Requirement::ControlEffort(limit()?),
-        SpecificationKind::LoadMotion => Requirement::LoadMotion(limit()?),
+        SpecificationKind::RobustStability => {
+            Requirement::RobustStability(limit(limit::Takes::Margins(MarginOf::RobustStability))?)
+        }
+        SpecificationKind::Sensitivity => {
+            Requirement::Sensitivity(limit(limit::Takes::Margins(MarginOf::Sensitivity))?)
+        }
+        SpecificationKind::PlantInputDisturbance => Requirement::PlantInputDisturbance(plain()?),
+        SpecificationKind::ControlEffort => Requirement::ControlEffort(plain()?),
+        SpecificationKind::LoadMotion => Requirement::LoadMotion(plain()?),
         SpecificationKind::Tracking => Requirement::Tracking {
-            lower: limit_of("lower", &declared.lower)?,
-            upper: limit_of("upper", &declared.upper)?,
+            lower: found("lower", &declared.lower, limit::Takes::Wish(Side::Lower))?,
+            upper: found("upper", &declared.upper, limit::Takes::Wish(Side::Upper))?,
         },
     };
     Ok(Specification {
         requirement,
         frequencies_rad_per_s: declared.frequencies.clone(),
         band_rad_per_s: declared.band_rad_per_s(),
-    })
-}
-
-fn limit_over_frequency(limit: &project::Limit) -> Result<Limit, SpecificationProblem> {
-    Ok(match limit {
-        project::Limit::Constant(value) => Limit::Constant(*value),
-        project::Limit::Text(formula) => {
-            let ratio = formula.numbers().map_err(SpecificationProblem::Formula)?;
-            let [numerator, denominator] = [ratio.numerator, ratio.denominator].map(Polynomial::new);
-            Limit::Rational(TransferFunction::from_polynomials(&numerator, &denominator)?)
-        }
-        project::Limit::Rational(rational) => {
-            let function = from_formulas(&rational.numerator, &rational.denominator);
-            Limit::Rational(function.map_err(SpecificationProblem::Formula)??)
-        }
-        project::Limit::Table(table) => {
-            let points = table.frequencies.iter().copied().zip(table.values.iter().copied());
-            Limit::Table(LimitTable::new(points.collect())?)
-        }
     })
 }

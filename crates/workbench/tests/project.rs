@@ -238,6 +238,13 @@ fn what_has_no_effect_is_told() {
         &HOSE.replace("anti_windup = \"none\"", "discretization = \"matched\""),
         "`discretization` has no effect: there is no `sample_time`",
     );
+    let elsewhere = HOSE.replace("viscous_friction          =", "\"cylinder.moving_mass\" =").replace(
+        "\"100 N.s/m\", minimum = \"100 N.s/m\", maximum = \"3e4 N.s/m\"",
+        "\"13 kg\", minimum = \"12 kg\", maximum = \"14 kg\"",
+    );
+    let stated = "the project states 13.1 kg for `cylinder.moving_mass`, not 13 kg: only the family has the latter as its \
+                  nominal plant";
+    warns(&elsewhere, stated);
     let improper = "[prefilter] has more zeros than poles: it can be verified, but not simulated or sampled";
     warns(&HOSE.replace("numerator = \"910\"", "numerator = \"s^3 + 910\""), improper);
     let weak = HOSE.replace("length = \"1.5 m\"", "length = \"1.5 m\"\nworking_pressure = \"50 bar\"");

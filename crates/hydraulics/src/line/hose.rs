@@ -7,27 +7,27 @@ use crate::parameter::{ParameterError, Problems};
 
 /// A hose described by its catalogue's volumetric expansion. Units: m, m3/m, m3/(m Pa).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hose {
+pub struct Hose<S = f64> {
     /// Bore D_ho in m.
-    pub bore: f64,
+    pub bore: S,
     /// Volumetric expansion per length at the working pressure, E, in m3/m (ISO 6801).
-    pub volumetric_expansion: f64,
+    pub volumetric_expansion: S,
     /// Slope of the volumetric expansion over pressure, epsilon = dE/dp, in m3/(m Pa).
-    pub expansion_slope: f64,
+    pub expansion_slope: S,
     /// Dynamic over static wall modulus, r_beta.
-    pub dynamic_stiffening: Stiffening,
+    pub dynamic_stiffening: Stiffening<S>,
 }
 
 /// Ratio r_beta of dynamic to static wall modulus as an interval: nylon braid 4 to 5 (Johnston et al. 2010), measured
 /// far above the frequencies of force control, so uncertain there. One at zero frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stiffening {
+pub struct Stiffening<S = f64> {
     /// What a nominal calculation uses.
-    pub nominal: f64,
+    pub nominal: S,
     /// The softest the wall may be.
-    pub minimum: f64,
+    pub minimum: S,
     /// The stiffest the wall may be.
-    pub maximum: f64,
+    pub maximum: S,
 }
 
 impl Stiffening {
@@ -36,8 +36,18 @@ impl Stiffening {
         Stiffening { nominal: ratio, minimum: ratio, maximum: ratio }
     }
 
+    fn map<S: Scalar>(&self) -> Stiffening<S> {
+        Stiffening {
+            nominal: S::from(self.nominal),
+            minimum: S::from(self.minimum),
+            maximum: S::from(self.maximum),
+        }
+    }
+}
+
+impl<S: Copy> Stiffening<S> {
     /// The ratio of one member of the interval.
-    pub fn member(&self, member: Member) -> f64 {
+    pub fn member(&self, member: Member) -> S {
         match member {
             Member::Minimum => self.minimum,
             Member::Nominal => self.nominal,
@@ -61,16 +71,6 @@ impl Hose {
         problems.into_vec()
     }
 
-    /// Static wall modulus beta_hoSS in Pa: [`static_hose_modulus`].
-    pub fn static_modulus(&self) -> f64 {
-        static_hose_modulus(self.bore, self.volumetric_expansion, self.expansion_slope)
-    }
-
-    /// Dynamic wall modulus beta_ho = r_beta beta_hoSS in Pa.
-    pub fn wall_modulus(&self, member: Member) -> f64 {
-        self.dynamic_stiffening.member(member) * self.static_modulus()
-    }
-
     /// Compliance per length counted in the expanded bore throughout, in m2/Pa: epsilon/r_beta + (A_ho + E)/beta_0.
     ///
     /// The thesis refers beta_hoSS to the expanded bore (6.24) but multiplies it with the unexpanded volume (6.25),
@@ -78,6 +78,28 @@ impl Hose {
     pub fn expanded_compliance_per_length(&self, fluid_modulus: f64, member: Member) -> f64 {
         let area = FRAC_PI_4 * self.bore * self.bore + self.volumetric_expansion;
         self.expansion_slope / self.dynamic_stiffening.member(member) + area / fluid_modulus
+    }
+
+    /// The same numbers as constants of another scalar.
+    pub fn map<S: Scalar>(&self) -> Hose<S> {
+        Hose {
+            bore: S::from(self.bore),
+            volumetric_expansion: S::from(self.volumetric_expansion),
+            expansion_slope: S::from(self.expansion_slope),
+            dynamic_stiffening: self.dynamic_stiffening.map(),
+        }
+    }
+}
+
+impl<S: Scalar> Hose<S> {
+    /// Static wall modulus beta_hoSS in Pa: [`static_hose_modulus`].
+    pub fn static_modulus(&self) -> S {
+        static_hose_modulus(self.bore, self.volumetric_expansion, self.expansion_slope)
+    }
+
+    /// Dynamic wall modulus beta_ho = r_beta beta_hoSS in Pa.
+    pub fn wall_modulus(&self, member: Member) -> S {
+        self.dynamic_stiffening.member(member) * self.static_modulus()
     }
 }
 

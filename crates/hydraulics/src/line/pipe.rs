@@ -4,26 +4,26 @@ use crate::parameter::{ParameterError, Problems};
 
 /// A round pipe. Units: m, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pipe {
+pub struct Pipe<S = f64> {
     /// Bore D in m.
-    pub bore: f64,
+    pub bore: S,
     /// What the wall gives, or nothing.
-    pub wall: PipeWall,
+    pub wall: PipeWall<S>,
 }
 
 /// Elasticity of a pipe's wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PipeWall {
+pub enum PipeWall<S = f64> {
     /// The wall does not yield at all.
     Rigid,
     /// Linear elasticity.
     Elastic {
         /// Wall thickness e in m.
-        thickness: f64,
+        thickness: S,
         /// Young's modulus E in Pa.
-        youngs_modulus: f64,
+        youngs_modulus: S,
         /// Poisson's ratio.
-        poisson_ratio: f64,
+        poisson_ratio: S,
         /// How the pipe is held along its axis.
         anchoring: Anchoring,
         /// Whether the stress varies over the wall (exact for any thickness) or is taken as even (D/e above 25).
@@ -56,10 +56,29 @@ impl Pipe {
         problems.into_vec()
     }
 
+    /// The same numbers as constants of another scalar.
+    pub fn map<S: Scalar>(&self) -> Pipe<S> {
+        let wall = match self.wall {
+            PipeWall::Rigid => PipeWall::Rigid,
+            PipeWall::Elastic { thickness, youngs_modulus, poisson_ratio, anchoring, thick } => {
+                PipeWall::Elastic {
+                    thickness: S::from(thickness),
+                    youngs_modulus: S::from(youngs_modulus),
+                    poisson_ratio: S::from(poisson_ratio),
+                    anchoring,
+                    thick,
+                }
+            }
+        };
+        Pipe { bore: S::from(self.bore), wall }
+    }
+}
+
+impl<S: Scalar> Pipe<S> {
     /// Relative growth of the bore's area per pressure, (dA/A)/dp, in 1/Pa; zero for a rigid wall.
-    pub fn wall_compliance(&self) -> f64 {
+    pub fn wall_compliance(&self) -> S {
         match self.wall {
-            PipeWall::Rigid => 0.0,
+            PipeWall::Rigid => S::from(0.0),
             PipeWall::Elastic { thickness, youngs_modulus, poisson_ratio, anchoring, thick } => {
                 pipe_wall_compliance(self.bore, thickness, youngs_modulus, poisson_ratio, anchoring, thick)
             }

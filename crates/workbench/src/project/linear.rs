@@ -67,6 +67,15 @@ pub struct LinearParameter {
     pub depends_on: &'static [&'static str],
 }
 
+impl LinearParameter {
+    /// Whether it follows from the number at a path.
+    pub(crate) fn follows_from(&self, path: &str) -> bool {
+        self.depends_on.iter().any(|table| {
+            path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        })
+    }
+}
+
 /// Paths the valve coefficients depend on.
 const VALVE: &[&str] = &[
     "valve.flow_coefficients",

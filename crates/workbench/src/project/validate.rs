@@ -3,6 +3,7 @@
 mod family;
 mod linear_loop;
 mod rig;
+mod specification;
 mod wishes;
 
 use super::reader::Reader;
@@ -25,7 +26,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     wishes::uncertainty(project, &mut check);
     family::family(project, &mut check);
     linear_loop::sensor(project, &mut check);
-    linear_loop::specifications(project, &mut check);
+    specification::specifications(project, &mut check);
     linear_loop::controllers(project, &mut check);
 }
 

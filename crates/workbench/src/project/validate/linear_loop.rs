@@ -1,82 +1,12 @@
-//! Specifications, controller and prefilter.
+//! Controller, prefilter and sensor.
 
 use super::Check;
 use crate::project::{
-    AntiWindup, Discretization, Element, ElementKind, Formula, Limit, Project, Specification,
-    SpecificationKind, Transfer, TransferForm, Variable,
+    AntiWindup, Discretization, Element, ElementKind, Formula, Project, Transfer, TransferForm, Variable,
 };
 
 /// Most zeros, poles or elements of a transfer function.
 const MAXIMUM_ORDER: usize = 50;
-
-pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
-    for (index, specification) in project.specifications.iter().enumerate() {
-        one_specification(specification, &format!("specification[{index}]"), check);
-        let second_path = project.plant.as_ref().is_none_or(|plant| plant.disturbance.is_some());
-        if specification.kind == SpecificationKind::LoadMotion && !second_path {
-            check.error(&format!("specification[{index}].kind"), "\"load_motion\" needs [plant.disturbance]");
-        }
-    }
-}
-
-fn one_specification(specification: &Specification, path: &str, check: &mut Check<'_, '_>) {
-    let limits =
-        [("limit", &specification.limit), ("upper", &specification.upper), ("lower", &specification.lower)];
-    let tracking = specification.kind == SpecificationKind::Tracking;
-    for (name, limit) in limits {
-        let belongs = tracking != (name == "limit");
-        let at = format!("{path}.{name}");
-        if belongs && limit.is_none() {
-            let kind = if tracking { "a tracking specification" } else { "a specification of this kind" };
-            check.missing(path, name, format!("missing `{name}`: {kind} needs it"));
-        }
-        if !belongs && (limit.is_some() || check.declared(&at)) {
-            let right = if tracking { "`upper` and `lower`" } else { "`limit`" };
-            check.error(&at, format!("`{name}` does not belong here: this kind takes {right}"));
-        }
-        if let Some(limit) = limit {
-            one_limit(limit, &at, check);
-        }
-    }
-    if let (Some(Limit::Constant(lower)), Some(Limit::Constant(upper))) =
-        (&specification.lower, &specification.upper)
-        && lower > upper
-    {
-        check.error(&format!("{path}.lower"), "`lower` is above `upper`");
-    }
-    let at = format!("{path}.frequencies");
-    if specification.frequencies.is_empty() {
-        match check.declared(&at) {
-            true => check.error(&at, "`frequencies` is empty"),
-            false => check.missing(path, "frequencies", "missing `frequencies`: where bounds are drawn"),
-        }
-    }
-    check.increasing(&at, &specification.frequencies);
-    if let Some([low, high]) = specification.band
-        && low >= high
-    {
-        check.error(&format!("{path}.band"), "`band` is empty or reversed: the lower frequency comes first");
-    }
-}
-
-fn one_limit(limit: &Limit, path: &str, check: &mut Check<'_, '_>) {
-    let formulas = match limit {
-        Limit::Constant(_) => Vec::new(),
-        Limit::Text(formula) => vec![formula],
-        Limit::Rational(rational) => vec![&rational.numerator, &rational.denominator],
-        Limit::Table(table) => {
-            if table.frequencies.len() != table.values.len() {
-                let (points, values) = (table.frequencies.len(), table.values.len());
-                check.error(path, format!("{points} frequencies but {values} values"));
-            }
-            check.increasing(&format!("{path}.frequencies"), &table.frequencies);
-            Vec::new()
-        }
-    };
-    if formulas.iter().any(|formula| formula.variable() == Some(Variable::Z)) {
-        check.error(path, "a limit is written in `s`, not in `z`");
-    }
-}
 
 pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
     if let Some(controller) = &project.controller {

@@ -7,6 +7,7 @@ use crate::project::{
     Actuator, Campaign, DELAY_PATH, Distribution, Formula, LINEAR_PARAMETERS, LinearParameter, LoadMotion,
     LoadMotionKind, Plant, Project, Scenario, Sizing, Spacing, Uncertain,
 };
+use crate::quantity::{self, RATIO};
 
 /// Most rows a scenario may write.
 const MAXIMUM_ROWS: f64 = 1e7;
@@ -210,6 +211,39 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
             check.error(&path, format!("`{}` is the variable of transfer functions", uncertain.name));
         }
         depends(uncertain, project, check);
+        both_sides(uncertain, project, check);
+        stated_elsewhere(uncertain, project, check);
+    }
+}
+
+/// A number of both lines beside the same of one line would be set twice.
+fn both_sides(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) {
+    let Some(key) = uncertain.name.strip_prefix("line.") else { return };
+    for side in ["line.a", "line.b"] {
+        let one = format!("{side}.{key}");
+        if project.uncertainty.iter().any(|other| other.name == one) {
+            let message = format!("`{one}` is part of `{}`: both cannot be uncertain", uncertain.name);
+            check.error_with_help(
+                &format!("uncertainty.{one}"),
+                message,
+                "list one of the two, or both sides",
+            );
+        }
+    }
+}
+
+/// The nominal value of a path should be the number that the project states there.
+fn stated_elsewhere(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) {
+    let Some(stated) = project.number(&uncertain.name) else { return };
+    if (stated - uncertain.nominal).abs() > 1e-9 * stated.abs() {
+        let dimension = check.reader.named.get(&uncertain.name).map_or(&RATIO, |key| key.dimension);
+        let [stated, nominal] =
+            [stated, uncertain.nominal].map(|value| quantity::display(value, dimension, 6));
+        let message = format!(
+            "the project states {stated} for `{}`, not {nominal}: only the family has the latter as its nominal plant",
+            uncertain.name
+        );
+        check.warning(&format!("uncertainty.{}.nominal", uncertain.name), message);
     }
 }
 
@@ -219,7 +253,7 @@ fn depends(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) 
         return hidden(&uncertain.name, project, check);
     };
     for other in &project.uncertainty {
-        if parameter.depends_on.iter().any(|path| is_below(&other.name, path)) {
+        if parameter.follows_from(&other.name) {
             let message =
                 format!("`{}` depends on `{}`: both cannot be uncertain", uncertain.name, other.name);
             check.error_with_help(&format!("uncertainty.{}", other.name), message, "list one of the two");
@@ -229,15 +263,10 @@ fn depends(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) 
 
 /// An uncertain path whose every linear parameter `[linear]` sets has no effect.
 fn hidden(name: &str, project: &Project, check: &mut Check<'_, '_>) {
-    let depends = |parameter: &&LinearParameter| parameter.depends_on.iter().any(|path| is_below(name, path));
+    let depends = |parameter: &&LinearParameter| parameter.follows_from(name);
     let mut reached = LINEAR_PARAMETERS.iter().filter(depends).peekable();
     if reached.peek().is_some() && reached.all(|parameter| project.linear.get(parameter.key.name).is_some()) {
         let message = format!("`{name}` does not reach the linear model: [linear] sets what it changes");
         check.warning(&format!("uncertainty.{name}"), message);
     }
-}
-
-/// Whether a path is the other or a part of what it names.
-fn is_below(path: &str, table: &str) -> bool {
-    path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }

@@ -1,0 +1,143 @@
+//! A limit over frequency from each form in which it may be written.
+
+use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::time_response::SettlingRule;
+use phea_qft::specification::{
+    ExtraRoot, Limit, LimitTable, LowerWish, MarginError, Translation, UpperWish, WishCheck, check_lower,
+    check_upper, delay_margin_limit, robust_stability_limit_for_gain_increase,
+    robust_stability_limit_for_gain_reduction, robust_stability_limit_for_modulus_margin,
+    robust_stability_limit_for_phase_margin, sensitivity_limit_for_gain_increase,
+    sensitivity_limit_for_gain_reduction, sensitivity_limit_for_modulus_margin,
+    sensitivity_limit_for_phase_margin, tracking_lower, tracking_upper,
+};
+
+use super::SpecificationProblem;
+use crate::control::from_formulas;
+use crate::project::{self, MarginWish, Rational, ResponseRule, ResponseWish};
+
+/// What a key takes beside the forms that all take.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Takes {
+    Neither,
+    Margins(MarginOf),
+    Wish(Side),
+}
+
+/// The closed loop whose magnitude is to guarantee margins.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum MarginOf {
+    RobustStability,
+    Sensitivity,
+}
+
+/// Which limit of tracking.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Side {
+    Upper,
+    Lower,
+}
+
+pub(super) fn over_frequency(limit: &project::Limit, takes: Takes) -> Result<Limit, SpecificationProblem> {
+    Ok(match (limit, takes) {
+        (project::Limit::Constant(value), _) => Limit::Constant(*value),
+        (project::Limit::Text(formula), _) => {
+            let ratio = formula.numbers().map_err(SpecificationProblem::Formula)?;
+            let [numerator, denominator] = [ratio.numerator, ratio.denominator].map(Polynomial::new);
+            Limit::Rational(TransferFunction::from_polynomials(&numerator, &denominator)?)
+        }
+        (project::Limit::Rational(rational), _) => Limit::Rational(function(rational)?),
+        (project::Limit::Table(table), _) => {
+            let points = table.frequencies.iter().copied().zip(table.values.iter().copied());
+            Limit::Table(LimitTable::new(points.collect())?)
+        }
+        (project::Limit::Margins(wish), Takes::Margins(of)) => of_margins(wish, of)?,
+        (project::Limit::Response(wish), Takes::Wish(side)) => Limit::Rational(of_wish(wish, side)?.0),
+        (project::Limit::Margins(_), _) => return Err(SpecificationProblem::Form("margins")),
+        (project::Limit::Response(_), _) => return Err(SpecificationProblem::Form("a wish in time")),
+    })
+}
+
+fn function(rational: &Rational) -> Result<TransferFunction, SpecificationProblem> {
+    let function = from_formulas(&rational.numerator, &rational.denominator);
+    Ok(function.map_err(SpecificationProblem::Formula)??)
+}
+
+/// The strictest of the limits that guarantee the margins, or the one that guarantees the delay.
+fn of_margins(wish: &MarginWish, of: MarginOf) -> Result<Limit, SpecificationProblem> {
+    if let (Some(delay_s), MarginOf::RobustStability) = (wish.delay_margin, of) {
+        return Ok(delay_margin_limit(delay_s)?);
+    }
+    type Translate = fn(f64) -> Result<f64, MarginError>;
+    let translations: [Translate; 4] = match of {
+        MarginOf::RobustStability => [
+            robust_stability_limit_for_gain_increase,
+            robust_stability_limit_for_gain_reduction,
+            robust_stability_limit_for_phase_margin,
+            robust_stability_limit_for_modulus_margin,
+        ],
+        MarginOf::Sensitivity => [
+            sensitivity_limit_for_gain_increase,
+            sensitivity_limit_for_gain_reduction,
+            sensitivity_limit_for_phase_margin,
+            sensitivity_limit_for_modulus_margin,
+        ],
+    };
+    let wishes = [wish.gain_margin, wish.gain_reduction, wish.phase_margin, wish.modulus_margin];
+    let mut strictest = None::<f64>;
+    for (wished, translate) in wishes.into_iter().zip(translations) {
+        if let Some(wished) = wished {
+            let limit = translate(wished)?;
+            strictest = Some(strictest.map_or(limit, |known| known.min(limit)));
+        }
+    }
+    strictest.map(Limit::Constant).ok_or(SpecificationProblem::Missing)
+}
+
+/// The limit that a wish in time makes, or the one given beside it, and what it does in time.
+pub(super) fn of_wish(
+    wish: &ResponseWish,
+    side: Side,
+) -> Result<(TransferFunction, WishCheck), SpecificationProblem> {
+    let needed = |value: Option<f64>| value.ok_or(SpecificationProblem::Missing);
+    let settling_time_s = needed(wish.settling_time)?;
+    let settling_band_percent = needed(wish.settling_band_percent)?;
+    let given = wish.function.as_ref().map(function).transpose()?;
+    match side {
+        Side::Upper => {
+            let overshoot_percent = needed(wish.overshoot_percent)?;
+            let wished = UpperWish { overshoot_percent, settling_time_s, settling_band_percent };
+            if let Some(function) = given {
+                let check = check_upper(&function, &wished)?;
+                return Ok((function, check));
+            }
+            let limit = tracking_upper(&wished, extra(wish.zero), translation(wish.rule))?;
+            Ok((limit.function, limit.check))
+        }
+        Side::Lower => {
+            let wished = LowerWish { settling_time_s, settling_band_percent };
+            if let Some(function) = given {
+                let check = check_lower(&function, &wished)?;
+                return Ok((function, check));
+            }
+            let limit = tracking_lower(&wished, extra(wish.pole), translation(wish.rule))?;
+            Ok((limit.function, limit.check))
+        }
+    }
+}
+
+fn extra(root: Option<f64>) -> ExtraRoot {
+    root.map_or(ExtraRoot::None, |rad_per_s| ExtraRoot::At { rad_per_s })
+}
+
+fn translation(rule: ResponseRule) -> Translation {
+    match rule {
+        ResponseRule::Exact => Translation::Exact,
+        ResponseRule::FivePercent => Translation::Rule(SettlingRule::FivePercent),
+        ResponseRule::TwoPercent => Translation::Rule(SettlingRule::TwoPercent),
+        ResponseRule::OnePercent => Translation::Rule(SettlingRule::OnePercent),
+        ResponseRule::OnePercentThesis => Translation::Rule(SettlingRule::OnePercentThesis),
+        ResponseRule::CriticallyDampedTwoPercent => {
+            Translation::Rule(SettlingRule::CriticallyDampedTwoPercent)
+        }
+    }
+}
