@@ -3,9 +3,15 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+#[path = "verification/ends.rs"]
+mod ends;
 #[path = "verification/examples.rs"]
 mod examples;
 #[path = "verification/plants.rs"]
 mod plants;
+#[path = "verification/properties.rs"]
+mod properties;
+#[path = "verification/reach.rs"]
+mod reach;
 #[path = "verification/thesis.rs"]
 mod thesis;

@@ -228,15 +228,14 @@ impl SpecificationAudit {
     }
 
     fn plant(&self, index: usize) -> Option<Plant> {
-        let compensation = &self.evaluator.compensation;
         let (point, member) = match &self.family {
             Family::Uncertain(family) => {
                 let values = self.values.get(index)?;
-                let member = compensation.member(family.plant().coefficients(values)).ok();
+                let member = self.evaluator.member(family.plant(), values);
                 (PlantPoint::Parameters(values.clone()), member)
             }
             Family::Measured(family) => {
-                let member = compensation.measured(family.plants().get(index)?);
+                let member = self.evaluator.compensation.measured(family.plants().get(index)?);
                 (PlantPoint::Measured(index), Some(member))
             }
         };
@@ -403,7 +402,7 @@ impl SpecificationAudit {
                 if self.plants.iter().any(|plant| plant.point == point) {
                     continue;
                 }
-                let member = self.evaluator.compensation.member(family.plant().coefficients(&values)).ok();
+                let member = self.evaluator.member(family.plant(), &values);
                 let features =
                     member.as_ref().map_or_else(Features::none, |member| features(&self.evaluator, member));
                 let plant = Plant { point, member, features };

@@ -1,9 +1,11 @@
 //! Margins of one plant: everything about a loop and its specifications but the family, and a count of the work.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
 
 use phea_dynamics::linear::Polynomial;
 use phea_dynamics::portable;
+use phea_dynamics::uncertain_plant::UncertainPlant;
 
 use super::asymptote::{self, End};
 use super::criterion::Criterion;
@@ -25,6 +27,8 @@ pub(super) struct Evaluator {
     /// Dead time of G H, s.
     pub(super) compensator_dead_time_s: f64,
     responses: Cell<u64>,
+    /// Plants that were sampled before, by the bits of their parameter values: sampling costs more than a thousand responses.
+    sampled: RefCell<BTreeMap<Vec<u64>, Option<Member>>>,
 }
 
 impl Evaluator {
@@ -46,12 +50,23 @@ impl Evaluator {
             compensator,
             compensator_dead_time_s,
             responses: Cell::new(0),
+            sampled: RefCell::default(),
         }
     }
 
     /// Responses of a plant that were evaluated so far.
     pub(super) fn responses(&self) -> u64 {
         self.responses.get()
+    }
+
+    /// A plant within the loop; `None` if it cannot be sampled.
+    pub(super) fn member(&self, plant: &UncertainPlant, values: &[f64]) -> Option<Member> {
+        let build = || self.compensation.member(plant.coefficients(values)).ok();
+        if self.compensation.sample_time_s().is_none() {
+            return build();
+        }
+        let key = values.iter().map(|value| value.to_bits()).collect();
+        self.sampled.borrow_mut().entry(key).or_insert_with(build).clone()
     }
 
     pub(super) fn loop_at(&self, frequency: f64) -> LoopAt {

@@ -148,7 +148,8 @@ pub(super) fn common_grid<'a>(
         range = [range, plant.range].into_iter().flatten().reduce(joined);
         dead_time_s = dead_time_s.max(plant.dead_time_s);
     }
-    let Some(band) = evaluator.criteria.iter().map(|criterion| criterion.band).reduce(joined) else {
+    let bands = evaluator.criteria.iter().map(|criterion| criterion.band);
+    let Some(band) = bands.filter(|[from, to]| 0.0 <= *from && from <= to).reduce(joined) else {
         return Vec::new();
     };
     let mut grid = [own.frequencies, given.to_vec()].concat();

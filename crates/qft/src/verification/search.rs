@@ -15,6 +15,8 @@ const SWEEPS_MAXIMUM: usize = 20;
 const GAIN_MINIMUM: f64 = 1e-6;
 /// Shares are found to this.
 const SHARE_TOLERANCE: f64 = 1e-5;
+/// As long as a sweep still looks far, to this share of how far.
+const SHARE_STEP: f64 = 1e-3;
 /// First step of a frequency that follows its minimum, as a share of itself.
 const FREQUENCY_STEP: f64 = 0.01;
 
@@ -72,8 +74,7 @@ struct Descent<'a> {
 
 impl Descent<'_> {
     fn member(&self, shares: &[f64]) -> Option<Member> {
-        let plant = self.family.plant().coefficients(&self.family.values(shares));
-        self.evaluator.compensation.member(plant).ok()
+        self.evaluator.member(self.family.plant(), &self.family.values(shares))
     }
 
     fn start(&self) -> Option<Place> {
@@ -175,7 +176,7 @@ impl Descent<'_> {
             }
             None => f64::INFINITY,
         };
-        minimum::between(margin, ends, start, SHARE_TOLERANCE);
+        minimum::between(margin, ends, start, (SHARE_STEP * radius).max(SHARE_TOLERANCE));
         best
     }
 

@@ -1,0 +1,144 @@
+//! Limits at zero and infinite frequency, and peaks that no grid meets.
+
+use phea_dynamics::controller::Timing;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
+use phea_qft::closed_loop::Compensation;
+use phea_qft::family::{Family, Spacing};
+use phea_qft::specification::{Limit, Requirement};
+use phea_qft::verification::{SpecificationFinding, TrackingJudgement, Verdict};
+
+use crate::plants::{along, audited, compensation, on_grid, parameter, rational, specification};
+
+const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];
+
+/// k numerator/denominator e^(-s T), k from 1 to 2.
+fn gain_times(numerator: &[f64], denominator: &[f64], dead_time_s: f64) -> Family {
+    let plant = UncertainPlant::record(vec![parameter("k", 1.0, 1.0, 2.0)], |p| PlantCoefficients {
+        command: RationalCoefficients {
+            numerator: numerator.iter().map(|&value| p[0] * value.into()).collect(),
+            denominator: denominator.iter().map(|&value| value.into()).collect(),
+        },
+        disturbance: None,
+        dead_time_s: dead_time_s.into(),
+    });
+    on_grid(plant.unwrap(), vec![along(0, Spacing::Linear, 2)])
+}
+
+fn unity(gain: f64) -> Compensation {
+    compensation(TransferFunction::gain_only(gain), TransferFunction::gain_only(1.0), Timing::default())
+}
+
+fn judged(
+    family: &Family,
+    around: &Compensation,
+    requirement: Requirement,
+    band: [f64; 2],
+) -> SpecificationFinding {
+    let specifications = [specification(requirement, &[], band)];
+    audited(family, around, &specifications, TrackingJudgement::Magnitude).0.remove(0)
+}
+
+fn decibels(ratio: f64) -> f64 {
+    20.0 * ratio.log10()
+}
+
+#[track_caller]
+fn check(finding: &SpecificationFinding, margin_db: f64, frequency: f64) {
+    let worst = finding.worst.as_ref().unwrap();
+    assert!((worst.margin_db - margin_db).abs() < 1e-6 || worst.margin_db == margin_db, "{worst:?}");
+    let found = worst.frequency_rad_per_s;
+    assert!(found == frequency || (found / frequency - 1.0).abs() < 1e-5, "{worst:?}");
+}
+
+#[test]
+fn an_integrator_tracks_at_zero_frequency_and_sees_nothing_at_infinity() {
+    let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
+    let constant = Limit::Constant;
+    // |T| = k/|jw + k|: 1 at zero
+    let stability = judged(&integrator, &unity(1.0), Requirement::RobustStability(constant(1.5)), EVERYWHERE);
+    check(&stability, decibels(1.5), 0.0);
+    assert_eq!(stability.interior, None);
+    // |S| = w/|jw + k|: 1 at infinity
+    let sensitivity = judged(&integrator, &unity(1.0), Requirement::Sensitivity(constant(0.9)), EVERYWHERE);
+    check(&sensitivity, decibels(0.9), f64::INFINITY);
+    assert_eq!(sensitivity.verdict, Verdict::Violated);
+    let [from, to] = sensitivity.violations[0].band_rad_per_s;
+    // w = 0.9/sqrt(1 - 0.81), and a little above for the tolerance of 0.001 dB
+    assert!((from / (0.9 / 0.19f64.sqrt()) - 1.0).abs() < 1e-3 && to == f64::INFINITY, "{from}");
+    // |S| against s/(s + 3): 3/k at zero, 1 at infinity, both margins known
+    let sloped = Requirement::Sensitivity(Limit::Rational(rational(&[1.0, 0.0], &[1.0, 3.0])));
+    check(&judged(&integrator, &unity(1.0), sloped, EVERYWHERE), decibels(1.0 / 3.0), 0.0);
+    // |P/(1+L)| -> 1/G
+    let disturbance = Requirement::PlantInputDisturbance(constant(0.25));
+    check(&judged(&integrator, &unity(5.0), disturbance, EVERYWHERE), decibels(1.25), 0.0);
+    // |G/(1+L)| -> G
+    let effort = judged(&integrator, &unity(5.0), Requirement::ControlEffort(constant(4.0)), EVERYWHERE);
+    check(&effort, decibels(0.8), f64::INFINITY);
+}
+
+#[test]
+fn a_lower_limit_above_a_vanishing_magnitude_is_violated_without_end() {
+    let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
+    let constant = Limit::Constant;
+    let tracking = Requirement::Tracking { lower: constant(0.5), upper: constant(1.1) };
+    check(&judged(&integrator, &unity(1.0), tracking, EVERYWHERE), f64::NEG_INFINITY, f64::INFINITY);
+    // a lower limit that falls as fast keeps a margin: k/w against 0.25/w
+    let lower = Limit::Rational(rational(&[0.25], &[1.0, 0.25]));
+    let tracking = Requirement::Tracking { lower, upper: constant(1.1) };
+    let finding = judged(&integrator, &unity(1.0), tracking, EVERYWHERE);
+    check(&finding, 0.0, 0.0); // T = lower = 1 at zero frequency, and rounding is no violation
+    assert_eq!(finding.verdict, Verdict::Met);
+}
+
+#[test]
+fn dead_time_turns_a_loop_that_does_not_vanish_through_its_worst_phase() {
+    // L = k/4 e^(-s T): |1 + L| comes down to 1 - k/4, again and again
+    let family = gain_times(&[1.0], &[1.0], 0.1);
+    let finding = judged(&family, &unity(0.25), Requirement::Sensitivity(Limit::Constant(1.5)), EVERYWHERE);
+    let worst = finding.worst.as_ref().unwrap();
+    assert!((worst.margin_db - decibels(0.75)).abs() < 1e-6, "{worst:?}");
+}
+
+#[test]
+fn a_loop_of_minus_one_at_zero_frequency_is_not_resolved() {
+    let family = gain_times(&[-1.0], &[1.0, 1.0], 0.0);
+    let finding = judged(&family, &unity(1.0), Requirement::Sensitivity(Limit::Constant(1e9)), [0.0, 1.0]);
+    assert_ne!(finding.verdict, Verdict::Met, "{finding:?}");
+}
+
+/// w^2/(s^2 + 2 d w s + w^2) in a loop of gain g: the peak of P/(1+L) is 1/((1 + g) 2 e sqrt(1 - e^2)) with e = d/sqrt(1 + g).
+fn resonance_peak(gain: f64, damping: f64) -> f64 {
+    let closed = damping / (1.0 + gain).sqrt();
+    1.0 / ((1.0 + gain) * 2.0 * closed * (1.0 - closed * closed).sqrt())
+}
+
+#[test]
+fn a_peak_a_millionth_wide_is_found() {
+    for (damping, dead_time_s) in [(1e-2, 0.0), (1e-4, 0.0), (1e-7, 0.0), (1e-4, 1e-14)] {
+        let family = gain_times(&[1e6], &[1.0, 2e3 * damping, 1e6], dead_time_s);
+        let requirement = Requirement::PlantInputDisturbance(Limit::Constant(1.0));
+        let finding = judged(&family, &unity(0.3), requirement, EVERYWHERE);
+        // 2/(1 + 2 g) > 1/(1 + g), but the damping of the stiffer loop is less
+        let peak =
+            (1..=2).map(|k| f64::from(k) * resonance_peak(0.3 * f64::from(k), damping)).fold(0.0, f64::max);
+        let worst = finding.worst.as_ref().unwrap();
+        assert!((worst.margin_db + decibels(peak)).abs() < 1e-4, "{damping} {dead_time_s}: {worst:?} {peak}");
+        assert_eq!(finding.violations.len(), 1);
+        let drawn = finding.envelope.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
+        assert!((drawn - worst.margin_db).abs() < 1e-4);
+    }
+}
+
+/// The worst case at an end of the band does not hide the worst inside it.
+#[test]
+fn the_worst_interior_minimum_is_stated_beside_an_end() {
+    let family = gain_times(&[1.0], &[1.0, 0.4, 1.0], 0.0);
+    // |P/(1+L)| = k/|1 + k g - w^2 + 0.4 jw|, against 1/s: worst at infinity for a limit that falls faster still
+    let limit = Limit::Rational(rational(&[1.0], &[0.01, 0.1, 1.0, 1.0]));
+    let finding = judged(&family, &unity(0.5), Requirement::PlantInputDisturbance(limit), EVERYWHERE);
+    let worst = finding.worst.as_ref().unwrap();
+    assert_eq!((worst.margin_db, worst.frequency_rad_per_s), (f64::NEG_INFINITY, f64::INFINITY));
+    let interior = finding.interior.as_ref().unwrap();
+    assert!((1.0..2.0).contains(&interior.frequency_rad_per_s), "{interior:?}");
+}
