@@ -81,14 +81,14 @@ impl Rule {
     /// `None` for a response that is zero or not finite.
     pub(super) fn plant(&self, point: &TemplatePoint) -> Option<Plant> {
         let inverse = self.nominal / point.response;
-        let response = portable::magnitude(point.response);
-        let sensor = portable::magnitude(point.sensor);
+        let response = || portable::magnitude(point.response);
+        let sensor = || portable::magnitude(point.sensor);
         let (limit, weight) = match self.kind {
             Kind::RobustStability | Kind::Sensitivity => scaled(self.limit, 1.0),
-            Kind::PlantInputDisturbance => scaled(self.limit, response / sensor),
+            Kind::PlantInputDisturbance => scaled(self.limit, response() / sensor()),
             Kind::LoadMotion => scaled(self.limit, portable::magnitude(point.load_motion)),
-            Kind::ControlEffort => scaled(self.limit * response, 1.0),
-            Kind::Tracking => (self.limit / self.tracking_scale() * sensor, 1.0),
+            Kind::ControlEffort => scaled(self.limit * response(), 1.0),
+            Kind::Tracking => (self.limit / self.tracking_scale() * sensor(), 1.0),
         };
         let sound =
             is_response(point.response) && is_response(inverse) && limit.is_finite() && weight.is_finite();
