@@ -92,7 +92,7 @@ impl Rule {
         };
         let sound =
             is_response(point.response) && is_response(inverse) && limit.is_finite() && weight.is_finite();
-        sound.then(|| Plant { inverse, modulus: portable::magnitude(inverse), limit, weight })
+        sound.then(|| Plant { inverse, modulus: modulus(inverse), limit, weight })
     }
 
     /// What the plants are held against: for tracking every plant with its |H|, otherwise |L0| itself.
@@ -130,6 +130,12 @@ impl Rule {
 /// A number that a plant can be: neither zero nor without bound.
 fn is_response(value: Complex64) -> bool {
     value.is_finite() && value != Complex64::new(0.0, 0.0)
+}
+
+/// |z|, by the short way unless it might overflow or lose digits.
+fn modulus(value: Complex64) -> f64 {
+    let square = value.norm_sqr();
+    if square > 1e-280 && square < 1e280 { square.sqrt() } else { portable::magnitude(value) }
 }
 
 /// Limit and weight over a power of two common to both, so that neither squares to overflow. Where neither a limit nor anything to
