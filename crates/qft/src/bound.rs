@@ -1,16 +1,20 @@
 //! Bounds: where the nominal loop L0 may not be, so that every plant of a template keeps to a specification.
 
 mod ceiling;
+mod combined;
 mod fill;
 mod function;
 mod inequality;
 mod interval;
+mod phases;
 mod quadratic;
 mod rule;
 mod tree;
 
+pub use combined::{Collision, CombinedBound, Feasibility, FrequencyBounds, Placement, SpecificationBound};
 pub use function::BoundFunction;
 pub use interval::GainIntervals;
+pub use phases::PhaseGrid;
 
 /// A bound at one frequency: for each phase of the nominal loop, the gains |L0| that are forbidden.
 #[derive(Clone, Debug, PartialEq)]

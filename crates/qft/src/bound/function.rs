@@ -7,9 +7,10 @@ use super::ceiling::{Candidate, Piece, contenders, greatest};
 use super::fill::{Edge, inside};
 use super::inequality::{Form, Plant, Ray};
 use super::interval::GainIntervals;
+use super::phases::{PhaseGrid, sampled};
 use super::rule::Rule;
 use super::tree::Tree;
-use super::{BoundError, Fill};
+use super::{Bound, BoundError, Fill};
 use crate::specification::Requirement;
 use crate::template::{Template, TemplatePoint};
 
@@ -114,7 +115,7 @@ impl BoundFunction {
         if form == Form::Spread {
             function.others = contenders(others);
         }
-        function.plants = Some(Tree::new(form, &mut plants));
+        function.plants = Some(Tree::new(form, &plants));
         Ok(function)
     }
 
@@ -128,7 +129,50 @@ impl BoundFunction {
         self.forbidden_towards(Complex64::new(portable::cos(phase_rad), portable::sin(phase_rad)))
     }
 
-    /// The same in the direction e^(j phi).
+    /// The bound over all phases.
+    pub fn bound(&self, grid: &PhaseGrid) -> Bound {
+        let samples = sampled(grid, &[self]);
+        Bound {
+            frequency_rad_per_s: self.frequency_rad_per_s,
+            phases_rad: samples.iter().map(|sample| sample.phase_rad).collect(),
+            forbidden: samples.into_iter().filter_map(|sample| sample.forbidden.into_iter().next()).collect(),
+        }
+    }
+
+    /// Arcs of phases in [-2 pi, 0], `[from, to]`, all of which some plant forbids at some gain and which are narrower than the spacing.
+    ///
+    /// ```text
+    /// |phi - arg(-q)| <= arcsin(r/W)                                           limits of T and S alike, where r < W
+    /// |phi - arg(-q)| <= arcsin(R/((1 + D) |q|)),  D = greatest W_i/r_k        tracking, R the distance of the farthest corner
+    /// ```
+    ///
+    /// The second is the disc around -q in which L0 is D times closer to it than to that corner.
+    pub(super) fn narrow_arcs(&self, spacing_rad: f64) -> Vec<[f64; 2]> {
+        let turn = std::f64::consts::TAU;
+        let mut arcs = Vec::new();
+        let widest = portable::sin(spacing_rad.min(1.5) / 2.0);
+        let weakest = self.others.iter().map(|other| other.weight).fold(f64::INFINITY, f64::min);
+        for plant in self.plants.iter().flat_map(Tree::plants) {
+            let sine = match self.form {
+                Form::Complementary | Form::Sensitivity => plant.weight / plant.limit,
+                Form::Spread => {
+                    let apart = |other: &Candidate| (other.inverse - plant.inverse).norm_sqr();
+                    let farthest = self.others.iter().map(apart).fold(0.0, f64::max).sqrt();
+                    farthest / (1.0 + plant.limit / weakest) / plant.modulus
+                }
+            };
+            if sine > 0.0 && sine < widest {
+                // Half of the arc is kept, so that the plant does not merely touch it.
+                let half = portable::asin(sine) / 2.0;
+                let middle = portable::argument(-plant.inverse);
+                let middle = if middle > 0.0 { middle - turn } else { middle };
+                arcs.push([(middle - half).max(-turn), (middle + half).min(0.0)]);
+            }
+        }
+        arcs
+    }
+
+    /// What [`BoundFunction::forbidden`] tells, in the direction e^(j phi).
     pub(super) fn forbidden_towards(&self, direction: Complex64) -> GainIntervals {
         let mut union = GainIntervals::default();
         let Some(plants) = &self.plants else {

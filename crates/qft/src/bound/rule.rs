@@ -81,18 +81,18 @@ impl Rule {
     /// `None` for a response that is zero or not finite.
     pub(super) fn plant(&self, point: &TemplatePoint) -> Option<Plant> {
         let inverse = self.nominal / point.response;
-        let response = portable::magnitude(point.response);
-        let sensor = portable::magnitude(point.sensor);
+        let response = || portable::magnitude(point.response);
+        let sensor = || portable::magnitude(point.sensor);
         let (limit, weight) = match self.kind {
             Kind::RobustStability | Kind::Sensitivity => scaled(self.limit, 1.0),
-            Kind::PlantInputDisturbance => scaled(self.limit, response / sensor),
+            Kind::PlantInputDisturbance => scaled(self.limit, response() / sensor()),
             Kind::LoadMotion => scaled(self.limit, portable::magnitude(point.load_motion)),
-            Kind::ControlEffort => scaled(self.limit * response, 1.0),
-            Kind::Tracking => (self.limit / self.tracking_scale() * sensor, 1.0),
+            Kind::ControlEffort => scaled(self.limit * response(), 1.0),
+            Kind::Tracking => (self.limit / self.tracking_scale() * sensor(), 1.0),
         };
         let sound =
             is_response(point.response) && is_response(inverse) && limit.is_finite() && weight.is_finite();
-        sound.then(|| Plant { inverse, modulus: portable::magnitude(inverse), limit, weight })
+        sound.then(|| Plant { inverse, modulus: modulus(inverse), limit, weight })
     }
 
     /// What the plants are held against: for tracking every plant with its |H|, otherwise |L0| itself.
@@ -130,6 +130,12 @@ impl Rule {
 /// A number that a plant can be: neither zero nor without bound.
 fn is_response(value: Complex64) -> bool {
     value.is_finite() && value != Complex64::new(0.0, 0.0)
+}
+
+/// |z|, by the short way unless it might overflow or lose digits.
+fn modulus(value: Complex64) -> f64 {
+    let square = value.norm_sqr();
+    if square > 1e-280 && square < 1e280 { square.sqrt() } else { portable::magnitude(value) }
 }
 
 /// Limit and weight over a power of two common to both, so that neither squares to overflow. Where neither a limit nor anything to

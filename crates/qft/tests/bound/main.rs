@@ -1,6 +1,8 @@
 //! Bounds: against published examples, against the plain method, and against the closed loops themselves.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod phases;
 mod plain;
+mod properties;
 mod published;
 mod random;

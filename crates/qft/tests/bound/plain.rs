@@ -7,7 +7,7 @@ use phea_qft::bound::{BoundFunction, Fill, GainIntervals};
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::template::{Template, TemplatePoint};
 
-use crate::random::{Numbers, random_requirements, random_template};
+use crate::random::{Numbers, random_requirements, random_template, template_of};
 
 /// Where a g^2 + b g + c < 0 with g > 0, by the school formula.
 fn school(a: f64, b: f64, c: f64) -> Vec<[f64; 2]> {
@@ -123,4 +123,21 @@ fn the_same_intervals_as_the_plain_method() {
         }
     }
     assert!(intervals.iter().all(|&count| count > 100), "{intervals:?}");
+}
+
+#[test]
+fn the_same_intervals_for_a_thousand_plants() {
+    let mut numbers = Numbers(0x6A09_E667_F3BC_C909);
+    for trial in 0..12 {
+        let template = template_of(&mut numbers, 1000);
+        for requirement in random_requirements(&mut numbers, &template) {
+            let function = BoundFunction::new(&template, &requirement, Fill::Points).unwrap();
+            let tracking = matches!(requirement, Requirement::Tracking { .. });
+            for _ in 0..if tracking { 2 } else { 40 } {
+                let phase = numbers.between(-std::f64::consts::TAU, 0.0);
+                let (found, expected) = (function.forbidden(phase), plain(&template, &requirement, phase));
+                assert_same(&found, &expected, &format!("trial {trial}, {requirement:?}, {phase}"));
+            }
+        }
+    }
 }

@@ -35,6 +35,11 @@ impl Numbers {
 /// A family with random spread, with a sensor that is one, common to all, or different from plant to plant.
 pub(crate) fn random_template(numbers: &mut Numbers) -> Template {
     let count = numbers.factor(1.0, 120.0) as usize;
+    template_of(numbers, count)
+}
+
+/// The same with so many plants.
+pub(crate) fn template_of(numbers: &mut Numbers, count: usize) -> Template {
     let spread = [1.0, numbers.factor(1.01, 30.0)];
     let angles = [0.0, numbers.factor(0.01, 6.0)];
     let sensors = (numbers.next() * 3.0) as u32;
