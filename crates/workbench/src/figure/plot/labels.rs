@@ -127,7 +127,7 @@ fn call_out(
     if let (Some(text), Some(Led { bounds, line })) = (texts.get(index), candidates.get(index)) {
         if let Some((from, to)) = *line {
             scene.line(from, to, Stroke::solid(legible(role), 0.8));
-            occupancy.add_polyline(&[from, to]);
+            occupancy.add_lead(from, to);
         }
         occupancy.add_text(*bounds);
         scene.text(text.clone());

@@ -41,7 +41,7 @@ pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occu
             Mark::Line { points, stroke } => {
                 let points: Vec<Point> = points.iter().map(|&(x, y)| placed.at(x, y)).collect();
                 let runs = clip::polyline(&points, &placed.frame);
-                runs.iter().for_each(|piece| occupancy.add_polyline(piece));
+                runs.iter().for_each(|piece| occupancy.add_polyline(piece, stroke.width));
                 let steps: Vec<PathStep> =
                     runs.iter().flat_map(|piece| run(&simplify::polyline(piece), false)).collect();
                 if !steps.is_empty() {
@@ -70,7 +70,7 @@ pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occu
             }
             Mark::Reference { direction, at, stroke, .. } => {
                 if let Some((from, to)) = reference_line(placed, *direction, *at) {
-                    occupancy.add_polyline(&[from, to]);
+                    occupancy.add_polyline(&[from, to], stroke.width);
                     scene.line(from, to, *stroke);
                 }
             }
