@@ -361,6 +361,7 @@ fn families_over_frequency() {
             least: r.maybe(curve),
             members: r.many(4, curve),
             design_frequencies_rad_per_s: r.numbers(),
+            tolerance_db: r.number(),
             marks: r.many(3, mark),
         };
         family_magnitude(r.words(), &input)

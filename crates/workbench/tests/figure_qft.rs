@@ -205,7 +205,7 @@ fn magnitudes(frequencies: &[f64], magnitudes: &[f64]) -> MagnitudeCurve {
 }
 
 /// A magnitude equal to the frequency crosses a limit of 1 at 1 rad/s, halfway between 0.1 and 10 rad/s; as the least of a
-/// family it misses a lower limit of 1 below there.
+/// family it misses a lower limit of 1 below there. A tolerance moves the crossing.
 #[test]
 fn violated_areas_begin_where_the_limit_is_crossed() {
     let (one, rising) =
@@ -221,15 +221,17 @@ fn violated_areas_begin_where_the_limit_is_crossed() {
         least: Some(rising),
         ..FamilyMagnitudeInput::default()
     };
-    for (input, half) in [(upper, 1.0), (lower, 0.0)] {
+    // Twice the limit is reached at 2 rad/s.
+    let tolerant = FamilyMagnitudeInput { tolerance_db: 20.0 * log10(2.0), ..upper.clone() };
+    let two = 0.5 * (1.0 + log10(2.0));
+    for (input, parts) in [(upper, (0.5, 1.0)), (lower, (0.0, 0.5)), (tolerant, (two, 1.0))] {
         let figure = family_magnitude(Words::new("f", "f", "f"), &input);
         let (areas, (left, right)) = (painted(&figure, Role::Bad), frame_of(&figure));
         assert_eq!(areas.len(), 1);
-        let middle = 0.5 * (left + right);
-        let reach = |choose: fn(f64, f64) -> f64| areas[0].iter().map(|p| p.x).fold(middle, choose);
-        let (from, to) = (reach(f64::min), reach(f64::max));
-        assert!((from - left - half * 0.5 * (right - left)).abs() < 1e-9, "{from} {to}");
-        assert!((to - from - 0.5 * (right - left)).abs() < 1e-9, "{from} {to}");
+        let part = |p: &Point| (p.x - left) / (right - left);
+        let from = areas[0].iter().map(part).fold(1.0, f64::min);
+        let to = areas[0].iter().map(part).fold(0.0, f64::max);
+        assert!((from - parts.0).abs() < 1e-9 && (to - parts.1).abs() < 1e-9, "{from} {to}");
     }
 }
 

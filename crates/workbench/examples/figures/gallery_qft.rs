@@ -1,5 +1,5 @@
 //! Figures of two published examples: k/((s + a)(s + b)) with a controller that fails between its design frequencies, and
-//! k a/(s (s + a)) with a prefilter. Bounds from the quadratics of each plant, plant by plant.
+//! k a/(s (s + a)) with a prefilter.
 
 #![allow(clippy::unwrap_used, reason = "published examples are what they are")]
 
@@ -7,7 +7,8 @@ use num_complex::Complex64;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{cos, magnitude, pow, sin};
 use phea_dynamics::time_response::{step_response, uniform_times};
-use phea_qft::bound::{Bound, GainIntervals};
+use phea_qft::bound::{Bound, BoundFunction, Fill};
+use phea_qft::specification::{Limit, Requirement};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 use phea_workbench::figure::*;
 
@@ -104,47 +105,13 @@ fn response(of: impl Fn(Complex64) -> Complex64, frequencies: &[f64]) -> Vec<Com
     frequencies.iter().map(|w| of(Complex64::new(0.0, *w))).collect()
 }
 
-/// Which closed loop is limited.
-#[derive(Clone, Copy)]
-enum Limited {
-    Complementary,
-    Sensitivity,
-    PlantInput,
-}
-
-/// The gains that one plant forbids at one phase: between the roots of a g^2 + b g + c, or outside of them.
-fn forbidden(
-    limited: Limited,
-    plant: Complex64,
-    nominal: Complex64,
-    limit: f64,
-    phase: f64,
-) -> Vec<[f64; 2]> {
-    let ratio = nominal / plant;
-    let (square, q) = (limit * limit, ratio.norm_sqr());
-    let c = (ratio.conj() * Complex64::new(cos(phase), sin(phase))).re;
-    let (a, b, c) = match limited {
-        Limited::Complementary => (square - 1.0, 2.0 * square * c, square * q),
-        Limited::Sensitivity => (square, 2.0 * square * c, (square - 1.0) * q),
-        Limited::PlantInput => (square, 2.0 * square * c, square * q - nominal.norm_sqr()),
-    };
-    let discriminant = b * b - 4.0 * a * c;
-    if discriminant <= 0.0 {
-        return Vec::new();
-    }
-    let root = discriminant.sqrt();
-    vec![[((-b - root) / (2.0 * a)).max(0.0), ((-b + root) / (2.0 * a)).max(0.0)]]
-}
-
-fn bound(plants: &[Plant], limited: Limited, limit: impl Fn(Complex64) -> f64, frequency: f64) -> Bound {
-    let s = Complex64::new(0.0, frequency);
-    let nominal = plants[0](s);
-    let phases: Vec<f64> = (0..=180).map(|i| (2.0 * f64::from(i) - 360.0).to_radians()).collect();
-    let forbidden = phases.iter().map(|phase| {
-        let all = plants.iter().flat_map(|p| forbidden(limited, p(s), nominal, limit(s), *phase));
-        GainIntervals::union_of(all.collect())
-    });
-    Bound { frequency_rad_per_s: frequency, forbidden: forbidden.collect(), phases_rad: phases }
+/// Over phases two degrees apart, of the listed plants alone.
+fn bound(plants: &[Plant], requirement: &Requirement, frequency: f64) -> Bound {
+    let function =
+        BoundFunction::new(&template(plants, frequency, false), requirement, Fill::Points).unwrap();
+    let phases_rad: Vec<f64> = evenly(-360.0, 0.0, 181).into_iter().map(f64::to_radians).collect();
+    let forbidden = phases_rad.iter().map(|phase| function.forbidden(*phase)).collect();
+    Bound { frequency_rad_per_s: frequency, phases_rad, forbidden }
 }
 
 fn template(plants: &[Plant], frequency: f64, is_filled: bool) -> Template {
@@ -171,8 +138,10 @@ const SERVO_FREQUENCIES: [f64; 7] = [0.1, 0.5, 1.0, 2.0, 10.0, 15.0, 100.0];
 
 fn stability_bounds() -> Figure {
     let plants = servo();
-    let bounds: Vec<Bound> =
-        SERVO_FREQUENCIES.iter().map(|w| bound(&plants, Limited::Complementary, |_| 1.2, *w)).collect();
+    let bounds: Vec<Bound> = SERVO_FREQUENCIES
+        .iter()
+        .map(|w| bound(&plants, &Requirement::RobustStability(Limit::Constant(1.2)), *w))
+        .collect();
     let templates: Vec<Template> = [1.0, 10.0, 100.0].iter().map(|w| template(&plants, *w, true)).collect();
     let w = frequencies(0.05, 3000.0, 400);
     let input = NicholsInput {
@@ -192,16 +161,17 @@ fn stability_bounds() -> Figure {
     nichols(Words::new("nichols-stability", "Robust stability on the Nichols chart", caption), &input)
 }
 
-fn sensitivity_limit(s: Complex64) -> f64 {
-    0.02 * magnitude(((s + 64.0) * s + 748.0) * s + 2400.0) / magnitude((s + 14.4) * s + 169.0)
-}
-
 fn bounds_of_double_lag() -> [Vec<Bound>; 3] {
     let plants = double_lag();
+    let sensitivity = ratio(&[0.02, 1.28, 14.96, 48.0], &[1.0, 14.4, 169.0]);
+    let low = [0.1, 5.0, 10.0];
+    let at = |frequencies: &[f64], requirement: Requirement| -> Vec<Bound> {
+        frequencies.iter().map(|w| bound(&plants, &requirement, *w)).collect()
+    };
     [
-        [0.1, 5.0, 10.0, 100.0].map(|w| bound(&plants, Limited::Complementary, |_| 1.2, w)).to_vec(),
-        [0.1, 5.0, 10.0].map(|w| bound(&plants, Limited::Sensitivity, sensitivity_limit, w)).to_vec(),
-        [0.1, 5.0, 10.0].map(|w| bound(&plants, Limited::PlantInput, |_| 0.01, w)).to_vec(),
+        at(&[0.1, 5.0, 10.0, 100.0], Requirement::RobustStability(Limit::Constant(1.2))),
+        at(&low, Requirement::Sensitivity(Limit::Rational(sensitivity))),
+        at(&low, Requirement::PlantInputDisturbance(Limit::Constant(0.01))),
     ]
 }
 
@@ -255,8 +225,10 @@ fn with_dead_time() -> Figure {
     };
     let plants = evenly(1.0, 2.0, 9).into_iter().map(plant).collect::<Vec<_>>();
     let design = [1.0, 5.0, 10.0, 30.0, 60.0];
-    let bounds: Vec<Bound> =
-        design.iter().map(|w| bound(&plants, Limited::Complementary, |_| 1.5, *w)).collect();
+    let bounds: Vec<Bound> = design
+        .iter()
+        .map(|w| bound(&plants, &Requirement::RobustStability(Limit::Constant(1.5)), *w))
+        .collect();
     let w = frequencies(0.1, 200.0, 600);
     let input = NicholsInput {
         loops: vec![FrequencySeries {

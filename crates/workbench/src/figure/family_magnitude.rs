@@ -6,7 +6,7 @@ use super::axis::{Axis, extent};
 use super::colour::Role;
 use super::legend::LegendEntry;
 use super::open_loop::decibel_axis;
-use super::plot::{Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{Direction, Mark, Marker, MarkerStyle, Panel, Plot};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 
@@ -51,6 +51,8 @@ pub struct FamilyMagnitudeInput {
     pub members: Vec<MagnitudeCurve>,
     /// Frequencies to mark on the axis, rad/s.
     pub design_frequencies_rad_per_s: Vec<f64>,
+    /// Up to this much beyond a limit is not shown as violated, dB.
+    pub tolerance_db: f64,
     /// Points worth words.
     pub marks: Vec<MagnitudeMark>,
 }
@@ -136,7 +138,7 @@ fn magnitude_axis(input: &FamilyMagnitudeInput) -> Axis {
     decibel_axis(&title, wanted.iter().copied().chain(family))
 }
 
-/// The family between its greatest and least magnitude, and what lies beyond a limit.
+/// The family between its greatest and least magnitude, what lies beyond a limit, and faintly the frequencies where it does.
 fn areas(input: &FamilyMagnitudeInput) -> Vec<Mark> {
     let greatest = points(&input.greatest);
     let least = input.least.as_ref().map(points);
@@ -145,10 +147,25 @@ fn areas(input: &FamilyMagnitudeInput) -> Vec<Mark> {
         let around = greatest.iter().chain(least.iter().rev()).copied().collect();
         marks.push(Mark::Area { corners: around, fill: Fill { role: FAMILY, opacity: 0.1 } });
     }
-    let over = input.upper_limit.iter().flat_map(|limit| excess(&greatest, &points(limit)));
-    let under = input.lower_limit.iter().zip(&least).flat_map(|(limit, least)| excess(&points(limit), least));
-    marks.extend(over.chain(under).map(|corners| Mark::Area { corners, fill: EXCESS }));
+    for corners in violated(input) {
+        let (from, to) = extent(corners.iter().map(|corner| corner.0));
+        let (direction, fill) = (Direction::X, Fill { opacity: 0.09, ..EXCESS });
+        marks.push(Mark::Band { direction, from, to, fill, hatched: false, label: String::new() });
+        marks.push(Mark::Area { corners, fill: EXCESS });
+    }
     marks
+}
+
+/// What lies beyond a limit by more than the tolerance.
+fn violated(input: &FamilyMagnitudeInput) -> Vec<Vec<(f64, f64)>> {
+    let moved = |curve: &MagnitudeCurve, by: f64| -> Vec<(f64, f64)> {
+        points(curve).into_iter().map(|(frequency, value)| (frequency, value + by)).collect()
+    };
+    let upper = input.upper_limit.iter().map(|limit| moved(limit, input.tolerance_db));
+    let over = upper.flat_map(|limit| excess(&points(&input.greatest), &limit));
+    let lower = input.lower_limit.iter().map(|limit| moved(limit, -input.tolerance_db));
+    let under = lower.zip(&input.least).flat_map(|(limit, least)| excess(&limit, &points(least)));
+    over.chain(under).collect()
 }
 
 fn lines(input: &FamilyMagnitudeInput) -> Vec<Mark> {
@@ -239,7 +256,7 @@ fn legend(input: &FamilyMagnitudeInput) -> Vec<LegendEntry> {
     if !input.design_frequencies_rad_per_s.is_empty() {
         legend.push(LegendEntry::marker("design frequency", DESIGN));
     }
-    if input.marks.iter().any(|mark| mark.is_violation) {
+    if !violated(input).is_empty() {
         legend.push(LegendEntry::area("violated", EXCESS));
     }
     legend

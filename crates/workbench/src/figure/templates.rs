@@ -122,7 +122,7 @@ impl PlacedTemplate {
             let around = outline.iter().chain(outline.first()).copied().collect();
             marks.push(Mark::Line { points: around, stroke: Stroke::solid(self.role, OUTLINE) });
         }
-        marks.push(Mark::Dots { points: self.plants.clone(), role: self.role, radius: 1.1 });
+        marks.push(Mark::Dots { points: self.plants.clone(), role: self.role, radius: 0.9 });
         marks
     }
 

@@ -147,12 +147,13 @@ fn fringe(run: &[Point], frame: &Rectangle) -> Vec<PathStep> {
     steps
 }
 
-/// The first of those points that share a cell of the size of a unit, in order of place.
+/// The first of those points that share a cell of three units, in order of place.
 fn thinned(points: impl Iterator<Item = Point>) -> Vec<Point> {
+    const CELL: f64 = 3.0;
     let mut cells: BTreeMap<(i32, i32), Point> = BTreeMap::new();
     for p in points {
         // Within a figure coordinates are small.
-        cells.entry((p.x.round() as i32, p.y.round() as i32)).or_insert(p);
+        cells.entry(((p.x / CELL).round() as i32, (p.y / CELL).round() as i32)).or_insert(p);
     }
     cells.into_values().collect()
 }
