@@ -340,3 +340,45 @@ fn nichols_charts() {
 fn template_charts() {
     repeat(11, |r| templates(r.words(), &r.many(6, Random::template)));
 }
+
+#[test]
+fn families_over_frequency() {
+    repeat(12, |r| {
+        let curve =
+            |r: &mut Random| MagnitudeCurve { frequencies_rad_per_s: r.numbers(), magnitudes: r.numbers() };
+        let mark = |r: &mut Random| MagnitudeMark {
+            frequency_rad_per_s: r.number(),
+            magnitude: r.number(),
+            text: r.name(),
+            is_violation: r.unit() < 0.5,
+        };
+        let input = FamilyMagnitudeInput {
+            quantity: r.name(),
+            unit: r.name(),
+            upper_limit: r.maybe(curve),
+            lower_limit: r.maybe(curve),
+            greatest: curve(r),
+            least: r.maybe(curve),
+            members: r.many(4, curve),
+            design_frequencies_rad_per_s: r.numbers(),
+            tolerance_db: r.number(),
+            marks: r.many(3, mark),
+        };
+        family_magnitude(r.words(), &input)
+    });
+}
+
+#[test]
+fn families_over_time() {
+    repeat(13, |r| {
+        let bounds = |r: &mut Random| TimeBounds { upper: r.time_series(), lower: r.time_series() };
+        let input = FamilyStepInput {
+            quantity: r.name(),
+            bounds: r.maybe(bounds),
+            members: r.many(4, Random::time_series),
+            nominal: r.maybe(Random::time_series),
+            named: r.many(2, Random::time_series),
+        };
+        family_step(r.words(), &input)
+    });
+}

@@ -2,10 +2,16 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "../examples/figures/gallery_qft.rs"]
+mod gallery_qft;
+
 use num_complex::Complex64;
 use phea_dynamics::portable::{cos, log10, magnitude, pow, sin};
 use phea_qft::bound::{Bound, GainIntervals};
+use phea_workbench::figure::colour::Role;
 use phea_workbench::figure::nichols::{Boundary, USUAL_CONTOURS_DB, boundaries, magnitude_contour};
+use phea_workbench::figure::scene::{Item, PathStep, Point, Shape};
+use phea_workbench::figure::*;
 
 fn open_loop((phase_deg, magnitude_db): (f64, f64)) -> Complex64 {
     let (gain, phase) = (pow(10.0, magnitude_db / 20.0), phase_deg.to_radians());
@@ -138,5 +144,113 @@ fn every_end_lies_on_one_edge() {
                 assert_eq!(met.filter(is_end).count(), 1, "{gain} at {phase}");
             }
         }
+    }
+}
+
+/// Labels that find no room are left out: on these charts every one must find it.
+#[test]
+fn every_frequency_and_every_violation_has_its_words() {
+    let texts = |name: &str| -> Vec<String> {
+        let figure = gallery_qft::all().into_iter().find(|figure| figure.name == name).unwrap();
+        figure.scene.texts().map(|text| text.content.clone()).collect()
+    };
+    let servo = ["0.1", "0.5", "1", "2", "10", "15", "100"];
+    for name in ["nichols-stability", "templates"] {
+        let texts = texts(name);
+        for frequency in servo {
+            assert!(texts.contains(&format!("{frequency} rad/s")), "{frequency} rad/s in {name}: {texts:?}");
+        }
+    }
+    let chart = texts("nichols-stability");
+    for number in servo {
+        assert!(chart.iter().any(|text| text == number), "bound of {number} rad/s: {chart:?}");
+    }
+    for contour in
+        ["6", "3", "1", "0.5", "0", "\u{2212}1", "\u{2212}3", "\u{2212}6", "\u{2212}12", "\u{2212}20"]
+    {
+        assert!(chart.iter().any(|text| text == contour), "contour of {contour} dB: {chart:?}");
+    }
+    assert!(texts("nichols-worst-case").contains(&"|T| 0.25 dB over at 67 rad/s".to_string()));
+    assert!(texts("family-stability").contains(&"0.25 dB over at 67 rad/s".to_string()));
+}
+
+/// Corners of the areas painted in a role, in view box units.
+fn painted(figure: &Figure, role: Role) -> Vec<Vec<Point>> {
+    let corners = |steps: &[PathStep]| -> Vec<Point> {
+        let corner = |step: &PathStep| match step {
+            PathStep::Move(p) | PathStep::Line(p) => Some(*p),
+            _ => None,
+        };
+        steps.iter().filter_map(corner).collect()
+    };
+    let area = |item: &Item| match item {
+        Item::Drawing { shape: Shape::Path(steps), fill: Some(fill), .. } if fill.role == role => {
+            Some(corners(steps))
+        }
+        _ => None,
+    };
+    figure.scene.items.iter().filter_map(area).collect()
+}
+
+fn frame_of(figure: &Figure) -> (f64, f64) {
+    let sides = figure.scene.items.iter().find_map(|item| match item {
+        Item::Drawing { shape: Shape::Rectangle(frame, _), .. } => Some((frame.left, frame.right)),
+        _ => None,
+    });
+    sides.unwrap()
+}
+
+fn magnitudes(frequencies: &[f64], magnitudes: &[f64]) -> MagnitudeCurve {
+    MagnitudeCurve { frequencies_rad_per_s: frequencies.to_vec(), magnitudes: magnitudes.to_vec() }
+}
+
+/// A magnitude equal to the frequency crosses a limit of 1 at 1 rad/s, halfway between 0.1 and 10 rad/s; as the least of a
+/// family it misses a lower limit of 1 below there. A tolerance moves the crossing.
+#[test]
+fn violated_areas_begin_where_the_limit_is_crossed() {
+    let (one, rising) =
+        (magnitudes(&[0.1, 10.0], &[1.0, 1.0]), magnitudes(&[0.1, 0.3, 10.0], &[0.1, 0.3, 10.0]));
+    let upper = FamilyMagnitudeInput {
+        upper_limit: Some(one.clone()),
+        greatest: rising.clone(),
+        ..FamilyMagnitudeInput::default()
+    };
+    let lower = FamilyMagnitudeInput {
+        lower_limit: Some(one),
+        greatest: rising.clone(),
+        least: Some(rising),
+        ..FamilyMagnitudeInput::default()
+    };
+    // Twice the limit is reached at 2 rad/s.
+    let tolerant = FamilyMagnitudeInput { tolerance_db: 20.0 * log10(2.0), ..upper.clone() };
+    let two = 0.5 * (1.0 + log10(2.0));
+    for (input, parts) in [(upper, (0.5, 1.0)), (lower, (0.0, 0.5)), (tolerant, (two, 1.0))] {
+        let figure = family_magnitude(Words::new("f", "f", "f"), &input);
+        let (areas, (left, right)) = (painted(&figure, Role::Bad), frame_of(&figure));
+        assert_eq!(areas.len(), 1);
+        let part = |p: &Point| (p.x - left) / (right - left);
+        let from = areas[0].iter().map(part).fold(1.0, f64::min);
+        let to = areas[0].iter().map(part).fold(0.0, f64::max);
+        assert!((from - parts.0).abs() < 1e-9 && (to - parts.1).abs() < 1e-9, "{from} {to}");
+    }
+}
+
+/// The chart of a loop that turns three times is wide enough for what can be seen of it.
+#[test]
+fn the_phase_axis_follows_the_loop() {
+    let response = |turns: f64| -> FrequencySeries {
+        let w: Vec<f64> = (0..=200).map(|i| 1.0 + 0.01 * f64::from(i)).collect();
+        let at = |w: &f64| open_loop((-360.0 * turns * (w - 1.0) / 2.0 - 1.0, 0.0));
+        FrequencySeries {
+            name: String::new(),
+            response: w.iter().map(at).collect(),
+            frequencies_rad_per_s: w,
+        }
+    };
+    for (turns, leftmost) in [(0.5, "\u{2212}360"), (1.5, "\u{2212}630"), (9.0, "\u{2212}1080")] {
+        let input = NicholsInput { loops: vec![response(turns)], ..NicholsInput::default() };
+        let figure = nichols(Words::new("n", "n", "n"), &input);
+        let first = figure.scene.texts().next().unwrap().content.clone();
+        assert_eq!(first, leftmost);
     }
 }

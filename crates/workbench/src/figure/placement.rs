@@ -1,6 +1,11 @@
 //! Where labels go: the first free place among candidates, away from curves where that can be had.
 
+use phea_dynamics::portable::hypot;
+
 use super::scene::{Point, Rectangle};
+
+/// Width of a letter, roughly.
+const LETTER: f64 = 8.0;
 
 /// A place for a label, with the line that leads to its point where one is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,13 +22,23 @@ fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
+/// A piece of a curve.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    from: Point,
+    to: Point,
+    width: f64,
+}
+
 /// What is taken already.
 #[derive(Clone, Debug, Default)]
 pub struct Occupancy {
     texts: Vec<Rectangle>,
-    segments: Vec<(Point, Point)>,
+    segments: Vec<Piece>,
     /// Solid things a label must not hide, markers above all.
     obstacles: Vec<Rectangle>,
+    /// Lines from points to their labels.
+    leads: Vec<(Point, Point)>,
 }
 
 impl Occupancy {
@@ -37,9 +52,15 @@ impl Occupancy {
         self.obstacles.push(bounds);
     }
 
-    /// A curve to keep away from.
-    pub fn add_polyline(&mut self, points: &[Point]) {
-        self.segments.extend(points.windows(2).filter_map(|pair| Some((*pair.first()?, *pair.get(1)?))));
+    /// A curve of some width to keep away from.
+    pub fn add_polyline(&mut self, points: &[Point], width: f64) {
+        let piece = |pair: &[Point]| Some(Piece { from: *pair.first()?, to: *pair.get(1)?, width });
+        self.segments.extend(points.windows(2).filter_map(piece));
+    }
+
+    /// A line from a point to its label, which no other such label or line may cross.
+    pub fn add_lead(&mut self, from: Point, to: Point) {
+        self.leads.push((from, to));
     }
 
     /// The index of the best candidate inside `frame`: free of texts, then with the fewest curves and markers beneath
@@ -62,8 +83,8 @@ impl Occupancy {
         best.map(|(index, _)| index)
     }
 
-    /// Like [`Occupancy::choose`] for labels that may be led to their point by a line: a line crosses no text, and its length
-    /// counts against a place as much as the curves that label and line lie upon.
+    /// Like [`Occupancy::choose`] for labels that may be led to their point by a line: a line crosses no text and no other
+    /// such line, and its length counts against a place as much as the curves that label and line lie upon.
     pub fn choose_led(&self, candidates: &[Led], frame: &Rectangle) -> Option<usize> {
         let mut best: Option<(usize, f64)> = None;
         for (index, Led { bounds, line }) in candidates.iter().enumerate() {
@@ -72,14 +93,16 @@ impl Occupancy {
                 text.overlaps(&spaced)
                     || line.is_some_and(|(from, to)| super::clip::segment(from, to, text).is_some())
             };
-            if !frame.contains(bounds) || self.texts.iter().any(is_hit) {
+            let is_crossed = |(a, b): &(Point, Point)| {
+                super::clip::segment(*a, *b, &spaced).is_some()
+                    || line.is_some_and(|(from, to)| cross(from, to, *a, *b))
+            };
+            let is_taken = self.texts.iter().any(is_hit) || self.leads.iter().any(is_crossed);
+            if !frame.contains(bounds) || is_taken {
                 continue;
             }
-            let (crossings, length) = line.map_or((0, 0.0), |(from, to)| {
-                let crossed = self.segments.iter().filter(|(a, b)| cross(from, to, *a, *b));
-                (crossed.count(), phea_dynamics::portable::hypot(to.x - from.x, to.y - from.y))
-            });
-            let cost = (self.cost(bounds) + 2 * crossings) as f64 + length / 6.0;
+            let lead = line.map_or(0.0, |(from, to)| self.lead_cost(from, to));
+            let cost = lead + self.weight(bounds);
             if best.is_none_or(|(_, least)| cost < least) {
                 best = Some((index, cost));
             }
@@ -87,11 +110,30 @@ impl Occupancy {
         best.map(|(index, _)| index)
     }
 
+    /// A line's length in letters, and the strokes that it crosses.
+    fn lead_cost(&self, from: Point, to: Point) -> f64 {
+        let crossed = self.segments.iter().filter(|piece| cross(from, to, piece.from, piece.to));
+        hypot(to.x - from.x, to.y - from.y) / LETTER + crossed.map(|piece| 2.0 * piece.width).sum::<f64>()
+    }
+
+    /// What lies beneath a label: markers, and curves by their length in letters and their width.
+    fn weight(&self, bounds: &Rectangle) -> f64 {
+        let markers = self.obstacles.iter().filter(|o| o.overlaps(bounds)).count();
+        let hidden = self.segments.iter().filter_map(|piece| {
+            let (a, b) = super::clip::segment(piece.from, piece.to, bounds)?;
+            Some(piece.width * hypot(b.x - a.x, b.y - a.y) / LETTER)
+        });
+        20.0 * markers as f64 + hidden.sum::<f64>()
+    }
+
     /// Curves and markers beneath a label; one curve counts once per piece, so a curve along the label costs more.
     fn cost(&self, candidate: &Rectangle) -> usize {
         let markers = self.obstacles.iter().filter(|o| o.overlaps(candidate)).count();
-        let pieces =
-            self.segments.iter().filter(|(a, b)| super::clip::segment(*a, *b, candidate).is_some()).count();
+        let pieces = self
+            .segments
+            .iter()
+            .filter(|piece| super::clip::segment(piece.from, piece.to, candidate).is_some())
+            .count();
         20 * markers + pieces
     }
 }

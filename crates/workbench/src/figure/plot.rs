@@ -62,7 +62,7 @@ pub enum Mark {
         /// Strokes.
         stroke: Stroke,
     },
-    /// Small dots; those that would lie upon another are left out.
+    /// Small dots; of several that would lie upon each other one is drawn.
     Dots {
         /// (x, y).
         points: Vec<(f64, f64)>,

@@ -40,7 +40,8 @@ pub fn templates(words: Words, templates: &[Template]) -> Figure {
         })
         .collect();
     let all = || placed.iter().flat_map(PlacedTemplate::extent);
-    let x = Axis::fit_angle("Phase of the plant (°)", all().map(|(phase, _)| phase));
+    let x =
+        Axis::fit_angle("Phase of the plant (°)", all().flat_map(|(phase, _)| [phase - ROOM, phase + ROOM]));
     let y = decibel_axis("Magnitude of the plant (dB)", all().map(|(_, magnitude)| magnitude));
     let mut marks: Vec<Mark> = placed.iter().flat_map(PlacedTemplate::marks).collect();
     marks.extend(placed.iter().map(|template| template.nominal_mark()));
@@ -59,6 +60,8 @@ pub fn templates(words: Words, templates: &[Template]) -> Figure {
     words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
 }
 
+/// Between a template and the frame, degrees.
+const ROOM: f64 = 2.0;
 const OUTLINE: f64 = 1.2;
 
 /// The nominal plant.
@@ -119,7 +122,7 @@ impl PlacedTemplate {
             let around = outline.iter().chain(outline.first()).copied().collect();
             marks.push(Mark::Line { points: around, stroke: Stroke::solid(self.role, OUTLINE) });
         }
-        marks.push(Mark::Dots { points: self.plants.clone(), role: self.role, radius: 1.1 });
+        marks.push(Mark::Dots { points: self.plants.clone(), role: self.role, radius: 0.9 });
         marks
     }
 

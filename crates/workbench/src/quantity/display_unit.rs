@@ -23,6 +23,8 @@ impl DisplayUnit {
     /// Volume to a length.
     pub const CUBIC_CENTIMETRE_PER_METRE: Self = DisplayUnit { symbol: "cm3/m", in_si: 1e-6 };
     /// Time.
+    pub const SECOND: Self = DisplayUnit { symbol: "s", in_si: 1.0 };
+    /// Time.
     pub const MILLISECOND: Self = DisplayUnit { symbol: "ms", in_si: 1e-3 };
     /// Flow.
     pub const LITRE_PER_MINUTE: Self = DisplayUnit { symbol: "L/min", in_si: 1e-3 / 60.0 };

@@ -3,12 +3,12 @@
 use phea_dynamics::portable::{cos, log10, sin};
 
 /// Points of one half of a contour.
-const POINTS: u32 = 90;
+const POINTS: i32 = 90;
 
 /// The contour |L/(1+L)| = M as (phase of L in degrees within [-360, 0], magnitude of L in dB); empty for no usable M.
 ///
 /// ```text
-/// (M^2 - 1) g^2 + 2 M^2 cos(phi) g + M^2 = 0,      L = g e^(j phi)                          NOTATION.md: QFT
+/// (M^2 - 1) g^2 + 2 M^2 cos(phi) g + M^2 = 0,      L = g e^(j phi)           from |L|^2 = M^2 |1 + L|^2
 ///   M > 1: a closed curve around -180 degrees        M = 1: cos(phi) = -1/(2 g)
 ///   M < 1: one gain for every phase
 /// ```
@@ -29,7 +29,12 @@ pub fn magnitude_contour(contour_db: f64) -> Vec<(f64, f64)> {
     }
     let decibel = |gain: f64| 20.0 * log10(gain);
     if contour_db == 0.0 {
-        let phases = (1..2 * POINTS).map(|i| 90.0 * f64::from(i) / f64::from(POINTS) - 270.0);
+        // Denser towards -90 and -270 degrees, where the gain has no end.
+        let last = POINTS - 1;
+        let phases = (-last..=last).map(|i| {
+            let left = 1.0 - f64::from(i.abs()) / f64::from(POINTS);
+            -180.0 + 90.0 * f64::from(i.signum()) * (1.0 - left * left * left)
+        });
         return phases.map(|phase| (phase, decibel(-0.5 / cos(phase.to_radians())))).collect();
     }
     if magnitude < 1.0 {

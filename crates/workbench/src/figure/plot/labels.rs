@@ -1,5 +1,7 @@
 //! Labels of marks, each at the first free place that suits its kind.
 
+use phea_dynamics::portable::hypot;
+
 use super::super::colour::Role;
 use super::super::placement::{Led, Occupancy};
 use super::super::scene::{Anchor, Baseline, Point, Rectangle, Scene, Stroke, Text, point};
@@ -117,7 +119,7 @@ fn call_out(
                 let bounds = label.bounds();
                 let to =
                     point(from.x.clamp(bounds.left, bounds.right), from.y.clamp(bounds.top, bounds.bottom));
-                let line = (away > BESIDE).then_some((from, to));
+                let line = (away > BESIDE).then(|| (beside(from, to), to));
                 candidates.push(Led { bounds, line });
                 texts.push(label.coloured(legible(role)).with_halo());
             }
@@ -127,11 +129,18 @@ fn call_out(
     if let (Some(text), Some(Led { bounds, line })) = (texts.get(index), candidates.get(index)) {
         if let Some((from, to)) = *line {
             scene.line(from, to, Stroke::solid(legible(role), 0.8));
-            occupancy.add_polyline(&[from, to]);
+            occupancy.add_lead(from, to);
         }
         occupancy.add_text(*bounds);
         scene.text(text.clone());
     }
+}
+
+/// Where a line towards a text leaves the marker at its point.
+fn beside(from: Point, to: Point) -> Point {
+    const MARKER: f64 = 5.0;
+    let length = hypot(to.x - from.x, to.y - from.y).max(MARKER);
+    point(from.x + MARKER / length * (to.x - from.x), from.y + MARKER / length * (to.y - from.y))
 }
 
 /// The eight directions from a point, beside it first.

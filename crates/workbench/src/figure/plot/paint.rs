@@ -41,7 +41,7 @@ pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occu
             Mark::Line { points, stroke } => {
                 let points: Vec<Point> = points.iter().map(|&(x, y)| placed.at(x, y)).collect();
                 let runs = clip::polyline(&points, &placed.frame);
-                runs.iter().for_each(|piece| occupancy.add_polyline(piece));
+                runs.iter().for_each(|piece| occupancy.add_polyline(piece, stroke.width));
                 let steps: Vec<PathStep> =
                     runs.iter().flat_map(|piece| run(&simplify::polyline(piece), false)).collect();
                 if !steps.is_empty() {
@@ -70,7 +70,7 @@ pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occu
             }
             Mark::Reference { direction, at, stroke, .. } => {
                 if let Some((from, to)) = reference_line(placed, *direction, *at) {
-                    occupancy.add_polyline(&[from, to]);
+                    occupancy.add_polyline(&[from, to], stroke.width);
                     scene.line(from, to, *stroke);
                 }
             }
@@ -147,12 +147,13 @@ fn fringe(run: &[Point], frame: &Rectangle) -> Vec<PathStep> {
     steps
 }
 
-/// The first of those points that share a cell of the size of a unit, in order of place.
+/// The first of those points that share a cell of three units, in order of place.
 fn thinned(points: impl Iterator<Item = Point>) -> Vec<Point> {
+    const CELL: f64 = 3.0;
     let mut cells: BTreeMap<(i32, i32), Point> = BTreeMap::new();
     for p in points {
         // Within a figure coordinates are small.
-        cells.entry((p.x.round() as i32, p.y.round() as i32)).or_insert(p);
+        cells.entry(((p.x / CELL).round() as i32, (p.y / CELL).round() as i32)).or_insert(p);
     }
     cells.into_values().collect()
 }

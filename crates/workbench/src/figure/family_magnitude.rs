@@ -1,0 +1,263 @@
+//! A closed-loop magnitude of a family against its limits, over frequency.
+
+use phea_dynamics::portable::log10;
+
+use super::axis::{Axis, extent};
+use super::colour::Role;
+use super::legend::LegendEntry;
+use super::open_loop::decibel_axis;
+use super::plot::{Direction, Mark, Marker, MarkerStyle, Panel, Plot};
+use super::scene::{Dash, Fill, Stroke};
+use super::{Figure, Words};
+
+/// A magnitude over frequency.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MagnitudeCurve {
+    /// rad/s, rising.
+    pub frequencies_rad_per_s: Vec<f64>,
+    /// Magnitude at each, a plain ratio in SI units.
+    pub magnitudes: Vec<f64>,
+}
+
+/// A point worth words: a violation, or the least margin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MagnitudeMark {
+    /// rad/s
+    pub frequency_rad_per_s: f64,
+    /// Magnitude of the closed loop there, in SI units.
+    pub magnitude: f64,
+    /// Such as `19.2 dB over at 1304 rad/s`.
+    pub text: String,
+    /// Whether it violates the limit.
+    pub is_violation: bool,
+}
+
+/// What the figure shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FamilyMagnitudeInput {
+    /// The closed loop, such as `|L/(1+L)|`.
+    pub quantity: String,
+    /// Its unit, such as `V/N`; empty for a ratio.
+    pub unit: String,
+    /// The greatest magnitude allowed, over the band where it holds.
+    pub upper_limit: Option<MagnitudeCurve>,
+    /// The least magnitude allowed.
+    pub lower_limit: Option<MagnitudeCurve>,
+    /// The greatest magnitude of the family.
+    pub greatest: MagnitudeCurve,
+    /// The least magnitude of the family, where there is a lower limit.
+    pub least: Option<MagnitudeCurve>,
+    /// Some members.
+    pub members: Vec<MagnitudeCurve>,
+    /// Frequencies to mark on the axis, rad/s.
+    pub design_frequencies_rad_per_s: Vec<f64>,
+    /// Up to this much beyond a limit is not shown as violated, dB.
+    pub tolerance_db: f64,
+    /// Points worth words.
+    pub marks: Vec<MagnitudeMark>,
+}
+
+/// How far below limits and marks a magnitude is still shown, dB.
+const DEPTH_DB: f64 = 30.0;
+
+/// Draws the figure.
+pub fn family_magnitude(words: Words, input: &FamilyMagnitudeInput) -> Figure {
+    let x = Axis::fit_logarithmic("Frequency (rad/s)", frequencies(input));
+    let y = magnitude_axis(input);
+    let mut marks = areas(input);
+    marks.extend(lines(input));
+    let foot = y.minimum + 0.018 * (y.maximum - y.minimum);
+    let designs =
+        input.design_frequencies_rad_per_s.iter().map(|&frequency| (frequency, foot, String::new()));
+    marks.push(Mark::Markers { points: designs.collect(), style: DESIGN });
+    for mark in &input.marks {
+        let (frequency, value) = (mark.frequency_rad_per_s, 20.0 * log10(mark.magnitude));
+        let style = if mark.is_violation { VIOLATION } else { MARGIN };
+        let points = vec![(frequency, value, mark.text.clone())];
+        marks.push(Mark::Markers { points, style });
+        let at = vec![(frequency, value)];
+        marks.push(Mark::Callout { at, text: mark.text.clone(), role: style.role });
+    }
+    let panels = vec![Panel { y, height: 280.0, marks }];
+    words.with_scene(Plot { x, panels, legend: legend(input), equal_aspect: false }.draw())
+}
+
+const DESIGN: MarkerStyle = MarkerStyle { marker: Marker::Triangle, role: Role::Text, radius: 4.0 };
+const VIOLATION: MarkerStyle = MarkerStyle { marker: Marker::Cross, role: Role::Bad, radius: 4.5 };
+const MARGIN: MarkerStyle = MarkerStyle { marker: Marker::Circle, role: Role::Good, radius: 4.0 };
+const EXCESS: Fill = Fill { role: Role::Bad, opacity: 0.28 };
+const FAMILY: Role = Role::Series(0);
+
+fn limit_stroke() -> Stroke {
+    Stroke::solid(Role::Bad, 1.8).dashed(Dash::LongDash)
+}
+
+fn member_stroke() -> Stroke {
+    Stroke::solid(Role::Muted, 0.5)
+}
+
+fn greatest_stroke() -> Stroke {
+    Stroke::solid(FAMILY, 2.2)
+}
+
+fn least_stroke() -> Stroke {
+    Stroke::solid(FAMILY, 2.0).dashed(Dash::Dashed)
+}
+
+/// (rad/s, dB)
+fn points(curve: &MagnitudeCurve) -> Vec<(f64, f64)> {
+    let values = curve.magnitudes.iter().map(|magnitude| 20.0 * log10(*magnitude));
+    curve.frequencies_rad_per_s.iter().copied().zip(values).collect()
+}
+
+fn curves(input: &FamilyMagnitudeInput) -> impl Iterator<Item = &MagnitudeCurve> {
+    let limits = input.upper_limit.iter().chain(&input.lower_limit);
+    limits.chain([&input.greatest]).chain(&input.least)
+}
+
+fn frequencies(input: &FamilyMagnitudeInput) -> Vec<f64> {
+    let curves = curves(input).flat_map(|curve| &curve.frequencies_rad_per_s);
+    let marks = input.marks.iter().map(|mark| &mark.frequency_rad_per_s);
+    curves.chain(marks).chain(&input.design_frequencies_rad_per_s).copied().collect()
+}
+
+/// Holds limits and marks, the family above them, and of it below them no more than 30 dB.
+fn magnitude_axis(input: &FamilyMagnitudeInput) -> Axis {
+    let title = match input.unit.as_str() {
+        "" => format!("{} (dB)", input.quantity),
+        unit => format!("{} (dB re 1 {unit})", input.quantity),
+    };
+    let finite = |value: &f64| value.is_finite();
+    let of = |curve: &MagnitudeCurve| points(curve).into_iter().map(|point| point.1).filter(finite);
+    let limits: Vec<f64> = input.upper_limit.iter().chain(&input.lower_limit).flat_map(of).collect();
+    let marked = input.marks.iter().map(|mark| 20.0 * log10(mark.magnitude)).filter(finite);
+    let wanted: Vec<f64> = limits.into_iter().chain(marked).collect();
+    let (lowest, _) = extent(wanted.iter().copied());
+    let family = of(&input.greatest).chain(input.least.iter().flat_map(of));
+    let family = family.filter(|value| lowest.is_nan() || *value > lowest - DEPTH_DB);
+    decibel_axis(&title, wanted.iter().copied().chain(family))
+}
+
+/// The family between its greatest and least magnitude, what lies beyond a limit, and faintly the frequencies where it does.
+fn areas(input: &FamilyMagnitudeInput) -> Vec<Mark> {
+    let greatest = points(&input.greatest);
+    let least = input.least.as_ref().map(points);
+    let mut marks = Vec::new();
+    if let Some(least) = &least {
+        let around = greatest.iter().chain(least.iter().rev()).copied().collect();
+        marks.push(Mark::Area { corners: around, fill: Fill { role: FAMILY, opacity: 0.1 } });
+    }
+    for corners in violated(input) {
+        let (from, to) = extent(corners.iter().map(|corner| corner.0));
+        let (direction, fill) = (Direction::X, Fill { opacity: 0.09, ..EXCESS });
+        marks.push(Mark::Band { direction, from, to, fill, hatched: false, label: String::new() });
+        marks.push(Mark::Area { corners, fill: EXCESS });
+    }
+    marks
+}
+
+/// What lies beyond a limit by more than the tolerance.
+fn violated(input: &FamilyMagnitudeInput) -> Vec<Vec<(f64, f64)>> {
+    let moved = |curve: &MagnitudeCurve, by: f64| -> Vec<(f64, f64)> {
+        points(curve).into_iter().map(|(frequency, value)| (frequency, value + by)).collect()
+    };
+    let upper = input.upper_limit.iter().map(|limit| moved(limit, input.tolerance_db));
+    let over = upper.flat_map(|limit| excess(&points(&input.greatest), &limit));
+    let lower = input.lower_limit.iter().map(|limit| moved(limit, -input.tolerance_db));
+    let under = lower.zip(&input.least).flat_map(|(limit, least)| excess(&limit, &points(least)));
+    over.chain(under).collect()
+}
+
+fn lines(input: &FamilyMagnitudeInput) -> Vec<Mark> {
+    let line = |curve: &MagnitudeCurve, stroke: Stroke| Mark::Line { points: points(curve), stroke };
+    let mut marks: Vec<Mark> = input.members.iter().map(|member| line(member, member_stroke())).collect();
+    marks.push(line(&input.greatest, greatest_stroke()));
+    marks.extend(input.least.iter().map(|least| line(least, least_stroke())));
+    let upper = input.upper_limit.iter().map(|limit| points(limit).into_iter().rev().collect());
+    let lower = input.lower_limit.iter().map(points);
+    for limit in upper.chain(lower).collect::<Vec<Vec<(f64, f64)>>>() {
+        let fringe = Stroke::solid(limit_stroke().role, 0.7);
+        marks.push(Mark::Fringe { points: limit.clone(), stroke: fringe });
+        marks.push(Mark::Line { points: limit, stroke: limit_stroke() });
+    }
+    marks
+}
+
+/// The areas where the first curve lies above the second, straight in dB over log frequency between points.
+fn excess(above: &[(f64, f64)], below: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
+    let mut frequencies: Vec<f64> = above.iter().chain(below).map(|point| point.0).collect();
+    frequencies.retain(|frequency| frequency.is_finite() && *frequency > 0.0);
+    frequencies.sort_by(f64::total_cmp);
+    frequencies.dedup();
+    let both: Vec<(f64, f64, f64)> = frequencies
+        .into_iter()
+        .filter_map(|frequency| Some((frequency, between(above, frequency)?, between(below, frequency)?)))
+        .collect();
+    let mut areas = Vec::new();
+    let mut upper: Vec<(f64, f64)> = Vec::new();
+    let mut lower: Vec<(f64, f64)> = Vec::new();
+    let mut before: Option<(f64, f64, f64)> = None;
+    for &(frequency, high, low) in &both {
+        if let Some((earlier, high_before, low_before)) = before {
+            let (depth_before, depth) = (high_before - low_before, high - low);
+            if (depth_before > 0.0) != (depth > 0.0) {
+                let part = depth_before / (depth_before - depth);
+                let crossing = earlier * phea_dynamics::portable::pow(frequency / earlier, part);
+                upper.push((crossing, high_before + part * (high - high_before)));
+            }
+        }
+        if high > low {
+            upper.push((frequency, high));
+            lower.push((frequency, low));
+        } else {
+            areas.extend(closed(&mut upper, &mut lower));
+        }
+        before = Some((frequency, high, low));
+    }
+    areas.extend(closed(&mut upper, &mut lower));
+    areas
+}
+
+/// Along the upper edge and back along the lower.
+fn closed(upper: &mut Vec<(f64, f64)>, lower: &mut Vec<(f64, f64)>) -> Option<Vec<(f64, f64)>> {
+    let mut around = std::mem::take(upper);
+    around.extend(std::mem::take(lower).into_iter().rev());
+    (around.len() > 2).then_some(around)
+}
+
+/// The value at a frequency, `None` outside of the curve or beside a point without one.
+fn between(curve: &[(f64, f64)], frequency: f64) -> Option<f64> {
+    let next = curve.partition_point(|point| point.0 < frequency);
+    let &(high, above) = curve.get(next)?;
+    let value = if high == frequency {
+        above
+    } else {
+        let &(low, below) = curve.get(next.checked_sub(1)?)?;
+        below + (above - below) * log10(frequency / low) / log10(high / low)
+    };
+    value.is_finite().then_some(value)
+}
+
+fn legend(input: &FamilyMagnitudeInput) -> Vec<LegendEntry> {
+    let mut legend = Vec::new();
+    let greatest = if input.least.is_some() { "greatest of the family" } else { "worst of the family" };
+    legend.push(LegendEntry::line(greatest, greatest_stroke()));
+    if input.least.is_some() {
+        legend.push(LegendEntry::line("least", least_stroke()));
+    }
+    if !input.members.is_empty() {
+        legend.push(LegendEntry::line("members", member_stroke()));
+    }
+    match (&input.upper_limit, &input.lower_limit) {
+        (None, None) => {}
+        (Some(_), Some(_)) => legend.push(LegendEntry::line("limits", limit_stroke())),
+        _ => legend.push(LegendEntry::line("limit", limit_stroke())),
+    }
+    if !input.design_frequencies_rad_per_s.is_empty() {
+        legend.push(LegendEntry::marker("design frequency", DESIGN));
+    }
+    if !violated(input).is_empty() {
+        legend.push(LegendEntry::area("violated", EXCESS));
+    }
+    legend
+}

@@ -1,0 +1,326 @@
+//! The parts of a Nichols chart in their place: axes, marks, labels, legend.
+
+use phea_qft::bound::Bound;
+
+use super::super::axis::{Axis, extent};
+use super::super::colour::{Role, ramp_role, series_dash};
+use super::super::legend::LegendEntry;
+use super::super::open_loop::{OpenLoop, decibel, decibel_axis, phase_near};
+use super::super::plot::{Mark, Marker, MarkerStyle, Side};
+use super::super::scene::{Dash, Stroke};
+use super::super::templates::PlacedTemplate;
+use super::super::ticks::{Steps, decimal, plain};
+use super::{Boundary, NicholsInput, boundaries, magnitude_contour};
+
+/// Most turns that an axis of phase shows on either side of -360 to 0 degrees.
+const TURNS: i32 = 2;
+
+/// The input in its place: axes, curves, and the colour of each frequency.
+pub(super) struct Chart<'a> {
+    input: &'a NicholsInput<'a>,
+    frequencies: Vec<f64>,
+    loops: Vec<OpenLoop>,
+    /// (rad/s, degrees, dB)
+    marks: Vec<(f64, f64, f64)>,
+    violations: Vec<(f64, f64)>,
+    templates: Vec<PlacedTemplate>,
+    /// For each group and each of its bounds: edges between -360 and 0 degrees.
+    boundaries: Vec<Vec<Vec<Boundary>>>,
+    pub(super) x: Axis,
+    pub(super) y: Axis,
+}
+
+impl<'a> Chart<'a> {
+    pub(super) fn new(input: &'a NicholsInput<'a>) -> Chart<'a> {
+        let frequencies = frequencies(input);
+        let loops: Vec<OpenLoop> = input.loops.iter().map(OpenLoop::new).collect();
+        let nominal = loops.first();
+        let on_loop = |frequency: f64| nominal.and_then(|nominal| nominal.at(frequency));
+        let marks = input.design_frequencies_rad_per_s.iter();
+        let marks: Vec<(f64, f64, f64)> =
+            marks.filter_map(|&w| on_loop(w).map(|(phase, magnitude)| (w, phase, magnitude))).collect();
+        let violations = input.violations.iter().map(|violation| {
+            let near = on_loop(violation.frequency_rad_per_s).map_or(-180.0, |(phase, _)| phase);
+            (phase_near(violation.open_loop, near), decibel(violation.open_loop))
+        });
+        let violations: Vec<(f64, f64)> = violations.collect();
+        let templates = input.templates.iter().filter_map(|template| {
+            let place = on_loop(template.frequency_rad_per_s)?;
+            Some(PlacedTemplate::new(template, place, role(&frequencies, template.frequency_rad_per_s)))
+        });
+        let templates: Vec<PlacedTemplate> = templates.collect();
+        let boundaries: Vec<Vec<Vec<Boundary>>> =
+            input.bounds.iter().map(|group| group.bounds.iter().map(boundaries).collect()).collect();
+        let mut chart = Chart {
+            input,
+            frequencies,
+            loops,
+            marks,
+            violations,
+            templates,
+            boundaries,
+            x: Axis::linear("Open-loop phase (°)", -360.0, 0.0),
+            y: Axis::linear("Open-loop magnitude (dB)", -20.0, 20.0),
+        };
+        chart.y = chart.magnitude_axis();
+        chart.x = chart.phase_axis();
+        chart
+    }
+
+    /// Everything within the frame from back to front; labels in the order of their claim to a place.
+    pub(super) fn all_marks(&self) -> Vec<Mark> {
+        let mut marks = self.contours();
+        marks.extend(self.templates.iter().flat_map(PlacedTemplate::marks));
+        marks.extend(self.bounds());
+        marks.extend(self.loops());
+        marks.extend(self.critical_points());
+        marks.extend(self.violations());
+        marks.extend(self.frequency_labels());
+        marks.extend(self.bound_labels());
+        marks.extend(self.contour_labels());
+        marks
+    }
+
+    /// Holds marks, templates, violations, and of bounds what lies between -60 and 80 dB; of loops without marks likewise.
+    fn magnitude_axis(&self) -> Axis {
+        let marked = self.marks.iter().map(|mark| mark.2).chain(self.violations.iter().map(|place| place.1));
+        let filled = self.templates.iter().flat_map(|template| template.extent().map(|place| place.1));
+        let edges = self.boundaries.iter().flatten().flatten().flat_map(|edge| &edge.points);
+        let unmarked = self.loops.iter().filter(|_| self.marks.is_empty()).flat_map(|one| &one.points);
+        let near = edges.chain(unmarked).map(|point| point.1).filter(|value| (-60.0..=80.0).contains(value));
+        decibel_axis(&self.y.title, marked.chain(filled).chain(near).chain([-20.0, 20.0]))
+    }
+
+    /// From -360 to 0 degrees, and on by quarter turns where a loop, a template or a violation that can be seen needs it.
+    fn phase_axis(&self) -> Axis {
+        let loops = self.loops.iter().flat_map(|one| one.points.iter().copied());
+        let filled = self.templates.iter().flat_map(PlacedTemplate::extent);
+        let all = loops.chain(filled).chain(self.violations.iter().copied());
+        let seen = all.filter(|point| (self.y.minimum..=self.y.maximum).contains(&point.1));
+        let (low, high) = extent(seen.map(|point| point.0).chain([-360.0, 0.0]));
+        let most = 360.0 * f64::from(TURNS);
+        let low = (90.0 * (low / 90.0).floor()).max(-360.0 - most);
+        let high = (90.0 * (high / 90.0).ceil()).min(most);
+        let steps = if high - low > 450.0 { Steps::Every(90) } else { Steps::Every(45) };
+        Axis { steps, ..Axis::linear(self.x.title.clone(), low, high) }
+    }
+
+    /// Shifts by whole turns that bring something between -360 and 0 degrees into sight.
+    fn turns(&self) -> impl Iterator<Item = f64> + use<> {
+        let (low, high) = (self.x.minimum, self.x.maximum);
+        (-TURNS..=TURNS)
+            .map(|turn| 360.0 * f64::from(turn))
+            .filter(move |shift| shift - 360.0 < high && *shift > low)
+    }
+
+    fn contours(&self) -> Vec<Mark> {
+        let contours = self.input.contours_db.iter().map(|contour| magnitude_contour(*contour));
+        let contours: Vec<Vec<(f64, f64)>> = contours.collect();
+        self.turns()
+            .flat_map(|shift| {
+                contours.iter().map(move |contour| Mark::Line {
+                    points: shifted(contour, shift),
+                    stroke: contour_stroke(),
+                })
+            })
+            .collect()
+    }
+
+    fn bounds(&self) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        for (group, index, edge) in self.edges() {
+            let Some(bound) = self.bound(group, index) else { continue };
+            let stroke = self.bound_stroke(group, bound);
+            for shift in self.turns() {
+                let points = shifted(&edge.points, shift);
+                let fringe = Stroke::solid(stroke.role, 0.7);
+                marks.push(Mark::Fringe { points: points.clone(), stroke: fringe });
+                marks.push(Mark::Line { points, stroke });
+            }
+        }
+        marks
+    }
+
+    /// Every edge with the index of its group and of its bound.
+    fn edges(&self) -> impl Iterator<Item = (usize, usize, &Boundary)> {
+        self.boundaries.iter().enumerate().flat_map(|(group, bounds)| {
+            bounds
+                .iter()
+                .enumerate()
+                .flat_map(move |(index, edges)| edges.iter().map(move |edge| (group, index, edge)))
+        })
+    }
+
+    fn bound(&self, group: usize, index: usize) -> Option<&Bound> {
+        self.input.bounds.get(group)?.bounds.get(index)
+    }
+
+    /// Colour by frequency; dashes by group, or by frequency where there is one group.
+    fn bound_stroke(&self, group: usize, bound: &Bound) -> Stroke {
+        let role = role(&self.frequencies, bound.frequency_rad_per_s);
+        let dash = match (self.input.bounds.len(), role) {
+            (1, Role::Ramp(step)) => series_dash(usize::from(step)),
+            _ => series_dash(group),
+        };
+        Stroke::solid(role, 1.8).dashed(dash)
+    }
+
+    fn loops(&self) -> Vec<Mark> {
+        let lines = self
+            .loops
+            .iter()
+            .enumerate()
+            .map(|(index, one)| Mark::Line { points: one.points.clone(), stroke: loop_stroke(index) });
+        let marks = self.marks.iter().map(|&(frequency, phase, magnitude)| {
+            let note = format!("{} rad/s: {}°, {} dB", plain(frequency), plain(phase), plain(magnitude));
+            let style =
+                MarkerStyle { marker: Marker::Circle, role: role(&self.frequencies, frequency), radius: 4.5 };
+            Mark::Markers { points: vec![(phase, magnitude, note)], style }
+        });
+        lines.chain(marks).collect()
+    }
+
+    fn critical_points(&self) -> Vec<Mark> {
+        let note = "critical point −1".to_string();
+        self.turns()
+            .map(|shift| Mark::Markers {
+                points: vec![(shift - 180.0, 0.0, note.clone())],
+                style: CRITICAL_POINT,
+            })
+            .collect()
+    }
+
+    fn violations(&self) -> Vec<Mark> {
+        let texts = self.input.violations.iter().map(|violation| &violation.text);
+        texts
+            .zip(&self.violations)
+            .flat_map(|(text, &(phase, magnitude))| {
+                let at = vec![(phase, magnitude)];
+                let label = Mark::Callout { at, text: text.clone(), role: Role::Bad };
+                [Mark::Markers { points: vec![(phase, magnitude, text.clone())], style: VIOLATION }, label]
+            })
+            .collect()
+    }
+
+    fn frequency_labels(&self) -> Vec<Mark> {
+        self.marks
+            .iter()
+            .map(|&(frequency, phase, magnitude)| Mark::Callout {
+                at: vec![(phase, magnitude)],
+                text: format!("{} rad/s", plain(frequency)),
+                role: Role::Text,
+            })
+            .collect()
+    }
+
+    /// The frequency upon the longest edge of each bound, at another part of it for each.
+    fn bound_labels(&self) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        for (group, bounds) in self.boundaries.iter().enumerate() {
+            for (index, edges) in bounds.iter().enumerate() {
+                let seen = |edge: &Boundary| {
+                    let range = self.y.minimum..=self.y.maximum;
+                    edge.points.iter().copied().filter(move |point| range.contains(&point.1)).collect()
+                };
+                let longest = edges.iter().map(seen).max_by_key(Vec::len).unwrap_or_default();
+                let Some(bound) = self.bound(group, index) else { continue };
+                marks.push(Mark::Label {
+                    at: spread(&longest, group + index),
+                    text: plain(bound.frequency_rad_per_s),
+                    role: Role::Text,
+                    side: Side::On,
+                });
+            }
+        }
+        marks
+    }
+
+    /// Upon closed contours above the critical point; of the others at the border.
+    fn contour_labels(&self) -> Vec<Mark> {
+        let text = |contour: f64| decimal(contour, usize::from(contour.fract() != 0.0));
+        self.input
+            .contours_db
+            .iter()
+            .filter_map(|&contour| {
+                let points = magnitude_contour(contour);
+                let role = Role::Muted;
+                if contour < 0.0 {
+                    let at = points.last()?.1;
+                    return Some(Mark::EdgeLabel { at, text: text(contour), role });
+                }
+                let at = spread(&points, 0);
+                Some(Mark::Label { at, text: text(contour), role, side: Side::On })
+            })
+            .collect()
+    }
+
+    pub(super) fn legend(&self) -> Vec<LegendEntry> {
+        let loops = self.input.loops.iter().enumerate();
+        let mut legend: Vec<LegendEntry> =
+            loops.map(|(index, one)| LegendEntry::line(&one.name, loop_stroke(index))).collect();
+        if !self.marks.is_empty() {
+            let style = MarkerStyle { marker: Marker::Circle, role: Role::Text, radius: 4.5 };
+            legend.push(LegendEntry::marker("design frequency", style));
+        }
+        let several = self.input.bounds.len() > 1;
+        for (index, group) in self.input.bounds.iter().enumerate() {
+            let dash = if several { series_dash(index) } else { Dash::Solid };
+            legend.push(LegendEntry::line(&group.name, Stroke::solid(Role::Text, 1.8).dashed(dash)));
+        }
+        if !self.input.contours_db.is_empty() {
+            legend.push(LegendEntry::line("|T| in dB", contour_stroke()));
+        }
+        legend.push(LegendEntry::marker("critical point", CRITICAL_POINT));
+        if !self.violations.is_empty() {
+            legend.push(LegendEntry::marker("violation", VIOLATION));
+        }
+        if self.input.bounds.iter().any(|group| !group.bounds.is_empty()) {
+            legend.push(LegendEntry::note("numbers on bounds: rad/s; ticked side forbidden"));
+        }
+        legend
+    }
+}
+
+const CRITICAL_POINT: MarkerStyle = MarkerStyle { marker: Marker::Plus, role: Role::Text, radius: 6.0 };
+const VIOLATION: MarkerStyle = MarkerStyle { marker: Marker::Cross, role: Role::Bad, radius: 5.0 };
+
+fn contour_stroke() -> Stroke {
+    Stroke::solid(Role::Muted, 0.6)
+}
+
+fn loop_stroke(index: usize) -> Stroke {
+    Stroke::solid(Role::Text, 2.4).dashed(series_dash(index))
+}
+
+/// All frequencies of the chart, rising.
+fn frequencies(input: &NicholsInput<'_>) -> Vec<f64> {
+    let bounds = input.bounds.iter().flat_map(|group| group.bounds).map(|bound| bound.frequency_rad_per_s);
+    let templates = input.templates.iter().map(|template| template.frequency_rad_per_s);
+    let design = input.design_frequencies_rad_per_s.iter().copied();
+    let mut all: Vec<f64> = design.chain(bounds).chain(templates).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
+/// The colour of a frequency.
+fn role(frequencies: &[f64], frequency: f64) -> Role {
+    let index = frequencies.iter().position(|other| *other == frequency).unwrap_or(0);
+    ramp_role(index, frequencies.len())
+}
+
+fn shifted(points: &[(f64, f64)], shift: f64) -> Vec<(f64, f64)> {
+    points.iter().map(|(phase, magnitude)| (phase + shift, *magnitude)).collect()
+}
+
+/// About twenty of the points to choose a label's place from, beginning at another part for another start.
+fn spread(points: &[(f64, f64)], start: usize) -> Vec<(f64, f64)> {
+    const PLACES: usize = 20;
+    let stride = points.len().div_ceil(PLACES).max(1);
+    let mut places: Vec<(f64, f64)> = points.iter().copied().step_by(stride).collect();
+    if !places.is_empty() {
+        let by = 3 * (start + 1) % places.len();
+        places.rotate_left(by);
+    }
+    places
+}
