@@ -48,22 +48,22 @@ const STABILITY_SHARE: f64 = 0.4;
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct AuditRun<'a> {
-    stability: StabilityAudit<'a>,
+pub struct AuditRun {
+    stability: StabilityAudit,
     stability_done: bool,
     specifications: SpecificationAudit,
     tolerance_db: f64,
 }
 
-impl<'a> AuditRun<'a> {
+impl AuditRun {
     /// An audit that has not begun. A margin of minus `tolerance_db` still counts as met.
     pub fn new(
-        family: &'a Family,
-        compensation: &'a Compensation,
+        family: &Family,
+        compensation: &Compensation,
         specifications: &[Specification],
         tracking: TrackingJudgement,
         tolerance_db: f64,
-    ) -> AuditRun<'a> {
+    ) -> AuditRun {
         AuditRun {
             stability: StabilityAudit::new(family, compensation),
             stability_done: false,
