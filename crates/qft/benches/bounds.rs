@@ -48,7 +48,7 @@ fn main() -> ExitCode {
         "{} plants, one core each, fastest of {RUNS} runs and of {PEER_RUNS} of the peer\n",
         SIDE * SIDE
     );
-    let compared: Vec<bool> = tasks.iter().map(|task| compare(task)).collect();
+    let compared: Vec<bool> = tasks.iter().map(compare).collect();
     if compared.into_iter().all(|agreed| agreed) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
@@ -166,8 +166,8 @@ fn bound(task: &Task, frequency: f64) -> Result<Vec<GainIntervals>, BoundError> 
 
 /// Greatest difference between the outer ends of a union and the values of the peer: one value is the upper end, two are both.
 fn difference_db(ours: &GainIntervals, theirs: &[f64]) -> f64 {
-    let ends = || ours.intervals().iter().flatten().map(|gain| 20.0 * portable::log10(*gain));
-    let ours = [ends().next(), ends().last()];
+    let mut ends = ours.intervals().iter().flatten().map(|gain| 20.0 * portable::log10(*gain));
+    let ours = [ends.next(), ends.next_back()];
     let paired = ours.iter().skip(2_usize.saturating_sub(theirs.len())).zip(theirs);
     paired.fold(0.0, |most, (ours, theirs)| match ours {
         Some(ours) => f64::max(most, (ours - theirs).abs()),

@@ -4,8 +4,10 @@ mod ceiling;
 mod combined;
 mod fill;
 mod function;
+mod hull;
 mod inequality;
 mod interval;
+mod leaf;
 mod phases;
 mod quadratic;
 mod rule;
@@ -32,7 +34,8 @@ pub struct Bound {
 pub enum Fill {
     /// Its plants alone. Where they are sparse, the regions that neighbours forbid do not overlap, and islands seem allowed between them.
     Points,
-    /// Its plants, every point of its outlines, and what these enclose.
+    /// Its plants, every point of its outlines, and what these enclose. A side of an outline is taken as straight in P0/P (for the control effort
+    /// in P), which between neighbours half a decibel and two degrees apart is within 0.01 dB of any other way to join them.
     Filled,
 }
 

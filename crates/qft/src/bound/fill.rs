@@ -90,6 +90,11 @@ impl Edge {
                 [one.min(other).max(0.0), one.max(other)]
             }
         };
+        let gains =
+            |[low, high]: [f64; 2]| if self.reciprocal { [1.0 / high, 1.0 / low] } else { [low, high] };
+        if union.covers(ray.within_window(gains([first, last]))) {
+            return;
+        }
         let share = self.share * ray.other_weight * ray.other_weight;
         let a = 1.0 - share - self.curvature * slope * slope;
         let b = from - self.curvature * start * slope - share * ray.along(ray.other);
@@ -98,35 +103,37 @@ impl Edge {
             - share * ray.other_modulus * ray.other_modulus;
         for [low, high] in negative_gains(a, b, c, b * b - a * c) {
             let (low, high) = (low.max(first), high.min(last));
-            let gains = if self.reciprocal { [1.0 / high, 1.0 / low] } else { [low, high] };
             if low < high {
-                union.insert(ray.within_window(gains));
+                union.insert(ray.within_window(gains([low, high])));
             }
         }
     }
 }
 
 /// The gains at which -L0 lies inside a closed polygon of q = P0/P: some plant between the plants then has 1 + L = 0.
+///
+/// Inside is whatever the polygon winds around: one that overlaps itself, as the outline of a template over more than a turn of phase does,
+/// encloses the overlap too. Far outside nothing is wound around, and each side that the ray crosses on its way in changes that by one.
 pub(super) fn inside(polygon: &[Complex64], direction: Complex64) -> GainIntervals {
     let across = |point: &Complex64| point.re * direction.im - point.im * direction.re;
     let along = |point: &Complex64| -(point.re * direction.re + point.im * direction.im);
-    let following = polygon.iter().cycle().skip(1);
-    let mut crossings: Vec<f64> = polygon
-        .iter()
-        .zip(following)
-        .filter(|(from, to)| (across(from) > 0.0) != (across(to) > 0.0))
-        .map(|(from, to)| {
+    let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
+    let mut crossings: Vec<(f64, i32)> = sides
+        .filter_map(|(from, to)| {
+            let turn = i32::from(across(to) > 0.0) - i32::from(across(from) > 0.0);
             let share = across(from) / (across(from) - across(to));
-            along(from) + share * (along(to) - along(from))
+            let gain = along(from) + share * (along(to) - along(from));
+            (turn != 0 && gain > 0.0).then_some((gain, turn))
         })
-        .filter(|gain| *gain > 0.0)
         .collect();
-    if crossings.len() % 2 == 1 {
-        crossings.push(0.0);
-    }
-    crossings.sort_unstable_by(f64::total_cmp);
-    let (pairs, _) = crossings.as_chunks::<2>();
-    GainIntervals::union_of(pairs.to_vec())
+    crossings.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+    let ends = crossings.iter().skip(1).map(|crossing| crossing.0).chain([0.0]);
+    let mut winding = 0;
+    let within = crossings.iter().zip(ends).filter_map(|(&(gain, turn), end)| {
+        winding += turn;
+        (winding != 0).then_some([end, gain])
+    });
+    GainIntervals::union_of(within.collect())
 }
 
 #[cfg(test)]
@@ -157,5 +164,7 @@ mod tests {
         assert_eq!(inside(&around, back).intervals(), [[0.0, 2.0]]);
         assert_eq!(inside(&around, -back).intervals(), [[0.0, 1.0]]);
         assert!(inside(&[], back).is_empty());
+        let twice: Vec<Complex64> = notched.iter().chain(&notched).copied().collect();
+        assert_eq!(inside(&twice, back), inside(&notched, back));
     }
 }

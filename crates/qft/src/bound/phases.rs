@@ -9,7 +9,7 @@ use super::interval::GainIntervals;
 ///
 /// Half way between two phases the bound is compared with the straight line in dB between its ends there. Where it differs by more than
 /// the tolerance, or where an interval begins, ends or splits, both halves are looked at in the same way, down to the finest
-/// spacing: a closed bound shuts like a square root, so that at its tip a gap of 1e-7 rad leaves 0.004 dB, where a grid of 5
+/// spacing: a closed bound shuts like a square root, so that at its tip a gap of 1e-5 rad leaves 0.04 dB, where a grid of 5
 /// degrees is off by decibels. Besides, one phase goes into whatever arc of phases a plant forbids that would fall between two others: no
 /// island is overlooked however small.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,9 +23,9 @@ pub struct PhaseGrid {
 }
 
 impl Default for PhaseGrid {
-    /// 2 degrees, 0.05 dB, 1e-7 rad.
+    /// 2 degrees, 0.05 dB, 1e-5 rad.
     fn default() -> PhaseGrid {
-        PhaseGrid { spacing_rad: 2.0_f64.to_radians(), tolerance_db: 0.05, finest_rad: 1e-7 }
+        PhaseGrid { spacing_rad: 2.0_f64.to_radians(), tolerance_db: 0.05, finest_rad: 1e-5 }
     }
 }
 

@@ -1,0 +1,133 @@
+//! What some plants of a template have in common, and what that allows any of them to forbid.
+
+use num_complex::Complex64;
+
+use super::inequality::{Form, Plant, Ray};
+use super::leaf::{Borders, lesser};
+use super::quadratic::negative_gains;
+
+/// Added to what a box may forbid, relative, so that no rounding hides a plant from the ray.
+const SLACK: f64 = 1e-14;
+
+/// What some plants have in common.
+///
+/// ```text
+/// least <= |q| <= greatest,   arg q within an arc,   (r/W)^2 <= share
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hull {
+    modulus: [f64; 2],
+    /// Bearings of the ends of the arc.
+    bearing: [f64; 2],
+    /// Directions of these ends, q/|q|.
+    ends: [Complex64; 2],
+    share: f64,
+}
+
+impl Hull {
+    pub(super) fn around(plants: &[Plant]) -> Option<Hull> {
+        let ways = || plants.iter().map(|plant| (bearing(plant.inverse), plant));
+        let (first, right) = ways().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (last, left) = ways().max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let moduli = || plants.iter().map(|plant| plant.modulus);
+        Some(Hull {
+            modulus: [moduli().fold(f64::INFINITY, f64::min), moduli().fold(0.0, f64::max)],
+            bearing: [first, last],
+            ends: [right, left].map(|plant| plant.inverse / plant.modulus),
+            share: plants.iter().map(Plant::share).fold(0.0, f64::max),
+        })
+    }
+
+    pub(super) fn of_all(hulls: &[Hull]) -> Option<Hull> {
+        hulls.iter().copied().reduce(|all, hull| {
+            let right = if hull.bearing[0] < all.bearing[0] { hull } else { all };
+            let left = if hull.bearing[1] > all.bearing[1] { hull } else { all };
+            Hull {
+                modulus: [all.modulus[0].min(hull.modulus[0]), all.modulus[1].max(hull.modulus[1])],
+                bearing: [right.bearing[0], left.bearing[1]],
+                ends: [right.ends[0], left.ends[1]],
+                share: all.share.max(hull.share),
+            }
+        })
+    }
+
+    /// Whether plants inside forbid nothing beyond the borders, or nothing at all, told by signs alone; a `false` decides nothing. Not for
+    /// `Spread`.
+    pub(super) fn stays_within(&self, ray: &Ray, borders: &Borders) -> bool {
+        let rest = 1.0 - self.share - SLACK * (1.0 + self.share);
+        let (a, c) = if ray.form == Form::Complementary { (rest, 1.0) } else { (1.0, rest) };
+        let b = self.least_cosine(ray.direction);
+        // The quadratic in u = g/|q|, times |q|^2: at the lower border for the nearest plant, at the upper one for the farthest.
+        let [near, far] = self.modulus;
+        let below = borders.below(a, b * near, c * near * near);
+        let above = borders.above(a, b * far, c * far * far);
+        a > 0.0 && (lesser(below, above) > 0.0 || b * b < a * c)
+    }
+
+    /// The least cosine between the ray and a q of the hull.
+    fn least_cosine(&self, direction: Complex64) -> f64 {
+        let [first, last] = self.ends;
+        let cross = |a: Complex64, b: Complex64| a.re * b.im - a.im * b.re;
+        let half_turn = self.bearing[1] - self.bearing[0] >= 2.0;
+        if half_turn || (cross(first, direction) <= 0.0 && cross(direction, last) <= 0.0) {
+            return -1.0;
+        }
+        let cosine = |end: Complex64| end.re * direction.re + end.im * direction.im;
+        cosine(first).min(cosine(last)) - SLACK
+    }
+
+    /// The least value at a gain that the hull allows the quadratic of a plant inside.
+    pub(super) fn least(&self, ray: &Ray, gain: f64) -> f64 {
+        let cosine = self.least_cosine(ray.direction);
+        let [near, far] = self.modulus;
+        let modulus = (-gain * cosine).clamp(near, far);
+        let share = self.share * ray.other_weight * ray.other_weight;
+        let distance = |cosine: f64, modulus: f64| (gain + 2.0 * modulus * cosine) * gain + modulus * modulus;
+        let limit = match ray.form {
+            Form::Complementary => gain * gain,
+            Form::Sensitivity => modulus * modulus,
+            Form::Spread => {
+                gain * gain + 2.0 * gain * ray.along(ray.other) + ray.other_modulus * ray.other_modulus
+            }
+        };
+        distance(cosine, modulus) - share * limit
+    }
+
+    /// Gains among which all lie that a plant inside could forbid: where the least quadratic that the hull allows is negative. Under a limit
+    /// of its own, a plant's quadratic depends on u = g/|q|:
+    ///
+    /// ```text
+    /// Complementary   (1 - share) u^2 + 2 u min cos + 1 < 0
+    /// Sensitivity     u^2 + 2 u min cos + (1 - share) < 0
+    /// Spread          (1 - share) g^2 + 2 (min c - share c_k) g + (min |q|^2 - share |q_k|^2) < 0,  share with r_k^2
+    /// ```
+    pub(super) fn could_forbid(&self, ray: &Ray) -> [[f64; 2]; 2] {
+        let share = self.share * ray.other_weight * ray.other_weight;
+        if !share.is_finite() {
+            return [ray.window, [0.0, 0.0]];
+        }
+        let least = self.least_cosine(ray.direction);
+        let [near, far] = self.modulus;
+        let rest = 1.0 - share - SLACK * (1.0 + share);
+        let scaled = |a: f64, c: f64| {
+            negative_gains(a, least, c, least * least - a * c).map(|[low, high]| [low * near, high * far])
+        };
+        match ray.form {
+            Form::Complementary => scaled(rest, 1.0 - SLACK),
+            Form::Sensitivity => scaled(1.0 - SLACK, rest),
+            Form::Spread => {
+                let along = least * if least < 0.0 { far } else { near };
+                let other = ray.other_modulus;
+                let b = along - share * ray.along(ray.other) - SLACK * (far + share * other);
+                let c = near * near - share * other * other - SLACK * (far * far + share * other * other);
+                negative_gains(rest, b, c, b * b - rest * c).map(|interval| ray.within_window(interval))
+            }
+        }
+    }
+}
+
+/// A number in [-2, 2] that grows with the argument of q, free of transcendental functions.
+pub(super) fn bearing(inverse: Complex64) -> f64 {
+    let slope = inverse.im / (inverse.re.abs() + inverse.im.abs());
+    if inverse.re >= 0.0 { slope } else { 2.0_f64.copysign(inverse.im) - slope }
+}

@@ -1,0 +1,91 @@
+//! A few plants at a time: whether they forbid anything that is not known already.
+
+use super::inequality::{Form, Plant, Ray};
+use super::interval::GainIntervals;
+
+/// Plants in a leaf: enough to be looked at several at a time.
+pub(super) const LEAF: usize = 8;
+
+/// The quadratics of some plants in columns, divided by W^2.
+///
+/// ```text
+/// (1 - share r_k^2) g^2 + 2 (c - share r_k^2 c_k) g + (constant - share r_k^2 |q_k|^2)
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leaf {
+    re: [f64; LEAF],
+    im: [f64; LEAF],
+    constant: [f64; LEAF],
+    share: [f64; LEAF],
+}
+
+/// An interval that is forbidden already, and what is to be added where nothing lies beyond an end: infinity.
+pub(super) struct Borders {
+    ends: [f64; 2],
+    beyond: [f64; 2],
+}
+
+impl Borders {
+    /// Those of each interval of a union.
+    pub(super) fn of_each(ray: &Ray, union: &GainIntervals) -> impl Iterator<Item = Borders> {
+        let [from, to] = ray.window;
+        let idle = |is_idle: bool| if is_idle { f64::INFINITY } else { 0.0 };
+        union.intervals().iter().map(move |&[low, high]| {
+            // Where nothing lies above, any number stands for the end.
+            let end = if high < to { high } else { low };
+            Borders { ends: [low, end], beyond: [idle(low <= from), idle(high >= to)] }
+        })
+    }
+
+    /// Positive only if a quadratic that opens upwards is positive below the interval: it is so at the border, and falls there.
+    pub(super) fn below(&self, a: f64, b: f64, c: f64) -> f64 {
+        let end = self.ends[0];
+        lesser(-(a * end + b), (a * end + 2.0 * b) * end + c) + self.beyond[0]
+    }
+
+    /// Positive only if a quadratic that opens upwards is positive above the interval: it is so at the border, and rises there.
+    pub(super) fn above(&self, a: f64, b: f64, c: f64) -> f64 {
+        let end = self.ends[1];
+        lesser(a * end + b, (a * end + 2.0 * b) * end + c) + self.beyond[1]
+    }
+}
+
+/// The lesser of two numbers; unlike `f64::min` without regard to what is no number, and so a single instruction.
+pub(super) fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+impl Leaf {
+    /// These plants, the last repeated where there are too few.
+    pub(super) fn of(form: Form, plants: &[Plant]) -> Leaf {
+        let mut leaf = Leaf { re: [1.0; LEAF], im: [0.0; LEAF], constant: [1.0; LEAF], share: [0.0; LEAF] };
+        let columns = leaf.re.iter_mut().zip(&mut leaf.im).zip(leaf.constant.iter_mut().zip(&mut leaf.share));
+        let last = plants.last().into_iter().cycle();
+        for (((re, im), (constant, share)), plant) in columns.zip(plants.iter().chain(last)) {
+            (*re, *im) = (plant.inverse.re, plant.inverse.im);
+            (*constant, *share) = match form {
+                Form::Sensitivity => (plant.sensitivity_constant(), 0.0),
+                Form::Complementary | Form::Spread => (plant.modulus * plant.modulus, plant.share()),
+            };
+        }
+        leaf
+    }
+
+    /// Whether its plants forbid nothing beyond the borders, or nothing at all, told by signs alone; a `false` decides nothing.
+    pub(super) fn stays_within(&self, ray: &Ray, borders: &Borders) -> bool {
+        let square = ray.other_weight * ray.other_weight;
+        let (along, other) = (ray.along(ray.other), ray.other_modulus * ray.other_modulus);
+        let ways = self.re.iter().zip(&self.im).zip(self.constant.iter().zip(&self.share));
+        let least = ways.fold(f64::INFINITY, |least, ((re, im), (constant, share))| {
+            let share = share * square;
+            let a = 1.0 - share;
+            let b = re * ray.direction.re + im * ray.direction.im - share * along;
+            let c = constant - share * other;
+            let within = lesser(borders.below(a, b, c), borders.above(a, b, c));
+            // Either the discriminant is negative or the roots lie between the borders.
+            let slack = -lesser(-within, b * b - a * c);
+            lesser(least, lesser(slack, a))
+        });
+        least > 0.0
+    }
+}
