@@ -76,7 +76,7 @@ class Transfer:
         order = max(self.numerator.order, self.denominator.order)
 
         def mapped(source):
-            terms = [c * down**power * up ** (order - power) for power, c in enumerate(source.coeffs[::-1])]
+            terms = [float(c) * down**power * up ** (order - power) for power, c in enumerate(source.coeffs[::-1])]
             return sum(terms, np.poly1d([0.0]))
 
         return mapped(self.numerator), mapped(self.denominator)

@@ -111,16 +111,18 @@ def sampled_delay_margin(search):
         project.loop_delay = before
         return answer
 
+    low, high = search.characteristic[0] * 1e-3, np.pi / project.sample_time
+    by_phase = [member_delay_margin(project, v, search.frequencies(v, low, high, 600)) for v in search.plants]
     best, plant = np.inf, None
-    step = project.sample_time / 5
-    for values in search.plants:
-        extra = step
-        while extra < min(best, 1000 * step) and not unstable(values, extra):
-            extra += step
-        if extra >= min(best, 1000 * step):
+    for row in np.argsort(by_phase)[:4]:
+        values = search.plants[row]
+        steps = np.linspace(0, min(2 * by_phase[row], 400 * project.sample_time), 25)[1:]
+        later = next((index for index, extra in enumerate(steps) if unstable(values, extra)), None)
+        if later is None:
             continue
-        low, high = extra - step, extra
-        for _ in range(40):
-            low, high = ((low + high) / 2, high) if not unstable(values, (low + high) / 2) else (low, (low + high) / 2)
+        low, high = steps[later] - steps[0], steps[later]
+        for _ in range(30):
+            middle = (low + high) / 2
+            low, high = (low, middle) if unstable(values, middle) else (middle, high)
         best, plant = (high, values) if high < best else (best, plant)
     return best, plant

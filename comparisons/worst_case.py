@@ -182,7 +182,8 @@ def worst_side(search, side, low, high):
     found.sort(key=lambda entry: entry[0])
     value, at, case = found[0]
     for _, point, other in found[: 1 if fixed else 2]:
-        further = polish(lambda p: function(p, other), point) if len(point) else (value, at)
+        rounds = 1 if project.sample_time else 2
+        further = polish(lambda p: function(p, other), point, rounds) if len(point) else (value, at)
         if further[0] < value:
             (value, at), case = further, other
     w = low if fixed else low * (high / low) ** at[-1]
