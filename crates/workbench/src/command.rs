@@ -1,12 +1,14 @@
 //! The commands on a project: what is asked, and the answer that a shell prints and writes.
 
+use phea_qft::family::Family;
 use phea_qft::verification::Verdict;
 use serde::Serialize;
 
 use crate::answer::{self, Answer, OutputFile};
 use crate::audit::{self, AuditError, audit_project};
-use crate::control::{ControlError, controller};
+use crate::control::{ControlError, controller, sensor};
 use crate::derived::{self, derive};
+use crate::family::family;
 use crate::figure::FigureError;
 use crate::linearize::{self, linearize};
 use crate::project::{Loaded, Report as Refusal, Severity, sha256};
@@ -15,6 +17,7 @@ use crate::report::{Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
 use crate::sizing::{self, Question, size};
 use crate::source::Source;
+use crate::specification::specifications;
 
 /// What is asked of a project.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -139,7 +142,7 @@ pub fn answer_watched(
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     match request {
-        Request::Check => check(loaded),
+        Request::Check => check(source, loaded),
         Request::Size { gain, length } => {
             let question = question(gain.as_deref(), length.as_deref())?;
             size_answer(source, loaded, catalogues, question)
@@ -151,7 +154,7 @@ pub fn answer_watched(
     }
 }
 
-fn check(loaded: &Loaded) -> Result<Answer, CommandError> {
+fn check(source: &dyn Source, loaded: &Loaded) -> Result<Answer, CommandError> {
     let derived = match Rig::new(&loaded.project) {
         Ok(rig) => derive(&loaded.project, &rig),
         // A plant given as a transfer function has nothing to derive; it is valid all the same.
@@ -159,13 +162,22 @@ fn check(loaded: &Loaded) -> Result<Answer, CommandError> {
         Err(error) => return Err(error.into()),
     };
     controller(&loaded.project)?;
+    sensor(&loaded.project)?;
+    specifications(&loaded.project)?;
     let text = match derived.as_slice() {
-        [] => "The project is valid. Its plant is a transfer function, from which nothing is derived.\n"
-            .to_string(),
+        [] => format!("The project is valid. {}\n", without_derived(source, loaded)?),
         derived => format!("{}\nThe project is valid.\n", derived::text(derived)),
     };
     let files = derived::files(&derived);
     Ok(Answer { text, json: derived::json(loaded, &derived), files, affirmative: true })
+}
+
+/// The family is all that a project without an actuator has: it must be one.
+fn without_derived(source: &dyn Source, loaded: &Loaded) -> Result<&'static str, CommandError> {
+    Ok(match family(&loaded.project, source)? {
+        Family::Measured(_) => "Its plants were measured, and nothing is derived from them.",
+        Family::Uncertain(_) => "Its plant is a transfer function, from which nothing is derived.",
+    })
 }
 
 fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, CommandError> {
@@ -215,7 +227,7 @@ fn size_answer(
 fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
     let rig = Rig::new(&loaded.project)?;
     let given = controller(&loaded.project)?;
-    let linearization = linearize(&rig, given.as_ref())?;
+    let linearization = linearize(&rig, given.as_ref(), &sensor(&loaded.project)?)?;
     Ok(Answer {
         text: linearize::text(&linearization),
         json: linearize::json(loaded, &linearization),

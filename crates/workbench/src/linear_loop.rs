@@ -14,13 +14,13 @@ pub struct LinearLoop {
     pub controller: TransferFunction,
     /// F
     pub prefilter: TransferFunction,
-    /// L = P G with the delay of the loop.
+    /// L = P G H with the delay of the loop.
     pub open_loop: TransferFunction,
     /// Gain, phase, modulus and delay margin of L.
     pub margins: Margins,
     /// Whether the closed loop is stable.
     pub stability: LoopStability,
-    /// F L/(1 + L), where it can be had.
+    /// F P G/(1 + L), where it can be had.
     pub step: Result<StepView, String>,
 }
 
@@ -64,7 +64,7 @@ pub enum LoopError {
 /// Number of samples of a step response.
 const SAMPLES: usize = 2000;
 
-/// Closes the loop of plant P with a controller.
+/// Closes the loop of plant P with a controller that sees the output through the sensor H.
 ///
 /// A continuous controller in a continuous loop; a sampled one with the plant held by a zero-order hold, the delay of the
 /// loop in it.
@@ -74,13 +74,18 @@ const SAMPLES: usize = 2000;
 pub fn linear_loop(
     plant: &TransferFunction,
     controller: &Controller,
+    sensor: &TransferFunction,
     band_percent: f64,
 ) -> Result<LinearLoop, LoopError> {
     let (feedback, prefilter) =
         (controller.feedback.transfer_function()?, controller.prefilter.transfer_function()?);
     let delay_s = controller.timing.delay_s;
-    let (plant, feedback, prefilter) = match controller.timing.sample_time_s {
-        None => (plant.clone().with_dead_time(delay_s)?, feedback, prefilter),
+    let (plant, with_sensor, feedback, prefilter) = match controller.timing.sample_time_s {
+        None => {
+            let late = plant.clone().with_dead_time(delay_s)?;
+            let with_sensor = late.series(sensor)?;
+            (late, with_sensor, feedback, prefilter)
+        }
         Some(sample_time_s) => {
             let sampled = |function: TransferFunction| match function.domain() {
                 TimeDomain::Continuous => {
@@ -88,21 +93,23 @@ pub fn linear_loop(
                 }
                 TimeDomain::Discrete { .. } => Ok(function),
             };
-            let held = plant
-                .clone()
-                .with_dead_time(delay_s)?
-                .discretized(sample_time_s, Discretization::ZeroOrderHold)?;
-            (held, sampled(feedback)?, sampled(prefilter)?)
+            let held = |function: TransferFunction| {
+                function.discretized(sample_time_s, Discretization::ZeroOrderHold)
+            };
+            let late = plant.clone().with_dead_time(delay_s)?;
+            let with_sensor = held(late.series(sensor)?)?;
+            (held(late)?, with_sensor, sampled(feedback)?, sampled(prefilter)?)
         }
     };
-    let open_loop = plant.series(&feedback)?;
+    let open_loop = with_sensor.series(&feedback)?;
     let stability = stability(&open_loop)?;
     let step = match () {
         () if stability == LoopStability::Unstable => {
             Err("the closed loop is unstable, its response grows without bound".to_string())
         }
         () if !prefilter.is_stable() => Err("the prefilter is unstable".to_string()),
-        () => step_view(&plant, &feedback, &prefilter, band_percent).map_err(|error| error.to_string()),
+        () => step_view(&plant, &with_sensor, &feedback, &prefilter, band_percent)
+            .map_err(|error| error.to_string()),
     };
     Ok(LinearLoop {
         margins: margins(&open_loop),
@@ -129,15 +136,14 @@ fn stability(open_loop: &TransferFunction) -> Result<LoopStability, LinearError>
 
 fn step_view(
     plant: &TransferFunction,
+    with_sensor: &TransferFunction,
     feedback: &TransferFunction,
     prefilter: &TransferFunction,
     band_percent: f64,
 ) -> Result<StepView, LoopError> {
-    let unity = TransferFunction::gain_only(1.0);
-    let closed = plant.series(feedback)?.feedback(&unity.clone().in_domain(plant.domain())?)?;
-    let through = prefilter.series(&closed)?;
-    // U/R = F G/(1 + P G), closed from the factors of G and P.
-    let command = prefilter.series(&feedback.feedback(plant)?)?;
+    // U/R = F G/(1 + G P H), closed from the factors of G and P H; the poles of P are its zeros and cancel exactly in Y = P U.
+    let command = prefilter.series(&feedback.feedback(with_sensor)?)?;
+    let through = command.series(plant)?.without_common_factors(0.0);
     let duration = duration(&through);
     let times_s = match plant.domain() {
         TimeDomain::Continuous => uniform_times(duration, SAMPLES)?,

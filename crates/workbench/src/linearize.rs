@@ -93,12 +93,21 @@ pub struct PortView {
     pub final_force_n: Option<f64>,
 }
 
-/// Linearises a rig; `controller` is the given one, if there is one.
+/// Linearises a rig; `controller` is the given one, if there is one, which sees the force through the sensor H.
 ///
 /// # Errors
 /// A model without finite roots: parameters so extreme that the arithmetic ends.
-pub fn linearize(rig: &Rig, controller: Option<&Controller>) -> Result<Linearization, LinearError> {
+pub fn linearize(
+    rig: &Rig,
+    controller: Option<&Controller>,
+    sensor: &TransferFunction,
+) -> Result<Linearization, LinearError> {
     let feedback = controller.map(|given| given.feedback.transfer_function()).transpose()?;
+    // Load motion is answered by G H.
+    let feedback = match feedback {
+        Some(function) if is_continuous(&function) => Some(function.series(sensor)?),
+        other => other,
+    };
     let full = linear_model(&rig.linear)?;
     let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.two_pressure))?;
     let decomposed = [
@@ -112,6 +121,7 @@ pub fn linearize(rig: &Rig, controller: Option<&Controller>) -> Result<Lineariza
     let rational = controller.is_some_and(|given| {
         given.timing == Timing { discretization: given.timing.discretization, ..Timing::default() }
     });
+    let rational = rational && sensor.dead_time_s() == 0.0;
     let continuous = feedback.as_ref().filter(|function| rational && is_continuous(function));
     let closed_loop = continuous.map(|controller| closed_loop_view(rig, &full, controller)).transpose()?;
     Ok(Linearization {

@@ -20,7 +20,7 @@ pub use typeset::{prose, typeset};
 
 use crate::answer::{OutputFile, significant};
 use crate::command::CommandError;
-use crate::control::controller;
+use crate::control::{controller, sensor};
 use crate::derived::derive;
 use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop, settling_words};
@@ -56,12 +56,15 @@ pub fn report(loaded: &Loaded, problem: Option<&SizingProblem>) -> Result<Report
     let rig = Rig::new(project)?;
     let actuator = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
     let controller = controller(project)?;
-    let linearization = linearize(&rig, controller.as_ref())?;
+    let sensor = sensor(project)?;
+    let linearization = linearize(&rig, controller.as_ref(), &sensor)?;
     let derived = derive(project, &rig);
     let sizing = problem.map(|problem| size(problem, Question::Both));
     let band = project.scenarios.first().map_or(SETTLING_BAND, |scenario| scenario.settling_band_percent);
-    let given =
-        controller.as_ref().map(|given| linear_loop(&linearization.full.command, given, band)).transpose()?;
+    let given = controller
+        .as_ref()
+        .map(|given| linear_loop(&linearization.full.command, given, &sensor, band))
+        .transpose()?;
 
     let mut chapters = vec![
         rig::chapter(project, actuator, &rig),

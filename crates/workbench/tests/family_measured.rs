@@ -10,6 +10,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::family::{Family, MeasuredFamily};
+use phea_workbench::command::{Request, answer};
 use phea_workbench::family::{FamilyError, family};
 use phea_workbench::project;
 use phea_workbench::source::Memory;
@@ -217,4 +218,18 @@ fn a_limit_on_load_motion_needs_its_columns() {
     let wish = "[[specification]]\nkind = \"load_motion\"\nlimit = 1\nfrequencies = [1]\n";
     let error = read(&format!("{PROJECT}{wish}"), "frequency_hz,real,imaginary\n1,1,0\n").unwrap_err();
     assert_eq!(error, FamilyError::LoadMotion("a.csv".to_string()));
+}
+
+/// `check` reads the files too, and says what it found.
+#[test]
+fn check_reads_what_was_measured() {
+    let checked = |csv: &str| {
+        let source = Memory::default().with("rigs/p.toml", PROJECT).with("rigs/a.csv", csv);
+        let loaded = project::read(&source, "rigs/p.toml", &[], &[]).unwrap();
+        answer(&source, &loaded, &[], &Request::Check)
+            .map(|answer| answer.text)
+            .map_err(|error| error.to_string())
+    };
+    assert!(checked("frequency_hz,real,imaginary\n1,1,0\n").unwrap().contains("measured"));
+    assert!(checked("frequency_hz,real,imaginary\n1,x,0\n").unwrap_err().contains("rigs/a.csv:2:3"));
 }
