@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+#[path = "verification/dead_time.rs"]
+mod dead_time;
 #[path = "verification/ends.rs"]
 mod ends;
 #[path = "verification/examples.rs"]

@@ -101,14 +101,25 @@ struct LoopAsymptotes {
     spun: bool,
 }
 
-/// The limit of the margin, in dB; `None` where there is none.
-pub(super) fn margin_db(
+/// The limit of a margin at an end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct EndMargin {
+    pub(super) margin_db: f64,
+    /// The power of s that the closed loop follows.
+    pub(super) power: i32,
+}
+
+/// The limit of the margin; `None` where there is none.
+///
+/// Without a prefilter tracking is judged by its spread, to which any prefilter is as good as another: one is taken that makes |T| as
+/// steep as its upper limit. It is the same for plants of equal power, and only these can be compared.
+pub(super) fn margin(
     criterion: &Criterion,
     compensation: &Compensation,
     member: &Member,
     with_prefilter: bool,
     end: End,
-) -> Option<f64> {
+) -> Option<EndMargin> {
     let parts = parts(compensation, member, with_prefilter, end)?;
     let numerator = match criterion.quantity {
         Quantity::Complementary => parts.open_loop,
@@ -118,7 +129,11 @@ pub(super) fn margin_db(
         Quantity::LoadMotion => parts.load_motion,
         Quantity::Tracking => parts.prefilter.times(parts.plant).times(parts.feedback),
     };
-    let closed = numerator.over(parts.one_plus_loop(criterion.side, end)?);
+    let mut closed = numerator.over(parts.one_plus_loop(criterion.side, end)?);
+    let power = closed.power;
+    if let (false, Some(upper)) = (with_prefilter, &criterion.upper) {
+        closed.power = Asymptote::of_limit(upper, end)?.power;
+    }
     let limit = Asymptote::of_limit(&criterion.limit, end)?;
     let ratio = match criterion.side {
         Side::Below => limit.over(closed),
@@ -128,13 +143,14 @@ pub(super) fn margin_db(
     if size.is_nan() {
         return None;
     }
-    Some(match ratio.order(end) {
+    let margin_db = match ratio.order(end) {
         _ if size == 0.0 => f64::NEG_INFINITY,
         _ if size == f64::INFINITY => f64::INFINITY,
         std::cmp::Ordering::Less => f64::NEG_INFINITY,
         std::cmp::Ordering::Equal => 20.0 * portable::log10(size),
         std::cmp::Ordering::Greater => f64::INFINITY,
-    })
+    };
+    Some(EndMargin { margin_db, power })
 }
 
 /// Where the asymptote of the loop at zero frequency has unit magnitude, rad/s.

@@ -428,7 +428,7 @@ impl SpecificationAudit {
             evaluator: &self.evaluator,
             plants: &self.plants,
             cases: &cases,
-            undefined: self.undefined.get(number).copied().flatten(),
+            undefined: self.undefined.get(number).copied().flatten().or(finding::undefined(part, &self.scan)),
             tolerance_db: self.tolerance_db,
         }
         .finding(&mut self.scan);

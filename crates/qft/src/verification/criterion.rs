@@ -34,6 +34,8 @@ pub(super) struct Criterion {
     pub(super) quantity: Quantity,
     pub(super) side: Side,
     pub(super) limit: Limit,
+    /// The upper limit beside it, for tracking.
+    pub(super) upper: Option<Limit>,
     /// Where it is demanded: the band of the specification, as far as a table and the sampling reach, rad/s.
     pub(super) band: [f64; 2],
 }
@@ -49,7 +51,11 @@ impl Criterion {
 pub(super) fn criteria(specification: &Specification, highest_frequency: f64) -> Vec<Criterion> {
     let one = |quantity, side, limit: &Limit| {
         let band = reach(limit, specification.band_rad_per_s, highest_frequency);
-        Criterion { quantity, side, limit: limit.clone(), band }
+        let upper = match &specification.requirement {
+            Requirement::Tracking { upper, .. } => Some(upper.clone()),
+            _ => None,
+        };
+        Criterion { quantity, side, limit: limit.clone(), upper, band }
     };
     match &specification.requirement {
         Requirement::RobustStability(limit) => vec![one(Quantity::Complementary, Side::Below, limit)],
@@ -63,8 +69,11 @@ pub(super) fn criteria(specification: &Specification, highest_frequency: f64) ->
     }
 }
 
-/// The part of a band in which the limit exists and the loop has a response.
+/// The part of a band in which the limit exists and the loop has a response; an end that is no number demands nothing.
 fn reach(limit: &Limit, band: [f64; 2], highest_frequency: f64) -> [f64; 2] {
+    if band.iter().any(|end| end.is_nan()) {
+        return band;
+    }
     let [from, to] = [band[0], band[1].min(highest_frequency)];
     match limit {
         Limit::Table(table) => {

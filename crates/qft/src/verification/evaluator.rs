@@ -27,6 +27,8 @@ pub(super) struct Evaluator {
     /// Dead time of G H, s.
     pub(super) compensator_dead_time_s: f64,
     responses: Cell<u64>,
+    /// The power of s that the first plant's |T| follows at either end; plants of another power have no spread there.
+    steepness: [Cell<Option<i32>>; 2],
     /// Plants that were sampled before, by the bits of their parameter values: sampling costs more than a thousand responses.
     sampled: RefCell<BTreeMap<Vec<u64>, Option<Member>>>,
 }
@@ -50,6 +52,7 @@ impl Evaluator {
             compensator,
             compensator_dead_time_s,
             responses: Cell::new(0),
+            steepness: [Cell::new(None), Cell::new(None)],
             sampled: RefCell::default(),
         }
     }
@@ -88,15 +91,30 @@ impl Evaluator {
             _ => None,
         };
         if let Some(end) = end {
-            self.responses.set(self.responses.get() + 1);
-            return criterion.demands(frequency).then(|| {
-                asymptote::margin_db(criterion, &self.compensation, member, self.with_prefilter, end)
-            })?;
+            return if criterion.demands(frequency) {
+                self.end_margin_db(criterion, member, end)
+            } else {
+                None
+            };
         }
         let only = std::slice::from_ref(criterion);
         let at = LoopAt::new(&self.compensation, only, self.with_prefilter, frequency);
         let excess = at.excess(0, criterion, &self.closed(&at, member)?)?;
         (!excess.is_nan()).then(|| decibels(excess))
+    }
+
+    fn end_margin_db(&self, criterion: &Criterion, member: &Member, end: End) -> Option<f64> {
+        self.responses.set(self.responses.get() + 1);
+        let found = asymptote::margin(criterion, &self.compensation, member, self.with_prefilter, end)?;
+        if self.with_prefilter || criterion.upper.is_none() {
+            return Some(found.margin_db);
+        }
+        let [zero, infinity] = &self.steepness;
+        let steepness = if end == End::Zero { zero } else { infinity };
+        if steepness.get().is_none() {
+            steepness.set(Some(found.power));
+        }
+        (steepness.get() == Some(found.power)).then_some(found.margin_db)
     }
 
     /// The local minimum of a margin between two frequencies, from one between them: (rad/s, dB).

@@ -68,13 +68,24 @@ impl Part {
         } else {
             vec![own.flatten().max_by(|left, right| left.1.excess.total_cmp(&right.1.excess))?]
         };
-        Some(EnvelopePoint {
+        let margin_db: f64 = chosen.iter().map(|(_, worst)| decibels(worst.excess)).sum();
+        (!margin_db.is_nan()).then(|| EnvelopePoint {
             frequency,
-            margin_db: chosen.iter().map(|(_, worst)| decibels(worst.excess)).sum(),
+            margin_db,
             criteria: chosen.iter().map(|(criterion, _)| *criterion).collect(),
             plants: chosen.iter().map(|(_, worst)| worst.plant).collect(),
         })
     }
+}
+
+/// A common frequency at which every criterion has a margin, and their spread has none.
+pub(super) fn undefined(part: Part, scan: &Scan) -> Option<f64> {
+    let everywhere =
+        |worst: &[Option<Worst>]| part.criteria().all(|one| worst.get(one).is_some_and(Option::is_some));
+    let mut points = scan.envelope();
+    let lost =
+        points.find(|(frequency, worst)| everywhere(worst) && part.combined(*frequency, worst).is_none());
+    lost.map(|(frequency, _)| frequency)
 }
 
 /// The worst margin of the family at the common frequencies.
@@ -112,7 +123,7 @@ pub(super) struct Joining<'a> {
     pub(super) evaluator: &'a Evaluator,
     pub(super) plants: &'a [Plant],
     pub(super) cases: &'a [Case],
-    /// A frequency at which a plant met in a search has no margin.
+    /// A frequency at which a plant met in a search, or the spread of the family, has no margin.
     pub(super) undefined: Option<f64>,
     pub(super) tolerance_db: f64,
 }
@@ -152,7 +163,7 @@ impl Joining<'_> {
                 .map(worst_case)
                 .collect(),
             envelope: self.drawn(&envelope),
-            remarks: remarks(self, unresolved),
+            remarks: remarks(self, worst.is_some(), unresolved),
         }
     }
 

@@ -162,8 +162,8 @@ pub(super) fn common_grid<'a>(
     let range = range.unwrap_or([1.0, 1.0]);
     let beyond = portable::pow(10.0, OUTER_DECADES);
     let finite = [
-        if band[0] > 0.0 { band[0] } else { (range[0] / beyond).min(band[1]) },
-        if band[1] < f64::INFINITY { band[1] } else { (range[1] * beyond).max(band[0]) },
+        if band[0] > 0.0 { band[0] } else { range[0].min(band[1]) / beyond },
+        if band[1] < f64::INFINITY { band[1] } else { range[1].max(band[0]) * beyond },
     ];
     let inner =
         [(range[0] / 10.0).clamp(finite[0], finite[1]), (range[1] * 10.0).clamp(finite[0], finite[1])];
@@ -181,7 +181,7 @@ pub(super) fn common_grid<'a>(
 }
 
 fn spaced([from, to]: [f64; 2], per_decade: f64) -> Vec<f64> {
-    if !(from > 0.0 && to > from) {
+    if !(from > 0.0 && to > from && to < f64::INFINITY) {
         return Vec::new();
     }
     let points = portable::log10(to / from) * per_decade;

@@ -4,7 +4,7 @@ use super::PlantPoint;
 use super::finding::Joining;
 use crate::specification::Limit;
 
-pub(super) fn remarks(joining: &Joining, unresolved: Option<(f64, usize)>) -> Vec<String> {
+pub(super) fn remarks(joining: &Joining, judged: bool, unresolved: Option<(f64, usize)>) -> Vec<String> {
     let mut remarks = Vec::new();
     let [from, to] = joining.specification.band_rad_per_s;
     let highest = joining.evaluator.compensation.highest_frequency_rad_per_s();
@@ -13,17 +13,15 @@ pub(super) fn remarks(joining: &Joining, unresolved: Option<(f64, usize)>) -> Ve
             "a sampled loop has no frequencies above pi/T = {highest} rad/s: the band ends there"
         ));
     }
-    let mut judged = false;
     for criterion in joining.part.criteria().filter_map(|index| joining.evaluator.criteria.get(index)) {
         let [low, high] = criterion.band;
-        judged |= low <= high;
         let cut = low > from || high < to.min(highest);
         if matches!(criterion.limit, Limit::Table(_)) && cut {
             remarks
                 .push(format!("the table reaches from {low} to {high} rad/s: nothing is demanded beyond it"));
         }
     }
-    if !judged {
+    if !judged && unresolved.is_none() {
         remarks.push("nothing is demanded within the band".to_string());
     }
     for frequency in &joining.specification.frequencies_rad_per_s {
@@ -52,9 +50,7 @@ pub(super) fn remarks(joining: &Joining, unresolved: Option<(f64, usize)>) -> Ve
         remarks.push(format!("at {frequency} rad/s a {plant} has no response that could be judged"));
     }
     if let Some(frequency) = joining.undefined {
-        remarks.push(format!(
-            "inside the box a plant has no response that could be judged at {frequency} rad/s"
-        ));
+        remarks.push(format!("inside the box there is a plant that cannot be judged at {frequency} rad/s"));
     }
     remarks
 }

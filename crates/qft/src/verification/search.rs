@@ -112,6 +112,7 @@ impl Descent<'_> {
             let sum = margins.try_fold(0.0, |sum, (&criterion, member)| {
                 Some(sum + self.evaluator.margin_db(criterion, member.as_ref()?, frequency)?)
             });
+            let sum = sum.filter(|sum: &f64| !sum.is_nan());
             if sum.is_none() && self.undefined.get().is_none() {
                 self.undefined.set(Some(frequency));
             }

@@ -142,3 +142,35 @@ fn the_worst_interior_minimum_is_stated_beside_an_end() {
     let interior = finding.interior.as_ref().unwrap();
     assert!((1.0..2.0).contains(&interior.frequency_rad_per_s), "{interior:?}");
 }
+
+/// Without a prefilter any roll-off serves: k/(s + k) spreads by 2 at infinity, where the limits are 4 apart, and by nothing at zero.
+#[test]
+fn a_spread_has_limits_at_both_ends() {
+    let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
+    let limit = |gain: f64| Limit::Rational(rational(&[gain], &[1.0, gain]));
+    let tracking = Requirement::Tracking { lower: limit(0.5), upper: limit(2.0) };
+    let specifications = [specification(tracking, &[], EVERYWHERE)];
+    let (findings, _) = audited(&integrator, &unity(1.0), &specifications, TrackingJudgement::Spread);
+    let (last, margin) = findings[0].envelope.last().copied().unwrap();
+    assert!(last == f64::INFINITY && (margin - decibels(2.0)).abs() < 1e-9, "{margin}");
+    check(&findings[0], 0.0, 0.0);
+    assert_eq!(findings[0].verdict, Verdict::Met);
+}
+
+/// Bands, limits and plants without sense are answered, not met and not panicked over.
+#[test]
+fn senseless_demands_are_not_met() {
+    let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
+    let requirement = |limit: f64| Requirement::RobustStability(Limit::Constant(limit));
+    for band in [[f64::NAN, 1.0], [0.0, f64::NAN], [2.0, 1.0], [-2.0, -1.0], [f64::INFINITY, 0.0]] {
+        let finding = judged(&integrator, &unity(1.0), requirement(1.5), band);
+        assert_eq!((finding.verdict, finding.worst), (Verdict::NotProven, None), "{band:?}");
+        assert!(!finding.remarks.is_empty());
+    }
+    assert_ne!(judged(&integrator, &unity(1.0), requirement(f64::NAN), EVERYWHERE).verdict, Verdict::Met);
+    for scale in [1e-300, 1e-160, 1e160, 1e300] {
+        let extreme = gain_times(&[scale], &[1.0, scale.sqrt(), 0.0], 0.0);
+        let finding = judged(&extreme, &unity(1.0), requirement(0.5), EVERYWHERE);
+        assert_ne!(finding.verdict, Verdict::Met, "{scale}: {finding:?}");
+    }
+}

@@ -87,8 +87,10 @@ fn margin_at(finding: &SpecificationFinding, frequency: f64) -> f64 {
 #[test]
 fn the_published_controller_fails_its_own_specification() {
     let family = thesis_family([3, 3, 5, 3, 3, 3]);
-    let (findings, _) =
+    let (findings, work) =
         audited(&family, &thesis_loop(0.0), &thesis_specifications(), TrackingJudgement::Magnitude);
+    // 1216 plants, 64 corners and what the searches end at, some 350 frequencies each, and a quarter more for peaks and searches
+    assert!((1280..1300).contains(&work.plants) && work.responses < 600_000, "{work:?}");
     let [stability, sensitivity, tracking] = &findings[..] else { panic!("three findings") };
     assert!(findings.iter().all(|finding| finding.verdict == Verdict::Violated));
 
@@ -156,5 +158,8 @@ fn tracking_without_a_prefilter_is_judged_by_its_spread() {
     assert!((worst.margin_db - (2.0622 - 6.5988)).abs() < 2e-4, "{worst:?}");
     let least = PlantPoint::Parameters(vec![100.0, 3.23e-5, 7e-11, 4.11e6, 1319.0, 0.72]);
     assert_eq!(worst.other, Some(least));
+    let worst = findings[0].worst.as_ref().unwrap();
+    assert!((worst.margin_db + 4.55896).abs() < 2e-5, "{worst:?}");
+    assert!((worst.frequency_rad_per_s - 9.3213).abs() < 2e-3);
     assert!(findings[0].remarks.iter().any(|remark| remark.contains("spread")));
 }
