@@ -263,3 +263,21 @@ fn slack_db(union: &GainIntervals, gain: f64) -> f64 {
     let ends = union.intervals().iter().flatten().filter(|end| **end > 0.0);
     ends.map(|end| distance_db(gain, *end).abs()).fold(f64::INFINITY, f64::min)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_no_two_collide_the_fewest_that_do_are_named() {
+        let part = |intervals: &[[f64; 2]]| GainIntervals::union_of(intervals.to_vec());
+        let parts = [
+            part(&[[0.5, 1.0]]),
+            part(&[[3.0, f64::INFINITY]]),
+            part(&[[0.0, 0.7], [1.5, 2.0]]),
+            part(&[[0.6, 4.0]]),
+            part(&[[0.0, 0.5]]),
+        ];
+        assert_eq!(covering(parts.iter().enumerate().collect()), [2, 3, 1]);
+    }
+}

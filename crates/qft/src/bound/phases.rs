@@ -14,11 +14,12 @@ use super::interval::GainIntervals;
 /// island is overlooked however small.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseGrid {
-    /// Largest distance of two phases, rad, positive.
+    /// Largest distance of two phases, rad. There are no more than 100,000 equally spaced ones; a spacing that is not positive leaves
+    /// the two ends of the range.
     pub spacing_rad: f64,
     /// Largest deviation from a straight line between neighbours, dB; infinite for a plain grid.
     pub tolerance_db: f64,
-    /// Neighbours that are closer are not refined, rad, positive.
+    /// Neighbours that are closer are not refined, rad.
     pub finest_rad: f64,
 }
 
@@ -81,11 +82,13 @@ fn refine(
     samples: &mut Vec<Sample>,
 ) {
     let width = right.phase_rad - left.phase_rad;
-    if grid.tolerance_db == f64::INFINITY || width <= grid.finest_rad {
+    let half_way = left.phase_rad + width / 2.0;
+    let between = left.phase_rad < half_way && half_way < right.phase_rad;
+    if grid.tolerance_db == f64::INFINITY || width <= grid.finest_rad || !between {
         samples.push(left);
         return;
     }
-    let middle = sample(left.phase_rad + width / 2.0);
+    let middle = sample(half_way);
     let straight = left.forbidden.iter().zip(&middle.forbidden).zip(&right.forbidden);
     if straight.into_iter().all(|((left, middle), right)| is_straight(left, middle, right, grid.tolerance_db))
     {
@@ -116,7 +119,11 @@ fn is_straight(
 /// The equally spaced phases, and one within each narrow arc that has none.
 fn phases(grid: &PhaseGrid, functions: &[&BoundFunction]) -> Vec<f64> {
     let turn = std::f64::consts::TAU;
-    let count = (turn / grid.spacing_rad).ceil().clamp(1.0, PHASES_MAXIMUM);
+    let count = if grid.spacing_rad > 0.0 {
+        (turn / grid.spacing_rad).ceil().clamp(1.0, PHASES_MAXIMUM)
+    } else {
+        1.0
+    };
     let spacing = turn / count;
     let mut phases: Vec<f64> = (0..=count as u32).rev().map(|step| -spacing * f64::from(step)).collect();
     let mut arcs: Vec<[f64; 2]> =

@@ -59,6 +59,17 @@ fn the_tip_of_a_closed_bound_is_found() {
     }
 }
 
+#[test]
+fn any_grid_of_phases_ends() {
+    let function = function(&unit(), Requirement::RobustStability(Limit::Constant(1.2)));
+    for spacing_rad in [0.0, -1.0, f64::NAN, f64::INFINITY, 10.0] {
+        let phases = function.bound(&PhaseGrid::uniform(spacing_rad)).phases_rad;
+        assert_eq!(phases, [-TAU, 0.0], "{spacing_rad}");
+    }
+    let endless = PhaseGrid { tolerance_db: 0.05, finest_rad: 0.0, ..PhaseGrid::default() };
+    assert!(function.bound(&endless).phases_rad.len() < 1000);
+}
+
 /// Ends of the bound at a phase, straight in dB between its neighbours; `None` where their intervals differ in number.
 fn interpolated_db(bound: &Bound, phase: f64) -> Option<Vec<f64>> {
     let right = bound.phases_rad.iter().position(|place| *place > phase)?;
