@@ -16,6 +16,9 @@ use crate::closed_loop::{Compensation, Member};
 /// Frequencies are polished to this share of themselves.
 pub(super) const FREQUENCY_TOLERANCE: f64 = 1e-7;
 
+/// Sampled plants that are kept.
+const SAMPLED_MAXIMUM: usize = 20_000;
+
 /// A loop without its plant, and what is demanded of it.
 #[derive(Clone, Debug)]
 pub(super) struct Evaluator {
@@ -68,8 +71,12 @@ impl Evaluator {
         if self.compensation.sample_time_s().is_none() {
             return build();
         }
-        let key = values.iter().map(|value| value.to_bits()).collect();
-        self.sampled.borrow_mut().entry(key).or_insert_with(build).clone()
+        let key: Vec<u64> = values.iter().map(|value| value.to_bits()).collect();
+        let mut kept = self.sampled.borrow_mut();
+        if kept.len() >= SAMPLED_MAXIMUM && !kept.contains_key(&key) {
+            return build();
+        }
+        kept.entry(key).or_insert_with(build).clone()
     }
 
     pub(super) fn loop_at(&self, frequency: f64) -> LoopAt {

@@ -1,13 +1,14 @@
 //! Where the searches inside the box begin.
 
 use super::PlantPoint;
-use super::audit::STARTS;
 use super::evaluator::Evaluator;
 use super::finding::{Case, EnvelopePoint, Part, envelope, local_minima};
 use super::scan::{Plant, Scan};
 use super::search::Task;
 use crate::family::UncertainFamily;
 
+/// Local minima of a family's margin, and plants, that are followed.
+pub(super) const STARTS: usize = 4;
 /// Frequencies further apart than by this factor count as different.
 const FREQUENCY_RATIO: f64 = 1.1;
 
@@ -23,7 +24,17 @@ pub(super) fn interior_range(part: Part, evaluator: &Evaluator, scan: &Scan) -> 
     Some([first, last])
 }
 
-/// Searches for one specification: at each design frequency and each end of the band, from its worst local minima, from the
+/// Frequencies next to violated ones: there the box may hold a plant that violates as well.
+fn beside_violations(envelope: &[EnvelopePoint]) -> Vec<f64> {
+    let kept = envelope.windows(2).filter_map(|pair| match pair {
+        [left, right] if left.margin_db < 0.0 && right.margin_db >= 0.0 => Some(right.frequency),
+        [left, right] if left.margin_db >= 0.0 && right.margin_db < 0.0 => Some(left.frequency),
+        _ => None,
+    });
+    kept.take(2 * STARTS).collect()
+}
+
+/// Searches for one specification: at each design frequency, each end of the band and beside violated frequencies, from its worst local minima, from the
 /// middle of the box, and from the plants with the worst peaks.
 pub(super) fn tasks(
     part: Part,
@@ -42,7 +53,8 @@ pub(super) fn tasks(
         range,
     };
     let ends = [envelope.first(), envelope.last()].into_iter().flatten().map(|point| point.frequency);
-    let fixed: Vec<f64> = ends.chain(design_frequencies.iter().copied()).collect();
+    let beside = beside_violations(&envelope);
+    let fixed: Vec<f64> = ends.chain(design_frequencies.iter().copied()).chain(beside).collect();
     let fixed = envelope.iter().filter(|point| fixed.contains(&point.frequency));
     let mut tasks: Vec<Task> = fixed.map(|point| from(point, None)).collect();
     let Some(range) = range else { return tasks };
