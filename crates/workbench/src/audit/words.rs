@@ -121,3 +121,14 @@ pub(crate) fn finding_sentence(finding: &SpecificationFinding) -> String {
         }
     }
 }
+/// What a customer wants to know of a kind.
+pub(crate) fn meaning(requirement: &Requirement) -> &'static str {
+    match requirement {
+        Requirement::RobustStability(_) => "no resonance of the closed loop above the limit",
+        Requirement::Sensitivity(_) => "disturbances of the force are suppressed",
+        Requirement::PlantInputDisturbance(_) => "disturbances at the valve are suppressed",
+        Requirement::ControlEffort(_) => "the valve is not driven harder than allowed",
+        Requirement::LoadMotion(_) => "motion of the load makes no more force than allowed",
+        Requirement::Tracking { .. } => "the force follows its reference within the band",
+    }
+}
