@@ -12,6 +12,7 @@ use std::sync::OnceLock;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
 use phea_workbench::report::{Report, report};
+use phea_workbench::source::Memory;
 use resvg::usvg::roxmltree::{Document, Node};
 
 const PLANT: &str = include_str!("truth/plant.toml");
