@@ -9,10 +9,10 @@ mod words;
 pub use answer::{files, json};
 pub use plant::{NamedPlant, PlantNames};
 pub use text::text;
-pub(crate) use text::{basis, summary};
+pub(crate) use text::{basis, summary, worst_plants};
 pub(crate) use words::{
-    closed_loop_symbol, frequency_words, kind_key, kind_words, margin_words, meaning, verdict_words,
-    worst_at_design,
+    closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words, margin_words, meaning,
+    verdict_words, worst_at_design,
 };
 
 use phea_qft::audit::AuditRun;

@@ -6,10 +6,9 @@ use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 use super::chapter::{Chapter, cell, place, table};
 use super::typeset::prose;
 use super::{closed_loops, family_steps};
-use crate::answer::significant;
 use crate::audit::{
-    ProjectAudit, basis, closed_loop_symbol, frequency_words, kind_words, margin_words, meaning, summary,
-    verdict_words, worst_at_design,
+    ProjectAudit, basis, closed_loop_symbol, frequency_number, frequency_words, kind_words, margin_words,
+    meaning, summary, verdict_words, worst_at_design, worst_plants,
 };
 use crate::command::CommandError;
 use crate::robust::RobustProblem;
@@ -23,7 +22,7 @@ pub(super) fn chapter(problem: &RobustProblem, view: &ProjectAudit) -> Result<Ch
         (specifications(view))
         @if violated(view) { h3 { "Where it is violated" } (violations(view)) }
         h3 { "Worst plants" }
-        p { "The plant of the family with which each specification fares worst; no test bench shows it, unless it is set up as this one." }
+        p { "The plant of the family with which each specification fares worst; a test bench shows it only when it is set up as this one." }
         (plants(view))
         h3 { "Closed loops of the family" }
         @for figure in &figures { (place(figure)) }
@@ -95,7 +94,7 @@ fn violations(view: &ProjectAudit) -> Markup {
     let mut rows = Vec::new();
     for finding in &view.audit.specifications {
         for band in &finding.violations {
-            let [from, to] = band.band_rad_per_s.map(|edge| significant(edge, 4));
+            let [from, to] = band.band_rad_per_s.map(frequency_number);
             rows.push(vec![
                 cell(kind_words(&finding.requirement)),
                 cell(format!("{from} to {to} rad/s")),
@@ -107,18 +106,16 @@ fn violations(view: &ProjectAudit) -> Markup {
     table(&["specification", "band", "worst margin", "plant"], 9, &rows)
 }
 
+/// The worst plant of each specification, a column each.
 fn plants(view: &ProjectAudit) -> Markup {
-    let mut headings = vec!["specification"];
-    headings.extend(view.names.headings());
-    let row = |finding: &SpecificationFinding, worst: &WorstCase| {
-        let mut row = vec![cell(kind_words(&finding.requirement))];
-        row.extend(view.names.cells(&worst.plant).into_iter().map(cell));
+    let columns = worst_plants(view);
+    let mut headings = vec!["parameter"];
+    headings.extend(columns.iter().map(|(name, _)| name.as_str()));
+    let row = |(index, parameter): (usize, &str)| {
+        let mut row = vec![html! { code { (parameter) } }];
+        row.extend(columns.iter().map(|(_, cells)| cell(cells.get(index).cloned().unwrap_or_default())));
         row
     };
-    let findings = &view.audit.specifications;
-    let rows: Vec<Vec<Markup>> = findings
-        .iter()
-        .filter_map(|finding| finding.worst.as_ref().map(|worst| row(finding, worst)))
-        .collect();
+    let rows: Vec<Vec<Markup>> = view.names.headings().into_iter().enumerate().map(row).collect();
     table(&headings, 1, &rows)
 }

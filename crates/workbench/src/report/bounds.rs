@@ -9,7 +9,7 @@ use phea_qft::verification::Verdict;
 use super::chapter::{Chapter, cell, place, table};
 use super::closed_loops::member_of;
 use crate::answer::{OutputFile, significant};
-use crate::audit::{ProjectAudit, closed_loop_symbol, kind_key, kind_words};
+use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number, kind_key, kind_words};
 use crate::command::CommandError;
 use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, Words, nichols,
@@ -52,7 +52,7 @@ fn template_row(one: &DesignFrequency) -> Vec<Markup> {
         ),
     };
     vec![
-        cell(significant(one.frequency_rad_per_s, 4)),
+        cell(frequency_number(one.frequency_rad_per_s)),
         cell(one.template.template.points.len().to_string()),
         cell(closeness),
     ]
@@ -139,7 +139,7 @@ fn violations(problem: &RobustProblem, view: &ProjectAudit) -> Vec<OpenLoopViola
             let response = problem.response(&member, frequency_rad_per_s)?;
             let symbol = closed_loop_symbol(&finding.requirement);
             let size = significant(worst.margin_db.abs(), 3);
-            let text = format!("{symbol} {size} dB off at {} rad/s", significant(frequency_rad_per_s, 4));
+            let text = format!("{symbol} {size} dB off at {} rad/s", frequency_number(frequency_rad_per_s));
             Some(OpenLoopViolation { frequency_rad_per_s, open_loop: response.open_loop(), text })
         })
         .collect()
@@ -148,7 +148,7 @@ fn violations(problem: &RobustProblem, view: &ProjectAudit) -> Vec<OpenLoopViola
 fn placements(problem: &RobustProblem, found: &[DesignFrequency]) -> Markup {
     let row = |one: &DesignFrequency| {
         vec![
-            cell(significant(one.frequency_rad_per_s, 4)),
+            cell(frequency_number(one.frequency_rad_per_s)),
             placement(problem, &one.placement),
             placement(problem, &one.filled_placement),
         ]
@@ -193,12 +193,15 @@ fn feasibility(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<String
             [one] => format!("{one} alone forbids every gain"),
             _ => format!("{} leave no gain to each other", names.join(" and ")),
         };
-        format!("At {} rad/s, phases {from}° to {to}°: {who}.", significant(collision.frequency_rad_per_s, 4))
+        format!(
+            "At {} rad/s, phases {from}° to {to}°: {who}.",
+            frequency_number(collision.frequency_rad_per_s)
+        )
     };
     let mut sentences = Vec::new();
     for one in found {
         if let Feasibility::Nowhere { collisions } = &one.bounds.feasibility {
-            let frequency = significant(one.frequency_rad_per_s, 4);
+            let frequency = frequency_number(one.frequency_rad_per_s);
             sentences.push(format!(
                 "No loop keeps to all specifications at {frequency} rad/s, whatever its controller."
             ));

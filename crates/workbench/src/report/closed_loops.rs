@@ -9,7 +9,7 @@ use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{PlantPoint, SpecificationFinding, Verdict, WorstCase};
 
 use crate::answer::significant;
-use crate::audit::{closed_loop_symbol, kind_key, kind_words};
+use crate::audit::{closed_loop_symbol, frequency_words, kind_key, kind_words};
 use crate::figure::{FamilyMagnitudeInput, Figure, MagnitudeCurve, MagnitudeMark, Words, family_magnitude};
 use crate::robust::RobustProblem;
 
@@ -30,21 +30,16 @@ pub(super) fn span(specification: &Specification, finding: &SpecificationFinding
     if ends.is_empty() { [0.01, 1000.0] } else { [low / MARGIN_OF_FREQUENCY, high * MARGIN_OF_FREQUENCY] }
 }
 
-/// Some members spread evenly over the family, and these plants.
-pub(super) fn some_members(
-    problem: &RobustProblem,
-    worst: &[&PlantPoint],
-) -> Result<Vec<Member>, LinearError> {
+/// Every member, and this plant.
+fn all_members(problem: &RobustProblem, worst: Option<&PlantPoint>) -> Result<Vec<Member>, LinearError> {
     match &problem.family {
         Family::Uncertain(family) => {
-            let step = family.members().len() / DRAWN_MEMBERS + 1;
-            let spread = family.members().iter().step_by(step).map(Vec::as_slice);
-            let named = worst.iter().filter_map(|plant| match plant {
-                PlantPoint::Parameters(values) => Some(values.as_slice()),
+            let named = worst.into_iter().filter_map(|plant| match plant {
+                PlantPoint::Parameters(values) => Some(values),
                 PlantPoint::Measured(_) => None,
             });
-            let plants = spread.chain(named).map(|values| family.plant().coefficients(values));
-            plants.map(|plant| problem.compensation.member(plant)).collect()
+            let plants = family.members().iter().chain(named);
+            plants.map(|values| problem.compensation.member(family.plant().coefficients(values))).collect()
         }
         Family::Measured(family) => {
             Ok(family.plants().iter().map(|plant| problem.compensation.measured(plant)).collect())
@@ -79,15 +74,24 @@ fn figure(
     frequencies.extend(finding.envelope.iter().map(|point| point.0).filter(|w| (from..=to).contains(w)));
     frequencies.sort_by(f64::total_cmp);
     frequencies.dedup();
-    let worst: Vec<&PlantPoint> = finding.worst.iter().map(|worst| &worst.plant).collect();
-    let members = some_members(problem, &worst)?;
-    let curves: Vec<MagnitudeCurve> =
+    let worst = finding.worst.as_ref().map(|worst| &worst.plant);
+    let members = all_members(problem, worst)?;
+    let mut curves: Vec<MagnitudeCurve> =
         members.iter().map(|member| curve(problem, requirement, member, &frequencies)).collect();
+    let greatest = extreme(&curves, f64::max);
+    let least = requirement.limits().0.map(|_| extreme(&curves, f64::min));
+    // the last is the worst plant
+    let (last, step) = (curves.len().saturating_sub(1), curves.len() / DRAWN_MEMBERS + 1);
+    let mut index = 0;
+    curves.retain(|_| {
+        index += 1;
+        (index - 1) % step == 0 || index - 1 == last
+    });
     let (lower, upper) = requirement.limits();
     let band = specification.band_rad_per_s;
     let limit = |limit: &Limit| limit_curve(limit, band, &frequencies);
     let caption = format!(
-        "{} of {} plants of the family (thin), the greatest{} of all that were looked at (thick), and the limit.",
+        "{} of {} plants of the family (thin), the greatest{} of all members (thick), and the limit.",
         closed_loop_symbol(requirement),
         curves.len(),
         if lower.is_some() { " and the least" } else { "" }
@@ -98,8 +102,8 @@ fn figure(
         unit: String::new(),
         upper_limit: Some(limit(upper)),
         lower_limit: lower.map(limit),
-        greatest: extreme(&curves, f64::max),
-        least: lower.map(|_| extreme(&curves, f64::min)),
+        greatest,
+        least,
         members: curves,
         design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
         tolerance_db,
@@ -158,7 +162,7 @@ fn mark(
     let magnitude = portable::magnitude(requirement.closed_loop(&response));
     let is_violation = finding.verdict == Verdict::Violated;
     let size = significant(worst.margin_db.abs(), 3);
-    let place = format!("at {} rad/s", significant(frequency, 4));
+    let place = frequency_words(frequency);
     let text = if is_violation {
         let side = match requirement.limits() {
             (Some(_), upper) => {
