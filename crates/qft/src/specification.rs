@@ -62,6 +62,35 @@ pub struct LoopResponse {
     pub sensor: Complex64,
 }
 
+impl Requirement {
+    /// What it limits, of this loop: T, S, P S, G S, Pd S or F P G S, with S = 1/(1+L).
+    pub fn closed_loop(&self, response: &LoopResponse) -> Complex64 {
+        let sensitivity = 1.0 / (1.0 + response.open_loop());
+        match self {
+            Requirement::RobustStability(_) => response.open_loop() * sensitivity,
+            Requirement::Sensitivity(_) => sensitivity,
+            Requirement::PlantInputDisturbance(_) => response.plant * sensitivity,
+            Requirement::ControlEffort(_) => response.controller * sensitivity,
+            Requirement::LoadMotion(_) => response.load_motion * sensitivity,
+            Requirement::Tracking { .. } => {
+                response.prefilter * response.plant * response.controller * sensitivity
+            }
+        }
+    }
+
+    /// The lower limit, of tracking alone, and the upper one.
+    pub fn limits(&self) -> (Option<&Limit>, &Limit) {
+        match self {
+            Requirement::RobustStability(limit)
+            | Requirement::Sensitivity(limit)
+            | Requirement::PlantInputDisturbance(limit)
+            | Requirement::ControlEffort(limit)
+            | Requirement::LoadMotion(limit) => (None, limit),
+            Requirement::Tracking { lower, upper } => (Some(lower), upper),
+        }
+    }
+}
+
 impl LoopResponse {
     /// L = P G H.
     pub fn open_loop(&self) -> Complex64 {
@@ -107,17 +136,10 @@ impl Specification {
         let below = |limit: &Limit, value: Complex64| {
             Some(decibel(limit.magnitude(frequency_rad_per_s)? / portable::magnitude(value)))
         };
-        let sensitivity = 1.0 / (1.0 + response.open_loop());
-        match &self.requirement {
-            Requirement::RobustStability(limit) => below(limit, response.open_loop() * sensitivity),
-            Requirement::Sensitivity(limit) => below(limit, sensitivity),
-            Requirement::PlantInputDisturbance(limit) => below(limit, response.plant * sensitivity),
-            Requirement::ControlEffort(limit) => below(limit, response.controller * sensitivity),
-            Requirement::LoadMotion(limit) => below(limit, response.load_motion * sensitivity),
-            Requirement::Tracking { lower, upper } => {
-                let tracking = response.prefilter * response.plant * response.controller * sensitivity;
-                Some(below(upper, tracking)?.min(-below(lower, tracking)?))
-            }
+        let value = self.requirement.closed_loop(response);
+        match self.requirement.limits() {
+            (Some(lower), upper) => Some(below(upper, value)?.min(-below(lower, value)?)),
+            (None, upper) => below(upper, value),
         }
     }
 }

@@ -9,18 +9,21 @@ mod words;
 pub use answer::{files, json};
 pub use plant::{NamedPlant, PlantNames};
 pub use text::text;
+pub(crate) use text::{basis, summary, worst_plants};
+pub(crate) use words::{
+    closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words, margin_words, meaning,
+    verdict_words, worst_at_design,
+};
 
 use phea_qft::audit::AuditRun;
 use phea_qft::family::{Extent, Family};
 use phea_qft::verification::{Audit, TOLERANCE_DB, TrackingJudgement};
 
 use crate::command::{CommandError, Progress, Watch};
-use crate::control::compensation;
-use crate::family::family;
 use crate::project::Project;
 use crate::quantity::DisplayUnit;
+use crate::robust::{RobustProblem, robust_problem};
 use crate::source::Source;
-use crate::specification::specifications;
 
 /// Why there is nothing to audit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -40,14 +43,27 @@ pub fn audit_project(
     project: &Project,
     watch: Watch<'_>,
 ) -> Result<ProjectAudit, CommandError> {
-    let compensation = compensation(project)?.ok_or(AuditError::NoController)?;
-    let family = family(project, source)?;
-    let specifications = specifications(project)?;
+    if project.controller.is_none() {
+        return Err(AuditError::NoController.into());
+    }
+    audit_problem(project, &robust_problem(source, project)?, watch)
+}
+
+/// The same of a robust problem that is at hand already.
+///
+/// # Errors
+/// [`CommandError::Stopped`] where the watcher stops it.
+pub(crate) fn audit_problem(
+    project: &Project,
+    problem: &RobustProblem,
+    watch: Watch<'_>,
+) -> Result<ProjectAudit, CommandError> {
+    let RobustProblem { family, compensation, specifications, .. } = problem;
     let tracking = match project.prefilter {
         Some(_) => TrackingJudgement::Magnitude,
         None => TrackingJudgement::Spread,
     };
-    let mut run = AuditRun::new(&family, &compensation, &specifications, tracking, TOLERANCE_DB);
+    let mut run = AuditRun::new(family, compensation, specifications, tracking, TOLERANCE_DB);
     while run.step() {
         if !watch(Progress { stage: "auditing", share: run.progress() }) {
             return Err(CommandError::Stopped);
@@ -55,12 +71,12 @@ pub fn audit_project(
     }
     Ok(ProjectAudit {
         audit: run.audit(),
-        names: names(&family),
-        members: match &family {
+        names: names(family),
+        members: match family {
             Family::Uncertain(family) => family.members().len(),
             Family::Measured(family) => family.plants().len(),
         },
-        whole_box: matches!(&family, Family::Uncertain(family) if family.extent() == Extent::Box),
+        whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
         sample_time_s: compensation.sample_time_s(),
         delay_s: compensation.delay_s(),
     })

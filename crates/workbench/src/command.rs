@@ -100,6 +100,9 @@ pub enum CommandError {
     /// A specification is none.
     #[error(transparent)]
     Specification(#[from] crate::specification::SpecificationError),
+    /// Templates or bounds cannot be computed.
+    #[error(transparent)]
+    Robust(#[from] crate::robust::RobustError),
     /// Whoever watched a long command stopped it.
     #[error("stopped")]
     Stopped,
@@ -149,8 +152,10 @@ pub fn answer_watched(
         }
         Request::Linearize => linearize_answer(loaded),
         Request::Verify => verify_answer(source, loaded, watch),
-        Request::Report => report_answer(source, loaded, catalogues, Report::files),
-        Request::Page => report_answer(source, loaded, catalogues, |report| Ok(vec![report.page_file()])),
+        Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
+        Request::Page => {
+            report_answer(source, loaded, catalogues, watch, |report| Ok(vec![report.page_file()]))
+        }
     }
 }
 
@@ -262,6 +267,7 @@ fn report_answer(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
+    watch: Watch<'_>,
     files: impl Fn(&Report) -> Result<Vec<OutputFile>, FigureError>,
 ) -> Result<Answer, CommandError> {
     let problem = match loaded.project.sizing {
@@ -272,7 +278,7 @@ fn report_answer(
             Some(sizing_problem(&loaded.project, &rig, &catalogue)?)
         }
     };
-    let report = report(loaded, problem.as_ref())?;
+    let report = report(source, loaded, problem.as_ref(), watch)?;
     let text: String = report.summary.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
     let body = ReportBody {
         summary: report.summary.iter().map(|(name, text)| SummaryRow { name, text: text.clone() }).collect(),

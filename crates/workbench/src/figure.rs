@@ -46,7 +46,7 @@ pub use colour::{Theme, style_sheet};
 pub use family_magnitude::{FamilyMagnitudeInput, MagnitudeCurve, MagnitudeMark, family_magnitude};
 pub use family_step::{FamilyStepInput, family_step};
 pub use impedance::{Asymptote, ImpedanceInput, impedance};
-pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, nichols};
+pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, nichols};
 pub use nomograph::{NomographBore, NomographInput, nomograph};
 pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
 pub use schematic::{

@@ -16,6 +16,7 @@ pub mod project;
 pub mod quantity;
 pub mod report;
 pub mod rig;
+pub mod robust;
 pub mod sizing;
 pub mod source;
 pub mod specification;

@@ -1,7 +1,11 @@
 //! The report: everything this workbench can say of a rig, as one page that needs nothing else.
 
+mod audit;
+mod bounds;
 mod chapter;
+mod closed_loops;
 mod derived;
+mod family_steps;
 mod impedance;
 mod load_motion;
 mod models;
@@ -18,17 +22,22 @@ use maud::{Markup, html};
 pub use chapter::Chapter;
 pub use typeset::{prose, typeset};
 
+use phea_qft::verification::{SpecificationFinding, Verdict};
+
 use crate::answer::{OutputFile, significant};
-use crate::command::CommandError;
+use crate::audit::{ProjectAudit, audit_problem, verdict_words};
+use crate::command::{CommandError, Watch};
 use crate::control::{controller, sensor};
 use crate::derived::derive;
 use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop, settling_words};
 use crate::linearize::{Linearization, linearize};
-use crate::project::{Loaded, Project};
+use crate::project::{Actuator, Loaded, Project};
 use crate::quantity::DisplayUnit;
 use crate::rig::{Rig, RigError};
+use crate::robust::robust_problem;
 use crate::sizing::{Question, Sizing, SizingProblem, size};
+use crate::source::Source;
 
 /// A report, before it is written anywhere.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +46,8 @@ pub struct Report {
     pub html: String,
     /// Its figures, in order.
     pub figures: Vec<Figure>,
+    /// Its data as tables for other programs.
+    pub tables: Vec<OutputFile>,
     /// What it says in a few numbers.
     pub summary: Vec<(&'static str, String)>,
 }
@@ -47,14 +58,55 @@ const SETTLING_BAND: f64 = 1.0;
 /// Scale of the figures as PNG: 1120 pixels of width.
 const PNG_SCALE: f64 = 2.0;
 
-/// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, provenance.
+/// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, templates and bounds, the
+/// audit of the given controller, provenance; of a plant given as a transfer function, the robust part of it.
 ///
 /// # Errors
-/// [`CommandError`] if the project is about another plant or something in it cannot be computed.
-pub fn report(loaded: &Loaded, problem: Option<&SizingProblem>) -> Result<Report, CommandError> {
+/// [`CommandError`] if there is nothing to report on or something in it cannot be computed.
+pub fn report(
+    source: &dyn Source,
+    loaded: &Loaded,
+    problem: Option<&SizingProblem>,
+    watch: Watch<'_>,
+) -> Result<Report, CommandError> {
     let project = &loaded.project;
+    let (mut chapters, mut facts) = match &project.actuator {
+        Some(actuator) => rig_chapters(project, actuator, problem)?,
+        None if project.specifications.is_empty() => return Err(RigError::NoActuator.into()),
+        None => (vec![], vec![]),
+    };
+    let mut tables = Vec::new();
+    if !project.specifications.is_empty() {
+        let robust = robust_problem(source, project)?;
+        let view = match project.controller {
+            Some(_) => Some(audit_problem(project, &robust, watch)?),
+            None => None,
+        };
+        let found = robust.at_design_frequencies(watch)?;
+        chapters.push(bounds::chapter(&robust, &found, view.as_ref())?);
+        tables = bounds::files(&robust, &found);
+        if let Some(view) = &view {
+            chapters.push(audit::chapter(&robust, view)?);
+            facts.push(("Audit of the controller", audit_words(view)));
+            tables.extend(crate::audit::files(view));
+        }
+    }
+    chapters.push(provenance::chapter(loaded));
+    let html = page::page(&project.title, &heading(project, &facts), &chapters, &footer(loaded));
+    let figures = chapters.into_iter().flat_map(|chapter| chapter.figures).collect();
+    Ok(Report { html, figures, tables, summary: facts })
+}
+
+/// What the report says in a few numbers: name and text.
+type Facts = Vec<(&'static str, String)>;
+
+/// The chapters on an actuator, and its facts.
+fn rig_chapters(
+    project: &Project,
+    actuator: &Actuator,
+    problem: Option<&SizingProblem>,
+) -> Result<(Vec<Chapter>, Facts), CommandError> {
     let rig = Rig::new(project)?;
-    let actuator = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
     let controller = controller(project)?;
     let sensor = sensor(project)?;
     let linearization = linearize(&rig, controller.as_ref(), &sensor)?;
@@ -77,12 +129,21 @@ pub fn report(loaded: &Loaded, problem: Option<&SizingProblem>) -> Result<Report
     chapters.push(models::chapter(&linearization)?);
     chapters.push(impedance::chapter(project, &linearization)?);
     chapters.push(response::chapter(given.as_ref(), reference(project)));
-    chapters.push(provenance::chapter(loaded));
+    let facts = summary(&linearization, sizing.as_ref(), problem, given.as_ref());
+    Ok((chapters, facts))
+}
 
-    let summary = summary(&linearization, sizing.as_ref(), problem, given.as_ref());
-    let html = page::page(&project.title, &heading(project, &summary), &chapters, &footer(loaded));
-    let figures = chapters.into_iter().flat_map(|chapter| chapter.figures).collect();
-    Ok(Report { html, figures, summary })
+/// The verdict of the audit in a few words.
+fn audit_words(view: &ProjectAudit) -> String {
+    let kept = |finding: &&SpecificationFinding| finding.verdict == Verdict::Met;
+    let findings = &view.audit.specifications;
+    let met = findings.iter().filter(kept).count();
+    let stable = match view.audit.stability.verdict {
+        Verdict::Met => "stable",
+        Verdict::Violated => "unstable",
+        Verdict::NotProven => "not proven stable",
+    };
+    format!("{}: {stable}, {met} of {} specifications met", verdict_words(view.audit.verdict), findings.len())
 }
 
 impl Report {
@@ -97,6 +158,7 @@ impl Report {
     /// A figure that the rasteriser refuses.
     pub fn files(&self) -> Result<Vec<OutputFile>, FigureError> {
         let mut files = vec![self.page_file()];
+        files.extend(self.tables.iter().cloned());
         for figure in &self.figures {
             let svg = figure.to_svg_standalone().into_bytes();
             files.push(OutputFile { name: format!("{}.svg", figure.name), bytes: svg });
@@ -165,7 +227,10 @@ fn heading(project: &Project, summary: &[(&'static str, String)]) -> Markup {
     html! {
         header {
             h1 { (project.title) }
-            p.subtitle { "Hydraulic force control through added compliance: sizing and linear models" }
+            p.subtitle {
+                @if project.actuator.is_some() { "Hydraulic force control through added compliance: sizing, linear models, robust control" }
+                @else { "Robust control of an uncertain plant" }
+            }
             dl.facts { @for (name, value) in summary { div.fact { dt { (name) } dd { (prose(value)) } } } }
         }
     }

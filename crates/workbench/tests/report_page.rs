@@ -12,6 +12,7 @@ use std::sync::OnceLock;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
 use phea_workbench::report::{Report, report};
+use phea_workbench::source::Memory;
 use resvg::usvg::roxmltree::{Document, Node};
 
 const PLANT: &str = include_str!("truth/plant.toml");
@@ -38,7 +39,7 @@ fn page(answer: &Answer) -> &str {
 
 /// The report without its sizing chapter and its pictures, which is all that many questions need.
 fn plain_report(project: &str) -> Report {
-    report(&load(project, &[], &[]), None).unwrap()
+    report(&Memory::default(), &load(project, &[], &[]), None, &mut |_| true).unwrap()
 }
 
 /// Everything between `<name` and `</name>`, the tags included.
@@ -296,7 +297,7 @@ fn only_models_of_the_same_parameters_are_drawn_against_each_other() {
 
 /// The report of the hose with settings, without its sizing chapter.
 fn report_with(settings: &[&str]) -> Report {
-    report(&load(HOSE, settings, &[]), None).unwrap()
+    report(&Memory::default(), &load(HOSE, settings, &[]), None, &mut |_| true).unwrap()
 }
 
 #[test]

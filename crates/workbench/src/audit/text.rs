@@ -2,8 +2,8 @@ use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use super::ProjectAudit;
 use super::words::{
-    closed_loop_symbol, evidence_sentence, finding_sentence, frequency_words, kind_words, margin_words,
-    verdict_words, worst_at_design,
+    closed_loop_symbol, evidence_sentence, finding_sentence, frequency_number, frequency_words, kind_words,
+    margin_words, verdict_words, worst_at_design,
 };
 use crate::answer::{significant, table};
 use crate::quantity::DisplayUnit;
@@ -66,17 +66,9 @@ fn delay_sentence(view: &ProjectAudit) -> Option<String> {
     ))
 }
 
-fn place(worst: &WorstCase) -> String {
-    match worst.frequency_rad_per_s {
-        0.0 => "0".to_string(),
-        f64::INFINITY => "inf".to_string(),
-        frequency => significant(frequency, 4),
-    }
-}
-
 fn margin_at(worst: Option<&WorstCase>) -> [String; 2] {
     match worst {
-        Some(worst) => [margin_words(worst.margin_db), place(worst)],
+        Some(worst) => [margin_words(worst.margin_db), frequency_number(worst.frequency_rad_per_s)],
         None => ["-".to_string(), "-".to_string()],
     }
 }
@@ -121,19 +113,33 @@ fn rests_on_the_end(finding: &SpecificationFinding) -> bool {
     finding.worst.as_ref().zip(finding.interior.as_ref()).is_some_and(|(worst, interior)| worst != interior)
 }
 
+/// The worst plant of each specification, a column each.
 fn plants(view: &ProjectAudit) -> Option<String> {
-    let mut headings = vec!["specification"];
-    headings.extend(view.names.headings());
-    let mut rows = table(&headings);
-    let mut any = false;
-    for finding in &view.audit.specifications {
-        let Some(worst) = &finding.worst else { continue };
-        let mut row = vec![kind_words(&finding.requirement)];
-        row.extend(view.names.cells(&worst.plant));
-        rows.add_row(row);
-        any = true;
+    let columns = worst_plants(view);
+    if columns.is_empty() {
+        return None;
     }
-    any.then(|| rows.trim_fmt())
+    let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
+    let mut headings = vec!["parameter"];
+    headings.extend(names.iter().map(String::as_str));
+    let mut rows = table(&headings);
+    for (index, parameter) in view.names.headings().into_iter().enumerate() {
+        let mut row = vec![parameter.to_string()];
+        row.extend(columns.iter().map(|(_, cells)| cells.get(index).cloned().unwrap_or_default()));
+        rows.add_row(row);
+    }
+    Some(rows.trim_fmt())
+}
+
+/// The specifications that have a worst plant, each with the values of that plant.
+pub(crate) fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
+    let findings = view.audit.specifications.iter();
+    findings
+        .filter_map(|finding| {
+            let worst = finding.worst.as_ref()?;
+            Some((kind_words(&finding.requirement), view.names.cells(&worst.plant)))
+        })
+        .collect()
 }
 
 fn violations(view: &ProjectAudit) -> Option<String> {
@@ -141,7 +147,7 @@ fn violations(view: &ProjectAudit) -> Option<String> {
     let mut any = false;
     for finding in &view.audit.specifications {
         for band in &finding.violations {
-            let [from, to] = band.band_rad_per_s.map(|edge| significant(edge, 4));
+            let [from, to] = band.band_rad_per_s.map(frequency_number);
             let [margin, frequency] = margin_at(Some(&band.worst));
             rows.add_row([kind_words(&finding.requirement), from, to, margin, frequency]);
             any = true;

@@ -1,9 +1,11 @@
 //! Verdicts, requirements and worst cases in words.
 
+use phea_dynamics::portable;
 use phea_qft::specification::Requirement;
 use phea_qft::verification::{Evidence, SpecificationFinding, Verdict, WorstCase};
 
 use crate::answer::significant;
+use crate::quantity::{RATIO, display};
 
 /// The word of a verdict in JSON.
 pub(crate) fn verdict_key(verdict: Verdict) -> &'static str {
@@ -86,7 +88,16 @@ pub(crate) fn frequency_words(frequency_rad_per_s: f64) -> String {
     match frequency_rad_per_s {
         0.0 => "towards zero frequency".to_string(),
         f64::INFINITY => "towards infinite frequency".to_string(),
-        _ => format!("at {} rad/s", significant(frequency_rad_per_s, 4)),
+        _ => format!("at {} rad/s", frequency_number(frequency_rad_per_s)),
+    }
+}
+
+/// A frequency with four digits, without zeros that say nothing: `0.01`, `1304`.
+pub(crate) fn frequency_number(frequency_rad_per_s: f64) -> String {
+    if frequency_rad_per_s == f64::INFINITY {
+        "inf".to_string()
+    } else {
+        display(frequency_rad_per_s, &RATIO, 4)
     }
 }
 
@@ -98,7 +109,6 @@ pub(crate) fn worst_at_design(finding: &SpecificationFinding) -> Option<&WorstCa
 /// One sentence on a specification: what it says, whether it holds, and where it is worst.
 pub(crate) fn finding_sentence(finding: &SpecificationFinding) -> String {
     let kind = kind_words(&finding.requirement);
-    let symbol = closed_loop_symbol(&finding.requirement);
     let Some(worst) = &finding.worst else {
         return format!("{kind}: nothing could be judged");
     };
@@ -112,12 +122,41 @@ pub(crate) fn finding_sentence(finding: &SpecificationFinding) -> String {
                 }
                 _ => "",
             };
-            format!("{kind} is violated by {size} dB {place}: {symbol} leaves its limit{hidden}")
+            format!("{kind} is violated by {size} dB {place}{}{hidden}", reached(&finding.requirement, worst))
         }
         Verdict::Met if worst.margin_db < 5e-4 => format!("{kind} is met, just so, {place}"),
         Verdict::Met => format!("{kind} is met, with {size} dB to spare {place}"),
         Verdict::NotProven => {
             format!("{kind} is not proven; worst margin found {} {place}", margin_words(worst.margin_db))
         }
+    }
+}
+
+/// `: |L/(1+L)| reaches 11.9, allowed are 1.3`; nothing for tracking, which has a limit on either side.
+fn reached(requirement: &Requirement, worst: &WorstCase) -> String {
+    let (lower, upper) = requirement.limits();
+    match (lower, upper.magnitude(worst.frequency_rad_per_s)) {
+        (None, Some(limit)) if limit > 0.0 && limit.is_finite() => {
+            let reached = limit * portable::exp(-worst.margin_db / 20.0 * std::f64::consts::LN_10);
+            format!(
+                ": {} reaches {}, allowed are {}",
+                closed_loop_symbol(requirement),
+                significant(reached, 4),
+                display(limit, &RATIO, 4)
+            )
+        }
+        _ => String::new(),
+    }
+}
+
+/// What a customer wants to know of a kind.
+pub(crate) fn meaning(requirement: &Requirement) -> &'static str {
+    match requirement {
+        Requirement::RobustStability(_) => "no resonance of the closed loop above the limit",
+        Requirement::Sensitivity(_) => "disturbances of the force are suppressed",
+        Requirement::PlantInputDisturbance(_) => "disturbances at the valve are suppressed",
+        Requirement::ControlEffort(_) => "the valve is not driven harder than allowed",
+        Requirement::LoadMotion(_) => "motion of the load makes no more force than allowed",
+        Requirement::Tracking { .. } => "the force follows its reference within the band",
     }
 }

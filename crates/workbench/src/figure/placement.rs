@@ -10,6 +10,8 @@ const LETTER: f64 = 8.0;
 /// A place for a label, with the line that leads to its point where one is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Led {
+    /// What the text names.
+    pub point: Point,
     /// The text.
     pub bounds: Rectangle,
     /// From the point to the text.
@@ -20,6 +22,12 @@ pub struct Led {
 fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
     let side = |p: Point, q: Point, r: Point| (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+}
+
+/// From a point to the nearest edge of a text.
+fn distance(point: Point, bounds: &Rectangle) -> f64 {
+    let nearest = (point.x.clamp(bounds.left, bounds.right), point.y.clamp(bounds.top, bounds.bottom));
+    hypot(point.x - nearest.0, point.y - nearest.1)
 }
 
 /// A piece of a curve.
@@ -87,7 +95,7 @@ impl Occupancy {
     /// such line, and its length counts against a place as much as the curves that label and line lie upon.
     pub fn choose_led(&self, candidates: &[Led], frame: &Rectangle) -> Option<usize> {
         let mut best: Option<(usize, f64)> = None;
-        for (index, Led { bounds, line }) in candidates.iter().enumerate() {
+        for (index, Led { point, bounds, line }) in candidates.iter().enumerate() {
             let spaced = bounds.grown(1.5);
             let is_hit = |text: &Rectangle| {
                 text.overlaps(&spaced)
@@ -102,12 +110,24 @@ impl Occupancy {
                 continue;
             }
             let lead = line.map_or(0.0, |(from, to)| self.lead_cost(from, to));
-            let cost = lead + self.weight(bounds);
+            let cost = lead + self.weight(bounds) + self.ambiguity(*point, bounds);
             if best.is_none_or(|(_, least)| cost < least) {
                 best = Some((index, cost));
             }
         }
         best.map(|(index, _)| index)
+    }
+
+    /// What speaks against a label that lies nearer to other markers than to the point it names.
+    fn ambiguity(&self, point: Point, bounds: &Rectangle) -> f64 {
+        const COST: f64 = 6.0;
+        let own = distance(point, bounds);
+        let nearer = |marker: &&Rectangle| {
+            let centre =
+                Point { x: (marker.left + marker.right) / 2.0, y: (marker.top + marker.bottom) / 2.0 };
+            distance(centre, bounds) < own - 0.5
+        };
+        COST * self.obstacles.iter().filter(nearer).count() as f64
     }
 
     /// A line's length in letters, and the strokes that it crosses.

@@ -120,13 +120,13 @@ fn call_out(
                 let to =
                     point(from.x.clamp(bounds.left, bounds.right), from.y.clamp(bounds.top, bounds.bottom));
                 let line = (away > BESIDE).then(|| (beside(from, to), to));
-                candidates.push(Led { bounds, line });
+                candidates.push(Led { point: from, bounds, line });
                 texts.push(label.coloured(legible(role)).with_halo());
             }
         }
     }
     let Some(index) = occupancy.choose_led(&candidates, &frame.grown(-2.0)) else { return };
-    if let (Some(text), Some(Led { bounds, line })) = (texts.get(index), candidates.get(index)) {
+    if let (Some(text), Some(Led { bounds, line, .. })) = (texts.get(index), candidates.get(index)) {
         if let Some((from, to)) = *line {
             scene.line(from, to, Stroke::solid(legible(role), 0.8));
             occupancy.add_lead(from, to);

@@ -1,0 +1,242 @@
+//! The chapter on templates and bounds: the plants at each design frequency, what the nominal loop may not do there, and
+//! whether the given loop keeps to it.
+
+use maud::{Markup, html};
+use phea_qft::bound::{Bound, Collision, Feasibility, Placement};
+use phea_qft::template::{Resolution, Template};
+use phea_qft::verification::Verdict;
+
+use super::chapter::{Chapter, cell, place, table};
+use super::closed_loops::member_of;
+use crate::answer::{OutputFile, significant};
+use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number, kind_key, kind_words};
+use crate::command::CommandError;
+use crate::figure::{
+    BoundGroup, Figure, FrequencySeries, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, Words, nichols,
+    templates,
+};
+use crate::robust::{DesignFrequency, RobustProblem};
+
+pub(super) fn chapter(
+    problem: &RobustProblem,
+    found: &[DesignFrequency],
+    view: Option<&ProjectAudit>,
+) -> Result<Chapter, CommandError> {
+    let templates: Vec<Template> = found.iter().map(|one| one.template.template.clone()).collect();
+    let nominal = nominal_loop(problem)?;
+    let mut figures = vec![template_figure(&templates)];
+    figures.extend(specification_figures(problem, found));
+    figures.push(combined_figure(problem, found, nominal, view));
+    let given = problem.has_controller;
+    let body = html! {
+        p { "What the robust method works with: the plants at each design frequency (templates), and the gains and phases that the nominal open loop must keep out of there (bounds), so that every plant keeps to the specifications. Bounds count the interior of a template as plants, where that is known to be filled." }
+        (place(&figures[0]))
+        (table(&["rad/s", "plants", "closeness of neighbours"], 9, &found.iter().map(template_row).collect::<Vec<_>>()))
+        @for figure in figures.iter().skip(1) { (place(figure)) }
+        @if given { h3 { "The given loop among the bounds" } (placements(problem, found)) }
+        @for sentence in feasibility(problem, found) { div.callout.bad-edge { p { (sentence) } } }
+    };
+    Ok(Chapter { anchor: "bounds", title: "Templates and bounds", body, figures })
+}
+
+fn template_row(one: &DesignFrequency) -> Vec<Markup> {
+    let closeness = match &one.template.template.resolution {
+        Resolution::Members => "only these plants; nothing between them is known".to_string(),
+        Resolution::Resolved { phase_deg, magnitude_db } => {
+            format!("within {}° and {} dB", significant(*phase_deg, 2), significant(*magnitude_db, 2))
+        }
+        Resolution::NotResolved { phase_deg, magnitude_db, .. } => format!(
+            "does not close: gaps of {}° and {} dB remain; a resonance inside the family keeps it open",
+            significant(*phase_deg, 2),
+            significant(*magnitude_db, 2)
+        ),
+    };
+    vec![
+        cell(frequency_number(one.frequency_rad_per_s)),
+        cell(one.template.template.points.len().to_string()),
+        cell(closeness),
+    ]
+}
+
+fn template_figure(found: &[Template]) -> Figure {
+    let caption = "Every plant of the family by phase and magnitude, at each design frequency; the nominal plant marked.";
+    templates(Words::new("templates", "Templates", caption), found)
+}
+
+fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    for (index, specification) in problem.specifications.iter().enumerate() {
+        let bounds: Vec<Bound> = found
+            .iter()
+            .filter_map(|one| one.bounds.parts.iter().find(|part| part.specification == index))
+            .map(|part| part.bound.clone())
+            .collect();
+        let requirement = &specification.requirement;
+        let name = format!("bounds_{}_{}", index + 1, kind_key(requirement));
+        let title = format!("Bounds of specification {}, {}", index + 1, kind_words(requirement));
+        let caption = format!(
+            "Where the nominal loop may not be, so that every plant keeps {} to its limit; ticks point to the forbidden side.",
+            closed_loop_symbol(requirement)
+        );
+        let input = NicholsInput {
+            bounds: vec![BoundGroup { name: kind_words(requirement), bounds: &bounds }],
+            contours_db: USUAL_CONTOURS_DB.to_vec(),
+            ..NicholsInput::default()
+        };
+        figures.push(nichols(Words::new(name, title, caption), &input));
+    }
+    figures
+}
+
+fn nominal_loop(problem: &RobustProblem) -> Result<Option<FrequencySeries>, CommandError> {
+    if !problem.has_controller {
+        return Ok(None);
+    }
+    let frequencies = problem.design_frequencies();
+    let (Some(first), Some(last)) = (frequencies.first(), frequencies.last()) else { return Ok(None) };
+    let Some(nominal) = problem.nominal()? else { return Ok(None) };
+    let mut series = FrequencySeries {
+        name: "nominal loop L0".to_string(),
+        frequencies_rad_per_s: vec![],
+        response: vec![],
+    };
+    for frequency in problem.drawn_frequencies(first / 10.0, last * 30.0) {
+        if let Some(response) = problem.response(&nominal, frequency) {
+            series.frequencies_rad_per_s.push(frequency);
+            series.response.push(response.open_loop());
+        }
+    }
+    Ok(Some(series))
+}
+
+fn combined_figure(
+    problem: &RobustProblem,
+    found: &[DesignFrequency],
+    nominal: Option<FrequencySeries>,
+    view: Option<&ProjectAudit>,
+) -> Figure {
+    let bounds: Vec<Bound> = found.iter().map(|one| one.bounds.union.clone()).collect();
+    let input = NicholsInput {
+        loops: nominal.into_iter().collect(),
+        design_frequencies_rad_per_s: problem.design_frequencies(),
+        bounds: vec![BoundGroup { name: "all specifications".to_string(), bounds: &bounds }],
+        templates: &[],
+        violations: view.map_or_else(Vec::new, |view| violations(problem, view)),
+        contours_db: vec![],
+    };
+    let caption = "The bounds of all specifications together, the nominal loop with its design frequencies, and the plants that violate a specification most: a loop above a bound that is open upwards, and outside of closed ones, keeps to all of them at that frequency.";
+    nichols(Words::new("nichols", "Nichols chart of the loop", caption), &input)
+}
+
+/// The open loop of each worst plant, where it violates.
+fn violations(problem: &RobustProblem, view: &ProjectAudit) -> Vec<OpenLoopViolation> {
+    let violated = view.audit.specifications.iter().filter(|finding| finding.verdict == Verdict::Violated);
+    violated
+        .filter_map(|finding| {
+            let worst = finding.worst.as_ref()?;
+            let frequency_rad_per_s = worst.frequency_rad_per_s;
+            let member = member_of(problem, &worst.plant)?;
+            let response = problem.response(&member, frequency_rad_per_s)?;
+            let symbol = closed_loop_symbol(&finding.requirement);
+            let size = significant(worst.margin_db.abs(), 3);
+            let text = format!("{symbol} {size} dB off at {} rad/s", frequency_number(frequency_rad_per_s));
+            Some(OpenLoopViolation { frequency_rad_per_s, open_loop: response.open_loop(), text })
+        })
+        .collect()
+}
+
+fn placements(problem: &RobustProblem, found: &[DesignFrequency]) -> Markup {
+    let row = |one: &DesignFrequency| {
+        vec![
+            cell(frequency_number(one.frequency_rad_per_s)),
+            placement(problem, &one.placement),
+            placement(problem, &one.filled_placement),
+        ]
+    };
+    let headings = ["rad/s", "counting the plants alone", "counting the interior of the template"];
+    table(&headings, 9, &found.iter().map(row).collect::<Vec<_>>())
+}
+
+fn placement(problem: &RobustProblem, placement: &Placement) -> Markup {
+    match placement {
+        Placement::Allowed { slack_db } if slack_db.is_infinite() => {
+            html! { span.good { "allowed" } ", nothing is forbidden at this phase" }
+        }
+        Placement::Allowed { slack_db } => {
+            html! { span.good { "allowed" } ", " (significant(*slack_db, 3)) " dB from a bound" }
+        }
+        Placement::Forbidden { by, nearest_db } => {
+            let names: Vec<String> = by.iter().map(|index| named(problem, *index)).collect();
+            html! {
+                span.bad { "forbidden" } " by " (names.join(", "))
+                @match nearest_db {
+                    Some(change) => { "; allowed with " (format!("{change:+.2}")) " dB" }
+                    None => { "; no gain is allowed at this phase" }
+                }
+            }
+        }
+    }
+}
+
+fn named(problem: &RobustProblem, index: usize) -> String {
+    let kind = problem.specifications.get(index).map_or(String::new(), |one| kind_words(&one.requirement));
+    format!("{} ({kind})", index + 1)
+}
+
+/// Frequencies at which no loop at all can keep to the specifications, and which of them collide.
+fn feasibility(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<String> {
+    let sentence = |collision: &Collision| {
+        let names: Vec<String> =
+            collision.specifications.iter().map(|index| named(problem, *index)).collect();
+        let [from, to] = collision.phases_rad.map(|phase| significant(phase.to_degrees(), 3));
+        let who = match names.as_slice() {
+            [one] => format!("{one} alone forbids every gain"),
+            _ => format!("{} leave no gain to each other", names.join(" and ")),
+        };
+        format!(
+            "At {} rad/s, phases {from}° to {to}°: {who}.",
+            frequency_number(collision.frequency_rad_per_s)
+        )
+    };
+    let mut sentences = Vec::new();
+    for one in found {
+        if let Feasibility::Nowhere { collisions } = &one.bounds.feasibility {
+            let frequency = frequency_number(one.frequency_rad_per_s);
+            sentences.push(format!(
+                "No loop keeps to all specifications at {frequency} rad/s, whatever its controller."
+            ));
+            sentences.extend(collisions.iter().map(sentence));
+        }
+    }
+    sentences
+}
+
+/// Bounds and templates as tables for other programs.
+pub(super) fn files(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<OutputFile> {
+    let mut bounds = String::from(
+        "specification,kind,frequency_rad_per_s,phase_deg,forbidden_from_gain,forbidden_to_gain\n",
+    );
+    let mut plants = String::from("frequency_rad_per_s,real,imaginary\n");
+    for one in found {
+        for part in &one.bounds.parts {
+            let Some(specification) = problem.specifications.get(part.specification) else { continue };
+            let kind = kind_key(&specification.requirement);
+            for (phase, forbidden) in part.bound.phases_rad.iter().zip(&part.bound.forbidden) {
+                for [low, high] in forbidden.intervals() {
+                    bounds.push_str(&format!(
+                        "{},{kind},{},{},{low},{high}\n",
+                        part.specification,
+                        one.frequency_rad_per_s,
+                        phase.to_degrees()
+                    ));
+                }
+            }
+        }
+        for point in &one.template.template.points {
+            let response = point.response;
+            plants.push_str(&format!("{},{},{}\n", one.frequency_rad_per_s, response.re, response.im));
+        }
+    }
+    let file = |name: &str, text: String| OutputFile { name: name.to_string(), bytes: text.into_bytes() };
+    vec![file("bounds.csv", bounds), file("templates.csv", plants)]
+}

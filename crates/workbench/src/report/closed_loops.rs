@@ -1,0 +1,192 @@
+//! Figures of the audit: closed-loop magnitudes of the family against their limits.
+
+use phea_dynamics::frequency::decibels;
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::portable;
+use phea_qft::closed_loop::Member;
+use phea_qft::family::Family;
+use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::verification::{PlantPoint, SpecificationFinding, Verdict, WorstCase};
+
+use crate::answer::significant;
+use crate::audit::{closed_loop_symbol, frequency_words, kind_key, kind_words};
+use crate::figure::{FamilyMagnitudeInput, Figure, MagnitudeCurve, MagnitudeMark, Words, family_magnitude};
+use crate::robust::RobustProblem;
+
+/// Members that are drawn, besides the worst.
+pub(super) const DRAWN_MEMBERS: usize = 40;
+
+/// How far beyond design frequencies and violations the figures reach.
+const MARGIN_OF_FREQUENCY: f64 = 10.0;
+
+/// The frequencies that a figure of this finding covers, rad/s.
+pub(super) fn span(specification: &Specification, finding: &SpecificationFinding) -> [f64; 2] {
+    let mut ends = specification.frequencies_rad_per_s.clone();
+    ends.extend(finding.worst.iter().map(|worst| worst.frequency_rad_per_s));
+    ends.extend(finding.violations.iter().flat_map(|band| band.band_rad_per_s));
+    ends.retain(|frequency| *frequency > 0.0 && frequency.is_finite());
+    let low = ends.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = ends.iter().copied().fold(0.0, f64::max);
+    if ends.is_empty() { [0.01, 1000.0] } else { [low / MARGIN_OF_FREQUENCY, high * MARGIN_OF_FREQUENCY] }
+}
+
+/// Every member, and this plant.
+fn all_members(problem: &RobustProblem, worst: Option<&PlantPoint>) -> Result<Vec<Member>, LinearError> {
+    match &problem.family {
+        Family::Uncertain(family) => {
+            let named = worst.into_iter().filter_map(|plant| match plant {
+                PlantPoint::Parameters(values) => Some(values),
+                PlantPoint::Measured(_) => None,
+            });
+            let plants = family.members().iter().chain(named);
+            plants.map(|values| problem.compensation.member(family.plant().coefficients(values))).collect()
+        }
+        Family::Measured(family) => {
+            Ok(family.plants().iter().map(|plant| problem.compensation.measured(plant)).collect())
+        }
+    }
+}
+
+/// One figure for each specification.
+pub(super) fn figures(
+    problem: &RobustProblem,
+    findings: &[SpecificationFinding],
+    tolerance_db: f64,
+) -> Result<Vec<Figure>, LinearError> {
+    let numbered = problem.specifications.iter().zip(findings).enumerate();
+    numbered
+        .map(|(index, (specification, finding))| {
+            figure(problem, index + 1, specification, finding, tolerance_db)
+        })
+        .collect()
+}
+
+fn figure(
+    problem: &RobustProblem,
+    number: usize,
+    specification: &Specification,
+    finding: &SpecificationFinding,
+    tolerance_db: f64,
+) -> Result<Figure, LinearError> {
+    let requirement = &specification.requirement;
+    let [from, to] = span(specification, finding);
+    let mut frequencies = problem.drawn_frequencies(from, to);
+    frequencies.extend(finding.envelope.iter().map(|point| point.0).filter(|w| (from..=to).contains(w)));
+    frequencies.sort_by(f64::total_cmp);
+    frequencies.dedup();
+    let worst = finding.worst.as_ref().map(|worst| &worst.plant);
+    let members = all_members(problem, worst)?;
+    let mut curves: Vec<MagnitudeCurve> =
+        members.iter().map(|member| curve(problem, requirement, member, &frequencies)).collect();
+    let greatest = extreme(&curves, f64::max);
+    let least = requirement.limits().0.map(|_| extreme(&curves, f64::min));
+    // the last is the worst plant
+    let (last, step) = (curves.len().saturating_sub(1), curves.len() / DRAWN_MEMBERS + 1);
+    let mut index = 0;
+    curves.retain(|_| {
+        index += 1;
+        (index - 1) % step == 0 || index - 1 == last
+    });
+    let (lower, upper) = requirement.limits();
+    let band = specification.band_rad_per_s;
+    let limit = |limit: &Limit| limit_curve(limit, band, &frequencies);
+    let caption = format!(
+        "{} of {} plants of the family (thin), the greatest{} of all members (thick), and the limit.",
+        closed_loop_symbol(requirement),
+        curves.len(),
+        if lower.is_some() { " and the least" } else { "" }
+    );
+    let name = format!("audit_{number}_{}", kind_key(requirement));
+    let input = FamilyMagnitudeInput {
+        quantity: closed_loop_symbol(requirement).to_string(),
+        unit: String::new(),
+        upper_limit: Some(limit(upper)),
+        lower_limit: lower.map(limit),
+        greatest,
+        least,
+        members: curves,
+        design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
+        tolerance_db,
+        marks: finding.worst.iter().filter_map(|worst| mark(problem, requirement, finding, worst)).collect(),
+    };
+    let title = format!("Specification {number}, {}", kind_words(requirement));
+    Ok(family_magnitude(Words::new(name, title, caption), &input))
+}
+
+fn curve(
+    problem: &RobustProblem,
+    requirement: &Requirement,
+    member: &Member,
+    frequencies: &[f64],
+) -> MagnitudeCurve {
+    let mut curve = MagnitudeCurve::default();
+    for &frequency in frequencies {
+        let Some(response) = problem.response(member, frequency) else { continue };
+        curve.frequencies_rad_per_s.push(frequency);
+        curve.magnitudes.push(portable::magnitude(requirement.closed_loop(&response)));
+    }
+    curve
+}
+
+fn limit_curve(limit: &Limit, band: [f64; 2], frequencies: &[f64]) -> MagnitudeCurve {
+    let within = frequencies.iter().filter(|frequency| (band[0]..=band[1]).contains(*frequency));
+    let (frequencies_rad_per_s, magnitudes) =
+        within.filter_map(|&frequency| Some((frequency, limit.magnitude(frequency)?))).unzip();
+    MagnitudeCurve { frequencies_rad_per_s, magnitudes }
+}
+
+/// The extreme of all curves at the frequencies of the first; measured ones that reach less far are left out there.
+fn extreme(curves: &[MagnitudeCurve], choose: fn(f64, f64) -> f64) -> MagnitudeCurve {
+    let mut extreme = curves.first().cloned().unwrap_or_default();
+    let count = extreme.magnitudes.len();
+    for curve in curves.iter().filter(|curve| curve.magnitudes.len() == count) {
+        for (value, other) in extreme.magnitudes.iter_mut().zip(&curve.magnitudes) {
+            *value = choose(*value, *other);
+        }
+    }
+    extreme
+}
+
+fn mark(
+    problem: &RobustProblem,
+    requirement: &Requirement,
+    finding: &SpecificationFinding,
+    worst: &WorstCase,
+) -> Option<MagnitudeMark> {
+    let frequency = worst.frequency_rad_per_s;
+    if !(frequency > 0.0 && frequency.is_finite()) {
+        return None;
+    }
+    let member = member_of(problem, &worst.plant)?;
+    let response = problem.response(&member, frequency)?;
+    let magnitude = portable::magnitude(requirement.closed_loop(&response));
+    let is_violation = finding.verdict == Verdict::Violated;
+    let size = significant(worst.margin_db.abs(), 3);
+    let place = frequency_words(frequency);
+    let text = if is_violation {
+        let side = match requirement.limits() {
+            (Some(_), upper) => {
+                let below = upper.magnitude(frequency).is_some_and(|limit| decibels(magnitude / limit) < 0.0);
+                if below { "short" } else { "over" }
+            }
+            (None, _) => "over",
+        };
+        format!("{size} dB {side} {place}")
+    } else {
+        format!("{size} dB to spare {place}")
+    };
+    Some(MagnitudeMark { frequency_rad_per_s: frequency, magnitude, text, is_violation })
+}
+
+/// One plant within the loop; `None` where it cannot be sampled.
+pub(super) fn member_of(problem: &RobustProblem, plant: &PlantPoint) -> Option<Member> {
+    match (&problem.family, plant) {
+        (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
+            problem.compensation.member(family.plant().coefficients(values)).ok()
+        }
+        (Family::Measured(family), PlantPoint::Measured(index)) => {
+            family.plants().get(*index).map(|plant| problem.compensation.measured(plant))
+        }
+        _ => None,
+    }
+}

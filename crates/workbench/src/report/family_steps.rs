@@ -1,0 +1,119 @@
+//! Step responses of the family inside the band of the tracking limits' own step responses.
+
+use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TransferFunction};
+use phea_dynamics::time_response::{step_response, uniform_times};
+use phea_dynamics::uncertain_plant::PlantCoefficients;
+use phea_qft::family::{Family, UncertainFamily};
+use phea_qft::specification::{Limit, Requirement};
+use phea_qft::verification::{PlantPoint, Verdict};
+
+use super::closed_loops::DRAWN_MEMBERS;
+use crate::audit::ProjectAudit;
+use crate::figure::{FamilyStepInput, Figure, TimeBounds, TimeSeries, Words, family_step};
+use crate::robust::RobustProblem;
+
+/// Samples of each response.
+const SAMPLES: usize = 600;
+/// Time constants of the slowest pole of the lower limit that are shown.
+const TIME_CONSTANTS: f64 = 8.0;
+
+/// The figure, or why there is none; `None` where no tracking is specified by transfer functions.
+pub(super) fn figure(problem: &RobustProblem, view: &ProjectAudit) -> Option<Result<Figure, String>> {
+    let limits =
+        problem.specifications.iter().find_map(|specification| match &specification.requirement {
+            Requirement::Tracking { lower: Limit::Rational(lower), upper: Limit::Rational(upper) } => {
+                Some((lower, upper))
+            }
+            _ => None,
+        })?;
+    if view.audit.stability.verdict != Verdict::Met {
+        return Some(Err("not every plant is known to be stable".to_string()));
+    }
+    let Family::Uncertain(family) = &problem.family else {
+        return Some(Err("measured responses have no step response".to_string()));
+    };
+    Some(drawn(problem, family, view, limits).map_err(|error| error.to_string()))
+}
+
+fn drawn(
+    problem: &RobustProblem,
+    family: &UncertainFamily,
+    view: &ProjectAudit,
+    (lower, upper): (&TransferFunction, &TransferFunction),
+) -> Result<Figure, LinearError> {
+    let duration = duration(lower);
+    let times = match problem.compensation.sample_time_s() {
+        None => uniform_times(duration, SAMPLES).unwrap_or_default(),
+        Some(sample_time) => {
+            let count = (duration / sample_time).ceil().clamp(10.0, 20_000.0) as usize;
+            (0..count).map(|sample| sample as f64 * sample_time).collect()
+        }
+    };
+    let limit_times = uniform_times(duration, SAMPLES).unwrap_or_default();
+    let series = |name: &str, system: &TransferFunction, times_s: &[f64]| TimeSeries {
+        name: name.to_string(),
+        values: step_response(system, times_s).unwrap_or_default(),
+        times_s: times_s.to_vec(),
+    };
+    let member = |name: &str, values: &[f64]| {
+        closed_loop(problem, family.plant().coefficients(values)).map(|system| series(name, &system, &times))
+    };
+    let step = family.members().len() / DRAWN_MEMBERS + 1;
+    let members: Vec<TimeSeries> =
+        family.members().iter().step_by(step).map(|values| member("", values)).collect::<Result<_, _>>()?;
+    let worst = view.audit.specifications.iter().find_map(|finding| match &finding.requirement {
+        Requirement::Tracking { .. } => finding.worst.as_ref(),
+        _ => None,
+    });
+    let named = match worst.map(|worst| &worst.plant) {
+        Some(PlantPoint::Parameters(values)) => vec![member("the plant that tracks worst", values)?],
+        _ => vec![],
+    };
+    let input = FamilyStepInput {
+        quantity: "Output, part of the step".to_string(),
+        bounds: Some(TimeBounds {
+            upper: series("upper limit", upper, &limit_times),
+            lower: series("lower limit", lower, &limit_times),
+        }),
+        nominal: Some(member("nominal plant", &family.plant().nominal())?),
+        members,
+        named,
+    };
+    let caption = "Step responses of plants of the family (thin) and those of the tracking limits. A limit on magnitudes does not bound a response in time: the band is what the limits themselves do.";
+    Ok(family_step(Words::new("family_steps", "Step responses of the family", caption), &input))
+}
+
+/// F P G/(1 + P G H), sampled where the loop samples.
+fn closed_loop(
+    problem: &RobustProblem,
+    plant: PlantCoefficients<f64>,
+) -> Result<TransferFunction, LinearError> {
+    let compensation = &problem.compensation;
+    let rational = TransferFunction::from_polynomials(
+        &Polynomial::new(plant.command.numerator),
+        &Polynomial::new(plant.command.denominator),
+    )?;
+    let delayed = rational.with_dead_time(plant.dead_time_s + compensation.delay_s())?;
+    let (plant, sensor) = match compensation.sample_time_s() {
+        None => (delayed, compensation.sensor().clone()),
+        Some(sample_time) => {
+            let held = delayed.discretized(sample_time, Discretization::ZeroOrderHold)?;
+            // A sensor with dynamics is sampled together with the plant, of which no transfer function of it alone is left.
+            if !(compensation.sensor().poles().is_empty() && compensation.sensor().dead_time_s() == 0.0) {
+                return Err(LinearError::WrongDomain {
+                    operation: "a step response with sensor dynamics",
+                    needed: "continuous",
+                });
+            }
+            let sensor = compensation.sensor().clone().in_domain(held.domain())?;
+            (held, sensor)
+        }
+    };
+    let closed = plant.series(compensation.feedback())?.feedback(&sensor)?;
+    compensation.prefilter().series(&closed)
+}
+
+fn duration(lower: &TransferFunction) -> f64 {
+    let slowest = lower.poles().iter().map(|pole| -pole.re).fold(f64::INFINITY, f64::min);
+    if slowest > 0.0 && slowest.is_finite() { (TIME_CONSTANTS / slowest).clamp(1e-3, 1e3) } else { 1.0 }
+}

@@ -1,0 +1,200 @@
+//! What the robust method sees of a project: its family within its loop, templates and bounds at the design frequencies, and
+//! where the given loop lies among them.
+
+use num_complex::Complex64;
+use phea_dynamics::controller::Controller;
+use phea_dynamics::frequency::logarithmic_grid;
+use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
+use phea_dynamics::portable;
+use phea_qft::bound::{BoundError, CombinedBound, Fill, FrequencyBounds, PhaseGrid, Placement};
+use phea_qft::closed_loop::{Compensation, Member};
+use phea_qft::family::{Family, UncertainFamily};
+use phea_qft::specification::{LoopResponse, Specification};
+use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Templates};
+
+use crate::command::{CommandError, Progress, Watch};
+use crate::control::{compensation, sensor};
+use crate::family::family;
+use crate::project::Project;
+use crate::source::Source;
+use crate::specification::specifications;
+
+/// A family of plants within a loop, and what the loop must keep to.
+#[derive(Clone, Debug)]
+pub struct RobustProblem {
+    /// The plants.
+    pub family: Family,
+    /// The loop; with a controller of 1 where none is given.
+    pub compensation: Compensation,
+    /// Whether the project gives a controller.
+    pub has_controller: bool,
+    /// What must be kept to.
+    pub specifications: Vec<Specification>,
+}
+
+/// Template and bounds at one design frequency.
+#[derive(Clone, Debug)]
+pub struct DesignFrequency {
+    /// rad/s
+    pub frequency_rad_per_s: f64,
+    /// The plants there.
+    pub template: BuiltTemplate,
+    /// Bounds with the template's interior counted as plants.
+    pub bounds: CombinedBound,
+    /// The nominal loop L0 there.
+    pub nominal_loop: Complex64,
+    /// Where it lies among bounds that count the plants of the template alone.
+    pub placement: Placement,
+    /// Where it lies among bounds that count the template's interior too.
+    pub filled_placement: Placement,
+}
+
+/// Why templates or bounds cannot be computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RobustError {
+    /// A template.
+    #[error("a template: {0}")]
+    Template(#[from] TemplateError),
+    /// A bound.
+    #[error("a bound at {frequency_rad_per_s} rad/s: {error}")]
+    Bound {
+        /// rad/s
+        frequency_rad_per_s: f64,
+        /// What is wrong.
+        error: BoundError,
+    },
+    /// A member of the family cannot be put into the loop.
+    #[error("a plant of the family: {0}")]
+    Member(#[from] LinearError),
+}
+
+/// The robust problem of a project.
+///
+/// # Errors
+/// [`CommandError`] for parts that are no transfer functions, families or limits.
+pub fn robust_problem(source: &dyn Source, project: &Project) -> Result<RobustProblem, CommandError> {
+    let specifications = specifications(project)?;
+    let given = compensation(project)?;
+    let has_controller = given.is_some();
+    let compensation = match given {
+        Some(given) => given,
+        None => Compensation::new(&Controller::default(), sensor(project)?)?,
+    };
+    Ok(RobustProblem { family: family(project, source)?, compensation, has_controller, specifications })
+}
+
+impl RobustProblem {
+    /// Every frequency at which a bound is drawn, rad/s, increasing.
+    pub fn design_frequencies(&self) -> Vec<f64> {
+        let all = self.specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied());
+        let mut frequencies: Vec<f64> =
+            all.filter(|&frequency| frequency <= self.compensation.highest_frequency_rad_per_s()).collect();
+        frequencies.sort_by(f64::total_cmp);
+        frequencies.dedup();
+        frequencies
+    }
+
+    /// Templates and bounds at every design frequency.
+    ///
+    /// # Errors
+    /// [`CommandError::Robust`], and [`CommandError::Stopped`] where the watcher stops it.
+    pub fn at_design_frequencies(&self, watch: Watch<'_>) -> Result<Vec<DesignFrequency>, CommandError> {
+        let frequencies = self.design_frequencies();
+        let options = TemplateOptions::default();
+        let mut found = Vec::new();
+        for built in Templates::new(&self.family, &self.compensation, &frequencies, options) {
+            found.push(self.at_template(built.map_err(RobustError::from)?)?);
+            let share = found.len() as f64 / frequencies.len() as f64;
+            if !watch(Progress { stage: "templates and bounds", share }) {
+                return Err(CommandError::Stopped);
+            }
+        }
+        Ok(found)
+    }
+
+    fn at_template(&self, template: BuiltTemplate) -> Result<DesignFrequency, RobustError> {
+        let frequency_rad_per_s = template.template.frequency_rad_per_s;
+        let explain = |error| RobustError::Bound { frequency_rad_per_s, error };
+        let bounds =
+            |fill| FrequencyBounds::new(&template.template, &self.specifications, fill).map_err(explain);
+        let (points, filled) = (bounds(Fill::Points)?, bounds(Fill::Filled)?);
+        let nominal_loop =
+            template.template.nominal * self.compensation.response(frequency_rad_per_s).feedback;
+        Ok(DesignFrequency {
+            frequency_rad_per_s,
+            bounds: filled.combined(&PhaseGrid::default()),
+            nominal_loop,
+            placement: points.placement(nominal_loop),
+            filled_placement: filled.placement(nominal_loop),
+            template,
+        })
+    }
+
+    /// The nominal plant within the loop.
+    ///
+    /// # Errors
+    /// [`LinearError`] where it cannot be sampled.
+    pub fn nominal(&self) -> Result<Option<Member>, LinearError> {
+        match &self.family {
+            Family::Uncertain(family) => {
+                self.compensation.member(family.plant().coefficients(&family.plant().nominal())).map(Some)
+            }
+            Family::Measured(family) => {
+                Ok(family.plants().first().map(|plant| self.compensation.measured(plant)))
+            }
+        }
+    }
+
+    /// The whole loop of a member at a frequency; `None` where a measurement does not reach.
+    pub fn response(&self, member: &Member, frequency_rad_per_s: f64) -> Option<LoopResponse> {
+        let found = member.response(frequency_rad_per_s)?;
+        let loop_side = self.compensation.response(frequency_rad_per_s);
+        Some(LoopResponse {
+            plant: found.plant,
+            load_motion: found.load_motion,
+            controller: loop_side.feedback,
+            prefilter: loop_side.prefilter,
+            sensor: found.sensor,
+        })
+    }
+
+    /// Frequencies for drawing from `from` to `to`: even in their logarithm, and denser around the lightly damped roots of the
+    /// nominal plant and of the controller, rad/s.
+    pub fn drawn_frequencies(&self, from: f64, to: f64) -> Vec<f64> {
+        let to = to.min(self.compensation.highest_frequency_rad_per_s());
+        let mut frequencies = logarithmic_grid(from, to, GRID_POINTS).unwrap_or_default();
+        let mut roots: Vec<Complex64> = self.compensation.feedback().zeros().to_vec();
+        roots.extend(self.compensation.feedback().poles());
+        if let Family::Uncertain(family) = &self.family {
+            roots.extend(nominal_roots(family));
+        }
+        for root in roots.iter().filter(|root| root.im > 0.0) {
+            let (size, width) = (portable::magnitude(*root), root.re.abs());
+            let offsets = (-ROOT_POINTS..=ROOT_POINTS).map(|step| {
+                let share = f64::from(step) / f64::from(ROOT_POINTS);
+                size + ROOT_WIDTHS * width * share * share * share
+            });
+            frequencies.extend(offsets.filter(|frequency| (from..=to).contains(frequency)));
+        }
+        frequencies.extend(self.design_frequencies().into_iter().filter(|f| (from..=to).contains(f)));
+        frequencies.sort_by(f64::total_cmp);
+        frequencies.dedup();
+        frequencies
+    }
+}
+
+/// Points of the even grid.
+const GRID_POINTS: usize = 500;
+/// Points to each side of a lightly damped root.
+const ROOT_POINTS: i32 = 20;
+/// How far they reach, in half widths of its resonance.
+const ROOT_WIDTHS: f64 = 12.0;
+
+fn nominal_roots(family: &UncertainFamily) -> Vec<Complex64> {
+    let plant = family.plant().coefficients(&family.plant().nominal()).command;
+    let function = TransferFunction::from_polynomials(
+        &Polynomial::new(plant.numerator),
+        &Polynomial::new(plant.denominator),
+    );
+    function.map_or_else(|_| vec![], |function| [function.zeros(), function.poles()].concat())
+}
