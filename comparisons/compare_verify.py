@@ -164,17 +164,6 @@ def compare_specification(search, specification, told, ours, findings):
         findings.demand(len(told["at_design_frequencies"]) == len(design), f"{name}: not every design frequency")
 
 
-def compare_delay(project, told, delay, findings):
-    fine = told is not None and (told == delay or abs(told / delay - 1) <= DELAY_TOLERANCE)
-    # By the phase of L(z), a delay of a part of a sample only turns; in truth it also smooths the held command, which is
-    # felt where the samples are coarse. There the phase must at least promise no more than the poles hold.
-    coarse = project.sample_time is not None and delay < project.sample_time
-    if coarse and not fine:
-        print(f"  note: delay margin {told:.6g} s by phase, {delay:.6g} s by poles")
-        fine = told < delay
-    findings.demand(fine, f"phea: delay margin {told}, found {delay}")
-
-
 def compare(program, search, mine, findings):
     project, (stable, delay, found) = search.project, mine
     status, answer = phea_answer(program, project.path, project.settings)
@@ -187,7 +176,8 @@ def compare(program, search, mine, findings):
         return
     told = answer["delay_margin_s"]
     told = np.inf if told == "inf" else told
-    compare_delay(project, told, delay, findings)
+    fine = told is not None and (told == delay or abs(told / delay - 1) <= DELAY_TOLERANCE)
+    findings.demand(fine, f"phea: delay margin {told}, found {delay}")
     for specification, entry, ours in zip(project.specifications, answer["specifications"], found, strict=True):
         compare_specification(search, specification, entry, ours, findings)
 
