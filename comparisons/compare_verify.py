@@ -153,6 +153,11 @@ def compare_specification(search, specification, told, ours, findings):
     there = margin_there(project, specification, told["plant"], frequency)
     if there is not None:
         findings.demand(abs(there - margin) < 1e-4, f"{name}: {margin:.6f} dB reported, {there:.6f} at that plant and {frequency:.6g} rad/s")
+    inside = told.get("interior")
+    if inside and there is not None:
+        true = margin_there(project, specification, inside["plant"], inside["frequency_rad_per_s"])
+        message = f"{name}: interior {inside['margin_db']} dB reported, {true} at that plant"
+        findings.demand(abs(true - inside["margin_db"]) < 1e-4, message)
     if is_interior(search, specification, worst[1]):
         near = abs(frequency / worst[1] - 1) <= FREQUENCY_TOLERANCE
         findings.demand(near, f"{name}: worst at {frequency:.6g}, found at {worst[1]:.6g} rad/s")
