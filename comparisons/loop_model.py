@@ -247,8 +247,10 @@ class Project:
         return held(a, b, c, d, self.sample_time, fraction)
 
     def loop_polynomials(self, values):
-        """n and c with 1 + L = (n + c)/c of a continuous loop, its dead time left out."""
+        """n and c with 1 + L = (n + c)/c of a continuous loop, its dead time left out; of a sampled one the plant's."""
         over, under = self.plant_polynomials(values)
+        if self.sample_time:
+            return over, under  # the plant alone: the controller may be one in z
         parts = self.controller, self.sensor
         return over * parts[0].numerator * parts[1].numerator, under * parts[0].denominator * parts[1].denominator
 

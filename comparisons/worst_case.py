@@ -101,13 +101,14 @@ class Search:
 
     def frequencies(self, values, low, high, count=DENSE):
         """A grid, and the resonances of this plant's closed loop."""
-        # a sampled plant costs more, and has no resonance that its samples do not see
+        # a sampled plant costs more
         base = np.geomspace(low, high, count // 3 if self.project.sample_time else count)
         roots = np.zeros(0)
-        if not self.project.sample_time and not self.project.measured:
+        if not self.project.measured:
             over, under = self.project.loop_polynomials(values)
-            # with dead time those of the plant, which the delay does not move
-            roots = scaled_roots(under if self.project.has_delay else over + under)
+            # with dead time or samples those of the plant, which neither moves
+            moved = self.project.has_delay or self.project.sample_time
+            roots = scaled_roots(under if moved else over + under)
         near = np.abs(roots.imag[roots.imag > 0])
         widths = np.abs(roots.real[roots.imag > 0])
         peaks = np.concatenate([near + step * widths for step in (-2, -1, -0.5, 0, 0.5, 1, 2)]) if len(near) else near
