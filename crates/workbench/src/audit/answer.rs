@@ -13,10 +13,12 @@ struct Body<'a> {
     evidence: &'static str,
     tolerance_db: f64,
     stable: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stable_reason: Option<&'a str>,
     stability: StabilityRow<'a>,
     delay_margin_s: Number,
     #[serde(skip_serializing_if = "Option::is_none")]
-    delay_margin_reason: Option<&'static str>,
+    delay_margin_s_reason: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     delay_margin: Option<DelayMarginRow>,
     members: usize,
@@ -29,7 +31,7 @@ struct Body<'a> {
 struct TimingRow {
     sample_time_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    sample_time_reason: Option<&'static str>,
+    sample_time_s_reason: Option<&'static str>,
     delay_s: f64,
 }
 
@@ -122,6 +124,7 @@ pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
             Verdict::Violated => Some(false),
             Verdict::NotProven => None,
         },
+        stable_reason: (stability.verdict == Verdict::NotProven).then_some(stability.reason.as_str()),
         stability: StabilityRow {
             verdict: verdict_key(stability.verdict),
             evidence: evidence_key(stability.evidence),
@@ -130,7 +133,7 @@ pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
             reason: &stability.reason,
         },
         delay_margin_s: Number(margin.map_or(f64::NAN, |margin| margin.delay_s)),
-        delay_margin_reason: margin
+        delay_margin_s_reason: margin
             .is_none()
             .then_some("there is none: not every plant is known to be stable"),
         delay_margin: margin.map(|margin| DelayMarginRow {
@@ -141,7 +144,7 @@ pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
         parameters: names.headings(),
         timing: TimingRow {
             sample_time_s: view.sample_time_s,
-            sample_time_reason: view.sample_time_s.is_none().then_some("the controller is continuous"),
+            sample_time_s_reason: view.sample_time_s.is_none().then_some("the controller is continuous"),
             delay_s: view.delay_s,
         },
         specifications: audit.specifications.iter().map(|finding| specification(names, finding)).collect(),

@@ -1,0 +1,113 @@
+//! What `verify` answers: the keys other programs read, and what the audit of the thesis' controller finds.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+#[path = "truth/ask.rs"]
+mod ask;
+
+use ask::{HOSE, answer, json, try_answer};
+use phea_workbench::command::{CommandError, Progress, Request, answer_watched};
+use serde_json::Value;
+
+fn verify(project: &str, settings: &[&str]) -> Value {
+    json(project, settings, &[], &Request::Verify)
+}
+
+fn close(value: &Value, expected: f64, relative: f64) {
+    let value = value.as_f64().unwrap();
+    assert!((value - expected).abs() <= relative * expected.abs(), "{value} instead of {expected}");
+}
+
+/// One plant, k/s, closed with gain 1.
+const INTEGRATOR: &str = "schema = 1\ntitle = \"integrator\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\
+    [uncertainty]\nk = { nominal = 1, minimum = 1, maximum = 2, points = 2 }\n[controller]\nnumerator = \"1\"\n\
+    denominator = \"1\"\n[[specification]]\nkind = \"robust_stability\"\nlimit = 1.1\nfrequencies = [1, 5]\nband = [0, inf]\n";
+
+#[test]
+fn the_keys_that_stay_are_there() {
+    let object = verify(INTEGRATOR, &[]);
+    assert_eq!(object["verdict"], "met");
+    assert_eq!(object["evidence"], "search");
+    assert_eq!(object["tolerance_db"], 0.001);
+    assert_eq!(object["stable"], true);
+    // pi/2 at k = 2, where |L| = 1 at 2 rad/s: ORIGIN: analytic
+    close(&object["delay_margin_s"], std::f64::consts::FRAC_PI_4, 1e-6);
+    let row = &object["specifications"][0];
+    assert_eq!(row["kind"], "robust_stability");
+    assert_eq!(row["verdict"], "met");
+    // |T| tends to 1 towards zero frequency
+    close(&row["worst_margin_db"], 20.0 * 1.1_f64.log10(), 1e-9);
+    assert_eq!(row["frequency_rad_per_s"], 0.0);
+    assert!(row["plant"]["k"].is_number());
+    let design = row["at_design_frequencies"].as_array().unwrap();
+    assert_eq!(design.len(), 2);
+    // |T| = 2/|j + 2| at k = 2 and 1 rad/s
+    close(&design[0]["margin_db"], 20.0 * (1.1 * 5.0_f64.sqrt() / 2.0).log10(), 1e-6);
+    assert_eq!(design[0]["frequency_rad_per_s"], 1.0);
+    assert_eq!(design[0]["plant"]["k"], 2.0);
+}
+
+#[test]
+fn the_audit_of_the_thesis_finds_what_its_grid_hid() {
+    let object = verify(HOSE, &[]);
+    assert_eq!((object["verdict"].as_str(), object["stable"].as_bool()), (Some("violated"), Some(true)));
+    let robust = &object["specifications"][0];
+    // ORIGIN: recomputed by comparisons/recompute_audit.py
+    close(&robust["frequency_rad_per_s"], 1304.4, 1e-3);
+    let peak = 1.3 * 10.0_f64.powf(-robust["worst_margin_db"].as_f64().unwrap() / 20.0);
+    assert!((peak - 11.887).abs() < 0.012, "{peak}");
+    close(&robust["plant"]["hydraulic_stiffness"], 3.71e6, 2e-3);
+    for (name, corner) in
+        [("viscous_friction", 100.0), ("flow_gain", 5.61e-5), ("valve_natural_frequency", 1319.0)]
+    {
+        assert_eq!(robust["plant"][name], corner);
+    }
+    let designs = robust["at_design_frequencies"].as_array().unwrap();
+    assert!(designs.iter().all(|case| case["margin_db"].as_f64().unwrap() > 0.0));
+}
+
+#[test]
+fn what_cannot_be_met_is_not_called_met() {
+    // unstable: no specification is met by it
+    let unstable = verify(INTEGRATOR, &["controller.numerator=\"-1\"", "specification.0.limit=1000"]);
+    assert_eq!((unstable["verdict"].as_str(), unstable["stable"].as_bool()), (Some("violated"), Some(false)));
+    assert!(unstable["delay_margin_s"].is_null() && unstable["delay_margin_s_reason"].is_string());
+    assert_ne!(unstable["specifications"][0]["verdict"], "met");
+    // a negative margin within the tolerance is met, one beyond it is violated
+    for (limit, verdict) in [("0.99995", "met"), ("0.999", "violated")] {
+        let setting = format!("specification.0.limit={limit}");
+        assert_eq!(verify(INTEGRATOR, &[&setting])["verdict"], verdict, "{limit}");
+    }
+}
+
+#[test]
+fn the_text_says_the_verdict_first_and_what_it_rests_on() {
+    let text = answer(HOSE, &[], &[], &Request::Verify).text;
+    assert!(text.starts_with("Verdict: violated\n"));
+    for words in ["11.89", "at the design frequencies alone it would have passed", "a search is no proof"] {
+        assert!(text.contains(words), "{words} is missing in\n{text}");
+    }
+}
+
+#[test]
+fn without_a_controller_there_is_nothing_to_verify() {
+    let bare = HOSE.split("[controller]").next().unwrap();
+    let refused = try_answer(bare, &[], &[], &Request::Verify);
+    assert!(matches!(refused, Err(CommandError::Audit(_))), "{refused:?}");
+}
+
+#[test]
+fn a_watcher_sees_progress_rise_and_can_stop_it() {
+    let loaded = ask::load(HOSE, &[], &[]);
+    let source = ask::source(HOSE);
+    let mut shares = Vec::new();
+    let mut watch = |progress: Progress| {
+        shares.push(progress.share);
+        shares.len() < 50
+    };
+    let stopped = answer_watched(&source, &loaded, &[], &Request::Verify, &mut watch);
+    assert!(matches!(stopped, Err(CommandError::Stopped)));
+    assert_eq!(shares.len(), 50);
+    assert!(shares.is_sorted() && shares.iter().all(|share| (0.0..=1.0).contains(share)));
+}
