@@ -130,7 +130,7 @@ def margin_there(project, specification, told, frequency):
     if spread:
         return None
     w = np.array(max(frequency, 1e-12))
-    return min(float(side(values, w)) for side in sides(project, specification))
+    return min(float(side.margin(values, w)) for side in sides(project, specification))
 
 
 def is_interior(search, specification, frequency):
@@ -147,12 +147,14 @@ def compare_specification(search, specification, told, ours, findings):
     findings.demand(told["verdict"] == expected, f"{name}: {told['verdict']} instead of {expected} ({worst[0]:.4f} dB)")
     if margin is None or margin == "inf":
         return findings.demand(False, f"{name}: no margin, {told.get('reason')}")
-    findings.demand(margin <= worst[0] + MARGIN_TOLERANCE_DB, f"{name}: {margin:.5f} dB, found {worst[0]:.5f} at {worst[1]:.6g} rad/s, {worst[2]}")
+    message = f"{name}: {margin:.5f} dB, found {worst[0]:.5f} at {worst[1]:.6g} rad/s, {worst[2]}"
+    findings.demand(margin <= worst[0] + MARGIN_TOLERANCE_DB, message)
     if margin < worst[0] - MARGIN_TOLERANCE_DB:
         print(f"  note: {name}: phea found {margin:.5f} dB, the search only {worst[0]:.5f}")
     there = margin_there(project, specification, told["plant"], frequency)
     if there is not None:
-        findings.demand(abs(there - margin) < 1e-4, f"{name}: {margin:.6f} dB reported, {there:.6f} at that plant and {frequency:.6g} rad/s")
+        message = f"{name}: {margin:.6f} dB reported, {there:.6f} at that plant and {frequency:.6g} rad/s"
+        findings.demand(abs(there - margin) < 1e-4, message)
     inside = told.get("interior")
     if inside and there is not None:
         true = margin_there(project, specification, inside["plant"], inside["frequency_rad_per_s"])

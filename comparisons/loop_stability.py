@@ -64,7 +64,8 @@ def delay_margin(search):
     if project.sample_time:
         return sampled_delay_margin(search)
     low, high = search.characteristic[0] * 1e-3, search.characteristic[-1] * 1e3
-    found = np.array([member_delay_margin(project, values, search.frequencies(values, low, high, 200)) for values in search.plants])
+    grids = [search.frequencies(values, low, high, 200) for values in search.plants]
+    found = np.array([member_delay_margin(project, values, grid) for values, grid in zip(search.plants, grids)])
     order = np.argsort(found)
     best, plant = found[order[0]], search.plants[order[0]]
     if project.cases is None and np.isfinite(best):

@@ -4,6 +4,7 @@ Everything here is a search, so a margin found is an upper bound of the true one
 """
 
 import itertools
+import typing
 
 import numpy as np
 import scipy.optimize
@@ -44,21 +45,28 @@ def closed_loop(kind, responses):
     }[kind]()
 
 
+class Side(typing.NamedTuple):
+    """A margin in dB of parameters and frequency; `paired` where the parameters are those of two plants."""
+
+    margin: typing.Callable
+    paired: bool
+
+
 def sides(project, specification):
-    """The margins in dB that a specification is made of, as functions of parameters and frequency."""
+    """The margins in dB that a specification is made of, as functions of parameters and frequency; whether of two plants."""
     kind = specification["kind"]
 
     def value(values, frequency):
         return decibel(closed_loop(kind, project.responses(values, frequency)))
 
     if kind != "tracking":
-        return [lambda v, w: decibel(magnitude_of(specification["limit"], w)) - value(v, w)]
+        return [Side(lambda v, w: decibel(magnitude_of(specification["limit"], w)) - value(v, w), False)]
     upper, lower = (lambda w, name=name: decibel(magnitude_of(specification[name], w)) for name in ("upper", "lower"))
     if project.has_prefilter:
-        return [lambda v, w: upper(w) - value(v, w), lambda v, w: value(v, w) - lower(w)]
+        return [Side(lambda v, w: upper(w) - value(v, w), False), Side(lambda v, w: value(v, w) - lower(w), False)]
     half = len(project.names)
     # two plants in one row: the greater and the lesser of the spread
-    return [lambda v, w: upper(w) - lower(w) - value(v[..., :half], w) + value(v[..., half:], w)]
+    return [Side(lambda v, w: upper(w) - lower(w) - value(v[..., :half], w) + value(v[..., half:], w), True)]
 
 
 class Search:
@@ -165,8 +173,8 @@ def worst_at(search, specification, frequency):
 
 
 def worst_side(search, side, low, high):
-    project, fixed = search.project, low == high
-    paired = is_pair(project, side)
+    project, paired, fixed = search.project, side.paired, low == high
+    side = side.margin
     starts = pair_starts(search, side, low, high) if paired else single_starts(search, side, low, high)
 
     def function(p, case):
@@ -191,10 +199,6 @@ def worst_side(search, side, low, high):
     return value, w, parameters(project, at if fixed else at[:-1], case, paired)
 
 
-def is_pair(project, side):
-    return not project.has_prefilter and side.__code__.co_freevars and "half" in side.__code__.co_freevars
-
-
 def parameters(project, shares, case, paired):
     if case is not None:
         return case
@@ -214,7 +218,10 @@ def single_starts(search, side, low, high, count=10):
     """The worst plants of the grid, and the worst of each part of the band, each at its worst frequency."""
     frequencies = grid_of(search, low, high)
     margins = np.concatenate(
-        [np.atleast_2d(side(search.plants[i : i + 50, None, :], frequencies[i : i + 50])) for i in range(0, len(search.plants), 50)]
+        [
+            np.atleast_2d(side(search.plants[i : i + 50, None, :], frequencies[i : i + 50]))
+            for i in range(0, len(search.plants), 50)
+        ]
     )
     margins = np.where(np.isfinite(margins), margins, 1e6)
     column = np.argmin(margins, axis=1)
@@ -268,6 +275,10 @@ def pair_starts(search, side, low, high, count=10):
     margins = base[0] - level.max(axis=0) + level.min(axis=0)
     order = np.argsort(margins)[:: max(1, len(frequencies) // (count * 3))][:count]
     order = np.unique(np.concatenate([np.argsort(margins)[:3], order]))
+
+    def two_of(source, i):
+        return np.concatenate([source[top[i]], source[bottom[i]]])
+
     if search.project.cases is not None:
-        return [(margins[i], np.zeros(0), frequencies[i], np.concatenate([search.plants[top[i]], search.plants[bottom[i]]])) for i in order]
-    return [(margins[i], np.concatenate([search.shares[top[i]], search.shares[bottom[i]]]), frequencies[i], None) for i in order]
+        return [(margins[i], np.zeros(0), frequencies[i], two_of(search.plants, i)) for i in order]
+    return [(margins[i], two_of(search.shares, i), frequencies[i], None) for i in order]
