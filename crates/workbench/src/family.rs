@@ -34,7 +34,7 @@ pub enum FamilyError {
         member: String,
     },
     /// Files of measured responses that cannot be taken as they are, with every place.
-    #[error("{0}")]
+    #[error("[family] `measured` cannot be taken as it is\n{0}")]
     Measurement(Box<Report>),
     /// Measured responses that are no family.
     #[error("[family] `measured`: {0}")]
