@@ -38,8 +38,17 @@ fn everything() -> Vec<(String, Value)> {
         &["line.compliance=by_volume", "fluid.entrained_air=0.01"],
         &["operating_point.position=\"0 m\""],
         &["uncertainty.valve_damping_ratio.nominal=1"],
-        &["linear.flow_pressure_coefficient=0"],
-        &["linear.viscous_friction=0", "cylinder.friction.viscous=\"0 N.s/m\""],
+        &[
+            "linear.flow_pressure_coefficient=0",
+            "uncertainty.flow_pressure_coefficient.minimum=0",
+            "uncertainty.flow_pressure_coefficient.spacing=linear",
+        ],
+        &[
+            "linear.viscous_friction=0",
+            "cylinder.friction.viscous=\"0 N.s/m\"",
+            "uncertainty.viscous_friction.minimum=0",
+            "uncertainty.viscous_friction.spacing=linear",
+        ],
     ];
     let mut answers = Vec::new();
     for (name, project) in [("hose", HOSE), ("pipe", PIPE)] {
