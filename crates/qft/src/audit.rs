@@ -126,14 +126,27 @@ fn worse(one: Verdict, other: Verdict) -> Verdict {
     }
 }
 
-/// The magnitude of an unstable loop is the response of nothing: no specification is met by it.
+/// The magnitudes of an unstable loop are those of no response: it keeps to no specification, by no margin. Of a loop that is not known to
+/// be stable, they may be.
 fn without_stability(finding: &mut SpecificationFinding, stability: Verdict) {
+    if stability == Verdict::Violated {
+        *finding = SpecificationFinding {
+            requirement: finding.requirement.clone(),
+            verdict: Verdict::Violated,
+            evidence: finding.evidence,
+            worst: None,
+            interior: None,
+            violations: vec![],
+            at_design_frequencies: vec![],
+            envelope: vec![],
+            remarks: vec!["the loop is unstable, so that it has no margin".to_string()],
+        };
+        return;
+    }
     if finding.verdict == Verdict::Met {
         finding.verdict = Verdict::NotProven;
     }
-    let reason = match stability {
-        Verdict::Violated => "the loop is unstable: its magnitudes are those of no response",
-        _ => "the loop is not known to be stable: its magnitudes may be those of no response",
-    };
-    finding.remarks.push(reason.to_string());
+    finding
+        .remarks
+        .push("the loop is not known to be stable: its margins may be those of no response".to_string());
 }

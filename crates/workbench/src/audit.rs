@@ -12,12 +12,13 @@ pub use text::text;
 pub(crate) use text::{basis, summary, worst_plants};
 pub(crate) use words::{
     closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words, margin_words, meaning,
-    verdict_words, worst_at_design,
+    numbered, verdict_words, worst_at_design,
 };
 
+use phea_dynamics::portable;
 use phea_qft::audit::AuditRun;
 use phea_qft::family::{Extent, Family};
-use phea_qft::verification::{Audit, TOLERANCE_DB, TrackingJudgement};
+use phea_qft::verification::{Audit, SpecificationFinding, TOLERANCE_DB, TrackingJudgement};
 
 use crate::command::{CommandError, Progress, Watch};
 use crate::project::Project;
@@ -69,8 +70,10 @@ pub(crate) fn audit_problem(
             return Err(CommandError::Stopped);
         }
     }
+    let audit = run.audit();
     Ok(ProjectAudit {
-        audit: run.audit(),
+        reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
+        audit,
         names: names(family),
         members: match family {
             Family::Uncertain(family) => family.members().len(),
@@ -108,20 +111,79 @@ pub struct ProjectAudit {
     pub sample_time_s: Option<f64>,
     /// Delay of the loop, s.
     pub delay_s: f64,
+    /// What the worst plant of each specification reaches, where that is a magnitude against a limit.
+    pub reached: Vec<Option<Reached>>,
+}
+
+/// A closed-loop magnitude and the limit that it comes nearest to, or leaves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached {
+    /// The magnitude.
+    pub magnitude: f64,
+    /// The limit.
+    pub limit: f64,
+    /// Which of its limits that is.
+    pub side: LimitSide,
+}
+
+/// On which side of a magnitude a limit lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitSide {
+    /// The only one, an upper one.
+    Only,
+    /// The upper of two.
+    Upper,
+    /// The lower of two.
+    Lower,
+}
+
+/// 20 log10(e)
+const DECIBELS_PER_NEPER: f64 = 20.0 * std::f64::consts::LOG10_E;
+
+/// What the worst plant reaches; `None` for a spread, and at the ends of the frequency axis where there are two limits.
+fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Reached> {
+    let worst = finding.worst.as_ref().filter(|worst| worst.other.is_none())?;
+    let frequency = worst.frequency_rad_per_s;
+    let (lower, upper) = finding.requirement.limits();
+    let upper = upper.magnitude(frequency)?;
+    if !(frequency > 0.0 && frequency.is_finite()) {
+        // A loop has no response there, but its margin has a limit, and so the magnitude where the limit is one.
+        let single = lower.is_none() && upper > 0.0 && upper.is_finite();
+        let magnitude = upper * portable::exp(-worst.margin_db / DECIBELS_PER_NEPER);
+        return single.then_some(Reached { magnitude, limit: upper, side: LimitSide::Only });
+    }
+    let response = problem.response(&problem.member(&worst.plant)?, frequency)?;
+    let magnitude = portable::magnitude(finding.requirement.closed_loop(&response));
+    let (limit, side) = match lower {
+        None => (upper, LimitSide::Only),
+        Some(lower) => {
+            let lower = lower.magnitude(frequency)?;
+            if magnitude / lower < upper / magnitude {
+                (lower, LimitSide::Lower)
+            } else {
+                (upper, LimitSide::Upper)
+            }
+        }
+    };
+    Some(Reached { magnitude, limit, side })
 }
 
 impl ProjectAudit {
     fn family_sentence(&self) -> String {
         match &self.names {
-            PlantNames::Measured(names) => format!("Family: {} measured responses.", names.len()),
+            PlantNames::Measured(names) => format!("Family: {}.", counted(names.len(), "measured response")),
             PlantNames::Parameters(names) if names.is_empty() => "Family: one plant.".to_string(),
             PlantNames::Parameters(names) if self.whole_box => format!(
-                "Family: {} plants of a box over {} uncertain parameters, and what lies between them.",
+                "Family: {} plants of a box over {}, and what lies between them.",
                 self.members,
-                names.len()
+                counted(names.len(), "uncertain parameter")
             ),
             PlantNames::Parameters(names) => {
-                format!("Family: {} given plants with {} uncertain parameters.", self.members, names.len())
+                format!(
+                    "Family: {} with {}.",
+                    counted(self.members, "given plant"),
+                    counted(names.len(), "uncertain parameter")
+                )
             }
         }
     }
@@ -139,4 +201,9 @@ impl ProjectAudit {
             ),
         }
     }
+}
+
+/// `1 plant`, `2 plants`.
+fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }

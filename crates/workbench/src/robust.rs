@@ -11,6 +11,7 @@ use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::specification::{LoopResponse, Specification};
 use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Templates};
+use phea_qft::verification::PlantPoint;
 
 use crate::command::{CommandError, Progress, Watch};
 use crate::control::{compensation, sensor};
@@ -142,6 +143,19 @@ impl RobustProblem {
             Family::Measured(family) => {
                 Ok(family.plants().first().map(|plant| self.compensation.measured(plant)))
             }
+        }
+    }
+
+    /// One plant of the family within the loop; `None` where it cannot be sampled.
+    pub fn member(&self, plant: &PlantPoint) -> Option<Member> {
+        match (&self.family, plant) {
+            (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
+                self.compensation.member(family.plant().coefficients(values)).ok()
+            }
+            (Family::Measured(family), PlantPoint::Measured(index)) => {
+                family.plants().get(*index).map(|plant| self.compensation.measured(plant))
+            }
+            _ => None,
         }
     }
 

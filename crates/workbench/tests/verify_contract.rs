@@ -73,7 +73,9 @@ fn what_cannot_be_met_is_not_called_met() {
     let unstable = verify(INTEGRATOR, &["controller.numerator=\"-1\"", "specification.0.limit=1000"]);
     assert_eq!((unstable["verdict"].as_str(), unstable["stable"].as_bool()), (Some("violated"), Some(false)));
     assert!(unstable["delay_margin_s"].is_null() && unstable["delay_margin_s_reason"].is_string());
-    assert_ne!(unstable["specifications"][0]["verdict"], "met");
+    let row = &unstable["specifications"][0];
+    assert_eq!(row["verdict"], "violated");
+    assert!(row["worst_margin_db"].is_null() && row["reason"].is_string());
     // a negative margin within the tolerance is met, one beyond it is violated
     for (limit, verdict) in [("0.99995", "met"), ("0.999", "violated")] {
         let setting = format!("specification.0.limit={limit}");

@@ -1,9 +1,9 @@
 use phea_qft::verification::{SpecificationFinding, Verdict, ViolatedBand, WorstCase};
 use serde::Serialize;
 
-use super::ProjectAudit;
 use super::plant::{NamedPlant, PlantNames};
 use super::words::{evidence_key, kind_key, verdict_key};
+use super::{ProjectAudit, Reached};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 
@@ -61,6 +61,8 @@ struct SpecificationRow<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    reached: Option<ReachedRow>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     interior: Option<CaseRow>,
     violations: Vec<ViolationRow>,
     at_design_frequencies: Vec<CaseRow>,
@@ -72,6 +74,12 @@ struct CaseRow {
     frequency_rad_per_s: Number,
     margin_db: Number,
     plant: NamedPlant,
+}
+
+#[derive(Serialize)]
+struct ReachedRow {
+    magnitude: f64,
+    limit: Number,
 }
 
 #[derive(Serialize)]
@@ -89,7 +97,11 @@ fn case(names: &PlantNames, worst: &WorstCase) -> CaseRow {
     }
 }
 
-fn specification<'a>(names: &PlantNames, finding: &'a SpecificationFinding) -> SpecificationRow<'a> {
+fn specification<'a>(
+    names: &PlantNames,
+    finding: &'a SpecificationFinding,
+    reached: Option<Reached>,
+) -> SpecificationRow<'a> {
     let worst = finding.worst.as_ref();
     let violation = |band: &ViolatedBand| ViolationRow {
         band_rad_per_s: band.band_rad_per_s.map(Number),
@@ -102,7 +114,9 @@ fn specification<'a>(names: &PlantNames, finding: &'a SpecificationFinding) -> S
         worst_margin_db: Number(worst.map_or(f64::NAN, |worst| worst.margin_db)),
         frequency_rad_per_s: Number(worst.map_or(f64::NAN, |worst| worst.frequency_rad_per_s)),
         plant: worst.map(|worst| names.named(&worst.plant)),
-        reason: worst.is_none().then_some("nothing could be judged; see remarks"),
+        reason: worst.is_none().then_some("there is no margin; see remarks"),
+        reached: reached
+            .map(|Reached { magnitude, limit, .. }| ReachedRow { magnitude, limit: Number(limit) }),
         interior: finding.interior.as_ref().map(|worst| case(names, worst)),
         violations: finding.violations.iter().map(violation).collect(),
         at_design_frequencies: finding.at_design_frequencies.iter().map(|worst| case(names, worst)).collect(),
@@ -147,7 +161,12 @@ pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
             sample_time_s_reason: view.sample_time_s.is_none().then_some("the controller is continuous"),
             delay_s: view.delay_s,
         },
-        specifications: audit.specifications.iter().map(|finding| specification(names, finding)).collect(),
+        specifications: audit
+            .specifications
+            .iter()
+            .zip(&view.reached)
+            .map(|(finding, reached)| specification(names, finding, *reached))
+            .collect(),
     };
     answer::json("verify", loaded, body)
 }

@@ -2,8 +2,8 @@ use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use super::ProjectAudit;
 use super::words::{
-    closed_loop_symbol, evidence_sentence, finding_sentence, frequency_number, frequency_words, kind_words,
-    margin_words, verdict_words, worst_at_design,
+    closed_loop_symbol, evidence_sentence, finding_sentence, frequency_number, kind_words, margin_words,
+    numbered, place_words, verdict_words, worst_at_design,
 };
 use crate::answer::{significant, table};
 use crate::quantity::DisplayUnit;
@@ -33,7 +33,12 @@ pub fn text(view: &ProjectAudit) -> String {
 pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     let mut sentences = vec![stability_sentence(view)];
     sentences.extend(delay_sentence(view));
-    sentences.extend(view.audit.specifications.iter().map(finding_sentence));
+    let stable = view.audit.stability.verdict != Verdict::Violated;
+    let findings = view.audit.specifications.iter().enumerate();
+    sentences.extend(findings.map(|(index, finding)| {
+        let reached = view.reached.get(index).and_then(Option::as_ref);
+        finding_sentence(index, finding, reached, stable)
+    }));
     sentences
 }
 
@@ -43,7 +48,7 @@ fn stability_sentence(view: &ProjectAudit) -> String {
     let rate = |value: f64| significant(value, 3);
     match (stability.verdict, stability.largest_real_part) {
         (Verdict::Met, Some(real)) => {
-            format!("every plant is stable: no closed-loop pole has a real part above {} 1/s", rate(real))
+            format!("every plant is stable; the slowest closed-loop pole lies at {} 1/s", rate(real))
         }
         (Verdict::Met, None) => format!("every plant is stable: {}", stability.reason),
         (Verdict::Violated, Some(real)) => {
@@ -60,9 +65,9 @@ fn delay_sentence(view: &ProjectAudit) -> Option<String> {
         return Some("no delay makes a plant unstable".to_string());
     }
     Some(format!(
-        "the loop bears {} ms more delay before a plant becomes unstable ({})",
+        "the loop bears {} ms more delay before a plant becomes unstable, {}",
         DisplayUnit::MILLISECOND.number(margin.delay_s, 3),
-        frequency_words(margin.frequency_rad_per_s)
+        place_words(margin.frequency_rad_per_s)
     ))
 }
 
@@ -74,8 +79,16 @@ fn margin_at(worst: Option<&WorstCase>) -> [String; 2] {
 }
 
 fn specifications(view: &ProjectAudit) -> String {
-    let headings =
-        ["", "specification", "limits", "verdict", "worst margin", "rad/s", "at design frequencies", "rad/s"];
+    let headings = [
+        "",
+        "specification",
+        "limits",
+        "verdict",
+        "worst margin",
+        "rad/s",
+        "worst at a design frequency",
+        "rad/s",
+    ];
     let mut rows = table(&headings);
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         let [margin, frequency] = margin_at(finding.worst.as_ref());
@@ -95,9 +108,9 @@ fn specifications(view: &ProjectAudit) -> String {
             let blank = String::new();
             rows.add_row([
                 &blank,
+                &"  inside its band".to_string(),
                 &blank,
                 &blank,
-                &"within the band".to_string(),
                 &margin,
                 &frequency,
                 &blank,
@@ -133,11 +146,11 @@ fn plants(view: &ProjectAudit) -> Option<String> {
 
 /// The specifications that have a worst plant, each with the values of that plant.
 pub(crate) fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
-    let findings = view.audit.specifications.iter();
+    let findings = view.audit.specifications.iter().enumerate();
     findings
-        .filter_map(|finding| {
+        .filter_map(|(index, finding)| {
             let worst = finding.worst.as_ref()?;
-            Some((kind_words(&finding.requirement), view.names.cells(&worst.plant)))
+            Some((numbered(index, &finding.requirement), view.names.cells(&worst.plant)))
         })
         .collect()
 }
@@ -145,11 +158,11 @@ pub(crate) fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
 fn violations(view: &ProjectAudit) -> Option<String> {
     let mut rows = table(&["specification", "from", "to rad/s", "worst margin", "at rad/s"]);
     let mut any = false;
-    for finding in &view.audit.specifications {
+    for (index, finding) in view.audit.specifications.iter().enumerate() {
         for band in &finding.violations {
             let [from, to] = band.band_rad_per_s.map(frequency_number);
             let [margin, frequency] = margin_at(Some(&band.worst));
-            rows.add_row([kind_words(&finding.requirement), from, to, margin, frequency]);
+            rows.add_row([numbered(index, &finding.requirement), from, to, margin, frequency]);
             any = true;
         }
     }
@@ -165,9 +178,21 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
         evidence_sentence(audit.evidence).to_string(),
         format!("A margin of -{} dB still counts as met.", significant(audit.tolerance_db, 1)),
     ];
-    for finding in &audit.specifications {
-        let kind = kind_words(&finding.requirement);
-        sentences.extend(finding.remarks.iter().map(|remark| format!("{kind}: {remark}")));
-    }
+    sentences.extend(remarks(view));
     sentences
+}
+
+/// Each remark once, with the specifications that it is made of.
+fn remarks(view: &ProjectAudit) -> Vec<String> {
+    let mut found: Vec<(&str, Vec<String>)> = Vec::new();
+    for (index, finding) in view.audit.specifications.iter().enumerate() {
+        for remark in &finding.remarks {
+            let name = numbered(index, &finding.requirement);
+            match found.iter_mut().find(|(text, _)| text == remark) {
+                Some((_, names)) => names.push(name),
+                None => found.push((remark, vec![name])),
+            }
+        }
+    }
+    found.into_iter().map(|(remark, names)| format!("{}: {remark}", names.join(", "))).collect()
 }

@@ -1,9 +1,9 @@
 //! Verdicts, requirements and worst cases in words.
 
-use phea_dynamics::portable;
 use phea_qft::specification::Requirement;
 use phea_qft::verification::{Evidence, SpecificationFinding, Verdict, WorstCase};
 
+use super::{LimitSide, Reached};
 use crate::answer::significant;
 use crate::quantity::{RATIO, display};
 
@@ -106,47 +106,64 @@ pub(crate) fn worst_at_design(finding: &SpecificationFinding) -> Option<&WorstCa
     finding.at_design_frequencies.iter().min_by(|a, b| a.margin_db.total_cmp(&b.margin_db))
 }
 
+/// A specification by its number, from 1, and kind.
+pub(crate) fn numbered(index: usize, requirement: &Requirement) -> String {
+    format!("{} {}", index + 1, kind_words(requirement))
+}
+
 /// One sentence on a specification: what it says, whether it holds, and where it is worst.
-pub(crate) fn finding_sentence(finding: &SpecificationFinding) -> String {
-    let kind = kind_words(&finding.requirement);
+pub(crate) fn finding_sentence(
+    index: usize,
+    finding: &SpecificationFinding,
+    reached: Option<&Reached>,
+    stable: bool,
+) -> String {
+    let name = numbered(index, &finding.requirement);
     let Some(worst) = &finding.worst else {
-        return format!("{kind}: nothing could be judged");
+        return match finding.verdict {
+            Verdict::Violated => format!("{name} is violated: an unstable loop keeps to no specification"),
+            _ => format!("{name}: nothing could be judged"),
+        };
     };
-    let place = frequency_words(worst.frequency_rad_per_s);
+    let place = place_words(worst.frequency_rad_per_s);
     let size = significant(worst.margin_db.abs(), 3);
+    let symbol = closed_loop_symbol(&finding.requirement);
+    let reached = reached.map_or(String::new(), |reached| reached_words(symbol, reached));
     match finding.verdict {
         Verdict::Violated => {
             let hidden = match worst_at_design(finding) {
-                Some(design) if design.margin_db >= 0.0 => {
+                Some(design) if stable && design.margin_db >= 0.0 => {
                     "; at the design frequencies alone it would have passed"
                 }
                 _ => "",
             };
-            format!("{kind} is violated by {size} dB {place}{}{hidden}", reached(&finding.requirement, worst))
+            format!("{name} is violated by {size} dB {place}{reached}{hidden}")
         }
-        Verdict::Met if worst.margin_db < 5e-4 => format!("{kind} is met, just so, {place}"),
-        Verdict::Met => format!("{kind} is met, with {size} dB to spare {place}"),
+        Verdict::Met if worst.margin_db < 5e-4 => format!("{name} is met, just so, {place}"),
+        Verdict::Met => format!("{name} is met, with {size} dB to spare {place}"),
         Verdict::NotProven => {
-            format!("{kind} is not proven; worst margin found {} {place}", margin_words(worst.margin_db))
+            format!("{name} is not proven; worst margin found {} {place}", margin_words(worst.margin_db))
         }
     }
 }
 
-/// `: |L/(1+L)| reaches 11.9, allowed are 1.3`; nothing for tracking, which has a limit on either side.
-fn reached(requirement: &Requirement, worst: &WorstCase) -> String {
-    let (lower, upper) = requirement.limits();
-    match (lower, upper.magnitude(worst.frequency_rad_per_s)) {
-        (None, Some(limit)) if limit > 0.0 && limit.is_finite() => {
-            let reached = limit * portable::exp(-worst.margin_db / 20.0 * std::f64::consts::LN_10);
-            format!(
-                ": {} reaches {}, allowed are {}",
-                closed_loop_symbol(requirement),
-                significant(reached, 4),
-                display(limit, &RATIO, 4)
-            )
-        }
-        _ => String::new(),
+/// `: |L/(1+L)| reaches 11.89, limit 1.3`
+fn reached_words(symbol: &str, reached: &Reached) -> String {
+    let (magnitude, limit) = (significant(reached.magnitude, 4), display(reached.limit, &RATIO, 4));
+    match reached.side {
+        LimitSide::Only => format!(": {symbol} reaches {magnitude}, limit {limit}"),
+        LimitSide::Upper => format!(": {symbol} reaches {magnitude}, upper limit {limit}"),
+        LimitSide::Lower => format!(": {symbol} falls to {magnitude}, lower limit {limit}"),
     }
+}
+
+/// The same as [`frequency_words`], with the frequency in Hz too.
+pub(crate) fn place_words(frequency_rad_per_s: f64) -> String {
+    let words = frequency_words(frequency_rad_per_s);
+    if !(frequency_rad_per_s > 0.0 && frequency_rad_per_s.is_finite()) {
+        return words;
+    }
+    format!("{words} ({} Hz)", significant(frequency_rad_per_s / std::f64::consts::TAU, 3))
 }
 
 /// What a customer wants to know of a kind.

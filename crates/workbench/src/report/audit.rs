@@ -7,8 +7,8 @@ use super::chapter::{Chapter, cell, place, table};
 use super::typeset::prose;
 use super::{closed_loops, family_steps};
 use crate::audit::{
-    ProjectAudit, basis, closed_loop_symbol, frequency_number, frequency_words, kind_words, margin_words,
-    meaning, summary, verdict_words, worst_at_design, worst_plants,
+    ProjectAudit, basis, closed_loop_symbol, frequency_number, frequency_words, margin_words, meaning,
+    numbered, summary, verdict_words, worst_at_design, worst_plants,
 };
 use crate::command::CommandError;
 use crate::robust::RobustProblem;
@@ -71,18 +71,18 @@ fn margin_cell(worst: Option<&WorstCase>) -> Markup {
 }
 
 fn specifications(view: &ProjectAudit) -> Markup {
-    let row = |finding: &SpecificationFinding| {
+    let row = |(index, finding): (usize, &SpecificationFinding)| {
         vec![
-            html! { (kind_words(&finding.requirement)) ", " (prose(closed_loop_symbol(&finding.requirement))) },
+            html! { (numbered(index, &finding.requirement)) ", " (prose(closed_loop_symbol(&finding.requirement))) },
             cell(meaning(&finding.requirement)),
             verdict_cell(finding.verdict),
             margin_cell(finding.worst.as_ref()),
             margin_cell(worst_at_design(finding)),
         ]
     };
-    let rows: Vec<Vec<Markup>> = view.audit.specifications.iter().map(row).collect();
+    let rows: Vec<Vec<Markup>> = view.audit.specifications.iter().enumerate().map(row).collect();
     let headings =
-        ["specification", "what it asks for", "verdict", "worst margin", "at the design frequencies alone"];
+        ["specification", "what it asks for", "verdict", "worst margin", "worst at a design frequency"];
     table(&headings, 9, &rows)
 }
 
@@ -92,11 +92,11 @@ fn violated(view: &ProjectAudit) -> bool {
 
 fn violations(view: &ProjectAudit) -> Markup {
     let mut rows = Vec::new();
-    for finding in &view.audit.specifications {
+    for (index, finding) in view.audit.specifications.iter().enumerate() {
         for band in &finding.violations {
             let [from, to] = band.band_rad_per_s.map(frequency_number);
             rows.push(vec![
-                cell(kind_words(&finding.requirement)),
+                cell(numbered(index, &finding.requirement)),
                 cell(format!("{from} to {to} rad/s")),
                 margin_cell(Some(&band.worst)),
                 cell(view.names.text(&band.worst.plant)),

@@ -7,7 +7,6 @@ use phea_qft::template::{Resolution, Template};
 use phea_qft::verification::Verdict;
 
 use super::chapter::{Chapter, cell, place, table};
-use super::closed_loops::member_of;
 use crate::answer::{OutputFile, significant};
 use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number, kind_key, kind_words};
 use crate::command::CommandError;
@@ -135,7 +134,7 @@ fn violations(problem: &RobustProblem, view: &ProjectAudit) -> Vec<OpenLoopViola
         .filter_map(|finding| {
             let worst = finding.worst.as_ref()?;
             let frequency_rad_per_s = worst.frequency_rad_per_s;
-            let member = member_of(problem, &worst.plant)?;
+            let member = problem.member(&worst.plant)?;
             let response = problem.response(&member, frequency_rad_per_s)?;
             let symbol = closed_loop_symbol(&finding.requirement);
             let size = significant(worst.margin_db.abs(), 3);

@@ -157,7 +157,7 @@ fn mark(
     if !(frequency > 0.0 && frequency.is_finite()) {
         return None;
     }
-    let member = member_of(problem, &worst.plant)?;
+    let member = problem.member(&worst.plant)?;
     let response = problem.response(&member, frequency)?;
     let magnitude = portable::magnitude(requirement.closed_loop(&response));
     let is_violation = finding.verdict == Verdict::Violated;
@@ -176,17 +176,4 @@ fn mark(
         format!("{size} dB to spare {place}")
     };
     Some(MagnitudeMark { frequency_rad_per_s: frequency, magnitude, text, is_violation })
-}
-
-/// One plant within the loop; `None` where it cannot be sampled.
-pub(super) fn member_of(problem: &RobustProblem, plant: &PlantPoint) -> Option<Member> {
-    match (&problem.family, plant) {
-        (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
-            problem.compensation.member(family.plant().coefficients(values)).ok()
-        }
-        (Family::Measured(family), PlantPoint::Measured(index)) => {
-            family.plants().get(*index).map(|plant| problem.compensation.measured(plant))
-        }
-        _ => None,
-    }
 }
