@@ -180,8 +180,9 @@ impl Compensation {
     /// A rational plant within this loop.
     ///
     /// # Errors
-    /// [`LinearError`] if the plant cannot be sampled; a continuous loop takes every plant.
+    /// [`LinearError`] if the plant has a negative dead time or cannot be sampled; a continuous loop takes every other plant.
     pub fn member(&self, mut plant: PlantCoefficients<f64>) -> Result<Member, LinearError> {
+        check_dead_time(plant.dead_time_s)?;
         plant.dead_time_s += self.delay_s;
         let Some(sample_time_s) = self.sample_time_s else {
             return Ok(Member::Continuous { plant, sensor: self.sensor.clone() });
@@ -233,6 +234,7 @@ impl Compensation {
         plant: PlantCoefficients<f64>,
         frequency_rad_per_s: f64,
     ) -> Result<MemberResponse, LinearError> {
+        check_dead_time(plant.dead_time_s)?;
         let dead_time_s = plant.dead_time_s + self.delay_s;
         let Some(sample_time_s) = self.sample_time_s else {
             return Ok(continuous(&plant, dead_time_s, &self.sensor, frequency_rad_per_s));
@@ -273,8 +275,9 @@ impl Compensation {
 impl Member {
     /// P, Pd and H at a frequency; `None` where a measurement does not reach.
     ///
-    /// A measured plant in a sampled loop is taken without the images of its response above pi/T, which a measurement up to
-    /// there does not hold.
+    /// Sampling folds the response of a measured plant beyond pi/T back: its images at w + 2 pi k/T are summed as far as the measurement
+    /// reaches. Where what lies beyond it could still count for a hundredth (were it as large as at the end of the measurement), the
+    /// response is not known.
     pub fn response(&self, frequency_rad_per_s: f64) -> Option<MemberResponse> {
         match self {
             Member::Continuous { plant, sensor } => {
@@ -290,16 +293,71 @@ impl Member {
             }
             Member::Measured { plant, sensor, delay_s, sample_time_s } => {
                 let (command, disturbance) = plant.response(frequency_rad_per_s)?;
-                let half =
-                    sample_time_s.map_or(0.0, |sample_time_s| frequency_rad_per_s * sample_time_s / 2.0);
-                let hold = if half == 0.0 { 1.0 } else { portable::sin(half) / half };
-                Some(MemberResponse {
-                    plant: command * turned(frequency_rad_per_s, *delay_s) * hold,
-                    load_motion: disturbance.unwrap_or(Complex64::new(0.0, 0.0)),
-                    sensor: sensor.at_frequency(frequency_rad_per_s),
-                })
+                let load_motion = disturbance.unwrap_or(Complex64::new(0.0, 0.0));
+                let own = sensor.at_frequency(frequency_rad_per_s);
+                let Some(sample_time_s) = *sample_time_s else {
+                    let plant = command * turned(frequency_rad_per_s, *delay_s);
+                    return Some(MemberResponse { plant, load_motion, sensor: own });
+                };
+                let images = Images { plant, sensor, delay_s: *delay_s, sample_time_s };
+                let [plant, with_sensor] = images.sum(frequency_rad_per_s)?;
+                Some(MemberResponse { plant, load_motion, sensor: with_sensor / plant })
             }
         }
+    }
+}
+
+/// A measured response behind a zero-order hold, sampled.
+///
+/// ```text
+/// Z{hold P}(e^(jwT)) = sum over k of P(j v) e^(-j v T_d) e^(-j v T/2) sin(v T/2)/(v T/2),     v = w + 2 pi k/T
+/// ```
+struct Images<'a> {
+    plant: &'a MeasuredPlant,
+    sensor: &'a TransferFunction,
+    /// T_d + T/2
+    delay_s: f64,
+    sample_time_s: f64,
+}
+
+/// What lies beyond a measurement may count for this share of its sampled response.
+const UNKNOWN_SHARE: f64 = 0.01;
+
+impl Images<'_> {
+    /// Of P and of P H.
+    fn sum(&self, frequency_rad_per_s: f64) -> Option<[Complex64; 2]> {
+        let spacing = 2.0 * std::f64::consts::PI / self.sample_time_s;
+        let reach = *self.plant.frequencies_rad_per_s.last()?;
+        let mut sum = self.image(frequency_rad_per_s)?;
+        for sign in [1.0, -1.0] {
+            let mut v = frequency_rad_per_s + sign * spacing;
+            while v.abs() <= reach {
+                let image = self.image(v)?;
+                sum = [sum[0] + image[0], sum[1] + image[1]];
+                v += sign * spacing;
+            }
+            let (last, _) = self.plant.response(reach)?;
+            let unknown = 2.0 * portable::magnitude(last) * self.hold(v).abs();
+            if unknown > UNKNOWN_SHARE * portable::magnitude(sum[0]) {
+                return None;
+            }
+        }
+        Some(sum)
+    }
+
+    /// The term of one k; a response at a negative frequency is the conjugate of that at the positive one.
+    fn image(&self, v: f64) -> Option<[Complex64; 2]> {
+        let (response, _) = self.plant.response(v.abs())?;
+        let sensor = self.sensor.at_frequency(v.abs());
+        let signed = |value: Complex64| if v < 0.0 { value.conj() } else { value };
+        let held = signed(response) * turned(v, self.delay_s) * self.hold(v);
+        Some([held, held * signed(sensor)])
+    }
+
+    /// sin(v T/2)/(v T/2)
+    fn hold(&self, v: f64) -> f64 {
+        let half = v * self.sample_time_s / 2.0;
+        if half == 0.0 { 1.0 } else { portable::sin(half) / half }
     }
 }
 
@@ -318,6 +376,15 @@ fn continuous(
 
 fn load_motion(path: Option<&RationalCoefficients<f64>>, frequency_rad_per_s: f64) -> Complex64 {
     path.map_or(Complex64::new(0.0, 0.0), |path| path.at_frequency(frequency_rad_per_s))
+}
+
+/// A plant that answers before it is asked is none.
+fn check_dead_time(dead_time_s: f64) -> Result<(), LinearError> {
+    if dead_time_s.is_finite() && dead_time_s >= 0.0 {
+        Ok(())
+    } else {
+        Err(LinearError::DeadTime { dead_time_s })
+    }
 }
 
 /// e^(-j w T)
