@@ -15,11 +15,13 @@
 //! # }
 //! ```
 
+mod delayed_loop;
 mod second_order;
 mod signal;
 mod simulation;
 mod step_metrics;
 
+pub use delayed_loop::delayed_loop_step;
 pub use second_order::{SecondOrder, SettlingRule, damping_ratio_from_overshoot};
 pub use signal::{Interpolation, Signal, uniform_times};
 pub use simulation::{forced_response, forced_response_of_states, step_response};

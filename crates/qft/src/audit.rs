@@ -1,11 +1,11 @@
 //! The audit of a controller: stability, delay margin and specifications of a family put together into one verdict.
 
 use crate::closed_loop::Compensation;
-use crate::family::Family;
-use crate::specification::Specification;
+use crate::family::{Extent, Family};
+use crate::specification::{Requirement, Specification};
 use crate::stability::StabilityAudit;
 use crate::verification::{
-    Audit, Evidence, SpecificationAudit, SpecificationFinding, TrackingJudgement, Verdict,
+    Audit, Evidence, SpecificationAudit, SpecificationFinding, StabilityFinding, TrackingJudgement, Verdict,
 };
 
 /// Share of the work that stability takes, for the progress.
@@ -52,6 +52,7 @@ pub struct AuditRun {
     stability: StabilityAudit,
     stability_done: bool,
     specifications: SpecificationAudit,
+    searched: bool,
     tolerance_db: f64,
 }
 
@@ -74,6 +75,7 @@ impl AuditRun {
                 tracking,
                 tolerance_db,
             ),
+            searched: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
             tolerance_db,
         }
     }
@@ -97,10 +99,11 @@ impl AuditRun {
     pub fn audit(&self) -> Audit {
         let stability = self.stability.result();
         let mut specifications = self.specifications.findings().to_vec();
-        if stability.finding.verdict != Verdict::Met {
-            specifications
-                .iter_mut()
-                .for_each(|finding| without_stability(finding, stability.finding.verdict));
+        for finding in &mut specifications {
+            if !self.searched {
+                finding.evidence = Evidence::Grid;
+            }
+            without_stability(finding, &stability.finding);
         }
         let verdicts = specifications.iter().map(|finding| finding.verdict);
         let verdict = verdicts.fold(stability.finding.verdict, worse);
@@ -128,25 +131,32 @@ fn worse(one: Verdict, other: Verdict) -> Verdict {
 
 /// The magnitudes of an unstable loop are those of no response: it keeps to no specification, by no margin. Of a loop that is not known to
 /// be stable, they may be.
-fn without_stability(finding: &mut SpecificationFinding, stability: Verdict) {
-    if stability == Verdict::Violated {
-        *finding = SpecificationFinding {
-            requirement: finding.requirement.clone(),
-            verdict: Verdict::Violated,
-            evidence: finding.evidence,
-            worst: None,
-            interior: None,
-            violations: vec![],
-            at_design_frequencies: vec![],
-            envelope: vec![],
-            remarks: vec!["the loop is unstable, so that it has no margin".to_string()],
-        };
-        return;
+fn without_stability(finding: &mut SpecificationFinding, stability: &StabilityFinding) {
+    let tracks = matches!(finding.requirement, Requirement::Tracking { .. });
+    // poles that decay in a family that is not stable: then it is the prefilter, which only the reference goes through
+    let prefilter_alone = stability.largest_real_part.is_some_and(|real| real < 0.0);
+    match stability.verdict {
+        Verdict::Met => {}
+        Verdict::Violated if prefilter_alone && !tracks => {}
+        Verdict::Violated => {
+            *finding = SpecificationFinding {
+                requirement: finding.requirement.clone(),
+                verdict: Verdict::Violated,
+                evidence: finding.evidence,
+                worst: None,
+                interior: None,
+                violations: vec![],
+                at_design_frequencies: vec![],
+                envelope: vec![],
+                remarks: vec!["the loop is unstable, so that it has no margin".to_string()],
+            };
+        }
+        Verdict::NotProven => {
+            if finding.verdict == Verdict::Met {
+                finding.verdict = Verdict::NotProven;
+            }
+            let remark = "the loop is not known to be stable: its margins may be those of no response";
+            finding.remarks.push(remark.to_string());
+        }
     }
-    if finding.verdict == Verdict::Met {
-        finding.verdict = Verdict::NotProven;
-    }
-    finding
-        .remarks
-        .push("the loop is not known to be stable: its margins may be those of no response".to_string());
 }

@@ -32,6 +32,9 @@ pub enum AuditError {
     /// There is no controller.
     #[error("the project gives no [controller] to be verified")]
     NoController,
+    /// There is nothing that it must keep to.
+    #[error("the project states no [[specification]] to verify the controller by")]
+    NoSpecification,
 }
 
 /// Audits the given controller and prefilter over the whole family and band.
@@ -46,6 +49,9 @@ pub fn audit_project(
 ) -> Result<ProjectAudit, CommandError> {
     if project.controller.is_none() {
         return Err(AuditError::NoController.into());
+    }
+    if project.specifications.is_empty() {
+        return Err(AuditError::NoSpecification.into());
     }
     audit_problem(project, &robust_problem(source, project)?, watch)
 }
@@ -195,10 +201,18 @@ impl ProjectAudit {
         };
         match self.sample_time_s {
             None => format!("Loop: continuous, {delay}."),
-            Some(sample_time) => format!(
-                "Loop: sampled every {} with a zero-order hold, {delay}.",
-                DisplayUnit::MILLISECOND.text(sample_time, 3)
-            ),
+            Some(sample_time) => {
+                let images = match self.names {
+                    PlantNames::Measured(_) => {
+                        " What lies beyond the measurements is taken as no larger than at their ends."
+                    }
+                    PlantNames::Parameters(_) => "",
+                };
+                format!(
+                    "Loop: sampled every {} with a zero-order hold, {delay}.{images}",
+                    DisplayUnit::MILLISECOND.text(sample_time, 3)
+                )
+            }
         }
     }
 }

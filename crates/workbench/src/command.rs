@@ -103,6 +103,11 @@ pub enum CommandError {
     /// Templates or bounds cannot be computed.
     #[error(transparent)]
     Robust(#[from] crate::robust::RobustError),
+    /// A plant that is no actuator, and nothing demanded of it.
+    #[error(
+        "a report on a plant needs at least one [[specification]]; on a rig it needs [valve], [cylinder] and [line]"
+    )]
+    NothingToReport,
     /// Whoever watched a long command stopped it.
     #[error("stopped")]
     Stopped,

@@ -34,7 +34,7 @@ use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop, settl
 use crate::linearize::{Linearization, linearize};
 use crate::project::{Actuator, Loaded, Project};
 use crate::quantity::DisplayUnit;
-use crate::rig::{Rig, RigError};
+use crate::rig::Rig;
 use crate::robust::robust_problem;
 use crate::sizing::{Question, Sizing, SizingProblem, size};
 use crate::source::Source;
@@ -72,7 +72,7 @@ pub fn report(
     let project = &loaded.project;
     let (mut chapters, mut facts) = match &project.actuator {
         Some(actuator) => rig_chapters(project, actuator, problem)?,
-        None if project.specifications.is_empty() => return Err(RigError::NoActuator.into()),
+        None if project.specifications.is_empty() => return Err(CommandError::NothingToReport),
         None => (vec![], vec![]),
     };
     let mut tables = Vec::new();

@@ -29,6 +29,8 @@ pub struct RobustProblem {
     pub compensation: Compensation,
     /// Whether the project gives a controller.
     pub has_controller: bool,
+    /// Whether it gives a prefilter; tracking is judged by its spread where not.
+    pub has_prefilter: bool,
     /// What must be kept to.
     pub specifications: Vec<Specification>,
 }
@@ -81,7 +83,13 @@ pub fn robust_problem(source: &dyn Source, project: &Project) -> Result<RobustPr
         Some(given) => given,
         None => Compensation::new(&Controller::default(), sensor(project)?)?,
     };
-    Ok(RobustProblem { family: family(project, source)?, compensation, has_controller, specifications })
+    Ok(RobustProblem {
+        family: family(project, source)?,
+        compensation,
+        has_controller,
+        has_prefilter: project.prefilter.is_some(),
+        specifications,
+    })
 }
 
 impl RobustProblem {
@@ -95,7 +103,7 @@ impl RobustProblem {
         frequencies
     }
 
-    /// Templates and bounds at every design frequency.
+    /// Templates and bounds at every design frequency that the family reaches.
     ///
     /// # Errors
     /// [`CommandError::Robust`], and [`CommandError::Stopped`] where the watcher stops it.
@@ -103,9 +111,14 @@ impl RobustProblem {
         let frequencies = self.design_frequencies();
         let options = TemplateOptions::default();
         let mut found = Vec::new();
-        for built in Templates::new(&self.family, &self.compensation, &frequencies, options) {
-            found.push(self.at_template(built.map_err(RobustError::from)?)?);
-            let share = found.len() as f64 / frequencies.len() as f64;
+        let templates = Templates::new(&self.family, &self.compensation, &frequencies, options);
+        for (index, built) in templates.enumerate() {
+            match built {
+                // beyond a measurement nothing is known, so that there is no template either
+                Err(TemplateError::OutOfReach { .. }) => {}
+                built => found.push(self.at_template(built.map_err(RobustError::from)?)?),
+            }
+            let share = (index + 1) as f64 / frequencies.len() as f64;
             if !watch(Progress { stage: "templates and bounds", share }) {
                 return Err(CommandError::Stopped);
             }

@@ -109,7 +109,7 @@ pub enum Placement {
 }
 
 impl FrequencyBounds {
-    /// Prepares the bounds of those specifications whose design frequencies include the template's.
+    /// Prepares the bounds of those specifications whose design frequencies include the template's and that are demanded there.
     ///
     /// # Errors
     /// [`BoundError`], see [`BoundFunction::new`].
@@ -123,8 +123,12 @@ impl FrequencyBounds {
             .iter()
             .enumerate()
             .filter(|(_, specification)| specification.frequencies_rad_per_s.contains(&frequency_rad_per_s))
-            .map(|(index, specification)| {
-                Ok((index, BoundFunction::new(template, &specification.requirement, fill)?))
+            .filter_map(|(index, specification)| {
+                match BoundFunction::new(template, &specification.requirement, fill) {
+                    // a table that does not reach demands nothing here
+                    Err(BoundError::NoLimit { .. }) => None,
+                    function => Some(function.map(|function| (index, function))),
+                }
             })
             .collect::<Result<_, BoundError>>()?;
         Ok(FrequencyBounds { frequency_rad_per_s, functions })

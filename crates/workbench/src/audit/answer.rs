@@ -59,6 +59,8 @@ struct SpecificationRow<'a> {
     frequency_rad_per_s: Number,
     plant: Option<NamedPlant>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    other_plant: Option<NamedPlant>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     reached: Option<ReachedRow>,
@@ -74,6 +76,8 @@ struct CaseRow {
     frequency_rad_per_s: Number,
     margin_db: Number,
     plant: NamedPlant,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other_plant: Option<NamedPlant>,
 }
 
 #[derive(Serialize)]
@@ -94,6 +98,7 @@ fn case(names: &PlantNames, worst: &WorstCase) -> CaseRow {
         frequency_rad_per_s: Number(worst.frequency_rad_per_s),
         margin_db: Number(worst.margin_db),
         plant: names.named(&worst.plant),
+        other_plant: worst.other.as_ref().map(|other| names.named(other)),
     }
 }
 
@@ -114,6 +119,7 @@ fn specification<'a>(
         worst_margin_db: Number(worst.map_or(f64::NAN, |worst| worst.margin_db)),
         frequency_rad_per_s: Number(worst.map_or(f64::NAN, |worst| worst.frequency_rad_per_s)),
         plant: worst.map(|worst| names.named(&worst.plant)),
+        other_plant: worst.and_then(|worst| worst.other.as_ref()).map(|other| names.named(other)),
         reason: worst.is_none().then_some("there is no margin; see remarks"),
         reached: reached
             .map(|Reached { magnitude, limit, .. }| ReachedRow { magnitude, limit: Number(limit) }),

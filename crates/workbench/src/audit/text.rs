@@ -51,10 +51,10 @@ fn stability_sentence(view: &ProjectAudit) -> String {
             format!("every plant is stable; the slowest closed-loop pole lies at {} 1/s", rate(real))
         }
         (Verdict::Met, None) => format!("every plant is stable: {}", stability.reason),
-        (Verdict::Violated, Some(real)) => {
-            format!("unstable: a closed-loop pole has the real part {} 1/s with {plant}", rate(real))
+        (Verdict::Violated, Some(real)) if real >= 0.0 => {
+            format!("unstable: a closed-loop pole lies at {} 1/s, with {plant}", rate(real))
         }
-        (Verdict::Violated, None) => format!("unstable with {plant}: {}", stability.reason),
+        (Verdict::Violated, _) => format!("unstable, with {plant}: {}", stability.reason),
         (Verdict::NotProven, _) => format!("stability is not proven: {} ({plant})", stability.reason),
     }
 }
@@ -150,8 +150,17 @@ pub(crate) fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
     findings
         .filter_map(|(index, finding)| {
             let worst = finding.worst.as_ref()?;
-            Some((numbered(index, &finding.requirement), view.names.cells(&worst.plant)))
+            let name = numbered(index, &finding.requirement);
+            let own = view.names.cells(&worst.plant);
+            Some(match &worst.other {
+                None => vec![(name, own)],
+                Some(other) => {
+                    let other = view.names.cells(other);
+                    vec![(format!("{name}, greatest |T|"), own), (format!("{name}, least |T|"), other)]
+                }
+            })
         })
+        .flatten()
         .collect()
 }
 
@@ -175,7 +184,7 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
     let mut sentences = vec![
         view.family_sentence(),
         view.loop_sentence(),
-        evidence_sentence(audit.evidence).to_string(),
+        evidence_sentence(audit.evidence, view.names.headings().is_empty()).to_string(),
         format!("A margin of -{} dB still counts as met.", significant(audit.tolerance_db, 1)),
     ];
     sentences.extend(remarks(view));

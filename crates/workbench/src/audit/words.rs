@@ -34,8 +34,11 @@ pub(crate) fn evidence_key(evidence: Evidence) -> &'static str {
 }
 
 /// What a verdict rests on, in a sentence.
-pub(crate) fn evidence_sentence(evidence: Evidence) -> &'static str {
+pub(crate) fn evidence_sentence(evidence: Evidence, one_plant: bool) -> &'static str {
     match evidence {
+        Evidence::Search if one_plant => {
+            "The plant was looked at over the whole band, between the frequencies of any grid too; a search is no proof."
+        }
         Evidence::Grid => "Looked at the plants of the family one by one; nothing between them is claimed.",
         Evidence::Search => {
             "The worst case was searched over the whole parameter box and band, not only on the grid; a search is no proof."
@@ -170,10 +173,10 @@ pub(crate) fn place_words(frequency_rad_per_s: f64) -> String {
 pub(crate) fn meaning(requirement: &Requirement) -> &'static str {
     match requirement {
         Requirement::RobustStability(_) => "no resonance of the closed loop above the limit",
-        Requirement::Sensitivity(_) => "disturbances of the force are suppressed",
-        Requirement::PlantInputDisturbance(_) => "disturbances at the valve are suppressed",
-        Requirement::ControlEffort(_) => "the valve is not driven harder than allowed",
-        Requirement::LoadMotion(_) => "motion of the load makes no more force than allowed",
-        Requirement::Tracking { .. } => "the force follows its reference within the band",
+        Requirement::Sensitivity(_) => "disturbances of the output are suppressed",
+        Requirement::PlantInputDisturbance(_) => "disturbances at the input of the plant are suppressed",
+        Requirement::ControlEffort(_) => "the plant is not driven harder than allowed",
+        Requirement::LoadMotion(_) => "motion of the load disturbs the output no more than allowed",
+        Requirement::Tracking { .. } => "the output follows its reference within its limits",
     }
 }

@@ -32,7 +32,12 @@ pub(super) fn chapter(
         (place(&figures[0]))
         (table(&["rad/s", "plants", "closeness of neighbours"], 9, &found.iter().map(template_row).collect::<Vec<_>>()))
         @for figure in figures.iter().skip(1) { (place(figure)) }
-        @if given { h3 { "The given loop among the bounds" } (placements(problem, found)) }
+        @if let Some(words) = unreached(problem, found) { p { (words) } }
+        @if given {
+            h3 { "The given loop among the bounds" }
+            p { "At the design frequencies alone: bounds say nothing of what lies between them, nor of stability." }
+            (placements(problem, found))
+        }
         @for sentence in feasibility(problem, found) { div.callout.bad-edge { p { (sentence) } } }
     };
     Ok(Chapter { anchor: "bounds", title: "Templates and bounds", body, figures })
@@ -142,6 +147,15 @@ fn violations(problem: &RobustProblem, view: &ProjectAudit) -> Vec<OpenLoopViola
             Some(OpenLoopViolation { frequency_rad_per_s, open_loop: response.open_loop(), text })
         })
         .collect()
+}
+
+/// Design frequencies that a measurement does not reach.
+fn unreached(problem: &RobustProblem, found: &[DesignFrequency]) -> Option<String> {
+    let is_found = |frequency: &f64| found.iter().any(|one| one.frequency_rad_per_s == *frequency);
+    let missing: Vec<String> =
+        problem.design_frequencies().into_iter().filter(|one| !is_found(one)).map(frequency_number).collect();
+    let listed = missing.join(", ");
+    (!missing.is_empty()).then(|| format!("Not measured, and so without template and bound: {listed} rad/s."))
 }
 
 fn placements(problem: &RobustProblem, found: &[DesignFrequency]) -> Markup {

@@ -89,6 +89,11 @@ fn figure(
     });
     let (lower, upper) = requirement.limits();
     let band = specification.band_rad_per_s;
+    if let (Some(lower), false) = (lower, problem.has_prefilter) {
+        let limits = [lower, upper].map(|limit| limit_curve(limit, band, &frequencies));
+        let family = [least.unwrap_or_default(), greatest];
+        return Ok(spread_figure(number, specification, finding, limits, family, tolerance_db));
+    }
     let limit = |limit: &Limit| limit_curve(limit, band, &frequencies);
     let caption = format!(
         "{} of {} plants of the family (thin), the greatest{} of all members (thick), and the limit.",
@@ -111,6 +116,52 @@ fn figure(
     };
     let title = format!("Specification {number}, {}", kind_words(requirement));
     Ok(family_magnitude(Words::new(name, title, caption), &input))
+}
+
+/// Tracking without a prefilter: how far the family spreads, against how far the limits let it.
+fn spread_figure(
+    number: usize,
+    specification: &Specification,
+    finding: &SpecificationFinding,
+    limits: [MagnitudeCurve; 2],
+    family: [MagnitudeCurve; 2],
+    tolerance_db: f64,
+) -> Figure {
+    let quotient = |[low, high]: [MagnitudeCurve; 2]| MagnitudeCurve {
+        magnitudes: high.magnitudes.iter().zip(&low.magnitudes).map(|(high, low)| high / low).collect(),
+        frequencies_rad_per_s: high.frequencies_rad_per_s,
+    };
+    let allowed = quotient(limits);
+    let mark = finding.worst.as_ref().and_then(|worst| {
+        let place = worst.frequency_rad_per_s;
+        let index = allowed.frequencies_rad_per_s.partition_point(|&frequency| frequency < place);
+        let is_violation = finding.verdict == Verdict::Violated;
+        let size = significant(worst.margin_db.abs(), 3);
+        let word = if is_violation { "over" } else { "to spare" };
+        Some(MagnitudeMark {
+            frequency_rad_per_s: place,
+            magnitude: allowed.magnitudes.get(index)?
+                * portable::exp(-worst.margin_db / 20.0 * std::f64::consts::LN_10),
+            text: format!("{size} dB {word} {}", frequency_words(place)),
+            is_violation,
+        })
+    });
+    let input = FamilyMagnitudeInput {
+        quantity: "max|T|/min|T|".to_string(),
+        unit: String::new(),
+        upper_limit: Some(allowed),
+        greatest: quotient(family),
+        design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
+        tolerance_db,
+        marks: mark.into_iter().collect(),
+        ..FamilyMagnitudeInput::default()
+    };
+    let words = Words::new(
+        format!("audit_{number}_tracking"),
+        format!("Specification {number}, tracking by its spread"),
+        "The greatest over the least |T| of the members, which no prefilter changes, and the upper over the lower limit.",
+    );
+    family_magnitude(words, &input)
 }
 
 fn curve(

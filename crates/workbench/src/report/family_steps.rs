@@ -1,7 +1,7 @@
 //! Step responses of the family inside the band of the tracking limits' own step responses.
 
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TransferFunction};
-use phea_dynamics::time_response::{step_response, uniform_times};
+use phea_dynamics::time_response::{TimeResponseError, delayed_loop_step, step_response, uniform_times};
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::specification::{Limit, Requirement};
@@ -40,23 +40,28 @@ fn drawn(
     family: &UncertainFamily,
     view: &ProjectAudit,
     (lower, upper): (&TransferFunction, &TransferFunction),
-) -> Result<Figure, LinearError> {
+) -> Result<Figure, TimeResponseError> {
     let duration = duration(lower);
     let times = match problem.compensation.sample_time_s() {
-        None => uniform_times(duration, SAMPLES).unwrap_or_default(),
+        None => uniform_times(duration, SAMPLES)?,
         Some(sample_time) => {
             let count = (duration / sample_time).ceil().clamp(10.0, 20_000.0) as usize;
             (0..count).map(|sample| sample as f64 * sample_time).collect()
         }
     };
-    let limit_times = uniform_times(duration, SAMPLES).unwrap_or_default();
-    let series = |name: &str, system: &TransferFunction, times_s: &[f64]| TimeSeries {
-        name: name.to_string(),
-        values: step_response(system, times_s).unwrap_or_default(),
-        times_s: times_s.to_vec(),
+    let limit_times = uniform_times(duration, SAMPLES)?;
+    let series = |name: &str, system: &TransferFunction, times_s: &[f64]| {
+        let values = step_response(system, times_s)?;
+        Ok::<_, TimeResponseError>(TimeSeries { name: name.to_string(), values, times_s: times_s.to_vec() })
     };
     let member = |name: &str, values: &[f64]| {
-        closed_loop(problem, family.plant().coefficients(values)).map(|system| series(name, &system, &times))
+        let plant = family.plant().coefficients(values);
+        let delayed = plant.dead_time_s + problem.compensation.delay_s() > 0.0;
+        if problem.compensation.sample_time_s().is_none() && delayed {
+            let (times_s, values) = delayed_step(problem, plant, duration)?;
+            return Ok(TimeSeries { name: name.to_string(), times_s, values });
+        }
+        series(name, &closed_loop(problem, plant)?, &times)
     };
     let step = family.members().len() / DRAWN_MEMBERS + 1;
     let members: Vec<TimeSeries> =
@@ -72,8 +77,8 @@ fn drawn(
     let input = FamilyStepInput {
         quantity: "Output, part of the step".to_string(),
         bounds: Some(TimeBounds {
-            upper: series("upper limit", upper, &limit_times),
-            lower: series("lower limit", lower, &limit_times),
+            upper: series("upper limit", upper, &limit_times)?,
+            lower: series("lower limit", lower, &limit_times)?,
         }),
         nominal: Some(member("nominal plant", &family.plant().nominal())?),
         members,
@@ -112,6 +117,25 @@ fn closed_loop(
     let closed = plant.series(compensation.feedback())?.feedback(&sensor)?;
     compensation.prefilter().series(&closed)
 }
+
+/// The same of a continuous loop with dead time, in time.
+fn delayed_step(
+    problem: &RobustProblem,
+    plant: PlantCoefficients<f64>,
+    duration: f64,
+) -> Result<(Vec<f64>, Vec<f64>), TimeResponseError> {
+    let compensation = &problem.compensation;
+    let rational = TransferFunction::from_polynomials(
+        &Polynomial::new(plant.command.numerator),
+        &Polynomial::new(plant.command.denominator),
+    )?;
+    let delay_s = plant.dead_time_s + compensation.delay_s();
+    let forward = rational.series(compensation.feedback())?.with_dead_time(delay_s)?;
+    delayed_loop_step(&forward, compensation.sensor(), compensation.prefilter(), duration, DELAYED_STEPS)
+}
+
+/// Steps that a response with dead time is computed in.
+const DELAYED_STEPS: usize = 4000;
 
 fn duration(lower: &TransferFunction) -> f64 {
     let slowest = lower.poles().iter().map(|pole| -pole.re).fold(f64::INFINITY, f64::min);

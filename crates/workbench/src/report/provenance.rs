@@ -39,7 +39,7 @@ pub(super) fn chapter(loaded: &Loaded) -> Chapter {
         h3 { "Assumptions" }
         ul { @for assumption in assumptions(&loaded.project) { li { (assumption) } } }
         h3 { "Not proven here" }
-        p { "This report computes nominal linear models and a sizing. It does not say that the controller holds for every plant of the declared uncertainty, nor how the nonlinear machine behaves." }
+        p { (not_proven(&loaded.project)) }
     };
     Chapter { anchor: "provenance", title: "Provenance and assumptions", body, figures: vec![] }
 }
@@ -48,7 +48,27 @@ fn paths(loaded: &Loaded, keep: impl Fn(&Origin) -> bool) -> Vec<&str> {
     loaded.provenance.iter().filter(|entry| keep(&entry.origin)).map(|entry| entry.path.as_str()).collect()
 }
 
+/// What this report does not say.
+fn not_proven(project: &Project) -> &'static str {
+    match (project.controller.is_some() && !project.specifications.is_empty(), project.actuator.is_some()) {
+        (true, true) => {
+            "The audit searched for the worst plant and frequency of the linear models; a search is no proof. How the nonlinear machine behaves is not said here."
+        }
+        (true, false) => "The audit searched for the worst plant and frequency; a search is no proof.",
+        (false, true) => {
+            "This report computes nominal linear models and a sizing. It does not say that a controller holds for every plant of the declared uncertainty, nor how the nonlinear machine behaves."
+        }
+        (false, false) => "No controller was given, and none was judged.",
+    }
+}
+
 fn assumptions(project: &Project) -> Vec<String> {
+    if project.actuator.is_none() {
+        return vec![
+            "The plant is what the project states: a transfer function in its whole box, or measured responses."
+                .to_string(),
+        ];
+    }
     let mut assumptions = vec![
         "Pressures are gauge; the tank is at the declared pressure; the supply pressure is constant in every linear model.".to_string(),
         "Volumetric expansion and wall modulus of a hose are taken at the supply pressure; the expansion grows in proportion to pressure beyond the catalogue's point.".to_string(),
