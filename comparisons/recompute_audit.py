@@ -135,6 +135,24 @@ def closed(plant, controller):
     return lambda parameters, s: 1 / (1 + plant(parameters, s) * controller(s))
 
 
+def audit_two_carts():
+    """The benchmark of Wie and Bernstein (1992): over its band, and at frequencies beside its lowest resonance."""
+    inverse = lambda p, s: s**2 * (s**2 + 2 * p[0]) / p[0]
+    acc = lambda s: 0.032 * (10 * s + 1) / (4 * s**2 + 2 * s + 1)
+    masses = [(k,) for k in np.geomspace(0.5, 2, 61)]
+    very_dense = np.geomspace(1e-3, 1e2, 40001)
+    complementary = lambda p, s: acc(s) / (inverse(p, s) + acc(s))
+    check("C |T|", worst_excess(masses, complementary, lambda s: 2.25 + 0 * s, very_dense)[0], -2.8638, 2e-3)
+    spring_margin = lambda w, k: db(2.25 / complementary((k,), 1j * w))
+    springs = np.linspace(0.5, 2, 200001)
+    for w, expected, spring in ((0.99, 5.93238, 0.50101), (1.01, 5.99426, 0.52047)):
+        index = int(np.argmin(spring_margin(w, springs)))
+        ends = (springs[max(index - 1, 0)], springs[min(index + 1, len(springs) - 1)])
+        left = minimize_scalar(lambda k: spring_margin(w, k), bounds=ends, method="bounded", options={"xatol": 1e-10})
+        check(f"C |T| at {w}: what is left at the worst spring", left.fun, expected, 1e-5)
+        check("  k", left.x, spring, 1e-5)
+
+
 def audit_examples():
     dense = np.geomspace(1e-3, 1e5, 4001)
     edges = [
@@ -178,12 +196,6 @@ def audit_examples():
     spread = np.ptp(db(complementary(servo, gd)(fine, 15j)))
     check("D spread at 15: what is left", db(upper(15j) / lower(15j)) - spread, 2.410e-4, 2e-7)
 
-    inverse = lambda p, s: s**2 * (s**2 + 2 * p[0]) / p[0]
-    acc = lambda s: 0.032 * (10 * s + 1) / (4 * s**2 + 2 * s + 1)
-    masses = [(k,) for k in np.geomspace(0.5, 2, 61)]
-    very_dense = np.geomspace(1e-3, 1e2, 40001)
-    report("C |T|", worst_excess(masses, lambda p, s: acc(s) / (inverse(p, s) + acc(s)), one(2.25), very_dense), -2.8638)
-
     wheel = lambda p, s: p[0] * (s + p[1]) * p[3] ** 2 / (s**2 + 2 * p[2] * p[3] * s + p[3] ** 2)
     ge = lambda s: 2.5 * (1 + s / 5) * (1 + 1.2 * s / 4 + s**2 / 16) / (s * (1 + s) * (1 + s / 3.2) * (1 + s / 26))
     wheels = list(itertools.product(np.linspace(2, 5, 5), np.linspace(1, 3, 5), np.linspace(0.3, 0.6, 4), np.linspace(4, 8, 9)))
@@ -194,3 +206,4 @@ def audit_examples():
 if __name__ == "__main__":
     audit_thesis()
     audit_examples()
+    audit_two_carts()

@@ -27,6 +27,7 @@ pub use crossover::CriticalDelay;
 pub use family::{FamilyStability, StabilityAudit};
 
 use crate::closed_loop::{Compensation, Member};
+use crate::verification::rounded;
 use characteristic::{Characteristic, FeedbackPath};
 
 /// Stability of one loop.
@@ -65,7 +66,8 @@ pub enum Irresolution {
     Linear(LinearError),
     /// A closed-loop pole lies so near the boundary of stability that rounding hides its side.
     #[error(
-        "a closed-loop pole near {frequency_rad_per_s:.6} rad/s cannot be told from the boundary of stability"
+        "a closed-loop pole near {} rad/s cannot be told from the boundary of stability",
+        rounded(*frequency_rad_per_s)
     )]
     NearBoundary {
         /// Where on the boundary, rad/s.
@@ -73,7 +75,8 @@ pub enum Irresolution {
     },
     /// Too many steps along the boundary of stability.
     #[error(
-        "the turns of the characteristic function could not be counted beyond {frequency_rad_per_s:.6} rad/s"
+        "the turns of the characteristic function could not be counted beyond {} rad/s",
+        rounded(*frequency_rad_per_s)
     )]
     Budget {
         /// Where the count stopped, rad/s.
@@ -94,7 +97,9 @@ pub enum Irresolution {
     Points,
     /// Between two measured points 1 + L turns further than can be followed.
     #[error(
-        "1 + L turns by {turn_deg:.0} degrees between {from_rad_per_s} and {to_rad_per_s} rad/s; the measurement is too coarse there"
+        "1 + L turns by {turn_deg:.0} degrees between {} and {} rad/s; the measurement is too coarse there",
+        rounded(*from_rad_per_s),
+        rounded(*to_rad_per_s)
     )]
     Coarse {
         /// rad/s
@@ -106,7 +111,8 @@ pub enum Irresolution {
     },
     /// The measurement ends while the gain is not small.
     #[error(
-        "the measurement ends at {frequency_rad_per_s} rad/s where |L| = {gain:.2} is not well below one"
+        "the measurement ends at {} rad/s where |L| = {gain:.2} is not well below one",
+        rounded(*frequency_rad_per_s)
     )]
     HighEnd {
         /// rad/s
@@ -116,7 +122,8 @@ pub enum Irresolution {
     },
     /// What the loop does below the first measured point cannot be told from it.
     #[error(
-        "below {frequency_rad_per_s} rad/s, where the measurement begins, the loop's integrators cannot be told"
+        "below {} rad/s, where the measurement begins, the loop's integrators cannot be told",
+        rounded(*frequency_rad_per_s)
     )]
     LowEnd {
         /// rad/s
@@ -265,7 +272,7 @@ impl std::fmt::Display for Instability {
                 write!(formatter, "a closed-loop pole has the real part {real_part:.3e} 1/s")
             }
             Instability::Poles { count } => {
-                write!(formatter, "{count} closed-loop poles lie outside of the stable region")
+                write!(formatter, "{count} unstable closed-loop pole{}", if *count == 1 { "" } else { "s" })
             }
             Instability::GainAtInfinity => {
                 write!(formatter, "dead time in a loop whose gain stays above one at every high frequency")

@@ -15,6 +15,7 @@ mod start;
 
 pub(crate) use audit::corners;
 pub use audit::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Work};
+pub(crate) use remark::rounded;
 
 use crate::specification::Requirement;
 

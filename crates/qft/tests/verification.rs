@@ -9,6 +9,8 @@ mod dead_time;
 mod ends;
 #[path = "verification/examples.rs"]
 mod examples;
+#[path = "verification/given_frequency.rs"]
+mod given_frequency;
 #[path = "verification/plants.rs"]
 mod plants;
 #[path = "verification/properties.rs"]

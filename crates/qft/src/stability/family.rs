@@ -9,7 +9,7 @@ use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_mem
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::verification::{
-    ClosestApproach, DelayMargin, Evidence, PlantPoint, StabilityFinding, Verdict, corners,
+    ClosestApproach, DelayMargin, Evidence, PlantPoint, StabilityFinding, Verdict, corners, rounded,
 };
 
 /// Starts of the search for each worst case.
@@ -314,7 +314,9 @@ impl StabilityAudit {
             let ClosestApproach { distance, frequency_rad_per_s, .. } = closest;
             let between = if self.searched() { " between them, too," } else { "" };
             reason += &format!(
-                "; the smallest |1 + L| found{between} is {distance:.4} (at {frequency_rad_per_s:.4} rad/s)"
+                "; the smallest |1 + L| found{between} is {} (at {} rad/s)",
+                rounded(*distance),
+                rounded(*frequency_rad_per_s)
             );
         }
         let nearest = record.real_part.as_ref().map(|(_, plant)| plant.clone());

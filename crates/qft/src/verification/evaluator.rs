@@ -3,6 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
+use num_complex::Complex64;
 use phea_dynamics::linear::Polynomial;
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::UncertainPlant;
@@ -104,10 +105,27 @@ impl Evaluator {
                 None
             };
         }
+        self.finite(criterion, member, frequency).map(|(_, margin_db)| margin_db)
+    }
+
+    /// What vanishes at a resonance, and the margin in dB, at a frequency that is neither zero nor infinite.
+    pub(super) fn resonance(
+        &self,
+        criterion: usize,
+        member: &Member,
+        frequency: f64,
+    ) -> Option<(Complex64, f64)> {
+        let criterion = self.criteria.get(criterion)?;
+        let (closed, margin_db) = self.finite(criterion, member, frequency)?;
+        Some((closed.vanishing(criterion), margin_db))
+    }
+
+    fn finite(&self, criterion: &Criterion, member: &Member, frequency: f64) -> Option<(ClosedLoop, f64)> {
         let only = std::slice::from_ref(criterion);
         let at = LoopAt::new(&self.compensation, only, self.with_prefilter, frequency);
-        let excess = at.excess(0, criterion, &self.closed(&at, member)?)?;
-        (!excess.is_nan()).then(|| decibels(excess))
+        let closed = self.closed(&at, member)?;
+        let excess = at.excess(0, criterion, &closed)?;
+        (!excess.is_nan()).then(|| (closed, decibels(excess)))
     }
 
     fn end_margin_db(&self, criterion: &Criterion, member: &Member, end: End) -> Option<f64> {

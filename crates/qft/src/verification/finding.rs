@@ -7,6 +7,7 @@ use super::remark::remarks;
 use super::response::decibels;
 use super::scan::{Plant, Scan, Worst};
 use super::{Evidence, PlantPoint, SpecificationFinding, Verdict, ViolatedBand, WorstCase};
+use crate::family::Family;
 use crate::specification::Specification;
 
 /// Margins above minus this much are rounding, dB.
@@ -119,6 +120,7 @@ pub(super) fn points(plants: &[Plant], chosen: &[usize]) -> Vec<PlantPoint> {
 /// All that a finding is made of.
 pub(super) struct Joining<'a> {
     pub(super) part: Part,
+    pub(super) family: &'a Family,
     pub(super) specification: &'a Specification,
     pub(super) evaluator: &'a Evaluator,
     pub(super) plants: &'a [Plant],
@@ -163,7 +165,7 @@ impl Joining<'_> {
                 .map(worst_case)
                 .collect(),
             envelope: self.drawn(&envelope),
-            remarks: remarks(self, worst.is_some(), unresolved),
+            remarks: remarks(self, worst, unresolved),
         }
     }
 

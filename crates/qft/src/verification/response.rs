@@ -86,6 +86,19 @@ fn turned(angle: f64) -> Complex64 {
     Complex64::new(portable::cos(angle), portable::sin(angle))
 }
 
+impl ClosedLoop {
+    /// What is nearly zero where a criterion has a peak: the characteristic value, with the denominator of a Pd that has its own;
+    /// the plant's numerator for a magnitude that must not fall.
+    pub(super) fn vanishing(&self, criterion: &Criterion) -> Complex64 {
+        let own = self.load_motion.denominator != self.loop_denominator;
+        match (criterion.side, criterion.quantity) {
+            (Side::Above, _) => self.plant_numerator,
+            (Side::Below, Quantity::LoadMotion) if own => self.characteristic * self.load_motion.denominator,
+            (Side::Below, _) => self.characteristic,
+        }
+    }
+}
+
 impl LoopAt {
     /// G, F, H and the limits at a frequency that is neither zero nor infinite. Without a prefilter F counts as 1.
     pub(super) fn new(

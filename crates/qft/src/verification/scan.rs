@@ -12,7 +12,7 @@ use crate::closed_loop::Member;
 /// A characteristic value that turns by more than this from one point to the next has a resonance between them: cos of it.
 const TURN_COSINE: f64 = 0.5;
 /// How often an interval is halved in search of a resonance.
-const HALVINGS: usize = 40;
+pub(super) const HALVINGS: usize = 40;
 /// Peaks are worth polishing if that could make them the worst: by this factor of the squared excess, 1.5 dB.
 pub(super) const WORTH_POLISHING: f64 = 0.7;
 
@@ -244,9 +244,13 @@ fn worse(so_far: Option<Worst>, excess: Option<f64>, plant: usize) -> Option<Wor
 
 /// A frequency between two samples if the characteristic value turns too far from one to the other.
 fn halved(behind: &Sample, ahead: &Sample) -> Option<f64> {
-    let (from, to) = (behind.characteristic?, ahead.characteristic?);
-    let (from, to) = (from / portable::magnitude(from), to / portable::magnitude(to));
     let middle = (behind.frequency * ahead.frequency).sqrt();
-    let turns = (from.conj() * to).re < TURN_COSINE;
+    let turns = turns(behind.characteristic?, ahead.characteristic?);
     (turns && behind.frequency < middle && middle < ahead.frequency).then_some(middle)
+}
+
+/// Whether a value turns too far from one point to the next to be without a resonance between them.
+pub(super) fn turns(from: Complex64, to: Complex64) -> bool {
+    let (from, to) = (from / portable::magnitude(from), to / portable::magnitude(to));
+    (from.conj() * to).re < TURN_COSINE
 }

@@ -1,4 +1,7 @@
-//! The worst case inside the box: a local search over the shares of its coordinates, the frequency following its minimum.
+//! The worst case inside the box: a local search over the shares of its coordinates, the frequency following its minimum; at a
+//! given frequency a share follows instead, where there is a resonance.
+
+mod resonance;
 
 use std::cell::Cell;
 
@@ -60,16 +63,34 @@ struct Place {
 
 /// Goes downhill from a start until a sweep over all coordinates gains nothing.
 pub(super) fn search(evaluator: &Evaluator, family: &UncertainFamily, task: &Task) -> Outcome {
-    let descent = Descent { evaluator, family, task, undefined: Cell::new(None) };
-    let found = descent.start().map(|start| descent.descended(start));
+    let descent = Descent { evaluator, family, task, follower: None, undefined: &Cell::new(None) };
+    let place = descent.start().map(|start| match task.range {
+        Some(_) => descent.descended(start),
+        None => descent.with_resonances(start),
+    });
+    let found = place.map(|place| Found {
+        margin_db: place.margin_db,
+        frequency: place.frequency,
+        values: place.shares.iter().map(|shares| family.values(shares)).collect(),
+    });
     Outcome { found, undefined: descent.undefined.get() }
 }
 
+/// A coordinate of one of the plants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Along {
+    block: usize,
+    coordinate: usize,
+}
+
+#[derive(Clone, Copy)]
 struct Descent<'a> {
     evaluator: &'a Evaluator,
     family: &'a UncertainFamily,
     task: &'a Task,
-    undefined: Cell<Option<f64>>,
+    /// The share that follows its minimum.
+    follower: Option<Along>,
+    undefined: &'a Cell<Option<f64>>,
 }
 
 impl Descent<'_> {
@@ -80,18 +101,19 @@ impl Descent<'_> {
     fn start(&self) -> Option<Place> {
         let members: Vec<Option<Member>> =
             self.task.shares.iter().map(|shares| self.member(shares)).collect();
-        let (frequency, margin_db) = self.margin(&members, self.task.frequency)?;
-        Some(Place { shares: self.task.shares.clone(), members, margin_db, frequency })
+        self.settled(self.task.shares.clone(), members, self.task.frequency)
     }
 
-    fn descended(&self, start: Place) -> Found {
+    fn descended(&self, start: Place) -> Place {
         let mut place = start;
         let mut radius = 0.25;
         for sweep in 0..SWEEPS_MAXIMUM {
             let before = place.clone();
             for block in 0..place.shares.len() {
                 for coordinate in 0..self.family.coordinates().len() {
-                    place = self.along(place, block, coordinate, radius, sweep == 0);
+                    if self.moves(block, coordinate) {
+                        place = self.along(place, block, coordinate, radius, sweep == 0);
+                    }
                 }
             }
             place = self.onwards(&before, place);
@@ -101,8 +123,22 @@ impl Descent<'_> {
             }
             radius = (radius / 2.0).max(0.01);
         }
-        let values = place.shares.iter().map(|shares| self.family.values(shares)).collect();
-        Found { margin_db: place.margin_db, frequency: place.frequency, values }
+        place
+    }
+
+    /// With a follower only its own plant moves, and it by itself.
+    fn moves(&self, block: usize, coordinate: usize) -> bool {
+        self.follower.is_none_or(|follower| follower.block == block && follower.coordinate != coordinate)
+    }
+
+    /// A place whose frequency, or follower, is at its minimum.
+    fn settled(&self, shares: Vec<Vec<f64>>, members: Vec<Option<Member>>, frequency: f64) -> Option<Place> {
+        let (frequency, margin_db) = self.margin(&members, frequency)?;
+        let place = Place { shares, members, margin_db, frequency };
+        Some(match self.follower {
+            Some(follower) => self.followed(place, follower),
+            None => place,
+        })
     }
 
     /// The margin at the frequency nearest to this one at which it has a minimum: (rad/s, dB).
@@ -137,8 +173,7 @@ impl Descent<'_> {
         *shares.get_mut(block)?.get_mut(coordinate)? = share;
         let mut members = place.members.clone();
         *members.get_mut(block)? = self.member(shares.get(block)?);
-        let (frequency, margin_db) = self.margin(&members, place.frequency)?;
-        Some(Place { shares, members, margin_db, frequency })
+        self.settled(shares, members, place.frequency)
     }
 
     /// The best place along one coordinate: the neighbourhood of this share, and those of both ends; on the first sweep of the
@@ -156,29 +191,30 @@ impl Descent<'_> {
 
     /// The local minimum along one coordinate, no further than `radius` away.
     fn near(&self, place: Place, block: usize, coordinate: usize, radius: f64) -> Place {
-        let share = place.shares.get(block).and_then(|shares| shares.get(coordinate)).copied().unwrap_or(0.0);
+        let share = place.share(block, coordinate);
         let ends = [(share - radius).max(0.0), (share + radius).min(1.0)];
+        let tolerance = (SHARE_STEP * radius).max(SHARE_TOLERANCE);
+        self.between(place, Along { block, coordinate }, ends, tolerance)
+    }
+
+    /// The local minimum between two shares of one coordinate.
+    fn between(&self, place: Place, along: Along, ends: [f64; 2], tolerance: f64) -> Place {
+        let start = (place.share(along.block, along.coordinate), place.margin_db);
         let mut best = place;
-        if ends.contains(&share) {
-            // an end of the box that is a minimum rises inwards
-            let inwards = if share == ends[0] { share + radius / 8.0 } else { share - radius / 8.0 };
-            match self.moved(&best, block, coordinate, inwards) {
-                Some(inside) if inside.margin_db < best.margin_db => best = inside,
-                _ => return best,
-            }
-        }
-        let share = best.shares.get(block).and_then(|shares| shares.get(coordinate)).copied().unwrap_or(0.0);
-        let start = (share, best.margin_db);
-        let margin = |share: f64| match self.moved(&best, block, coordinate, share) {
+        minimum::between(|share| self.tried(&mut best, along, share), ends, start, tolerance);
+        best
+    }
+
+    /// The margin with another share; the best place so far is kept.
+    fn tried(&self, best: &mut Place, along: Along, share: f64) -> f64 {
+        match self.moved(best, along.block, along.coordinate, share) {
             Some(found) => {
                 let margin_db = found.margin_db;
-                best = better(best.clone(), Some(found));
+                *best = better(best.clone(), Some(found));
                 margin_db
             }
             None => f64::INFINITY,
-        };
-        minimum::between(margin, ends, start, (SHARE_STEP * radius).max(SHARE_TOLERANCE));
-        best
+        }
     }
 
     /// Once more in the direction in which a sweep went, in steps that double, as long as it helps.
@@ -197,15 +233,19 @@ impl Descent<'_> {
                 break;
             }
             let members: Vec<Option<Member>> = shares.iter().map(|shares| self.member(shares)).collect();
-            match self.margin(&members, best.frequency) {
-                Some((frequency, margin_db)) if margin_db < best.margin_db => {
-                    best = Place { shares, members, margin_db, frequency };
-                }
+            match self.settled(shares, members, best.frequency) {
+                Some(found) if found.margin_db < best.margin_db => best = found,
                 _ => break,
             }
             factor *= 2.0;
         }
         best
+    }
+}
+
+impl Place {
+    fn share(&self, block: usize, coordinate: usize) -> f64 {
+        self.shares.get(block).and_then(|shares| shares.get(coordinate)).copied().unwrap_or(0.0)
     }
 }
 

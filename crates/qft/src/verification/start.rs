@@ -56,13 +56,15 @@ pub(super) fn tasks(
     let beside = beside_violations(&envelope);
     let fixed: Vec<f64> = ends.chain(design_frequencies.iter().copied()).chain(beside).collect();
     let fixed = envelope.iter().filter(|point| fixed.contains(&point.frequency));
-    let mut tasks: Vec<Task> = fixed.map(|point| from(point, None)).collect();
+    let middle = |point: &EnvelopePoint| vec![vec![0.5; family.coordinates().len()]; point.plants.len()];
+    let mut tasks: Vec<Task> = fixed
+        .flat_map(|point| [from(point, None), Task { shares: middle(point), ..from(point, None) }])
+        .collect();
     let Some(range) = range else { return tasks };
     let minima: Vec<f64> = local_minima(&envelope).iter().take(STARTS).map(|bracket| bracket[1]).collect();
     for point in envelope.iter().filter(|point| minima.contains(&point.frequency)) {
-        let middle = vec![vec![0.5; family.coordinates().len()]; point.plants.len()];
         tasks.push(from(point, Some(range)));
-        tasks.push(Task { shares: middle, ..from(point, Some(range)) });
+        tasks.push(Task { shares: middle(point), ..from(point, Some(range)) });
     }
     let of_part = |case: &&Case| case.criteria.iter().all(|criterion| part.criteria().contains(criterion));
     tasks.extend(diverse(cases.iter().filter(of_part)).into_iter().map(|case| Task {

@@ -21,7 +21,7 @@ impl Draw {
     }
 
     /// By equal factors between two numbers.
-    fn factor(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn factor(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.share())
     }
 }
@@ -43,24 +43,33 @@ fn resonant<'t>(p: &[Recorded<'t>], zero: f64, scale: f64) -> PlantCoefficients<
     }
 }
 
-struct Case {
-    family: Family,
-    around: Compensation,
-    specifications: Vec<Specification>,
+pub(crate) struct Case {
+    pub(crate) family: Family,
+    pub(crate) around: Compensation,
+    pub(crate) specifications: Vec<Specification>,
 }
 
-const COARSE: [usize; 4] = [2, 3, 2, 3];
+pub(crate) const COARSE: [usize; 4] = [2, 3, 2, 3];
 
 /// A random box and loop; every frequency times `scale`, every limit times `factor`.
 fn case(seed: u64, scale: f64, factor: f64, points: [usize; 4]) -> Case {
+    damped_case(seed, [0.003, 0.5], scale, factor, points)
+}
+
+/// The same, the least damping ratio drawn between these.
+pub(crate) fn damped_case(seed: u64, damping: [f64; 2], scale: f64, factor: f64, points: [usize; 4]) -> Case {
     let mut draw = Draw(seed);
     let mut range = |name: &str, low: f64, high: f64| {
         let minimum = draw.factor(low, high);
         let maximum = minimum * draw.factor(1.1, 4.0);
         parameter(name, minimum + 0.3 * (maximum - minimum), minimum, maximum)
     };
-    let parameters =
-        vec![range("k", 0.3, 3.0), range("a", 0.1, 10.0), range("d", 0.003, 0.5), range("w", 1.0, 20.0)];
+    let parameters = vec![
+        range("k", 0.3, 3.0),
+        range("a", 0.1, 10.0),
+        range("d", damping[0], damping[1]),
+        range("w", 1.0, 20.0),
+    ];
     let zero = draw.factor(0.5, 50.0);
     let plant = UncertainPlant::record(parameters, |p| resonant(p, zero, scale)).unwrap();
     let coordinates = (0..4).map(|index| along(index, Spacing::Logarithmic, points[index])).collect();

@@ -89,8 +89,8 @@ fn the_published_controller_fails_its_own_specification() {
     let family = thesis_family([3, 3, 5, 3, 3, 3]);
     let (findings, work) =
         audited(&family, &thesis_loop(0.0), &thesis_specifications(), TrackingJudgement::Magnitude);
-    // 1216 plants, 64 corners and what the searches end at, some 350 frequencies each, and a quarter more for peaks and searches
-    assert!((1280..1300).contains(&work.plants) && work.responses < 600_000, "{work:?}");
+    // 1216 plants, 64 corners and what the searches end at, some 350 frequencies each, and a third more for peaks and searches
+    assert!((1280..1300).contains(&work.plants) && work.responses < 620_000, "{work:?}");
     let [stability, sensitivity, tracking] = &findings[..] else { panic!("three findings") };
     assert!(findings.iter().all(|finding| finding.verdict == Verdict::Violated));
 
@@ -161,5 +161,8 @@ fn tracking_without_a_prefilter_is_judged_by_its_spread() {
     let worst = findings[0].worst.as_ref().unwrap();
     assert!((worst.margin_db + 4.55896).abs() < 2e-5, "{worst:?}");
     assert!((worst.frequency_rad_per_s - 9.3213).abs() < 2e-3);
-    assert!(findings[0].remarks.iter().any(|remark| remark.contains("spread")));
+    let remark = findings[0].remarks.iter().find(|remark| remark.contains("spread")).unwrap();
+    assert!(remark.contains("at 9.321 rad/s the plant with viscous_friction = "), "{remark}");
+    let least = "flow_gain = 0.0000323, flow_pressure_coefficient = 0.00000000007, ";
+    assert!(remark.contains(least) && remark.ends_with(" the least"), "{remark}");
 }

@@ -203,6 +203,7 @@ impl SpecificationAudit {
         self.look_at_worst(&mut cases);
         let finding = finding::Joining {
             part,
+            family: &self.family,
             specification: &specification,
             evaluator: &self.evaluator,
             plants: &self.plants,

@@ -1,0 +1,119 @@
+//! Resonances at a given frequency: plants between those of the grid, in an interval of a share that a search steps over.
+//!
+//! On a line through the box the characteristic value of a lightly damped plant turns by half a turn where its resonance passes
+//! the given frequency. Intervals over which it turns too far are halved; from the resonance, a share follows its minimum as
+//! the frequency does in other searches.
+
+use num_complex::Complex64;
+
+use super::{Along, Descent, Place, better};
+use crate::verification::minimum;
+use crate::verification::scan::{HALVINGS, turns};
+
+/// Intervals of a line to begin with.
+const INTERVALS: usize = 16;
+/// Beside its ends: there a minimum may begin.
+const BESIDE_END: f64 = 1e-4;
+/// First step of a share that follows its minimum.
+const STEP: f64 = 0.01;
+/// To this it is found: a resonance may be narrow.
+const TOLERANCE: f64 = 1e-8;
+
+/// A plant on a line.
+#[derive(Clone, Copy)]
+struct Sample {
+    share: f64,
+    margin_db: f64,
+    vanishing: Complex64,
+}
+
+impl Descent<'_> {
+    /// The worst of a plain search and of those from the resonances on the lines through its start and its end.
+    pub(super) fn with_resonances(&self, start: Place) -> Place {
+        let mut best = self.descended(start.clone());
+        if start.frequency == 0.0 || start.frequency == f64::INFINITY {
+            return best;
+        }
+        let mut froms = vec![start, best.clone()];
+        froms.dedup_by(|one, other| one.shares == other.shares);
+        for from in froms {
+            for block in 0..from.shares.len() {
+                for coordinate in 0..self.family.coordinates().len() {
+                    let along = Along { block, coordinate };
+                    let Some(resonant) = self.resonant(&from, &best, along) else { continue };
+                    let following = Descent { follower: Some(along), ..*self };
+                    best = better(best, Some(following.descended(resonant)));
+                }
+            }
+        }
+        best
+    }
+
+    /// With one plant on a line through where it is `from`, the others as they are in `best`: the worst resonance on it, if any.
+    fn resonant(&self, from: &Place, best: &Place, along: Along) -> Option<Place> {
+        let mut place = best.clone();
+        *place.shares.get_mut(along.block)? = from.shares.get(along.block)?.clone();
+        let [low, middle, high] = self.inner_minimum(&place, along)?;
+        let place = self.moved(&place, along.block, along.coordinate, middle)?;
+        Some(self.between(place, along, [low, high], TOLERANCE))
+    }
+
+    /// The shares of the worst local minimum inside a line, and beside it.
+    fn inner_minimum(&self, place: &Place, along: Along) -> Option<[f64; 3]> {
+        let samples = self.line(place, along);
+        let minima = samples.windows(3).filter_map(|triple| match triple {
+            [before, here, after]
+                if here.margin_db <= before.margin_db && here.margin_db < after.margin_db =>
+            {
+                Some((here.margin_db, [before.share, here.share, after.share]))
+            }
+            _ => None,
+        });
+        minima.min_by(|left, right| left.0.total_cmp(&right.0)).map(|minimum| minimum.1)
+    }
+
+    /// Plants on a line, so near to each other that none hides a resonance from the next.
+    fn line(&self, place: &Place, along: Along) -> Vec<Sample> {
+        let mut found: Vec<Sample> = Vec::new();
+        let inner = (1..INTERVALS).map(|index| index as f64 / INTERVALS as f64);
+        for share in [0.0, BESIDE_END].into_iter().chain(inner).chain([1.0 - BESIDE_END, 1.0]) {
+            let mut ahead: Vec<Sample> = self.sample(place, along, share).into_iter().collect();
+            let mut halvings = 0;
+            while let Some(next) = ahead.pop() {
+                let behind = found.last().filter(|behind| turns(behind.vanishing, next.vanishing));
+                let middle = behind.filter(|_| halvings < HALVINGS);
+                let middle = middle.map(|behind| (behind.share + next.share) / 2.0);
+                match middle.and_then(|share| self.sample(place, along, share)) {
+                    Some(middle) => ahead.extend([next, middle]),
+                    None => found.push(next),
+                }
+                halvings += 1;
+            }
+        }
+        found
+    }
+
+    fn sample(&self, place: &Place, along: Along, share: f64) -> Option<Sample> {
+        let mut shares = place.shares.get(along.block)?.clone();
+        *shares.get_mut(along.coordinate)? = share;
+        let criterion = *self.task.criteria.get(along.block)?;
+        let (vanishing, margin_db) =
+            self.evaluator.resonance(criterion, &self.member(&shares)?, place.frequency)?;
+        Some(Sample { share, margin_db, vanishing })
+    }
+
+    /// The follower brought to its minimum.
+    pub(super) fn followed(&self, place: Place, follower: Along) -> Place {
+        let alone = Descent { follower: None, ..*self };
+        let start = (place.share(follower.block, follower.coordinate), place.margin_db);
+        let mut best = place;
+        minimum::downhill(
+            |share| alone.tried(&mut best, follower, share),
+            [0.0, 1.0],
+            start,
+            STEP,
+            TOLERANCE,
+        );
+        best
+    }
+}
