@@ -7,6 +7,7 @@ pub mod audit;
 pub mod bound;
 pub mod closed_loop;
 pub mod family;
+mod sampled;
 pub mod specification;
 pub mod stability;
 pub mod template;

@@ -8,6 +8,7 @@ use super::search::climb;
 use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_member, resampled};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{Extent, Family, UncertainFamily};
+use crate::sampled::SampledPlants;
 use crate::verification::{
     ClosestApproach, DelayMargin, Evidence, PlantPoint, StabilityFinding, Verdict, corners, rounded,
 };
@@ -86,6 +87,8 @@ pub struct StabilityAudit {
     tasks: Option<Vec<Task>>,
     /// Plants of a sampled loop whose critical delay is still an estimate.
     estimated: Vec<Vec<f64>>,
+    /// The plants that were judged, within a sampled loop.
+    sampled: SampledPlants,
     record: Record,
 }
 
@@ -126,6 +129,7 @@ impl StabilityAudit {
             badness: Vec::new(),
             tasks: None,
             estimated: Vec::new(),
+            sampled: SampledPlants::default(),
             record: Record::default(),
         }
     }
@@ -149,6 +153,11 @@ impl StabilityAudit {
         true
     }
 
+    /// Hands over the plants that were judged, as they are within a sampled loop.
+    pub(crate) fn take_sampled(&mut self) -> SampledPlants {
+        std::mem::take(&mut self.sampled)
+    }
+
     /// The share of the work that is done, as far as it can be foreseen; 1 when all is.
     pub fn progress(&self) -> f64 {
         match &self.tasks {
@@ -168,7 +177,7 @@ impl StabilityAudit {
     fn member(&self, plant: &PlantPoint) -> Result<Member, LinearError> {
         match (&self.family, plant) {
             (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
-                self.compensation.member(family.plant().coefficients(values))
+                self.sampled.member(&self.compensation, family.plant(), values)
             }
             (Family::Measured(family), PlantPoint::Measured(index)) => {
                 let plant = family.plants().get(*index).ok_or(LinearError::ZeroPolynomial)?;
@@ -255,7 +264,9 @@ impl StabilityAudit {
 
     fn badness_at(&self, badness: Badness, values: Vec<f64>) -> f64 {
         let Ok(path) = &self.path else { return f64::NAN };
-        let Ok(member) = self.member(&PlantPoint::Parameters(values)) else { return f64::NAN };
+        let Family::Uncertain(family) = &self.family else { return f64::NAN };
+        let plant = family.plant().coefficients(&values);
+        let Ok(member) = self.compensation.member(plant) else { return f64::NAN };
         match characteristic(&member, path) {
             Some(Ok(characteristic)) => badness.of(&characteristic).unwrap_or(f64::NAN),
             _ => f64::NAN,

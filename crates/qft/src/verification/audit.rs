@@ -11,6 +11,7 @@ use super::search::Task;
 use super::{PlantPoint, SpecificationFinding};
 use crate::closed_loop::Compensation;
 use crate::family::{Extent, Family, UncertainFamily, vertices};
+use crate::sampled::SampledPlants;
 use crate::specification::{Requirement, Specification};
 
 /// A margin of minus this much still counts as met unless another tolerance is asked for, dB.
@@ -160,6 +161,11 @@ impl SpecificationAudit {
             finished: Vec::new(),
             stage: Stage::Preparing(0),
         }
+    }
+
+    /// Takes over plants of the same family within the same loop, so that none is sampled twice.
+    pub(crate) fn take_over(&mut self, sampled: SampledPlants) {
+        self.evaluator.sampled = sampled;
     }
 
     /// Does a small part of the work; false when there is none left.

@@ -1,7 +1,6 @@
 //! Margins of one plant: everything about a loop and its specifications but the family, and a count of the work.
 
-use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
+use std::cell::Cell;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::Polynomial;
@@ -13,12 +12,10 @@ use super::criterion::Criterion;
 use super::minimum;
 use super::response::{ClosedLoop, LoopAt, decibels};
 use crate::closed_loop::{Compensation, Member};
+use crate::sampled::SampledPlants;
 
 /// Frequencies are polished to this share of themselves.
 pub(super) const FREQUENCY_TOLERANCE: f64 = 1e-7;
-
-/// Sampled plants that are kept.
-const SAMPLED_MAXIMUM: usize = 20_000;
 
 /// A loop without its plant, and what is demanded of it.
 #[derive(Clone, Debug)]
@@ -33,8 +30,8 @@ pub(super) struct Evaluator {
     responses: Cell<u64>,
     /// The power of s that the first plant's |T| follows at either end; plants of another power have no spread there.
     steepness: [Cell<Option<i32>>; 2],
-    /// Plants that were sampled before, by the bits of their parameter values: sampling costs more than a thousand responses.
-    sampled: RefCell<BTreeMap<Vec<u64>, Option<Member>>>,
+    /// Plants that were sampled before.
+    pub(super) sampled: SampledPlants,
 }
 
 impl Evaluator {
@@ -57,7 +54,7 @@ impl Evaluator {
             compensator_dead_time_s,
             responses: Cell::new(0),
             steepness: [Cell::new(None), Cell::new(None)],
-            sampled: RefCell::default(),
+            sampled: SampledPlants::default(),
         }
     }
 
@@ -68,16 +65,7 @@ impl Evaluator {
 
     /// A plant within the loop; `None` if it cannot be sampled.
     pub(super) fn member(&self, plant: &UncertainPlant, values: &[f64]) -> Option<Member> {
-        let build = || self.compensation.member(plant.coefficients(values)).ok();
-        if self.compensation.sample_time_s().is_none() {
-            return build();
-        }
-        let key: Vec<u64> = values.iter().map(|value| value.to_bits()).collect();
-        let mut kept = self.sampled.borrow_mut();
-        if kept.len() >= SAMPLED_MAXIMUM && !kept.contains_key(&key) {
-            return build();
-        }
-        kept.entry(key).or_insert_with(build).clone()
+        self.sampled.member(&self.compensation, plant, values).ok()
     }
 
     pub(super) fn loop_at(&self, frequency: f64) -> LoopAt {
