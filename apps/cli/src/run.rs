@@ -101,7 +101,13 @@ fn answered(common: &Common, request: &Request) -> Result<(Answer, Vec<PathBuf>)
             line.show(progress)
         });
     line.clear();
-    let answer = answer.map_err(|error| failed(request, &loaded, &error.to_string()))?;
+    let answer = answer.map_err(|error| Refused {
+        json: command::error_json(&loaded, request, &error),
+        text: match error.refusal() {
+            Some(report) => report.render(styled()),
+            None => format!("error: {error}"),
+        },
+    })?;
     let written =
         write_files(common, request, &answer).map_err(|message| failed(request, &loaded, &message))?;
     Ok((answer, written))

@@ -19,7 +19,11 @@ fn folder(name: &str) -> PathBuf {
         "{plant}[controller]\nnumerator = \"1\"\ndenominator = \"s\"\n[[specification]]\nkind = \"robust_stability\"\n\
          limit = 1.2\nfrequencies = [1]\nband = [0, inf]\n"
     );
-    let files: [(&str, &[u8]); 7] = [
+    let measured = "schema = 1\n[family]\nmeasured = [\"drive.csv\", \"absent.csv\"]\n";
+    let rows = "frequency_hz,magnitude_db,phase_deg\n1,0,0\n2,loud,0\n3,0,0,0\n";
+    let files: [(&str, &[u8]); 9] = [
+        ("measured.toml", measured.as_bytes()),
+        ("drive.csv", rows.as_bytes()),
         ("hose.toml", text.as_bytes()),
         ("only/hose.toml", text.as_bytes()),
         ("unsized.toml", &[head.as_bytes(), b"[uncertainty]", tail.as_bytes()].concat()),
@@ -63,6 +67,7 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["size", "plant.toml"], 2),
     (&["linearize", "plant.toml"], 2),
     (&["report", "plant.toml"], 2),
+    (&["check", "measured.toml"], 2),
     (&["check", "missing.toml"], 2),
     (&["check", "only"], 2),
     (&["check", "binary.toml"], 2),
@@ -106,6 +111,26 @@ fn json_is_one_object_and_nothing_else() {
         let refused = object.get("errors").and_then(serde_json::Value::as_array);
         assert_eq!(refused.is_some_and(|errors| !errors.is_empty()), *expected == 2, "{arguments:?}");
     }
+}
+
+/// What is wrong with a measured response is told with its place, to people and to programs.
+#[test]
+fn a_bad_row_of_a_measurement_has_its_place() {
+    let folder = folder("measurement");
+    let output = phea(&folder, &["check", "measured.toml", "--json"]);
+    let object: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
+    let rows: Vec<_> = object["errors"].as_array().expect("a list").iter().collect();
+    let place = |row: &serde_json::Value| (row["file"].clone(), row["line"].as_u64(), row["column"].as_u64());
+    let places: Vec<_> = rows.iter().map(|row| place(row)).collect();
+    let csv = |line, column| ("drive.csv".into(), Some(line), Some(column));
+    assert_eq!(places, [csv(3, 3), csv(4, 1), ("absent.csv".into(), None, None)]);
+    assert_eq!(
+        (&rows[0]["message"], &rows[0]["expected"]),
+        (&"`loud` is no number".into(), &"a number in dB".into())
+    );
+    assert!(object["project_sha256"].is_string());
+    let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(complaint.contains("--> drive.csv:3:3"), "{complaint}");
 }
 
 #[test]

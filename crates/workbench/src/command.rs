@@ -8,7 +8,7 @@ use crate::answer::{self, Answer, OutputFile};
 use crate::audit::{self, AuditError, audit_project};
 use crate::control::{ControlError, controller, sensor};
 use crate::derived::{self, derive};
-use crate::family::family;
+use crate::family::{FamilyError, family};
 use crate::figure::FigureError;
 use crate::linearize::{self, linearize};
 use crate::project::{Loaded, Report as Refusal, Severity, sha256};
@@ -17,7 +17,7 @@ use crate::report::{Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
 use crate::sizing::{self, Question, size};
 use crate::source::Source;
-use crate::specification::specifications;
+use crate::specification::{self, specifications, wishes};
 
 /// What is asked of a project.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -96,7 +96,7 @@ pub enum CommandError {
     Audit(#[from] AuditError),
     /// There is no family of plants.
     #[error(transparent)]
-    Family(#[from] crate::family::FamilyError),
+    Family(#[from] FamilyError),
     /// A specification is none.
     #[error(transparent)]
     Specification(#[from] crate::specification::SpecificationError),
@@ -106,6 +106,17 @@ pub enum CommandError {
     /// Whoever watched a long command stopped it.
     #[error("stopped")]
     Stopped,
+}
+
+impl CommandError {
+    /// The findings, where files that the project names were refused with a place for each.
+    pub fn refusal(&self) -> Option<&Refusal> {
+        match self {
+            CommandError::Catalogue(report) => Some(report),
+            CommandError::Family(FamilyError::Measurement(report)) => Some(report),
+            _ => None,
+        }
+    }
 }
 
 /// How far a long command is.
@@ -169,12 +180,14 @@ fn check(source: &dyn Source, loaded: &Loaded) -> Result<Answer, CommandError> {
     controller(&loaded.project)?;
     sensor(&loaded.project)?;
     specifications(&loaded.project)?;
+    let wishes = wishes(&loaded.project)?;
+    let in_time = specification::text(&wishes);
     let text = match derived.as_slice() {
-        [] => format!("The project is valid. {}\n", without_derived(source, loaded)?),
-        derived => format!("{}\nThe project is valid.\n", derived::text(derived)),
+        [] => format!("{in_time}The project is valid. {}\n", without_derived(source, loaded)?),
+        derived => format!("{}\n{in_time}The project is valid.\n", derived::text(derived)),
     };
     let files = derived::files(&derived);
-    Ok(Answer { text, json: derived::json(loaded, &derived), files, affirmative: true })
+    Ok(Answer { text, json: derived::json(loaded, &derived, &wishes), files, affirmative: true })
 }
 
 /// The family is all that a project without an actuator has: it must be one.
@@ -310,8 +323,22 @@ struct RefusalRow<'a> {
 /// The JSON object of a command whose project, at `path`, was refused.
 pub fn refusal_json(source: &dyn Source, path: &str, request: &Request, refusal: &Refusal) -> String {
     let hash = source.read(path).ok().map(|bytes| sha256(&bytes));
+    refusal_body(Some(request.name()), hash.as_deref(), refusal_rows(refusal))
+}
+
+/// The JSON object of a command that has no answer on a sound project: a row for every finding in its files, or one for the
+/// error itself.
+pub fn error_json(loaded: &Loaded, request: &Request, error: &CommandError) -> String {
+    let (command, hash) = (Some(request.name()), Some(loaded.sha256.as_str()));
+    match error.refusal() {
+        Some(refusal) => refusal_body(command, hash, refusal_rows(refusal)),
+        None => failure_json(command, hash, &error.to_string()),
+    }
+}
+
+fn refusal_rows(refusal: &Refusal) -> Vec<RefusalRow<'_>> {
     let place = |number: usize| Some(number).filter(|number| *number > 0);
-    let errors = refusal.diagnostics.iter().map(|diagnostic| RefusalRow {
+    let rows = refusal.diagnostics.iter().map(|diagnostic| RefusalRow {
         severity: if diagnostic.severity == Severity::Error { "error" } else { "warning" },
         message: &diagnostic.message,
         file: Some(&diagnostic.file),
@@ -320,7 +347,7 @@ pub fn refusal_json(source: &dyn Source, path: &str, request: &Request, refusal:
         expected: diagnostic.expected.as_deref(),
         help: diagnostic.help.as_deref(),
     });
-    refusal_body(Some(request.name()), hash.as_deref(), errors.collect())
+    rows.collect()
 }
 
 /// The JSON object of a command that failed beyond its project file; `command` is absent where the command line is none.

@@ -14,6 +14,7 @@ mod provenance;
 mod response;
 mod rig;
 mod sizing;
+mod specifications;
 mod stiffness;
 mod typeset;
 
@@ -58,8 +59,8 @@ const SETTLING_BAND: f64 = 1.0;
 /// Scale of the figures as PNG: 1120 pixels of width.
 const PNG_SCALE: f64 = 2.0;
 
-/// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, templates and bounds, the
-/// audit of the given controller, provenance; of a plant given as a transfer function, the robust part of it.
+/// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, specifications, templates and
+/// bounds, the audit of the given controller, provenance; of a plant given as a transfer function, the robust part of it.
 ///
 /// # Errors
 /// [`CommandError`] if there is nothing to report on or something in it cannot be computed.
@@ -78,6 +79,7 @@ pub fn report(
     let mut tables = Vec::new();
     if !project.specifications.is_empty() {
         let robust = robust_problem(source, project)?;
+        chapters.push(specifications::chapter(project, &robust.specifications)?);
         let view = match project.controller {
             Some(_) => Some(audit_problem(project, &robust, watch)?),
             None => None,

@@ -1,5 +1,6 @@
 //! From the specifications of a project to those of robust design.
 
+mod answer;
 mod limit;
 
 use phea_dynamics::linear::LinearError;
@@ -7,6 +8,7 @@ use phea_qft::specification::{
     LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck,
 };
 
+pub(crate) use self::answer::{WishRow, text};
 use self::limit::{MarginOf, Side};
 use crate::project::{self, FormulaError, Project, SpecificationKind};
 

@@ -153,6 +153,7 @@ fn every_chapter_is_there() {
         "models",
         "What the load feels",
         "Step response",
+        "Specifications",
         "Provenance and assumptions",
     ] {
         assert!(headings.contains(words), "{words}: {headings}");
@@ -170,6 +171,55 @@ fn every_chapter_is_there() {
     ] {
         assert!(page.contains(words), "{words}");
     }
+}
+
+/// The text of the chapter on specifications.
+fn demands(page: &str) -> String {
+    let xml = as_xml(page);
+    let document = Document::parse(&xml).unwrap_or_else(|error| panic!("{error}"));
+    let chapter = document.descendants().find(|node| node.attribute("id") == Some("specifications")).unwrap();
+    text(chapter)
+}
+
+/// |T| <= 1.3 bears 1 + 1/1.3 and 1 - 1/1.3 of the gain, 2 asin(1/2.6) of phase, and keeps 1/2.3 away from -1.
+#[test]
+fn what_is_demanded_is_said_with_what_it_means() {
+    let chapter = demands(page(hose()));
+    for words in [
+        "|L/(1+L)| ≤ 1.3",
+        "|1/(1+L)| ≤ |s/(s + 15)|",
+        "|F L/(1+L)| ≤ |28.213 (s + 75)/(s2 + 73.6 s + 2116)|",
+        "upper limit, not met; wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself reaches 2.19 %",
+        "lower limit, not met; wished: no overshoot, settled within 1 % in 0.3 s",
+        "by a factor of 1.77 (4.96 dB) or falls to a share of 0.231 (-12.7 dB)",
+        "the phase margin is at least 45.2°, and L stays at least 0.435 away from -1",
+    ] {
+        assert!(chapter.contains(words), "{words}: {chapter}");
+    }
+    assert_eq!(chapter.matches("A stable loop").count(), 1, "s/(s + 15) guarantees no margin: {chapter}");
+}
+
+/// The lags 1/(s + 1) below and 0.1 above meet at sqrt(99) rad/s; towards zero they are 20 dB the wrong way round.
+#[test]
+fn limits_that_cross_are_told() {
+    let project = format!(
+        "{PLANT}\n[[specification]]\nkind = \"tracking\"\nupper = 0.1\nlower = \"1/(s + 1)\"\nfrequencies = [1]\nband = [0, 100]\n\
+         [[specification]]\nkind = \"sensitivity\"\nlimit = 1\nfrequencies = [1]\nband = [0, inf]\n\
+         [[specification]]\nkind = \"sensitivity\"\nlimit = 2\nfrequencies = [1]\n\
+         [[specification]]\nkind = \"control_effort\"\nlimit = \"3e-9*s/(s^2 + 4)\"\nfrequencies = [1]\n\
+         [[specification]]\nkind = \"robust_stability\"\nlimit = {{ frequencies = [1, 10], values = [2, 3] }}\nfrequencies = [1]\n"
+    );
+    let chapter = demands(&plain_report(&project).html);
+    for words in [
+        "No loop keeps to specification 1: from 0 rad/s on its lower limit is above its upper one, by 20.0 dB towards zero",
+        "specification 2 stays stable while its gain grows without bound or falls to a share of 0.500 (-6.02 dB)",
+        "|G/(1+L)| ≤ |3·10-9 s/(s2 + 4)|",
+        "|L/(1+L)| ≤ table of 2 points from 1 to 10 rad/s",
+    ] {
+        assert!(chapter.contains(words), "{words}: {chapter}");
+    }
+    assert!(!chapter.contains("specification 3 stays"), "its band does not hold every frequency: {chapter}");
+    assert!(!chapter.contains("Tracking limits in time"), "nothing was wished: {chapter}");
 }
 
 #[test]

@@ -3,10 +3,12 @@ use serde::Serialize;
 use super::Derived;
 use crate::answer::{self, Number, OutputFile, significant, table};
 use crate::project::Loaded;
+use crate::specification::{CheckedWish, WishRow};
 
 #[derive(Serialize)]
 struct Body<'a> {
     derived: Vec<Row<'a>>,
+    wishes: Vec<WishRow>,
     warnings: Vec<String>,
 }
 
@@ -35,7 +37,7 @@ struct DeclaredRow {
 }
 
 /// The JSON object of `check`.
-pub fn json(loaded: &Loaded, derived: &[Derived]) -> String {
+pub fn json(loaded: &Loaded, derived: &[Derived], wishes: &[CheckedWish]) -> String {
     let rows = derived.iter().map(|quantity| Row {
         name: &quantity.name,
         group: quantity.group,
@@ -53,7 +55,9 @@ pub fn json(loaded: &Loaded, derived: &[Derived]) -> String {
         reason: quantity.reason.as_deref(),
     });
     let warnings = loaded.warnings.iter().map(|warning| warning.message.clone());
-    answer::json("check", loaded, Body { derived: rows.collect(), warnings: warnings.collect() })
+    let wishes = wishes.iter().map(CheckedWish::row);
+    let body = Body { derived: rows.collect(), wishes: wishes.collect(), warnings: warnings.collect() };
+    answer::json("check", loaded, body)
 }
 
 /// The table of `check` for people, and a sentence for each contradiction.

@@ -1,0 +1,192 @@
+//! The chapter on what is demanded of the loop: the specifications in words and formulae, what the limits of tracking do in
+//! time, and which margins the limits guarantee.
+
+use maud::{Markup, html};
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable;
+use phea_qft::specification::{
+    GuaranteedMargins, Limit, LimitOrder, Requirement, Specification, guaranteed_margins, tracking_spread,
+};
+
+use super::chapter::{Chapter, cell, table};
+use super::typeset::{prose, typeset};
+use crate::answer::significant;
+use crate::audit::{closed_loop_symbol, frequency_number, frequency_words, kind_words, meaning};
+use crate::command::CommandError;
+use crate::project::Project;
+use crate::quantity::{RATIO, display};
+use crate::specification::{CheckedWish, SpecificationError, wishes};
+
+pub(super) fn chapter(project: &Project, specifications: &[Specification]) -> Result<Chapter, CommandError> {
+    let rows: Vec<Vec<Markup>> = specifications.iter().enumerate().map(row).collect();
+    let wishes = wishes(project)?;
+    let margins = margins(specifications)?;
+    let body = html! {
+        p { "What is demanded of the closed loop of every plant. L is the open loop; F, G and P are prefilter, controller and plant." }
+        (table(&["", "specification", "demand", "where it must hold", "design frequencies (rad/s)"], 9, &rows))
+        @for (number, specification) in (1..).zip(specifications) { (spread(number, specification)) }
+        @if !wishes.is_empty() { h3 { "Tracking limits in time" } ul { @for wish in &wishes { li { (wish_item(wish)) } } } }
+        @if !margins.is_empty() { h3 { "Margins that the limits guarantee" } ul { @for sentence in margins { li { (prose(&sentence)) } } } }
+    };
+    Ok(Chapter { anchor: "specifications", title: "Specifications", body, figures: vec![] })
+}
+
+fn row((index, specification): (usize, &Specification)) -> Vec<Markup> {
+    let requirement = &specification.requirement;
+    let band = match specification.band_rad_per_s {
+        [0.0, f64::INFINITY] => "every frequency".to_string(),
+        [from, to] => format!("{} to {} rad/s", frequency_number(from), frequency_number(to)),
+    };
+    let frequencies: Vec<String> =
+        specification.frequencies_rad_per_s.iter().map(|frequency| frequency_number(*frequency)).collect();
+    vec![
+        cell((index + 1).to_string()),
+        cell(format!("{}: {}", kind_words(requirement), meaning(requirement))),
+        typeset(&demand(requirement)),
+        cell(band),
+        cell(frequencies.join(", ")),
+    ]
+}
+
+fn demand(requirement: &Requirement) -> String {
+    let (lower, upper) = requirement.limits();
+    let above = lower.map_or(String::new(), |lower| format!("{} ≤ ", limit_text(lower)));
+    format!("{above}{} ≤ {}", closed_loop_symbol(requirement), limit_text(upper))
+}
+
+fn limit_text(limit: &Limit) -> String {
+    match limit {
+        Limit::Constant(value) => number(*value),
+        Limit::Rational(function) => format!("|{}|", function_text(function)),
+        Limit::Table(table) => {
+            let ends = [table.points().first(), table.points().last()];
+            let [from, to] = ends.map(|point| point.map_or(String::new(), |point| number(point.0)));
+            format!("table of {} points from {from} to {to} rad/s", table.points().len())
+        }
+    }
+}
+
+/// Digits of the numbers of a formula.
+const DIGITS: usize = 5;
+
+/// `1.3`, `7·10^{-11}`.
+fn number(value: f64) -> String {
+    let text = display(value, &RATIO, DIGITS);
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => format!("{mantissa}·10^{{{exponent}}}"),
+        None => text,
+    }
+}
+
+/// `28.213 (s + 75)/(s^2 + 73.6 s + 2116)`.
+fn function_text(function: &TransferFunction) -> String {
+    let (zeros, poles) = (factors(function.zeros()), factors(function.poles()));
+    let above = match (number(function.gain()), zeros.join(" ")) {
+        (gain, zeros) if zeros.is_empty() => gain,
+        (gain, zeros) if gain == "1" => zeros,
+        (gain, zeros) => format!("{gain} {zeros}"),
+    };
+    match poles.as_slice() {
+        [] => above,
+        [one] => format!("{above}/{one}"),
+        several => format!("{above}/({})", several.join(" ")),
+    }
+}
+
+/// Real factors of a polynomial with these roots, which come with their conjugates.
+fn factors(roots: &[Complex64]) -> Vec<String> {
+    let term = |value: f64| {
+        let sign = if value < 0.0 { '-' } else { '+' };
+        (sign, number(value.abs()))
+    };
+    let factor = |root: &Complex64| {
+        if root.im == 0.0 && root.re == 0.0 {
+            return "s".to_string();
+        }
+        if root.im == 0.0 {
+            let (sign, corner) = term(-root.re);
+            return format!("(s {sign} {corner})");
+        }
+        let ((sign, middle), square) = (term(-2.0 * root.re), number(root.norm_sqr()));
+        if root.re == 0.0 {
+            format!("(s^2 + {square})")
+        } else {
+            format!("(s^2 {sign} {middle} s + {square})")
+        }
+    };
+    roots.iter().filter(|root| root.im >= 0.0).map(factor).collect()
+}
+
+/// How far apart the limits of tracking are; nothing for other kinds.
+fn spread(number: usize, specification: &Specification) -> Markup {
+    let Requirement::Tracking { lower, upper } = &specification.requirement else { return html! {} };
+    let decibels = |value: f64| if value.abs() < 5e-4 { "0".to_string() } else { significant(value, 3) };
+    match tracking_spread(lower, upper, specification.band_rad_per_s) {
+        Ok(spread) => match spread.order {
+            LimitOrder::Kept { least_db, frequency_rad_per_s } => html! {
+                p {
+                    "The limits of specification " (number) " are apart by at least " (decibels(least_db)) " dB, "
+                    (frequency_words(frequency_rad_per_s)) ", and by " (decibels(spread.at_end_db)) " dB at the end of the band."
+                }
+            },
+            LimitOrder::Crossed { from_rad_per_s, excess_db, frequency_rad_per_s } => html! {
+                div.callout.bad-edge { p {
+                    "No loop keeps to specification " (number) ": from " (frequency_number(from_rad_per_s))
+                    " rad/s on its lower limit is above its upper one, by " (decibels(excess_db)) " dB "
+                    (frequency_words(frequency_rad_per_s)) "."
+                } }
+            },
+        },
+        Err(reason) => {
+            html! { p { "The limits of specification " (number) " are not compared: " (reason) "." } }
+        }
+    }
+}
+
+fn wish_item(wish: &CheckedWish) -> Markup {
+    let met = wish.is_met();
+    html! {
+        "Specification " (wish.number) ", " (wish.key) " limit, "
+        @if met { span.good { "met" } } @else { span.bad { "not met" } }
+        "; " (wish.check.to_string()) "."
+    }
+}
+
+/// A sentence for each constant limit on |L/(1+L)| or |1/(1+L)| that holds at every frequency.
+fn margins(specifications: &[Specification]) -> Result<Vec<String>, SpecificationError> {
+    let mut sentences = Vec::new();
+    for (number, specification) in (1..).zip(specifications) {
+        if specification.band_rad_per_s != [0.0, f64::INFINITY] {
+            continue;
+        }
+        let found = guaranteed_margins(&specification.requirement);
+        let refused = |reason| SpecificationError { number, key: "limit", reason };
+        if let Some(margins) = found.map_err(|error| refused(error.into()))? {
+            sentences.push(margin_sentence(number, &margins));
+        }
+    }
+    Ok(sentences)
+}
+
+fn margin_sentence(number: usize, margins: &GuaranteedMargins) -> String {
+    let factor = |value: f64| {
+        format!("{} ({} dB)", significant(value, 3), significant(20.0 * portable::log10(value), 3))
+    };
+    let growth = match margins.gain_increase {
+        f64::INFINITY => "without bound".to_string(),
+        value => format!("by a factor of {}", factor(value)),
+    };
+    let fall = match margins.gain_reduction {
+        0.0 => "to nothing".to_string(),
+        value => format!("to a share of {}", factor(value)),
+    };
+    let phase = match margins.phase_rad {
+        f64::INFINITY => "|L| is nowhere 1".to_string(),
+        angle => format!("the phase margin is at least {}°", significant(angle.to_degrees(), 3)),
+    };
+    format!(
+        "A stable loop that keeps to specification {number} stays stable while its gain grows {growth} or falls {fall}; {phase}, and L stays at least {} away from -1.",
+        significant(margins.modulus, 3)
+    )
+}

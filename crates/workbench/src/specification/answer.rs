@@ -1,0 +1,72 @@
+use phea_dynamics::time_response::Settling;
+use phea_qft::specification::WishOutcome;
+use serde::Serialize;
+
+use super::CheckedWish;
+use crate::answer::significant;
+
+/// A wish in time in the JSON of `check`.
+#[derive(Serialize)]
+pub(crate) struct WishRow {
+    specification: usize,
+    limit: &'static str,
+    wished: StepRow,
+    reached: StepRow,
+    met: bool,
+}
+
+#[derive(Serialize)]
+struct StepRow {
+    overshoot_percent: f64,
+    settling_time_s: Option<f64>,
+    settling_band_percent: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<String>,
+}
+
+impl CheckedWish {
+    /// Whether the limit does what was wished.
+    pub fn is_met(&self) -> bool {
+        self.check.outcome() == WishOutcome::Met
+    }
+
+    pub(crate) fn row(&self) -> WishRow {
+        let (wished, reached) = (self.check.wished, self.check.reached);
+        let reason = match reached.settling {
+            Settling::Settled { .. } => None,
+            Settling::NotSettled { deviation_percent } => {
+                Some(format!("does not settle: it stays {} % off", significant(deviation_percent, 3)))
+            }
+        };
+        WishRow {
+            specification: self.number,
+            limit: self.key,
+            wished: StepRow {
+                overshoot_percent: wished.overshoot_percent,
+                settling_time_s: Some(wished.settling_time_s),
+                settling_band_percent: wished.settling_band_percent,
+                reason: None,
+            },
+            reached: StepRow {
+                overshoot_percent: reached.overshoot_percent,
+                settling_time_s: reached.settling.time_s(),
+                settling_band_percent: wished.settling_band_percent,
+                reason,
+            },
+            met: self.is_met(),
+        }
+    }
+}
+
+/// The section of `check` on wishes in time, with an empty line below; nothing where there is no wish.
+pub(crate) fn text(wishes: &[CheckedWish]) -> String {
+    if wishes.is_empty() {
+        return String::new();
+    }
+    let line = |wish: &CheckedWish| {
+        let met = if wish.is_met() { "met" } else { "not met" };
+        format!("  Specification {}, {} limit, {met}; {}.\n", wish.number, wish.key, wish.check)
+    };
+    let lines: String = wishes.iter().map(line).collect();
+    format!("Tracking limits in time\n{lines}\n")
+}
