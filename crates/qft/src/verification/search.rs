@@ -34,6 +34,8 @@ pub(super) struct Task {
     pub(super) frequency: f64,
     /// Between which the frequency may move; `None` where it is given.
     pub(super) range: Option<[f64; 2]>,
+    /// Whether resonances between the plants are searched for at a given frequency.
+    pub(super) resonances: bool,
 }
 
 /// What a search ended at, and the first plant on its way that has no margin at some frequency.
@@ -64,9 +66,9 @@ struct Place {
 /// Goes downhill from a start until a sweep over all coordinates gains nothing.
 pub(super) fn search(evaluator: &Evaluator, family: &UncertainFamily, task: &Task) -> Outcome {
     let descent = Descent { evaluator, family, task, follower: None, undefined: &Cell::new(None) };
-    let place = descent.start().map(|start| match task.range {
-        Some(_) => descent.descended(start),
-        None => descent.with_resonances(start),
+    let place = descent.start().map(|start| match task.resonances {
+        true => descent.with_resonances(start),
+        false => descent.descended(start),
     });
     let found = place.map(|place| Found {
         margin_db: place.margin_db,
@@ -112,7 +114,13 @@ impl Descent<'_> {
             for block in 0..place.shares.len() {
                 for coordinate in 0..self.family.coordinates().len() {
                     if self.moves(block, coordinate) {
-                        place = self.along(place, block, coordinate, radius, sweep == 0);
+                        place = self.along(
+                            place,
+                            block,
+                            coordinate,
+                            radius,
+                            sweep == 0 && self.follower.is_none(),
+                        );
                     }
                 }
             }

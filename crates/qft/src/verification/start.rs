@@ -34,7 +34,7 @@ fn beside_violations(envelope: &[EnvelopePoint]) -> Vec<f64> {
     kept.take(2 * STARTS).collect()
 }
 
-/// Searches for one specification: at each design frequency, each end of the band and beside violated frequencies, from its worst local minima, from the
+/// Searches for one specification: at each design frequency and each end of the band, with the resonances there; beside violated frequencies; from its worst local minima, from the
 /// middle of the box, and from the plants with the worst peaks.
 pub(super) fn tasks(
     part: Part,
@@ -51,15 +51,21 @@ pub(super) fn tasks(
         shares: point.plants.iter().map(shares).collect(),
         frequency: point.frequency,
         range,
+        resonances: false,
     };
-    let ends = [envelope.first(), envelope.last()].into_iter().flatten().map(|point| point.frequency);
-    let beside = beside_violations(&envelope);
-    let fixed: Vec<f64> = ends.chain(design_frequencies.iter().copied()).chain(beside).collect();
-    let fixed = envelope.iter().filter(|point| fixed.contains(&point.frequency));
     let middle = |point: &EnvelopePoint| vec![vec![0.5; family.coordinates().len()]; point.plants.len()];
-    let mut tasks: Vec<Task> = fixed
-        .flat_map(|point| [from(point, None), Task { shares: middle(point), ..from(point, None) }])
-        .collect();
+    let ends = [envelope.first(), envelope.last()].into_iter().flatten().map(|point| point.frequency);
+    let given: Vec<f64> = ends.chain(design_frequencies.iter().copied()).collect();
+    let beside = beside_violations(&envelope);
+    let mut tasks = Vec::new();
+    for point in &envelope {
+        if given.contains(&point.frequency) {
+            let task = Task { resonances: true, ..from(point, None) };
+            tasks.extend([task.clone(), Task { shares: middle(point), ..task }]);
+        } else if beside.contains(&point.frequency) {
+            tasks.push(from(point, None));
+        }
+    }
     let Some(range) = range else { return tasks };
     let minima: Vec<f64> = local_minima(&envelope).iter().take(STARTS).map(|bracket| bracket[1]).collect();
     for point in envelope.iter().filter(|point| minima.contains(&point.frequency)) {
@@ -72,6 +78,7 @@ pub(super) fn tasks(
         shares: case.points.iter().map(|point| self::shares(family, Some(point))).collect(),
         frequency: case.frequency,
         range: Some(range),
+        resonances: false,
     }));
     tasks.dedup();
     tasks

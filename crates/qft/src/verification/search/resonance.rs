@@ -17,7 +17,7 @@ const BESIDE_END: f64 = 1e-4;
 /// First step of a share that follows its minimum.
 const STEP: f64 = 0.01;
 /// To this it is found: a resonance may be narrow.
-const TOLERANCE: f64 = 1e-8;
+const TOLERANCE: f64 = 1e-7;
 
 /// A plant on a line.
 #[derive(Clone, Copy)]
