@@ -1,7 +1,7 @@
 //! The audit of a controller: stability, delay margin and specifications of a family put together into one verdict.
 
 use crate::closed_loop::Compensation;
-use crate::family::{Extent, Family};
+use crate::family::Family;
 use crate::specification::{Requirement, Specification};
 use crate::stability::StabilityAudit;
 use crate::verification::{
@@ -52,7 +52,6 @@ pub struct AuditRun {
     stability: StabilityAudit,
     stability_done: bool,
     specifications: SpecificationAudit,
-    searched: bool,
     tolerance_db: f64,
 }
 
@@ -75,7 +74,6 @@ impl AuditRun {
                 tracking,
                 tolerance_db,
             ),
-            searched: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
             tolerance_db,
         }
     }
@@ -103,9 +101,6 @@ impl AuditRun {
         let stability = self.stability.result();
         let mut specifications = self.specifications.findings().to_vec();
         for finding in &mut specifications {
-            if !self.searched {
-                finding.evidence = Evidence::Grid;
-            }
             without_stability(finding, &stability.finding);
         }
         let verdicts = specifications.iter().map(|finding| finding.verdict);

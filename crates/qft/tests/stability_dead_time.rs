@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::frequency::margins;
-use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
 use phea_dynamics::portable::{atan2, pow};
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 use phea_qft::closed_loop::Compensation;
@@ -147,10 +147,12 @@ fn nothing_is_cancelled() {
 }
 
 #[test]
-fn a_dead_time_that_cannot_be_is_not_resolved() {
-    for delay in [-1.0, f64::NAN, f64::INFINITY] {
-        let status = found(&[1.0], &[1.0, 1.0], delay).status;
-        assert!(matches!(status, StabilityStatus::NotResolved(Irresolution::Linear(_))), "{status:?}");
+fn a_dead_time_that_cannot_be_is_refused() {
+    let around = loop_of(function(&[1.0], &[1.0]), function(&[1.0], &[1.0]));
+    for dead_time_s in [-1.0, f64::NAN, f64::INFINITY] {
+        let command = RationalCoefficients { numerator: vec![1.0], denominator: vec![1.0, 1.0] };
+        let refused = around.member(PlantCoefficients { command, disturbance: None, dead_time_s });
+        assert!(matches!(refused, Err(LinearError::DeadTime { .. })), "{refused:?}");
     }
 }
 
