@@ -105,7 +105,7 @@ pub enum CommandError {
     Robust(#[from] crate::robust::RobustError),
     /// A plant that is no actuator, and nothing demanded of it.
     #[error(
-        "a report on a plant needs at least one [[specification]]; on a rig it needs [valve], [cylinder] and [line]"
+        "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
     )]
     NothingToReport,
     /// Whoever watched a long command stopped it.

@@ -301,6 +301,25 @@ fn another_plant_is_checked_and_refused_elsewhere_with_the_reason() {
     }
 }
 
+/// A transfer function has the robust chapters, whether its closed loop is rational or not.
+#[test]
+fn a_plant_with_specifications_has_the_robust_chapters() {
+    let servo = include_str!("../../../examples/qft/servo.toml");
+    for settings in [&[][..], &["controller.delay=\"1 ms\""], &["controller.sample_time=\"1 ms\""]] {
+        let report = report_of(servo, settings);
+        for heading in ["Specifications", "Templates and bounds", "Audit of the controller"] {
+            assert!(report.html.contains(&format!("<h2>{heading}</h2>")), "{heading} {settings:?}");
+        }
+        for figure in ["templates", "nichols", "audit_1_robust_stability", "audit_2_tracking", "family_steps"]
+        {
+            assert!(report.figures.iter().any(|found| found.name == figure), "{figure} {settings:?}");
+        }
+        for table in ["bounds.csv", "templates.csv", "margins.csv"] {
+            assert!(report.tables.iter().any(|found| found.name == table), "{table} {settings:?}");
+        }
+    }
+}
+
 #[test]
 fn a_project_without_sizing_or_controller_has_the_other_chapters() {
     let (start, rest) = HOSE.split_once("[sizing]").unwrap();
@@ -347,7 +366,12 @@ fn only_models_of_the_same_parameters_are_drawn_against_each_other() {
 
 /// The report of the hose with settings, without its sizing chapter.
 fn report_with(settings: &[&str]) -> Report {
-    report(&Memory::default(), &load(HOSE, settings, &[]), None, &mut |_| true).unwrap()
+    report_of(HOSE, settings)
+}
+
+/// The report of a project with settings, without a sizing chapter.
+fn report_of(project: &str, settings: &[&str]) -> Report {
+    report(&Memory::default(), &load(project, settings, &[]), None, &mut |_| true).unwrap()
 }
 
 #[test]
