@@ -152,7 +152,7 @@ pub fn answer(
 /// The same, telling its progress.
 ///
 /// # Errors
-/// Those of [`answer`], and [`CommandError::Stopped`].
+/// Those of [`answer()`], and [`CommandError::Stopped`].
 pub fn answer_watched(
     source: &dyn Source,
     loaded: &Loaded,
