@@ -6,7 +6,7 @@ mod machine;
 mod measured;
 mod uncertain;
 
-use phea_dynamics::uncertain_plant::{UncertainPlant, UncertainPlantError};
+use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant, UncertainPlantError};
 use phea_qft::family::{Family, MeasurementError};
 
 use crate::project::{FormulaError, Project, Report, SpecificationKind};
@@ -19,6 +19,20 @@ pub enum FamilyError {
     /// The rig cannot be computed with.
     #[error(transparent)]
     Rig(#[from] RigError),
+    /// A parameter of the linear model that is set outright, outside of its own range.
+    #[error(
+        "`linear.{name}` = {value:e} lies outside of its range in [uncertainty], {minimum:e} to {maximum:e}: widen the range, or take the number out of [linear]"
+    )]
+    Linear {
+        /// The parameter.
+        name: String,
+        /// What `[linear]` says, SI.
+        value: f64,
+        /// Lower end of the range, SI.
+        minimum: f64,
+        /// Upper end of the range, SI.
+        maximum: f64,
+    },
     /// The box is empty or its coefficients are.
     #[error("[uncertainty]: {0}")]
     Plant(#[from] UncertainPlantError),
@@ -103,6 +117,14 @@ fn check_second_path(project: &Project, family: &Family) -> Result<(), FamilyErr
 /// The plant over the box of its uncertain parameters.
 fn uncertain_plant(project: &Project) -> Result<UncertainPlant, FamilyError> {
     let parameters = uncertain::parameters(project);
+    let is_outside = |one: &&UncertainParameter| {
+        let set = project.linear.get(&one.name);
+        set.is_some_and(|value| value < one.minimum || value > one.maximum)
+    };
+    if let Some(UncertainParameter { name, nominal, minimum, maximum }) = parameters.iter().find(is_outside) {
+        let (value, minimum, maximum) = (*nominal, *minimum, *maximum);
+        return Err(FamilyError::Linear { name: name.clone(), value, minimum, maximum });
+    }
     match &project.plant {
         Some(plant) => formula::uncertain_plant(plant, parameters),
         None => hydraulic::uncertain_plant(project, &Rig::new(project)?, parameters),

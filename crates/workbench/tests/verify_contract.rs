@@ -113,3 +113,12 @@ fn a_watcher_sees_progress_rise_and_can_stop_it() {
     assert_eq!(shares.len(), 50);
     assert!(shares.is_sorted() && shares.iter().all(|share| (0.0..=1.0).contains(share)));
 }
+
+#[test]
+fn a_number_set_outside_of_its_own_range_is_refused_with_the_cure() {
+    let refused = try_answer(HOSE, &["linear.flow_pressure_coefficient=0"], &[], &Request::Verify);
+    let words = refused.unwrap_err().to_string();
+    for part in ["`linear.flow_pressure_coefficient` = 0", "6.42e-13 to 7e-11", "widen the range"] {
+        assert!(words.contains(part), "{part} is missing in: {words}");
+    }
+}

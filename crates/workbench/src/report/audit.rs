@@ -21,10 +21,12 @@ pub(super) fn chapter(problem: &RobustProblem, view: &ProjectAudit) -> Result<Ch
         h3 { "Specifications" }
         (specifications(view))
         @if violated(view) { h3 { "Where it is violated" } (violations(view)) }
-        h3 { "Worst plants" }
-        p { "The plant of the family with which each specification fares worst; a test bench shows it only when it is set up as this one." }
-        (plants(view))
-        h3 { "Closed loops of the family" }
+        @if !worst_plants(view).is_empty() {
+            h3 { "Worst plants" }
+            p { "The plant of the family with which each specification fares worst; a test bench shows it only when it is set up as this one." }
+            (plants(view))
+        }
+        @if !figures.is_empty() { h3 { "Closed loops of the family" } }
         @for figure in &figures { (place(figure)) }
         @match &steps {
             Some(Ok(figure)) => (place(figure)),

@@ -6,7 +6,7 @@ use phea_dynamics::portable;
 use phea_qft::closed_loop::Member;
 use phea_qft::family::Family;
 use phea_qft::specification::{Limit, Requirement, Specification};
-use phea_qft::verification::{PlantPoint, SpecificationFinding, Verdict, WorstCase};
+use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use crate::answer::significant;
 use crate::audit::{closed_loop_symbol, frequency_words, kind_key, kind_words};
@@ -30,16 +30,12 @@ pub(super) fn span(specification: &Specification, finding: &SpecificationFinding
     if ends.is_empty() { [0.01, 1000.0] } else { [low / MARGIN_OF_FREQUENCY, high * MARGIN_OF_FREQUENCY] }
 }
 
-/// Every member, and this plant.
-fn all_members(problem: &RobustProblem, worst: Option<&PlantPoint>) -> Result<Vec<Member>, LinearError> {
+/// Every member within the loop.
+fn all_members(problem: &RobustProblem) -> Result<Vec<Member>, LinearError> {
     match &problem.family {
         Family::Uncertain(family) => {
-            let named = worst.into_iter().filter_map(|plant| match plant {
-                PlantPoint::Parameters(values) => Some(values),
-                PlantPoint::Measured(_) => None,
-            });
-            let plants = family.members().iter().chain(named);
-            plants.map(|values| problem.compensation.member(family.plant().coefficients(values))).collect()
+            let plants = family.members().iter().map(|values| family.plant().coefficients(values));
+            plants.map(|plant| problem.compensation.member(plant)).collect()
         }
         Family::Measured(family) => {
             Ok(family.plants().iter().map(|plant| problem.compensation.measured(plant)).collect())
@@ -47,25 +43,27 @@ fn all_members(problem: &RobustProblem, worst: Option<&PlantPoint>) -> Result<Ve
     }
 }
 
-/// One figure for each specification.
+/// One figure for each specification that has a margin; the magnitudes of an unstable loop are those of no response.
 pub(super) fn figures(
     problem: &RobustProblem,
     findings: &[SpecificationFinding],
     tolerance_db: f64,
 ) -> Result<Vec<Figure>, LinearError> {
+    let members = all_members(problem)?;
     let numbered = problem.specifications.iter().zip(findings).enumerate();
     numbered
+        .filter(|(_, (_, finding))| finding.worst.is_some())
         .map(|(index, (specification, finding))| {
-            figure(problem, index + 1, specification, finding, tolerance_db)
+            figure(problem, &members, index + 1, (specification, finding), tolerance_db)
         })
         .collect()
 }
 
 fn figure(
     problem: &RobustProblem,
+    members: &[Member],
     number: usize,
-    specification: &Specification,
-    finding: &SpecificationFinding,
+    (specification, finding): (&Specification, &SpecificationFinding),
     tolerance_db: f64,
 ) -> Result<Figure, LinearError> {
     let requirement = &specification.requirement;
@@ -74,10 +72,12 @@ fn figure(
     frequencies.extend(finding.envelope.iter().map(|point| point.0).filter(|w| (from..=to).contains(w)));
     frequencies.sort_by(f64::total_cmp);
     frequencies.dedup();
-    let worst = finding.worst.as_ref().map(|worst| &worst.plant);
-    let members = all_members(problem, worst)?;
-    let mut curves: Vec<MagnitudeCurve> =
-        members.iter().map(|member| curve(problem, requirement, member, &frequencies)).collect();
+    let worst = finding.worst.as_ref().and_then(|worst| problem.member(&worst.plant));
+    let mut curves: Vec<MagnitudeCurve> = members
+        .iter()
+        .chain(&worst)
+        .map(|member| curve(problem, requirement, member, &frequencies))
+        .collect();
     let greatest = extreme(&curves, f64::max);
     let least = requirement.limits().0.map(|_| extreme(&curves, f64::min));
     // the last is the worst plant
