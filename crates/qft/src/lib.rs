@@ -6,7 +6,9 @@
 pub mod audit;
 pub mod bound;
 pub mod closed_loop;
+pub mod design;
 pub mod family;
+pub mod loop_shaping;
 mod sampled;
 pub mod specification;
 pub mod stability;

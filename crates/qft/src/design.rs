@@ -1,0 +1,9 @@
+//! The design of a controller and its prefilter: search, audit, and a new constraint for every counterexample, until both agree.
+
+mod problem;
+mod result;
+mod run;
+
+pub use problem::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
+pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation};
+pub use run::DesignRun;

@@ -1,0 +1,76 @@
+//! What a design begins with.
+
+use phea_dynamics::controller::Timing;
+use phea_dynamics::linear::TransferFunction;
+
+use crate::family::Family;
+use crate::loop_shaping::Structure;
+use crate::specification::Specification;
+
+/// What must be kept to, by which plants, in which loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignProblem {
+    /// The plants.
+    pub family: Family,
+    /// H; 1 where the output itself is fed back.
+    pub sensor: TransferFunction,
+    /// Sample time, delay and discretization of the controller that is looked for.
+    pub timing: Timing,
+    /// What must be kept to.
+    pub specifications: Vec<Specification>,
+    /// Delay beyond that of the loop which every plant must bear, s; 0 asks for none.
+    pub minimum_delay_margin_s: f64,
+}
+
+/// What is made least or greatest among the controllers that keep to every specification.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Objective {
+    /// lim s^r G(s), r the relative degree; in a sampled loop |G| at pi/T.
+    #[default]
+    LeastHighFrequencyGain,
+    /// The gain crossover of the nominal loop.
+    LeastBandwidth,
+    /// The least margin of all specifications.
+    BestWorstMargin,
+}
+
+/// Which controllers are tried.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ControllerChoice {
+    /// Those of one structure.
+    Given(Structure),
+    /// Structures of growing order, up to this one, until one meets every specification.
+    Grow {
+        /// Largest number of poles.
+        maximum_order: usize,
+    },
+}
+
+/// Which prefilters are tried.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PrefilterChoice {
+    /// None: tracking is judged by its spread.
+    None,
+    /// This one.
+    Given(TransferFunction),
+    /// Prefilters of growing order, up to this one.
+    Grow {
+        /// Largest number of poles.
+        maximum_order: usize,
+    },
+}
+
+/// How a design is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignOptions {
+    /// What is made least or greatest.
+    pub objective: Objective,
+    /// Which controllers are tried.
+    pub controller: ControllerChoice,
+    /// Which prefilters are tried.
+    pub prefilter: PrefilterChoice,
+    /// Seed of the random starting points: the same seed gives the same design.
+    pub seed: u64,
+    /// A margin of minus this much still counts as met, dB.
+    pub tolerance_db: f64,
+}
