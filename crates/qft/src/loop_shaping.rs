@@ -6,8 +6,10 @@
 //!
 //! All free numbers are natural logarithms, so that every search direction is a change by factors.
 
+mod sample_stability;
 mod search;
 mod structure;
 
+pub use sample_stability::{SampleJudgement, SampleStability};
 pub use search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
 pub use structure::{Part, Structure};
