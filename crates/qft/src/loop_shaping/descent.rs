@@ -25,6 +25,8 @@ const GROWN: f64 = 0.7;
 const PENALTY_FIRST: f64 = 10.0;
 const PENALTY_GROWTH: f64 = 10.0;
 const PENALTY_LARGEST: f64 = 1e7;
+/// Share of the tolerance by which margins may miss the reserve for the objective to be aimed at.
+const ENTERED: f64 = 0.5;
 /// How far the slopes that are left may still lead, in units of x, for a point to count as the end.
 const REACH: f64 = 0.1;
 /// Subproblems without an answer, one after the other, until the descent gives up.
@@ -37,7 +39,8 @@ const MULTIPLIER_LEAST: f64 = 1e-6;
 pub struct DescentOptions {
     /// What is made least or greatest.
     pub aim: Aim,
-    /// Least margin to be left, dB, for [`Aim::Objective`].
+    /// Least margin to be left, dB, for [`Aim::Objective`]. Limits that leave no room, such as those of tracking at low frequency, cannot
+    /// keep any.
     pub reserve_db: f64,
     /// The objective, or the worst margin that is looked for, is found to this, and a margin may miss its reserve by this; dB.
     pub tolerance_db: f64,
@@ -46,9 +49,14 @@ pub struct DescentOptions {
 }
 
 impl DescentOptions {
-    /// A reserve of 0.001 dB, a tolerance of 0.0001 dB, 200 steps.
+    /// No reserve, a tolerance of 0.0001 dB, 200 steps.
     pub fn new(aim: Aim) -> DescentOptions {
-        DescentOptions { aim, reserve_db: 1e-3, tolerance_db: 1e-4, steps_maximum: 200 }
+        DescentOptions { aim, reserve_db: 0.0, tolerance_db: 1e-4, steps_maximum: 200 }
+    }
+
+    /// Whether a worst margin keeps the reserve, but for a share of the tolerance.
+    fn keeps(&self, worst_margin_db: f64, share: f64) -> bool {
+        worst_margin_db >= self.reserve_db - share * self.tolerance_db
     }
 }
 
@@ -208,7 +216,7 @@ impl Descent {
             }
         };
         self.aim = match self.options.aim {
-            Aim::Objective if judgement.worst_margin_db >= self.options.reserve_db => Aim::Objective,
+            Aim::Objective if self.options.keeps(judgement.worst_margin_db, ENTERED) => Aim::Objective,
             _ => Aim::WorstMargin,
         };
         self.here = Some(Place { x, judgement, slopes, beyond: vec![] });
@@ -227,60 +235,56 @@ impl Descent {
         }
         let (x, judgement) = self.tried(problem, &here, &answer.step, &bounds);
         let share = self.gain(&here, &judgement) / answer.decrease_db;
-        if share >= TAKEN {
-            return self.taken(problem, here, &answer, x, judgement, share);
-        }
-        let size = greatest(&answer.step);
         if !is_usable(&judgement) {
-            self.shrink(size / 4.0);
+            self.shrink(greatest(&answer.step) / 4.0);
             return here;
         }
-        self.corrected(problem, here, &answer, x, judgement, &bounds)
+        let there = Place { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
+        self.learn(&here, &there, &answer);
+        if share >= GROWN {
+            self.taken(there, &answer, share)
+        } else {
+            self.corrected(problem, here, there, &answer, share, &bounds)
+        }
     }
 
-    /// The step again, with the margins that were found at its end: theirs are the constants, those of the start the slopes.
+    /// The step again, with the margins that were found at its end: theirs are the constants, those of the start the slopes. The better
+    /// one of both is taken, if one is good enough.
     fn corrected(
         &mut self,
         problem: &mut dyn SearchProblem,
         here: Place,
+        there: Place,
         answer: &Answer,
-        x: Vec<f64>,
-        judgement: Judgement,
+        share: f64,
         bounds: &[[f64; 2]],
     ) -> Place {
-        let there = Place { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
-        self.learn(&here, &there, answer);
         let rows = here.corrected_rows(&there, &answer.step);
         if let Ok(second) = self.solved(&here, &rows, bounds) {
             let (x, judgement) = self.tried(problem, &here, &second.step, bounds);
-            let share = self.gain(&here, &judgement) / answer.decrease_db;
-            if share >= TAKEN {
-                return self.taken(problem, here, &second, x, judgement, share.min(KEPT));
+            let corrected_share = self.gain(&here, &judgement) / answer.decrease_db;
+            if corrected_share >= share.max(TAKEN) {
+                let there = Place { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
+                self.learn(&here, &there, &second);
+                return self.taken(there, &second, corrected_share);
             }
+        }
+        if share >= TAKEN {
+            return self.taken(there, answer, share);
         }
         self.shrink(greatest(&answer.step) / 3.0);
         here.with_rows_of(&there)
     }
 
     /// Moves on, and fits the trust region to how well the step kept its promise.
-    fn taken(
-        &mut self,
-        problem: &mut dyn SearchProblem,
-        here: Place,
-        answer: &Answer,
-        x: Vec<f64>,
-        judgement: Judgement,
-        share: f64,
-    ) -> Place {
-        let there = Place { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
-        self.learn(&here, &there, answer);
+    fn taken(&mut self, there: Place, answer: &Answer, share: f64) -> Place {
         let size = greatest(&answer.step);
         if share < KEPT {
             self.radius = size / 2.0;
         } else if share > GROWN && size > 0.9 * self.radius {
             self.radius = (2.0 * self.radius).min(RADIUS_LARGEST);
         }
-        let is_feasible = judgement.worst_margin_db >= self.options.reserve_db;
+        let is_feasible = self.options.keeps(there.judgement.worst_margin_db, ENTERED);
         if self.aim == Aim::WorstMargin && self.options.aim == Aim::Objective && is_feasible {
             self.aim = Aim::Objective;
             self.curvature = None;
@@ -354,7 +358,7 @@ impl Descent {
             return true;
         }
         let worst_margin_db = here.judgement.worst_margin_db;
-        let misses = self.options.reserve_db - worst_margin_db > tolerance;
+        let misses = !self.options.keeps(worst_margin_db, 1.0);
         if self.aim == Aim::Objective && misses && self.penalty < PENALTY_LARGEST {
             self.penalty *= PENALTY_GROWTH;
             return false;

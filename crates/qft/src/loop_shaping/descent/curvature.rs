@@ -5,6 +5,9 @@ use super::super::subproblem::dot;
 /// Share of the curvature so far that a change of slopes must show, or it is mixed with what was expected (Powell 1978).
 const DAMPING: f64 = 0.2;
 
+/// An entry beyond this is no curvature but a kink, dB for the square of a neper.
+const LARGEST: f64 = 1e6;
+
 /// A positive definite matrix B, kept by the damped BFGS formula.
 ///
 /// ```text
@@ -35,7 +38,7 @@ impl Curvature {
         self.rows.iter().map(|row| dot(row, step)).collect()
     }
 
-    /// B', from a step d and the change y of the slopes along it; `None` where rounding has spoilt it.
+    /// B', from a step d and the change y of the slopes along it; `None` where a kink or rounding has spoilt it.
     pub(super) fn updated(&self, step: &[f64], change: &[f64]) -> Option<Curvature> {
         let expected = self.times(step);
         let before = dot(step, &expected);
@@ -55,10 +58,9 @@ impl Curvature {
                 entries.iter().enumerate().map(|(column, &old)| entry(row, column, old)).collect()
             })
             .collect();
-        let sound = rows
-            .iter()
-            .enumerate()
-            .all(|(at, row)| row[at] > 0.0 && row.iter().all(|entry| entry.is_finite()));
+        let is_sound =
+            |(at, row): (usize, &Vec<f64>)| row[at] > 0.0 && row.iter().all(|entry| entry.abs() < LARGEST);
+        let sound = rows.iter().enumerate().all(is_sound);
         sound.then_some(Curvature { rows })
     }
 }
