@@ -7,11 +7,12 @@ pub use frequencies::search_frequencies;
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::uncertain_plant::PlantCoefficients;
 
 use super::margins::{Demand, demands};
 use crate::closed_loop::{Compensation, Member};
 use crate::design::DesignProblem;
-use crate::family::Family;
+use crate::family::{Family, MeasuredPlant};
 use crate::verification::PlantPoint;
 
 /// Beside an undamped pole of the plant, where it has no response, it is looked at this share of the frequency higher.
@@ -183,6 +184,11 @@ impl Samples {
         self.columns.iter().map(|column| column.plants.len()).sum()
     }
 
+    /// The loop, with a controller of gain 1.
+    pub(super) fn around(&self) -> &Compensation {
+        &self.around
+    }
+
     pub(super) fn columns(&self) -> &[Column] {
         &self.columns
     }
@@ -192,18 +198,9 @@ impl Samples {
         if let Some(index) = self.plants.iter().position(|known| known == point) {
             return Ok(index);
         }
-        let none = || SamplesError::Plant(point.clone());
-        let member = match (&self.problem.family, point) {
-            (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
-                if values.len() != family.plant().parameters().len() {
-                    return Err(none());
-                }
-                self.around.member(family.plant().coefficients(values))?
-            }
-            (Family::Measured(family), PlantPoint::Measured(index)) => {
-                self.around.measured(family.plants().get(*index).ok_or_else(none)?)
-            }
-            _ => return Err(none()),
+        let member = match plant_at(&self.problem.family, point)? {
+            Plant::Rational(coefficients) => self.around.member(coefficients)?,
+            Plant::Measured(measured) => self.around.measured(measured),
         };
         self.plants.push(point.clone());
         self.members.push(member);
@@ -267,6 +264,26 @@ impl Column {
     pub(super) fn loop_at(&self, place: usize) -> Complex64 {
         Complex64::new(self.loop_re[place], self.loop_im[place])
     }
+}
+
+/// A plant of a family.
+enum Plant<'a> {
+    Rational(PlantCoefficients<f64>),
+    Measured(&'a MeasuredPlant),
+}
+
+fn plant_at<'a>(family: &'a Family, point: &PlantPoint) -> Result<Plant<'a>, SamplesError> {
+    let plant = match (family, point) {
+        (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
+            let complete = values.len() == family.plant().parameters().len();
+            complete.then(|| Plant::Rational(family.plant().coefficients(values)))
+        }
+        (Family::Measured(family), PlantPoint::Measured(index)) => {
+            family.plants().get(*index).map(Plant::Measured)
+        }
+        _ => None,
+    };
+    plant.ok_or_else(|| SamplesError::Plant(point.clone()))
 }
 
 /// The loop with a controller of gain 1.

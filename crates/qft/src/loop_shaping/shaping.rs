@@ -1,17 +1,14 @@
 //! The shaping of a loop as a search sees it.
 
 use num_complex::Complex64;
-use phea_dynamics::controller::Controller;
-use phea_dynamics::linear::LinearError;
+use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 
 use super::margins::{ColumnLoop, DelayMargins, bandwidth, candidates, delay_margins};
 use super::samples::{Samples, SamplesError};
 use super::structure::{DECIBELS_PER_NEPER, Structure, StructureResponse};
-use super::{Judgement, MarginRow, SearchProblem, Slopes};
-use crate::closed_loop::Compensation;
+use super::{Judgement, MarginRow, SampleStability, SearchProblem, Slopes};
 use crate::design::Objective;
-use crate::stability::{StabilityStatus, member_stability};
 use crate::verification::PlantPoint;
 
 /// Rows of one linearisation.
@@ -26,6 +23,52 @@ const WINDOW_DB: f64 = 40.0;
 /// ```text
 /// minimise objective(x)   subject to   margin(x; plant, frequency, specification) + rate relaxation >= 0
 /// ```
+///
+/// A demanded delay margin is a margin too: 20 log10 of the least delay that a plant bears over the delay demanded, the gain crossovers
+/// and their phases interpolated between the frequencies of the samples.
+///
+/// # Example
+/// |1/(1+L)| <= 2 at 1 rad/s for 1/s and 4/s under a gain k: the worst plant is 1/s, for which it is w/|j w + k|.
+/// ```
+/// # use phea_dynamics::controller::Timing;
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// # use phea_qft::family::{Extent, Family, UncertainFamily};
+/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// # use phea_qft::verification::PlantPoint;
+/// use phea_qft::design::{DesignProblem, Objective};
+/// use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
+/// # let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+/// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+/// #     disturbance: None,
+/// #     dead_time_s: 0.0.into(),
+/// # })?;
+/// # let problem = DesignProblem {
+/// #     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
+/// #     sensor: TransferFunction::gain_only(1.0),
+/// #     timing: Timing::default(),
+/// #     specifications: vec![Specification {
+/// #         requirement: Requirement::Sensitivity(Limit::Constant(2.0)),
+/// #         frequencies_rad_per_s: vec![1.0],
+/// #         band_rad_per_s: [0.0, f64::INFINITY],
+/// #     }],
+/// #     minimum_delay_margin_s: 0.0,
+/// # };
+/// let plants = [1.0, 4.0].map(|gain| PlantPoint::Parameters(vec![gain]));
+/// let samples = Samples::new(&problem, None, &plants, &[1.0])?;
+/// let structure = Structure { sign: 1.0, gain: [0.1, 10.0], parts: vec![] };
+/// let mut shaping = Shaping::new(structure, Objective::LeastHighFrequencyGain, samples)?;
+/// let judged = shaping.judge(&[0.0]); // k = 1, so that |1/(1+L)| = 1/sqrt(2)
+/// assert!(judged.stable && judged.objective_db == 0.0);
+/// assert!((judged.worst_margin_db - 9.0309).abs() < 1e-4);
+/// let row = &shaping.slopes(&[0.0]).margins[0]; // and half a dB more for each dB of k
+/// assert!((row.slopes[0] - 0.5 * 8.6859).abs() < 1e-4);
+/// assert_eq!(shaping.margins(&[0.0])[0].plant, plants[0]);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Shaping {
     structure: Structure,
@@ -34,8 +77,7 @@ pub struct Shaping {
     relaxation_db: f64,
     response: StructureResponse,
     bounds: Vec<[f64; 2]>,
-    /// The plant that was found unstable last is looked at first.
-    suspect: usize,
+    stability: SampleStability,
     around: ColumnLoop,
 }
 
@@ -72,11 +114,11 @@ impl Shaping {
         Ok(Shaping {
             response: structure.response(&samples.problem().timing, &samples.frequencies_rad_per_s())?,
             bounds: structure.bounds(),
+            stability: SampleStability::new(samples.around(), samples.members().to_vec()),
             structure,
             objective,
             samples,
             relaxation_db: 0.0,
-            suspect: 0,
             around: ColumnLoop::default(),
         })
     }
@@ -106,10 +148,12 @@ impl Shaping {
     /// # Errors
     /// Those of [`Samples::add`].
     pub fn add(&mut self, plants: &[PlantPoint], frequency_rad_per_s: f64) -> Result<bool, SamplesError> {
+        let known = self.samples.members().len();
         let new = self.samples.add(plants, frequency_rad_per_s)?;
         for plant in plants {
             self.samples.add_plant(plant)?;
         }
+        self.samples.members().iter().skip(known).for_each(|member| self.stability.add(member.clone()));
         let timing = &self.samples.problem().timing;
         self.response = self.structure.response(timing, &self.samples.frequencies_rad_per_s())?;
         Ok(new)
@@ -178,25 +222,20 @@ impl Shaping {
         }
     }
 
-    /// Whether no plant is found unstable.
+    /// G as it acts in the loop.
+    fn controller(&self, x: &[f64]) -> Result<TransferFunction, LinearError> {
+        let continuous = self.structure.compensator(x).transfer_function()?;
+        let timing = &self.samples.problem().timing;
+        match timing.sample_time_s {
+            None => Ok(continuous),
+            Some(sample_time_s) => continuous.discretized(sample_time_s, timing.discretization),
+        }
+    }
+
+    /// Whether every plant is stable.
     fn is_stable(&mut self, x: &[f64]) -> bool {
-        let problem = self.samples.problem();
-        let controller = Controller {
-            feedback: self.structure.compensator(x),
-            timing: problem.timing,
-            ..Controller::default()
-        };
-        let Ok(compensation) = Compensation::new(&controller, problem.sensor.clone()) else { return false };
-        let members = self.samples.members();
-        let others = (0..members.len()).filter(|&index| index != self.suspect);
-        let unstable = std::iter::once(self.suspect).chain(others).find(|&index| {
-            members.get(index).is_some_and(|member| {
-                let status = member_stability(member, &compensation).status;
-                matches!(status, StabilityStatus::Unstable(_))
-            })
-        });
-        self.suspect = unstable.unwrap_or(self.suspect);
-        unstable.is_none()
+        let judged = self.controller(x).and_then(|controller| self.stability.is_stable(&controller));
+        judged == Ok(true)
     }
 
     /// The rows of the columns and demands that matter, the least margin first.
