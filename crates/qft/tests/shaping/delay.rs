@@ -74,8 +74,8 @@ fn borne(samples: &Samples, structure: &Structure, x: &[f64]) -> Option<f64> {
 fn the_margin_is_that_of_the_delay_which_the_worst_plant_bears() {
     let demanded = 0.05;
     let frequencies = logarithmic_grid(0.01, 1000.0, 1200).unwrap();
-    let samples = Samples::new(&problem(demanded), None, &points(), &frequencies).unwrap();
-    let mut shaping = Shaping::new(structure(), Objective::BestWorstMargin, samples.clone()).unwrap();
+    let samples = Samples::new(&problem(demanded), &points(), &frequencies).unwrap();
+    let mut shaping = Shaping::new(structure(), None, Objective::BestWorstMargin, samples.clone()).unwrap();
     let mut draw = Draw(31);
     let (mut met, mut missed) = (0, 0);
     for _ in 0..60 {
@@ -95,8 +95,8 @@ fn the_margin_is_that_of_the_delay_which_the_worst_plant_bears() {
 #[test]
 fn its_slopes_are_those_of_central_differences() {
     let frequencies = logarithmic_grid(0.01, 1000.0, 60).unwrap();
-    let samples = Samples::new(&problem(0.05), None, &points(), &frequencies).unwrap();
-    let mut shaping = Shaping::new(structure(), Objective::BestWorstMargin, samples).unwrap();
+    let samples = Samples::new(&problem(0.05), &points(), &frequencies).unwrap();
+    let mut shaping = Shaping::new(structure(), None, Objective::BestWorstMargin, samples).unwrap();
     let mut draw = Draw(32);
     for _ in 0..20 {
         let x = draw.point(&structure().bounds());
@@ -124,8 +124,8 @@ fn a_peak_below_one_is_a_row_before_it_is_a_crossover() {
     let worst = PlantPoint::Parameters(vec![3.0, 0.1]);
     let rows = |delay_s: f64| {
         let samples =
-            Samples::new(&problem(delay_s), None, std::slice::from_ref(&worst), &frequencies).unwrap();
-        Shaping::new(structure(), Objective::BestWorstMargin, samples).unwrap().slopes(&x).margins
+            Samples::new(&problem(delay_s), std::slice::from_ref(&worst), &frequencies).unwrap();
+        Shaping::new(structure(), None, Objective::BestWorstMargin, samples).unwrap().slopes(&x).margins
     };
     assert_eq!([0.0, 0.01, 0.05].map(|delay_s| rows(delay_s).len()), [0, 1, 2]);
     let long = rows(0.05);

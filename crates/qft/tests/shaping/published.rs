@@ -69,9 +69,10 @@ fn shaping(
     };
     let all = plants(&problem);
     let frequencies = search_frequencies(&problem, &all, POINTS_PER_DECADE).unwrap();
-    let samples = Samples::new(&problem, prefilter, &all, &frequencies).unwrap();
+    let samples = Samples::new(&problem, &all, &frequencies).unwrap();
     let (structure, x) = Structure::around(published, 2.0).unwrap();
-    (Shaping::new(structure, Objective::LeastHighFrequencyGain, samples).unwrap(), x)
+    let prefilter = prefilter.map(Structure::fixed_to);
+    (Shaping::new(structure, prefilter, Objective::LeastHighFrequencyGain, samples).unwrap(), x)
 }
 
 /// The least margin to a specification over the grid, and at one of its frequencies.

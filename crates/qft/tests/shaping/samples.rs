@@ -52,9 +52,9 @@ fn undamped() -> DesignProblem {
 #[test]
 fn an_undamped_pole_is_looked_at_from_beside() {
     let problem = undamped();
-    let samples = Samples::new(&problem, None, &plants(&problem), &[1.0]).unwrap();
+    let samples = Samples::new(&problem, &plants(&problem), &[1.0]).unwrap();
     assert_eq!(samples.pairs(), 2);
-    let shaping = Shaping::new(gain(), Objective::BestWorstMargin, samples).unwrap();
+    let shaping = Shaping::new(gain(), None, Objective::BestWorstMargin, samples).unwrap();
     let margin = shaping.margins(&[0.0])[0].margin_db;
     assert!((margin - 20.0 * 2f64.log10()).abs() < 1e-6, "{margin}");
 }
@@ -63,8 +63,8 @@ fn an_undamped_pole_is_looked_at_from_beside() {
 fn a_counterexample_adds_its_plant_everywhere_and_its_frequency_for_itself() {
     let problem = problem(Timing::default());
     let all = plants(&problem);
-    let samples = Samples::new(&problem, None, &all[..5], &[1.0, 10.0]).unwrap();
-    let mut shaping = Shaping::new(gain(), Objective::BestWorstMargin, samples).unwrap();
+    let samples = Samples::new(&problem, &all[..5], &[1.0, 10.0]).unwrap();
+    let mut shaping = Shaping::new(gain(), None, Objective::BestWorstMargin, samples).unwrap();
     let before = shaping.judge(&[0.5]);
     assert!(shaping.add(&all[9..11], 3.0).unwrap());
     assert!(!shaping.add(&all[10..11], 3.0).unwrap());
@@ -74,8 +74,8 @@ fn a_counterexample_adds_its_plant_everywhere_and_its_frequency_for_itself() {
     // more demands, and a structure that is evaluated where they are
     assert!(shaping.judge(&[0.5]).worst_margin_db <= before.worst_margin_db);
     let found = shaping.margins(&[0.5]);
-    let direct = Samples::new(&problem, None, &all[9..11], &[3.0]).unwrap();
-    let direct = Shaping::new(gain(), Objective::BestWorstMargin, direct).unwrap().margins(&[0.5]);
+    let direct = Samples::new(&problem, &all[9..11], &[3.0]).unwrap();
+    let direct = Shaping::new(gain(), None, Objective::BestWorstMargin, direct).unwrap().margins(&[0.5]);
     let at_three: Vec<_> = found.into_iter().filter(|margin| margin.frequency_rad_per_s == 3.0).collect();
     assert_eq!(at_three, direct);
 }
@@ -84,7 +84,7 @@ fn a_counterexample_adds_its_plant_everywhere_and_its_frequency_for_itself() {
 fn a_point_of_another_family_is_refused() {
     let problem = problem(Timing::default());
     for point in [PlantPoint::Measured(0), PlantPoint::Parameters(vec![1.0])] {
-        let refused = Samples::new(&problem, None, std::slice::from_ref(&point), &[1.0]);
+        let refused = Samples::new(&problem, std::slice::from_ref(&point), &[1.0]);
         assert_eq!(refused.err(), Some(SamplesError::Plant(point.clone())));
         assert_eq!(
             search_frequencies(&problem, std::slice::from_ref(&point), 10.0).err(),
@@ -107,9 +107,9 @@ fn beyond_a_measurement_nothing_is_looked_at() {
     };
     let family = Family::Measured(MeasuredFamily::new(vec![plant]).unwrap());
     let problem = with_family(family, 1.2);
-    let samples = Samples::new(&problem, None, &plants(&problem), &[0.5, 1.0, 7.5, 50.0, 51.0]).unwrap();
+    let samples = Samples::new(&problem, &plants(&problem), &[0.5, 1.0, 7.5, 50.0, 51.0]).unwrap();
     assert_eq!(samples.pairs(), 3);
-    let shaping = Shaping::new(gain(), Objective::BestWorstMargin, samples).unwrap();
+    let shaping = Shaping::new(gain(), None, Objective::BestWorstMargin, samples).unwrap();
     assert_eq!(shaping.margins(&[0.0]).len(), 3);
 }
 
@@ -145,8 +145,8 @@ fn peaks_are_looked_at() {
 #[test]
 fn a_structure_without_a_response_is_refused() {
     let problem = undamped();
-    let samples = Samples::new(&problem, None, &plants(&problem), &[2.0]).unwrap();
+    let samples = Samples::new(&problem, &plants(&problem), &[2.0]).unwrap();
     let parts = vec![Part::Fixed(Element::RealZero { frequency: 0.0 })];
-    let refused = Shaping::new(Structure { parts, ..gain() }, Objective::BestWorstMargin, samples);
+    let refused = Shaping::new(Structure { parts, ..gain() }, None, Objective::BestWorstMargin, samples);
     assert!(refused.is_err());
 }

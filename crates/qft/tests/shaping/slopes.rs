@@ -19,8 +19,10 @@ fn check_single(problem: &DesignProblem, draw: &mut Draw, with_prefilter: bool) 
     let x = draw.point(&structure.bounds());
     let prefilter = with_prefilter.then(|| rational(&[3.0], &[1.0, 3.0]));
     let two = &plants(problem)[3..5];
-    let samples = Samples::new(problem, prefilter.as_ref(), two, &[4.0]).unwrap();
-    let mut shaping = Shaping::new(structure, Objective::LeastHighFrequencyGain, samples).unwrap();
+    let samples = Samples::new(problem, two, &[4.0]).unwrap();
+    let prefilter = prefilter.as_ref().map(Structure::fixed_to);
+    let mut shaping =
+        Shaping::new(structure, prefilter, Objective::LeastHighFrequencyGain, samples).unwrap();
     let slopes = shaping.slopes(&x);
     let row = &slopes.margins[0];
     let judged = shaping.judge(&x);
@@ -53,11 +55,11 @@ fn the_rows_together_foretell_the_worst_margin() {
     let mut draw = Draw(22);
     let problem = problem(Timing { sample_time_s: Some(0.005), ..Timing::default() });
     let frequencies: Vec<f64> = (0..40).map(|index| 0.3 * 1.18f64.powi(index)).collect();
-    let samples = Samples::new(&problem, None, &plants(&problem), &frequencies).unwrap();
+    let samples = Samples::new(&problem, &plants(&problem), &frequencies).unwrap();
     for _ in 0..6 {
         let structure = structure(&mut draw);
         let x = draw.point(&structure.bounds());
-        let mut shaping = Shaping::new(structure, Objective::BestWorstMargin, samples.clone()).unwrap();
+        let mut shaping = Shaping::new(structure, None, Objective::BestWorstMargin, samples.clone()).unwrap();
         let slopes = shaping.slopes(&x);
         assert!(slopes.margins.len() > 20 && slopes.margins.len() <= 400, "{}", slopes.margins.len());
         let worst = |step: &[f64]| {
@@ -86,14 +88,14 @@ fn objectives_move_with_their_slopes() {
     let mut draw = Draw(23);
     let problem = problem(Timing::default());
     let frequencies: Vec<f64> = (0..30).map(|index| 0.1 * 1.3f64.powi(index)).collect();
-    let samples = Samples::new(&problem, None, &plants(&problem), &frequencies).unwrap();
+    let samples = Samples::new(&problem, &plants(&problem), &frequencies).unwrap();
     for objective in
         [Objective::LeastHighFrequencyGain, Objective::LeastBandwidth, Objective::BestWorstMargin]
     {
         for _ in 0..10 {
             let structure = structure(&mut draw);
             let x = draw.point(&structure.bounds());
-            let mut shaping = Shaping::new(structure, objective, samples.clone()).unwrap();
+            let mut shaping = Shaping::new(structure, None, objective, samples.clone()).unwrap();
             let slopes = shaping.slopes(&x);
             for (index, slope) in slopes.objective_slopes.iter().enumerate() {
                 let mut at = |step: f64| shaping.judge(&moved(&x, index, step)).objective_db;

@@ -35,7 +35,7 @@ pub fn search_frequencies(
     plants: &[PlantPoint],
     points_per_decade: f64,
 ) -> Result<Vec<f64>, SamplesError> {
-    let highest = around(problem, None)?.highest_frequency_rad_per_s();
+    let highest = around(problem)?.highest_frequency_rad_per_s();
     let (mut sizes, mut peaks) = features(problem, plants)?;
     sizes.retain(|size| *size > 0.0 && size.is_finite());
     let slowest = sizes.iter().copied().fold(f64::INFINITY, f64::min).min(highest);

@@ -47,13 +47,13 @@ impl Structure {
             gain = if factor.power > 0.0 { gain * leading } else { gain / leading };
             numbers.extend(own);
         }
-        let x: Vec<f64> = std::iter::once(gain).chain(numbers).map(portable::ln).collect();
-        let bounds = self.bounds();
+        let all: Vec<f64> = std::iter::once(gain).chain(numbers).map(portable::ln).collect();
+        let ranges: Vec<[f64; 2]> = self.ranges().into_iter().map(|range| range.map(portable::ln)).collect();
         // the ends of the range are points of it
         let inside = |(x, [low, high]): (&f64, &[f64; 2])| low - SAME <= *x && *x <= high + SAME;
-        x.iter().zip(&bounds).all(inside).then(|| {
-            let clamped = x.iter().zip(&bounds).map(|(x, [low, high])| x.max(*low).min(*high));
-            clamped.collect()
+        all.iter().zip(&ranges).all(inside).then(|| {
+            let clamped = all.iter().zip(&ranges).map(|(x, [low, high])| x.max(*low).min(*high));
+            self.of_free(clamped)
         })
     }
 
