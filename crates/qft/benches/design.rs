@@ -52,9 +52,22 @@ fn run() -> Result<(), Failure> {
             while run.step()? {}
             let seconds = begun.elapsed().as_secs_f64();
             let design = run.design().ok_or("no design")?;
-            println!("{name}, seed {seed}: {:.3} s, {:?}, {:.3} dB, {} rounds", seconds, design.status, design.objective_db, design.rounds.len());
+            println!(
+                "{name}, seed {seed}: {:.3} s, {:?}, {:.3} dB, {} rounds",
+                seconds,
+                design.status,
+                design.objective_db,
+                design.rounds.len()
+            );
             for round in &design.rounds {
-                println!("   {:.4} dB, {} plants, {} frequencies, searched {:.5} audited {:?}", round.objective_db, round.plants, round.frequencies, round.searched_margin_db, round.audited_margin_db);
+                println!(
+                    "   {:.4} dB, {} plants, {} frequencies, searched {:.5} audited {:?}",
+                    round.objective_db,
+                    round.plants,
+                    round.frequencies,
+                    round.searched_margin_db,
+                    round.audited_margin_db
+                );
             }
         }
     }
@@ -62,7 +75,8 @@ fn run() -> Result<(), Failure> {
 }
 
 fn servo() -> Result<DesignProblem, Failure> {
-    let parameter = |name: &str| UncertainParameter { name: name.into(), nominal: 1.0, minimum: 1.0, maximum: 10.0 };
+    let parameter =
+        |name: &str| UncertainParameter { name: name.into(), nominal: 1.0, minimum: 1.0, maximum: 10.0 };
     let plant = UncertainPlant::record(vec![parameter("k"), parameter("a")], |p| PlantCoefficients {
         command: RationalCoefficients {
             numerator: vec![p[0] * p[1]],
@@ -71,13 +85,19 @@ fn servo() -> Result<DesignProblem, Failure> {
         disturbance: None,
         dead_time_s: 0.0.into(),
     })?;
-    let along = |parameter| Coordinate { parameters: vec![parameter], opposed: vec![], spacing: vec![Spacing::Logarithmic], points: 7 };
+    let along = |parameter| Coordinate {
+        parameters: vec![parameter],
+        opposed: vec![],
+        spacing: vec![Spacing::Logarithmic],
+        points: 7,
+    };
     let coordinates = vec![along(0), along(1)];
     let members = grid(&plant, &coordinates)?;
     let family = UncertainFamily::new(plant, coordinates, members, Extent::Box)?;
     let rational = |numerator: &[f64], denominator: &[f64]| {
         let polynomial = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());
-        TransferFunction::from_polynomials(&polynomial(numerator), &polynomial(denominator)).map(Limit::Rational)
+        TransferFunction::from_polynomials(&polynomial(numerator), &polynomial(denominator))
+            .map(Limit::Rational)
     };
     let specifications = vec![
         Specification {

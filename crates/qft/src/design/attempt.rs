@@ -9,8 +9,8 @@ use super::result::DesignRound;
 use crate::audit::AuditRun;
 use crate::closed_loop::Compensation;
 use crate::loop_shaping::{
-    Aim, Descent, DescentOptions, Samples, SamplesError, Search, SearchOptions, SearchProblem,
-    SearchStatus, Shaping, Structure,
+    Aim, Descent, DescentOptions, Samples, SamplesError, Search, SearchOptions, SearchProblem, SearchStatus,
+    Shaping, Structure,
 };
 use crate::prefilter::{
     FittedPrefilter, PrefilterBand, PrefilterError, PrefilterOptions, PrefilterOutcome, PrefilterRun,
@@ -95,7 +95,9 @@ impl Attempt {
             Objective::LeastHighFrequencyGain | Objective::LeastBandwidth => Aim::Objective,
         };
         let given = match &options.prefilter {
-            PrefilterChoice::Given(prefilter) if tracks(samples.problem()).is_some() => Some(Structure::fixed_to(prefilter)),
+            PrefilterChoice::Given(prefilter) if tracks(samples.problem()).is_some() => {
+                Some(Structure::fixed_to(prefilter))
+            }
             _ => None,
         };
         let search = Search::new(search_options(aim, options.seed, relaxes));

@@ -115,8 +115,7 @@ fn wanted_type(specification: &Specification) -> i64 {
 /// n where the limit tends to zero as w^n.
 fn order_at_zero(limit: &Limit) -> i64 {
     let Limit::Rational(function) = limit else { return 0 };
-    let at_origin =
-        |roots: &[Complex64]| roots.iter().filter(|root| root.norm_sqr() == 0.0).count() as i64;
+    let at_origin = |roots: &[Complex64]| roots.iter().filter(|root| root.norm_sqr() == 0.0).count() as i64;
     at_origin(function.zeros()) - at_origin(function.poles())
 }
 

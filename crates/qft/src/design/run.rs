@@ -9,7 +9,7 @@ use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
 use crate::family::{Extent, Family, random};
 use crate::loop_shaping::{Samples, Structure, search_frequencies};
-use crate::verification::{Audit, PlantPoint, TrackingJudgement, corners};
+use crate::verification::{Audit, PlantPoint, corners};
 
 /// Points of the frequency grid of a search in a decade.
 const POINTS_PER_DECADE: f64 = 20.0;
@@ -146,7 +146,7 @@ impl DesignRun {
     fn first_samples(&self) -> Result<Samples, DesignError> {
         let plants = first_plants(&self.problem, self.options.seed);
         let frequencies = search_frequencies(&self.problem, &plants, POINTS_PER_DECADE)?;
-        Ok(Samples::new(&self.problem, TrackingJudgement::Spread, &plants, &frequencies)?)
+        Ok(Samples::new(&self.problem, &plants, &frequencies)?)
     }
 
     fn end_attempt(&mut self) {

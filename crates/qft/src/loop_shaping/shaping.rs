@@ -248,14 +248,12 @@ impl Shaping {
         let (own, behind) = self.split(x);
         let zeros = |count: usize| vec![Complex64::new(0.0, 0.0); count];
         let feedback = self.response.slopes(own).ok()?;
-        let feedback =
-            feedback.into_iter().map(|slopes| [slopes, zeros(behind.len())].concat()).collect();
+        let feedback = feedback.into_iter().map(|slopes| [slopes, zeros(behind.len())].concat()).collect();
         let prefilter = match &self.prefilter_response {
             Some(response) => response.slopes(behind).ok()?,
             None => vec![],
         };
-        let prefilter =
-            prefilter.into_iter().map(|slopes| [zeros(own.len()), slopes].concat()).collect();
+        let prefilter = prefilter.into_iter().map(|slopes| [zeros(own.len()), slopes].concat()).collect();
         Some([feedback, prefilter])
     }
 
@@ -283,12 +281,7 @@ impl Shaping {
     }
 
     /// The objective and its slopes, given those of ln G at the columns.
-    fn objective(
-        &self,
-        x: &[f64],
-        forward: &[[Complex64; 2]],
-        slopes: &[Vec<Complex64>],
-    ) -> (f64, Vec<f64>) {
+    fn objective(&self, x: &[f64], forward: &[[Complex64; 2]], slopes: &[Vec<Complex64>]) -> (f64, Vec<f64>) {
         let own = self.split(x).0;
         match self.objective {
             Objective::LeastHighFrequencyGain => {
@@ -339,8 +332,7 @@ impl Shaping {
             self.around.close(column, feedback, prefilter);
             let Some(demand) = column.demands.get(number) else { continue };
             for found in candidates(demand, column, &self.around, feedback) {
-                let mut slopes =
-                    along(&[(index, -DECIBELS_PER_NEPER * found.sensitivity)], own, dimension);
+                let mut slopes = along(&[(index, -DECIBELS_PER_NEPER * found.sensitivity)], own, dimension);
                 let through = Complex64::new(-DECIBELS_PER_NEPER * demand.prefilter_power(), 0.0);
                 let of_prefilter = along(&[(index, through)], behind, dimension);
                 slopes.iter_mut().zip(of_prefilter).for_each(|(slope, more)| *slope += more);
@@ -377,7 +369,8 @@ fn near(looked: &Looked) -> Vec<(usize, usize)> {
         .collect();
     near.sort_by(|one, other| one.0.total_cmp(&other.0));
     near.truncate(ROWS_MAXIMUM);
-    let mut places: Vec<(usize, usize)> = near.into_iter().map(|(_, column, demand)| (column, demand)).collect();
+    let mut places: Vec<(usize, usize)> =
+        near.into_iter().map(|(_, column, demand)| (column, demand)).collect();
     places.sort_unstable();
     places
 }

@@ -207,7 +207,8 @@ impl Structure {
     /// A fixed element that is no transfer function.
     pub fn high_frequency_gain_db(&self, x: &[f64]) -> Result<f64, LinearError> {
         let numbers = self.numbers(x).into_iter().map(portable::ln);
-        let free: f64 = self.all_high_frequency_slopes_db().iter().zip(numbers).map(|(slope, x)| slope * x).sum();
+        let free: f64 =
+            self.all_high_frequency_slopes_db().iter().zip(numbers).map(|(slope, x)| slope * x).sum();
         Ok(free + decibels(self.fixed()?.gain().abs()))
     }
 

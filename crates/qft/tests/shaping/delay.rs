@@ -123,8 +123,7 @@ fn a_peak_below_one_is_a_row_before_it_is_a_crossover() {
     let frequencies = logarithmic_grid(0.01, 1000.0, 400).unwrap();
     let worst = PlantPoint::Parameters(vec![3.0, 0.1]);
     let rows = |delay_s: f64| {
-        let samples =
-            Samples::new(&problem(delay_s), std::slice::from_ref(&worst), &frequencies).unwrap();
+        let samples = Samples::new(&problem(delay_s), std::slice::from_ref(&worst), &frequencies).unwrap();
         Shaping::new(structure(), None, Objective::BestWorstMargin, samples).unwrap().slopes(&x).margins
     };
     assert_eq!([0.0, 0.01, 0.05].map(|delay_s| rows(delay_s).len()), [0, 1, 2]);

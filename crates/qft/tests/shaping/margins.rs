@@ -60,8 +60,13 @@ fn check(problem: &DesignProblem, structure: &Structure, x: &[f64], prefilter: O
     let around = Compensation::new(&controller, problem.sensor.clone()).unwrap();
     let samples = Samples::new(problem, &plants(problem), &FREQUENCIES).unwrap();
     let members = samples.members().to_vec();
-    let mut shaping = Shaping::new(structure.clone(), prefilter.map(Structure::fixed_to), Objective::BestWorstMargin, samples)
-            .unwrap();
+    let mut shaping = Shaping::new(
+        structure.clone(),
+        prefilter.map(Structure::fixed_to),
+        Objective::BestWorstMargin,
+        samples,
+    )
+    .unwrap();
     let found = shaping.margins(x);
     let (mut count, mut worst) = (0, f64::INFINITY);
     for frequency in FREQUENCIES {

@@ -21,8 +21,7 @@ fn check_single(problem: &DesignProblem, draw: &mut Draw, with_prefilter: bool) 
     let two = &plants(problem)[3..5];
     let samples = Samples::new(problem, two, &[4.0]).unwrap();
     let prefilter = prefilter.as_ref().map(Structure::fixed_to);
-    let mut shaping =
-        Shaping::new(structure, prefilter, Objective::LeastHighFrequencyGain, samples).unwrap();
+    let mut shaping = Shaping::new(structure, prefilter, Objective::LeastHighFrequencyGain, samples).unwrap();
     let slopes = shaping.slopes(&x);
     let row = &slopes.margins[0];
     let judged = shaping.judge(&x);
