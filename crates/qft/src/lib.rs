@@ -10,6 +10,7 @@ pub mod design;
 pub mod family;
 pub mod loop_shaping;
 pub mod prefilter;
+mod random;
 mod sampled;
 pub mod specification;
 pub mod stability;

@@ -16,6 +16,8 @@ use crate::verification::PlantPoint;
 
 /// Rows of one linearisation.
 const ROWS_MAXIMUM: usize = 400;
+/// More demands than a column can have.
+const DEMANDS_MAXIMUM: usize = 64;
 /// Columns whose worst margin is further above the worst of all give no rows, dB.
 const WINDOW_DB: f64 = 40.0;
 
@@ -200,6 +202,7 @@ impl Shaping {
     /// The rows of the columns and demands that matter, the least margin first.
     fn rows(&mut self, looked: &Looked, feedback: &[Complex64], slopes: &[Vec<Complex64>]) -> Vec<MarginRow> {
         let dimension = self.bounds.len();
+        let plants = self.samples.plants().len() + 1;
         let mut near: Vec<(f64, usize, usize)> = looked
             .excesses
             .iter()
@@ -216,7 +219,9 @@ impl Shaping {
             let demand = &column.demands[number];
             for found in candidates(demand, column, &self.around, feedback) {
                 let factor = -DECIBELS_PER_NEPER * found.sensitivity;
+                let (first, second) = (found.plant, found.other.map_or(0, |other| other + 1));
                 rows.push(MarginRow {
+                    sample: ((index * DEMANDS_MAXIMUM + number) * plants + first) * plants + second,
                     margin_db: found.margin_db + demand.rate() * self.relaxation_db,
                     rate: demand.rate(),
                     slopes: along(&[(index, factor)], slopes, dimension),
@@ -224,7 +229,9 @@ impl Shaping {
             }
         }
         let delays = looked.delays.crossovers.iter().chain(&looked.delays.peaks);
-        rows.extend(delays.filter(|margin| margin.value_db.is_finite()).map(|margin| MarginRow {
+        let delays = delays.filter(|margin| margin.value_db.is_finite()).enumerate();
+        rows.extend(delays.map(|(number, margin)| MarginRow {
+            sample: usize::MAX - number,
             margin_db: margin.value_db + self.relaxation_db,
             rate: 1.0,
             slopes: along(&margin.terms, slopes, dimension),
@@ -244,11 +251,17 @@ impl SearchProblem for Shaping {
     fn judge(&mut self, x: &[f64]) -> Judgement {
         let Some(feedback) = self.feedback(x) else {
             let none = f64::NEG_INFINITY;
-            return Judgement { objective_db: f64::INFINITY, worst_margin_db: none, stable: false };
+            let objective_db = f64::INFINITY;
+            return Judgement {
+                objective_db,
+                worst_margin_db: none,
+                stable: false,
+                instability: f64::INFINITY,
+            };
         };
         let worst_margin_db = self.look(&feedback).worst_db + self.relaxation_db;
         let (objective_db, _) = self.objective(x, &feedback, &[]);
-        Judgement { objective_db, worst_margin_db, stable: self.is_stable(x) }
+        Judgement { objective_db, worst_margin_db, stable: self.is_stable(x), instability: 0.0 }
     }
 
     fn slopes(&mut self, x: &[f64]) -> Slopes {
