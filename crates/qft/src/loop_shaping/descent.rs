@@ -21,9 +21,11 @@ const RADIUS_LEAST: f64 = 1e-8;
 const TAKEN: f64 = 0.05;
 const KEPT: f64 = 0.25;
 const GROWN: f64 = 0.7;
+/// Corrections of one step at most.
+const CORRECTIONS_MAXIMUM: usize = 3;
 /// dB of the objective for each dB of violation: the first penalty, its growth, its largest.
 const PENALTY_FIRST: f64 = 10.0;
-const PENALTY_GROWTH: f64 = 10.0;
+const PENALTY_GROWTH: f64 = 4.0;
 const PENALTY_LARGEST: f64 = 1e7;
 /// Share of the tolerance by which margins may miss the reserve for the objective to be aimed at.
 const ENTERED: f64 = 0.5;
@@ -39,8 +41,8 @@ const MULTIPLIER_LEAST: f64 = 1e-6;
 pub struct DescentOptions {
     /// What is made least or greatest.
     pub aim: Aim,
-    /// Least margin to be left, dB, for [`Aim::Objective`]. Limits that leave no room, such as those of tracking at low frequency, cannot
-    /// keep any.
+    /// Least margin to be left, dB, for [`Aim::Objective`]. Limits that leave no room, as those of tracking at low frequency, keep none; a
+    /// negative reserve, of what an audit tolerates, takes them for what they are worth.
     pub reserve_db: f64,
     /// The objective, or the worst margin that is looked for, is found to this, and a margin may miss its reserve by this; dB.
     pub tolerance_db: f64,
@@ -68,7 +70,7 @@ impl DescentOptions {
 ///
 /// Each step minimises a convex model of the merit within a box (sequential quadratic programming, the box a trust region, the
 /// penalty exact), and is taken if the merit falls by a share of what the model promises; a step into an unstable region never is.
-/// A step that the curvature of the margins spoils is corrected once, with the margins found at its end (second-order correction). The
+/// A step that the curvature of the margins spoils is corrected with the margins found at its end (second-order correction). The
 /// curvature of the Lagrangian is learnt from its slopes (damped BFGS). For [`Aim::Objective`] the worst margin is raised first, until
 /// all margins keep their reserve.
 ///
@@ -248,8 +250,8 @@ impl Descent {
         }
     }
 
-    /// The step again, with the margins that were found at its end: theirs are the constants, those of the start the slopes. The better
-    /// one of both is taken, if one is good enough.
+    /// The step again, with the margins that were found at its end: theirs are the constants, those of the start the slopes; and again, as
+    /// long as that is better. The best is taken, if it is good enough.
     fn corrected(
         &mut self,
         problem: &mut dyn SearchProblem,
@@ -259,18 +261,26 @@ impl Descent {
         share: f64,
         bounds: &[[f64; 2]],
     ) -> Place {
-        let rows = here.corrected_rows(&there, &answer.step);
-        if let Ok(second) = self.solved(&here, &rows, bounds) {
-            let (x, judgement) = self.tried(problem, &here, &second.step, bounds);
-            let corrected_share = self.gain(&here, &judgement) / answer.decrease_db;
-            if corrected_share >= share.max(TAKEN) {
-                let there = Place { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
-                self.learn(&here, &there, &second);
-                return self.taken(there, &second, corrected_share);
+        let (mut last, mut last_step) = (there.clone(), answer.step.clone());
+        let mut best = (share, there, answer.clone());
+        for _ in 0..CORRECTIONS_MAXIMUM {
+            let Ok(next) = self.solved(&here, &here.corrected_rows(&last, &last_step), bounds) else { break };
+            let (x, judgement) = self.tried(problem, &here, &next.step, bounds);
+            let share = self.gain(&here, &judgement) / answer.decrease_db;
+            if share <= best.0 || !is_usable(&judgement) {
+                break;
+            }
+            last = Place { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
+            last_step.clone_from(&next.step);
+            self.learn(&here, &last, &next);
+            best = (share, last.clone(), next);
+            if share >= GROWN {
+                break;
             }
         }
+        let (share, there, taken) = best;
         if share >= TAKEN {
-            return self.taken(there, answer, share);
+            return self.taken(there, &taken, share);
         }
         self.shrink(greatest(&answer.step) / 3.0);
         here.with_rows_of(&there)

@@ -33,10 +33,10 @@ pub struct SearchOptions {
 }
 
 impl SearchOptions {
-    /// 200 samples, 6 starts, 3 of them finished, 60 generations.
+    /// 300 samples, 8 starts, 4 of them finished, 60 generations.
     pub fn new(aim: Aim, seed: u64) -> SearchOptions {
         let descent = DescentOptions::new(aim);
-        SearchOptions { seed, samples: 200, starts: 6, finished: 3, generations: 60, descent }
+        SearchOptions { seed, samples: 300, starts: 8, finished: 4, generations: 60, descent }
     }
 }
 
@@ -161,7 +161,8 @@ enum Stage {
 /// while search.step(&mut walls) {}
 /// let found = search.result().unwrap();
 /// assert_eq!(found.x, [-2.0]);
-/// assert!(found.ends.len() == 3 && found.spread_db.unwrap() < 1e-6); // three starts agree
+/// assert_eq!(found.ends[1].x, [-2.0]); // the next start agrees,
+/// assert!(found.spread_db.unwrap() > 1.0); // one behind a wall does not
 /// ```
 #[derive(Clone, Debug)]
 pub struct Search {

@@ -62,6 +62,25 @@ fn contradiction_is_named() {
     assert!(shares.len() == 2 && shares.iter().all(|share| (share - 0.5).abs() < 1e-3), "{shares:?}");
 }
 
+/// A margin that hardly moves costs a large multiplier, up to which the penalty must grow; where less than it moves is tolerated, it costs
+/// nothing.
+#[test]
+fn nearly_flat_margin_is_kept_or_tolerated() {
+    let mut problem = Formula::new(1, |x| (x[0] - 3.0).powi(2), |x| vec![1e-4 * (1.0 - x[0])]);
+    let mut ended = |reserve_db: f64, tolerance_db: f64| {
+        let options = DescentOptions { reserve_db, tolerance_db, ..DescentOptions::new(Aim::Objective) };
+        let mut descent = Descent::new(&[-2.0], options);
+        while descent.step(&mut problem) {}
+        assert_eq!(descent.status(), Some(DescentStatus::Converged));
+        descent
+    };
+    let kept = ended(0.0, 1e-6);
+    assert!((kept.x()[0] - 1.0).abs() < 0.011, "{:?}", kept.x());
+    assert!((kept.binding()[0].multiplier / 4e4 - 1.0).abs() < 0.02, "{:?}", kept.binding());
+    let tolerated = ended(-5e-4, 1e-4);
+    assert!((tolerated.x()[0] - 3.0).abs() < 0.01, "{:?}", tolerated.x());
+}
+
 /// A further margin, given after the descent has ended: it goes on from there, and not from the start.
 #[test]
 fn resumed_descent_meets_a_new_margin() {

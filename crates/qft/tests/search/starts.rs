@@ -31,7 +31,7 @@ fn the_best_of_many_valleys_is_found_from_every_seed() {
         let found = searched(&mut hills(), SearchOptions::new(Aim::WorstMargin, seed));
         assert_eq!(found.status, SearchStatus::Ended(DescentStatus::Converged));
         assert!(found.judgement.worst_margin_db > -1e-4, "{seed} {found:?}");
-        assert!(found.ends.len() == 3 && found.spread_db.unwrap() >= 0.0);
+        assert!(found.ends.len() == 4 && found.spread_db.unwrap() >= 0.0);
     }
 }
 
@@ -76,7 +76,7 @@ fn feasible_ends_come_first() {
     let mut problem = Formula::new(1, |x| x[0], margins);
     problem.bounds = vec![[-5.0, 5.0]];
     let found =
-        searched(&mut problem, SearchOptions { finished: 6, ..SearchOptions::new(Aim::Objective, 1) });
+        searched(&mut problem, SearchOptions { finished: 8, ..SearchOptions::new(Aim::Objective, 1) });
     assert!((found.x[0] - 2.5).abs() < 2e-3, "{found:?}");
     assert_eq!(found.spread_db, Some(f64::INFINITY));
     let last = found.ends.last().unwrap();

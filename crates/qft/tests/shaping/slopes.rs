@@ -2,7 +2,7 @@
 
 use phea_dynamics::controller::Timing;
 use phea_qft::design::{DesignProblem, Objective};
-use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping};
+use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure};
 use phea_qft::specification::Requirement;
 
 use crate::random::{Draw, plants, problem, rational, structure};
