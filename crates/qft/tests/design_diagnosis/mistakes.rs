@@ -63,6 +63,7 @@ fn fast_unstable_pole() {
     let specification = demand(roll_off, &[0.1, 1.0, 2.0, 5.0, 10.0, 50.0], EVERYWHERE);
     let found = diagnose(&problem(family, vec![specification]));
     let Finding::RightHalfPlane { constraint, relaxation_db } = &found[0] else { panic!("{found:?}") };
+    assert_eq!(found[0].relaxation_db(), Some(*relaxation_db));
     let Place::UnstablePole(pole) = constraint.place else { panic!("{found:?}") };
     assert!((pole.re - 4.2).abs() < 1e-9);
     assert!((relaxation_db - decibels(6.2 / 3.0)).abs() < 0.01);
