@@ -164,6 +164,14 @@ impl Compensation {
         Compensation { delay_s, ..self.clone() }
     }
 
+    /// The same loop with another controller.
+    pub(crate) fn with_feedback(&self, feedback: TransferFunction) -> Result<Compensation, LinearError> {
+        if feedback.domain() != self.feedback.domain() {
+            return Err(LinearError::DomainMismatch);
+        }
+        Ok(Compensation { feedback, ..self.clone() })
+    }
+
     /// The highest frequency that has a meaning, rad/s: pi/T, or infinity.
     pub fn highest_frequency_rad_per_s(&self) -> f64 {
         self.sample_time_s.map_or(f64::INFINITY, |sample_time_s| std::f64::consts::PI / sample_time_s)

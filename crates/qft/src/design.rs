@@ -1,6 +1,7 @@
 //! The design of a controller and its prefilter: search, audit, and a new constraint for every counterexample, until both agree.
 
 mod problem;
+pub mod quantisation;
 mod result;
 mod run;
 

@@ -6,8 +6,15 @@
 //!
 //! All free numbers are natural logarithms, so that every search direction is a change by factors.
 
+mod margins;
+mod sample_stability;
+mod samples;
 mod search;
+mod shaping;
 mod structure;
 
+pub use sample_stability::{SampleJudgement, SampleStability};
+pub use samples::{Samples, SamplesError, search_frequencies};
 pub use search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
-pub use structure::{Part, Structure};
+pub use shaping::{SampledMargin, Shaping};
+pub use structure::{Part, Structure, StructureResponse};

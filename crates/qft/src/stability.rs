@@ -28,7 +28,8 @@ pub use family::{FamilyStability, StabilityAudit};
 
 use crate::closed_loop::{Compensation, Member};
 use crate::verification::rounded;
-use characteristic::{Characteristic, FeedbackPath};
+use characteristic::Characteristic;
+pub(crate) use characteristic::FeedbackPath;
 
 /// Stability of one loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -212,6 +213,23 @@ fn characteristic(member: &Member, path: &FeedbackPath) -> Option<Result<Charact
         Member::Sampled { with_sensor, .. } => Some(path.around_sampled(with_sensor)),
         Member::Measured { .. } => None,
     }
+}
+
+/// Whether all closed-loop poles of a rational plant have real parts below this one in 1/s (ln|z|/T in a sampled loop), dead time
+/// included: by the turns of the characteristic function on a parallel to the boundary of stability.
+pub(crate) fn poles_lie_below(
+    member: &Member,
+    path: &FeedbackPath,
+    real_part: f64,
+) -> Result<bool, Irresolution> {
+    let characteristic = characteristic(member, path).ok_or(Irresolution::Points)??;
+    let moved = characteristic.moved(real_part);
+    let improper = characteristic.gain_at_infinity().is_none();
+    if (improper && characteristic.has_gain_above_one_at_infinity()) || moved.has_gain_above_one_at_infinity()
+    {
+        return Ok(false);
+    }
+    Ok(moved.unstable_poles()? == 0)
 }
 
 fn of_characteristic(characteristic: &Characteristic) -> MemberStability {

@@ -13,6 +13,7 @@ mod scan;
 mod search;
 mod start;
 
+pub(crate) use asymptote::{End, tracking_ratio};
 pub(crate) use audit::corners;
 pub use audit::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Work};
 pub(crate) use remark::rounded;

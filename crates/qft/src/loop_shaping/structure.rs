@@ -1,6 +1,17 @@
 //! A controller with free numbers.
 
-use phea_dynamics::controller::Element;
+mod fit;
+mod response;
+
+use phea_dynamics::controller::{Compensator, Element};
+use phea_dynamics::frequency::decibels;
+use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::portable;
+
+pub use response::StructureResponse;
+
+/// dB in a neper, 20/ln 10: what a change of ln|G| by one is.
+pub(super) const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 
 /// One factor of a structure. Every free number has its least and greatest value; frequencies in rad/s.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +49,31 @@ pub enum Part {
 /// ```text
 /// G(s; x) = sign k part_1(s) part_2(s) ...,      x = (ln k, ln of each free number in turn)
 /// ```
+///
+/// The free numbers of a pair are its natural frequency, then its damping ratio.
+///
+/// # Example
+/// Integral control with a lead, its two corners free:
+/// ```
+/// use phea_dynamics::controller::Element;
+/// use phea_dynamics::portable::ln;
+/// use phea_qft::loop_shaping::{Part, Structure};
+/// # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
+/// let corner = [0.1, 1000.0];
+/// let parts = vec![
+///     Part::Fixed(Element::Integrator),
+///     Part::RealZero { frequency: corner },
+///     Part::RealPole { frequency: corner },
+/// ];
+/// let structure = Structure { sign: 1.0, gain: [1e-3, 1e3], parts };
+/// let x = [2.0, 5.0, 50.0].map(ln); // k, z, p
+/// let g = structure.compensator(&x).transfer_function()?;
+/// assert!((g.gain() - 20.0).abs() < 1e-12); // 2 (s/5 + 1)/(s (s/50 + 1))
+/// assert_eq!((structure.order()?, structure.relative_degree()?, structure.dimension()), (2, 1, 3));
+/// assert!((structure.high_frequency_gain_db(&x)? - 26.0206).abs() < 1e-4); // of 20
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Structure {
     /// Sign of the gain: 1 or -1.
@@ -46,4 +82,137 @@ pub struct Structure {
     pub gain: [f64; 2],
     /// The factors.
     pub parts: Vec<Part>,
+}
+
+/// s/w + 1, or s^2/w^2 + 2 zeta s/w + 1, to the power of 1 or -1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Factor {
+    power: f64,
+    pair: bool,
+}
+
+impl Part {
+    /// `None` for an element without free numbers.
+    fn factor(&self) -> Option<Factor> {
+        match self {
+            Part::Fixed(_) => None,
+            Part::RealZero { .. } => Some(Factor { power: 1.0, pair: false }),
+            Part::RealPole { .. } => Some(Factor { power: -1.0, pair: false }),
+            Part::ZeroPair { .. } => Some(Factor { power: 1.0, pair: true }),
+            Part::PolePair { .. } => Some(Factor { power: -1.0, pair: true }),
+        }
+    }
+
+    /// Least and greatest value of each free number.
+    fn ranges(&self) -> Vec<[f64; 2]> {
+        match *self {
+            Part::Fixed(_) => vec![],
+            Part::RealZero { frequency } | Part::RealPole { frequency } => vec![frequency],
+            Part::ZeroPair { natural_frequency, damping_ratio }
+            | Part::PolePair { natural_frequency, damping_ratio } => vec![natural_frequency, damping_ratio],
+        }
+    }
+
+    /// The element with these free numbers.
+    fn element(&self, mut numbers: impl Iterator<Item = f64>) -> Element {
+        let mut next = || numbers.next().unwrap_or(f64::NAN);
+        match self {
+            Part::Fixed(element) => element.clone(),
+            Part::RealZero { .. } => Element::RealZero { frequency: next() },
+            Part::RealPole { .. } => Element::RealPole { frequency: next() },
+            Part::ZeroPair { .. } => {
+                Element::ComplexZeros { natural_frequency: next(), damping_ratio: next() }
+            }
+            Part::PolePair { .. } => {
+                Element::ComplexPoles { natural_frequency: next(), damping_ratio: next() }
+            }
+        }
+    }
+}
+
+impl Structure {
+    /// Number of free numbers, the gain among them.
+    pub fn dimension(&self) -> usize {
+        1 + self.parts.iter().map(|part| part.ranges().len()).sum::<usize>()
+    }
+
+    /// Least and greatest value of each x, natural logarithms.
+    pub fn bounds(&self) -> Vec<[f64; 2]> {
+        let ranges = self.parts.iter().flat_map(Part::ranges);
+        std::iter::once(self.gain).chain(ranges).map(|range| range.map(portable::ln)).collect()
+    }
+
+    /// The controller at x: its gain, and an element for each part. A number that x lacks is NaN.
+    pub fn compensator(&self, x: &[f64]) -> Compensator {
+        let mut numbers = x.iter().map(|&x| portable::exp(x));
+        let gain = Element::Gain(self.sign * numbers.next().unwrap_or(f64::NAN));
+        let elements = self.parts.iter().map(|part| part.element(&mut numbers));
+        Compensator::new(std::iter::once(gain).chain(elements).collect())
+    }
+
+    /// Number of poles.
+    ///
+    /// # Errors
+    /// A fixed element that is no transfer function.
+    pub fn order(&self) -> Result<usize, LinearError> {
+        Ok(self.degrees()?[1])
+    }
+
+    /// Poles less zeros, r.
+    ///
+    /// # Errors
+    /// A fixed element that is no transfer function.
+    pub fn relative_degree(&self) -> Result<i32, LinearError> {
+        let [zeros, poles] = self.degrees()?;
+        Ok(poles as i32 - zeros as i32)
+    }
+
+    /// The high-frequency gain in dB.
+    ///
+    /// ```text
+    /// 20 log10 |lim s^r G(s)|,      r the relative degree
+    /// ```
+    ///
+    /// In a sampled loop it is that of the elements before they are sampled: by Tustin's rule s = (2/T) (z - 1)/(z + 1) goes to infinity
+    /// as the frequency goes to pi/T, where G has its r zeros; what is left of it there is this limit.
+    ///
+    /// # Errors
+    /// A fixed element that is no transfer function.
+    pub fn high_frequency_gain_db(&self, x: &[f64]) -> Result<f64, LinearError> {
+        let free: f64 = self.high_frequency_slopes_db().iter().zip(x).map(|(slope, x)| slope * x).sum();
+        Ok(free + decibels(self.fixed()?.gain().abs()))
+    }
+
+    /// dB of high-frequency gain for each unit of x; the same at every x.
+    pub fn high_frequency_slopes_db(&self) -> Vec<f64> {
+        let slopes = self.factors().flat_map(|factor| match factor.pair {
+            false => vec![-factor.power],
+            true => vec![-2.0 * factor.power, 0.0],
+        });
+        std::iter::once(1.0).chain(slopes).map(|slope| DECIBELS_PER_NEPER * slope).collect()
+    }
+
+    /// The parts with free numbers, in turn.
+    fn factors(&self) -> impl Iterator<Item = Factor> {
+        self.parts.iter().filter_map(Part::factor)
+    }
+
+    /// The product of the parts without free numbers.
+    fn fixed(&self) -> Result<TransferFunction, LinearError> {
+        let elements = self.parts.iter().filter_map(|part| match part {
+            Part::Fixed(element) => Some(element.clone()),
+            _ => None,
+        });
+        Compensator::new(elements.collect()).transfer_function()
+    }
+
+    /// Numbers of zeros and poles.
+    fn degrees(&self) -> Result<[usize; 2], LinearError> {
+        let fixed = self.fixed()?;
+        let mut degrees = [fixed.zeros().len(), fixed.poles().len()];
+        for factor in self.factors() {
+            degrees[usize::from(factor.power < 0.0)] += if factor.pair { 2 } else { 1 };
+        }
+        Ok(degrees)
+    }
 }

@@ -9,7 +9,7 @@ use crate::closed_loop::Compensation;
 /// What leads from the output back to the plant, as polynomials: G H of a continuous loop, G of a sampled one (there the
 /// sensor is sampled together with the plant).
 #[derive(Clone, Debug)]
-pub(super) struct FeedbackPath {
+pub(crate) struct FeedbackPath {
     numerator: Polynomial,
     denominator: Polynomial,
     dead_time_s: f64,
@@ -34,7 +34,7 @@ pub(super) struct Characteristic {
 }
 
 impl FeedbackPath {
-    pub(super) fn new(compensation: &Compensation) -> Result<FeedbackPath, Irresolution> {
+    pub(crate) fn new(compensation: &Compensation) -> Result<FeedbackPath, Irresolution> {
         let (feedback, sensor) = (compensation.feedback(), compensation.sensor());
         let domain = feedback.domain();
         let (numerator, denominator) = polynomials(feedback)?;
@@ -156,6 +156,36 @@ impl Characteristic {
             && self.delay > 0.0
             && self.gain_at_infinity().is_none_or(|gain| gain.abs() > 1.0)
     }
+}
+
+impl Characteristic {
+    /// The equation whose poles have real parts that are smaller by this, in 1/s.
+    ///
+    /// ```text
+    /// continuous:  s = a + s'                    sampled:  z = r z', v = (r - 1) + r v', r = e^(a T)
+    /// ```
+    pub(super) fn moved(&self, real_part: f64) -> Characteristic {
+        let growth = real_part * self.time_unit();
+        let (shift, scale) = match self.domain {
+            TimeDomain::Continuous => (real_part, 1.0),
+            TimeDomain::Discrete { .. } => (portable::expm1(growth), portable::exp(growth)),
+        };
+        Characteristic {
+            denominator: substituted(&self.denominator, shift, scale),
+            numerator: substituted(&self.numerator, shift, scale)
+                .scaled(portable::exp(-real_part * self.delay * self.time_unit())),
+            ..*self
+        }
+    }
+}
+
+/// p(shift + scale s) by Horner's rule.
+fn substituted(polynomial: &Polynomial, shift: f64, scale: f64) -> Polynomial {
+    let factor = Polynomial::new(vec![scale, shift]);
+    polynomial
+        .coefficients()
+        .iter()
+        .fold(Polynomial::new(vec![0.0]), |sum, &c| sum.product(&factor).sum(&Polynomial::new(vec![c])))
 }
 
 fn time_unit(domain: TimeDomain) -> f64 {

@@ -36,20 +36,32 @@ impl Characteristic {
     /// [`Irresolution::NearBoundary`] where |f| is not above its rounding, [`Irresolution::Budget`],
     /// [`Irresolution::GainAtInfinity`] for a delayed loop with |L| >= 1 at infinite frequency.
     pub(super) fn encirclement(&self) -> Result<Encirclement, Irresolution> {
+        let mut visited: Vec<(f64, f64)> = Vec::new();
+        let unstable_poles = self.walked(&mut |angle| visited.push((self.distance(angle), angle)))?;
+        Ok(Encirclement { unstable_poles, closest: self.closest(&visited) })
+    }
+
+    /// Z alone.
+    ///
+    /// # Errors
+    /// Those of [`Characteristic::encirclement`].
+    pub(super) fn unstable_poles(&self) -> Result<usize, Irresolution> {
+        self.walked(&mut |_| {})
+    }
+
+    fn walked(&self, visit: &mut dyn FnMut(f64)) -> Result<usize, Irresolution> {
         let walk = Walk::new(self)?;
         let mut angle = 0.0;
         let mut reach = walk.end;
         let mut turned = 0.0;
         let mut previous: Option<Complex64> = None;
-        let mut visited: Vec<(f64, f64)> = Vec::new();
-        while visited.len() < STEPS_MAXIMUM {
+        for _ in 0..STEPS_MAXIMUM {
             let local = walk.expanded(angle);
             turned += previous.map_or(0.0, |previous| portable::argument(local.value / previous));
             previous = Some(local.value);
-            visited.push((self.distance(angle), angle));
+            visit(angle);
             if angle >= walk.end {
-                let unstable_poles = walk.unstable_poles(turned, local.value, angle)?;
-                return Ok(Encirclement { unstable_poles, closest: self.closest(&visited) });
+                return walk.unstable_poles(turned, local.value, angle);
             }
             reach = (2.0 * reach).min(walk.end - angle);
             let size = portable::magnitude(local.value);

@@ -11,7 +11,7 @@ use crate::specification::Limit;
 
 /// Which end of the frequency axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum End {
+pub(crate) enum End {
     /// w -> 0
     Zero,
     /// w -> infinity
@@ -20,9 +20,9 @@ pub(super) enum End {
 
 /// coefficient s^power
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Asymptote {
-    coefficient: f64,
-    power: i32,
+pub(crate) struct Asymptote {
+    pub(crate) coefficient: f64,
+    pub(crate) power: i32,
 }
 
 /// Sums of two asymptotes that cancel to this share of either are not resolved.
@@ -151,6 +151,19 @@ pub(super) fn margin(
         std::cmp::Ordering::Greater => f64::INFINITY,
     };
     Some(EndMargin { margin_db, power })
+}
+
+/// A limit over P G/(1+L) at an end; where dead time turns the loop, of its largest value; `None` where there
+/// is none.
+pub(crate) fn tracking_ratio(
+    compensation: &Compensation,
+    member: &Member,
+    limit: &Limit,
+    end: End,
+) -> Option<Asymptote> {
+    let parts = parts(compensation, member, false, end)?;
+    let closed = parts.plant.times(parts.feedback).over(parts.one_plus_loop(Side::Below, end)?);
+    Some(Asymptote::of_limit(limit, end)?.over(closed))
 }
 
 /// Where the asymptote of the loop at zero frequency has unit magnitude, rad/s.

@@ -1,0 +1,182 @@
+//! Margins of the samples: what is demanded at a frequency, and how far the plants there keep to it.
+//!
+//! ```text
+//! X = A G^a/(1 + B G),  B = P H,       margin = 20 log10(limit/|X|)
+//! d margin/dx = -(20/ln 10) Re(c d ln G/dx),    c = a - B G/(1 + B G)
+//! ```
+//!
+//! A margin thus moves with two real numbers of its plant, the parts of c. The search of a worst plant compares squares of magnitudes.
+
+mod crossover;
+mod rows;
+
+use num_complex::Complex64;
+
+use super::samples::Column;
+use crate::specification::{Requirement, Specification};
+
+pub(super) use crossover::{DelayMargins, bandwidth, delay_margins};
+pub(super) use rows::candidates;
+
+/// What is demanded of the plants at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Demand {
+    pub(super) specification: usize,
+    pub(super) quantity: Quantity,
+    /// The square of the limit, over |F|^2 where the quantity goes through the prefilter; of the quotient of both limits for a spread.
+    allowed: f64,
+}
+
+/// What is limited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    /// |L/(1+L)|
+    Complementary,
+    /// |1/(1+L)|
+    Sensitivity,
+    /// |P/(1+L)|
+    PlantInput,
+    /// |G/(1+L)|
+    Effort,
+    /// |Pd/(1+L)|
+    LoadMotion,
+    /// |P G/(1+L)| from above
+    TrackingBelow,
+    /// |P G/(1+L)| from below
+    TrackingAbove,
+    /// The greatest |P G/(1+L)| over the least
+    Spread,
+}
+
+/// The controller at one frequency, and |1/(1+L)|^2 of the plants there.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ColumnLoop {
+    feedback_squared: f64,
+    sensitivity_squared: Vec<f64>,
+}
+
+/// What the specifications demand at a frequency, by magnitude where there is a prefilter, else by spread.
+pub(super) fn demands(
+    specifications: &[Specification],
+    prefilter: Option<Complex64>,
+    frequency: f64,
+    highest_frequency: f64,
+) -> Vec<Demand> {
+    let mut demands = Vec::new();
+    for (index, specification) in specifications.iter().enumerate() {
+        let [from, to] = specification.band_rad_per_s;
+        if !(from <= frequency && frequency <= to.min(highest_frequency)) {
+            continue;
+        }
+        let (lower, upper) = specification.requirement.limits();
+        let square = |magnitude: f64| magnitude * magnitude;
+        let lower = lower.and_then(|limit| limit.magnitude(frequency)).map(square);
+        let upper = upper.magnitude(frequency).map(square);
+        let through = prefilter.map_or(1.0, |prefilter| prefilter.norm_sqr());
+        let limits = match specification.requirement {
+            Requirement::RobustStability(_) => vec![(Quantity::Complementary, upper)],
+            Requirement::Sensitivity(_) => vec![(Quantity::Sensitivity, upper)],
+            Requirement::PlantInputDisturbance(_) => vec![(Quantity::PlantInput, upper)],
+            Requirement::ControlEffort(_) => vec![(Quantity::Effort, upper)],
+            Requirement::LoadMotion(_) => vec![(Quantity::LoadMotion, upper)],
+            Requirement::Tracking { .. } if prefilter.is_some() => vec![
+                (Quantity::TrackingBelow, upper.map(|upper| upper / through)),
+                (Quantity::TrackingAbove, lower.map(|lower| lower / through)),
+            ],
+            Requirement::Tracking { .. } => {
+                vec![(Quantity::Spread, upper.zip(lower).map(|(upper, lower)| upper / lower))]
+            }
+        };
+        demands.extend(limits.into_iter().filter_map(|(quantity, allowed)| {
+            Some(Demand { specification: index, quantity, allowed: allowed? })
+        }));
+    }
+    demands
+}
+
+impl Demand {
+    /// What one dB of relaxation of every limit adds to the margin.
+    pub(super) fn rate(&self) -> f64 {
+        if self.quantity == Quantity::Spread { 2.0 } else { 1.0 }
+    }
+
+    /// a: the power of G in what is limited.
+    fn feedback_power(&self) -> f64 {
+        match self.quantity {
+            Quantity::Sensitivity | Quantity::PlantInput | Quantity::LoadMotion => 0.0,
+            Quantity::Complementary
+            | Quantity::Effort
+            | Quantity::TrackingBelow
+            | Quantity::TrackingAbove
+            | Quantity::Spread => 1.0,
+        }
+    }
+
+    /// The square of what is limited, of the plant at this place.
+    fn squared(&self, column: &Column, around: &ColumnLoop, place: usize) -> f64 {
+        let sensitivity = around.sensitivity_squared[place];
+        let feedback = around.feedback_squared;
+        match self.quantity {
+            Quantity::Complementary => column.loop_squared[place] * sensitivity * feedback,
+            Quantity::Sensitivity => sensitivity,
+            Quantity::PlantInput => column.plant_squared[place] * sensitivity,
+            Quantity::Effort => sensitivity * feedback,
+            Quantity::LoadMotion => column.load_motion_squared[place] * sensitivity,
+            Quantity::TrackingBelow | Quantity::TrackingAbove | Quantity::Spread => {
+                column.plant_squared[place] * sensitivity * feedback
+            }
+        }
+    }
+
+    /// The square of how far the worst plant, or pair of plants, of the column goes beyond the limit; 0 where there is no plant.
+    pub(super) fn worst_excess(&self, column: &Column, around: &ColumnLoop) -> f64 {
+        let sensitivity = &around.sensitivity_squared;
+        let feedback = around.feedback_squared;
+        match self.quantity {
+            Quantity::Complementary => greatest(&column.loop_squared, sensitivity) * feedback / self.allowed,
+            Quantity::Sensitivity => extremes(sensitivity.iter().copied())[1] / self.allowed,
+            Quantity::PlantInput => greatest(&column.plant_squared, sensitivity) / self.allowed,
+            Quantity::Effort => extremes(sensitivity.iter().copied())[1] * feedback / self.allowed,
+            Quantity::LoadMotion => greatest(&column.load_motion_squared, sensitivity) / self.allowed,
+            Quantity::TrackingBelow => greatest(&column.plant_squared, sensitivity) * feedback / self.allowed,
+            Quantity::TrackingAbove => self.allowed / (least(&column.plant_squared, sensitivity) * feedback),
+            Quantity::Spread => {
+                let [least, greatest] = extremes(products(&column.plant_squared, sensitivity));
+                greatest / (least * self.allowed)
+            }
+        }
+    }
+}
+
+impl ColumnLoop {
+    /// Closes the loops of a column around this G.
+    pub(super) fn close(&mut self, column: &Column, feedback: Complex64) {
+        self.feedback_squared = feedback.norm_sqr();
+        self.sensitivity_squared.clear();
+        let loops = column.loop_re.iter().zip(&column.loop_im);
+        self.sensitivity_squared.extend(loops.map(|(re, im)| {
+            let (real, imaginary) =
+                (1.0 + re * feedback.re - im * feedback.im, re * feedback.im + im * feedback.re);
+            1.0 / (real * real + imaginary * imaginary)
+        }));
+    }
+}
+
+fn products<'a>(one: &'a [f64], other: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    one.iter().zip(other).map(|(one, other)| one * other)
+}
+
+fn greatest(one: &[f64], other: &[f64]) -> f64 {
+    extremes(products(one, other))[1]
+}
+
+fn least(one: &[f64], other: &[f64]) -> f64 {
+    extremes(products(one, other))[0]
+}
+
+/// The least and the greatest; infinity and 0 of none.
+fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, 0.0], |[least, greatest], value| {
+        [if value < least { value } else { least }, if value > greatest { value } else { greatest }]
+    })
+}

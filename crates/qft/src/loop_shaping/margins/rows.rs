@@ -1,0 +1,95 @@
+//! The plants of a column that may become its worst one nearby.
+
+use num_complex::Complex64;
+use phea_dynamics::portable;
+
+use super::super::samples::Column;
+use super::super::structure::DECIBELS_PER_NEPER;
+use super::{ColumnLoop, Demand, Quantity};
+
+/// Change of ln G up to which a margin may be asked for.
+const REACH: f64 = 0.5;
+/// Plants further from the worst one than this are not looked at, dB.
+const WINDOW_DB: f64 = 12.0;
+/// Plants that are kept of one column and demand.
+const PLANTS_MAXIMUM: usize = 4;
+
+/// One margin: `d margin/dx = -(20/ln 10) Re(c d ln G/dx)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Candidate {
+    pub(crate) margin_db: f64,
+    /// c; for a lower limit its negative, for a spread the difference of the c of both plants.
+    pub(crate) sensitivity: Complex64,
+    /// Index of the plant, of the one with the greatest magnitude in a spread.
+    pub(crate) plant: usize,
+    /// The plant with the least magnitude, in a spread.
+    pub(crate) other: Option<usize>,
+}
+
+/// The worst margin of the column, and those that may become it within a change of ln G of [`REACH`]: after the worst, each time the
+/// plant whose c lies furthest from those chosen, for its distance.
+pub(crate) fn candidates(
+    demand: &Demand,
+    column: &Column,
+    around: &ColumnLoop,
+    feedback: Complex64,
+) -> Vec<Candidate> {
+    let level = |place: usize| DECIBELS_PER_NEPER * 0.5 * portable::ln(demand.squared(column, around, place));
+    let allowed = DECIBELS_PER_NEPER * 0.5 * portable::ln(demand.allowed);
+    let of = |place: usize, margin_db: f64, sign: f64| {
+        let open = column.loop_at(place) * feedback;
+        let coefficient = demand.feedback_power() - open / (1.0 + open);
+        Candidate { margin_db, sensitivity: coefficient * sign, plant: column.plants[place], other: None }
+    };
+    let places = 0..column.plants.len();
+    let below = |allowed: f64| {
+        let all = places.clone().map(|place| of(place, allowed - level(place), 1.0));
+        prominent(all.collect())
+    };
+    let above = |allowed: f64| {
+        let all = places.clone().map(|place| of(place, level(place) - allowed, -1.0));
+        prominent(all.collect())
+    };
+    match demand.quantity {
+        Quantity::TrackingAbove => above(allowed),
+        Quantity::Spread => {
+            let (tops, bottoms) = (below(0.0), above(0.0));
+            let mut pairs: Vec<Candidate> = Vec::new();
+            for top in &tops {
+                pairs.extend(bottoms.iter().map(|bottom| Candidate {
+                    margin_db: allowed + top.margin_db + bottom.margin_db,
+                    sensitivity: top.sensitivity + bottom.sensitivity,
+                    plant: top.plant,
+                    other: Some(bottom.plant),
+                }));
+            }
+            prominent(pairs)
+        }
+        _ => below(allowed),
+    }
+}
+
+/// The worst first; margins that are no numbers are left out.
+fn prominent(mut all: Vec<Candidate>) -> Vec<Candidate> {
+    all.retain(|candidate| candidate.margin_db.is_finite() && candidate.sensitivity.is_finite());
+    all.sort_by(|one, other| one.margin_db.total_cmp(&other.margin_db));
+    let Some(&worst) = all.first() else { return all };
+    all.retain(|candidate| candidate.margin_db <= worst.margin_db + WINDOW_DB);
+    let mut chosen = vec![worst];
+    while chosen.len() < PLANTS_MAXIMUM {
+        let distance = |candidate: &Candidate, from: &Candidate| {
+            portable::magnitude(candidate.sensitivity - from.sensitivity)
+        };
+        let threat = |candidate: &Candidate| {
+            let nearest = chosen.iter().map(|from| distance(candidate, from)).fold(f64::INFINITY, f64::min);
+            DECIBELS_PER_NEPER * REACH * nearest - (candidate.margin_db - worst.margin_db)
+        };
+        let threats = all.iter().map(|candidate| (threat(candidate), candidate));
+        let next = threats.max_by(|one, other| one.0.total_cmp(&other.0));
+        match next {
+            Some((threat, candidate)) if threat > 0.0 => chosen.push(*candidate),
+            _ => break,
+        }
+    }
+    chosen
+}

@@ -1,0 +1,226 @@
+//! Whether a sample of plants is stable with one controller after another: asked thousands of times by a search.
+//!
+//! ```text
+//! D(s) Gd(s) + N(s) Gn(s) = 0          every root left of the imaginary axis?        Routh's table, N and D made ready once
+//! in a sampled loop the same in w = (z - 1)/(z + 1), whose imaginary axis is the unit circle of z
+//! ```
+//!
+//! The table is made with bounds of its rounding, so that it answers yes, no, or not at all; then, and for dead time and measured
+//! plants, the counts of [`crate::stability`] are asked.
+
+mod quotient;
+mod rounded_polynomial;
+
+use std::cell::OnceCell;
+
+use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::portable;
+
+use crate::closed_loop::{Compensation, Member};
+use crate::stability::{FeedbackPath, Irresolution, StabilityStatus, member_stability, poles_lie_below};
+use quotient::Quotient;
+use rounded_polynomial::{Hurwitz, RoundedPolynomial};
+
+/// Real parts that are told apart: so many a decade, from the least to the largest.
+const REAL_PARTS_PER_DECADE: f64 = 256.0;
+const LEAST_REAL_PART: f64 = 1e-9;
+const DECADES: usize = 21;
+
+/// Plants of one loop, made ready to be asked about its controller.
+///
+/// Those found unstable last are asked first: [`SampleStability::is_stable`] ends at the first of them. Answers do not depend on
+/// that order.
+///
+/// # Example
+/// k/(s (s + 1) (s + 2)) is stable for 0 < k < 6; at k = 24 its poles are those of s^3 + 3 s^2 + 2 s + 24 = 0, two of them with the
+/// real part 0.5.
+/// ```
+/// use phea_dynamics::controller::Controller;
+/// use phea_dynamics::linear::TransferFunction;
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+/// use phea_qft::closed_loop::Compensation;
+/// use phea_qft::loop_shaping::SampleStability;
+/// # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
+/// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+/// let plant = |k| {
+///     let command = RationalCoefficients { numerator: vec![k], denominator: vec![1.0, 3.0, 2.0, 0.0] };
+///     compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 })
+/// };
+/// let mut plants = SampleStability::new(&compensation, vec![plant(1.0)?, plant(4.0)?]);
+/// assert!(plants.is_stable(&TransferFunction::gain_only(1.4))?);
+/// let judgement = plants.judge(&TransferFunction::gain_only(6.0))?;
+/// assert_eq!(judgement.unstable_plants, 2); // k = 6 is no longer stable, k = 24 less so
+/// assert!((judgement.largest_real_part - 0.5).abs() < 0.005);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct SampleStability {
+    compensation: Compensation,
+    plants: Vec<Plant>,
+    order: Vec<usize>,
+}
+
+/// What a controller makes of the plants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleJudgement {
+    /// Plants that are unstable, or cannot be shown to be stable.
+    pub unstable_plants: usize,
+    /// A bound, to one percent, of the real parts of the closed-loop poles of the unstable plants in 1/s, ln|z|/T in a sampled loop:
+    /// by how much the loop would have to decay faster. 0 where all are stable or where the bound is below 1e-9; infinite for a
+    /// delayed loop whose gain grows with frequency. Measured plants, whose poles are not known, do not count.
+    pub largest_real_part: f64,
+    /// Plants about which the table could not decide.
+    pub undecided_tables: usize,
+}
+
+/// A plant within the loop; without a quotient where dead time or measurement leave none.
+#[derive(Clone, Debug)]
+struct Plant {
+    member: Member,
+    quotient: Option<Quotient>,
+}
+
+/// The controller that is asked about.
+struct Question {
+    compensation: Compensation,
+    feedback: Option<Quotient>,
+    path: OnceCell<Result<FeedbackPath, Irresolution>>,
+}
+
+impl SampleStability {
+    /// These plants within this loop, whose controller does not count: it is what the questions are about.
+    pub fn new(compensation: &Compensation, members: Vec<Member>) -> SampleStability {
+        let none = SampleStability { compensation: compensation.clone(), plants: vec![], order: vec![] };
+        members.into_iter().fold(none, |mut plants, member| {
+            plants.add(member);
+            plants
+        })
+    }
+
+    /// One more plant.
+    pub fn add(&mut self, member: Member) {
+        let quotient = Quotient::of_member(&member);
+        self.order.insert(0, self.plants.len());
+        self.plants.push(Plant { member, quotient });
+    }
+
+    /// Whether every plant is stable with this controller; a plant of which that cannot be shown counts as unstable.
+    ///
+    /// # Errors
+    /// [`LinearError::DomainMismatch`] for a controller that is not in the time domain of the loop.
+    pub fn is_stable(&mut self, feedback: &TransferFunction) -> Result<bool, LinearError> {
+        let question = self.question(feedback)?;
+        let unstable = self.order.iter().position(|&index| {
+            self.plants.get(index).is_some_and(|plant| !question.is_stable(plant, &mut 0))
+        });
+        self.ask_first(unstable);
+        Ok(unstable.is_none())
+    }
+
+    /// How many plants are unstable with this controller, and by how much: for ranking controllers that fail, which takes about ten
+    /// times as long as to say of one that it does not.
+    ///
+    /// # Errors
+    /// Those of [`SampleStability::is_stable`].
+    pub fn judge(&mut self, feedback: &TransferFunction) -> Result<SampleJudgement, LinearError> {
+        let question = self.question(feedback)?;
+        let mut judgement =
+            SampleJudgement { unstable_plants: 0, largest_real_part: 0.0, undecided_tables: 0 };
+        let mut worst = None;
+        for (position, plant) in self.order.iter().filter_map(|&index| self.plants.get(index)).enumerate() {
+            if question.is_stable(plant, &mut judgement.undecided_tables) {
+                continue;
+            }
+            judgement.unstable_plants += 1;
+            let known = judgement.largest_real_part;
+            if worst.is_none() || (known.is_finite() && !question.lies_below(plant, known)) {
+                judgement.largest_real_part = question.largest_real_part(plant);
+                worst = Some(position);
+            }
+        }
+        self.ask_first(worst);
+        Ok(judgement)
+    }
+
+    fn question(&self, feedback: &TransferFunction) -> Result<Question, LinearError> {
+        let compensation = self.compensation.with_feedback(feedback.clone())?;
+        Ok(Question { compensation, feedback: Quotient::of_function(feedback), path: OnceCell::new() })
+    }
+
+    fn ask_first(&mut self, position: Option<usize>) {
+        if let Some(first) = position.and_then(|position| self.order.get_mut(..=position)) {
+            first.rotate_right(1);
+        }
+    }
+}
+
+impl Question {
+    fn is_stable(&self, plant: &Plant, undecided_tables: &mut usize) -> bool {
+        match self.characteristic(plant).map(|characteristic| characteristic.hurwitz()) {
+            Some(Hurwitz::Yes) => true,
+            Some(Hurwitz::No) => false,
+            Some(Hurwitz::Undecided) => {
+                *undecided_tables += 1;
+                self.is_shown_stable(&plant.member)
+            }
+            None if matches!(plant.member, Member::Measured { .. }) => self.is_shown_stable(&plant.member),
+            None => self.delayed_poles_lie_below(&plant.member, 0.0) == Ok(true),
+        }
+    }
+
+    fn is_shown_stable(&self, member: &Member) -> bool {
+        member_stability(member, &self.compensation).status == StabilityStatus::Stable
+    }
+
+    /// The characteristic polynomial, without a dead time that leaves none.
+    fn characteristic(&self, plant: &Plant) -> Option<RoundedPolynomial> {
+        Some(plant.quotient.as_ref()?.closed(self.feedback.as_ref()?))
+    }
+
+    /// Whether no pole has a real part above this one; where that cannot be told, it has none, unless there is no end to its turns.
+    fn lies_below(&self, plant: &Plant, real_part: f64) -> bool {
+        if let Some(characteristic) = self.characteristic(plant) {
+            let moved = match self.compensation.sample_time_s() {
+                None => characteristic.substituted(real_part, 0.0),
+                Some(sample_time_s) => {
+                    // z = e^(real_part T) z'
+                    let shift = portable::tanh(0.5 * real_part * sample_time_s);
+                    characteristic.substituted(shift, shift)
+                }
+            };
+            return moved.hurwitz() != Hurwitz::No;
+        }
+        let found = self.delayed_poles_lie_below(&plant.member, real_part);
+        !matches!(found, Ok(false) | Err(Irresolution::Budget { .. }))
+    }
+
+    fn delayed_poles_lie_below(&self, member: &Member, real_part: f64) -> Result<bool, Irresolution> {
+        match self.path.get_or_init(|| FeedbackPath::new(&self.compensation)) {
+            Ok(path) => poles_lie_below(member, path, real_part),
+            Err(reason) => Err(reason.clone()),
+        }
+    }
+
+    /// The first of the real parts that are told apart below which all poles lie.
+    fn largest_real_part(&self, plant: &Plant) -> f64 {
+        let per_decade = std::f64::consts::LN_10 / REAL_PARTS_PER_DECADE;
+        let real_part = |number: usize| LEAST_REAL_PART * portable::exp(per_decade * number as f64);
+        let (mut above, mut below) = (0, DECADES * REAL_PARTS_PER_DECADE as usize);
+        if self.lies_below(plant, real_part(above)) {
+            return 0.0;
+        }
+        if !self.lies_below(plant, real_part(below)) {
+            return f64::INFINITY;
+        }
+        while below - above > 1 {
+            let middle = above + (below - above) / 2;
+            if self.lies_below(plant, real_part(middle)) {
+                below = middle;
+            } else {
+                above = middle;
+            }
+        }
+        real_part(below)
+    }
+}

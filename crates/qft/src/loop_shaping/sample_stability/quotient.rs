@@ -1,0 +1,102 @@
+//! Parts of a loop as quotients of polynomials in s, or in w.
+//!
+//! ```text
+//! w = (z - 1)/(z + 1):   z - p = ((2 + r) w - r)/(1 - w)  with r = p - 1,      z = (1 + w)/(1 - w)
+//! ```
+//!
+//! The factors of 1 - w are multiplied out. A slow pole lies near w = s T/2 and keeps its digits.
+
+use num_complex::Complex64;
+use phea_dynamics::linear::{Polynomial, TimeDomain, TransferFunction};
+
+use super::rounded_polynomial::RoundedPolynomial;
+use crate::closed_loop::Member;
+
+/// Samples of delay that may become factors of w.
+const DELAY_MAXIMUM: f64 = 24.0;
+
+/// Numerator over denominator, nothing cancelled; both of the same degree in w.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Quotient {
+    numerator: RoundedPolynomial,
+    denominator: RoundedPolynomial,
+}
+
+impl Quotient {
+    /// P H of a member; `None` for a measurement, and for a dead time that leaves no polynomials.
+    pub(super) fn of_member(member: &Member) -> Option<Quotient> {
+        match member {
+            Member::Continuous { plant, sensor } if plant.dead_time_s == 0.0 => {
+                let sensor = Quotient::of_function(sensor)?;
+                let polynomial = |coefficients: &[f64]| {
+                    RoundedPolynomial::exact(Polynomial::new(coefficients.to_vec()).coefficients())
+                };
+                Some(Quotient {
+                    numerator: polynomial(&plant.command.numerator).times(&sensor.numerator),
+                    denominator: polynomial(&plant.command.denominator).times(&sensor.denominator),
+                })
+            }
+            Member::Sampled { with_sensor, .. } => Quotient::of_function(with_sensor),
+            Member::Continuous { .. } | Member::Measured { .. } => None,
+        }
+    }
+
+    /// A transfer function in s or z; `None` for a dead time that leaves no polynomials, and for one in z that answers before it is
+    /// asked.
+    pub(super) fn of_function(function: &TransferFunction) -> Option<Quotient> {
+        let TimeDomain::Discrete { sample_time_s } = function.domain() else {
+            let once = |polynomial: &Polynomial| {
+                RoundedPolynomial::rounded(polynomial.coefficients(), polynomial.coefficients(), 1.0)
+            };
+            let quotient = Quotient {
+                numerator: once(&function.numerator()),
+                denominator: once(&function.denominator()),
+            };
+            return (function.dead_time_s() == 0.0).then_some(quotient);
+        };
+        let samples = (function.dead_time_s() / sample_time_s).round();
+        let lead = function.poles().len().checked_sub(function.zeros().len())?;
+        if samples > DELAY_MAXIMUM {
+            return None;
+        }
+        let samples = samples as usize;
+        let numerator = in_w(function.gain(), function.zeros());
+        let denominator = in_w(1.0, function.poles());
+        Some(Quotient {
+            numerator: raised(numerator, &[-1.0, 1.0], lead + samples),
+            denominator: raised(denominator, &[1.0, 1.0], samples),
+        })
+    }
+
+    /// The characteristic polynomial of this in a loop with that.
+    pub(super) fn closed(&self, other: &Quotient) -> RoundedPolynomial {
+        RoundedPolynomial::sum_of_products(&[
+            (&self.denominator, &other.denominator),
+            (&self.numerator, &other.numerator),
+        ])
+    }
+}
+
+/// The polynomial times so many of these factors.
+fn raised(polynomial: RoundedPolynomial, factor: &[f64], count: usize) -> RoundedPolynomial {
+    let factor = RoundedPolynomial::exact(factor);
+    (0..count).fold(polynomial, |product, _| product.times(&factor))
+}
+
+/// gain (z - z_1) (z - z_2) ... without its factors of 1 - w.
+fn in_w(gain: f64, roots: &[Complex64]) -> RoundedPolynomial {
+    let upper = roots.iter().filter(|root| root.im >= 0.0);
+    upper.fold(RoundedPolynomial::exact(&[gain]), |product, root| product.times(&factor_in_w(*root)))
+}
+
+/// (2 + r) w - r of a real root, and the product of that of a root with that of its conjugate.
+fn factor_in_w(root: Complex64) -> RoundedPolynomial {
+    let (re, im) = (root.re - 1.0, root.im);
+    if im == 0.0 {
+        return RoundedPolynomial::rounded(&[2.0 + re, -re], &[2.0 + re, re], 1.0);
+    }
+    let square = re * re + im * im;
+    let highest = (2.0 + re) * (2.0 + re) + im * im;
+    let values = [highest, -2.0 * (2.0 * re + square), square];
+    RoundedPolynomial::rounded(&values, &[highest, 4.0 * re.abs() + 2.0 * square, square], 4.0)
+}

@@ -1,0 +1,285 @@
+//! What a search looks at: plants, frequencies, and the responses of each plant at each frequency, taken once.
+
+mod frequencies;
+
+pub use frequencies::search_frequencies;
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{Compensator, Controller, Element};
+use phea_dynamics::linear::{LinearError, TransferFunction};
+
+use super::margins::{Demand, demands};
+use crate::closed_loop::{Compensation, Member};
+use crate::design::DesignProblem;
+use crate::family::Family;
+use crate::verification::PlantPoint;
+
+/// Beside an undamped pole of the plant, where it has no response, it is looked at this share of the frequency higher.
+const BESIDE: f64 = 1e-9;
+
+/// Why there are no samples.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SamplesError {
+    /// The loop cannot be formed.
+    #[error("{0}")]
+    Linear(#[from] LinearError),
+    /// This is no plant of the family.
+    #[error("{0:?} is no plant of the family")]
+    Plant(PlantPoint),
+}
+
+/// The plants and frequencies that a search looks at, frozen in their loop: every plant at every frequency of a grid, and single plants
+/// at single frequencies besides. Delay, hold and sensor are those of the loop, as the audit takes them.
+///
+/// # Example
+/// k/s at 1 and 10 rad/s with a gain of 1 and of 4, then the counterexample k = 3 at 2 rad/s:
+/// ```
+/// use phea_dynamics::controller::Timing;
+/// use phea_dynamics::linear::TransferFunction;
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// use phea_qft::design::DesignProblem;
+/// use phea_qft::family::{Extent, Family, UncertainFamily};
+/// use phea_qft::loop_shaping::Samples;
+/// use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::verification::PlantPoint;
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
+/// let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+///     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+///     disturbance: None,
+///     dead_time_s: 0.0.into(),
+/// })?;
+/// let problem = DesignProblem {
+///     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
+///     sensor: TransferFunction::gain_only(1.0),
+///     timing: Timing::default(),
+///     specifications: vec![Specification {
+///         requirement: Requirement::Sensitivity(Limit::Constant(2.0)),
+///         frequencies_rad_per_s: vec![1.0],
+///         band_rad_per_s: [0.0, f64::INFINITY],
+///     }],
+///     minimum_delay_margin_s: 0.0,
+/// };
+/// let k = |value: f64| PlantPoint::Parameters(vec![value]);
+/// let mut samples = Samples::new(&problem, None, &[k(1.0), k(4.0)], &[1.0, 10.0])?;
+/// assert!(samples.add(&[k(3.0)], 2.0)?);
+/// assert!(!samples.add(&[k(3.0)], 2.0)?); // known already
+/// assert_eq!(samples.frequencies_rad_per_s(), [1.0, 2.0, 10.0]);
+/// assert_eq!((samples.plants().len(), samples.pairs()), (3, 5));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Samples {
+    problem: DesignProblem,
+    /// With a controller of gain 1.
+    around: Compensation,
+    with_prefilter: bool,
+    plants: Vec<PlantPoint>,
+    members: Vec<Member>,
+    columns: Vec<Column>,
+}
+
+/// The plants at one frequency: P, Pd, H as they enter the closed loops, each number in an array of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Column {
+    pub(super) frequency: f64,
+    /// Whether every plant is looked at here.
+    grid: bool,
+    pub(super) demands: Vec<Demand>,
+    /// Indices of the plants; what follows is in their order.
+    pub(super) plants: Vec<usize>,
+    /// P H
+    pub(super) loop_re: Vec<f64>,
+    pub(super) loop_im: Vec<f64>,
+    /// |P H|^2
+    pub(super) loop_squared: Vec<f64>,
+    /// |P|^2
+    pub(super) plant_squared: Vec<f64>,
+    /// |Pd|^2
+    pub(super) load_motion_squared: Vec<f64>,
+}
+
+impl Samples {
+    /// Every one of these plants at every one of these frequencies, rad/s, positive, at most pi/T in a sampled loop. Tracking is judged by
+    /// magnitude with this prefilter; without one, by the spread of the plants. The first plant is the nominal one.
+    ///
+    /// # Errors
+    /// A point that is no plant of the family; a plant, sensor or prefilter that does not fit the loop.
+    pub fn new(
+        problem: &DesignProblem,
+        prefilter: Option<&TransferFunction>,
+        plants: &[PlantPoint],
+        frequencies_rad_per_s: &[f64],
+    ) -> Result<Samples, SamplesError> {
+        let mut samples = Samples {
+            problem: problem.clone(),
+            around: around(problem, prefilter)?,
+            with_prefilter: prefilter.is_some(),
+            plants: vec![],
+            members: vec![],
+            columns: vec![],
+        };
+        for &frequency in frequencies_rad_per_s {
+            let place = samples.column(frequency);
+            samples.columns[place].grid = true;
+        }
+        for plant in plants {
+            samples.add_plant(plant)?;
+        }
+        Ok(samples)
+    }
+
+    /// Looks at these plants at this frequency too; whether one of them was not looked at there before.
+    ///
+    /// # Errors
+    /// Those of [`Samples::new`].
+    pub fn add(&mut self, plants: &[PlantPoint], frequency_rad_per_s: f64) -> Result<bool, SamplesError> {
+        let mut new = false;
+        for plant in plants {
+            let index = self.plant(plant)?;
+            let place = self.column(frequency_rad_per_s);
+            new |= self.put(index, place);
+        }
+        Ok(new)
+    }
+
+    /// Looks at this plant at every frequency of the grid.
+    ///
+    /// # Errors
+    /// Those of [`Samples::new`].
+    pub fn add_plant(&mut self, plant: &PlantPoint) -> Result<(), SamplesError> {
+        let index = self.plant(plant)?;
+        for place in 0..self.columns.len() {
+            if self.columns[place].grid {
+                self.put(index, place);
+            }
+        }
+        Ok(())
+    }
+
+    /// What is designed for.
+    pub fn problem(&self) -> &DesignProblem {
+        &self.problem
+    }
+
+    /// The plants, in the order in which they were given, the nominal one first.
+    pub fn plants(&self) -> &[PlantPoint] {
+        &self.plants
+    }
+
+    /// The plants as they are in the loop, in the same order.
+    pub fn members(&self) -> &[Member] {
+        &self.members
+    }
+
+    /// The frequencies, increasing, rad/s.
+    pub fn frequencies_rad_per_s(&self) -> Vec<f64> {
+        self.columns.iter().map(|column| column.frequency).collect()
+    }
+
+    /// How many pairs of a plant and a frequency are looked at.
+    pub fn pairs(&self) -> usize {
+        self.columns.iter().map(|column| column.plants.len()).sum()
+    }
+
+    pub(super) fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The index of a plant, which is put into the loop if it is new.
+    fn plant(&mut self, point: &PlantPoint) -> Result<usize, SamplesError> {
+        if let Some(index) = self.plants.iter().position(|known| known == point) {
+            return Ok(index);
+        }
+        let none = || SamplesError::Plant(point.clone());
+        let member = match (&self.problem.family, point) {
+            (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
+                if values.len() != family.plant().parameters().len() {
+                    return Err(none());
+                }
+                self.around.member(family.plant().coefficients(values))?
+            }
+            (Family::Measured(family), PlantPoint::Measured(index)) => {
+                self.around.measured(family.plants().get(*index).ok_or_else(none)?)
+            }
+            _ => return Err(none()),
+        };
+        self.plants.push(point.clone());
+        self.members.push(member);
+        Ok(self.plants.len() - 1)
+    }
+
+    /// The place of the column of a frequency, which is made if it is new.
+    fn column(&mut self, frequency: f64) -> usize {
+        let place = self.columns.partition_point(|column| column.frequency < frequency);
+        if self.columns.get(place).is_none_or(|column| column.frequency != frequency) {
+            let prefilter = self.with_prefilter.then(|| self.around.response(frequency).prefilter);
+            let highest = self.around.highest_frequency_rad_per_s();
+            let demands = demands(&self.problem.specifications, prefilter, frequency, highest);
+            self.columns.insert(place, Column::new(frequency, demands));
+        }
+        place
+    }
+
+    /// Whether the plant was not in the column before. A measured plant is not looked at where it was not measured.
+    fn put(&mut self, plant: usize, place: usize) -> bool {
+        let column = &mut self.columns[place];
+        if column.plants.contains(&plant) {
+            return false;
+        }
+        let finite = |frequency: f64| {
+            let response = self.members[plant].response(frequency)?;
+            let parts = [response.plant, response.plant * response.sensor, response.load_motion];
+            parts.iter().all(|part| part.is_finite()).then_some(parts)
+        };
+        let Some([response, with_sensor, load_motion]) =
+            finite(column.frequency).or_else(|| finite(column.frequency * (1.0 + BESIDE)))
+        else {
+            return false;
+        };
+        column.plants.push(plant);
+        column.loop_re.push(with_sensor.re);
+        column.loop_im.push(with_sensor.im);
+        column.loop_squared.push(with_sensor.norm_sqr());
+        column.plant_squared.push(response.norm_sqr());
+        column.load_motion_squared.push(load_motion.norm_sqr());
+        true
+    }
+}
+
+impl Column {
+    fn new(frequency: f64, demands: Vec<Demand>) -> Column {
+        Column {
+            frequency,
+            grid: false,
+            demands,
+            plants: vec![],
+            loop_re: vec![],
+            loop_im: vec![],
+            loop_squared: vec![],
+            plant_squared: vec![],
+            load_motion_squared: vec![],
+        }
+    }
+
+    /// P H of the plant at this place.
+    pub(super) fn loop_at(&self, place: usize) -> Complex64 {
+        Complex64::new(self.loop_re[place], self.loop_im[place])
+    }
+}
+
+/// The loop with a controller of gain 1.
+fn around(
+    problem: &DesignProblem,
+    prefilter: Option<&TransferFunction>,
+) -> Result<Compensation, LinearError> {
+    let elements = prefilter.map(|prefilter| Element::General(prefilter.clone()));
+    let controller = Controller {
+        feedback: Compensator::default(),
+        prefilter: Compensator::new(elements.into_iter().collect()),
+        timing: problem.timing,
+        ..Controller::default()
+    };
+    Compensation::new(&controller, problem.sensor.clone())
+}

@@ -1,0 +1,131 @@
+//! The frequencies of a search.
+
+use num_complex::Complex64;
+use phea_dynamics::frequency::logarithmic_grid;
+use phea_dynamics::linear::Polynomial;
+use phea_dynamics::portable;
+
+use super::{SamplesError, around};
+use crate::design::DesignProblem;
+use crate::family::Family;
+use crate::specification::Limit;
+use crate::verification::PlantPoint;
+
+/// How far beyond roots and design frequencies a band that has no end is looked at, as a factor.
+const BEYOND: f64 = 30.0;
+/// Beyond this factor the grid is coarse.
+const DENSE: f64 = 5.0;
+/// How much coarser.
+const COARSENESS: f64 = 4.0;
+/// A root with a damping ratio below this one makes a peak that the grid could miss.
+const LIGHTLY_DAMPED: f64 = 0.2;
+/// Frequencies of peaks that are added at most.
+const PEAKS_MAXIMUM: usize = 80;
+
+/// The frequencies at which these plants are looked at: a logarithmic grid over all bands, the ends of the bands, the design
+/// frequencies, and the lightly damped roots of the plants; increasing, rad/s.
+///
+/// A band from 0 begins a factor 30 below the slowest root of a plant or a limit and the least design frequency, one to infinity
+/// ends as far above the fastest; between 5 times those and there, the grid is four times as coarse. A sampled loop ends at pi/T.
+/// Of peaks that crowd, some are left out.
+///
+/// # Errors
+/// A point that is no plant of the family; a loop that cannot be formed.
+pub fn search_frequencies(
+    problem: &DesignProblem,
+    plants: &[PlantPoint],
+    points_per_decade: f64,
+) -> Result<Vec<f64>, SamplesError> {
+    let highest = around(problem, None)?.highest_frequency_rad_per_s();
+    let (mut sizes, mut peaks) = features(problem, plants)?;
+    sizes.retain(|size| *size > 0.0 && size.is_finite());
+    let slowest = sizes.iter().copied().fold(f64::INFINITY, f64::min).min(highest);
+    let fastest = sizes.iter().copied().fold(0.0, f64::max).min(highest);
+    let (slowest, fastest) = if sizes.is_empty() { (1.0, 1.0) } else { (slowest, fastest) };
+    let bands = problem.specifications.iter().map(|specification| specification.band_rad_per_s);
+    let bands: Vec<[f64; 2]> = bands.map(|[from, to]| [from, to.min(highest)]).collect();
+    let ends = [slowest / BEYOND, slowest / DENSE, fastest * DENSE, fastest * BEYOND];
+    let mut grid = spaced([ends[0], ends[1]], points_per_decade / COARSENESS);
+    grid.extend(spaced([ends[1], ends[2]], points_per_decade));
+    grid.extend(spaced([ends[2], ends[3]], points_per_decade / COARSENESS));
+    thin(&mut peaks);
+    grid.extend(peaks);
+    let given = problem.specifications.iter().flat_map(|specification| &specification.frequencies_rad_per_s);
+    grid.extend(given.chain(bands.iter().flatten()).filter(|frequency| frequency.is_finite()));
+    grid.retain(|frequency| {
+        *frequency > 0.0 && bands.iter().any(|[from, to]| from <= frequency && frequency <= to)
+    });
+    grid.sort_by(f64::total_cmp);
+    grid.dedup();
+    Ok(grid)
+}
+
+/// The magnitudes of the roots of plants and limits with the design frequencies, and the frequencies of peaks.
+fn features(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<(Vec<f64>, Vec<f64>), SamplesError> {
+    let given = problem.specifications.iter().flat_map(|specification| &specification.frequencies_rad_per_s);
+    let mut sizes: Vec<f64> = given.copied().collect();
+    let mut peaks = Vec::new();
+    let mut roots = Vec::new();
+    for specification in &problem.specifications {
+        let (lower, upper) = specification.requirement.limits();
+        for limit in [lower, Some(upper)].into_iter().flatten() {
+            if let Limit::Rational(function) = limit {
+                roots.extend([function.zeros(), function.poles()].concat());
+            }
+        }
+    }
+    for plant in plants {
+        match (&problem.family, plant) {
+            (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
+                let plant = family.plant().coefficients(values);
+                let paths = std::iter::once(&plant.command).chain(&plant.disturbance);
+                for coefficients in paths.flat_map(|path| [&path.numerator, &path.denominator]) {
+                    // a polynomial without roots to be had has no peak to show
+                    roots.extend(Polynomial::new(coefficients.clone()).roots().unwrap_or_default());
+                }
+            }
+            (Family::Measured(family), PlantPoint::Measured(index)) => {
+                let plant = family.plants().get(*index).ok_or_else(|| SamplesError::Plant(plant.clone()))?;
+                peaks.extend(&plant.frequencies_rad_per_s);
+                sizes.extend(plant.frequencies_rad_per_s.first());
+                sizes.extend(plant.frequencies_rad_per_s.last());
+            }
+            _ => return Err(SamplesError::Plant(plant.clone())),
+        }
+    }
+    sizes.extend(roots.iter().map(|root| portable::magnitude(*root)));
+    peaks.extend(roots.into_iter().flat_map(around_root));
+    Ok((sizes, peaks))
+}
+
+/// The frequency of a lightly damped root, and those where it has fallen by 3 dB and by 7.
+fn around_root(root: Complex64) -> Vec<f64> {
+    let (centre, width) = (root.im, root.re.abs());
+    if centre <= 0.0 || width > LIGHTLY_DAMPED * centre {
+        return Vec::new();
+    }
+    [-2.0, -1.0, 0.0, 1.0, 2.0].iter().map(|offset| centre + offset * width).collect()
+}
+
+/// Of frequencies that crowd, some are left out.
+fn thin(frequencies: &mut Vec<f64>) {
+    frequencies.sort_by(f64::total_cmp);
+    let mut apart = 1e-3;
+    loop {
+        let mut last = 0.0;
+        frequencies.retain(|&frequency| {
+            let kept = frequency > last * (1.0 + apart);
+            last = if kept { frequency } else { last };
+            kept
+        });
+        if frequencies.len() <= PEAKS_MAXIMUM {
+            return;
+        }
+        apart *= 2.0;
+    }
+}
+
+fn spaced([from, to]: [f64; 2], per_decade: f64) -> Vec<f64> {
+    let points = portable::log10(to / from) * per_decade;
+    logarithmic_grid(from, to, points as usize + 2).unwrap_or_default()
+}

@@ -1,0 +1,41 @@
+//! The prefilter: what the closed loop leaves for it, and the one of least order that keeps to it (thesis 3.1.5).
+//!
+//! The controller decides by how much the plants of a family differ, the prefilter where they lie. At each frequency
+//!
+//! ```text
+//! lower/min|T| <= |F| <= upper/max|T|,      T = P G/(1+L)          over the family, so that lower <= |F T| <= upper (3.18)
+//! ```
+//!
+//! is all that F has to keep to: a band for its magnitude. Where the band has no width, no prefilter of any order will do, and the
+//! two plants that collide can be named. Otherwise a stable F of minimum phase is fitted into it.
+
+mod band;
+mod ends;
+mod extremes;
+mod margin;
+
+pub use band::{PrefilterBand, PrefilterBandPoint};
+pub use extremes::{TrackingExtremes, tracking_extremes};
+pub use margin::{BandEdge, PrefilterMargin};
+
+/// Why there is no band for a prefilter, or no search in it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PrefilterError {
+    /// A specification that no prefilter has a part in.
+    #[error("only tracking leaves a band for a prefilter")]
+    NotTracking,
+    /// A family without members.
+    #[error("a family without members leaves no band")]
+    NoMember,
+    /// None of the frequencies lies where tracking is demanded.
+    #[error("tracking is demanded at none of the frequencies")]
+    NoFrequency,
+    /// The closed loop of a member could not be evaluated.
+    #[error("the closed loop of member {member} has no value at {frequency_rad_per_s} rad/s")]
+    NoResponse {
+        /// Index of the member.
+        member: usize,
+        /// rad/s
+        frequency_rad_per_s: f64,
+    },
+}

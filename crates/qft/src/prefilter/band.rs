@@ -1,0 +1,194 @@
+//! The band that the closed loop leaves for the magnitude of the prefilter.
+
+use phea_dynamics::frequency::decibels;
+
+use super::ends::{self, Demand};
+use super::{PrefilterError, TrackingExtremes, tracking_extremes};
+use crate::closed_loop::{Compensation, Member};
+use crate::specification::Specification;
+
+/// Widths below this are lost in rounding, dB.
+pub(super) const RESOLVED_DB: f64 = 1e-9;
+/// From this distance to an edge on, more of it is worth no more than elsewhere, dB.
+const AMPLE_DB: f64 = 1.0;
+
+/// The least and the greatest |F| at one frequency, each with the member that sets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrefilterBandPoint {
+    /// rad/s; zero for the limit at rest.
+    pub frequency_rad_per_s: f64,
+    /// lower/min|T|, dB; minus infinity where nothing is demanded from below.
+    pub least_db: f64,
+    /// upper/max|T|, dB
+    pub greatest_db: f64,
+    /// upper/lower, dB: what the specification allows all plants together (thesis 3.25).
+    pub allowed_db: f64,
+    /// Index of the member with the least |T|.
+    pub least_member: usize,
+    /// Index of the member with the greatest |T|.
+    pub greatest_member: usize,
+}
+
+/// The band of the prefilter over frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrefilterBand {
+    pub(super) points: Vec<PrefilterBandPoint>,
+    /// Least and greatest relative degree that F may have.
+    pub(super) relative_degree: [usize; 2],
+    /// The positive frequencies that were asked for, from and to, rad/s.
+    pub(super) span: [f64; 2],
+}
+
+impl PrefilterBandPoint {
+    fn new(extremes: &TrackingExtremes, lower: f64, upper: f64) -> PrefilterBandPoint {
+        PrefilterBandPoint {
+            frequency_rad_per_s: extremes.frequency_rad_per_s,
+            least_db: decibels(lower / extremes.least),
+            greatest_db: decibels(upper / extremes.greatest),
+            allowed_db: decibels(upper / lower),
+            least_member: extremes.least_member,
+            greatest_member: extremes.greatest_member,
+        }
+    }
+
+    /// The residual band, dB: what the specification allows less the spread of the family (thesis 3.24). Negative where no prefilter will do.
+    pub fn width_db(&self) -> f64 {
+        self.greatest_db - self.least_db
+    }
+
+    /// What a margin to an edge is measured in: half of the width, as far as it is resolved, and at most 1 dB.
+    ///
+    /// Towards zero frequency, where both limits meet, all margins shrink with the square of the frequency; measured in the width
+    /// they do not, and demand there what the limits' curvatures demand.
+    pub fn rate(&self) -> f64 {
+        (self.width_db() / 2.0).clamp(RESOLVED_DB, AMPLE_DB)
+    }
+}
+
+impl PrefilterBand {
+    /// The band at frequencies of which the extremes of the family are known, in increasing order; those at which nothing is demanded
+    /// are left out.
+    ///
+    /// # Errors
+    /// [`PrefilterError::NotTracking`], [`PrefilterError::NoFrequency`].
+    ///
+    /// # Example
+    /// T between 0.5 and 0.8 where 0.4 to 1 is demanded leaves 0.8 to 1.25:
+    /// ```
+    /// use phea_qft::prefilter::{PrefilterBand, TrackingExtremes};
+    /// use phea_qft::specification::{Limit, Requirement, Specification};
+    /// let extremes = TrackingExtremes {
+    ///     frequency_rad_per_s: 3.0, greatest: 0.8, greatest_member: 7, least: 0.5, least_member: 2,
+    /// };
+    /// let tracking = Specification {
+    ///     requirement: Requirement::Tracking { lower: Limit::Constant(0.4), upper: Limit::Constant(1.0) },
+    ///     frequencies_rad_per_s: vec![3.0],
+    ///     band_rad_per_s: [1.0, 10.0],
+    /// };
+    /// let band = PrefilterBand::new(&[extremes], &tracking)?;
+    /// let point = band.points()[0];
+    /// assert!((point.least_db - 20.0 * 0.8_f64.log10()).abs() < 1e-12);
+    /// assert!((point.greatest_db - 20.0 * 1.25_f64.log10()).abs() < 1e-12);
+    /// assert_eq!((point.least_member, point.greatest_member), (2, 7));
+    /// # Ok::<(), phea_qft::prefilter::PrefilterError>(())
+    /// ```
+    pub fn new(
+        extremes: &[TrackingExtremes],
+        specification: &Specification,
+    ) -> Result<PrefilterBand, PrefilterError> {
+        let demand = Demand::of(specification)?;
+        let point = |extremes: &TrackingExtremes| {
+            let [lower, upper] = demand.at(extremes.frequency_rad_per_s)?;
+            Some(PrefilterBandPoint::new(extremes, lower, upper))
+        };
+        let points: Vec<PrefilterBandPoint> = extremes.iter().filter_map(point).collect();
+        let positive =
+            points.iter().map(|point| point.frequency_rad_per_s).filter(|frequency| *frequency > 0.0);
+        let span = [positive.clone().fold(f64::INFINITY, f64::min), positive.fold(0.0, f64::max)];
+        if span[1] == 0.0 {
+            return Err(PrefilterError::NoFrequency);
+        }
+        Ok(PrefilterBand { points, relative_degree: [0, usize::MAX], span })
+    }
+
+    /// The band of a family at these frequencies (positive, increasing), and what follows from the ends of the frequency axis: see
+    /// [`PrefilterBand::with_ends`].
+    ///
+    /// # Errors
+    /// Those of [`PrefilterBand::new`] and [`tracking_extremes`].
+    pub fn of_family(
+        compensation: &Compensation,
+        members: &[Member],
+        frequencies_rad_per_s: &[f64],
+        specification: &Specification,
+    ) -> Result<PrefilterBand, PrefilterError> {
+        let extremes = tracking_extremes(compensation, members, frequencies_rad_per_s)?;
+        PrefilterBand::new(&extremes, specification)?.with_ends(compensation, members, specification)
+    }
+
+    /// The same band, and what follows from the ends of the frequency axis.
+    ///
+    /// ```text
+    /// w -> 0           F(0) between the limits over T(0); where both limits meet there, F(0) is that value even if the band that is
+    ///                  demanded begins above. Frequencies a decade lower each are added until the edges follow c w^2
+    /// w -> infinity    where tracking is demanded up to infinity: the relative degrees that F may have, and three decades of frequencies
+    /// ```
+    ///
+    /// A measured family has no ends, and the band remains as it is.
+    ///
+    /// # Errors
+    /// Those of [`tracking_extremes`].
+    pub fn with_ends(
+        mut self,
+        compensation: &Compensation,
+        members: &[Member],
+        specification: &Specification,
+    ) -> Result<PrefilterBand, PrefilterError> {
+        ends::towards_zero(&mut self, compensation, members, specification)?;
+        ends::towards_infinity(&mut self, compensation, members, specification)?;
+        Ok(self)
+    }
+
+    /// The band at one more frequency; `None` where nothing is demanded.
+    pub(super) fn point(
+        compensation: &Compensation,
+        members: &[Member],
+        frequency_rad_per_s: f64,
+        demand: Demand,
+    ) -> Result<Option<PrefilterBandPoint>, PrefilterError> {
+        let Some([lower, upper]) = demand.at(frequency_rad_per_s) else { return Ok(None) };
+        let found = tracking_extremes(compensation, members, &[frequency_rad_per_s])?;
+        Ok(found.first().map(|extremes| PrefilterBandPoint::new(extremes, lower, upper)))
+    }
+
+    /// The band over frequency, in increasing order.
+    pub fn points(&self) -> &[PrefilterBandPoint] {
+        &self.points
+    }
+
+    /// Least and greatest relative degree that F may have by what is demanded at infinite frequency.
+    pub fn relative_degree(&self) -> [usize; 2] {
+        self.relative_degree
+    }
+
+    /// Where the family uses the largest share of the spread that it is allowed. (The width itself vanishes wherever the limits meet,
+    /// as they do at zero frequency.)
+    pub fn tightest(&self) -> Option<&PrefilterBandPoint> {
+        let share = |point: &PrefilterBandPoint| point.width_db() / point.allowed_db;
+        let resolved = self.points.iter().filter(|point| point.is_resolved());
+        resolved.min_by(|left, right| share(left).total_cmp(&share(right)))
+    }
+
+    /// Where the band is narrowest, if it is so narrow that a margin of minus this many decibels at both edges is not enough.
+    pub fn closed(&self, tolerance_db: f64) -> Option<&PrefilterBandPoint> {
+        let narrowest = self.points.iter().min_by(|left, right| left.width_db().total_cmp(&right.width_db()));
+        narrowest.filter(|point| point.width_db() < -2.0 * tolerance_db.max(RESOLVED_DB))
+    }
+}
+
+impl PrefilterBandPoint {
+    /// Whether the limits lie apart by more than rounding.
+    pub(super) fn is_resolved(&self) -> bool {
+        self.allowed_db > RESOLVED_DB || self.width_db() < -RESOLVED_DB
+    }
+}

@@ -1,0 +1,147 @@
+//! What a band demands towards zero and infinite frequency.
+
+use phea_dynamics::frequency::decibels;
+
+use super::band::RESOLVED_DB;
+use super::{PrefilterBand, PrefilterBandPoint, PrefilterError};
+use crate::closed_loop::{Compensation, Member};
+use crate::specification::{Limit, Requirement, Specification};
+use crate::verification::{End, tracking_ratio};
+
+/// Edges whose curvature changes by less than this share of their distance from one decade to the next have settled.
+const SETTLED_SHARE: f64 = 0.01;
+/// Decades that are looked at below the lowest frequency, and above the highest.
+const DECADES: [usize; 2] = [9, 3];
+
+/// Both limits and the band in which they are demanded.
+#[derive(Clone, Copy)]
+pub(super) struct Demand<'a> {
+    lower: &'a Limit,
+    upper: &'a Limit,
+    band: [f64; 2],
+}
+
+impl Demand<'_> {
+    pub(super) fn of(specification: &Specification) -> Result<Demand<'_>, PrefilterError> {
+        match &specification.requirement {
+            Requirement::Tracking { lower, upper } => {
+                Ok(Demand { lower, upper, band: specification.band_rad_per_s })
+            }
+            _ => Err(PrefilterError::NotTracking),
+        }
+    }
+
+    /// Both limits; `None` where nothing is demanded.
+    pub(super) fn at(self, frequency: f64) -> Option<[f64; 2]> {
+        let demanded = self.band[0] <= frequency && frequency <= self.band[1];
+        let limits = || Some([self.lower.magnitude(frequency)?, self.upper.magnitude(frequency)?]);
+        demanded.then(limits).flatten()
+    }
+}
+
+/// Adds the limit at zero frequency, and lower frequencies until the edges follow c w^2.
+pub(super) fn towards_zero(
+    band: &mut PrefilterBand,
+    compensation: &Compensation,
+    members: &[Member],
+    specification: &Specification,
+) -> Result<(), PrefilterError> {
+    let demand = Demand::of(specification)?;
+    let Some(rest) = at_rest(compensation, members, demand) else { return Ok(()) };
+    let meet = rest.allowed_db <= RESOLVED_DB;
+    let known = meet && rest.width_db() >= -RESOLVED_DB;
+    if demand.band[0] > 0.0 && !known {
+        return Ok(());
+    }
+    let mut added = Vec::new();
+    let lowest = band.points.iter().position(|point| point.frequency_rad_per_s > 0.0);
+    let mut last = lowest.and_then(|index| band.points.get(index)).copied();
+    for _ in 0..DECADES[0] {
+        let Some(before) = last.filter(|_| known) else { break };
+        let frequency = before.frequency_rad_per_s / 10.0;
+        let Some(point) = PrefilterBand::point(compensation, members, frequency, demand)? else { break };
+        if point.width_db().abs() < RESOLVED_DB {
+            break;
+        }
+        added.push(point);
+        last = (!settled(&rest, &before, &point)).then_some(point);
+    }
+    added.push(rest);
+    added.reverse();
+    band.points.retain(|point| point.frequency_rad_per_s > 0.0);
+    band.points.splice(0..0, added);
+    Ok(())
+}
+
+/// Whether both edges of two points follow the same c w^2 from the value at rest on.
+fn settled(rest: &PrefilterBandPoint, before: &PrefilterBandPoint, point: &PrefilterBandPoint) -> bool {
+    let square = |point: &PrefilterBandPoint| point.frequency_rad_per_s * point.frequency_rad_per_s;
+    let curvatures = |point: &PrefilterBandPoint| {
+        [point.least_db - rest.least_db, point.greatest_db - rest.greatest_db]
+            .map(|edge| edge / square(point))
+    };
+    let [least, greatest] = curvatures(point);
+    let changes = curvatures(before).into_iter().zip([least, greatest]).map(|(old, new)| (new - old).abs());
+    changes.fold(0.0, f64::max) <= SETTLED_SHARE * (greatest - least).abs()
+}
+
+/// The limit of the band as w -> 0; `None` where it has none, or T vanishes or grows there otherwise than its limits.
+fn at_rest(compensation: &Compensation, members: &[Member], demand: Demand) -> Option<PrefilterBandPoint> {
+    let mut point = PrefilterBandPoint {
+        frequency_rad_per_s: 0.0,
+        least_db: f64::NEG_INFINITY,
+        greatest_db: f64::INFINITY,
+        allowed_db: 0.0,
+        least_member: 0,
+        greatest_member: 0,
+    };
+    for (index, member) in members.iter().enumerate() {
+        let ratio = |limit: &Limit| {
+            let ratio = tracking_ratio(compensation, member, limit, End::Zero)?;
+            (ratio.power == 0 && ratio.coefficient != 0.0).then(|| decibels(ratio.coefficient.abs()))
+        };
+        let (least_db, greatest_db) = (ratio(demand.lower)?, ratio(demand.upper)?);
+        if index == 0 {
+            point.allowed_db = greatest_db - least_db;
+        }
+        if least_db > point.least_db {
+            (point.least_db, point.least_member) = (least_db, index);
+        }
+        if greatest_db < point.greatest_db {
+            (point.greatest_db, point.greatest_member) = (greatest_db, index);
+        }
+    }
+    Some(point)
+}
+
+/// Adds the relative degrees that the limits leave, and frequencies above, where tracking is demanded up to infinity.
+///
+/// ```text
+/// F -> f s^-r,   limit/|T| -> c s^n:        r >= -n of the upper limit,  r <= -n of the lower one
+/// ```
+pub(super) fn towards_infinity(
+    band: &mut PrefilterBand,
+    compensation: &Compensation,
+    members: &[Member],
+    specification: &Specification,
+) -> Result<(), PrefilterError> {
+    let demand = Demand::of(specification)?;
+    if demand.band[1] < f64::INFINITY || compensation.sample_time_s().is_some() {
+        return Ok(());
+    }
+    let [mut least, mut greatest] = [0, i32::MAX];
+    for member in members {
+        let degree = |limit: &Limit| {
+            tracking_ratio(compensation, member, limit, End::Infinity).map(|ratio| -ratio.power)
+        };
+        let (Some(lower), Some(upper)) = (degree(demand.lower), degree(demand.upper)) else { return Ok(()) };
+        (least, greatest) = (least.max(upper), greatest.min(lower));
+    }
+    band.relative_degree = [least, greatest].map(|degree| usize::try_from(degree).unwrap_or(0));
+    let mut frequency = band.span[1];
+    for _ in 0..DECADES[1] {
+        frequency *= 10.0;
+        band.points.extend(PrefilterBand::point(compensation, members, frequency, demand)?);
+    }
+    Ok(())
+}

@@ -1,0 +1,94 @@
+//! The greatest and the least closed loop of a family.
+
+use phea_dynamics::portable;
+
+use super::PrefilterError;
+use crate::closed_loop::{Compensation, Member};
+
+/// The greatest and the least |P G/(1+L)| of a family at one frequency, the prefilter left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrackingExtremes {
+    /// rad/s
+    pub frequency_rad_per_s: f64,
+    /// max |T|
+    pub greatest: f64,
+    /// Index of the member that has it.
+    pub greatest_member: usize,
+    /// min |T|
+    pub least: f64,
+    /// Index of the member that has it.
+    pub least_member: usize,
+}
+
+/// The extremes of a family at each frequency (thesis 3.22, 3.23, with the prefilter left out).
+///
+/// ```text
+/// T = P G/(1 + P G H)
+/// ```
+///
+/// # Errors
+/// [`PrefilterError::NoResponse`] where a measurement does not reach, or a plant has no value;
+/// [`PrefilterError::NoMember`] without members.
+///
+/// # Example
+/// k/s closed with gain 1, k from 1 to 4: |T| = k/|jw + k|
+/// ```
+/// use phea_dynamics::controller::Controller;
+/// use phea_dynamics::linear::TransferFunction;
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+/// use phea_qft::closed_loop::Compensation;
+/// use phea_qft::prefilter::tracking_extremes;
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+/// let member = |k: f64| {
+///     let command = RationalCoefficients { numerator: vec![k], denominator: vec![1.0, 0.0] };
+///     compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 })
+/// };
+/// let found = tracking_extremes(&compensation, &[member(1.0)?, member(4.0)?], &[3.0])?[0];
+/// assert_eq!((found.greatest_member, found.least_member), (1, 0));
+/// assert!((found.greatest - 0.8).abs() < 1e-15 && (found.least - 0.1_f64.sqrt()).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+pub fn tracking_extremes(
+    compensation: &Compensation,
+    members: &[Member],
+    frequencies_rad_per_s: &[f64],
+) -> Result<Vec<TrackingExtremes>, PrefilterError> {
+    if members.is_empty() {
+        return Err(PrefilterError::NoMember);
+    }
+    let at = |&frequency: &f64| extremes_at(compensation, members, frequency);
+    frequencies_rad_per_s.iter().map(at).collect()
+}
+
+fn extremes_at(
+    compensation: &Compensation,
+    members: &[Member],
+    frequency_rad_per_s: f64,
+) -> Result<TrackingExtremes, PrefilterError> {
+    let feedback = compensation.response(frequency_rad_per_s).feedback;
+    let mut found = TrackingExtremes {
+        frequency_rad_per_s,
+        greatest: 0.0,
+        greatest_member: 0,
+        least: f64::INFINITY,
+        least_member: 0,
+    };
+    for (member, plant) in members.iter().enumerate() {
+        let magnitude = plant.response(frequency_rad_per_s).map_or(f64::NAN, |response| {
+            let forward = response.plant * feedback;
+            portable::magnitude(forward / (1.0 + forward * response.sensor))
+        });
+        if magnitude.is_nan() {
+            return Err(PrefilterError::NoResponse { member, frequency_rad_per_s });
+        }
+        if magnitude > found.greatest {
+            (found.greatest, found.greatest_member) = (magnitude, member);
+        }
+        if magnitude < found.least {
+            (found.least, found.least_member) = (magnitude, member);
+        }
+    }
+    Ok(found)
+}

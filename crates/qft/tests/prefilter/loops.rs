@@ -1,0 +1,52 @@
+//! Loops that several tests share.
+
+use phea_dynamics::controller::{Compensator, Controller, Element};
+use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+use phea_qft::closed_loop::{Compensation, Member};
+use phea_qft::specification::{Limit, Requirement, Specification};
+
+pub(crate) fn rational(numerator: &[f64], denominator: &[f64]) -> TransferFunction {
+    let polynomial = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());
+    TransferFunction::from_polynomials(&polynomial(numerator), &polynomial(denominator)).unwrap()
+}
+
+pub(crate) fn around(feedback: TransferFunction) -> Compensation {
+    let feedback = Compensator::new(vec![Element::General(feedback)]);
+    let controller = Controller { feedback, ..Controller::default() };
+    Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap()
+}
+
+pub(crate) fn member(compensation: &Compensation, numerator: &[f64], denominator: &[f64]) -> Member {
+    let command = RationalCoefficients { numerator: numerator.to_vec(), denominator: denominator.to_vec() };
+    compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 }).unwrap()
+}
+
+/// k/s for each k, closed with gain 1: T = k/(s + k).
+pub(crate) fn integrators(gains: &[f64]) -> (Compensation, Vec<Member>) {
+    let compensation = around(TransferFunction::gain_only(1.0));
+    let members = gains.iter().map(|&k| member(&compensation, &[k], &[1.0, 0.0])).collect();
+    (compensation, members)
+}
+
+pub(crate) fn tracking(lower: Limit, upper: Limit, band: [f64; 2]) -> Specification {
+    let requirement = Requirement::Tracking { lower, upper };
+    Specification { requirement, frequencies_rad_per_s: vec![], band_rad_per_s: band }
+}
+
+/// k a/(s (s + a)), k and a from 1 to 10, with the published controller; its tracking specification up to 10 rad/s.
+pub(crate) fn servo() -> (Compensation, Vec<Member>, Specification) {
+    let compensation = around(rational(&[3.0787e6, 3.5365e8, 3.8529e8], &[1.0, 1528.8, 1.0636e6, 4.281e7]));
+    let values: Vec<f64> = (0..5).map(|index| 10f64.powf(0.25 * f64::from(index))).collect();
+    let plants = values.iter().flat_map(|&k| values.iter().map(move |&a| (k, a)));
+    let members = plants.map(|(k, a)| member(&compensation, &[k * a], &[1.0, a, 0.0])).collect();
+    let upper = Limit::Rational(rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]));
+    let lower = Limit::Rational(rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]));
+    (compensation, members, tracking(lower, upper, [0.0, 10.0]))
+}
+
+/// Frequencies by equal factors.
+pub(crate) fn spaced(from: f64, to: f64, count: u32) -> Vec<f64> {
+    let share = |index: u32| f64::from(index) / f64::from(count - 1);
+    (0..count).map(|index| from * (to / from).powf(share(index))).collect()
+}
