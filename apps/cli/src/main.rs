@@ -2,6 +2,7 @@
 
 mod arguments;
 mod file_system;
+mod interruption;
 mod run;
 mod voice;
 

@@ -4,10 +4,12 @@ use std::process::ExitCode;
 
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, Request};
+use phea_workbench::design::DESIGNED_PROJECT;
 use phea_workbench::project::{self, Loaded, STARTER};
 
 use crate::arguments::{Arguments, Command, Common};
-use crate::file_system::{FileSystem, write, write_starter};
+use crate::file_system::{FileSystem, write, write_as, write_starter};
+use crate::interruption::Interruption;
 use crate::voice::{ProgressLine, complain, say};
 
 /// The answer is yes, no, or the input is wrong.
@@ -28,6 +30,10 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }),
         Command::Linearize(common) => on_project(&common, &Request::Linearize),
         Command::Verify(common) => on_project(&common, &Request::Verify),
+        Command::Design { common, seed, save } => {
+            let request = Request::Design { seed, stages: common.out.is_some() };
+            on_project_saving(&common, &request, save.as_deref())
+        }
         Command::Report(common) => {
             let request = if common.out.is_some() { Request::Report } else { Request::Page };
             on_project(&common, &request)
@@ -64,7 +70,12 @@ fn new(folder: &Path) -> Result<u8, String> {
 }
 
 fn on_project(common: &Common, request: &Request) -> Result<u8, String> {
-    match answered(common, request) {
+    on_project_saving(common, request, None)
+}
+
+/// The same, the designed project written to a file of its own.
+fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, String> {
+    match answered(common, request, save) {
         Ok((answer, _)) if common.json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
         Ok((answer, written)) => {
             say(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
@@ -83,7 +94,11 @@ fn status(answer: &Answer) -> u8 {
 }
 
 /// The answer, and the files that were written.
-fn answered(common: &Common, request: &Request) -> Result<(Answer, Vec<PathBuf>), Refused> {
+fn answered(
+    common: &Common,
+    request: &Request,
+    save: Option<&Path>,
+) -> Result<(Answer, Vec<PathBuf>), Refused> {
     let path = common.project.to_string_lossy();
     let loaded =
         project::read(&FileSystem, &path, &common.settings, &common.catalogues).map_err(|report| {
@@ -96,9 +111,12 @@ fn answered(common: &Common, request: &Request) -> Result<(Answer, Vec<PathBuf>)
         complain(&project::render(&loaded.warnings, &loaded.texts, styled()));
     }
     let mut line = ProgressLine::default();
+    // what ends in a best result so far is asked to stop; everything else has nothing to save
+    let interruption = matches!(request, Request::Design { .. }).then(Interruption::listen);
     let answer =
         command::answer_watched(&FileSystem, &loaded, &common.catalogues, request, &mut |progress| {
-            line.show(progress)
+            line.show(progress);
+            !interruption.as_ref().is_some_and(Interruption::is_asked)
         });
     line.clear();
     let answer = answer.map_err(|error| Refused {
@@ -108,8 +126,12 @@ fn answered(common: &Common, request: &Request) -> Result<(Answer, Vec<PathBuf>)
             None => format!("error: {error}"),
         },
     })?;
-    let written =
-        write_files(common, request, &answer).map_err(|message| failed(request, &loaded, &message))?;
+    let explain = |message: String| failed(request, &loaded, &message);
+    let mut written = write_files(common, request, &answer).map_err(explain)?;
+    let designed = answer.files.iter().find(|file| file.name == DESIGNED_PROJECT);
+    if let (Some(path), Some(designed)) = (save, designed) {
+        written.insert(0, write_as(path, designed).map_err(explain)?);
+    }
     Ok((answer, written))
 }
 

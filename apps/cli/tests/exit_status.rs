@@ -21,7 +21,9 @@ fn folder(name: &str) -> PathBuf {
     );
     let measured = "schema = 1\n[family]\nmeasured = [\"drive.csv\", \"absent.csv\"]\n";
     let rows = "frequency_hz,magnitude_db,phase_deg\n1,0,0\n2,loud,0\n3,0,0,0\n";
-    let files: [(&str, &[u8]); 9] = [
+    let timed = closed.replace("numerator = \"1\"\ndenominator = \"s\"\n[[", "sample_time = \"1 ms\"\n[[");
+    let files: [(&str, &[u8]); 10] = [
+        ("timed.toml", timed.as_bytes()),
         ("measured.toml", measured.as_bytes()),
         ("drive.csv", rows.as_bytes()),
         ("hose.toml", text.as_bytes()),
@@ -55,6 +57,11 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["verify", "hose.toml", "--set", "controller.numerator=\"1000\""], 1),
     (&["verify", "loop.toml"], 0),
     (&["verify", "plant.toml"], 2),
+    (&["check", "timed.toml"], 0),
+    (&["verify", "timed.toml"], 2),
+    (&["design", "plant.toml"], 2),
+    (&["design", "loop.toml", "--seed", "-1"], 2),
+    (&["design", "loop.toml", "--set", "design.seeed=2"], 2),
     (&["size", "hose.toml", "--gain", "0.0005 V/N"], 1),
     (&["size", "hose.toml", "--length", "200 cm"], 1),
     (&["size", "hose.toml", "--set", "sizing.oil_velocity=[0.1, 0.2]"], 1),

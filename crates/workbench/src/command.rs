@@ -8,6 +8,7 @@ use crate::answer::{self, Answer, OutputFile};
 use crate::audit::{self, AuditError, audit_project};
 use crate::control::{ControlError, controller, sensor};
 use crate::derived::{self, derive};
+use crate::design::{self, DesignError, design_project};
 use crate::family::{FamilyError, family};
 use crate::figure::FigureError;
 use crate::linearize::{self, linearize};
@@ -35,6 +36,13 @@ pub enum Request {
     Linearize,
     /// The audit of the given controller.
     Verify,
+    /// A controller that keeps to the specifications.
+    Design {
+        /// In place of the project's.
+        seed: Option<u32>,
+        /// Whether every stage is wanted as files, and not the designed project alone.
+        stages: bool,
+    },
     /// The page with every figure as a file.
     Report,
     /// The page alone.
@@ -49,6 +57,7 @@ impl Request {
             Request::Size { .. } => "size",
             Request::Linearize => "linearize",
             Request::Verify => "verify",
+            Request::Design { .. } => "design",
             Request::Report | Request::Page => "report",
         }
     }
@@ -94,6 +103,9 @@ pub enum CommandError {
     /// There is nothing that could be audited.
     #[error(transparent)]
     Audit(#[from] AuditError),
+    /// There is nothing to design for, or nothing was found.
+    #[error(transparent)]
+    Design(#[from] DesignError),
     /// There is no family of plants.
     #[error(transparent)]
     Family(#[from] FamilyError),
@@ -168,6 +180,7 @@ pub fn answer_watched(
         }
         Request::Linearize => linearize_answer(loaded),
         Request::Verify => verify_answer(source, loaded, watch),
+        Request::Design { seed, stages } => design_answer(source, loaded, *seed, *stages, watch),
         Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
         Request::Page => {
             report_answer(source, loaded, catalogues, watch, |report| Ok(vec![report.page_file()]))
@@ -266,6 +279,22 @@ fn verify_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Resu
         json: audit::json(loaded, &view),
         files: audit::files(&view),
         affirmative: view.audit.verdict == Verdict::Met,
+    })
+}
+
+fn design_answer(
+    source: &dyn Source,
+    loaded: &Loaded,
+    seed: Option<u32>,
+    stages: bool,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
+    let view = design_project(source, loaded, seed, watch)?;
+    Ok(Answer {
+        text: design::text(loaded, &view)?,
+        json: design::json(loaded, &view)?,
+        files: if stages { design::stage_files(loaded, &view, watch)? } else { design::files(loaded, &view) },
+        affirmative: view.is_met(),
     })
 }
 

@@ -36,30 +36,18 @@ pub enum ControlError {
     },
 }
 
-/// The given controller with its prefilter; `None` where the project gives no controller.
+/// The given controller with its prefilter; `None` where the project gives no law for one.
 ///
 /// # Errors
 /// [`ControlError`] if one of them is no transfer function.
 pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError> {
-    let Some(declared) = &project.controller else { return Ok(None) };
-    let prefilter = match &project.prefilter {
-        Some(prefilter) => {
-            compensator("[prefilter]", &prefilter.transfer, prefilter.sample_time.or(declared.sample_time))?
-        }
-        None => Compensator::default(),
+    let Some(declared) = project.controller.as_ref().filter(|controller| controller.has_law()) else {
+        return Ok(None);
     };
     Ok(Some(Controller {
         feedback: compensator("[controller]", &declared.transfer, declared.sample_time)?,
-        prefilter,
-        timing: Timing {
-            sample_time_s: declared.sample_time,
-            delay_s: declared.delay,
-            discretization: match declared.discretization {
-                project::Discretization::Tustin => Discretization::Tustin,
-                project::Discretization::ZeroOrderHold => Discretization::ZeroOrderHold,
-                project::Discretization::Matched => Discretization::Matched,
-            },
-        },
+        prefilter: prefilter(project)?.unwrap_or_default(),
+        timing: timing(project),
         command_limit: declared.saturation,
         anti_windup: match declared.anti_windup {
             project::AntiWindup::None => AntiWindup::None,
@@ -69,7 +57,31 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
     }))
 }
 
-/// The loop around the plant that the given controller and prefilter make; `None` where the project gives no controller.
+/// The given prefilter; `None` where the project gives none.
+///
+/// # Errors
+/// [`ControlError`] if it is no transfer function.
+pub fn prefilter(project: &Project) -> Result<Option<Compensator>, ControlError> {
+    let Some(declared) = &project.prefilter else { return Ok(None) };
+    let sample_time = declared.sample_time.or(timing(project).sample_time_s);
+    compensator("[prefilter]", &declared.transfer, sample_time).map(Some)
+}
+
+/// When the controller acts, be its law given or to be designed; continuous and without delay where the project says nothing.
+pub fn timing(project: &Project) -> Timing {
+    let Some(declared) = &project.controller else { return Timing::default() };
+    Timing {
+        sample_time_s: declared.sample_time,
+        delay_s: declared.delay,
+        discretization: match declared.discretization {
+            project::Discretization::Tustin => Discretization::Tustin,
+            project::Discretization::ZeroOrderHold => Discretization::ZeroOrderHold,
+            project::Discretization::Matched => Discretization::Matched,
+        },
+    }
+}
+
+/// The loop around the plant that the given controller and prefilter make; `None` where the project gives no law.
 ///
 /// # Errors
 /// [`ControlError`] if one of them is no transfer function, or cannot be sampled.
@@ -108,23 +120,31 @@ fn compensator(
                 .map_err(linear)?;
             let sampled =
                 [numerator, denominator].iter().any(|formula| formula.variable() == Some(Variable::Z));
-            let function = match (sampled, sample_time) {
-                (false, _) => function,
-                (true, None) => return Err(ControlError::SampleTime { place }),
-                (true, Some(sample_time_s)) => {
-                    function.in_domain(TimeDomain::Discrete { sample_time_s }).map_err(linear)?
-                }
-            };
-            vec![Element::General(function)]
+            vec![Element::General(in_domain(function, sampled, sample_time, place)?)]
         }
-        Some(TransferForm::Factors { gain, zeros, poles }) => {
+        Some(TransferForm::Factors { gain, zeros, poles, is_discrete }) => {
             let roots = |pairs: &[[f64; 2]]| pairs.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
-            vec![Element::General(
-                TransferFunction::from_factors(gain, roots(zeros), roots(poles)).map_err(linear)?,
-            )]
+            let function =
+                TransferFunction::from_factors(gain, roots(zeros), roots(poles)).map_err(linear)?;
+            vec![Element::General(in_domain(function, is_discrete, sample_time, place)?)]
         }
     };
     Ok(Compensator::new(elements))
+}
+
+fn in_domain(
+    function: TransferFunction,
+    is_discrete: bool,
+    sample_time: Option<f64>,
+    place: &'static str,
+) -> Result<TransferFunction, ControlError> {
+    match (is_discrete, sample_time) {
+        (false, _) => Ok(function),
+        (true, None) => Err(ControlError::SampleTime { place }),
+        (true, Some(sample_time_s)) => function
+            .in_domain(TimeDomain::Discrete { sample_time_s })
+            .map_err(|error| ControlError::Linear { place, error }),
+    }
 }
 
 /// A ratio of two formulas without parameters.
@@ -140,7 +160,7 @@ pub(crate) fn from_formulas(
 }
 
 /// A validated element has every number its kind needs; a missing one is refused as not finite further on.
-fn element(declared: &project::Element) -> Element {
+pub(crate) fn element(declared: &project::Element) -> Element {
     let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let frequency = number(declared.frequency);
     let damping_ratio = number(declared.damping_ratio);

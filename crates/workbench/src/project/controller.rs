@@ -1,6 +1,6 @@
 //! `[controller]` and `[prefilter]`.
 
-use super::formula::Formula;
+use super::formula::{Formula, Variable};
 use super::key::{key, plain};
 use super::visitor::{Shape, Visitor};
 use crate::quantity::{ANGULAR_FREQUENCY, RATIO, TIME, VOLTAGE};
@@ -18,9 +18,14 @@ pub struct Transfer {
     pub zeros: Vec<[f64; 2]>,
     /// Real and imaginary parts, 1/s.
     pub poles: Vec<[f64; 2]>,
+    /// Whether gain, zeros and poles are in s (absent) or in z.
+    pub domain: Option<Variable>,
     /// Elements in series.
     pub elements: Vec<Element>,
 }
+
+/// The words of `domain`.
+static DOMAINS: [(&str, Option<Variable>); 2] = [("s", Some(Variable::S)), ("z", Some(Variable::Z))];
 
 /// Which of its forms a [`Transfer`] is written in.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +45,8 @@ pub enum TransferForm<'a> {
         zeros: &'a [[f64; 2]],
         /// Real and imaginary parts.
         poles: &'a [[f64; 2]],
+        /// Whether they are in z.
+        is_discrete: bool,
     },
     /// In series.
     Elements(&'a [Element]),
@@ -52,7 +59,8 @@ impl Transfer {
             return Some(TransferForm::Polynomials { numerator, denominator });
         }
         if let Some(gain) = self.gain {
-            return Some(TransferForm::Factors { gain, zeros: &self.zeros, poles: &self.poles });
+            let is_discrete = self.domain == Some(Variable::Z);
+            return Some(TransferForm::Factors { gain, zeros: &self.zeros, poles: &self.poles, is_discrete });
         }
         if self.elements.is_empty() { None } else { Some(TransferForm::Elements(&self.elements)) }
     }
@@ -72,6 +80,8 @@ impl Transfer {
             key("poles", &RATIO, "Numbers, or [re, im] pairs with their conjugates."),
             &mut self.poles,
         );
+        let k = plain("domain", "Of gain, zeros and poles: in s, or in z when sampled.");
+        v.choice(k, &DOMAINS, &mut self.domain, false);
         v.tables(plain("elements", "Elements in series."), &mut self.elements, Element::visit);
     }
 }
@@ -121,7 +131,7 @@ pub enum ElementKind {
 }
 
 impl Element {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let words = &[
             ("gain", ElementKind::Gain),
             ("integrator", ElementKind::Integrator),
@@ -190,6 +200,11 @@ pub enum Discretization {
 }
 
 impl Controller {
+    /// Whether it says what it does, and not only when: without a law it is to be designed.
+    pub fn has_law(&self) -> bool {
+        self.transfer.form().is_some()
+    }
+
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         self.transfer.visit(v);
         let k = key("saturation", &VOLTAGE, "Limit of the command.").positive();

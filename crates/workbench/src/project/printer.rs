@@ -55,6 +55,11 @@ impl Printer {
         Printer { open: vec![Section::default()], named }
     }
 
+    /// The lines of the outermost table alone: each key with its value.
+    pub(crate) fn lines(self) -> Vec<(String, String)> {
+        self.open.into_iter().next().unwrap_or_default().lines
+    }
+
     /// The whole text.
     pub(crate) fn finish(self) -> String {
         let mut out = String::new();

@@ -10,7 +10,9 @@ const MAXIMUM_ORDER: usize = 50;
 
 pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
     if let Some(controller) = &project.controller {
-        transfer(&controller.transfer, "controller", controller.sample_time, check);
+        let timing = ["sample_time", "delay", "discretization", "saturation", "anti_windup"];
+        let only_timing = timing.iter().any(|name| check.declared(&format!("controller.{name}")));
+        transfer(&controller.transfer, "controller", controller.sample_time, only_timing, check);
         if controller.anti_windup != AntiWindup::None && controller.saturation.is_none() {
             check.warning("controller.anti_windup", "`anti_windup` has no effect without `saturation`");
         }
@@ -22,7 +24,7 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
         }
     }
     if let Some(prefilter) = &project.prefilter {
-        transfer(&prefilter.transfer, "prefilter", prefilter.sample_time, check);
+        transfer(&prefilter.transfer, "prefilter", prefilter.sample_time, false, check);
     }
 }
 
@@ -43,17 +45,28 @@ pub(super) fn sensor(project: &Project, check: &mut Check<'_, '_>) {
 }
 
 fn is_discrete(transfer: &Transfer) -> bool {
+    if transfer.domain == Some(Variable::Z) {
+        return true;
+    }
     let formulas = [&transfer.numerator, &transfer.denominator];
     formulas.into_iter().flatten().any(|formula| formula.variable() == Some(Variable::Z))
 }
 
-fn transfer(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
+/// Without a law a controller that says when it acts is one to be designed.
+fn transfer(
+    transfer: &Transfer,
+    path: &str,
+    sample_time: Option<f64>,
+    may_be_designed: bool,
+    check: &mut Check<'_, '_>,
+) {
     let declared = |check: &Check<'_, '_>, name: &str| check.declared(&format!("{path}.{name}"));
     let polynomials = declared(check, "numerator") || declared(check, "denominator");
     let factors = ["gain", "zeros", "poles"].iter().any(|name| declared(check, name));
     let elements = declared(check, "elements");
     let forms = "`numerator` and `denominator`, or `gain` with `zeros` and `poles`, or `elements`";
     match [polynomials, factors, elements].iter().filter(|is| **is).count() {
+        0 if may_be_designed => {}
         0 => check.missing(path, "numerator", format!("an empty [{path}]: it takes {forms}")),
         1 => {}
         _ => check.error(path, format!("more than one form in [{path}]: it takes either {forms}")),
@@ -68,8 +81,14 @@ fn transfer(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &m
         if transfer.gain == Some(0.0) {
             check.error(&format!("{path}.gain"), "`gain` is zero");
         }
+        sample_time_of_z(transfer, path, sample_time, check);
         conjugates(&transfer.zeros, &format!("{path}.zeros"), check);
         conjugates(&transfer.poles, &format!("{path}.poles"), check);
+    }
+    if transfer.domain.is_some() && !factors {
+        let message =
+            "`domain` belongs to `gain`, `zeros` and `poles`: formulas say `s` or `z`, elements are in `s`";
+        check.error(&format!("{path}.domain"), message);
     }
     if transfer.elements.len() > MAXIMUM_ORDER {
         check.error(&format!("{path}.elements"), format!("more than {MAXIMUM_ORDER} elements"));
@@ -96,6 +115,10 @@ fn polynomial_form(transfer: &Transfer, path: &str, sample_time: Option<f64>, ch
     {
         check.error(&format!("{path}.denominator"), "numerator and denominator mix `s` and `z`");
     }
+    sample_time_of_z(transfer, path, sample_time, check);
+}
+
+fn sample_time_of_z(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
     if is_discrete(transfer) && sample_time.is_none() {
         let message = format!("missing `sample_time` in [{path}]: it is written in `z`");
         check.missing(path, "sample_time", message);
@@ -111,15 +134,19 @@ fn excess(transfer: &Transfer) -> Option<i64> {
         }
         TransferForm::Factors { zeros, poles, .. } => Some(power(zeros.len())? - power(poles.len())?),
         TransferForm::Elements(elements) => {
-            let one = |element: &Element| match element.kind {
-                ElementKind::Gain | ElementKind::Lead | ElementKind::Notch => 0,
-                ElementKind::Zero | ElementKind::Differentiator => 1,
-                ElementKind::Pole | ElementKind::Integrator => -1,
-                ElementKind::ComplexZeros => 2,
-                ElementKind::ComplexPoles => -2,
-            };
-            Some(elements.iter().map(one).sum())
+            Some(elements.iter().map(|element| i64::from(element_excess(element))).sum())
         }
+    }
+}
+
+/// Zeros less poles of an element.
+pub(super) fn element_excess(element: &Element) -> i32 {
+    match element.kind {
+        ElementKind::Gain | ElementKind::Lead | ElementKind::Notch => 0,
+        ElementKind::Zero | ElementKind::Differentiator => 1,
+        ElementKind::Pole | ElementKind::Integrator => -1,
+        ElementKind::ComplexZeros => 2,
+        ElementKind::ComplexPoles => -2,
     }
 }
 
@@ -137,7 +164,7 @@ fn conjugates(roots: &[[f64; 2]], path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-fn one_element(element: &Element, path: &str, check: &mut Check<'_, '_>) {
+pub(super) fn one_element(element: &Element, path: &str, check: &mut Check<'_, '_>) {
     let needs: &[&str] = match element.kind {
         ElementKind::Gain => &["value"],
         ElementKind::Integrator | ElementKind::Differentiator => &[],
