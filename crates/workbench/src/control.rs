@@ -4,6 +4,9 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_qft::closed_loop::Compensation;
+use phea_qft::design::quantisation::{
+    CoefficientFormat, Converter, Quantisation, QuantisationError, rounded,
+};
 
 use crate::project::{
     self, ElementKind, Formula, FormulaError, Project, Rational, Transfer, TransferForm, Variable,
@@ -28,6 +31,9 @@ pub enum ControlError {
         /// What is wrong with it.
         error: LinearError,
     },
+    /// What is rounded cannot be.
+    #[error("[controller.quantization]: {0}")]
+    Quantisation(#[from] QuantisationError),
     /// A text in z without a sample time.
     #[error("{place}: a transfer function in z needs `sample_time`")]
     SampleTime {
@@ -81,12 +87,44 @@ pub fn timing(project: &Project) -> Timing {
     }
 }
 
+/// What the computer of the controller rounds: nothing where the project does not say.
+///
+/// # Errors
+/// [`ControlError::Quantisation`] for a converter that is none.
+pub fn quantisation(project: &Project) -> Result<Quantisation, ControlError> {
+    let declared = project.controller.as_ref().and_then(|controller| controller.quantization.clone());
+    let Some(declared) = declared else { return Ok(Quantisation::default()) };
+    let converter = |bits: u32, range: Option<[f64; 2]>| {
+        range.filter(|_| bits > 0).map(|range| Converter::new(bits, range)).transpose()
+    };
+    Ok(Quantisation {
+        command: converter(declared.command_bits, declared.command_range)?,
+        measurement: converter(declared.measurement_bits, declared.measurement_range)?,
+        coefficients: match declared.coefficients {
+            project::Coefficients::Double => CoefficientFormat::Double,
+            project::Coefficients::Single => CoefficientFormat::Single,
+        },
+    })
+}
+
+/// A controller as the project's computer runs it: in z with rounded coefficients, or as it is where nothing is rounded.
+///
+/// # Errors
+/// [`ControlError::Quantisation`] for coefficients that cannot be kept.
+pub fn deployed(project: &Project, controller: &Controller) -> Result<Controller, ControlError> {
+    match quantisation(project)?.coefficients {
+        CoefficientFormat::Double => Ok(controller.clone()),
+        format => Ok(rounded(controller, format)?.controller),
+    }
+}
+
 /// The loop around the plant that the given controller and prefilter make; `None` where the project gives no law.
 ///
 /// # Errors
 /// [`ControlError`] if one of them is no transfer function, or cannot be sampled.
 pub fn compensation(project: &Project) -> Result<Option<Compensation>, ControlError> {
     let Some(controller) = controller(project)? else { return Ok(None) };
+    let controller = deployed(project, &controller)?;
     let linear = |error| ControlError::Linear { place: "[controller]", error };
     Compensation::new(&controller, sensor(project)?).map(Some).map_err(linear)
 }

@@ -3,8 +3,10 @@
 
 mod answer;
 mod comparison;
+mod explanation;
 mod factors;
 mod problem;
+mod rounding;
 mod side;
 mod stages;
 mod text;
@@ -14,32 +16,35 @@ mod words;
 mod printing;
 
 pub use answer::json;
+pub use explanation::Explanation;
 pub use factors::Factors;
 pub use problem::{design_options, design_problem};
+pub use rounding::Rounding;
 pub use side::{LoopFigures, NominalMargins, Side};
 pub use stages::{DESIGNED_PROJECT, files, stage_files};
 pub use text::text;
 
 use phea_qft::closed_loop::Compensation;
+use phea_qft::design::quantisation::CoefficientFormat;
 use phea_qft::design::{Design, DesignOptions, DesignRun, PrefilterChoice};
 use phea_qft::verification::Verdict;
 
 use crate::audit::{ProjectAudit, audit_problem};
 use crate::command::{CommandError, Progress, Watch};
-use crate::control::{controller, sensor};
+use crate::control::{controller, deployed, quantisation, sensor};
 use crate::project::{self, Loaded, Project};
 use crate::robust::{RobustProblem, robust_problem};
 use crate::source::Source;
 
 /// Why nothing is designed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DesignError {
     /// There is nothing that a controller must keep to.
     #[error("the project states no [[specification]] to design a controller for")]
     NoSpecification,
-    /// The search found no controller at all.
-    #[error("the search ended without a controller")]
-    NoController,
+    /// The search found no controller at all; with what could be said of the problem before it.
+    #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
+    NoController(Vec<String>),
 }
 
 /// A design, beside the controller that was published.
@@ -55,23 +60,14 @@ pub struct ProjectDesign {
     pub designed: Side,
     /// The controller that the project gives, with its audit; absent where it gives none.
     pub published: Option<Side>,
-    /// Why the specifications cannot be met, in sentences.
+    /// What no controller can do, and what will be hard, whatever the search found.
     pub explanations: Vec<Explanation>,
+    /// What the computer's converters do to the designed loop; absent where nothing is rounded.
+    pub rounding: Option<Rounding>,
     /// The designed controller as a project declares it.
     pub declared_controller: project::Controller,
     /// The designed prefilter likewise; absent where none was designed.
     pub declared_prefilter: Option<project::Prefilter>,
-}
-
-/// One sentence on why specifications cannot be met.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Explanation {
-    /// For an engineer.
-    pub sentence: String,
-    /// rad/s, where it happens.
-    pub frequency_rad_per_s: Option<f64>,
-    /// In words, with which plant.
-    pub plant: Option<String>,
 }
 
 impl ProjectDesign {
@@ -106,6 +102,7 @@ pub fn design_project(
     };
     let problem = design_problem(project, &given)?;
     let options = design_options(project, &given, seed)?;
+    let explanations = explanation::explanations(&problem);
     let mut run = DesignRun::new(problem, options);
     let mut stopped = false;
     while !stopped && run.step() {
@@ -113,29 +110,40 @@ pub fn design_project(
     }
     let (options, found) = (run.options().clone(), run.design().cloned());
     match found {
-        Some(design) => told(project, &given, design, options, stopped, published),
+        Some(design) => {
+            let told = told(project, &given, design, options, watch)?;
+            Ok(ProjectDesign { stopped, published, explanations, ..told })
+        }
         None if stopped => Err(CommandError::Stopped),
-        None => Err(DesignError::NoController.into()),
+        None => {
+            let sentences = explanations.into_iter().map(|explanation| explanation.sentence).collect();
+            Err(DesignError::NoController(sentences).into())
+        }
     }
 }
 
+/// A design with what is to be told of it alone.
 fn told(
     project: &Project,
     given: &RobustProblem,
     design: Design,
     options: DesignOptions,
-    stopped: bool,
-    published: Option<Side>,
+    watch: Watch<'_>,
 ) -> Result<ProjectDesign, CommandError> {
     let has_prefilter = options.prefilter != PrefilterChoice::None;
     let law = design.controller.clone();
     let problem = RobustProblem {
-        compensation: Compensation::new(&law, sensor(project)?)?,
+        compensation: Compensation::new(&deployed(project, &law)?, sensor(project)?)?,
         has_controller: true,
         has_prefilter,
         ..given.clone()
     };
-    let view = ProjectAudit::new(&problem, design.audit.clone());
+    // rounded coefficients make another controller, which has an audit of its own
+    let view = match quantisation(project)?.coefficients {
+        CoefficientFormat::Double => ProjectAudit::new(&problem, design.audit.clone()),
+        _ => audit_problem(&problem, watch)?,
+    };
+    let rounding = rounding::rounding(project, &problem)?;
     let declared = project.controller.clone().unwrap_or_default();
     let declared_controller =
         project::Controller { transfer: factors::declared(&law.feedback.transfer_function()?), ..declared };
@@ -150,9 +158,10 @@ fn told(
         designed: Side::new(law, problem, view)?,
         design,
         options,
-        stopped,
-        published,
+        stopped: false,
+        published: None,
         explanations: vec![],
+        rounding,
         declared_controller,
         declared_prefilter,
     })

@@ -6,6 +6,7 @@ use phea_qft::verification::PlantPoint;
 use serde::Serialize;
 
 use super::factors::Factors;
+use super::rounding::RoundingRow;
 use super::side::Side;
 use super::words::{objective_key, part_key, status_key};
 use super::{Explanation, ProjectDesign};
@@ -37,6 +38,8 @@ struct Body<'a> {
     relaxation_db_reason: Option<&'static str>,
     conflicts: Vec<LimitRow>,
     explanations: Vec<ExplanationRow<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rounding: Option<RoundingRow>,
 }
 
 #[derive(Serialize)]
@@ -117,10 +120,13 @@ struct LimitRow {
 #[derive(Serialize)]
 struct ExplanationRow<'a> {
     sentence: &'a str,
+    severity: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     frequency_rad_per_s: Option<Number>,
+    plants: Vec<NamedPlant>,
+    specifications: &'a [usize],
     #[serde(skip_serializing_if = "Option::is_none")]
-    plant: Option<&'a str>,
+    relaxation_db: Option<f64>,
 }
 
 /// The JSON object of `design`.
@@ -154,7 +160,8 @@ pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
         conflicts: relaxation.map_or_else(Vec::new, |relaxation| {
             relaxation.conflicts.iter().map(|one| conflict(view, one)).collect()
         }),
-        explanations: view.explanations.iter().map(explanation).collect(),
+        explanations: view.explanations.iter().map(|one| explanation(view, one)).collect(),
+        rounding: view.rounding.as_ref().map(|rounding| rounding.row(&view.designed.view.names)),
     };
     Ok(answer::json("design", loaded, body))
 }
@@ -259,10 +266,14 @@ fn limit_row(
     }
 }
 
-fn explanation(explanation: &Explanation) -> ExplanationRow<'_> {
+fn explanation<'a>(view: &ProjectDesign, explanation: &'a Explanation) -> ExplanationRow<'a> {
+    let names = &view.designed.view.names;
     ExplanationRow {
         sentence: &explanation.sentence,
+        severity: if explanation.is_impossible { "impossible" } else { "warning" },
         frequency_rad_per_s: explanation.frequency_rad_per_s.map(Number),
-        plant: explanation.plant.as_deref(),
+        plants: explanation.plants.iter().map(|plant| names.named(plant)).collect(),
+        specifications: &explanation.specifications,
+        relaxation_db: explanation.relaxation_db,
     }
 }

@@ -80,9 +80,8 @@ fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
     let options = design_options(&loaded.project, &given, Some(7)).unwrap();
     assert_eq!(options.controller, ControllerChoice::Grow { maximum_order: 4 });
     assert_eq!(options.prefilter, PrefilterChoice::Grow { maximum_order: 3 });
-    let view =
-        told(&loaded.project, &given, design(&problem, status), options, false, Some(published)).unwrap();
-    (source, loaded, view)
+    let view = told(&loaded.project, &given, design(&problem, status), options, &mut |_| true).unwrap();
+    (source, loaded, ProjectDesign { published: Some(published), ..view })
 }
 
 fn infeasible() -> DesignStatus {
@@ -209,4 +208,26 @@ fn every_stage_is_a_file() {
             .unwrap()
             .starts_with("Design: stopped: this is the best controller found so far")
     );
+}
+
+/// With rounded coefficients it is the rounded controller that is audited, here and by `verify`.
+#[test]
+fn what_the_computer_rounds_is_part_of_the_design() {
+    let timing = "sample_time = \"2 ms\"\nquantization = { command_bits = 12, command_range = [-10, 10], coefficients = \"f32\" }\n";
+    let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", timing), DesignStatus::Met);
+    let object: serde_json::Value = serde_json::from_str(&json(&loaded, &view).unwrap()).unwrap();
+    let pole = object["controller"]["poles"][0][0].as_f64().unwrap();
+    assert_eq!(pole, f64::from(pole as f32));
+    let effect = &object["rounding"]["effects"][0];
+    assert_eq!((effect["of"].as_str(), effect["on"].as_str()), (Some("command"), Some("output")));
+    // no rounding does less than it would at rest: half a step of 20 V/4096 through 1/G(z = 1), where the plant integrates
+    // ORIGIN: analytic, 20/4096/2/5
+    assert!(effect["peak"].as_f64().unwrap() >= 0.999 * 20.0 / 4096.0 / 2.0 / 5.0, "{effect}");
+    assert!(effect["peak_plant"]["k"].is_number());
+    assert!(text(&loaded, &view).unwrap().contains("the rounded command moves the output by "));
+    let designed = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
+    let (source, loaded) = self::loaded(&designed);
+    let verified = answer(&source, &loaded, &[], &Request::Verify).unwrap().json;
+    let verified: serde_json::Value = serde_json::from_str(&verified).unwrap();
+    assert_eq!(object["verification"]["specifications"], verified["specifications"]);
 }

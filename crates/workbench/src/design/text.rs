@@ -5,9 +5,9 @@ use phea_qft::verification::PlantPoint;
 use super::comparison::compared;
 use super::factors::factored;
 use super::words::{status_sentence, structure_words};
-use super::{Explanation, ProjectDesign};
+use super::{Explanation, ProjectDesign, Rounding};
 use crate::answer::{significant, table};
-use crate::audit::{self, frequency_number, frequency_words, margin_words, numbered, summary};
+use crate::audit::{self, frequency_number, margin_words, numbered, summary};
 use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 
@@ -18,9 +18,11 @@ const DIGITS: usize = 5;
 pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError> {
     let mut out = format!("Design: {}\n", status_sentence(view));
     for explanation in &view.explanations {
-        out.push_str(&format!("  {}\n", explanation_words(explanation)));
+        out.push_str(&format!("  {}\n", explanation_words(view, explanation)));
     }
-    for sentence in summary(&view.designed.view) {
+    for sentence in
+        summary(&view.designed.view).into_iter().chain(view.rounding.iter().flat_map(Rounding::sentences))
+    {
         out.push_str(&format!("  {sentence}\n"));
     }
     out.push_str(&format!("\nController\n{}", laws(view)?));
@@ -43,10 +45,12 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
     Ok(out)
 }
 
-fn explanation_words(explanation: &Explanation) -> String {
-    let place = explanation.frequency_rad_per_s.map(|frequency| format!(" ({})", frequency_words(frequency)));
-    let plant = explanation.plant.as_ref().map(|plant| format!(", with {plant}"));
-    format!("{}{}{}", explanation.sentence, place.unwrap_or_default(), plant.unwrap_or_default())
+/// The sentence, and the first plant that it concerns.
+fn explanation_words(view: &ProjectDesign, explanation: &Explanation) -> String {
+    let kind = if explanation.is_impossible { "" } else { "to be kept in mind: " };
+    let plant = explanation.plants.first().map(|plant| view.designed.view.names.text(plant));
+    let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
+    format!("{kind}{}{plant}", explanation.sentence)
 }
 
 /// The laws in factored form; those of a sampled loop as they are deployed, and before.
@@ -150,7 +154,7 @@ fn settings_sentence(loaded: &Loaded) -> String {
         .settings
         .iter()
         .map(|setting| setting.trim())
-        .filter(|setting| !setting.starts_with("controller"))
+        .filter(|setting| !setting.starts_with("controller") || setting.contains("quantization"))
         .collect();
     if others.is_empty() {
         return String::new();

@@ -3,7 +3,7 @@
 use super::formula::{Formula, Variable};
 use super::key::{key, plain};
 use super::visitor::{Shape, Visitor};
-use crate::quantity::{ANGULAR_FREQUENCY, RATIO, TIME, VOLTAGE};
+use crate::quantity::{ANGULAR_FREQUENCY, FORCE, RATIO, TIME, VOLTAGE};
 
 /// A transfer function in one of three forms: polynomials, factors, or elements in series.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -173,6 +173,48 @@ pub struct Controller {
     pub delay: f64,
     /// How a continuous controller becomes a sampled one.
     pub discretization: Discretization,
+    /// What its computer rounds; absent: nothing.
+    pub quantization: Option<Quantization>,
+}
+
+/// What the computer of a sampled controller rounds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Quantization {
+    /// Of the converter of the command; 0: it does not round.
+    pub command_bits: u32,
+    /// V (or the plant's input unit), from and to.
+    pub command_range: Option<[f64; 2]>,
+    /// Of the converter of the measurement; 0: it does not round.
+    pub measurement_bits: u32,
+    /// N (or the plant's output unit), from and to.
+    pub measurement_range: Option<[f64; 2]>,
+    /// How the coefficients are kept.
+    pub coefficients: Coefficients,
+}
+
+/// How coefficients are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Coefficients {
+    /// With 53 bits: as they are.
+    #[default]
+    Double,
+    /// With 24 bits.
+    Single,
+}
+
+impl Quantization {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let bits = |name, doc| key(name, &RATIO, doc).not_negative().at_most(32.0).or(0.0);
+        let k = bits("command_bits", "Bits of the command's converter; 0: it does not round.");
+        v.count(k, &mut self.command_bits);
+        v.pair(key("command_range", &VOLTAGE, "From and to."), &mut self.command_range);
+        let k = bits("measurement_bits", "Bits of the measurement's converter; 0: it does not round.");
+        v.count(k, &mut self.measurement_bits);
+        v.pair(key("measurement_range", &FORCE, "From and to."), &mut self.measurement_range);
+        let words = &[("f64", Coefficients::Double), ("f32", Coefficients::Single)];
+        let k = plain("coefficients", "How the coefficients are kept.");
+        v.choice(k, words, &mut self.coefficients, false);
+    }
 }
 
 /// What happens to the integrator at the limit.
@@ -227,6 +269,8 @@ impl Controller {
         ];
         let k = plain("discretization", "How a continuous controller becomes a sampled one.");
         v.choice(k, words, &mut self.discretization, false);
+        let k = plain("quantization", "What the computer of a sampled controller rounds.");
+        v.table(k, &mut self.quantization, Quantization::visit);
     }
 }
 

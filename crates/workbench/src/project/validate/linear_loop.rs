@@ -2,7 +2,8 @@
 
 use super::Check;
 use crate::project::{
-    AntiWindup, Discretization, Element, ElementKind, Formula, Project, Transfer, TransferForm, Variable,
+    AntiWindup, Discretization, Element, ElementKind, Formula, Project, Quantization, Transfer, TransferForm,
+    Variable,
 };
 
 /// Most zeros, poles or elements of a transfer function.
@@ -22,9 +23,33 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
             let why = if discrete { "the controller is in `z` already" } else { "there is no `sample_time`" };
             check.warning("controller.discretization", format!("`discretization` has no effect: {why}"));
         }
+        if let Some(declared) = &controller.quantization {
+            quantization(declared, controller.sample_time, check);
+        }
     }
     if let Some(prefilter) = &project.prefilter {
         transfer(&prefilter.transfer, "prefilter", prefilter.sample_time, false, check);
+    }
+}
+
+fn quantization(declared: &Quantization, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
+    let path = "controller.quantization";
+    if sample_time.is_none() {
+        check.error(path, "only a sampled controller rounds: [controller] gives no `sample_time`");
+    }
+    for (name, bits, range) in [
+        ("command", declared.command_bits, declared.command_range),
+        ("measurement", declared.measurement_bits, declared.measurement_range),
+    ] {
+        if (bits > 0) != range.is_some() {
+            check.error(path, format!("`{name}_bits` and `{name}_range` make a converter together"));
+        }
+        if range.is_some_and(|[low, high]| low >= high) {
+            check.error(
+                &format!("{path}.{name}_range"),
+                format!("`{name}_range` is empty or reversed: the lower value comes first"),
+            );
+        }
     }
 }
 
