@@ -37,7 +37,7 @@ use crate::robust::{RobustProblem, robust_problem};
 use crate::source::Source;
 
 /// Why nothing is designed.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DesignError {
     /// There is nothing that a controller must keep to.
     #[error("the project states no [[specification]] to design a controller for")]
@@ -45,6 +45,9 @@ pub enum DesignError {
     /// The search found no controller at all; with what could be said of the problem before it.
     #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
     NoController(Vec<String>),
+    /// A part of the problem cannot be searched with.
+    #[error(transparent)]
+    Search(#[from] phea_qft::design::DesignError),
 }
 
 /// A design, beside the controller that was published.
@@ -105,7 +108,7 @@ pub fn design_project(
     let explanations = explanation::explanations(&problem);
     let mut run = DesignRun::new(problem, options);
     let mut stopped = false;
-    while !stopped && run.step() {
+    while !stopped && run.step().map_err(DesignError::from)? {
         stopped = !watch(Progress { stage: run.stage(), share: run.progress() });
     }
     let (options, found) = (run.options().clone(), run.design().cloned());
