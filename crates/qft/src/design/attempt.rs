@@ -1,7 +1,7 @@
 //! One structure on its way to a design: a search, the fit of a prefilter, a descent with both, an audit, and the descent again with what
 //! the audit found.
 
-use phea_dynamics::linear::LinearError;
+use phea_dynamics::linear::{LinearError, TransferFunction};
 
 use super::counterexample::{counterexamples, worst_margin_db};
 use super::problem::{DesignOptions, DesignProblem, Objective, PrefilterChoice};
@@ -81,12 +81,13 @@ pub(super) struct Attempt {
 }
 
 impl Attempt {
-    /// An attempt that has not begun. With `relaxes` it looks for the smallest common relaxation.
+    /// An attempt that has not begun, with points to begin with. With `relaxes` it looks for the smallest common relaxation.
     pub(super) fn new(
         structure: Structure,
         mut samples: Samples,
         options: &DesignOptions,
         relaxes: bool,
+        beginning: Vec<Vec<f64>>,
     ) -> Result<Attempt, DesignError> {
         samples.keep_in_reserve(if relaxes { 0.0 } else { RESERVE_DB });
         let aim = match options.objective {
@@ -100,7 +101,7 @@ impl Attempt {
             }
             _ => None,
         };
-        let search = Search::new(search_options(aim, options.seed, relaxes));
+        let search = Search::new(search_options(aim, options.seed, relaxes)).beginning_with(beginning);
         Ok(Attempt {
             shaping: Shaping::new(structure.clone(), given, options.objective, samples)?,
             structure,
@@ -158,6 +159,12 @@ impl Attempt {
 
     pub(super) fn shaping(&self) -> &Shaping {
         &self.shaping
+    }
+
+    /// G as far as it was found.
+    pub(super) fn feedback(&self) -> Option<TransferFunction> {
+        let own = self.x.get(..self.structure.dimension())?;
+        self.structure.compensator(own).transfer_function().ok()
     }
 
     pub(super) fn x(&self) -> &[f64] {

@@ -1,7 +1,9 @@
 //! Which structures are tried, and in which order.
 
 use num_complex::Complex64;
-use phea_dynamics::controller::Element;
+use phea_dynamics::controller::{Compensator, Element};
+use phea_dynamics::frequency::logarithmic_grid;
+use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
@@ -11,9 +13,13 @@ use crate::loop_shaping::{Part, Structure};
 use crate::specification::{Limit, Requirement, Specification};
 use crate::verification::corners;
 
-/// How far beyond the frequencies of the specifications the corners of a controller may lie, as factors.
-const BELOW: f64 = 0.01;
+/// How far the corners of a controller may lie below and above the highest frequency of the specifications, and below the lowest, as
+/// factors.
+const BELOW_HIGHEST: f64 = 1e-3;
 const ABOVE: f64 = 200.0;
+const BELOW_LOWEST: f64 = 0.1;
+/// Corners at which a factor is added to a simpler controller.
+const CORNERS: usize = 9;
 /// Damping ratios of free pairs; beyond 1 a pair is two real roots.
 const DAMPING_RATIOS: [f64; 2] = [0.1, 20.0];
 /// Decades that the gain may lie beyond those that put the crossover on a frequency of the specifications.
@@ -38,18 +44,48 @@ impl Ground {
         let low = LowFrequency::of(problem, span[0]);
         let wanted = problem.specifications.iter().map(wanted_type).max().unwrap_or(0);
         let integrators = usize::try_from(wanted - low.plant_type).unwrap_or(0);
-        let corner = [BELOW * span[0], ABOVE * span[1]];
+        let corner = [(BELOW_LOWEST * span[0]).max(BELOW_HIGHEST * span[1]), ABOVE * span[1]];
         // With k = w^integrators / |P(jw)| the loop of unit corners crosses over at w.
         let crossover = |frequency: &f64| {
             let plant = portable::magnitude(low.response(problem, *frequency)?);
             let gain = portable::exp(integrators as f64 * portable::ln(*frequency)) / plant;
             (gain.is_finite() && gain > 0.0).then_some([gain, gain])
         };
-        let along = phea_dynamics::frequency::logarithmic_grid(span[0], span[1] * ABOVE.sqrt(), 30);
+        let along = logarithmic_grid(span[0], span[1] * ABOVE.sqrt(), 30);
         let gains = along.unwrap_or_default().iter().filter_map(crossover).reduce(joined);
         let gains = gains.unwrap_or([1.0, 1.0]);
         let gain = [gains[0] / GAIN_ROOM, gains[1] * GAIN_ROOM];
         Ground { integrators, sign: low.sign, corner, gain }
+    }
+
+    /// Points of a structure from which it can do what a simpler controller does, or nearly: poles and zeros are added at one corner each, where
+    /// they cancel if there are as many of one as of the other; a zero too many is left out.
+    pub(super) fn grown(&self, structure: &Structure, simpler: &TransferFunction) -> Vec<Vec<f64>> {
+        let mut zeros = simpler.zeros().to_vec();
+        zeros.sort_by(|one, other| one.norm_sqr().total_cmp(&other.norm_sqr()));
+        let wanted = |power: f64| structure.roots(power);
+        let grown = |corner: &f64| {
+            let mut gain = simpler.gain();
+            let (mut zeros, mut poles) = (zeros.clone(), simpler.poles().to_vec());
+            while zeros.len() > wanted(1.0) {
+                gain *= portable::magnitude(zeros.pop()?);
+            }
+            let added = Complex64::new(-corner, 0.0);
+            while zeros.len() < wanted(1.0) {
+                zeros.push(added);
+                gain /= corner;
+            }
+            while poles.len() < wanted(-1.0) {
+                poles.push(added);
+                gain *= corner;
+            }
+            let function = TransferFunction::from_factors(gain, zeros, poles).ok()?;
+            structure.point_of(&Compensator::new(vec![Element::General(function)]))
+        };
+        let middle =
+            [self.corner[0].max(10.0 * BELOW_HIGHEST * self.corner[1] / ABOVE), 0.3 * self.corner[1]];
+        let corners = logarithmic_grid(middle[0], middle[1], CORNERS).unwrap_or_default();
+        corners.iter().filter_map(grown).collect()
     }
 
     /// The structure of this order with so many zeros.

@@ -7,6 +7,8 @@ use super::binding::{binding_limits, conflicts};
 use super::candidates::Ground;
 use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
+use phea_dynamics::linear::TransferFunction;
+
 use crate::family::{Extent, Family, random};
 use crate::loop_shaping::{Samples, Structure, search_frequencies};
 use crate::verification::{Audit, PlantPoint, corners};
@@ -40,7 +42,9 @@ pub struct DesignRun {
     current: Option<(usize, usize)>,
     samples: Option<Samples>,
     /// The attempt that came nearest, with its worst margin over rate.
-    nearest: Option<(f64, Structure)>,
+    nearest: Option<(f64, Structure, Option<TransferFunction>)>,
+    /// The controller of the attempt before.
+    before: Option<TransferFunction>,
     relaxing: bool,
     rounds: Vec<DesignRound>,
     design: Option<Design>,
@@ -65,6 +69,7 @@ impl DesignRun {
             current: None,
             samples: None,
             nearest: None,
+            before: None,
             relaxing: false,
             rounds: vec![],
             design: None,
@@ -130,16 +135,20 @@ impl DesignRun {
                 self.plan.ground.structure(order, zeros)
             }
         };
-        self.attempt(structure)
+        let beginning = match &self.before {
+            Some(before) => self.plan.ground.grown(&structure, before),
+            None => vec![],
+        };
+        self.attempt(structure, beginning)
     }
 
-    fn attempt(&mut self, structure: Structure) -> Result<(), DesignError> {
+    fn attempt(&mut self, structure: Structure, beginning: Vec<Vec<f64>>) -> Result<(), DesignError> {
         let samples = match self.samples.take() {
             Some(samples) => samples,
             None => self.first_samples()?,
         };
         self.samples = Some(samples.clone());
-        self.attempt = Some(Attempt::new(structure, samples, &self.options, self.relaxing)?);
+        self.attempt = Some(Attempt::new(structure, samples, &self.options, self.relaxing, beginning)?);
         Ok(())
     }
 
@@ -153,6 +162,7 @@ impl DesignRun {
         let Some(attempt) = self.attempt.take() else { return };
         self.samples = Some(attempt.samples());
         self.rounds.extend_from_slice(attempt.rounds());
+        self.before = attempt.feedback().or(self.before.take());
         match attempt.ending() {
             Some(Ending::Met(audit)) => {
                 self.take(&attempt, DesignStatus::Met, audit);
@@ -168,8 +178,8 @@ impl DesignRun {
                 self.done = true;
             }
             Some(Ending::Missed { worst_margin_db, audit: None }) => {
-                if self.nearest.as_ref().is_none_or(|(best, _)| worst_margin_db > best) {
-                    self.nearest = Some((*worst_margin_db, attempt.structure().clone()));
+                if self.nearest.as_ref().is_none_or(|(best, ..)| worst_margin_db > best) {
+                    self.nearest = Some((*worst_margin_db, attempt.structure().clone(), attempt.feedback()));
                 }
                 self.done = self.plan.found;
             }
@@ -187,9 +197,10 @@ impl DesignRun {
     /// What is left when no structure is waiting: a relaxation, or nothing.
     fn end(&mut self) -> Result<(), DesignError> {
         match self.nearest.take() {
-            Some((_, structure)) if !self.plan.found && !self.relaxing => {
+            Some((_, structure, feedback)) if !self.plan.found && !self.relaxing => {
                 self.relaxing = true;
-                self.attempt(structure)
+                let at = feedback.map(|feedback| self.plan.ground.grown(&structure, &feedback));
+                self.attempt(structure, at.unwrap_or_default())
             }
             _ => {
                 self.done = true;

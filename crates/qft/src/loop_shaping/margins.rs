@@ -151,14 +151,15 @@ impl Demand {
     pub(super) fn worst_excess(&self, column: &Column, around: &ColumnLoop) -> f64 {
         let sensitivity = &around.sensitivity_squared;
         let feedback = around.feedback_squared;
+        let forward = feedback * around.prefilter_squared;
         match self.quantity {
             Quantity::Complementary => greatest(&column.loop_squared, sensitivity) * feedback / self.allowed,
             Quantity::Sensitivity => extremes(sensitivity.iter().copied())[1] / self.allowed,
             Quantity::PlantInput => greatest(&column.plant_squared, sensitivity) / self.allowed,
             Quantity::Effort => extremes(sensitivity.iter().copied())[1] * feedback / self.allowed,
             Quantity::LoadMotion => greatest(&column.load_motion_squared, sensitivity) / self.allowed,
-            Quantity::TrackingBelow => greatest(&column.plant_squared, sensitivity) * feedback / self.allowed,
-            Quantity::TrackingAbove => self.allowed / (least(&column.plant_squared, sensitivity) * feedback),
+            Quantity::TrackingBelow => greatest(&column.plant_squared, sensitivity) * forward / self.allowed,
+            Quantity::TrackingAbove => self.allowed / (least(&column.plant_squared, sensitivity) * forward),
             Quantity::Spread => {
                 let [least, greatest] = extremes(products(&column.plant_squared, sensitivity));
                 greatest / (least * self.allowed)

@@ -168,6 +168,8 @@ enum Stage {
 pub struct Search {
     options: SearchOptions,
     stage: Stage,
+    /// Points that are looked at before any that is spread.
+    given: Vec<Vec<f64>>,
     candidates: Vec<Candidate>,
     descents: Vec<Descent>,
     /// Work of samples, evolution, and descents left behind.
@@ -181,11 +183,17 @@ impl Search {
         Search {
             options,
             stage: Stage::Sampling(None),
+            given: vec![],
             candidates: vec![],
             descents: vec![],
             other_work: Work::default(),
             random: options.seed,
         }
+    }
+
+    /// Looks at these points too, within the bounds: where a simpler problem ended, say.
+    pub fn beginning_with(self, given: Vec<Vec<f64>>) -> Search {
+        Search { given, ..self }
     }
 
     /// Does a small part of the work: a sample, or a step of a descent. Whether there is more to do.
@@ -243,6 +251,12 @@ impl Search {
     }
 
     fn sampled(&mut self, problem: &mut dyn SearchProblem, spread: Option<Spread>) -> Stage {
+        if let Some(x) = self.given.pop() {
+            let judgement = problem.judge(&x);
+            self.other_work.judgements += 1;
+            self.candidates.push(Candidate { x, judgement });
+            return Stage::Sampling(spread);
+        }
         if self.candidates.len() < self.options.samples {
             let bounds = problem.bounds();
             let spread = spread.unwrap_or_else(|| Spread::new(bounds.len(), &mut self.random));

@@ -225,6 +225,12 @@ impl Structure {
         std::iter::once(1.0).chain(slopes).map(|slope| DECIBELS_PER_NEPER * slope).collect()
     }
 
+    /// Number of zeros (power 1) or poles (power -1).
+    pub(crate) fn roots(&self, power: f64) -> usize {
+        let degrees = self.degrees().unwrap_or_default();
+        if power > 0.0 { degrees[0] } else { degrees[1] }
+    }
+
     /// The parts with free numbers, in turn.
     fn factors(&self) -> impl Iterator<Item = Factor> {
         self.parts.iter().filter_map(Part::factor)
