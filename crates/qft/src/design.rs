@@ -11,6 +11,7 @@ mod result;
 mod run;
 
 pub use attempt::DesignError;
+pub use candidates::gain_range;
 pub use diagnosis::{Constraint, Finding, Party, Place, Severity, SharedLimit, diagnose};
 pub use problem::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
 pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation};

@@ -3,25 +3,31 @@
 
 use phea_dynamics::linear::{LinearError, TransferFunction};
 
-use super::counterexample::{counterexamples, worst_margin_db};
+use super::counterexample::{
+    Counterexample, counterexamples, unstable_plant, worst_margin_db, worst_over_rate_db,
+};
 use super::problem::{DesignOptions, DesignProblem, Objective, PrefilterChoice};
 use super::result::DesignRound;
 use crate::audit::AuditRun;
 use crate::closed_loop::Compensation;
 use crate::loop_shaping::{
-    Aim, Descent, DescentOptions, Samples, SamplesError, Search, SearchOptions, SearchProblem, SearchStatus,
-    Shaping, Structure,
+    Aim, Descent, DescentOptions, Judgement, Samples, SamplesError, Search, SearchOptions, SearchProblem,
+    SearchStatus, Shaping, Structure,
 };
 use crate::prefilter::{
     FittedPrefilter, PrefilterBand, PrefilterError, PrefilterOptions, PrefilterOutcome, PrefilterRun,
 };
 use crate::specification::Requirement;
-use crate::verification::{Audit, TrackingJudgement, Verdict};
+use crate::verification::{Audit, SpecificationAudit, TrackingJudgement, Verdict};
 
-/// Below this worst margin of the samples a structure counts as unable to meet the specifications, dB.
-pub(super) const FEASIBLE_DB: f64 = -5e-4;
+/// Below this worst margin of the samples, the reserve taken off, a structure counts as unable to meet the specifications, dB.
+pub(super) const FEASIBLE_DB: f64 = -1.5e-3;
 /// A relaxation is found to this, dB.
 const RELAXATION_TOLERANCE_DB: f64 = 0.005;
+/// Where a counterexample misses by more than this, the margins of what was found lead nowhere, dB.
+const ASTRAY_DB: f64 = -6.0;
+/// Beside the frequency of a counterexample the same plants are looked at at these multiples of it.
+const NEIGHBOURS: [f64; 4] = [0.94, 0.97, 1.03, 1.06];
 /// Audits of one structure at most.
 const ROUNDS_MAXIMUM: usize = 40;
 /// How far inside its limits a search stays, dB: what the audit finds between the samples then still meets them.
@@ -50,6 +56,8 @@ pub(super) enum Ending {
     Missed { worst_margin_db: f64, audit: Option<Box<Audit>> },
     /// No stable controller of the structure was found.
     NotStabilised,
+    /// The same, with the audit of what came nearest.
+    Hopeless(Box<Audit>),
     /// Search and audit did not come to agree.
     NotConverged(Box<Audit>),
 }
@@ -59,6 +67,8 @@ enum Stage {
     Searching(Box<Search>),
     Fitting(Box<PrefilterRun>),
     Descending(Box<Descent>),
+    /// The specifications over the box, from the plants of the samples alone.
+    Checking(Box<SpecificationAudit>),
     Auditing(Box<AuditRun>),
     Ended(Ending),
 }
@@ -75,6 +85,10 @@ pub(super) struct Attempt {
     /// Order of the prefilter that is fitted next.
     prefilter_order: usize,
     restarts: u64,
+    /// The last x from which margins led on.
+    sound: Vec<f64>,
+    /// Whether no more than an audit is wanted.
+    audits_only: bool,
     x: Vec<f64>,
     stage: Stage,
     rounds: Vec<DesignRound>,
@@ -110,6 +124,8 @@ impl Attempt {
             relaxes,
             prefilter_order: 2,
             restarts: 0,
+            sound: vec![],
+            audits_only: false,
             x: vec![],
             stage: Stage::Searching(Box::new(search)),
             rounds: vec![],
@@ -122,6 +138,7 @@ impl Attempt {
             Stage::Searching(search) => search.step(&mut self.shaping),
             Stage::Fitting(run) => run.step(),
             Stage::Descending(descent) => descent.step(&mut self.shaping),
+            Stage::Checking(audit) => audit.step(),
             Stage::Auditing(run) => run.step(),
             Stage::Ended(_) => return Ok(false),
         };
@@ -130,6 +147,7 @@ impl Attempt {
                 Stage::Searching(_) => self.after_search()?,
                 Stage::Fitting(_) => self.after_fit()?,
                 Stage::Descending(_) => self.after_descent()?,
+                Stage::Checking(_) => self.after_check()?,
                 Stage::Auditing(_) => self.after_audit()?,
                 Stage::Ended(ending) => Stage::Ended(ending.clone()),
             };
@@ -142,6 +160,7 @@ impl Attempt {
         match self.stage {
             Stage::Searching(_) | Stage::Descending(_) => "shaping the loop",
             Stage::Fitting(_) => "fitting the prefilter",
+            Stage::Checking(_) => "looking between the samples",
             Stage::Auditing(_) | Stage::Ended(_) => "auditing",
         }
     }
@@ -183,19 +202,24 @@ impl Attempt {
     fn after_search(&mut self) -> Result<Stage, DesignError> {
         let Stage::Searching(search) = &self.stage else { return Ok(Stage::Ended(Ending::NotStabilised)) };
         let Some(result) = search.result() else { return Ok(Stage::Ended(Ending::NotStabilised)) };
+        self.x = result.x;
         if matches!(result.status, SearchStatus::NotStabilised { .. }) {
             return Ok(Stage::Ended(Ending::NotStabilised));
         }
-        self.x = result.x;
+        if self.options.objective == Objective::BestWorstMargin && !self.relaxes {
+            self.shaping.count_shares_of_room();
+        }
         let worst_margin_db = result.judgement.worst_margin_db;
         if worst_margin_db < FEASIBLE_DB && !self.relaxes {
             return Ok(Stage::Ended(Ending::Missed { worst_margin_db, audit: None }));
         }
-        self.fit_or(Self::audit)
+        self.fit_or(Self::check)
     }
 
     /// Fits a prefilter to the loop as it is, or goes on where none is looked for.
     fn fit_or(&mut self, go_on: fn(&Self) -> Result<Stage, DesignError>) -> Result<Stage, DesignError> {
+        let missing_db = if self.relaxes { -self.shaping.judge(&self.x).worst_margin_db } else { 0.0 };
+        let room_db = BAND_ROOM_DB + missing_db.max(0.0);
         let problem = self.shaping.samples().problem();
         let (PrefilterChoice::Grow { maximum_order }, Some(tracking)) =
             (&self.options.prefilter, tracks(problem))
@@ -212,8 +236,9 @@ impl Attempt {
         )?;
         let order = self.prefilter_order.min(*maximum_order);
         // what the band lacks the descent that follows will find: only a start is wanted here
-        let band = band.relaxed(BAND_ROOM_DB);
-        let options = PrefilterOptions::new(order, self.options.seed);
+        let band = band.relaxed(room_db);
+        let options =
+            PrefilterOptions { least_order: order, ..PrefilterOptions::new(order, self.options.seed) };
         Ok(Stage::Fitting(Box::new(PrefilterRun::new(band, &problem.timing, options)?)))
     }
 
@@ -234,23 +259,27 @@ impl Attempt {
         let samples = self.shaping.samples().clone();
         self.shaping =
             Shaping::new(self.structure.clone(), Some(structure), self.options.objective, samples)?;
-        Ok(self.descend())
+        Ok(self.descend(false))
     }
 
-    fn descend(&self) -> Stage {
-        let options = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(self.aim) };
+    fn descend(&self, is_near: bool) -> Stage {
+        let options = DescentOptions { reserve_db: 0.0, is_near, ..DescentOptions::new(self.aim) };
         Stage::Descending(Box::new(Descent::new(&self.x, options)))
     }
 
     fn after_descent(&mut self) -> Result<Stage, DesignError> {
-        let Stage::Descending(descent) = &self.stage else { return self.audit() };
+        let Stage::Descending(descent) = &self.stage else { return self.check() };
+        let is_near = descent.options().is_near;
         self.x = descent.x().to_vec();
         let Some(judgement) = descent.judgement().filter(|judgement| judgement.stable) else {
             return Ok(Stage::Ended(Ending::NotStabilised));
         };
         let worst_margin_db = judgement.worst_margin_db;
         if worst_margin_db >= FEASIBLE_DB || self.relaxes {
-            return self.audit();
+            return self.check();
+        }
+        if is_near {
+            return Ok(self.descend(false));
         }
         let missed = |_: &Self| Ok(Stage::Ended(Ending::Missed { worst_margin_db, audit: None }));
         match self.options.prefilter {
@@ -259,7 +288,7 @@ impl Attempt {
                 let samples = self.shaping.samples().clone();
                 self.x.truncate(self.structure.dimension());
                 self.shaping = Shaping::new(self.structure.clone(), None, self.options.objective, samples)?;
-                self.fit_or(Self::audit)
+                self.fit_or(Self::check)
             }
             _ => missed(self),
         }
@@ -268,6 +297,34 @@ impl Attempt {
     fn compensation(&self) -> Result<Compensation, DesignError> {
         let problem = self.shaping.samples().problem();
         Ok(Compensation::new(&self.shaping.controller(&self.x), problem.sensor.clone())?)
+    }
+
+    /// Looks between the samples: over the whole box, but beginning from the plants of the samples.
+    fn check(&self) -> Result<Stage, DesignError> {
+        let samples = self.shaping.samples();
+        let problem = samples.problem();
+        let audit = SpecificationAudit::new(
+            &samples.family(),
+            &self.compensation()?,
+            &problem.specifications,
+            self.shaping.tracking(),
+            self.options.tolerance_db,
+        );
+        Ok(Stage::Checking(Box::new(audit)))
+    }
+
+    fn after_check(&mut self) -> Result<Stage, DesignError> {
+        let Stage::Checking(audit) = &self.stage else { return self.check() };
+        let findings = audit.findings().to_vec();
+        let judgement = self.shaping.judge(&self.x);
+        let tolerance_db = self.new_below_db(&judgement);
+        let audited_margin_db = worst_margin_db(&findings);
+        let examples = counterexamples(&findings, tolerance_db, self.shaping.tracking());
+        if examples.is_empty() {
+            return self.audit();
+        }
+        self.note(Some(audited_margin_db), &judgement);
+        Ok(self.with(&examples)?.unwrap_or(self.audit()?))
     }
 
     fn audit(&self) -> Result<Stage, DesignError> {
@@ -282,39 +339,71 @@ impl Attempt {
         Ok(Stage::Auditing(Box::new(run)))
     }
 
+    /// An attempt that found nothing stable, whose nearest controller is audited all the same.
+    pub(super) fn audited_as_it_is(mut self) -> Result<Attempt, DesignError> {
+        self.audits_only = true;
+        self.stage = self.audit()?;
+        Ok(self)
+    }
+
     fn after_audit(&mut self) -> Result<Stage, DesignError> {
         let Stage::Auditing(run) = &self.stage else { return self.audit() };
         let audit = Box::new(run.audit());
+        if self.audits_only {
+            return Ok(Stage::Ended(Ending::Hopeless(audit)));
+        }
         let judgement = self.shaping.judge(&self.x);
-        self.note(&audit, judgement.worst_margin_db, judgement.objective_db);
+        let stable = audit.stability.verdict == Verdict::Met;
+        self.note(stable.then(|| worst_margin_db(&audit.specifications)), &judgement);
         if audit.verdict == Verdict::Met {
             return Ok(Stage::Ended(Ending::Met(audit)));
         }
-        // under a relaxation only what is worse than all that was looked at is new
-        let worst_margin_db = judgement.worst_margin_db;
-        let tolerance = if self.relaxes {
-            RELAXATION_TOLERANCE_DB - worst_margin_db.min(0.0)
+        let mut examples = unstable_plant(&audit);
+        let tolerance_db = self.new_below_db(&judgement);
+        examples.extend(counterexamples(&audit.specifications, tolerance_db, self.shaping.tracking()));
+        Ok(self.with(&examples)?.unwrap_or(Stage::Ended(if self.relaxes {
+            let audited_db = worst_over_rate_db(&audit.specifications, self.shaping.tracking());
+            Ending::Missed { worst_margin_db: judgement.worst_margin_db.min(audited_db), audit: Some(audit) }
         } else {
-            0.5 * self.options.tolerance_db
-        };
-        let mut news = false;
-        for example in counterexamples(&audit, tolerance, self.shaping.tracking()) {
-            let at = example.frequency_rad_per_s.unwrap_or_else(|| self.lowest_frequency());
-            news |= self.shaping.add(&example.plants, at)?;
-        }
-        let rounds = self.rounds.len();
-        if !news || rounds >= ROUNDS_MAXIMUM {
-            return Ok(Stage::Ended(if self.relaxes {
-                Ending::Missed { worst_margin_db, audit: Some(audit) }
-            } else {
-                Ending::NotConverged(audit)
-            }));
-        }
-        if self.shaping.judge(&self.x).stable { Ok(self.descend()) } else { self.search_anew() }
+            Ending::NotConverged(audit)
+        })))
     }
 
-    /// A plant that was added is unstable with what was found, so that margins lead nowhere from there: begins again among all plants that are
-    /// known now.
+    /// A margin below minus this is new: under a relaxation only what is worse than all that was looked at.
+    fn new_below_db(&self, judgement: &Judgement) -> f64 {
+        if self.relaxes {
+            RELAXATION_TOLERANCE_DB - judgement.worst_margin_db.min(0.0)
+        } else {
+            0.5 * self.options.tolerance_db
+        }
+    }
+
+    /// The descent again, with these among the samples; `None` if they are among them already, or it was made often enough.
+    fn with(&mut self, examples: &[Counterexample]) -> Result<Option<Stage>, DesignError> {
+        let mut news = false;
+        let [lowest, highest] = self.frequency_range();
+        for example in examples {
+            let at = example.frequency_rad_per_s.unwrap_or(lowest);
+            news |= self.shaping.add(&example.plants, at)?;
+            // a peak moves with the next controller: its neighbourhood is looked at too
+            for share in NEIGHBOURS.into_iter().filter(|_| example.frequency_rad_per_s.is_some()) {
+                self.shaping.add(&example.plants, (at * share).clamp(lowest, highest))?;
+            }
+        }
+        if !news || self.rounds.len() >= ROUNDS_MAXIMUM {
+            return Ok(None);
+        }
+        let judgement = self.shaping.judge(&self.x);
+        let leads_on = judgement.stable && (self.relaxes || judgement.worst_margin_db > ASTRAY_DB);
+        if leads_on {
+            self.sound = self.x.clone();
+            return Ok(Some(self.descend(true)));
+        }
+        Ok(Some(self.search_anew()?))
+    }
+
+    /// A plant that was added is unstable with what was found, or nearly so, and margins lead nowhere from there: begins again among all plants
+    /// that are known now, where they last led on besides.
     fn search_anew(&mut self) -> Result<Stage, DesignError> {
         self.restarts += 1;
         self.x.truncate(self.structure.dimension());
@@ -323,7 +412,9 @@ impl Attempt {
             self.shaping = Shaping::new(self.structure.clone(), None, self.options.objective, samples)?;
         }
         let seed = self.options.seed.wrapping_add(self.restarts);
-        Ok(Stage::Searching(Box::new(Search::new(search_options(self.aim, seed, self.relaxes)))))
+        let sound = self.sound.get(..self.structure.dimension()).map(<[f64]>::to_vec);
+        let search = Search::new(search_options(self.aim, seed, self.relaxes));
+        Ok(Stage::Searching(Box::new(search.beginning_with(sound.into_iter().collect()))))
     }
 
     fn prefilter_is_fitted(&self) -> bool {
@@ -331,19 +422,20 @@ impl Attempt {
             && matches!(self.options.prefilter, PrefilterChoice::Grow { .. })
     }
 
-    fn lowest_frequency(&self) -> f64 {
-        self.shaping.samples().frequencies_rad_per_s().first().copied().unwrap_or(1.0)
+    fn frequency_range(&self) -> [f64; 2] {
+        let frequencies = self.shaping.samples().frequencies_rad_per_s();
+        [frequencies.first().copied().unwrap_or(1.0), frequencies.last().copied().unwrap_or(1.0)]
     }
 
-    fn note(&mut self, audit: &Audit, searched_margin_db: f64, objective_db: f64) {
+    fn note(&mut self, audited_margin_db: Option<f64>, judgement: &Judgement) {
         let samples = self.shaping.samples();
         self.rounds.push(DesignRound {
             structure: self.structure.clone(),
-            objective_db,
+            objective_db: judgement.objective_db,
             plants: samples.plants().len(),
             frequencies: samples.frequencies_rad_per_s().len(),
-            searched_margin_db,
-            audited_margin_db: worst_margin_db(audit),
+            searched_margin_db: judgement.worst_margin_db,
+            audited_margin_db,
         });
     }
 }
@@ -356,9 +448,10 @@ pub(super) fn tracks(problem: &DesignProblem) -> Option<usize> {
     problem.specifications.iter().position(|one| matches!(one.requirement, Requirement::Tracking { .. }))
 }
 
-/// A search for feasibility needs many starts; one for a relaxation more of them to their end, for the answer is a number.
+/// The gain is scanned, for hardly any is right for a random shape; a relaxation takes more descents to their end, for the answer is a
+/// number.
 fn search_options(aim: Aim, seed: u64, relaxes: bool) -> SearchOptions {
     let descent = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(aim) };
-    let (starts, finished) = if relaxes { (12, 6) } else { (8, 3) };
-    SearchOptions { starts, finished, descent, ..SearchOptions::new(aim, seed) }
+    let (starts, finished) = if relaxes { (12, 6) } else { (8, 5) };
+    SearchOptions { samples: 48, scanned: 14, starts, finished, descent, ..SearchOptions::new(aim, seed) }
 }

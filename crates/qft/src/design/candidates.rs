@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Element};
 use phea_dynamics::frequency::logarithmic_grid;
-use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
@@ -26,6 +26,45 @@ const DAMPING_RATIOS: [f64; 2] = [0.1, 20.0];
 const GAIN_ROOM: f64 = 100.0;
 /// Two limits that differ by less than this share at low frequency ask for one gain.
 const SAME: f64 = 1e-6;
+
+/// The sign that feedback needs to oppose the nominal plant, and a wide range for the gain k of a controller with unit corners: from below
+/// to above every value that puts the crossover on a frequency of the specifications.
+///
+/// # Example
+/// 4/s with a specification from 1 to 10 rad/s: k = 1/4 crosses over at 1 rad/s.
+/// ```
+/// # use phea_dynamics::controller::Timing;
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
+/// # use phea_qft::family::{Extent, Family, UncertainFamily};
+/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::design::{DesignProblem, gain_range};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {
+/// #     command: RationalCoefficients { numerator: vec![4.0.into()], denominator: vec![1.0.into(), 0.0.into()] },
+/// #     disturbance: None,
+/// #     dead_time_s: 0.0.into(),
+/// # })?;
+/// # let problem = DesignProblem {
+/// #     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
+/// #     sensor: TransferFunction::gain_only(1.0),
+/// #     timing: Timing::default(),
+/// #     specifications: vec![Specification {
+/// #         requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+/// #         frequencies_rad_per_s: vec![1.0, 10.0],
+/// #         band_rad_per_s: [1.0, 10.0],
+/// #     }],
+/// #     minimum_delay_margin_s: 0.0,
+/// # };
+/// let (sign, [least, greatest]) = gain_range(&problem);
+/// assert!(sign == 1.0 && least < 0.25 && greatest > 2.5);
+/// # Ok(())
+/// # }
+/// ```
+pub fn gain_range(problem: &DesignProblem) -> (f64, [f64; 2]) {
+    let ground = Ground::new(problem);
+    (ground.sign, ground.gain)
+}
 
 /// What the structures of a problem have in common.
 #[derive(Clone, Debug, PartialEq)]
@@ -171,7 +210,7 @@ impl LowFrequency {
                 let values = std::iter::once(&nominal).chain(&corners);
                 let types = values.map(|values| plant_type(&family.plant().coefficients(values).command));
                 let command = family.plant().coefficients(&nominal).command;
-                LowFrequency { plant_type: types.min().unwrap_or(0), sign: lowest_sign(&command) }
+                LowFrequency { plant_type: types.min().unwrap_or(0), sign: opposing_sign(&command) }
             }
             Family::Measured(family) => {
                 let first = family.plants().first();
@@ -203,9 +242,33 @@ fn plant_type(command: &RationalCoefficients<f64>) -> i64 {
     at_origin(&command.denominator) as i64 - at_origin(&command.numerator) as i64
 }
 
-/// The sign of the ratio of the lowest coefficients that are not zero: of lim s^type P(s).
-fn lowest_sign(command: &RationalCoefficients<f64>) -> f64 {
+/// The sign that k needs for feedback to oppose the plant: that of lim s^type P(s), turned by every real pole in the right half plane, around
+/// which the loop has to go.
+fn opposing_sign(command: &RationalCoefficients<f64>) -> f64 {
     let lowest =
         |coefficients: &[f64]| coefficients.iter().rev().copied().find(|one| *one != 0.0).unwrap_or(1.0);
-    1.0_f64.copysign(lowest(&command.numerator) * lowest(&command.denominator))
+    let at_rest = 1.0_f64.copysign(lowest(&command.numerator) * lowest(&command.denominator));
+    let poles = Polynomial::new(command.denominator.clone()).roots().unwrap_or_default();
+    let turns = poles.iter().filter(|pole| pole.im == 0.0 && pole.re > 0.0).count();
+    if turns % 2 == 0 { at_rest } else { -at_rest }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Integral control of a stable plant needs the sign of its gain at rest; (s + 0.1)/(s^2 - 2.25) needs k > 0.
+    #[test]
+    fn feedback_opposes_the_plant() {
+        let sign = |numerator: &[f64], denominator: &[f64]| {
+            opposing_sign(&RationalCoefficients {
+                numerator: numerator.to_vec(),
+                denominator: denominator.to_vec(),
+            })
+        };
+        assert_eq!(sign(&[2.0], &[1.0, 4.0, 3.0]), 1.0);
+        assert_eq!(sign(&[-2.0], &[1.0, 0.0]), -1.0);
+        assert_eq!(sign(&[-1.0, 1.0], &[1.0, 2.0, 1.0]), 1.0);
+        assert_eq!(sign(&[1.0, 0.1], &[1.0, 0.0, -2.25]), 1.0);
+    }
 }

@@ -1,7 +1,7 @@
 //! What an audit teaches the search: plants and frequencies that it had not looked at.
 
 use crate::specification::Requirement;
-use crate::verification::{Audit, PlantPoint, TrackingJudgement, Verdict, WorstCase};
+use crate::verification::{Audit, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict, WorstCase};
 
 /// A plant, or the pair of a spread, and the frequency at which it breaks a limit, where there is one.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,21 +11,15 @@ pub(super) struct Counterexample {
 }
 
 /// The plants that break a limit by more than `tolerance_db` (both limits of a spread by that much), each once with each of its
-/// frequencies; of an unstable family the plant that is unstable.
+/// frequencies.
 pub(super) fn counterexamples(
-    audit: &Audit,
+    findings: &[SpecificationFinding],
     tolerance_db: f64,
     tracking: TrackingJudgement,
 ) -> Vec<Counterexample> {
     let mut found: Vec<Counterexample> = Vec::new();
-    if audit.stability.verdict == Verdict::Violated {
-        let plants = vec![audit.stability.plant.clone()];
-        found.push(Counterexample { plants, frequency_rad_per_s: None });
-    }
-    for finding in &audit.specifications {
-        let is_spread = tracking == TrackingJudgement::Spread
-            && matches!(finding.requirement, Requirement::Tracking { .. });
-        let tolerance = if is_spread { 2.0 * tolerance_db } else { tolerance_db };
+    for finding in findings {
+        let tolerance = if is_spread(finding, tracking) { 2.0 * tolerance_db } else { tolerance_db };
         let bands = finding.violations.iter().map(|band| &band.worst);
         let cases = finding.worst.iter().chain(&finding.interior).chain(bands);
         let cases = cases.chain(&finding.at_design_frequencies);
@@ -44,10 +38,31 @@ fn inside(case: &WorstCase) -> Option<f64> {
     Some(case.frequency_rad_per_s).filter(|frequency| *frequency > 0.0 && frequency.is_finite())
 }
 
-/// The least margin of all specifications, dB; `None` for a family that is not known to be stable.
-pub(super) fn worst_margin_db(audit: &Audit) -> Option<f64> {
-    let stable = audit.stability.verdict == Verdict::Met;
-    let margins = audit.specifications.iter().filter_map(|finding| finding.worst.as_ref());
-    let worst = margins.map(|worst| worst.margin_db).fold(f64::INFINITY, f64::min);
-    stable.then_some(worst)
+/// The plant that makes a family unstable.
+pub(super) fn unstable_plant(audit: &Audit) -> Vec<Counterexample> {
+    match audit.stability.verdict {
+        Verdict::Violated => {
+            vec![Counterexample { plants: vec![audit.stability.plant.clone()], frequency_rad_per_s: None }]
+        }
+        Verdict::Met | Verdict::NotProven => vec![],
+    }
+}
+
+/// The least margin of all specifications, dB.
+pub(super) fn worst_margin_db(findings: &[SpecificationFinding]) -> f64 {
+    let margins = findings.iter().filter_map(|finding| finding.worst.as_ref());
+    margins.map(|worst| worst.margin_db).fold(f64::INFINITY, f64::min)
+}
+
+/// The same over what one dB of relaxation of every limit adds to each: 2 for a spread.
+pub(super) fn worst_over_rate_db(findings: &[SpecificationFinding], tracking: TrackingJudgement) -> f64 {
+    let margins = findings.iter().filter_map(|finding| {
+        let margin_db = finding.worst.as_ref()?.margin_db;
+        Some(if is_spread(finding, tracking) { 0.5 * margin_db } else { margin_db })
+    });
+    margins.fold(f64::INFINITY, f64::min)
+}
+
+fn is_spread(finding: &SpecificationFinding, tracking: TrackingJudgement) -> bool {
+    tracking == TrackingJudgement::Spread && matches!(finding.requirement, Requirement::Tracking { .. })
 }

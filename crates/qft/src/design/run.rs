@@ -2,9 +2,10 @@
 
 use std::collections::VecDeque;
 
-use super::attempt::{Attempt, DesignError, Ending};
+use super::attempt::{Attempt, DesignError, Ending, FEASIBLE_DB};
 use super::binding::{binding_limits, conflicts};
 use super::candidates::Ground;
+use super::diagnosis::{Severity, diagnose};
 use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
 use phea_dynamics::linear::TransferFunction;
@@ -16,9 +17,12 @@ use crate::verification::{Audit, PlantPoint, corners};
 /// Points of the frequency grid of a search in a decade.
 const POINTS_PER_DECADE: f64 = 20.0;
 /// Random plants inside the box that a search begins with.
-const INTERIOR_PLANTS: usize = 48;
+const INTERIOR_PLANTS: usize = 32;
 /// Members of a family without a box that a search begins with.
 const MEMBERS_MAXIMUM: usize = 200;
+
+/// Order of the controller by which a relaxation is found where no controller of any order will do.
+const ORDER_OF_A_RELAXATION: usize = 2;
 
 /// What is tried after what.
 #[derive(Clone, Debug)]
@@ -29,6 +33,8 @@ struct Plan {
     all: usize,
     /// Whether a controller was found already, and fewer zeros are tried in its order.
     found: bool,
+    /// Whether what was thought infeasible was begun anew.
+    again: bool,
 }
 
 /// A design stepped by its owner, who may show its progress or stop it at any step.
@@ -46,6 +52,10 @@ pub struct DesignRun {
     /// The controller of the attempt before.
     before: Option<TransferFunction>,
     relaxing: bool,
+    /// The last attempt that found nothing stable.
+    unstable: Option<Attempt>,
+    /// What is begun anew, from this controller.
+    again: Option<(Structure, Option<TransferFunction>)>,
     rounds: Vec<DesignRound>,
     design: Option<Design>,
     done: bool,
@@ -55,22 +65,36 @@ impl DesignRun {
     /// A design that has not begun.
     pub fn new(problem: DesignProblem, options: DesignOptions) -> DesignRun {
         let ground = Ground::new(&problem);
-        let waiting: VecDeque<(usize, usize)> = match options.controller {
+        let mut waiting: VecDeque<(usize, usize)> = match options.controller {
             ControllerChoice::Given(_) => VecDeque::from([(0, 0)]),
             ControllerChoice::Grow { maximum_order } => {
-                (ground.integrators..=maximum_order).flat_map(degrees).collect()
+                let sampled = problem.timing.sample_time_s.is_some();
+                (ground.integrators..=maximum_order)
+                    .flat_map(|order| degrees(order, ground.integrators, sampled))
+                    .collect()
             }
         };
+        let mut nearest = None;
+        let impossible = diagnose(&problem).iter().any(|finding| finding.severity() == Severity::Impossible);
+        if let (true, ControllerChoice::Grow { maximum_order }) = (impossible, &options.controller) {
+            // no controller of any order will do: what is left is by how much
+            waiting.clear();
+            let order =
+                ORDER_OF_A_RELAXATION.clamp(ground.integrators, (*maximum_order).max(ground.integrators));
+            nearest = Some((f64::NEG_INFINITY, ground.structure(order, order.saturating_sub(1)), None));
+        }
         DesignRun {
-            plan: Plan { ground, all: waiting.len(), waiting, found: false },
+            plan: Plan { ground, all: waiting.len(), waiting, found: false, again: false },
             problem,
             options,
             attempt: None,
             current: None,
             samples: None,
-            nearest: None,
+            nearest,
             before: None,
             relaxing: false,
+            unstable: None,
+            again: None,
             rounds: vec![],
             design: None,
             done: false,
@@ -127,6 +151,10 @@ impl DesignRun {
     }
 
     fn begin(&mut self) -> Result<(), DesignError> {
+        if let Some((structure, feedback)) = self.again.take() {
+            let at = feedback.map(|feedback| self.plan.ground.grown(&structure, &feedback));
+            return self.attempt(structure, at.unwrap_or_default());
+        }
         let structure = match (&self.options.controller, self.plan.waiting.pop_front()) {
             (_, None) => return self.end(),
             (ControllerChoice::Given(structure), Some(_)) => structure.clone(),
@@ -170,6 +198,13 @@ impl DesignRun {
                 self.plan.waiting = fewer_zeros(self.current);
                 self.done = self.relaxing || self.plan.waiting.is_empty();
             }
+            Some(Ending::Missed { worst_margin_db, audit: Some(_) })
+                if *worst_margin_db > FEASIBLE_DB && !self.plan.again =>
+            {
+                // it can be met after all: from here the objective is looked for
+                (self.plan.again, self.relaxing) = (true, false);
+                self.again = Some((attempt.structure().clone(), attempt.feedback()));
+            }
             Some(Ending::Missed { worst_margin_db, audit: Some(audit) }) => {
                 let relaxation_db = -worst_margin_db;
                 let conflicts = conflicts(audit, 0.8 * relaxation_db);
@@ -190,7 +225,14 @@ impl DesignRun {
                 }
                 self.done = self.plan.found || self.relaxing;
             }
-            Some(Ending::NotStabilised) | None => self.done = self.plan.found,
+            Some(Ending::NotStabilised) | None => {
+                self.unstable = Some(attempt);
+                self.done = self.plan.found;
+            }
+            Some(Ending::Hopeless(audit)) => {
+                self.take(&attempt, DesignStatus::NotStabilised, audit);
+                self.done = true;
+            }
         }
     }
 
@@ -203,7 +245,9 @@ impl DesignRun {
                 self.attempt(structure, at.unwrap_or_default())
             }
             _ => {
-                self.done = true;
+                let unstable = self.unstable.take().filter(|_| self.design.is_none());
+                self.done = unstable.is_none();
+                self.attempt = unstable.map(Attempt::audited_as_it_is).transpose()?;
                 Ok(())
             }
         }
@@ -222,11 +266,12 @@ impl DesignRun {
     }
 }
 
-/// (order, zeros) of an order: one pole more than zeros, and for an order of one or none as many.
-fn degrees(order: usize) -> Vec<(usize, usize)> {
+/// (order, zeros) of an order: one pole more than zeros; as many for a gain alone, for proportional-integral control, and where the loop is
+/// sampled and its gain ends at pi/T anyway.
+fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize)> {
     match order {
         0 => vec![(0, 0)],
-        1 => vec![(1, 0), (1, 1)],
+        _ if sampled || (order == 1 && integrators == 1) => vec![(order, order - 1), (order, order)],
         _ => vec![(order, order - 1)],
     }
 }

@@ -14,6 +14,7 @@ use place::Place;
 
 /// First trust region, and the largest, in units of x.
 const RADIUS_FIRST: f64 = 0.3;
+const RADIUS_NEAR: f64 = 0.1;
 const RADIUS_LARGEST: f64 = 2.0;
 /// A trust region below this ends the descent.
 const RADIUS_LEAST: f64 = 1e-8;
@@ -48,12 +49,15 @@ pub struct DescentOptions {
     pub tolerance_db: f64,
     /// Steps at most.
     pub steps_maximum: usize,
+    /// Whether the start lies near the end, as after a margin was added: objective and violation are lessened together from the beginning, instead
+    /// of the worst margin first, which may lead far away.
+    pub is_near: bool,
 }
 
 impl DescentOptions {
     /// No reserve, a tolerance of 0.0001 dB, 200 steps.
     pub fn new(aim: Aim) -> DescentOptions {
-        DescentOptions { aim, reserve_db: 0.0, tolerance_db: 1e-4, steps_maximum: 200 }
+        DescentOptions { aim, reserve_db: 0.0, tolerance_db: 1e-4, steps_maximum: 200, is_near: false }
     }
 
     /// Whether a worst margin keeps the reserve, but for a share of the tolerance.
@@ -135,7 +139,7 @@ impl Descent {
             x: x.to_vec(),
             here: None,
             aim: options.aim,
-            radius: RADIUS_FIRST,
+            radius: if options.is_near { RADIUS_NEAR } else { RADIUS_FIRST },
             penalty: PENALTY_FIRST,
             curvature: None,
             binding: vec![],
@@ -144,6 +148,11 @@ impl Descent {
             work: Work::default(),
             status: None,
         }
+    }
+
+    /// What it looks for.
+    pub fn options(&self) -> DescentOptions {
+        self.options
     }
 
     /// Where it stands.

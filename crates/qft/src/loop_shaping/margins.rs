@@ -27,6 +27,7 @@ pub(super) struct Demand {
     pub(super) quantity: Quantity,
     /// The square of the limit; of the quotient of both limits for a spread.
     allowed: f64,
+    rate: f64,
 }
 
 /// What is limited.
@@ -58,11 +59,24 @@ pub(super) struct ColumnLoop {
     sensitivity_squared: Vec<f64>,
 }
 
+/// How limits are kept to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Keeping {
+    /// Every limit is drawn in by this much, dB; where two limits leave less than 1 dB between them, by that share of it.
+    pub(super) reserve_db: f64,
+    /// Whether a margin counts by its share of what two limits leave between them, where that is less than 1 dB. Limits that meet, as those
+    /// of tracking do at rest, leave no margin otherwise that could be made greater.
+    pub(super) share_of_room: bool,
+}
+
+/// Less room than this counts as this much, dB.
+const ROOM_LEAST_DB: f64 = 1e-6;
+
 /// What the specifications demand at a frequency, of a loop that has a meaning up to the highest one.
 pub(super) fn demands(
     specifications: &[Specification],
     tracking: TrackingJudgement,
-    reserve_db: f64,
+    Keeping { reserve_db, share_of_room }: Keeping,
     [frequency, highest_frequency]: [f64; 2],
 ) -> Vec<Demand> {
     let mut demands = Vec::new();
@@ -94,7 +108,9 @@ pub(super) fn demands(
             }
         };
         demands.extend(limits.into_iter().filter_map(|(quantity, allowed)| {
-            Some(Demand { specification: index, quantity, allowed: allowed? })
+            let unit = if quantity == Quantity::Spread { 2.0 } else { 1.0 };
+            let rate = if share_of_room { unit * room_db.max(ROOM_LEAST_DB) } else { unit };
+            Some(Demand { specification: index, quantity, allowed: allowed?, rate })
         }));
     }
     demands
@@ -104,9 +120,9 @@ impl Demand {
     /// More demands than one column can have.
     pub(super) const PER_COLUMN: usize = 64;
 
-    /// What one dB of relaxation of every limit adds to the margin.
+    /// What one dB of relaxation of every limit adds to the margin; see [`Keeping::share_of_room`].
     pub(super) fn rate(&self) -> f64 {
-        if self.quantity == Quantity::Spread { 2.0 } else { 1.0 }
+        self.rate
     }
 
     /// The power of F in what is limited, with the sign of the limit: 1 for an upper one, -1 for a lower one.

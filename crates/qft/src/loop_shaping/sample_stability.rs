@@ -105,6 +105,11 @@ impl SampleStability {
         self.plants.push(Plant { member, quotient });
     }
 
+    /// Whether no plant has dead time or is known by measurements only: then a question costs little.
+    pub fn is_rational(&self) -> bool {
+        self.plants.iter().all(|plant| plant.quotient.is_some())
+    }
+
     /// Whether every plant is stable with this controller; a plant of which that cannot be shown counts as unstable.
     ///
     /// # Errors

@@ -9,10 +9,10 @@ use phea_dynamics::controller::{Compensator, Controller};
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
-use super::margins::{Demand, demands};
+use super::margins::{Demand, Keeping, demands};
 use crate::closed_loop::{Compensation, Member};
 use crate::design::DesignProblem;
-use crate::family::{Family, MeasuredPlant};
+use crate::family::{Extent, Family, MeasuredPlant, UncertainFamily};
 use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// Beside an undamped pole of the plant, where it has no response, it is looked at this share of the frequency higher.
@@ -76,7 +76,7 @@ pub struct Samples {
     /// With a controller of gain 1.
     around: Compensation,
     tracking: TrackingJudgement,
-    reserve_db: f64,
+    keeping: Keeping,
     plants: Vec<PlantPoint>,
     members: Vec<Member>,
     columns: Vec<Column>,
@@ -117,7 +117,7 @@ impl Samples {
             problem: problem.clone(),
             around: around(problem)?,
             tracking: TrackingJudgement::Spread,
-            reserve_db: 0.0,
+            keeping: Keeping::default(),
             plants: vec![],
             members: vec![],
             columns: vec![],
@@ -173,7 +173,14 @@ impl Samples {
 
     /// Draws every limit in by this much, dB; where two limits leave less than 1 dB between them, by that share of it.
     pub fn keep_in_reserve(&mut self, reserve_db: f64) {
-        self.reserve_db = reserve_db;
+        self.keeping.reserve_db = reserve_db;
+        self.demand_anew();
+    }
+
+    /// Counts a margin by its share of what two limits leave between them, where that is less than 1 dB: limits that meet, as those of
+    /// tracking do at rest, leave no margin otherwise that could be made greater.
+    pub fn count_shares_of_room(&mut self, share_of_room: bool) {
+        self.keeping.share_of_room = share_of_room;
         self.demand_anew();
     }
 
@@ -185,7 +192,24 @@ impl Samples {
 
     fn demands(&self, frequency: f64) -> Vec<Demand> {
         let highest = self.around.highest_frequency_rad_per_s();
-        demands(&self.problem.specifications, self.tracking, self.reserve_db, [frequency, highest])
+        demands(&self.problem.specifications, self.tracking, self.keeping, [frequency, highest])
+    }
+
+    /// The family with the plants of the samples for its members: its box, where it has one, is the same.
+    pub fn family(&self) -> Family {
+        match &self.problem.family {
+            Family::Uncertain(family) if family.extent() == Extent::Box => {
+                let values = self.plants.iter().filter_map(|plant| match plant {
+                    PlantPoint::Parameters(values) => Some(values.clone()),
+                    PlantPoint::Measured(_) => None,
+                });
+                let plant = family.plant().clone();
+                let coordinates = family.coordinates().to_vec();
+                UncertainFamily::new(plant, coordinates, values.collect(), Extent::Box)
+                    .map_or_else(|_| self.problem.family.clone(), Family::Uncertain)
+            }
+            whole => whole.clone(),
+        }
     }
 
     /// What is designed for.

@@ -14,9 +14,11 @@ use crate::design::Objective;
 use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// Rows of one linearisation.
-const ROWS_MAXIMUM: usize = 400;
+const ROWS_MAXIMUM: usize = 240;
+/// How far from stability a loop counts of which that is too dear to know.
+const UNSTABLE: f64 = 1.0;
 /// Columns whose worst margin is further above the worst of all give no rows, dB.
-const WINDOW_DB: f64 = 40.0;
+const WINDOW_DB: f64 = 20.0;
 
 /// A structure, the samples its margins are taken at, and an objective.
 ///
@@ -103,8 +105,8 @@ pub struct SampledMargin {
 
 /// The worst of the samples at one G.
 struct Looked {
-    /// (column, demand, excess squared for a rate of 1)
-    excesses: Vec<(usize, usize, f64)>,
+    /// (column, demand, margin over its rate in dB)
+    margins: Vec<(usize, usize, f64)>,
     delays: DelayMargins,
     worst_db: f64,
 }
@@ -190,6 +192,11 @@ impl Shaping {
         Ok(new)
     }
 
+    /// Counts margins by their share of the room between two limits; see [`Samples::count_shares_of_room`].
+    pub fn count_shares_of_room(&mut self) {
+        self.samples.count_shares_of_room(true);
+    }
+
     /// Controller and prefilter at x; without a prefilter, the gain 1.
     pub fn controller(&self, x: &[f64]) -> Controller {
         let (own, behind) = self.split(x);
@@ -258,26 +265,24 @@ impl Shaping {
     }
 
     fn look(&mut self, forward: &[[Complex64; 2]]) -> Looked {
-        let mut excesses = Vec::new();
-        let mut worst = 0.0;
+        let mut margins = Vec::new();
+        let mut worst_db = f64::INFINITY;
         for (index, (column, &[feedback, prefilter])) in
             self.samples.columns().iter().zip(forward).enumerate()
         {
             self.around.close(column, feedback, prefilter);
             for (number, demand) in column.demands.iter().enumerate() {
-                let excess = demand.worst_excess(column, &self.around);
-                // a margin over its rate of 2 is the margin of the square root
-                let excess = if demand.rate() > 1.0 { excess.sqrt() } else { excess };
-                worst = if excess > worst { excess } else { worst };
-                excesses.push((index, number, excess));
+                let margin_db = decibels(demand.worst_excess(column, &self.around)) / demand.rate();
+                worst_db = if margin_db < worst_db { margin_db } else { worst_db };
+                margins.push((index, number, margin_db));
             }
         }
         let feedback: Vec<Complex64> = forward.iter().map(|[feedback, _]| *feedback).collect();
         let columns = self.samples.columns();
         let delay_s = self.samples.problem().minimum_delay_margin_s;
         let delays = delay_margins(columns, &feedback, self.samples.plants().len(), delay_s);
-        let worst_db = delays.crossovers.iter().map(|margin| margin.value_db).fold(decibels(worst), f64::min);
-        Looked { excesses, delays, worst_db }
+        let worst_db = delays.crossovers.iter().map(|margin| margin.value_db).fold(worst_db, f64::min);
+        Looked { margins, delays, worst_db }
     }
 
     /// The objective and its slopes, given those of ln G at the columns.
@@ -312,6 +317,9 @@ impl Shaping {
         let Ok(feedback) = feedback else { return (false, f64::INFINITY) };
         if self.stability.is_stable(&feedback) == Ok(true) {
             return (true, 0.0);
+        }
+        if !self.stability.is_rational() {
+            return (false, UNSTABLE);
         }
         let judgement = self.stability.judge(&feedback);
         (false, judgement.map_or(f64::INFINITY, |judgement| judgement.largest_real_part))
@@ -362,9 +370,9 @@ impl Shaping {
 /// Column and demand of the least margins, in order.
 fn near(looked: &Looked) -> Vec<(usize, usize)> {
     let mut near: Vec<(f64, usize, usize)> = looked
-        .excesses
+        .margins
         .iter()
-        .map(|&(column, demand, excess)| (decibels(excess), column, demand))
+        .map(|&(column, demand, margin_db)| (margin_db, column, demand))
         .filter(|(margin_db, ..)| *margin_db <= looked.worst_db + WINDOW_DB)
         .collect();
     near.sort_by(|one, other| one.0.total_cmp(&other.0));

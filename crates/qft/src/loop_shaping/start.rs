@@ -14,6 +14,11 @@ use spread::Spread;
 const DISTINCT: f64 = 0.05;
 /// Steps of each descent before the better ones are chosen.
 const STEPS_ROUGH: usize = 12;
+/// A start with no worse margin than this is as good as feasible, dB.
+const NEAR_DB: f64 = -3.0;
+/// Half of the starts are those of least objective among the samples above this worst margin, dB: the largest worst margins lie where the
+/// gain is large, from where the way to the least objective may be barred.
+const MODEST_DB: f64 = -15.0;
 
 /// How widely a search looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +27,9 @@ pub struct SearchOptions {
     pub seed: u64,
     /// Points spread over the bounds.
     pub samples: usize,
+    /// Of each of these points the first x is tried at so many values over its bounds (a gain may be right for hardly any shape), and the best is
+    /// kept; at most 1 leaves the points as they are.
+    pub scanned: usize,
     /// Points that descents begin from.
     pub starts: usize,
     /// Descents that are led to their end.
@@ -36,7 +44,7 @@ impl SearchOptions {
     /// 300 samples, 8 starts, 4 of them finished, 60 generations.
     pub fn new(aim: Aim, seed: u64) -> SearchOptions {
         let descent = DescentOptions::new(aim);
-        SearchOptions { seed, samples: 300, starts: 8, finished: 4, generations: 60, descent }
+        SearchOptions { seed, samples: 300, scanned: 0, starts: 8, finished: 4, generations: 60, descent }
     }
 }
 
@@ -91,20 +99,28 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// Stable before unstable; then the larger worst margin, or the lesser instability.
-    fn is_better_than(&self, other: &Candidate) -> bool {
+    /// Stable before unstable; then the larger worst margin, or where both come near to being met and the objective is aimed at the lesser
+    /// objective; or the lesser instability.
+    fn is_better_than(&self, other: &Candidate, aim: Aim) -> bool {
         match (is_usable(&self.judgement), is_usable(&other.judgement)) {
-            (true, true) => self.judgement.worst_margin_db > other.judgement.worst_margin_db,
+            (true, true) => {
+                let [own, others] = [&self.judgement, &other.judgement];
+                let is_near = |judgement: &Judgement| judgement.worst_margin_db > NEAR_DB;
+                if aim == Aim::Objective && is_near(own) && is_near(others) {
+                    return own.objective_db < others.objective_db;
+                }
+                own.worst_margin_db > others.worst_margin_db
+            }
             (false, false) => self.judgement.instability < other.judgement.instability,
             (usable, _) => usable,
         }
     }
 
     /// The best first, equals in their order.
-    fn sort(candidates: &mut [Candidate]) {
-        candidates.sort_by(|a, b| match a.is_better_than(b) {
+    fn sort(candidates: &mut [Candidate], aim: Aim) {
+        candidates.sort_by(|a, b| match a.is_better_than(b, aim) {
             true => Ordering::Less,
-            false if b.is_better_than(a) => Ordering::Greater,
+            false if b.is_better_than(a, aim) => Ordering::Greater,
             false => Ordering::Equal,
         });
     }
@@ -252,26 +268,52 @@ impl Search {
 
     fn sampled(&mut self, problem: &mut dyn SearchProblem, spread: Option<Spread>) -> Stage {
         if let Some(x) = self.given.pop() {
-            let judgement = problem.judge(&x);
-            self.other_work.judgements += 1;
-            self.candidates.push(Candidate { x, judgement });
+            let candidate = self.judged(problem, x);
+            self.candidates.push(candidate);
             return Stage::Sampling(spread);
         }
         if self.candidates.len() < self.options.samples {
             let bounds = problem.bounds();
             let spread = spread.unwrap_or_else(|| Spread::new(bounds.len(), &mut self.random));
             let x = spread.point(self.candidates.len(), bounds);
-            let judgement = problem.judge(&x);
-            self.other_work.judgements += 1;
-            self.candidates.push(Candidate { x, judgement });
+            let candidate = self.scanned(problem, x);
+            self.candidates.push(candidate);
             return Stage::Sampling(Some(spread));
         }
-        Candidate::sort(&mut self.candidates);
+        Candidate::sort(&mut self.candidates, self.options.descent.aim);
         let evolution = Evolution::new(&self.candidates, problem.bounds());
         match self.is_enough(evolution.candidates()) || evolution.is_too_small() {
             true => self.chosen(problem),
             false => Stage::Evolving(evolution),
         }
+    }
+
+    /// The point, or the best along its first x.
+    fn scanned(&mut self, problem: &mut dyn SearchProblem, x: Vec<f64>) -> Candidate {
+        let range = problem.bounds().first().copied().unwrap_or_default();
+        let values = (0..self.options.scanned).map(|step| {
+            let share = (step as f64 + 0.5) / self.options.scanned as f64;
+            range[0] + share * (range[1] - range[0])
+        });
+        let values: Vec<f64> = values.collect();
+        let mut best = self.judged(problem, x);
+        for value in values {
+            let mut x = best.x.clone();
+            if let Some(first) = x.first_mut() {
+                *first = value;
+            }
+            let candidate = self.judged(problem, x);
+            if candidate.is_better_than(&best, self.options.descent.aim) {
+                best = candidate;
+            }
+        }
+        best
+    }
+
+    fn judged(&mut self, problem: &mut dyn SearchProblem, x: Vec<f64>) -> Candidate {
+        self.other_work.judgements += 1;
+        let judgement = problem.judge(&x);
+        Candidate { x, judgement }
     }
 
     fn evolved(&mut self, problem: &mut dyn SearchProblem, mut evolution: Evolution) -> Stage {
@@ -281,7 +323,7 @@ impl Search {
             return Stage::Evolving(evolution);
         }
         self.candidates = evolution.candidates().to_vec();
-        Candidate::sort(&mut self.candidates);
+        Candidate::sort(&mut self.candidates, self.options.descent.aim);
         self.chosen(problem)
     }
 
@@ -292,14 +334,18 @@ impl Search {
     /// Descents from the best candidates that are distinct; the candidates are sorted.
     fn chosen(&mut self, problem: &dyn SearchProblem) -> Stage {
         let bounds = problem.bounds();
-        let mut starts: Vec<&Candidate> = vec![];
-        for candidate in self.candidates.iter().filter(|candidate| is_usable(&candidate.judgement)) {
-            if starts.len() < self.options.starts
-                && starts.iter().all(|start| is_distinct(candidate, start, bounds))
-            {
-                starts.push(candidate);
-            }
+        let usable: Vec<&Candidate> =
+            self.candidates.iter().filter(|candidate| is_usable(&candidate.judgement)).collect();
+        let mut modest: Vec<&Candidate> =
+            usable.iter().copied().filter(|one| one.judgement.worst_margin_db > MODEST_DB).collect();
+        modest.sort_by(|one, other| one.judgement.objective_db.total_cmp(&other.judgement.objective_db));
+        if self.options.descent.aim == Aim::WorstMargin {
+            modest.clear();
         }
+        let mut starts: Vec<&Candidate> = vec![];
+        add_distinct(&mut starts, self.options.starts / 2, &usable, bounds);
+        add_distinct(&mut starts, self.options.starts, &modest, bounds);
+        add_distinct(&mut starts, self.options.starts, &usable, bounds);
         self.descents = starts.iter().map(|start| Descent::new(&start.x, self.options.descent)).collect();
         if self.descents.is_empty() { Stage::Done } else { Stage::Rough { at: 0, steps: 0 } }
     }
@@ -353,6 +399,20 @@ fn standing(options: &DescentOptions, judgement: Option<Judgement>) -> (bool, f6
         Aim::Objective if misses => (true, -judgement.worst_margin_db),
         Aim::Objective => (false, judgement.objective_db),
         Aim::WorstMargin => (false, -judgement.worst_margin_db),
+    }
+}
+
+/// Adds those that lie apart from all starts, until there are so many.
+fn add_distinct<'c>(
+    starts: &mut Vec<&'c Candidate>,
+    most: usize,
+    from: &[&'c Candidate],
+    bounds: &[[f64; 2]],
+) {
+    for candidate in from {
+        if starts.len() < most && starts.iter().all(|start| is_distinct(candidate, start, bounds)) {
+            starts.push(candidate);
+        }
     }
 }
 

@@ -16,6 +16,8 @@ const EQUAL_SHARE: f64 = 0.01;
 /// Which prefilters are tried, and when one is good enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrefilterOptions {
+    /// Least number of poles.
+    pub least_order: usize,
     /// Largest number of poles.
     pub maximum_order: usize,
     /// Least number of poles less zeros, as far as the band allows it.
@@ -29,7 +31,13 @@ pub struct PrefilterOptions {
 impl PrefilterOptions {
     /// Relative degree 1 at least, so that a step of the reference reaches the controller without a jump; the tolerance of the audit.
     pub fn new(maximum_order: usize, seed: u64) -> PrefilterOptions {
-        PrefilterOptions { maximum_order, least_relative_degree: 1, tolerance_db: TOLERANCE_DB, seed }
+        PrefilterOptions {
+            least_order: 0,
+            maximum_order,
+            least_relative_degree: 1,
+            tolerance_db: TOLERANCE_DB,
+            seed,
+        }
     }
 }
 
@@ -119,7 +127,8 @@ impl PrefilterRun {
     ) -> Result<PrefilterRun, PrefilterError> {
         let tolerance_db = options.tolerance_db;
         let outcome = band.closed(tolerance_db).copied().map(PrefilterOutcome::NoBand);
-        let structures = structures(&band, options.least_relative_degree, options.maximum_order);
+        let structures =
+            structures(&band, options.least_relative_degree, options.least_order..=options.maximum_order);
         let fits: Vec<PrefilterFit> = structures
             .into_iter()
             .map(|structure| PrefilterFit::new(&band, structure, timing, tolerance_db))

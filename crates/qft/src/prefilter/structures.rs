@@ -1,5 +1,7 @@
 //! Structures of prefilters, by growing order.
 
+use std::ops::RangeInclusive;
+
 use phea_dynamics::portable;
 
 use super::PrefilterBand;
@@ -12,7 +14,7 @@ const BEYOND: f64 = 10.0;
 /// The gain may differ by this much, dB, where tracking is not limited from below.
 const GAIN_RANGE_DB: f64 = 40.0;
 
-/// Every structure up to this order, the lowest order first and of these the fewest zeros first.
+/// Every structure of these orders, the lowest order first and of these the fewest zeros first.
 ///
 /// ```text
 /// F = k (zeros)/(poles),     poles and zeros in pairs, and one by itself where their number is odd
@@ -20,11 +22,10 @@ const GAIN_RANGE_DB: f64 = 40.0;
 pub(super) fn structures(
     band: &PrefilterBand,
     least_relative_degree: usize,
-    maximum_order: usize,
+    orders: RangeInclusive<usize>,
 ) -> Vec<Structure> {
     let [least, greatest] = band.relative_degree;
     let least = least.max(least_relative_degree.min(greatest));
-    let orders = 0..=maximum_order;
     let degrees = orders.flat_map(|order| (0..=order).map(move |zeros| (order, zeros)));
     let allowed = degrees.filter(|(order, zeros)| (least..=greatest).contains(&(order - zeros)));
     allowed.map(|(order, zeros)| structure(band, order, zeros)).collect()

@@ -79,12 +79,11 @@ fn prominent(mut all: Vec<Candidate>) -> Vec<Candidate> {
     let Some(&worst) = all.first() else { return all };
     let mut chosen = vec![worst];
     while chosen.len() < PLANTS_MAXIMUM {
-        let distance = |candidate: &Candidate, from: &Candidate| {
-            portable::magnitude(candidate.sensitivity - from.sensitivity)
-        };
+        let squared =
+            |candidate: &Candidate, from: &Candidate| (candidate.sensitivity - from.sensitivity).norm_sqr();
         let threat = |candidate: &Candidate| {
-            let nearest = chosen.iter().map(|from| distance(candidate, from)).fold(f64::INFINITY, f64::min);
-            DECIBELS_PER_NEPER * REACH * nearest - (candidate.margin_db - worst.margin_db)
+            let nearest = chosen.iter().map(|from| squared(candidate, from)).fold(f64::INFINITY, f64::min);
+            DECIBELS_PER_NEPER * REACH * nearest.sqrt() - (candidate.margin_db - worst.margin_db)
         };
         let threats = all.iter().map(|candidate| (threat(candidate), candidate));
         let next = threats.max_by(|one, other| one.0.total_cmp(&other.0));

@@ -1,7 +1,7 @@
 //! Differential evolution: a population that finds its way where no slopes are to be had.
 
 use super::Candidate;
-use crate::loop_shaping::search::SearchProblem;
+use crate::loop_shaping::search::{Aim, SearchProblem};
 use crate::random::share;
 
 /// Weight of the difference that is added, and probability that a coordinate takes part.
@@ -54,7 +54,7 @@ impl Evolution {
         let x = self.trial(problem.bounds(), random);
         let judgement = problem.judge(&x);
         let trial = Candidate { x, judgement };
-        if !self.population[self.member].is_better_than(&trial) {
+        if !self.population[self.member].is_better_than(&trial, Aim::WorstMargin) {
             self.population[self.member] = trial;
         }
         self.member += 1;
