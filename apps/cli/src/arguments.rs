@@ -2,6 +2,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::changes::Changes;
+
 /// Hydraulic force control through added compliance: size the hose, see the models, audit the controller, get the report.
 #[derive(Debug, Parser)]
 #[command(name = "phea", version, arg_required_else_help = true)]
@@ -35,12 +37,25 @@ pub(crate) enum Command {
     Linearize(Common),
     /// Audit the given controller and prefilter: every plant of the family, every specification, its whole band
     Verify(Common),
+    /// Shape the controller by hand: change its elements in the order given, see every margin at the design frequencies
+    Shape {
+        #[command(flatten)]
+        common: Common,
+        #[command(flatten)]
+        changes: Changes,
+        /// Change the prefilter instead of the controller
+        #[arg(long)]
+        prefilter: bool,
+        /// Write the project with the changed elements to this file; all else of it stays byte for byte
+        #[arg(long, value_name = "FILE")]
+        save: Option<PathBuf>,
+    },
     /// Everything above as one self-contained HTML page
     Report(Common),
 }
 
 /// What every command on a project takes.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(crate) struct Common {
     /// The project file
     pub(crate) project: PathBuf,

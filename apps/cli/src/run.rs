@@ -2,9 +2,10 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use phea_workbench::answer::Answer;
+use phea_workbench::answer::{Answer, OutputFile};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded, STARTER};
+use phea_workbench::shaping::Shaped;
 
 use crate::arguments::{Arguments, Command, Common};
 use crate::file_system::{FileSystem, write, write_starter};
@@ -28,6 +29,10 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }),
         Command::Linearize(common) => on_project(&common, &Request::Linearize),
         Command::Verify(common) => on_project(&common, &Request::Verify),
+        Command::Shape { common, changes, prefilter, save } => {
+            let shaped = if prefilter { Shaped::Prefilter } else { Shaped::Controller };
+            shape(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())
+        }
         Command::Report(common) => {
             let request = if common.out.is_some() { Request::Report } else { Request::Page };
             on_project(&common, &request)
@@ -64,7 +69,39 @@ fn new(folder: &Path) -> Result<u8, String> {
 }
 
 fn on_project(common: &Common, request: &Request) -> Result<u8, String> {
-    match answered(common, request) {
+    told(common, answered(common, request))
+}
+
+/// The changed project, the first of the files, is written where `--save` says and nowhere else.
+fn shape(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, String> {
+    let unwritten = Common { out: None, ..common.clone() };
+    let outcome = answered(&unwritten, request).and_then(|(answer, _)| {
+        let written = write_shaped(common.out.as_deref(), save, &answer).map_err(|message| Refused {
+            text: format!("error: {message}"),
+            json: command::failure_json(Some(request.name()), None, &message),
+        })?;
+        Ok((answer, written))
+    });
+    told(common, outcome)
+}
+
+fn write_shaped(out: Option<&Path>, save: Option<&Path>, answer: &Answer) -> Result<Vec<PathBuf>, String> {
+    let Some((project, others)) = answer.files.split_first() else { return Ok(vec![]) };
+    let mut written = Vec::new();
+    if let Some(path) = save {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        write(folder, &[OutputFile { name, ..project.clone() }])?;
+        written.push(path.to_path_buf());
+    }
+    if let Some(folder) = out {
+        written.extend(write(folder, others)?);
+    }
+    Ok(written)
+}
+
+fn told(common: &Common, outcome: Result<(Answer, Vec<PathBuf>), Refused>) -> Result<u8, String> {
+    match outcome {
         Ok((answer, _)) if common.json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
         Ok((answer, written)) => {
             say(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))

@@ -15,6 +15,7 @@ use crate::project::{Loaded, Report as Refusal, Severity, sha256};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
+use crate::shaping::{self, RequestedChange, Shaped, ShapingError, shape};
 use crate::sizing::{self, Question, size};
 use crate::source::Source;
 use crate::specification::{self, specifications, wishes};
@@ -35,6 +36,13 @@ pub enum Request {
     Linearize,
     /// The audit of the given controller.
     Verify,
+    /// Shaping by hand, elements changed in order.
+    Shape {
+        /// What is shaped.
+        shaped: Shaped,
+        /// The changes.
+        changes: Vec<RequestedChange>,
+    },
     /// The page with every figure as a file.
     Report,
     /// The page alone.
@@ -49,6 +57,7 @@ impl Request {
             Request::Size { .. } => "size",
             Request::Linearize => "linearize",
             Request::Verify => "verify",
+            Request::Shape { .. } => "shape",
             Request::Report | Request::Page => "report",
         }
     }
@@ -103,6 +112,9 @@ pub enum CommandError {
     /// Templates or bounds cannot be computed.
     #[error(transparent)]
     Robust(#[from] crate::robust::RobustError),
+    /// A controller cannot be shaped so.
+    #[error(transparent)]
+    Shaping(ShapingError),
     /// A plant that is no actuator, and nothing demanded of it.
     #[error(
         "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
@@ -119,6 +131,7 @@ impl CommandError {
         match self {
             CommandError::Catalogue(report) => Some(report),
             CommandError::Family(FamilyError::Measurement(report)) => Some(report),
+            CommandError::Shaping(ShapingError::Refused(report)) => Some(report),
             _ => None,
         }
     }
@@ -168,6 +181,11 @@ pub fn answer_watched(
         }
         Request::Linearize => linearize_answer(loaded),
         Request::Verify => verify_answer(source, loaded, watch),
+        Request::Shape { shaped, changes } => {
+            let shaping = shape(source, loaded, *shaped, changes, watch)?;
+            let (text, json) = (shaping::text(&shaping), shaping::json(loaded, &shaping));
+            Ok(Answer { text, json, files: shaping::files(loaded, &shaping), affirmative: true })
+        }
         Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
         Request::Page => {
             report_answer(source, loaded, catalogues, watch, |report| Ok(vec![report.page_file()]))

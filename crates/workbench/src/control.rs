@@ -1,13 +1,11 @@
 //! The controller and prefilter of a project as values of `phea_dynamics`, and the linear loop they close.
 
 use num_complex::Complex64;
-use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Timing};
+use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Stage, Timing};
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_qft::closed_loop::Compensation;
 
-use crate::project::{
-    self, ElementKind, Formula, FormulaError, Project, Rational, Transfer, TransferForm, Variable,
-};
+use crate::project::{self, ElementKind, Formula, FormulaError, Project, Rational, Transfer};
 
 /// Why a declared controller or prefilter is no transfer function.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,15 +49,7 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
     Ok(Some(Controller {
         feedback: compensator("[controller]", &declared.transfer, declared.sample_time)?,
         prefilter,
-        timing: Timing {
-            sample_time_s: declared.sample_time,
-            delay_s: declared.delay,
-            discretization: match declared.discretization {
-                project::Discretization::Tustin => Discretization::Tustin,
-                project::Discretization::ZeroOrderHold => Discretization::ZeroOrderHold,
-                project::Discretization::Matched => Discretization::Matched,
-            },
-        },
+        timing: timing(declared),
         command_limit: declared.saturation,
         anti_windup: match declared.anti_windup {
             project::AntiWindup::None => AntiWindup::None,
@@ -67,6 +57,19 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
             project::AntiWindup::Clamping => AntiWindup::Clamping,
         },
     }))
+}
+
+/// When a declared controller acts.
+pub(crate) fn timing(declared: &project::Controller) -> Timing {
+    Timing {
+        sample_time_s: declared.sample_time,
+        delay_s: declared.delay,
+        discretization: match declared.discretization {
+            project::Discretization::Tustin => Discretization::Tustin,
+            project::Discretization::ZeroOrderHold => Discretization::ZeroOrderHold,
+            project::Discretization::Matched => Discretization::Matched,
+        },
+    }
 }
 
 /// The loop around the plant that the given controller and prefilter make; `None` where the project gives no controller.
@@ -93,38 +96,16 @@ pub fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
     delayed.map_err(|error| ControlError::Linear { place, error })
 }
 
-fn compensator(
+/// The elements in series, those that do not act among them.
+pub(crate) fn compensator(
     place: &'static str,
     transfer: &Transfer,
     sample_time: Option<f64>,
 ) -> Result<Compensator, ControlError> {
-    let linear = |error| ControlError::Linear { place, error };
-    let elements = match transfer.form() {
-        None => vec![],
-        Some(TransferForm::Elements(elements)) => elements.iter().map(element).collect(),
-        Some(TransferForm::Polynomials { numerator, denominator }) => {
-            let function = from_formulas(numerator, denominator)
-                .map_err(|error| ControlError::Formula { place, error })?
-                .map_err(linear)?;
-            let sampled =
-                [numerator, denominator].iter().any(|formula| formula.variable() == Some(Variable::Z));
-            let function = match (sampled, sample_time) {
-                (false, _) => function,
-                (true, None) => return Err(ControlError::SampleTime { place }),
-                (true, Some(sample_time_s)) => {
-                    function.in_domain(TimeDomain::Discrete { sample_time_s }).map_err(linear)?
-                }
-            };
-            vec![Element::General(function)]
-        }
-        Some(TransferForm::Factors { gain, zeros, poles }) => {
-            let roots = |pairs: &[[f64; 2]]| pairs.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
-            vec![Element::General(
-                TransferFunction::from_factors(gain, roots(zeros), roots(poles)).map_err(linear)?,
-            )]
-        }
+    let stage = |declared: &project::Element| {
+        Ok(Stage { element: element(place, declared, sample_time)?, enabled: declared.enabled })
     };
-    Ok(Compensator::new(elements))
+    Ok(Compensator { stages: transfer.as_elements().iter().map(stage).collect::<Result<_, ControlError>>()? })
 }
 
 /// A ratio of two formulas without parameters.
@@ -140,11 +121,15 @@ pub(crate) fn from_formulas(
 }
 
 /// A validated element has every number its kind needs; a missing one is refused as not finite further on.
-fn element(declared: &project::Element) -> Element {
+pub(crate) fn element(
+    place: &'static str,
+    declared: &project::Element,
+    sample_time: Option<f64>,
+) -> Result<Element, ControlError> {
     let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let frequency = number(declared.frequency);
     let damping_ratio = number(declared.damping_ratio);
-    match declared.kind {
+    Ok(match declared.kind {
         ElementKind::Gain => Element::Gain(number(declared.value)),
         ElementKind::Integrator => Element::Integrator,
         ElementKind::Differentiator => Element::Differentiator,
@@ -152,7 +137,7 @@ fn element(declared: &project::Element) -> Element {
         ElementKind::Pole => Element::RealPole { frequency },
         ElementKind::ComplexZeros => Element::ComplexZeros { natural_frequency: frequency, damping_ratio },
         ElementKind::ComplexPoles => Element::ComplexPoles { natural_frequency: frequency, damping_ratio },
-        ElementKind::Lead => Element::LeadLag {
+        ElementKind::Lead | ElementKind::Lag => Element::LeadLag {
             zero_frequency: number(declared.zero_frequency),
             pole_frequency: number(declared.pole_frequency),
         },
@@ -161,5 +146,45 @@ fn element(declared: &project::Element) -> Element {
             zero_damping_ratio: number(declared.numerator_damping_ratio),
             pole_damping_ratio: damping_ratio,
         },
+        ElementKind::RollOff => Element::ComplexPoles {
+            natural_frequency: frequency,
+            damping_ratio: declared.damping_ratio.unwrap_or(std::f64::consts::FRAC_1_SQRT_2),
+        },
+        ElementKind::ProportionalIntegral => Element::ProportionalIntegral {
+            proportional_gain: number(declared.proportional_gain),
+            integral_gain: number(declared.integral_gain),
+        },
+        ElementKind::ProportionalIntegralDerivative => Element::ProportionalIntegralDerivative {
+            proportional_gain: number(declared.proportional_gain),
+            integral_gain: number(declared.integral_gain),
+            derivative_gain: number(declared.derivative_gain),
+            filter_time: number(declared.filter_time),
+        },
+        ElementKind::General => Element::General(general(place, declared, sample_time)?),
+    })
+}
+
+/// A ratio of polynomials, or factors.
+fn general(
+    place: &'static str,
+    declared: &project::Element,
+    sample_time: Option<f64>,
+) -> Result<TransferFunction, ControlError> {
+    let linear = |error| ControlError::Linear { place, error };
+    let (Some(numerator), Some(denominator)) = (&declared.numerator, &declared.denominator) else {
+        let roots = |pairs: &[[f64; 2]]| pairs.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
+        let gain = declared.gain.unwrap_or(f64::NAN);
+        return TransferFunction::from_factors(gain, roots(&declared.zeros), roots(&declared.poles))
+            .map_err(linear);
+    };
+    let function = from_formulas(numerator, denominator)
+        .map_err(|error| ControlError::Formula { place, error })?
+        .map_err(linear)?;
+    match (declared.is_sampled(), sample_time) {
+        (false, _) => Ok(function),
+        (true, None) => Err(ControlError::SampleTime { place }),
+        (true, Some(sample_time_s)) => {
+            function.in_domain(TimeDomain::Discrete { sample_time_s }).map_err(linear)
+        }
     }
 }

@@ -17,6 +17,7 @@ pub mod quantity;
 pub mod report;
 pub mod rig;
 pub mod robust;
+pub mod shaping;
 pub mod sizing;
 pub mod source;
 pub mod specification;

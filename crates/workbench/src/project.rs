@@ -59,7 +59,7 @@ pub use valve::*;
 pub(crate) use key::{key, plain};
 pub(crate) use reader::Reader;
 pub(crate) use text::{Findings, Found, Place};
-pub(crate) use tree::{Node, Value as TreeValue, read as read_tree};
+pub(crate) use tree::{Entry, Node, Value as TreeValue, read as read_tree, value_or_finding};
 pub(crate) use visitor::Visitor;
 
 use crate::quantity::RATIO;
@@ -130,6 +130,8 @@ pub struct Loaded {
     pub warnings: Vec<Diagnostic>,
     /// Name and content of every text a warning points into.
     pub texts: Vec<(String, String)>,
+    /// Where the file is, as it was given.
+    pub path: String,
     /// Of the file's bytes, in hexadecimal.
     pub sha256: String,
     /// The `path=value` texts that were applied, as given.

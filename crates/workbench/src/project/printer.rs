@@ -55,6 +55,11 @@ impl Printer {
         Printer { open: vec![Section::default()], named }
     }
 
+    /// What was written since the beginning as one inline table.
+    pub(crate) fn finish_inline(self) -> Option<String> {
+        self.open.first().and_then(Section::inline)
+    }
+
     /// The whole text.
     pub(crate) fn finish(self) -> String {
         let mut out = String::new();
@@ -163,6 +168,12 @@ impl Visitor for Printer {
 
     fn flag(&mut self, key: Key, field: &mut bool) {
         if *field {
+            self.line(key.name, field.to_string());
+        }
+    }
+
+    fn switch(&mut self, key: Key, field: &mut bool) {
+        if !*field {
             self.line(key.name, field.to_string());
         }
     }
