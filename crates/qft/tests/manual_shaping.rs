@@ -7,8 +7,18 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element, Stage, Timing};
 use phea_dynamics::linear::{Discretization, TransferFunction};
 use phea_dynamics::portable::{argument, magnitude};
+use phea_dynamics::uncertain_plant::{
+    PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
+};
+use phea_qft::bound::Placement;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::manual_shaping::{Edit, History, PassError, Pattern, WantedPoint, apply, pass_through};
+use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
+use phea_qft::manual_shaping::{
+    DesignChart, Edit, History, PassError, Pattern, WantedPoint, apply, pass_through,
+};
+use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::template::{TemplateOptions, template};
+use phea_qft::verification::TrackingJudgement;
 
 /// Shares in [0, 1) from a linear congruential generator (Knuth 1997, MMIX).
 struct Shares(u64);
@@ -199,6 +209,78 @@ fn what_an_element_cannot_do_is_said_in_words() {
         message(Pattern::Lag, Some(-12.0), Some(-160.0), held),
         "in a sampled loop an element is solved for with the discretization `tustin` alone"
     );
+}
+
+/// k/(s + a), k from 1 to 4 and a from 1 to 3.
+fn box_family() -> Family {
+    let range =
+        |name: &str, maximum| UncertainParameter { name: name.into(), nominal: 1.0, minimum: 1.0, maximum };
+    let plant = UncertainPlant::record(vec![range("k", 4.0), range("a", 3.0)], |p| PlantCoefficients {
+        command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), p[1]] },
+        disturbance: None,
+        dead_time_s: 0.0.into(),
+    })
+    .unwrap();
+    let along = |index| Coordinate {
+        parameters: vec![index],
+        opposed: vec![],
+        spacing: vec![Spacing::Linear],
+        points: 4,
+    };
+    let coordinates = vec![along(0), along(1)];
+    let members = grid(&plant, &coordinates).unwrap();
+    Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap())
+}
+
+fn loop_of(elements: Vec<Element>) -> Compensation {
+    let controller = Controller { feedback: Compensator::new(elements), ..Controller::default() };
+    Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap()
+}
+
+/// Two independent ways to judge a loop agree: a plant with a negative margin means a forbidden loop, and the loop that was raised or lowered
+/// as far as it has to be has none.
+#[test]
+fn what_a_margin_asks_for_brings_it_to_zero() {
+    let family = box_family();
+    let specification = |requirement| Specification {
+        requirement,
+        frequencies_rad_per_s: vec![2.0],
+        band_rad_per_s: [2.0, 2.0],
+    };
+    let specifications = [
+        specification(Requirement::RobustStability(Limit::Constant(1.2))),
+        specification(Requirement::Sensitivity(Limit::Constant(0.5))),
+        specification(Requirement::ControlEffort(Limit::Constant(3.0))),
+    ];
+    let built = template(&family, &loop_of(vec![]), 2.0, &TemplateOptions::default()).unwrap();
+    let chart = DesignChart::new(&family, vec![built.template], &specifications).unwrap();
+    let mut shares = Shares(3);
+    let (mut violated, mut moved) = (0, 0);
+    for _ in 0..300 {
+        let gain = Element::Gain(10_f64.powf(shares.between(-1.0, 1.5)));
+        let lag = Element::ComplexPoles {
+            natural_frequency: 10_f64.powf(shares.between(-0.5, 2.0)),
+            damping_ratio: shares.between(0.2, 1.5),
+        };
+        let elements = vec![gain, lag];
+        let margins = chart.margins(&loop_of(elements.clone()), TrackingJudgement::Spread);
+        assert_eq!(margins.len(), 3);
+        assert!(margins.windows(2).all(|pair| pair[0].margin_db <= pair[1].margin_db));
+        for margin in margins {
+            let Placement::Forbidden { nearest_db, .. } = margin.placement else {
+                assert!(margin.margin_db > -1e-9, "{margin:?}");
+                continue;
+            };
+            violated += usize::from(margin.margin_db < 0.0);
+            let Some(change) = nearest_db else { continue };
+            let scaled = [elements.clone(), vec![Element::Gain(10_f64.powf(change / 20.0))]].concat();
+            let again = chart.margins(&loop_of(scaled), TrackingJudgement::Spread);
+            let again = again.iter().find(|one| one.specification == margin.specification).unwrap();
+            assert!(again.margin_db > -1e-9, "{margin:?} {again:?}");
+            moved += 1;
+        }
+    }
+    assert!(violated > 100 && moved > 100, "{violated} {moved}");
 }
 
 fn random_edit(shares: &mut Shares, count: usize) -> Edit {

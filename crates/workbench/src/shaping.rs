@@ -110,11 +110,12 @@ pub fn shape(
         return Err(ShapingError::NoController.into());
     }
     let mut workpiece = Workpiece::new(&loaded.project, shaped)?;
-    let given = robust_problem(source, &loaded.project)?;
+    // without the elements, which may be none that can be sampled before they are changed
+    let bare = robust_problem(source, &workpiece::with_elements(&loaded.project, shaped, &[]))?;
     let mut history = History::new(workpiece.given().clone());
     for requested in changes {
         let mut findings = Findings::default();
-        let edit = change::edit(requested, &mut workpiece, history.present(), &given, &mut findings);
+        let edit = change::edit(requested, &mut workpiece, history.present(), &bare, &mut findings);
         let edit = edit?.ok_or_else(|| ShapingError::Refused(findings.clone().report()))?;
         if let Err(error) = history.edit(&edit) {
             return Err(ShapingError::Refused(change::refused(requested, &error)).into());
@@ -176,7 +177,7 @@ fn proceed(watch: Watch<'_>, stage: &'static str, share: f64) -> Result<(), Comm
 /// Where what is shaped lies at a frequency: the nominal loop L0, or the prefilter F. `None` where it is not known.
 fn present(
     workpiece: &Workpiece<'_>,
-    given: &RobustProblem,
+    bare: &RobustProblem,
     compensator: &Compensator,
     frequency_rad_per_s: f64,
 ) -> Result<Option<Complex64>, CommandError> {
@@ -184,6 +185,6 @@ fn present(
     if workpiece.shaped() == Shaped::Prefilter {
         return Ok(Some(own));
     }
-    let nominal = given.nominal()?.and_then(|member| member.response(frequency_rad_per_s));
+    let nominal = bare.nominal()?.and_then(|member| member.response(frequency_rad_per_s));
     Ok(nominal.map(|plant| plant.plant * plant.sensor * own))
 }

@@ -1,6 +1,6 @@
 //! Changes as they are asked for in text.
 
-use phea_dynamics::controller::{Compensator, Stage};
+use phea_dynamics::controller::{Compensator, Element as Solved, Stage};
 use phea_qft::manual_shaping::{Edit, EditError, Pattern, apply, pass_through};
 
 use super::piece::Piece;
@@ -8,7 +8,7 @@ use super::wish::{self, Wish};
 use super::workpiece::Workpiece;
 use super::{ShapingError, present};
 use crate::command::CommandError;
-use crate::project::{Element, Findings, Found, Report, value_or_finding};
+use crate::project::{Element, ElementKind, Findings, Found, Report, value_or_finding};
 use crate::robust::RobustProblem;
 
 /// What is changed.
@@ -74,7 +74,7 @@ pub(super) fn edit(
     requested: &RequestedChange,
     workpiece: &mut Workpiece<'_>,
     now: &Compensator,
-    given: &RobustProblem,
+    bare: &RobustProblem,
     findings: &mut Findings,
 ) -> Result<Option<Edit>, CommandError> {
     let whole = taken_in(requested, findings);
@@ -99,7 +99,7 @@ pub(super) fn edit(
             stage(&new, workpiece, findings)?.map(|stage| Edit::Replace(index, stage.element))
         }
         Change::Pass => match wish::read(&whole, findings) {
-            Some(wish) => pass(&whole, &wish, workpiece, now, given, findings)?,
+            Some(wish) => pass(&whole, &wish, workpiece, now, bare, findings)?,
             None => None,
         },
     })
@@ -123,9 +123,9 @@ fn taken_in<'a>(requested: &'a RequestedChange, findings: &mut Findings) -> Piec
 fn pass(
     whole: &Piece<'_>,
     wish: &Wish<'_>,
-    workpiece: &Workpiece<'_>,
+    workpiece: &mut Workpiece<'_>,
     now: &Compensator,
-    given: &RobustProblem,
+    bare: &RobustProblem,
     findings: &mut Findings,
 ) -> Result<Option<Edit>, CommandError> {
     let replaced = match &wish.replaced {
@@ -140,7 +140,7 @@ fn pass(
     }
     let without = replaced.and_then(|index| apply(now, &Edit::Remove(index)).ok());
     let base = without.as_ref().unwrap_or(now);
-    let Some(present) = present(workpiece, given, base, wish.point.frequency_rad_per_s)? else {
+    let Some(present) = present(workpiece, bare, base, wish.point.frequency_rad_per_s)? else {
         return Ok(whole.refuse(
             findings,
             "the nominal plant was not measured there",
@@ -154,9 +154,16 @@ fn pass(
             return Ok(None);
         }
     };
+    if let (Pattern::RollOff { damping_ratio }, Solved::ComplexPoles { natural_frequency, .. }) =
+        (wish.pattern, &element)
+    {
+        let (frequency, damping_ratio) = (Some(*natural_frequency), Some(damping_ratio));
+        let kind = ElementKind::RollOff;
+        workpiece.know(Element { kind, frequency, damping_ratio, ..Element::default() })?;
+    }
     Ok(Some(match (replaced, wish.pattern, element) {
         (Some(index), _, element) => Edit::Replace(index, element),
-        (None, Pattern::Gain, phea_dynamics::controller::Element::Gain(factor)) => Edit::ScaleGain(factor),
+        (None, Pattern::Gain, Solved::Gain(factor)) => Edit::ScaleGain(factor),
         (None, _, element) => Edit::Add { at: now.stages.len(), stage: Stage { element, enabled: true } },
     }))
 }

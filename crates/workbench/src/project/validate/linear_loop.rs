@@ -43,7 +43,9 @@ pub(super) fn sensor(project: &Project, check: &mut Check<'_, '_>) {
 }
 
 fn is_discrete(transfer: &Transfer) -> bool {
-    transfer.as_elements().iter().any(|element| element.enabled && element.is_sampled())
+    let sampled = |formula: &Formula| formula.variable() == Some(Variable::Z);
+    [&transfer.numerator, &transfer.denominator].into_iter().flatten().any(sampled)
+        || transfer.elements.iter().any(|element| element.enabled && element.is_sampled())
 }
 
 fn transfer(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
@@ -67,7 +69,7 @@ fn transfer(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &m
         check.warning(path, message);
     }
     let sampled = is_discrete(transfer);
-    for (index, element) in transfer.elements.iter().enumerate() {
+    for (index, element) in transfer.elements.iter().enumerate().take(MAXIMUM_ORDER) {
         let path = format!("{path}.elements[{index}]");
         one_element(element, &path, sample_time, check);
         if sampled && element.enabled && element.kind != ElementKind::Gain && !element.is_sampled() {
