@@ -4,7 +4,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::changes::Changes;
 
-/// Hydraulic force control through added compliance: size the hose, see the models, audit the controller, get the report.
+/// Hydraulic force control through added compliance: size the hose, see the models, audit, shape or design the controller, get the report.
 #[derive(Debug, Parser)]
 #[command(name = "phea", version, arg_required_else_help = true)]
 #[command(after_help = "Exit status: 0 done, 1 the answer is no or not proven, 2 the input is wrong.")]
@@ -50,12 +50,23 @@ pub(crate) enum Command {
         #[arg(long, value_name = "FILE")]
         save: Option<PathBuf>,
     },
+    /// Find a controller and prefilter that keep to every specification, for every plant; Ctrl-C gives the best so far
+    Design {
+        #[command(flatten)]
+        common: Common,
+        /// Seed of the random starting points, in place of the project's
+        #[arg(long, value_name = "N")]
+        seed: Option<u32>,
+        /// Write the project with the designed controller and prefilter in it to this file
+        #[arg(long, value_name = "FILE")]
+        save: Option<PathBuf>,
+    },
     /// Everything above as one self-contained HTML page
     Report(Common),
 }
 
 /// What every command on a project takes.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Debug)]
 pub(crate) struct Common {
     /// The project file
     pub(crate) project: PathBuf,

@@ -3,6 +3,7 @@
 mod arguments;
 mod changes;
 mod file_system;
+mod interruption;
 mod run;
 mod voice;
 

@@ -2,13 +2,15 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use phea_workbench::answer::{Answer, OutputFile};
+use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, Request};
+use phea_workbench::design::DESIGNED_PROJECT;
 use phea_workbench::project::{self, Loaded, STARTER};
-use phea_workbench::shaping::Shaped;
+use phea_workbench::shaping::{SHAPED_PROJECT, Shaped};
 
 use crate::arguments::{Arguments, Command, Common};
-use crate::file_system::{FileSystem, write, write_starter};
+use crate::file_system::{FileSystem, write, write_as, write_starter};
+use crate::interruption::Interruption;
 use crate::voice::{ProgressLine, complain, say};
 
 /// The answer is yes, no, or the input is wrong.
@@ -31,7 +33,11 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Verify(common) => on_project(&common, &Request::Verify),
         Command::Shape { common, changes, prefilter, save } => {
             let shaped = if prefilter { Shaped::Prefilter } else { Shaped::Controller };
-            shape(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())
+            on_project_saving(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())
+        }
+        Command::Design { common, seed, save } => {
+            let request = Request::Design { seed, stages: common.out.is_some() };
+            on_project_saving(&common, &request, save.as_deref())
         }
         Command::Report(common) => {
             let request = if common.out.is_some() { Request::Report } else { Request::Page };
@@ -69,39 +75,12 @@ fn new(folder: &Path) -> Result<u8, String> {
 }
 
 fn on_project(common: &Common, request: &Request) -> Result<u8, String> {
-    told(common, answered(common, request))
+    on_project_saving(common, request, None)
 }
 
-/// The changed project, the first of the files, is written where `--save` says and nowhere else.
-fn shape(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, String> {
-    let unwritten = Common { out: None, ..common.clone() };
-    let outcome = answered(&unwritten, request).and_then(|(answer, _)| {
-        let written = write_shaped(common.out.as_deref(), save, &answer).map_err(|message| Refused {
-            text: format!("error: {message}"),
-            json: command::failure_json(Some(request.name()), None, &message),
-        })?;
-        Ok((answer, written))
-    });
-    told(common, outcome)
-}
-
-fn write_shaped(out: Option<&Path>, save: Option<&Path>, answer: &Answer) -> Result<Vec<PathBuf>, String> {
-    let Some((project, others)) = answer.files.split_first() else { return Ok(vec![]) };
-    let mut written = Vec::new();
-    if let Some(path) = save {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        write(folder, &[OutputFile { name, ..project.clone() }])?;
-        written.push(path.to_path_buf());
-    }
-    if let Some(folder) = out {
-        written.extend(write(folder, others)?);
-    }
-    Ok(written)
-}
-
-fn told(common: &Common, outcome: Result<(Answer, Vec<PathBuf>), Refused>) -> Result<u8, String> {
-    match outcome {
+/// The same, the designed or shaped project written to a file of its own.
+fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, String> {
+    match answered(common, request, save) {
         Ok((answer, _)) if common.json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
         Ok((answer, written)) => {
             say(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
@@ -120,7 +99,11 @@ fn status(answer: &Answer) -> u8 {
 }
 
 /// The answer, and the files that were written.
-fn answered(common: &Common, request: &Request) -> Result<(Answer, Vec<PathBuf>), Refused> {
+fn answered(
+    common: &Common,
+    request: &Request,
+    save: Option<&Path>,
+) -> Result<(Answer, Vec<PathBuf>), Refused> {
     let path = common.project.to_string_lossy();
     let loaded =
         project::read(&FileSystem, &path, &common.settings, &common.catalogues).map_err(|report| {
@@ -133,9 +116,12 @@ fn answered(common: &Common, request: &Request) -> Result<(Answer, Vec<PathBuf>)
         complain(&project::render(&loaded.warnings, &loaded.texts, styled()));
     }
     let mut line = ProgressLine::default();
+    // what ends in a best result so far is asked to stop; everything else has nothing to save
+    let interruption = matches!(request, Request::Design { .. }).then(Interruption::listen);
     let answer =
         command::answer_watched(&FileSystem, &loaded, &common.catalogues, request, &mut |progress| {
-            line.show(progress)
+            line.show(progress);
+            !interruption.as_ref().is_some_and(Interruption::is_asked)
         });
     line.clear();
     let answer = answer.map_err(|error| Refused {
@@ -145,8 +131,13 @@ fn answered(common: &Common, request: &Request) -> Result<(Answer, Vec<PathBuf>)
             None => format!("error: {error}"),
         },
     })?;
-    let written =
-        write_files(common, request, &answer).map_err(|message| failed(request, &loaded, &message))?;
+    let explain = |message: String| failed(request, &loaded, &message);
+    let mut written = write_files(common, request, &answer).map_err(explain)?;
+    let project =
+        answer.files.iter().find(|file| [DESIGNED_PROJECT, SHAPED_PROJECT].contains(&file.name.as_str()));
+    if let (Some(path), Some(project)) = (save, project) {
+        written.insert(0, write_as(path, project).map_err(explain)?);
+    }
     Ok((answer, written))
 }
 

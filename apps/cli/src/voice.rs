@@ -38,9 +38,8 @@ impl Default for ProgressLine {
 }
 
 impl ProgressLine {
-    /// Shows how far it is, not too often; always answers that it shall go on (Ctrl-C ends the command before anything
-    /// is written).
-    pub(crate) fn show(&mut self, progress: Progress) -> bool {
+    /// Shows how far it is, not too often.
+    pub(crate) fn show(&mut self, progress: Progress) {
         let now = Instant::now();
         if self.next.is_some_and(|next| now >= next) {
             self.next = Some(now + PATIENCE);
@@ -48,7 +47,6 @@ impl ProgressLine {
             let percent = (100.0 * progress.share).clamp(0.0, 100.0);
             let _ = write!(io::stderr().lock(), "\r{}: {percent:.0} %\x1b[K", progress.stage);
         }
-        true
     }
 
     /// Takes the line away.

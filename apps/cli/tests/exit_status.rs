@@ -21,7 +21,9 @@ fn folder(name: &str) -> PathBuf {
     );
     let measured = "schema = 1\n[family]\nmeasured = [\"drive.csv\", \"absent.csv\"]\n";
     let rows = "frequency_hz,magnitude_db,phase_deg\n1,0,0\n2,loud,0\n3,0,0,0\n";
-    let files: [(&str, &[u8]); 9] = [
+    let timed = closed.replace("numerator = \"1\"\ndenominator = \"s\"\n[[", "sample_time = \"1 ms\"\n[[");
+    let files: [(&str, &[u8]); 10] = [
+        ("timed.toml", timed.as_bytes()),
         ("measured.toml", measured.as_bytes()),
         ("drive.csv", rows.as_bytes()),
         ("hose.toml", text.as_bytes()),
@@ -65,6 +67,11 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["shape", "loop.toml", "--move", "-1=1"], 2),
     (&["shape", "loop.toml", "--pass", "pole through +20 deg at 1"], 2),
     (&["shape", "loop.toml", "--save", "empty.toml/shaped.toml"], 2),
+    (&["check", "timed.toml"], 0),
+    (&["verify", "timed.toml"], 2),
+    (&["design", "plant.toml"], 2),
+    (&["design", "loop.toml", "--seed", "-1"], 2),
+    (&["design", "loop.toml", "--set", "design.seeed=2"], 2),
     (&["size", "hose.toml", "--gain", "0.0005 V/N"], 1),
     (&["size", "hose.toml", "--length", "200 cm"], 1),
     (&["size", "hose.toml", "--set", "sizing.oil_velocity=[0.1, 0.2]"], 1),
@@ -173,7 +180,7 @@ fn shape_writes_what_was_asked_for_and_nothing_else() {
     assert_eq!(phea(&folder, &["shape", "loop.toml", "--add", pole]).status.code(), Some(0));
     assert_eq!((text("loop.toml"), files(".")), (before, there));
     assert_eq!(phea(&folder, &["shape", "loop.toml", "--out", "out"]).status.code(), Some(0));
-    assert_eq!(files("out"), ["margins.csv"]);
+    assert_eq!(files("out"), ["margins.csv", "shaped.toml"]);
     let here = ["shape", "loop.toml", "--add", pole, "--save", "loop.toml"];
     assert_eq!(phea(&folder, &here).status.code(), Some(0));
     assert!(

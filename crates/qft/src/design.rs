@@ -1,9 +1,17 @@
 //! The design of a controller and its prefilter: search, audit, and a new constraint for every counterexample, until both agree.
 
+mod attempt;
+mod binding;
+mod candidates;
+mod counterexample;
+mod diagnosis;
 mod problem;
+pub mod quantisation;
 mod result;
 mod run;
 
+pub use attempt::DesignError;
+pub use diagnosis::{Constraint, Finding, Party, Place, Severity, SharedLimit, diagnose};
 pub use problem::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
 pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation};
 pub use run::DesignRun;

@@ -6,15 +6,20 @@
 //!
 //! All free numbers are natural logarithms, so that every search direction is a change by factors.
 
+mod descent;
 mod margins;
 mod sample_stability;
 mod samples;
 mod search;
 mod shaping;
+mod start;
 mod structure;
+mod subproblem;
 
+pub use descent::{Binding, Descent, DescentOptions, DescentStatus, Work};
 pub use sample_stability::{SampleJudgement, SampleStability};
 pub use samples::{Samples, SamplesError, search_frequencies};
 pub use search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
 pub use shaping::{SampledMargin, Shaping};
+pub use start::{End, Search, SearchOptions, SearchResult, SearchStatus};
 pub use structure::{Part, Structure, StructureResponse};

@@ -12,11 +12,18 @@
 mod band;
 mod ends;
 mod extremes;
+mod fit;
 mod margin;
+mod run;
+mod structures;
 
 pub use band::{PrefilterBand, PrefilterBandPoint};
 pub use extremes::{TrackingExtremes, tracking_extremes};
+pub use fit::PrefilterFit;
 pub use margin::{BandEdge, PrefilterMargin};
+pub use run::{FittedPrefilter, PrefilterOptions, PrefilterOutcome, PrefilterRun};
+
+use phea_dynamics::linear::LinearError;
 
 /// Why there is no band for a prefilter, or no search in it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -38,4 +45,7 @@ pub enum PrefilterError {
         /// rad/s
         frequency_rad_per_s: f64,
     },
+    /// A prefilter that cannot be sampled as the loop is.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
 }

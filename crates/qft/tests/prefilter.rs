@@ -5,5 +5,7 @@
 
 #[path = "prefilter/band.rs"]
 mod band;
+#[path = "prefilter/fitted.rs"]
+mod fitted;
 #[path = "prefilter/loops.rs"]
 mod loops;

@@ -6,6 +6,7 @@ mod plant;
 mod text;
 mod words;
 
+pub(crate) use answer::{Body, body};
 pub use answer::{files, json};
 pub use plant::{NamedPlant, PlantNames};
 pub use text::text;
@@ -32,6 +33,11 @@ pub enum AuditError {
     /// There is no controller.
     #[error("the project gives no [controller] to be verified")]
     NoController,
+    /// There is a controller without a law.
+    #[error(
+        "[controller] says only when it acts, and leaves its law to be designed: `phea design` does that"
+    )]
+    NoLaw,
     /// There is nothing that it must keep to.
     #[error("the project states no [[specification]] to verify the controller by")]
     NoSpecification,
@@ -47,28 +53,26 @@ pub fn audit_project(
     project: &Project,
     watch: Watch<'_>,
 ) -> Result<ProjectAudit, CommandError> {
-    if project.controller.is_none() {
-        return Err(AuditError::NoController.into());
+    match &project.controller {
+        None => return Err(AuditError::NoController.into()),
+        Some(controller) if !controller.has_law() => return Err(AuditError::NoLaw.into()),
+        Some(_) => {}
     }
     if project.specifications.is_empty() {
         return Err(AuditError::NoSpecification.into());
     }
-    audit_problem(project, &robust_problem(source, project)?, watch)
+    audit_problem(&robust_problem(source, project)?, watch)
 }
 
 /// The same of a robust problem that is at hand already.
 ///
 /// # Errors
 /// [`CommandError::Stopped`] where the watcher stops it.
-pub(crate) fn audit_problem(
-    project: &Project,
-    problem: &RobustProblem,
-    watch: Watch<'_>,
-) -> Result<ProjectAudit, CommandError> {
+pub(crate) fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, CommandError> {
     let RobustProblem { family, compensation, specifications, .. } = problem;
-    let tracking = match project.prefilter {
-        Some(_) => TrackingJudgement::Magnitude,
-        None => TrackingJudgement::Spread,
+    let tracking = match problem.has_prefilter {
+        true => TrackingJudgement::Magnitude,
+        false => TrackingJudgement::Spread,
     };
     let mut run = AuditRun::new(family, compensation, specifications, tracking, TOLERANCE_DB);
     while run.step() {
@@ -76,19 +80,7 @@ pub(crate) fn audit_problem(
             return Err(CommandError::Stopped);
         }
     }
-    let audit = run.audit();
-    Ok(ProjectAudit {
-        reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
-        audit,
-        names: names(family),
-        members: match family {
-            Family::Uncertain(family) => family.members().len(),
-            Family::Measured(family) => family.plants().len(),
-        },
-        whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
-        sample_time_s: compensation.sample_time_s(),
-        delay_s: compensation.delay_s(),
-    })
+    Ok(ProjectAudit::new(problem, run.audit()))
 }
 
 /// What the plants of a family are called.
@@ -176,6 +168,23 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
 }
 
 impl ProjectAudit {
+    /// An audit of the loop of this problem.
+    pub(crate) fn new(problem: &RobustProblem, audit: Audit) -> ProjectAudit {
+        let RobustProblem { family, compensation, .. } = problem;
+        ProjectAudit {
+            reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
+            audit,
+            names: names(family),
+            members: match family {
+                Family::Uncertain(family) => family.members().len(),
+                Family::Measured(family) => family.plants().len(),
+            },
+            whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
+            sample_time_s: compensation.sample_time_s(),
+            delay_s: compensation.delay_s(),
+        }
+    }
+
     fn family_sentence(&self) -> String {
         match &self.names {
             PlantNames::Measured(names) => format!("Family: {}.", counted(names.len(), "measured response")),

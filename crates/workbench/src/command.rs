@@ -8,6 +8,7 @@ use crate::answer::{self, Answer, OutputFile};
 use crate::audit::{self, AuditError, audit_project};
 use crate::control::{ControlError, controller, sensor};
 use crate::derived::{self, derive};
+use crate::design::{self, DesignError, design_project};
 use crate::family::{FamilyError, family};
 use crate::figure::FigureError;
 use crate::linearize::{self, linearize};
@@ -43,6 +44,13 @@ pub enum Request {
         /// The changes.
         changes: Vec<RequestedChange>,
     },
+    /// A controller that keeps to the specifications.
+    Design {
+        /// In place of the project's.
+        seed: Option<u32>,
+        /// Whether every stage is wanted as files, and not the designed project alone.
+        stages: bool,
+    },
     /// The page with every figure as a file.
     Report,
     /// The page alone.
@@ -58,6 +66,7 @@ impl Request {
             Request::Linearize => "linearize",
             Request::Verify => "verify",
             Request::Shape { .. } => "shape",
+            Request::Design { .. } => "design",
             Request::Report | Request::Page => "report",
         }
     }
@@ -103,6 +112,9 @@ pub enum CommandError {
     /// There is nothing that could be audited.
     #[error(transparent)]
     Audit(#[from] AuditError),
+    /// There is nothing to design for, or nothing was found.
+    #[error(transparent)]
+    Design(#[from] DesignError),
     /// There is no family of plants.
     #[error(transparent)]
     Family(#[from] FamilyError),
@@ -184,8 +196,9 @@ pub fn answer_watched(
         Request::Shape { shaped, changes } => {
             let shaping = shape(source, loaded, *shaped, changes, watch)?;
             let (text, json) = (shaping::text(&shaping), shaping::json(loaded, &shaping));
-            Ok(Answer { text, json, files: shaping::files(loaded, &shaping), affirmative: true })
+            Ok(Answer { text, json, files: shaping::files(&shaping), affirmative: true })
         }
+        Request::Design { seed, stages } => design_answer(source, loaded, *seed, *stages, watch),
         Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
         Request::Page => {
             report_answer(source, loaded, catalogues, watch, |report| Ok(vec![report.page_file()]))
@@ -284,6 +297,22 @@ fn verify_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Resu
         json: audit::json(loaded, &view),
         files: audit::files(&view),
         affirmative: view.audit.verdict == Verdict::Met,
+    })
+}
+
+fn design_answer(
+    source: &dyn Source,
+    loaded: &Loaded,
+    seed: Option<u32>,
+    stages: bool,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
+    let view = design_project(source, loaded, seed, watch)?;
+    Ok(Answer {
+        text: design::text(loaded, &view)?,
+        json: design::json(loaded, &view)?,
+        files: if stages { design::stage_files(loaded, &view, watch)? } else { design::files(loaded, &view) },
+        affirmative: view.is_met(),
     })
 }
 

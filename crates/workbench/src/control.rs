@@ -4,6 +4,9 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Stage, Timing};
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_qft::closed_loop::Compensation;
+use phea_qft::design::quantisation::{
+    CoefficientFormat, Converter, Quantisation, QuantisationError, rounded,
+};
 
 use crate::project::{self, ElementKind, Formula, FormulaError, Project, Rational, Transfer};
 
@@ -26,6 +29,9 @@ pub enum ControlError {
         /// What is wrong with it.
         error: LinearError,
     },
+    /// What is rounded cannot be.
+    #[error("[controller.quantization]: {0}")]
+    Quantisation(#[from] QuantisationError),
     /// A text in z without a sample time.
     #[error("{place}: a transfer function in z needs `sample_time`")]
     SampleTime {
@@ -34,22 +40,18 @@ pub enum ControlError {
     },
 }
 
-/// The given controller with its prefilter; `None` where the project gives no controller.
+/// The given controller with its prefilter; `None` where the project gives no law for one.
 ///
 /// # Errors
 /// [`ControlError`] if one of them is no transfer function.
 pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError> {
-    let Some(declared) = &project.controller else { return Ok(None) };
-    let prefilter = match &project.prefilter {
-        Some(prefilter) => {
-            compensator("[prefilter]", &prefilter.transfer, prefilter.sample_time.or(declared.sample_time))?
-        }
-        None => Compensator::default(),
+    let Some(declared) = project.controller.as_ref().filter(|controller| controller.has_law()) else {
+        return Ok(None);
     };
     Ok(Some(Controller {
         feedback: compensator("[controller]", &declared.transfer, declared.sample_time)?,
-        prefilter,
-        timing: timing(declared),
+        prefilter: prefilter(project)?.unwrap_or_default(),
+        timing: timing(project),
         command_limit: declared.saturation,
         anti_windup: match declared.anti_windup {
             project::AntiWindup::None => AntiWindup::None,
@@ -59,8 +61,19 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
     }))
 }
 
-/// When a declared controller acts.
-pub(crate) fn timing(declared: &project::Controller) -> Timing {
+/// The given prefilter; `None` where the project gives none.
+///
+/// # Errors
+/// [`ControlError`] if it is no transfer function.
+pub fn prefilter(project: &Project) -> Result<Option<Compensator>, ControlError> {
+    let Some(declared) = &project.prefilter else { return Ok(None) };
+    let sample_time = declared.sample_time.or(timing(project).sample_time_s);
+    compensator("[prefilter]", &declared.transfer, sample_time).map(Some)
+}
+
+/// When the controller acts, be its law given or to be designed; continuous and without delay where the project says nothing.
+pub fn timing(project: &Project) -> Timing {
+    let Some(declared) = &project.controller else { return Timing::default() };
     Timing {
         sample_time_s: declared.sample_time,
         delay_s: declared.delay,
@@ -72,12 +85,44 @@ pub(crate) fn timing(declared: &project::Controller) -> Timing {
     }
 }
 
-/// The loop around the plant that the given controller and prefilter make; `None` where the project gives no controller.
+/// What the computer of the controller rounds: nothing where the project does not say.
+///
+/// # Errors
+/// [`ControlError::Quantisation`] for a converter that is none.
+pub fn quantisation(project: &Project) -> Result<Quantisation, ControlError> {
+    let declared = project.controller.as_ref().and_then(|controller| controller.quantization.clone());
+    let Some(declared) = declared else { return Ok(Quantisation::default()) };
+    let converter = |bits: u32, range: Option<[f64; 2]>| {
+        range.filter(|_| bits > 0).map(|range| Converter::new(bits, range)).transpose()
+    };
+    Ok(Quantisation {
+        command: converter(declared.command_bits, declared.command_range)?,
+        measurement: converter(declared.measurement_bits, declared.measurement_range)?,
+        coefficients: match declared.coefficients {
+            project::Coefficients::Double => CoefficientFormat::Double,
+            project::Coefficients::Single => CoefficientFormat::Single,
+        },
+    })
+}
+
+/// A controller as the project's computer runs it: in z with rounded coefficients, or as it is where nothing is rounded.
+///
+/// # Errors
+/// [`ControlError::Quantisation`] for coefficients that cannot be kept.
+pub fn deployed(project: &Project, controller: &Controller) -> Result<Controller, ControlError> {
+    match quantisation(project)?.coefficients {
+        CoefficientFormat::Double => Ok(controller.clone()),
+        format => Ok(rounded(controller, format)?.controller),
+    }
+}
+
+/// The loop around the plant that the given controller and prefilter make; `None` where the project gives no law.
 ///
 /// # Errors
 /// [`ControlError`] if one of them is no transfer function, or cannot be sampled.
 pub fn compensation(project: &Project) -> Result<Option<Compensation>, ControlError> {
     let Some(controller) = controller(project)? else { return Ok(None) };
+    let controller = deployed(project, &controller)?;
     let linear = |error| ControlError::Linear { place: "[controller]", error };
     Compensation::new(&controller, sensor(project)?).map(Some).map_err(linear)
 }
@@ -171,15 +216,17 @@ fn general(
     sample_time: Option<f64>,
 ) -> Result<TransferFunction, ControlError> {
     let linear = |error| ControlError::Linear { place, error };
-    let (Some(numerator), Some(denominator)) = (&declared.numerator, &declared.denominator) else {
-        let roots = |pairs: &[[f64; 2]]| pairs.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
-        let gain = declared.gain.unwrap_or(f64::NAN);
-        return TransferFunction::from_factors(gain, roots(&declared.zeros), roots(&declared.poles))
-            .map_err(linear);
+    let function = match (&declared.numerator, &declared.denominator) {
+        (Some(numerator), Some(denominator)) => from_formulas(numerator, denominator)
+            .map_err(|error| ControlError::Formula { place, error })?
+            .map_err(linear)?,
+        _ => {
+            let roots = |pairs: &[[f64; 2]]| pairs.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
+            let gain = declared.gain.unwrap_or(f64::NAN);
+            TransferFunction::from_factors(gain, roots(&declared.zeros), roots(&declared.poles))
+                .map_err(linear)?
+        }
     };
-    let function = from_formulas(numerator, denominator)
-        .map_err(|error| ControlError::Formula { place, error })?
-        .map_err(linear)?;
     match (declared.is_sampled(), sample_time) {
         (false, _) => Ok(function),
         (true, None) => Err(ControlError::SampleTime { place }),

@@ -8,6 +8,7 @@ pub mod catalogue;
 pub mod command;
 pub mod control;
 pub mod derived;
+pub mod design;
 pub mod family;
 pub mod figure;
 pub mod linear_loop;

@@ -5,6 +5,7 @@
 mod campaign;
 mod controller;
 mod cylinder;
+mod design;
 mod diagnostic;
 mod environment;
 mod family;
@@ -20,6 +21,7 @@ mod plant;
 mod printer;
 mod read;
 mod reader;
+mod rewrite;
 mod scenario;
 mod sensor;
 mod setting;
@@ -35,6 +37,7 @@ mod visitor;
 pub use campaign::*;
 pub use controller::*;
 pub use cylinder::*;
+pub use design::*;
 pub use diagnostic::*;
 pub use environment::*;
 pub use family::*;
@@ -58,6 +61,7 @@ pub use valve::*;
 
 pub(crate) use key::{key, plain};
 pub(crate) use reader::Reader;
+pub(crate) use rewrite::{snippet, with_law, with_laws};
 pub(crate) use text::{Findings, Found, Place};
 pub(crate) use tree::{Entry, Node, Value as TreeValue, read as read_tree, value_or_finding};
 pub(crate) use visitor::Visitor;
@@ -89,10 +93,12 @@ pub struct Project {
     pub uncertainty: Vec<Uncertain>,
     /// What the closed loop must meet, in file order.
     pub specifications: Vec<Specification>,
-    /// Given, to be verified; absent, to be designed.
+    /// Given, to be verified; absent or without a law, to be designed.
     pub controller: Option<Controller>,
     /// Given, to be verified; absent, to be designed.
     pub prefilter: Option<Prefilter>,
+    /// How a controller is looked for; absent: by the defaults.
+    pub design: Option<Design>,
     /// What is simulated.
     pub scenarios: Vec<Scenario>,
     /// What a Monte Carlo campaign varies.
@@ -132,6 +138,8 @@ pub struct Loaded {
     pub texts: Vec<(String, String)>,
     /// Where the file is, as it was given.
     pub path: String,
+    /// The file's bytes.
+    pub bytes: Vec<u8>,
     /// Of the file's bytes, in hexadecimal.
     pub sha256: String,
     /// The `path=value` texts that were applied, as given.
@@ -206,6 +214,7 @@ impl Project {
         v.table(k, &mut self.controller, Controller::visit);
         let k = plain("prefilter", "Given, to be verified; absent, to be designed.");
         v.table(k, &mut self.prefilter, Prefilter::visit);
+        v.table(plain("design", "How a controller is looked for."), &mut self.design, Design::visit);
         v.tables(plain("scenario", "What is simulated."), &mut self.scenarios, Scenario::visit);
         v.table(plain("campaign", "What a campaign varies."), &mut self.campaign, Campaign::visit);
     }

@@ -20,6 +20,7 @@ mod typeset;
 
 use maud::{Markup, html};
 
+pub(crate) use bounds::files as bound_files;
 pub use chapter::Chapter;
 pub use typeset::{prose, typeset};
 
@@ -80,9 +81,9 @@ pub fn report(
     if !project.specifications.is_empty() {
         let robust = robust_problem(source, project)?;
         chapters.push(specifications::chapter(project, &robust.specifications)?);
-        let view = match project.controller {
-            Some(_) => Some(audit_problem(project, &robust, watch)?),
-            None => None,
+        let view = match robust.has_controller {
+            true => Some(audit_problem(&robust, watch)?),
+            false => None,
         };
         let found = robust.at_design_frequencies(watch)?;
         chapters.push(bounds::chapter(&robust, &found, view.as_ref())?);

@@ -14,7 +14,7 @@ use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Template
 use phea_qft::verification::PlantPoint;
 
 use crate::command::{CommandError, Progress, Watch};
-use crate::control::{compensation, sensor};
+use crate::control::{compensation, prefilter, sensor, timing};
 use crate::family::family;
 use crate::project::Project;
 use crate::source::Source;
@@ -81,7 +81,11 @@ pub fn robust_problem(source: &dyn Source, project: &Project) -> Result<RobustPr
     let has_controller = given.is_some();
     let compensation = match given {
         Some(given) => given,
-        None => Compensation::new(&Controller::default(), sensor(project)?)?,
+        None => {
+            let prefilter = prefilter(project)?.unwrap_or_default();
+            let open = Controller { prefilter, timing: timing(project), ..Controller::default() };
+            Compensation::new(&open, sensor(project)?)?
+        }
     };
     Ok(RobustProblem {
         family: family(project, source)?,
@@ -155,6 +159,22 @@ impl RobustProblem {
             }
             Family::Measured(family) => {
                 Ok(family.plants().first().map(|plant| self.compensation.measured(plant)))
+            }
+        }
+    }
+
+    /// Every member within the loop.
+    ///
+    /// # Errors
+    /// [`LinearError`] where one cannot be sampled.
+    pub fn members(&self) -> Result<Vec<Member>, LinearError> {
+        match &self.family {
+            Family::Uncertain(family) => {
+                let plants = family.members().iter().map(|values| family.plant().coefficients(values));
+                plants.map(|plant| self.compensation.member(plant)).collect()
+            }
+            Family::Measured(family) => {
+                Ok(family.plants().iter().map(|plant| self.compensation.measured(plant)).collect())
             }
         }
     }

@@ -9,7 +9,7 @@ mod text;
 mod wish;
 mod workpiece;
 
-pub use answer::{files, json};
+pub use answer::{SHAPED_PROJECT, files, json};
 pub use change::{Change, RequestedChange};
 pub use text::text;
 
@@ -22,7 +22,7 @@ use phea_qft::verification::{StabilityFinding, TrackingJudgement};
 
 use crate::audit::{PlantNames, names};
 use crate::command::{CommandError, Progress, Watch};
-use crate::project::{Element, Findings, Loaded, Report};
+use crate::project::{self, Element, Findings, Loaded, Report};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
 use crate::source::Source;
 use workpiece::Workpiece;
@@ -62,7 +62,7 @@ pub enum ShapingError {
         /// `controller` or `prefilter`.
         table: &'static str,
     },
-    /// A file whose text has changed since, or that does not read back as what was to be written.
+    /// A file that would not read back as what was to be written.
     #[error("the project file cannot be rewritten: {reason}")]
     NotWritten {
         /// Why.
@@ -106,7 +106,8 @@ pub fn shape(
     changes: &[RequestedChange],
     watch: Watch<'_>,
 ) -> Result<Shaping, CommandError> {
-    if shaped == Shaped::Prefilter && loaded.project.controller.is_none() {
+    let has_law = loaded.project.controller.as_ref().is_some_and(project::Controller::has_law);
+    if shaped == Shaped::Prefilter && !has_law {
         return Err(ShapingError::NoController.into());
     }
     let mut workpiece = Workpiece::new(&loaded.project, shaped)?;

@@ -91,12 +91,15 @@ fn everything_else_stays_byte_for_byte() {
     let tables = "[controller]\ndelay = \"1 ms\"\n\n[[controller.elements]]\nkind = \"gain\"\nvalue = 2.50 # loud\n\n\
                   # a corner\n[[controller.elements]]\nkind = \"zero\"\nfrequency = \"1 Hz\"\n\n# next\n[prefilter]\n\
                   numerator = \"1\"\ndenominator = \"1\"\n";
+    let timed = "[controller]\nsample_time = \"1 ms\" # computer\n\n[controller.quantization]\ncoefficients = \"f32\"\n";
     let behind = |controller: &str| format!("{SERVO}{controller}");
     let texts = [
         behind(POLYNOMIALS),
         format!("{head}{inline}[plant]{tail}"),
         format!("{head}{dotted}[plant]{tail}"),
         behind(factors),
+        behind(timed),
+        format!("{head}controller.sample_time = \"1 ms\"\ncontroller.delay = \"1 ms\"\n[plant]{tail}"),
         behind(listed),
         behind(tables),
         SERVO.to_string(),
@@ -177,10 +180,25 @@ fn polynomials_become_a_general_element_and_lose_nothing() {
     let expected = "[controller]                # given\nelements = [\n    { kind = \"gain\", value = ";
     let (_, controller) = saved.split_once(SERVO).unwrap();
     assert!(controller.starts_with(expected), "{controller}");
-    let rest = "    { kind = \"general\", numerator = \"0.5*(s + 2)\", denominator = \"s\" },\n]   # two parts\n\
+    let rest = "    { kind = \"general\", numerator = \"0.5*(s + 2)\", denominator = \"s\" },\n]\n\
                 saturation = \"10 V\"\n";
     assert!(controller.ends_with(rest), "{controller}");
 }
+
+/// A law in z, as it is deployed, stays in z; and rounded coefficients are those of the shaped law.
+#[test]
+fn a_law_in_z_is_shaped_in_z() {
+    let law =
+        "[controller]\nsample_time = \"1 ms\"\ngain = 0.5\npoles = [0.9]\ndomain = \"z\"\ndelay = \"1 ms\"\n";
+    let (found, saved) = shaped(&format!("{SERVO}{law}"), &[(Change::Add, "{ kind = \"gain\", value = 2 }")]);
+    let [general, gain] = &elements(&saved)[..] else { panic!("{saved}") };
+    assert_eq!((general.print().as_str(), gain.value), (DEPLOYED, Some(2.0)));
+    let other = law.replace("gain = 0.5", "gain = 1");
+    assert_eq!(loop_at(&found, 10.0), loop_at(&shaped(&format!("{SERVO}{other}"), &[]).0, 10.0));
+    assert!(saved.ends_with("sample_time = \"1 ms\"\ndelay = \"1 ms\"\n"), "{saved}");
+}
+
+const DEPLOYED: &str = r#"{ kind = "general", gain = 0.5, poles = [0.9], domain = "z" }"#;
 
 /// Each solved element, in a continuous and in a sampled loop, and in place of another element: the nominal loop passes the point.
 #[test]

@@ -1,4 +1,3 @@
-use super::section::cascade;
 use super::{AntiWindup, Compensator, Controller, Section};
 use crate::linear::{LinearError, TimeDomain};
 
@@ -35,7 +34,7 @@ impl Controller {
     /// method, sampled ones taken as they are.
     ///
     /// # Errors
-    /// A compensator that is improper or cannot be discretised, or a sampled one with another sample time.
+    /// A compensator that is improper, has dead time or cannot be discretised, or a sampled one with another sample time.
     pub fn sampled(&self, sample_time_s: f64) -> Result<SampledController, LinearError> {
         let sections = |compensator: &Compensator| -> Result<Vec<Section>, LinearError> {
             let function = compensator.transfer_function()?;
@@ -44,13 +43,7 @@ impl Controller {
                 TimeDomain::Discrete { sample_time_s: own } if own == sample_time_s => function,
                 TimeDomain::Discrete { .. } => return Err(LinearError::DomainMismatch),
             };
-            if !sampled.is_proper() {
-                return Err(LinearError::Improper {
-                    zeros: sampled.zeros().len(),
-                    poles: sampled.poles().len(),
-                });
-            }
-            Ok(cascade(&sampled))
+            Section::in_series(&sampled)
         };
         Ok(SampledController {
             feedback: sections(&self.feedback)?,

@@ -1,6 +1,6 @@
 use num_complex::Complex64;
 
-use crate::linear::TransferFunction;
+use crate::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
 
 /// A second-order difference equation, in the transposed direct form that rounds least.
 ///
@@ -17,6 +17,56 @@ pub struct Section {
 }
 
 impl Section {
+    /// A sampled transfer function as sections in series, in the order in which a [`super::SampledController`] runs them. The section
+    /// with the pole nearest z = 1 comes last: the integral part acts on the command itself, where a limit can be told to it.
+    ///
+    /// # Errors
+    /// [`LinearError::WrongDomain`] for a continuous one, [`LinearError::Improper`], [`LinearError::NotRational`] for one with dead
+    /// time, which is no section.
+    ///
+    /// # Example
+    /// An integrator of 2/s every 0.1 s by the bilinear rule, and back:
+    /// ```
+    /// use phea_dynamics::controller::{Element, Section};
+    /// use phea_dynamics::linear::Discretization;
+    /// # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
+    /// let function = Element::Integrator.transfer_function()?.discretized(0.1, Discretization::Tustin)?;
+    /// let sections = Section::in_series(&function)?;
+    /// assert_eq!(sections, [Section { numerator: [0.05, 0.05, 0.0], denominator: [-1.0, 0.0] }]);
+    /// assert_eq!(sections[0].transfer_function(0.1)?, function);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn in_series(function: &TransferFunction) -> Result<Vec<Section>, LinearError> {
+        if function.domain() == TimeDomain::Continuous {
+            return Err(LinearError::WrongDomain { operation: "sections", needed: "sampled" });
+        }
+        if !function.is_proper() {
+            return Err(LinearError::Improper {
+                zeros: function.zeros().len(),
+                poles: function.poles().len(),
+            });
+        }
+        if function.dead_time_s() != 0.0 {
+            return Err(LinearError::NotRational { operation: "sections" });
+        }
+        Ok(cascade(function))
+    }
+
+    /// The section as a transfer function in z; poles at z = 0 that only stand for its order are left out.
+    ///
+    /// # Errors
+    /// Those of [`Polynomial::roots`], and [`LinearError::SampleTime`].
+    pub fn transfer_function(&self, sample_time_s: f64) -> Result<TransferFunction, LinearError> {
+        let [a1, a2] = self.denominator;
+        let [b0, b1, b2] = self.numerator;
+        let kept = if a2 != 0.0 || b2 != 0.0 { 3 } else { 2 - usize::from(a1 == 0.0 && b1 == 0.0) };
+        let polynomial =
+            |coefficients: [f64; 3]| Polynomial::new(coefficients.into_iter().take(kept).collect());
+        TransferFunction::from_polynomials(&polynomial([b0, b1, b2]), &polynomial([1.0, a1, a2]))?
+            .in_domain(TimeDomain::Discrete { sample_time_s })
+    }
+
     /// The output for this input and state.
     pub fn output(&self, state: [f64; 2], input: f64) -> f64 {
         self.numerator[0] * input + state[0]
@@ -31,9 +81,7 @@ impl Section {
     }
 }
 
-/// A sampled transfer function as a cascade. The section with the pole nearest z = 1 comes last: the integral part acts
-/// on the command itself, where a limit can be told to it.
-pub(super) fn cascade(function: &TransferFunction) -> Vec<Section> {
+fn cascade(function: &TransferFunction) -> Vec<Section> {
     let mut poles = grouped(function.poles());
     poles.sort_by(|one, other| distance_from_one(other).total_cmp(&distance_from_one(one)));
     let mut zeros = grouped(function.zeros());

@@ -25,7 +25,8 @@ pub struct DesignProblem {
 /// What is made least or greatest among the controllers that keep to every specification.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Objective {
-    /// lim s^r G(s), r the relative degree; in a sampled loop |G| at pi/T.
+    /// lim s^r G(s), r the relative degree; in a sampled loop that of the elements before they are sampled, which by Tustin's rule is
+    /// what |G| leaves at pi/T beside its r zeros there.
     #[default]
     LeastHighFrequencyGain,
     /// The gain crossover of the nominal loop.

@@ -1,20 +1,80 @@
 //! A design stepped by its owner.
 
-use super::problem::{DesignOptions, DesignProblem};
-use super::result::Design;
+use std::collections::VecDeque;
+
+use super::attempt::{Attempt, DesignError, Ending};
+use super::binding::{binding_limits, conflicts};
+use super::candidates::Ground;
+use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
+use super::result::{Design, DesignRound, DesignStatus, Relaxation};
+use phea_dynamics::linear::TransferFunction;
+
+use crate::family::{Extent, Family, random};
+use crate::loop_shaping::{Samples, Structure, search_frequencies};
+use crate::verification::{Audit, PlantPoint, corners};
+
+/// Points of the frequency grid of a search in a decade.
+const POINTS_PER_DECADE: f64 = 20.0;
+/// Random plants inside the box that a search begins with.
+const INTERIOR_PLANTS: usize = 48;
+/// Members of a family without a box that a search begins with.
+const MEMBERS_MAXIMUM: usize = 200;
+
+/// What is tried after what.
+#[derive(Clone, Debug)]
+struct Plan {
+    ground: Ground,
+    /// (order, zeros) that are still to be tried.
+    waiting: VecDeque<(usize, usize)>,
+    all: usize,
+    /// Whether a controller was found already, and fewer zeros are tried in its order.
+    found: bool,
+}
 
 /// A design stepped by its owner, who may show its progress or stop it at any step.
 #[derive(Clone, Debug)]
 pub struct DesignRun {
     problem: DesignProblem,
     options: DesignOptions,
+    plan: Plan,
+    attempt: Option<Attempt>,
+    /// (order, zeros) of the attempt.
+    current: Option<(usize, usize)>,
+    samples: Option<Samples>,
+    /// The attempt that came nearest, with its worst margin over rate.
+    nearest: Option<(f64, Structure, Option<TransferFunction>)>,
+    /// The controller of the attempt before.
+    before: Option<TransferFunction>,
+    relaxing: bool,
+    rounds: Vec<DesignRound>,
     design: Option<Design>,
+    done: bool,
 }
 
 impl DesignRun {
     /// A design that has not begun.
     pub fn new(problem: DesignProblem, options: DesignOptions) -> DesignRun {
-        DesignRun { problem, options, design: None }
+        let ground = Ground::new(&problem);
+        let waiting: VecDeque<(usize, usize)> = match options.controller {
+            ControllerChoice::Given(_) => VecDeque::from([(0, 0)]),
+            ControllerChoice::Grow { maximum_order } => {
+                (ground.integrators..=maximum_order).flat_map(degrees).collect()
+            }
+        };
+        DesignRun {
+            plan: Plan { ground, all: waiting.len(), waiting, found: false },
+            problem,
+            options,
+            attempt: None,
+            current: None,
+            samples: None,
+            nearest: None,
+            before: None,
+            relaxing: false,
+            rounds: vec![],
+            design: None,
+            done: false,
+        }
     }
 
     /// What it works on.
@@ -28,22 +88,175 @@ impl DesignRun {
     }
 
     /// Does a small part of the work; whether there is more to do.
-    pub fn step(&mut self) -> bool {
-        false
+    ///
+    /// # Errors
+    /// [`DesignError`] where a part of the problem is no transfer function, or cannot be put into the loop.
+    pub fn step(&mut self) -> Result<bool, DesignError> {
+        if self.done {
+            return Ok(false);
+        }
+        match &mut self.attempt {
+            None => self.begin()?,
+            Some(attempt) => {
+                if !attempt.step()? {
+                    self.end_attempt();
+                }
+            }
+        }
+        Ok(!self.done)
     }
 
     /// What is being done.
     pub fn stage(&self) -> &'static str {
-        "shaping the loop"
+        match &self.attempt {
+            Some(_) if self.relaxing => "looking for the smallest relaxation",
+            Some(attempt) => attempt.stage(),
+            None => "shaping the loop",
+        }
     }
 
-    /// The share of the work that is done, 0 to 1: an estimate, for the rounds that it takes are not known before.
+    /// The share of the work that is done, 0 to 1: an estimate, for the structures that it takes are not known before.
     pub fn progress(&self) -> f64 {
-        0.0
+        let left = self.plan.waiting.len() as f64 + f64::from(u8::from(!self.done));
+        (1.0 - left / (self.plan.all as f64 + 1.0)).max(0.0)
     }
 
     /// The best design so far; the last one once [`DesignRun::step`] has answered that there is nothing left.
     pub fn design(&self) -> Option<&Design> {
         self.design.as_ref()
+    }
+
+    fn begin(&mut self) -> Result<(), DesignError> {
+        let structure = match (&self.options.controller, self.plan.waiting.pop_front()) {
+            (_, None) => return self.end(),
+            (ControllerChoice::Given(structure), Some(_)) => structure.clone(),
+            (ControllerChoice::Grow { .. }, Some((order, zeros))) => {
+                self.current = Some((order, zeros));
+                self.plan.ground.structure(order, zeros)
+            }
+        };
+        let beginning = match &self.before {
+            Some(before) => self.plan.ground.grown(&structure, before),
+            None => vec![],
+        };
+        self.attempt(structure, beginning)
+    }
+
+    fn attempt(&mut self, structure: Structure, beginning: Vec<Vec<f64>>) -> Result<(), DesignError> {
+        let samples = match self.samples.take() {
+            Some(samples) => samples,
+            None => self.first_samples()?,
+        };
+        self.samples = Some(samples.clone());
+        self.attempt = Some(Attempt::new(structure, samples, &self.options, self.relaxing, beginning)?);
+        Ok(())
+    }
+
+    fn first_samples(&self) -> Result<Samples, DesignError> {
+        let plants = first_plants(&self.problem, self.options.seed);
+        let frequencies = search_frequencies(&self.problem, &plants, POINTS_PER_DECADE)?;
+        Ok(Samples::new(&self.problem, &plants, &frequencies)?)
+    }
+
+    fn end_attempt(&mut self) {
+        let Some(attempt) = self.attempt.take() else { return };
+        self.samples = Some(attempt.samples());
+        self.rounds.extend_from_slice(attempt.rounds());
+        self.before = attempt.feedback().or(self.before.take());
+        match attempt.ending() {
+            Some(Ending::Met(audit)) => {
+                self.take(&attempt, DesignStatus::Met, audit);
+                self.plan.found = true;
+                self.plan.waiting = fewer_zeros(self.current);
+                self.done = self.relaxing || self.plan.waiting.is_empty();
+            }
+            Some(Ending::Missed { worst_margin_db, audit: Some(audit) }) => {
+                let relaxation_db = -worst_margin_db;
+                let conflicts = conflicts(audit, 0.8 * relaxation_db);
+                let status = DesignStatus::Infeasible(Relaxation { relaxation_db, conflicts });
+                self.take(&attempt, status, audit);
+                self.done = true;
+            }
+            Some(Ending::Missed { worst_margin_db, audit: None }) => {
+                if self.nearest.as_ref().is_none_or(|(best, ..)| worst_margin_db > best) {
+                    self.nearest = Some((*worst_margin_db, attempt.structure().clone(), attempt.feedback()));
+                }
+                self.done = self.plan.found;
+            }
+            Some(Ending::NotConverged(audit)) => {
+                let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
+                if self.design.is_none() {
+                    self.take(&attempt, status, audit);
+                }
+                self.done = self.plan.found || self.relaxing;
+            }
+            Some(Ending::NotStabilised) | None => self.done = self.plan.found,
+        }
+    }
+
+    /// What is left when no structure is waiting: a relaxation, or nothing.
+    fn end(&mut self) -> Result<(), DesignError> {
+        match self.nearest.take() {
+            Some((_, structure, feedback)) if !self.plan.found && !self.relaxing => {
+                self.relaxing = true;
+                let at = feedback.map(|feedback| self.plan.ground.grown(&structure, &feedback));
+                self.attempt(structure, at.unwrap_or_default())
+            }
+            _ => {
+                self.done = true;
+                Ok(())
+            }
+        }
+    }
+
+    fn take(&mut self, attempt: &Attempt, status: DesignStatus, audit: &Audit) {
+        self.design = Some(Design {
+            status,
+            controller: attempt.shaping().controller(attempt.x()),
+            structure: attempt.structure().clone(),
+            objective_db: self.rounds.last().map_or(f64::NAN, |round| round.objective_db),
+            audit: audit.clone(),
+            binding: binding_limits(audit),
+            rounds: self.rounds.clone(),
+        });
+    }
+}
+
+/// (order, zeros) of an order: one pole more than zeros, and for an order of one or none as many.
+fn degrees(order: usize) -> Vec<(usize, usize)> {
+    match order {
+        0 => vec![(0, 0)],
+        1 => vec![(1, 0), (1, 1)],
+        _ => vec![(order, order - 1)],
+    }
+}
+
+/// The same order with one zero fewer: a larger relative degree has less gain at high frequency than any smaller one.
+fn fewer_zeros(current: Option<(usize, usize)>) -> VecDeque<(usize, usize)> {
+    current.and_then(|(order, zeros)| Some((order, zeros.checked_sub(1)?))).into_iter().collect()
+}
+
+/// The plants that a search begins with, the nominal one first.
+fn first_plants(problem: &DesignProblem, seed: u64) -> Vec<PlantPoint> {
+    match &problem.family {
+        Family::Uncertain(family) => {
+            let mut values = vec![family.plant().nominal()];
+            match family.extent() {
+                Extent::Box => {
+                    values.extend(corners(family));
+                    let inside = random(family.plant(), family.coordinates(), INTERIOR_PLANTS, seed);
+                    values.extend(inside.unwrap_or_default());
+                }
+                Extent::Members => values.extend(family.members().iter().take(MEMBERS_MAXIMUM).cloned()),
+            }
+            let mut plants: Vec<PlantPoint> = Vec::new();
+            for point in values.into_iter().map(PlantPoint::Parameters) {
+                if !plants.contains(&point) {
+                    plants.push(point);
+                }
+            }
+            plants
+        }
+        Family::Measured(family) => (0..family.plants().len()).map(PlantPoint::Measured).collect(),
     }
 }

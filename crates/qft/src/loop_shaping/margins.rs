@@ -11,19 +11,21 @@ mod crossover;
 mod rows;
 
 use num_complex::Complex64;
+use phea_dynamics::portable;
 
 use super::samples::Column;
 use crate::specification::{Requirement, Specification};
+use crate::verification::TrackingJudgement;
 
 pub(super) use crossover::{DelayMargins, bandwidth, delay_margins};
-pub(super) use rows::candidates;
+pub(super) use rows::{Candidate, candidates};
 
 /// What is demanded of the plants at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Demand {
     pub(super) specification: usize,
     pub(super) quantity: Quantity,
-    /// The square of the limit, over |F|^2 where the quantity goes through the prefilter; of the quotient of both limits for a spread.
+    /// The square of the limit; of the quotient of both limits for a spread.
     allowed: f64,
 }
 
@@ -40,27 +42,28 @@ pub(super) enum Quantity {
     Effort,
     /// |Pd/(1+L)|
     LoadMotion,
-    /// |P G/(1+L)| from above
+    /// |F P G/(1+L)| from above
     TrackingBelow,
-    /// |P G/(1+L)| from below
+    /// |F P G/(1+L)| from below
     TrackingAbove,
     /// The greatest |P G/(1+L)| over the least
     Spread,
 }
 
-/// The controller at one frequency, and |1/(1+L)|^2 of the plants there.
+/// Controller and prefilter at one frequency, and |1/(1+L)|^2 of the plants there.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ColumnLoop {
     feedback_squared: f64,
+    prefilter_squared: f64,
     sensitivity_squared: Vec<f64>,
 }
 
-/// What the specifications demand at a frequency, by magnitude where there is a prefilter, else by spread.
+/// What the specifications demand at a frequency, of a loop that has a meaning up to the highest one.
 pub(super) fn demands(
     specifications: &[Specification],
-    prefilter: Option<Complex64>,
-    frequency: f64,
-    highest_frequency: f64,
+    tracking: TrackingJudgement,
+    reserve_db: f64,
+    [frequency, highest_frequency]: [f64; 2],
 ) -> Vec<Demand> {
     let mut demands = Vec::new();
     for (index, specification) in specifications.iter().enumerate() {
@@ -72,19 +75,22 @@ pub(super) fn demands(
         let square = |magnitude: f64| magnitude * magnitude;
         let lower = lower.and_then(|limit| limit.magnitude(frequency)).map(square);
         let upper = upper.magnitude(frequency).map(square);
-        let through = prefilter.map_or(1.0, |prefilter| prefilter.norm_sqr());
+        let ratio = upper.zip(lower).map(|(upper, lower)| upper / lower);
+        // the square of a magnitude moves by a tenth of a power of ten for each dB
+        let room_db = ratio.map_or(1.0, |ratio| 10.0 * portable::log10(ratio)).clamp(0.0, 1.0);
+        let inwards = portable::pow(10.0, -0.1 * reserve_db * room_db);
+        let [lower, upper] = [lower.map(|lower| lower / inwards), upper.map(|upper| upper * inwards)];
         let limits = match specification.requirement {
             Requirement::RobustStability(_) => vec![(Quantity::Complementary, upper)],
             Requirement::Sensitivity(_) => vec![(Quantity::Sensitivity, upper)],
             Requirement::PlantInputDisturbance(_) => vec![(Quantity::PlantInput, upper)],
             Requirement::ControlEffort(_) => vec![(Quantity::Effort, upper)],
             Requirement::LoadMotion(_) => vec![(Quantity::LoadMotion, upper)],
-            Requirement::Tracking { .. } if prefilter.is_some() => vec![
-                (Quantity::TrackingBelow, upper.map(|upper| upper / through)),
-                (Quantity::TrackingAbove, lower.map(|lower| lower / through)),
-            ],
+            Requirement::Tracking { .. } if tracking == TrackingJudgement::Magnitude => {
+                vec![(Quantity::TrackingBelow, upper), (Quantity::TrackingAbove, lower)]
+            }
             Requirement::Tracking { .. } => {
-                vec![(Quantity::Spread, upper.zip(lower).map(|(upper, lower)| upper / lower))]
+                vec![(Quantity::Spread, ratio.map(|ratio| ratio * inwards * inwards))]
             }
         };
         demands.extend(limits.into_iter().filter_map(|(quantity, allowed)| {
@@ -95,9 +101,21 @@ pub(super) fn demands(
 }
 
 impl Demand {
+    /// More demands than one column can have.
+    pub(super) const PER_COLUMN: usize = 64;
+
     /// What one dB of relaxation of every limit adds to the margin.
     pub(super) fn rate(&self) -> f64 {
         if self.quantity == Quantity::Spread { 2.0 } else { 1.0 }
+    }
+
+    /// The power of F in what is limited, with the sign of the limit: 1 for an upper one, -1 for a lower one.
+    pub(super) fn prefilter_power(&self) -> f64 {
+        match self.quantity {
+            Quantity::TrackingBelow => 1.0,
+            Quantity::TrackingAbove => -1.0,
+            _ => 0.0,
+        }
     }
 
     /// a: the power of G in what is limited.
@@ -122,9 +140,10 @@ impl Demand {
             Quantity::PlantInput => column.plant_squared[place] * sensitivity,
             Quantity::Effort => sensitivity * feedback,
             Quantity::LoadMotion => column.load_motion_squared[place] * sensitivity,
-            Quantity::TrackingBelow | Quantity::TrackingAbove | Quantity::Spread => {
-                column.plant_squared[place] * sensitivity * feedback
+            Quantity::TrackingBelow | Quantity::TrackingAbove => {
+                column.plant_squared[place] * sensitivity * feedback * around.prefilter_squared
             }
+            Quantity::Spread => column.plant_squared[place] * sensitivity * feedback,
         }
     }
 
@@ -132,14 +151,15 @@ impl Demand {
     pub(super) fn worst_excess(&self, column: &Column, around: &ColumnLoop) -> f64 {
         let sensitivity = &around.sensitivity_squared;
         let feedback = around.feedback_squared;
+        let forward = feedback * around.prefilter_squared;
         match self.quantity {
             Quantity::Complementary => greatest(&column.loop_squared, sensitivity) * feedback / self.allowed,
             Quantity::Sensitivity => extremes(sensitivity.iter().copied())[1] / self.allowed,
             Quantity::PlantInput => greatest(&column.plant_squared, sensitivity) / self.allowed,
             Quantity::Effort => extremes(sensitivity.iter().copied())[1] * feedback / self.allowed,
             Quantity::LoadMotion => greatest(&column.load_motion_squared, sensitivity) / self.allowed,
-            Quantity::TrackingBelow => greatest(&column.plant_squared, sensitivity) * feedback / self.allowed,
-            Quantity::TrackingAbove => self.allowed / (least(&column.plant_squared, sensitivity) * feedback),
+            Quantity::TrackingBelow => greatest(&column.plant_squared, sensitivity) * forward / self.allowed,
+            Quantity::TrackingAbove => self.allowed / (least(&column.plant_squared, sensitivity) * forward),
             Quantity::Spread => {
                 let [least, greatest] = extremes(products(&column.plant_squared, sensitivity));
                 greatest / (least * self.allowed)
@@ -149,9 +169,10 @@ impl Demand {
 }
 
 impl ColumnLoop {
-    /// Closes the loops of a column around this G.
-    pub(super) fn close(&mut self, column: &Column, feedback: Complex64) {
+    /// Closes the loops of a column around this G, behind this F.
+    pub(super) fn close(&mut self, column: &Column, feedback: Complex64, prefilter: Complex64) {
         self.feedback_squared = feedback.norm_sqr();
+        self.prefilter_squared = prefilter.norm_sqr();
         self.sensitivity_squared.clear();
         let loops = column.loop_re.iter().zip(&column.loop_im);
         self.sensitivity_squared.extend(loops.map(|(re, im)| {

@@ -5,14 +5,15 @@ mod frequencies;
 pub use frequencies::search_frequencies;
 
 use num_complex::Complex64;
-use phea_dynamics::controller::{Compensator, Controller, Element};
-use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::controller::{Compensator, Controller};
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::uncertain_plant::PlantCoefficients;
 
 use super::margins::{Demand, demands};
 use crate::closed_loop::{Compensation, Member};
 use crate::design::DesignProblem;
-use crate::family::Family;
-use crate::verification::PlantPoint;
+use crate::family::{Family, MeasuredPlant};
+use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// Beside an undamped pole of the plant, where it has no response, it is looked at this share of the frequency higher.
 const BESIDE: f64 = 1e-9;
@@ -61,7 +62,7 @@ pub enum SamplesError {
 ///     minimum_delay_margin_s: 0.0,
 /// };
 /// let k = |value: f64| PlantPoint::Parameters(vec![value]);
-/// let mut samples = Samples::new(&problem, None, &[k(1.0), k(4.0)], &[1.0, 10.0])?;
+/// let mut samples = Samples::new(&problem, &[k(1.0), k(4.0)], &[1.0, 10.0])?;
 /// assert!(samples.add(&[k(3.0)], 2.0)?);
 /// assert!(!samples.add(&[k(3.0)], 2.0)?); // known already
 /// assert_eq!(samples.frequencies_rad_per_s(), [1.0, 2.0, 10.0]);
@@ -74,7 +75,8 @@ pub struct Samples {
     problem: DesignProblem,
     /// With a controller of gain 1.
     around: Compensation,
-    with_prefilter: bool,
+    tracking: TrackingJudgement,
+    reserve_db: f64,
     plants: Vec<PlantPoint>,
     members: Vec<Member>,
     columns: Vec<Column>,
@@ -101,21 +103,21 @@ pub(super) struct Column {
 }
 
 impl Samples {
-    /// Every one of these plants at every one of these frequencies, rad/s, positive, at most pi/T in a sampled loop. Tracking is judged by
-    /// magnitude with this prefilter; without one, by the spread of the plants. The first plant is the nominal one.
+    /// Every one of these plants at every one of these frequencies, rad/s, positive, at most pi/T in a sampled loop. The first plant
+    /// is the nominal one.
     ///
     /// # Errors
-    /// A point that is no plant of the family; a plant, sensor or prefilter that does not fit the loop.
+    /// A point that is no plant of the family; a plant or sensor that does not fit the loop.
     pub fn new(
         problem: &DesignProblem,
-        prefilter: Option<&TransferFunction>,
         plants: &[PlantPoint],
         frequencies_rad_per_s: &[f64],
     ) -> Result<Samples, SamplesError> {
         let mut samples = Samples {
             problem: problem.clone(),
-            around: around(problem, prefilter)?,
-            with_prefilter: prefilter.is_some(),
+            around: around(problem)?,
+            tracking: TrackingJudgement::Spread,
+            reserve_db: 0.0,
             plants: vec![],
             members: vec![],
             columns: vec![],
@@ -158,6 +160,34 @@ impl Samples {
         Ok(())
     }
 
+    /// How tracking is judged.
+    pub fn tracking(&self) -> TrackingJudgement {
+        self.tracking
+    }
+
+    /// Judges tracking so from now on.
+    pub fn judge_tracking_by(&mut self, tracking: TrackingJudgement) {
+        self.tracking = tracking;
+        self.demand_anew();
+    }
+
+    /// Draws every limit in by this much, dB; where two limits leave less than 1 dB between them, by that share of it.
+    pub fn keep_in_reserve(&mut self, reserve_db: f64) {
+        self.reserve_db = reserve_db;
+        self.demand_anew();
+    }
+
+    fn demand_anew(&mut self) {
+        for place in 0..self.columns.len() {
+            self.columns[place].demands = self.demands(self.columns[place].frequency);
+        }
+    }
+
+    fn demands(&self, frequency: f64) -> Vec<Demand> {
+        let highest = self.around.highest_frequency_rad_per_s();
+        demands(&self.problem.specifications, self.tracking, self.reserve_db, [frequency, highest])
+    }
+
     /// What is designed for.
     pub fn problem(&self) -> &DesignProblem {
         &self.problem
@@ -178,9 +208,19 @@ impl Samples {
         self.columns.iter().map(|column| column.frequency).collect()
     }
 
+    /// The frequencies at which every plant is looked at, increasing, rad/s.
+    pub fn grid_frequencies_rad_per_s(&self) -> Vec<f64> {
+        self.columns.iter().filter(|column| column.grid).map(|column| column.frequency).collect()
+    }
+
     /// How many pairs of a plant and a frequency are looked at.
     pub fn pairs(&self) -> usize {
         self.columns.iter().map(|column| column.plants.len()).sum()
+    }
+
+    /// The loop, with a controller of gain 1.
+    pub(super) fn around(&self) -> &Compensation {
+        &self.around
     }
 
     pub(super) fn columns(&self) -> &[Column] {
@@ -192,18 +232,9 @@ impl Samples {
         if let Some(index) = self.plants.iter().position(|known| known == point) {
             return Ok(index);
         }
-        let none = || SamplesError::Plant(point.clone());
-        let member = match (&self.problem.family, point) {
-            (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
-                if values.len() != family.plant().parameters().len() {
-                    return Err(none());
-                }
-                self.around.member(family.plant().coefficients(values))?
-            }
-            (Family::Measured(family), PlantPoint::Measured(index)) => {
-                self.around.measured(family.plants().get(*index).ok_or_else(none)?)
-            }
-            _ => return Err(none()),
+        let member = match plant_at(&self.problem.family, point)? {
+            Plant::Rational(coefficients) => self.around.member(coefficients)?,
+            Plant::Measured(measured) => self.around.measured(measured),
         };
         self.plants.push(point.clone());
         self.members.push(member);
@@ -214,9 +245,7 @@ impl Samples {
     fn column(&mut self, frequency: f64) -> usize {
         let place = self.columns.partition_point(|column| column.frequency < frequency);
         if self.columns.get(place).is_none_or(|column| column.frequency != frequency) {
-            let prefilter = self.with_prefilter.then(|| self.around.response(frequency).prefilter);
-            let highest = self.around.highest_frequency_rad_per_s();
-            let demands = demands(&self.problem.specifications, prefilter, frequency, highest);
+            let demands = self.demands(frequency);
             self.columns.insert(place, Column::new(frequency, demands));
         }
         place
@@ -269,17 +298,29 @@ impl Column {
     }
 }
 
-/// The loop with a controller of gain 1.
-fn around(
-    problem: &DesignProblem,
-    prefilter: Option<&TransferFunction>,
-) -> Result<Compensation, LinearError> {
-    let elements = prefilter.map(|prefilter| Element::General(prefilter.clone()));
-    let controller = Controller {
-        feedback: Compensator::default(),
-        prefilter: Compensator::new(elements.into_iter().collect()),
-        timing: problem.timing,
-        ..Controller::default()
+/// A plant of a family.
+enum Plant<'a> {
+    Rational(PlantCoefficients<f64>),
+    Measured(&'a MeasuredPlant),
+}
+
+fn plant_at<'a>(family: &'a Family, point: &PlantPoint) -> Result<Plant<'a>, SamplesError> {
+    let plant = match (family, point) {
+        (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
+            let complete = values.len() == family.plant().parameters().len();
+            complete.then(|| Plant::Rational(family.plant().coefficients(values)))
+        }
+        (Family::Measured(family), PlantPoint::Measured(index)) => {
+            family.plants().get(*index).map(Plant::Measured)
+        }
+        _ => None,
     };
+    plant.ok_or_else(|| SamplesError::Plant(point.clone()))
+}
+
+/// The loop with a controller of gain 1.
+fn around(problem: &DesignProblem) -> Result<Compensation, LinearError> {
+    let controller =
+        Controller { feedback: Compensator::default(), timing: problem.timing, ..Controller::default() };
     Compensation::new(&controller, problem.sensor.clone())
 }

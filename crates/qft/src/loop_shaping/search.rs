@@ -18,11 +18,15 @@ pub struct Judgement {
     pub worst_margin_db: f64,
     /// Whether every plant that was looked at is stable; margins of an unstable loop mean nothing.
     pub stable: bool,
+    /// 0 where stable; else how far from it, greater being worse: only its order counts. What is not known may be left at 0.
+    pub instability: f64,
 }
 
 /// One margin with its slopes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarginRow {
+    /// What it is the margin of, a specification at a frequency for a plant: by this number a search knows it again at another x.
+    pub sample: usize,
     /// dB; negative where it is violated.
     pub margin_db: f64,
     /// What one dB of relaxation of every limit adds to it: 1, and 2 for the spread between two limits.

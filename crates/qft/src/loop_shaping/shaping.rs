@@ -1,18 +1,17 @@
 //! The shaping of a loop as a search sees it.
 
 use num_complex::Complex64;
-use phea_dynamics::controller::Controller;
+use phea_dynamics::controller::{Compensator, Controller};
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 
-use super::margins::{ColumnLoop, DelayMargins, bandwidth, candidates, delay_margins};
+use super::margins::{Candidate, ColumnLoop, DelayMargins, Demand, bandwidth, candidates, delay_margins};
+use super::sample_stability::SampleStability;
 use super::samples::{Samples, SamplesError};
 use super::structure::{DECIBELS_PER_NEPER, Structure, StructureResponse};
 use super::{Judgement, MarginRow, SearchProblem, Slopes};
-use crate::closed_loop::Compensation;
 use crate::design::Objective;
-use crate::stability::{StabilityStatus, member_stability};
-use crate::verification::PlantPoint;
+use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// Rows of one linearisation.
 const ROWS_MAXIMUM: usize = 400;
@@ -24,16 +23,66 @@ const WINDOW_DB: f64 = 40.0;
 /// ```text
 /// minimise objective(x)   subject to   margin(x; plant, frequency, specification) + rate relaxation >= 0
 /// ```
+///
+/// With a prefilter, of a structure of its own, tracking is judged by magnitude and x holds the free numbers of the controller, then
+/// those of the prefilter; without one, tracking is judged by the spread of the plants.
+///
+/// A demanded delay margin is a margin too: 20 log10 of the least delay that a plant bears over the delay demanded, the gain crossovers
+/// and their phases interpolated between the frequencies of the samples.
+///
+/// # Example
+/// |1/(1+L)| <= 2 at 1 rad/s for 1/s and 4/s under a gain k: the worst plant is 1/s, for which it is w/|j w + k|.
+/// ```
+/// # use phea_dynamics::controller::Timing;
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// # use phea_qft::family::{Extent, Family, UncertainFamily};
+/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// # use phea_qft::verification::PlantPoint;
+/// use phea_qft::design::{DesignProblem, Objective};
+/// use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
+/// # let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+/// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+/// #     disturbance: None,
+/// #     dead_time_s: 0.0.into(),
+/// # })?;
+/// # let problem = DesignProblem {
+/// #     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
+/// #     sensor: TransferFunction::gain_only(1.0),
+/// #     timing: Timing::default(),
+/// #     specifications: vec![Specification {
+/// #         requirement: Requirement::Sensitivity(Limit::Constant(2.0)),
+/// #         frequencies_rad_per_s: vec![1.0],
+/// #         band_rad_per_s: [0.0, f64::INFINITY],
+/// #     }],
+/// #     minimum_delay_margin_s: 0.0,
+/// # };
+/// let plants = [1.0, 4.0].map(|gain| PlantPoint::Parameters(vec![gain]));
+/// let samples = Samples::new(&problem, &plants, &[1.0])?;
+/// let structure = Structure { sign: 1.0, gain: [0.1, 10.0], parts: vec![] };
+/// let mut shaping = Shaping::new(structure, None, Objective::LeastHighFrequencyGain, samples)?;
+/// let judged = shaping.judge(&[0.0]); // k = 1, so that |1/(1+L)| = 1/sqrt(2)
+/// assert!(judged.stable && judged.objective_db == 0.0);
+/// assert!((judged.worst_margin_db - 9.0309).abs() < 1e-4);
+/// let row = &shaping.slopes(&[0.0]).margins[0]; // and half a dB more for each dB of k
+/// assert!((row.slopes[0] - 0.5 * 8.6859).abs() < 1e-4);
+/// assert_eq!(shaping.margins(&[0.0])[0].plant, plants[0]);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Shaping {
     structure: Structure,
+    prefilter: Option<Structure>,
     objective: Objective,
     samples: Samples,
     relaxation_db: f64,
     response: StructureResponse,
+    prefilter_response: Option<StructureResponse>,
     bounds: Vec<[f64; 2]>,
-    /// The plant that was found unstable last is looked at first.
-    suspect: usize,
+    stability: SampleStability,
     around: ColumnLoop,
 }
 
@@ -65,16 +114,30 @@ impl Shaping {
     ///
     /// # Errors
     /// A fixed element that is no continuous transfer function, a structure that cannot be sampled.
-    pub fn new(structure: Structure, objective: Objective, samples: Samples) -> Result<Shaping, LinearError> {
+    pub fn new(
+        structure: Structure,
+        prefilter: Option<Structure>,
+        objective: Objective,
+        mut samples: Samples,
+    ) -> Result<Shaping, LinearError> {
         structure.high_frequency_gain_db(&[])?;
+        samples.judge_tracking_by(match prefilter {
+            Some(_) => TrackingJudgement::Magnitude,
+            None => TrackingJudgement::Spread,
+        });
+        let timing = samples.problem().timing;
+        let frequencies = samples.frequencies_rad_per_s();
+        let response = |structure: &Structure| structure.response(&timing, &frequencies);
         Ok(Shaping {
-            response: structure.response(&samples.problem().timing, &samples.frequencies_rad_per_s())?,
-            bounds: structure.bounds(),
+            response: response(&structure)?,
+            prefilter_response: prefilter.as_ref().map(response).transpose()?,
+            bounds: [structure.bounds(), prefilter.as_ref().map_or(vec![], Structure::bounds)].concat(),
+            stability: SampleStability::new(samples.around(), samples.members().to_vec()),
             structure,
+            prefilter,
             objective,
             samples,
             relaxation_db: 0.0,
-            suspect: 0,
             around: ColumnLoop::default(),
         })
     }
@@ -89,6 +152,11 @@ impl Shaping {
         &self.structure
     }
 
+    /// How tracking is judged.
+    pub fn tracking(&self) -> TrackingJudgement {
+        self.samples.tracking()
+    }
+
     /// The samples.
     pub fn samples(&self) -> &Samples {
         &self.samples
@@ -99,28 +167,51 @@ impl Shaping {
         self.samples
     }
 
-    /// Adds a counterexample, as [`Samples::add`] does, and its plants at every frequency of the grid.
+    /// Looks at these plants at this frequency too, and at every frequency of the grid if they are new; whether one of them was not looked
+    /// at there before.
     ///
     /// # Errors
     /// Those of [`Samples::add`].
     pub fn add(&mut self, plants: &[PlantPoint], frequency_rad_per_s: f64) -> Result<bool, SamplesError> {
+        let known = self.samples.members().len();
         let new = self.samples.add(plants, frequency_rad_per_s)?;
         for plant in plants {
             self.samples.add_plant(plant)?;
         }
+        for member in self.samples.members().iter().skip(known) {
+            self.stability.add(member.clone());
+        }
         let timing = &self.samples.problem().timing;
-        self.response = self.structure.response(timing, &self.samples.frequencies_rad_per_s())?;
+        let frequencies = self.samples.frequencies_rad_per_s();
+        self.response = self.structure.response(timing, &frequencies)?;
+        let prefilter = self.prefilter.as_ref();
+        self.prefilter_response =
+            prefilter.map(|prefilter| prefilter.response(timing, &frequencies)).transpose()?;
         Ok(new)
+    }
+
+    /// Controller and prefilter at x; without a prefilter, the gain 1.
+    pub fn controller(&self, x: &[f64]) -> Controller {
+        let (own, behind) = self.split(x);
+        Controller {
+            feedback: self.structure.compensator(own),
+            prefilter: self
+                .prefilter
+                .as_ref()
+                .map_or_else(Compensator::default, |prefilter| prefilter.compensator(behind)),
+            timing: self.samples.problem().timing,
+            ..Controller::default()
+        }
     }
 
     /// The least margin to each specification at each frequency, by frequency; empty for a controller without a response.
     pub fn margins(&self, x: &[f64]) -> Vec<SampledMargin> {
-        let Some(feedback) = self.feedback(x) else { return vec![] };
+        let Some(forward) = self.forward(x) else { return vec![] };
         let mut around = ColumnLoop::default();
         let mut margins = Vec::new();
         let plant = |index: usize| self.samples.plants()[index].clone();
-        for (column, feedback) in self.samples.columns().iter().zip(feedback) {
-            around.close(column, feedback);
+        for (column, &[feedback, prefilter]) in self.samples.columns().iter().zip(&forward) {
+            around.close(column, feedback, prefilter);
             for demand in &column.demands {
                 let worst = candidates(demand, column, &around, feedback).into_iter().next();
                 margins.extend(worst.map(|worst| SampledMargin {
@@ -135,17 +226,44 @@ impl Shaping {
         margins
     }
 
-    /// G at the frequencies of the samples; `None` where it cannot be sampled or is no number.
-    fn feedback(&self, x: &[f64]) -> Option<Vec<Complex64>> {
-        let feedback = self.response.values(x).ok()?;
-        feedback.iter().all(|feedback| feedback.is_finite()).then_some(feedback)
+    /// The numbers of the controller, and those of the prefilter.
+    fn split<'x>(&self, x: &'x [f64]) -> (&'x [f64], &'x [f64]) {
+        x.split_at(self.structure.dimension().min(x.len()))
     }
 
-    fn look(&mut self, feedback: &[Complex64]) -> Looked {
+    /// G and F at the frequencies of the samples; `None` where they cannot be sampled or are no numbers.
+    fn forward(&self, x: &[f64]) -> Option<Vec<[Complex64; 2]>> {
+        let (own, behind) = self.split(x);
+        let feedback = self.response.values(own).ok()?;
+        let prefilter = match &self.prefilter_response {
+            Some(response) => response.values(behind).ok()?,
+            None => vec![Complex64::new(1.0, 0.0); feedback.len()],
+        };
+        let both: Vec<[Complex64; 2]> = feedback.into_iter().zip(prefilter).map(|(g, f)| [g, f]).collect();
+        both.iter().flatten().all(|one| one.is_finite()).then_some(both)
+    }
+
+    /// The slopes of ln G and of ln F at the frequencies of the samples, each among zeros for the numbers of the other.
+    fn forward_slopes(&self, x: &[f64]) -> Option<[Vec<Vec<Complex64>>; 2]> {
+        let (own, behind) = self.split(x);
+        let zeros = |count: usize| vec![Complex64::new(0.0, 0.0); count];
+        let feedback = self.response.slopes(own).ok()?;
+        let feedback = feedback.into_iter().map(|slopes| [slopes, zeros(behind.len())].concat()).collect();
+        let prefilter = match &self.prefilter_response {
+            Some(response) => response.slopes(behind).ok()?,
+            None => vec![],
+        };
+        let prefilter = prefilter.into_iter().map(|slopes| [zeros(own.len()), slopes].concat()).collect();
+        Some([feedback, prefilter])
+    }
+
+    fn look(&mut self, forward: &[[Complex64; 2]]) -> Looked {
         let mut excesses = Vec::new();
         let mut worst = 0.0;
-        for (index, (column, &feedback)) in self.samples.columns().iter().zip(feedback).enumerate() {
-            self.around.close(column, feedback);
+        for (index, (column, &[feedback, prefilter])) in
+            self.samples.columns().iter().zip(forward).enumerate()
+        {
+            self.around.close(column, feedback, prefilter);
             for (number, demand) in column.demands.iter().enumerate() {
                 let excess = demand.worst_excess(column, &self.around);
                 // a margin over its rate of 2 is the margin of the square root
@@ -154,80 +272,85 @@ impl Shaping {
                 excesses.push((index, number, excess));
             }
         }
+        let feedback: Vec<Complex64> = forward.iter().map(|[feedback, _]| *feedback).collect();
         let columns = self.samples.columns();
         let delay_s = self.samples.problem().minimum_delay_margin_s;
-        let delays = delay_margins(columns, feedback, self.samples.plants().len(), delay_s);
+        let delays = delay_margins(columns, &feedback, self.samples.plants().len(), delay_s);
         let worst_db = delays.crossovers.iter().map(|margin| margin.value_db).fold(decibels(worst), f64::min);
         Looked { excesses, delays, worst_db }
     }
 
     /// The objective and its slopes, given those of ln G at the columns.
-    fn objective(&self, x: &[f64], feedback: &[Complex64], slopes: &[Vec<Complex64>]) -> (f64, Vec<f64>) {
+    fn objective(&self, x: &[f64], forward: &[[Complex64; 2]], slopes: &[Vec<Complex64>]) -> (f64, Vec<f64>) {
+        let own = self.split(x).0;
         match self.objective {
             Objective::LeastHighFrequencyGain => {
-                let value = self.structure.high_frequency_gain_db(x).unwrap_or(f64::INFINITY);
-                (value, self.structure.high_frequency_slopes_db())
+                let value = self.structure.high_frequency_gain_db(own).unwrap_or(f64::INFINITY);
+                let mut along = self.structure.high_frequency_slopes_db();
+                along.resize(x.len(), 0.0);
+                (value, along)
             }
-            Objective::LeastBandwidth => match bandwidth(self.samples.columns(), feedback) {
-                Some(found) => (found.value_db, along(&found.terms, slopes, x.len())),
-                None => (0.0, vec![0.0; x.len()]),
-            },
+            Objective::LeastBandwidth => {
+                let feedback: Vec<Complex64> = forward.iter().map(|[feedback, _]| *feedback).collect();
+                match bandwidth(self.samples.columns(), &feedback) {
+                    Some(found) => (found.value_db, along(&found.terms, slopes, x.len())),
+                    None => (0.0, vec![0.0; x.len()]),
+                }
+            }
             Objective::BestWorstMargin => (0.0, vec![0.0; x.len()]),
         }
     }
 
-    /// Whether no plant is found unstable.
-    fn is_stable(&mut self, x: &[f64]) -> bool {
-        let problem = self.samples.problem();
-        let controller = Controller {
-            feedback: self.structure.compensator(x),
-            timing: problem.timing,
-            ..Controller::default()
-        };
-        let Ok(compensation) = Compensation::new(&controller, problem.sensor.clone()) else { return false };
-        let members = self.samples.members();
-        let others = (0..members.len()).filter(|&index| index != self.suspect);
-        let unstable = std::iter::once(self.suspect).chain(others).find(|&index| {
-            members.get(index).is_some_and(|member| {
-                let status = member_stability(member, &compensation).status;
-                matches!(status, StabilityStatus::Unstable(_))
-            })
+    /// Whether every plant is stable, and how far from it the worst one is.
+    fn stability(&mut self, x: &[f64]) -> (bool, f64) {
+        let timing = &self.samples.problem().timing;
+        let continuous = self.structure.compensator(self.split(x).0).transfer_function();
+        let feedback = continuous.and_then(|continuous| match timing.sample_time_s {
+            None => Ok(continuous),
+            Some(sample_time_s) => continuous.discretized(sample_time_s, timing.discretization),
         });
-        self.suspect = unstable.unwrap_or(self.suspect);
-        unstable.is_none()
+        let Ok(feedback) = feedback else { return (false, f64::INFINITY) };
+        if self.stability.is_stable(&feedback) == Ok(true) {
+            return (true, 0.0);
+        }
+        let judgement = self.stability.judge(&feedback);
+        (false, judgement.map_or(f64::INFINITY, |judgement| judgement.largest_real_part))
     }
 
     /// The rows of the columns and demands that matter, the least margin first.
-    fn rows(&mut self, looked: &Looked, feedback: &[Complex64], slopes: &[Vec<Complex64>]) -> Vec<MarginRow> {
+    fn rows(
+        &mut self,
+        looked: &Looked,
+        forward: &[[Complex64; 2]],
+        [own, behind]: &[Vec<Vec<Complex64>>; 2],
+    ) -> Vec<MarginRow> {
         let dimension = self.bounds.len();
-        let mut near: Vec<(f64, usize, usize)> = looked
-            .excesses
-            .iter()
-            .map(|&(column, demand, excess)| (decibels(excess), column, demand))
-            .filter(|(margin_db, ..)| *margin_db <= looked.worst_db + WINDOW_DB)
-            .collect();
-        near.sort_by(|one, other| one.0.total_cmp(&other.0));
-        near.truncate(ROWS_MAXIMUM);
-        near.sort_by_key(|&(_, column, demand)| (column, demand));
+        let plants = self.samples.plants().len();
         let mut rows = Vec::new();
-        for (index, number) in near.iter().map(|&(_, column, demand)| (column, demand)) {
-            let (column, feedback) = (&self.samples.columns()[index], feedback[index]);
-            self.around.close(column, feedback);
-            let demand = &column.demands[number];
+        for (index, number) in near(looked) {
+            let (column, [feedback, prefilter]) = (&self.samples.columns()[index], forward[index]);
+            self.around.close(column, feedback, prefilter);
+            let Some(demand) = column.demands.get(number) else { continue };
             for found in candidates(demand, column, &self.around, feedback) {
-                let factor = -DECIBELS_PER_NEPER * found.sensitivity;
+                let mut slopes = along(&[(index, -DECIBELS_PER_NEPER * found.sensitivity)], own, dimension);
+                let through = Complex64::new(-DECIBELS_PER_NEPER * demand.prefilter_power(), 0.0);
+                let of_prefilter = along(&[(index, through)], behind, dimension);
+                slopes.iter_mut().zip(of_prefilter).for_each(|(slope, more)| *slope += more);
                 rows.push(MarginRow {
+                    sample: sample_number(index, number, plants, &found),
                     margin_db: found.margin_db + demand.rate() * self.relaxation_db,
                     rate: demand.rate(),
-                    slopes: along(&[(index, factor)], slopes, dimension),
+                    slopes,
                 });
             }
         }
         let delays = looked.delays.crossovers.iter().chain(&looked.delays.peaks);
-        rows.extend(delays.filter(|margin| margin.value_db.is_finite()).map(|margin| MarginRow {
+        let delays = delays.filter(|margin| margin.value_db.is_finite()).enumerate();
+        rows.extend(delays.map(|(number, margin)| MarginRow {
+            sample: usize::MAX - number,
             margin_db: margin.value_db + self.relaxation_db,
             rate: 1.0,
-            slopes: along(&margin.terms, slopes, dimension),
+            slopes: along(&margin.terms, own, dimension),
         }));
         rows.retain(|row| row.slopes.iter().all(|slope| slope.is_finite()));
         rows.sort_by(|one, other| (one.margin_db / one.rate).total_cmp(&(other.margin_db / other.rate)));
@@ -236,28 +359,55 @@ impl Shaping {
     }
 }
 
+/// Column and demand of the least margins, in order.
+fn near(looked: &Looked) -> Vec<(usize, usize)> {
+    let mut near: Vec<(f64, usize, usize)> = looked
+        .excesses
+        .iter()
+        .map(|&(column, demand, excess)| (decibels(excess), column, demand))
+        .filter(|(margin_db, ..)| *margin_db <= looked.worst_db + WINDOW_DB)
+        .collect();
+    near.sort_by(|one, other| one.0.total_cmp(&other.0));
+    near.truncate(ROWS_MAXIMUM);
+    let mut places: Vec<(usize, usize)> =
+        near.into_iter().map(|(_, column, demand)| (column, demand)).collect();
+    places.sort_unstable();
+    places
+}
+
+/// A number for the margin of this plant, or pair, to this demand at this column.
+fn sample_number(column: usize, demand: usize, plants: usize, found: &Candidate) -> usize {
+    let pair = found.plant * (plants + 1) + found.other.map_or(plants, |other| other);
+    (column * Demand::PER_COLUMN + demand) * (plants + 1) * (plants + 1) + pair
+}
+
 impl SearchProblem for Shaping {
     fn bounds(&self) -> &[[f64; 2]] {
         &self.bounds
     }
 
     fn judge(&mut self, x: &[f64]) -> Judgement {
-        let Some(feedback) = self.feedback(x) else {
-            let none = f64::NEG_INFINITY;
-            return Judgement { objective_db: f64::INFINITY, worst_margin_db: none, stable: false };
+        let Some(forward) = self.forward(x) else {
+            return Judgement {
+                objective_db: f64::INFINITY,
+                worst_margin_db: f64::NEG_INFINITY,
+                stable: false,
+                instability: f64::INFINITY,
+            };
         };
-        let worst_margin_db = self.look(&feedback).worst_db + self.relaxation_db;
-        let (objective_db, _) = self.objective(x, &feedback, &[]);
-        Judgement { objective_db, worst_margin_db, stable: self.is_stable(x) }
+        let worst_margin_db = self.look(&forward).worst_db + self.relaxation_db;
+        let (objective_db, _) = self.objective(x, &forward, &[]);
+        let (stable, instability) = self.stability(x);
+        Judgement { objective_db, worst_margin_db, stable, instability }
     }
 
     fn slopes(&mut self, x: &[f64]) -> Slopes {
         let none =
             || Slopes { objective_db: f64::INFINITY, objective_slopes: vec![0.0; x.len()], margins: vec![] };
-        let (Some(feedback), Ok(slopes)) = (self.feedback(x), self.response.slopes(x)) else { return none() };
-        let looked = self.look(&feedback);
-        let (objective_db, objective_slopes) = self.objective(x, &feedback, &slopes);
-        Slopes { objective_db, objective_slopes, margins: self.rows(&looked, &feedback, &slopes) }
+        let (Some(forward), Some(slopes)) = (self.forward(x), self.forward_slopes(x)) else { return none() };
+        let looked = self.look(&forward);
+        let (objective_db, objective_slopes) = self.objective(x, &forward, &slopes[0]);
+        Slopes { objective_db, objective_slopes, margins: self.rows(&looked, &forward, &slopes) }
     }
 }
 

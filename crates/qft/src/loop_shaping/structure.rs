@@ -13,7 +13,7 @@ pub use response::StructureResponse;
 /// dB in a neper, 20/ln 10: what a change of ln|G| by one is.
 pub(super) const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 
-/// One factor of a structure. Every free number has its least and greatest value; frequencies in rad/s.
+/// One factor of a structure. Every number has its least and greatest value; frequencies in rad/s.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Part {
     /// An element without free numbers, such as an integrator.
@@ -50,7 +50,8 @@ pub enum Part {
 /// G(s; x) = sign k part_1(s) part_2(s) ...,      x = (ln k, ln of each free number in turn)
 /// ```
 ///
-/// The free numbers of a pair are its natural frequency, then its damping ratio.
+/// The numbers of a pair are its natural frequency, then its damping ratio. A number whose least and greatest value are the same, the gain
+/// among them, is not free: it has no x.
 ///
 /// # Example
 /// Integral control with a lead, its two corners free:
@@ -103,7 +104,7 @@ impl Part {
         }
     }
 
-    /// Least and greatest value of each free number.
+    /// Least and greatest value of each number.
     fn ranges(&self) -> Vec<[f64; 2]> {
         match *self {
             Part::Fixed(_) => vec![],
@@ -113,7 +114,7 @@ impl Part {
         }
     }
 
-    /// The element with these free numbers.
+    /// The element with these numbers.
     fn element(&self, mut numbers: impl Iterator<Item = f64>) -> Element {
         let mut next = || numbers.next().unwrap_or(f64::NAN);
         match self {
@@ -131,23 +132,49 @@ impl Part {
 }
 
 impl Structure {
-    /// Number of free numbers, the gain among them.
+    /// What is given, without free numbers.
+    pub fn fixed_to(function: &TransferFunction) -> Structure {
+        let parts = vec![Part::Fixed(Element::General(function.clone()))];
+        Structure { sign: 1.0, gain: [1.0, 1.0], parts }
+    }
+
+    /// Number of free numbers.
     pub fn dimension(&self) -> usize {
-        1 + self.parts.iter().map(|part| part.ranges().len()).sum::<usize>()
+        self.ranges().iter().filter(|range| is_free(range)).count()
     }
 
     /// Least and greatest value of each x, natural logarithms.
     pub fn bounds(&self) -> Vec<[f64; 2]> {
-        let ranges = self.parts.iter().flat_map(Part::ranges);
-        std::iter::once(self.gain).chain(ranges).map(|range| range.map(portable::ln)).collect()
+        let free = self.ranges().into_iter().filter(is_free);
+        free.map(|range| range.map(portable::ln)).collect()
     }
 
     /// The controller at x: its gain, and an element for each part. A number that x lacks is NaN.
     pub fn compensator(&self, x: &[f64]) -> Compensator {
-        let mut numbers = x.iter().map(|&x| portable::exp(x));
+        let mut numbers = self.numbers(x).into_iter();
         let gain = Element::Gain(self.sign * numbers.next().unwrap_or(f64::NAN));
         let elements = self.parts.iter().map(|part| part.element(&mut numbers));
         Compensator::new(std::iter::once(gain).chain(elements).collect())
+    }
+
+    /// Least and greatest value of every number, that of the gain first.
+    fn ranges(&self) -> Vec<[f64; 2]> {
+        std::iter::once(self.gain).chain(self.parts.iter().flat_map(Part::ranges)).collect()
+    }
+
+    /// Every number at x, the gain first.
+    fn numbers(&self, x: &[f64]) -> Vec<f64> {
+        let mut free = x.iter().map(|&x| portable::exp(x));
+        let number = |range: [f64; 2]| {
+            if is_free(&range) { free.next().unwrap_or(f64::NAN) } else { range[0] }
+        };
+        self.ranges().into_iter().map(number).collect()
+    }
+
+    /// Of what is given for every number, that of the free ones.
+    fn of_free<T>(&self, all: impl IntoIterator<Item = T>) -> Vec<T> {
+        let pairs = all.into_iter().zip(self.ranges());
+        pairs.filter(|(_, range)| is_free(range)).map(|(one, _)| one).collect()
     }
 
     /// Number of poles.
@@ -179,17 +206,29 @@ impl Structure {
     /// # Errors
     /// A fixed element that is no transfer function.
     pub fn high_frequency_gain_db(&self, x: &[f64]) -> Result<f64, LinearError> {
-        let free: f64 = self.high_frequency_slopes_db().iter().zip(x).map(|(slope, x)| slope * x).sum();
+        let numbers = self.numbers(x).into_iter().map(portable::ln);
+        let free: f64 =
+            self.all_high_frequency_slopes_db().iter().zip(numbers).map(|(slope, x)| slope * x).sum();
         Ok(free + decibels(self.fixed()?.gain().abs()))
     }
 
     /// dB of high-frequency gain for each unit of x; the same at every x.
     pub fn high_frequency_slopes_db(&self) -> Vec<f64> {
+        self.of_free(self.all_high_frequency_slopes_db())
+    }
+
+    fn all_high_frequency_slopes_db(&self) -> Vec<f64> {
         let slopes = self.factors().flat_map(|factor| match factor.pair {
             false => vec![-factor.power],
             true => vec![-2.0 * factor.power, 0.0],
         });
         std::iter::once(1.0).chain(slopes).map(|slope| DECIBELS_PER_NEPER * slope).collect()
+    }
+
+    /// Number of zeros (power 1) or poles (power -1).
+    pub(crate) fn roots(&self, power: f64) -> usize {
+        let degrees = self.degrees().unwrap_or_default();
+        if power > 0.0 { degrees[0] } else { degrees[1] }
     }
 
     /// The parts with free numbers, in turn.
@@ -215,4 +254,8 @@ impl Structure {
         }
         Ok(degrees)
     }
+}
+
+fn is_free(range: &[f64; 2]) -> bool {
+    range[0] < range[1]
 }

@@ -35,6 +35,8 @@ pub struct PrefilterBand {
     pub(super) points: Vec<PrefilterBandPoint>,
     /// Least and greatest relative degree that F may have.
     pub(super) relative_degree: [usize; 2],
+    /// Least and greatest |F(0)|, dB.
+    pub(super) gain_db: [f64; 2],
     /// The positive frequencies that were asked for, from and to, rad/s.
     pub(super) span: [f64; 2],
 }
@@ -102,13 +104,14 @@ impl PrefilterBand {
             Some(PrefilterBandPoint::new(extremes, lower, upper))
         };
         let points: Vec<PrefilterBandPoint> = extremes.iter().filter_map(point).collect();
+        let gain_db = points.first().map_or([0.0; 2], |lowest| [lowest.least_db, lowest.greatest_db]);
         let positive =
             points.iter().map(|point| point.frequency_rad_per_s).filter(|frequency| *frequency > 0.0);
         let span = [positive.clone().fold(f64::INFINITY, f64::min), positive.fold(0.0, f64::max)];
         if span[1] == 0.0 {
             return Err(PrefilterError::NoFrequency);
         }
-        Ok(PrefilterBand { points, relative_degree: [0, usize::MAX], span })
+        Ok(PrefilterBand { points, relative_degree: [0, usize::MAX], gain_db, span })
     }
 
     /// The band of a family at these frequencies (positive, increasing), and what follows from the ends of the frequency axis: see
@@ -159,6 +162,16 @@ impl PrefilterBand {
         let Some([lower, upper]) = demand.at(frequency_rad_per_s) else { return Ok(None) };
         let found = tracking_extremes(compensation, members, &[frequency_rad_per_s])?;
         Ok(found.first().map(|extremes| PrefilterBandPoint::new(extremes, lower, upper)))
+    }
+
+    /// The same band for limits that are eased: every upper one raised and every lower one lowered by this, dB. F(0) stays as it was.
+    pub fn relaxed(mut self, relaxation_db: f64) -> PrefilterBand {
+        for point in &mut self.points {
+            point.least_db -= relaxation_db;
+            point.greatest_db += relaxation_db;
+            point.allowed_db += 2.0 * relaxation_db;
+        }
+        self
     }
 
     /// The band over frequency, in increasing order.

@@ -53,6 +53,11 @@ pub(super) fn towards_zero(
     if demand.band[0] > 0.0 && !known {
         return Ok(());
     }
+    band.gain_db = [rest.least_db, rest.greatest_db];
+    if meet {
+        let middle = (rest.least_db + rest.greatest_db) / 2.0;
+        band.gain_db = [if middle.abs() < RESOLVED_DB { 0.0 } else { middle }; 2];
+    }
     let mut added = Vec::new();
     let lowest = band.points.iter().position(|point| point.frequency_rad_per_s > 0.0);
     let mut last = lowest.and_then(|index| band.points.get(index)).copied();

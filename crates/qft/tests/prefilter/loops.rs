@@ -2,8 +2,11 @@
 
 use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::linear::{Polynomial, TransferFunction};
-use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+use phea_dynamics::uncertain_plant::{
+    PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
+};
 use phea_qft::closed_loop::{Compensation, Member};
+use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::specification::{Limit, Requirement, Specification};
 
 pub(crate) fn rational(numerator: &[f64], denominator: &[f64]) -> TransferFunction {
@@ -36,13 +39,40 @@ pub(crate) fn tracking(lower: Limit, upper: Limit, band: [f64; 2]) -> Specificat
 
 /// k a/(s (s + a)), k and a from 1 to 10, with the published controller; its tracking specification up to 10 rad/s.
 pub(crate) fn servo() -> (Compensation, Vec<Member>, Specification) {
-    let compensation = around(rational(&[3.0787e6, 3.5365e8, 3.8529e8], &[1.0, 1528.8, 1.0636e6, 4.281e7]));
-    let values: Vec<f64> = (0..5).map(|index| 10f64.powf(0.25 * f64::from(index))).collect();
-    let plants = values.iter().flat_map(|&k| values.iter().map(move |&a| (k, a)));
-    let members = plants.map(|(k, a)| member(&compensation, &[k * a], &[1.0, a, 0.0])).collect();
+    let compensation = around(servo_controller());
+    let Family::Uncertain(family) = servo_family() else { panic!("it is a box") };
+    let coefficients = family.members().iter().map(|values| family.plant().coefficients(values));
+    let members = coefficients.map(|plant| compensation.member(plant).unwrap()).collect();
     let upper = Limit::Rational(rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]));
     let lower = Limit::Rational(rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]));
     (compensation, members, tracking(lower, upper, [0.0, 10.0]))
+}
+
+pub(crate) fn servo_controller() -> TransferFunction {
+    rational(&[3.0787e6, 3.5365e8, 3.8529e8], &[1.0, 1528.8, 1.0636e6, 4.281e7])
+}
+
+pub(crate) fn servo_family() -> Family {
+    let parameter =
+        |name: &str| UncertainParameter { name: name.into(), nominal: 1.0, minimum: 1.0, maximum: 10.0 };
+    let plant = UncertainPlant::record(vec![parameter("k"), parameter("a")], |p| PlantCoefficients {
+        command: RationalCoefficients {
+            numerator: vec![p[0] * p[1]],
+            denominator: vec![1.0.into(), p[1], 0.0.into()],
+        },
+        disturbance: None,
+        dead_time_s: 0.0.into(),
+    })
+    .unwrap();
+    let along = |index: usize| Coordinate {
+        parameters: vec![index],
+        opposed: vec![],
+        spacing: vec![Spacing::Logarithmic],
+        points: 5,
+    };
+    let coordinates = vec![along(0), along(1)];
+    let members = grid(&plant, &coordinates).unwrap();
+    Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap())
 }
 
 /// Frequencies by equal factors.

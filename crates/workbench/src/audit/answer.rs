@@ -8,7 +8,7 @@ use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 
 #[derive(Serialize)]
-struct Body<'a> {
+pub(crate) struct Body<'a> {
     verdict: &'static str,
     evidence: &'static str,
     tolerance_db: f64,
@@ -132,10 +132,15 @@ fn specification<'a>(
 
 /// The JSON object of `verify`.
 pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
+    answer::json("verify", loaded, body(view))
+}
+
+/// What an audit says in JSON, beside what every object carries.
+pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
     let (audit, names) = (&view.audit, &view.names);
     let stability = &audit.stability;
     let margin = audit.delay_margin.as_ref();
-    let body = Body {
+    Body {
         verdict: verdict_key(audit.verdict),
         evidence: evidence_key(audit.evidence),
         tolerance_db: audit.tolerance_db,
@@ -173,8 +178,7 @@ pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
             .zip(&view.reached)
             .map(|(finding, reached)| specification(names, finding, *reached))
             .collect(),
-    };
-    answer::json("verify", loaded, body)
+    }
 }
 
 /// The family's worst margins over frequency as a table for other programs.

@@ -4,14 +4,14 @@ mod element;
 
 pub use element::{Element, ElementKind};
 
-use super::formula::Formula;
+use super::formula::{Formula, Variable};
 use super::key::{key, plain};
 use super::reader::Reader;
 use super::text::Findings;
 use super::tree::Node;
 use super::visitor::{Shape, Visitor};
 use crate::catalogue::Catalogue;
-use crate::quantity::{RATIO, TIME, VOLTAGE};
+use crate::quantity::{FORCE, RATIO, TIME, VOLTAGE};
 
 /// A transfer function in one of three forms: polynomials, factors, or elements in series.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,46 +26,18 @@ pub struct Transfer {
     pub zeros: Vec<[f64; 2]>,
     /// Real and imaginary parts, 1/s.
     pub poles: Vec<[f64; 2]>,
+    /// Whether gain, zeros and poles are in s (absent) or in z.
+    pub domain: Option<Variable>,
     /// Elements in series.
     pub elements: Vec<Element>,
 }
 
-/// Which of its forms a [`Transfer`] is written in.
-#[derive(Clone, Debug, PartialEq)]
-pub enum TransferForm<'a> {
-    /// Polynomials.
-    Polynomials {
-        /// As written.
-        numerator: &'a Formula,
-        /// As written.
-        denominator: &'a Formula,
-    },
-    /// k Π(s - z)/Π(s - p).
-    Factors {
-        /// k.
-        gain: f64,
-        /// Real and imaginary parts.
-        zeros: &'a [[f64; 2]],
-        /// Real and imaginary parts.
-        poles: &'a [[f64; 2]],
-    },
-    /// In series.
-    Elements(&'a [Element]),
-}
+/// The words of `domain`.
+pub(super) static DOMAINS: [(&str, Option<Variable>); 2] =
+    [("s", Some(Variable::S)), ("z", Some(Variable::Z))];
 
 impl Transfer {
-    /// The form it is written in; `None` only for one that was not read from a valid project.
-    pub fn form(&self) -> Option<TransferForm<'_>> {
-        if let (Some(numerator), Some(denominator)) = (&self.numerator, &self.denominator) {
-            return Some(TransferForm::Polynomials { numerator, denominator });
-        }
-        if let Some(gain) = self.gain {
-            return Some(TransferForm::Factors { gain, zeros: &self.zeros, poles: &self.poles });
-        }
-        if self.elements.is_empty() { None } else { Some(TransferForm::Elements(&self.elements)) }
-    }
-
-    /// The same as elements in series: polynomials and factors are one general element, with every number as it was written.
+    /// All of it as elements in series: polynomials and factors are one general element, with every number as it was written.
     ///
     /// # Example
     /// ```
@@ -76,19 +48,20 @@ impl Transfer {
     /// assert!(Transfer::default().as_elements().is_empty());
     /// ```
     pub fn as_elements(&self) -> Vec<Element> {
-        match self.form() {
-            None => vec![],
-            Some(TransferForm::Elements(elements)) => elements.to_vec(),
-            Some(TransferForm::Polynomials { .. } | TransferForm::Factors { .. }) => vec![Element {
-                kind: ElementKind::General,
-                numerator: self.numerator.clone(),
-                denominator: self.denominator.clone(),
-                gain: self.gain,
-                zeros: self.zeros.clone(),
-                poles: self.poles.clone(),
-                ..Element::default()
-            }],
+        let polynomials = self.numerator.is_some() && self.denominator.is_some();
+        if !polynomials && self.gain.is_none() {
+            return self.elements.clone();
         }
+        vec![Element {
+            kind: ElementKind::General,
+            numerator: self.numerator.clone(),
+            denominator: self.denominator.clone(),
+            gain: self.gain,
+            zeros: self.zeros.clone(),
+            poles: self.poles.clone(),
+            domain: self.domain,
+            ..Element::default()
+        }]
     }
 
     /// What a table says of it, other keys left alone.
@@ -114,6 +87,8 @@ impl Transfer {
             key("poles", &RATIO, "Numbers, or [re, im] pairs with their conjugates."),
             &mut self.poles,
         );
+        let k = plain("domain", "Of gain, zeros and poles: in s, or in z when sampled.");
+        v.choice(k, &DOMAINS, &mut self.domain, false);
         v.tables(plain("elements", "Elements in series."), &mut self.elements, Element::visit);
     }
 }
@@ -133,6 +108,48 @@ pub struct Controller {
     pub delay: f64,
     /// How a continuous controller becomes a sampled one.
     pub discretization: Discretization,
+    /// What its computer rounds; absent: nothing.
+    pub quantization: Option<Quantization>,
+}
+
+/// What the computer of a sampled controller rounds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Quantization {
+    /// Of the converter of the command; 0: it does not round.
+    pub command_bits: u32,
+    /// V (or the plant's input unit), from and to.
+    pub command_range: Option<[f64; 2]>,
+    /// Of the converter of the measurement; 0: it does not round.
+    pub measurement_bits: u32,
+    /// N (or the plant's output unit), from and to.
+    pub measurement_range: Option<[f64; 2]>,
+    /// How the coefficients are kept.
+    pub coefficients: Coefficients,
+}
+
+/// How coefficients are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Coefficients {
+    /// With 53 bits: as they are.
+    #[default]
+    Double,
+    /// With 24 bits.
+    Single,
+}
+
+impl Quantization {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let bits = |name, doc| key(name, &RATIO, doc).not_negative().at_most(32.0).or(0.0);
+        let k = bits("command_bits", "Bits of the command's converter; 0: it does not round.");
+        v.count(k, &mut self.command_bits);
+        v.pair(key("command_range", &VOLTAGE, "From and to."), &mut self.command_range);
+        let k = bits("measurement_bits", "Bits of the measurement's converter; 0: it does not round.");
+        v.count(k, &mut self.measurement_bits);
+        v.pair(key("measurement_range", &FORCE, "From and to."), &mut self.measurement_range);
+        let words = &[("f64", Coefficients::Double), ("f32", Coefficients::Single)];
+        let k = plain("coefficients", "How the coefficients are kept.");
+        v.choice(k, words, &mut self.coefficients, false);
+    }
 }
 
 /// What happens to the integrator at the limit.
@@ -160,6 +177,11 @@ pub enum Discretization {
 }
 
 impl Controller {
+    /// Whether it says what it does, and not only when: without a law it is to be designed.
+    pub fn has_law(&self) -> bool {
+        !self.transfer.as_elements().is_empty()
+    }
+
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         self.transfer.visit(v);
         let k = key("saturation", &VOLTAGE, "Limit of the command.").positive();
@@ -182,6 +204,8 @@ impl Controller {
         ];
         let k = plain("discretization", "How a continuous controller becomes a sampled one.");
         v.choice(k, words, &mut self.discretization, false);
+        let k = plain("quantization", "What the computer of a sampled controller rounds.");
+        v.table(k, &mut self.quantization, Quantization::visit);
     }
 }
 

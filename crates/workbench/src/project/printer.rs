@@ -60,6 +60,11 @@ impl Printer {
         self.open.first().and_then(Section::inline)
     }
 
+    /// The lines of the outermost table alone: each key with its value.
+    pub(crate) fn lines(self) -> Vec<(String, String)> {
+        self.open.into_iter().next().unwrap_or_default().lines
+    }
+
     /// The whole text.
     pub(crate) fn finish(self) -> String {
         let mut out = String::new();

@@ -67,7 +67,7 @@ pub fn read(
     let warnings = report.diagnostics;
     let (settings, texts) = (settings.to_vec(), report.texts);
     let path = path.to_string();
-    Ok(Loaded { project, warnings, texts, path, sha256, settings, catalogue_files, provenance })
+    Ok(Loaded { project, warnings, texts, path, bytes, sha256, settings, catalogue_files, provenance })
 }
 
 /// The hash by which answers name a project.

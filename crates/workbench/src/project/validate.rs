@@ -1,5 +1,6 @@
 //! What must hold between the values of a project, beyond the range of each.
 
+mod design;
 mod family;
 mod linear_loop;
 mod rig;
@@ -28,6 +29,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     linear_loop::sensor(project, &mut check);
     specification::specifications(project, &mut check);
     linear_loop::controllers(project, &mut check);
+    design::design(project, &mut check);
 }
 
 /// Reports what cannot be in one element; `path` leads to it.

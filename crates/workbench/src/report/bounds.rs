@@ -225,7 +225,7 @@ fn feasibility(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<String
 }
 
 /// Bounds and templates as tables for other programs.
-pub(super) fn files(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<OutputFile> {
+pub(crate) fn files(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<OutputFile> {
     let mut bounds = String::from(
         "specification,kind,frequency_rad_per_s,phase_deg,forbidden_from_gain,forbidden_to_gain\n",
     );

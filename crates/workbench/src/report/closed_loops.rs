@@ -4,7 +4,6 @@ use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_qft::closed_loop::Member;
-use phea_qft::family::Family;
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
@@ -30,26 +29,13 @@ pub(super) fn span(specification: &Specification, finding: &SpecificationFinding
     if ends.is_empty() { [0.01, 1000.0] } else { [low / MARGIN_OF_FREQUENCY, high * MARGIN_OF_FREQUENCY] }
 }
 
-/// Every member within the loop.
-fn all_members(problem: &RobustProblem) -> Result<Vec<Member>, LinearError> {
-    match &problem.family {
-        Family::Uncertain(family) => {
-            let plants = family.members().iter().map(|values| family.plant().coefficients(values));
-            plants.map(|plant| problem.compensation.member(plant)).collect()
-        }
-        Family::Measured(family) => {
-            Ok(family.plants().iter().map(|plant| problem.compensation.measured(plant)).collect())
-        }
-    }
-}
-
 /// One figure for each specification that has a margin; the magnitudes of an unstable loop are those of no response.
 pub(super) fn figures(
     problem: &RobustProblem,
     findings: &[SpecificationFinding],
     tolerance_db: f64,
 ) -> Result<Vec<Figure>, LinearError> {
-    let members = all_members(problem)?;
+    let members = problem.members()?;
     let numbered = problem.specifications.iter().zip(findings).enumerate();
     numbered
         .filter(|(_, (_, finding))| finding.worst.is_some())

@@ -50,7 +50,8 @@ fn paths(loaded: &Loaded, keep: impl Fn(&Origin) -> bool) -> Vec<&str> {
 
 /// What this report does not say.
 fn not_proven(project: &Project) -> &'static str {
-    match (project.controller.is_some() && !project.specifications.is_empty(), project.actuator.is_some()) {
+    let law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
+    match (law && !project.specifications.is_empty(), project.actuator.is_some()) {
         (true, true) => {
             "The audit searched for the worst plant and frequency of the linear models; a search is no proof. How the nonlinear machine behaves is not said here."
         }

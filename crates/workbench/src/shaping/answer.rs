@@ -146,9 +146,11 @@ pub fn json(loaded: &Loaded, view: &Shaping) -> String {
     answer::json("shape", loaded, body)
 }
 
-/// The project file with the changed elements, under the name it has; then the margins as a table for other programs.
-pub fn files(loaded: &Loaded, view: &Shaping) -> Vec<OutputFile> {
-    let name = loaded.path.rsplit(['/', '\\']).next().unwrap_or(&loaded.path).to_string();
+/// Name of the project with the changed elements in it.
+pub const SHAPED_PROJECT: &str = "shaped.toml";
+
+/// The project file with the changed elements; then the margins as a table for other programs.
+pub fn files(view: &Shaping) -> Vec<OutputFile> {
     let mut csv = String::from("specification,kind,frequency_rad_per_s,margin_db,allowed\n");
     for MarginRow { specification, kind, frequency_rad_per_s, margin_db, placement, .. } in margin_rows(view)
     {
@@ -156,7 +158,7 @@ pub fn files(loaded: &Loaded, view: &Shaping) -> Vec<OutputFile> {
         csv.push_str(&format!("{specification},{kind},{frequency_rad_per_s},{margin},{allowed}\n"));
     }
     vec![
-        OutputFile { name, bytes: view.saved.clone() },
+        OutputFile { name: SHAPED_PROJECT.to_string(), bytes: view.saved.clone() },
         OutputFile { name: "margins.csv".to_string(), bytes: csv.into_bytes() },
     ]
 }

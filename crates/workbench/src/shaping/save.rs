@@ -7,11 +7,10 @@ use std::ops::Range;
 
 use super::{Shaped, ShapingError};
 use crate::command::CommandError;
-use crate::project::{self, Element, Entry, Findings, Loaded, Node, Transfer, TreeValue, read_tree};
+use crate::project::{
+    self, Element, Entry, Findings, Loaded, Node, Transfer, TreeValue, read_tree, with_law,
+};
 use crate::source::{Source, SourceError};
-
-/// The forms that `elements` takes the place of.
-const OTHER_FORMS: [&str; 5] = ["numerator", "denominator", "gain", "zeros", "poles"];
 
 /// Some bytes of a text and what takes their place.
 struct Replacement {
@@ -42,14 +41,10 @@ pub(super) fn saved(
     shaped: Shaped,
     elements: &[Element],
 ) -> Result<Vec<u8>, CommandError> {
-    let not_written = |reason: String| ShapingError::NotWritten { reason };
-    let bytes = source.read(&loaded.path).map_err(|error| not_written(error.to_string()))?;
-    if project::sha256(&bytes) != loaded.sha256 {
-        return Err(not_written("it has changed since it was read".to_string()).into());
-    }
+    let bytes = &loaded.bytes;
     let table = shaped.table();
     let mut findings = Findings::default();
-    let Some(root) = read_tree(&loaded.path, &bytes, &mut findings) else {
+    let Some(root) = read_tree(&loaded.path, bytes, &mut findings) else {
         return Err(ShapingError::Refused(findings.report()).into());
     };
     let skipped = bytes.len() - findings.content(root.place.text).len();
@@ -74,11 +69,12 @@ fn read_back(
         return Ok(()); // the file alone need not be a valid project
     }
     let over = Over { source, path: &loaded.path, bytes: saved };
-    let again = project::read(&over, &loaded.path, &[], &[]).or_else(|report| {
+    let again = match project::read(&over, &loaded.path, &[], &[]) {
+        Ok(again) => again,
         // names of the user's own catalogue are known to the command line alone
-        let foreign = !loaded.catalogue_files.iter().all(|file| file.starts_with("built-in:"));
-        if foreign { Ok(loaded.clone()) } else { Err(ShapingError::Refused(report)) }
-    })?;
+        Err(_) if !loaded.catalogue_files.iter().all(|file| file.starts_with("built-in:")) => return Ok(()),
+        Err(report) => return Err(ShapingError::Refused(report).into()),
+    };
     let transfer = match shaped {
         Shaped::Controller => again.project.controller.map(|controller| controller.transfer),
         Shaped::Prefilter => again.project.prefilter.map(|prefilter| prefilter.transfer),
@@ -110,34 +106,23 @@ impl Source for Over<'_> {
 
 impl Draft<'_> {
     fn rewritten(&self, root: &Node, findings: &mut Findings) -> Result<String, ShapingError> {
-        let mut replacements = match root.get(self.table) {
-            None if self.elements.is_empty() => vec![],
-            None => vec![self.appended()],
-            Some(entry) if Transfer::read(&entry.node, findings).as_elements() == self.elements => vec![],
-            Some(entry) => match entry.node.get("elements") {
-                Some(list) => self.in_list(&entry.node, list, findings)?,
-                None => self.in_place_of_other_forms(&entry.node),
-            },
+        let table = root.get(self.table).map(|entry| &entry.node);
+        let given = table.map(|table| Transfer::read(table, findings).as_elements()).unwrap_or_default();
+        if given == self.elements {
+            return Ok(self.content.to_string());
+        }
+        let list = table.and_then(|table| table.get("elements").map(|list| (table, list)));
+        let Some((table, list)) = list else {
+            let elements = [("elements".to_string(), array::fresh(self))];
+            return Ok(with_law(self.content, self.table, &elements));
         };
+        let mut replacements = self.in_list(table, list, findings)?;
         replacements.sort_by_key(|replacement| std::cmp::Reverse(replacement.range.start));
         let mut text = self.content.to_string();
         for Replacement { range, text: new } in replacements {
             text.replace_range(range, &new);
         }
         Ok(text)
-    }
-
-    /// A table of its own at the end of the file.
-    fn appended(&self) -> Replacement {
-        let end = self.content.len();
-        let last_line =
-            if self.content.is_empty() || self.content.ends_with('\n') { "" } else { self.newline };
-        let Draft { newline, table, .. } = *self;
-        let array = array::fresh(self);
-        Replacement {
-            range: end..end,
-            text: format!("{last_line}{newline}[{table}]{newline}elements = {array}{newline}"),
-        }
     }
 
     fn in_list(
@@ -157,35 +142,6 @@ impl Draft<'_> {
             let range = list.node.place.start..list.node.place.end;
             Ok(vec![Replacement { text: array::rewritten(self, &range, &written), range }])
         }
-    }
-
-    /// The first key of another form becomes `elements`; the others go.
-    fn in_place_of_other_forms(&self, table: &Node) -> Vec<Replacement> {
-        let mut keys: Vec<&Entry> = OTHER_FORMS.iter().filter_map(|name| table.get(name)).collect();
-        keys.sort_by_key(|entry| entry.key_place);
-        let Some((first, others)) = keys.split_first() else { return vec![] };
-        let array = array::fresh(self);
-        let mut replacements = vec![Replacement {
-            range: first.key_place.start..first.node.place.end,
-            text: format!("elements = {array}"),
-        }];
-        let inline = self.content.get(table.place.start..).is_some_and(|text| text.starts_with('{'));
-        let removed = |entry: &&Entry| Replacement {
-            range: if inline { after_neighbour(table, entry) } else { self.line_of(entry) },
-            text: String::new(),
-        };
-        replacements.extend(others.iter().map(removed));
-        replacements
-    }
-
-    /// A key with its value and the line that they leave empty; a comment behind them stays.
-    fn line_of(&self, entry: &Entry) -> Range<usize> {
-        let before = self.content.get(..entry.key_place.start).unwrap_or_default();
-        let start = before.rfind('\n').map_or(0, |at| at + 1);
-        let end = entry.node.place.end;
-        let behind = self.content.get(end..).unwrap_or_default();
-        let line = behind.split_inclusive('\n').next().unwrap_or_default();
-        if line.trim().is_empty() { start..end + line.len() } else { start..end + spaces(line) }
     }
 }
 
@@ -214,17 +170,6 @@ impl Written<'_> {
     fn last_value(&self) -> usize {
         self.node.entries().iter().map(|entry| entry.node.place.end).fold(self.node.place.start, usize::max)
     }
-}
-
-/// From the end of the value before it to the end of its own: the comma between them goes too.
-fn after_neighbour(table: &Node, entry: &Entry) -> Range<usize> {
-    let ends = table.entries().iter().map(|other| other.node.place.end);
-    let start = ends.filter(|end| *end <= entry.key_place.start).max().unwrap_or(entry.key_place.start);
-    start..entry.node.place.end
-}
-
-fn spaces(text: &str) -> usize {
-    text.len() - text.trim_start_matches([' ', '\t']).len()
 }
 
 /// For each element the one of the file that it is: equal ones in order, then those that differ in `enabled` alone.

@@ -47,7 +47,7 @@ impl<'a> Workpiece<'a> {
 
     /// When the loop acts.
     pub(super) fn timing(&self) -> Timing {
-        self.project.controller.as_ref().map_or_else(Timing::default, control::timing)
+        control::timing(self.project)
     }
 
     /// Takes an element in as it is declared, and gives it as the loop has it.

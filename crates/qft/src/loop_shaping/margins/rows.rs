@@ -5,12 +5,12 @@ use phea_dynamics::portable;
 
 use super::super::samples::Column;
 use super::super::structure::DECIBELS_PER_NEPER;
-use super::{ColumnLoop, Demand, Quantity};
+use super::{ColumnLoop, Demand, Quantity, extremes};
 
 /// Change of ln G up to which a margin may be asked for.
 const REACH: f64 = 0.5;
-/// Plants further from the worst one than this are not looked at, dB.
-const WINDOW_DB: f64 = 12.0;
+/// Plants whose magnitude squared is further from the worst one's than by this factor, 12 dB, are not looked at.
+const WINDOW: f64 = 16.0;
 /// Plants that are kept of one column and demand.
 const PLANTS_MAXIMUM: usize = 4;
 
@@ -34,30 +34,33 @@ pub(crate) fn candidates(
     around: &ColumnLoop,
     feedback: Complex64,
 ) -> Vec<Candidate> {
-    let level = |place: usize| DECIBELS_PER_NEPER * 0.5 * portable::ln(demand.squared(column, around, place));
-    let allowed = DECIBELS_PER_NEPER * 0.5 * portable::ln(demand.allowed);
+    let squares: Vec<f64> =
+        (0..column.plants.len()).map(|place| demand.squared(column, around, place)).collect();
+    let [least, greatest] = extremes(squares.iter().copied());
+    let half_decibels = |squared: f64| DECIBELS_PER_NEPER * 0.5 * portable::ln(squared);
     let of = |place: usize, margin_db: f64, sign: f64| {
         let open = column.loop_at(place) * feedback;
         let coefficient = demand.feedback_power() - open / (1.0 + open);
         Candidate { margin_db, sensitivity: coefficient * sign, plant: column.plants[place], other: None }
     };
-    let places = 0..column.plants.len();
     let below = |allowed: f64| {
-        let all = places.clone().map(|place| of(place, allowed - level(place), 1.0));
-        prominent(all.collect())
+        let high = squares.iter().enumerate().filter(|(_, square)| **square * WINDOW >= greatest);
+        prominent(high.map(|(place, square)| of(place, half_decibels(allowed / square), 1.0)).collect())
     };
     let above = |allowed: f64| {
-        let all = places.clone().map(|place| of(place, level(place) - allowed, -1.0));
-        prominent(all.collect())
+        let low = squares.iter().enumerate().filter(|(_, square)| **square <= least * WINDOW);
+        prominent(low.map(|(place, square)| of(place, half_decibels(square / allowed), -1.0)).collect())
     };
+    let allowed = demand.allowed;
     match demand.quantity {
         Quantity::TrackingAbove => above(allowed),
         Quantity::Spread => {
-            let (tops, bottoms) = (below(0.0), above(0.0));
+            let (tops, bottoms) = (below(1.0), above(1.0));
+            let allowed_db = half_decibels(allowed);
             let mut pairs: Vec<Candidate> = Vec::new();
             for top in &tops {
                 pairs.extend(bottoms.iter().map(|bottom| Candidate {
-                    margin_db: allowed + top.margin_db + bottom.margin_db,
+                    margin_db: allowed_db + top.margin_db + bottom.margin_db,
                     sensitivity: top.sensitivity + bottom.sensitivity,
                     plant: top.plant,
                     other: Some(bottom.plant),
@@ -74,7 +77,6 @@ fn prominent(mut all: Vec<Candidate>) -> Vec<Candidate> {
     all.retain(|candidate| candidate.margin_db.is_finite() && candidate.sensitivity.is_finite());
     all.sort_by(|one, other| one.margin_db.total_cmp(&other.margin_db));
     let Some(&worst) = all.first() else { return all };
-    all.retain(|candidate| candidate.margin_db <= worst.margin_db + WINDOW_DB);
     let mut chosen = vec![worst];
     while chosen.len() < PLANTS_MAXIMUM {
         let distance = |candidate: &Candidate, from: &Candidate| {

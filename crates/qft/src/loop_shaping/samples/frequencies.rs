@@ -5,9 +5,8 @@ use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::Polynomial;
 use phea_dynamics::portable;
 
-use super::{SamplesError, around};
+use super::{Plant, SamplesError, around, plant_at};
 use crate::design::DesignProblem;
-use crate::family::Family;
 use crate::specification::Limit;
 use crate::verification::PlantPoint;
 
@@ -36,7 +35,7 @@ pub fn search_frequencies(
     plants: &[PlantPoint],
     points_per_decade: f64,
 ) -> Result<Vec<f64>, SamplesError> {
-    let highest = around(problem, None)?.highest_frequency_rad_per_s();
+    let highest = around(problem)?.highest_frequency_rad_per_s();
     let (mut sizes, mut peaks) = features(problem, plants)?;
     sizes.retain(|size| *size > 0.0 && size.is_finite());
     let slowest = sizes.iter().copied().fold(f64::INFINITY, f64::min).min(highest);
@@ -75,22 +74,19 @@ fn features(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<(Vec<f64>,
         }
     }
     for plant in plants {
-        match (&problem.family, plant) {
-            (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
-                let plant = family.plant().coefficients(values);
+        match plant_at(&problem.family, plant)? {
+            Plant::Rational(plant) => {
                 let paths = std::iter::once(&plant.command).chain(&plant.disturbance);
                 for coefficients in paths.flat_map(|path| [&path.numerator, &path.denominator]) {
                     // a polynomial without roots to be had has no peak to show
                     roots.extend(Polynomial::new(coefficients.clone()).roots().unwrap_or_default());
                 }
             }
-            (Family::Measured(family), PlantPoint::Measured(index)) => {
-                let plant = family.plants().get(*index).ok_or_else(|| SamplesError::Plant(plant.clone()))?;
+            Plant::Measured(plant) => {
                 peaks.extend(&plant.frequencies_rad_per_s);
                 sizes.extend(plant.frequencies_rad_per_s.first());
                 sizes.extend(plant.frequencies_rad_per_s.last());
             }
-            _ => return Err(SamplesError::Plant(plant.clone())),
         }
     }
     sizes.extend(roots.iter().map(|root| portable::magnitude(*root)));

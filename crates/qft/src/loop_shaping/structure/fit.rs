@@ -5,7 +5,7 @@ use phea_dynamics::controller::{Compensator, Element};
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 
-use super::{Factor, Part, Structure};
+use super::{Part, Structure};
 
 /// Roots nearer to one another than this share of their magnitude are the same.
 const SAME: f64 = 1e-9;
@@ -13,8 +13,8 @@ const SAME: f64 = 1e-9;
 impl Structure {
     /// The x at which this structure is that controller; `None` where it is no such one, or only beyond the bounds.
     ///
-    /// Complex roots go to pairs, real ones to single factors and then two by two to the pairs that are left, each in the order of
-    /// their magnitude, with the roots of the smallest magnitude to the factor that is written first.
+    /// A complex pair of roots or any two real ones go to a pair, a real root to a single factor: the first assignment that keeps to
+    /// the bounds, roots taken in the order of their magnitude.
     ///
     /// # Example
     /// ```
@@ -36,8 +36,8 @@ impl Structure {
         if !continuous || function.dead_time_s() != fixed.dead_time_s() {
             return None;
         }
-        let mut zeros = self.assigned(1.0, without(function.zeros(), fixed.zeros())?)?.into_iter();
-        let mut poles = self.assigned(-1.0, without(function.poles(), fixed.poles())?)?.into_iter();
+        let mut zeros = self.assigned(1.0, &without(function.zeros(), fixed.zeros())?)?.into_iter();
+        let mut poles = self.assigned(-1.0, &without(function.poles(), fixed.poles())?)?.into_iter();
         let mut gain = self.sign * function.gain() / fixed.gain();
         let mut numbers = Vec::new();
         for factor in self.factors() {
@@ -47,13 +47,13 @@ impl Structure {
             gain = if factor.power > 0.0 { gain * leading } else { gain / leading };
             numbers.extend(own);
         }
-        let x: Vec<f64> = std::iter::once(gain).chain(numbers).map(portable::ln).collect();
-        let bounds = self.bounds();
+        let all: Vec<f64> = std::iter::once(gain).chain(numbers).map(portable::ln).collect();
+        let ranges: Vec<[f64; 2]> = self.ranges().into_iter().map(|range| range.map(portable::ln)).collect();
         // the ends of the range are points of it
         let inside = |(x, [low, high]): (&f64, &[f64; 2])| low - SAME <= *x && *x <= high + SAME;
-        x.iter().zip(&bounds).all(inside).then(|| {
-            let clamped = x.iter().zip(&bounds).map(|(x, [low, high])| x.max(*low).min(*high));
-            clamped.collect()
+        all.iter().zip(&ranges).all(inside).then(|| {
+            let clamped = all.iter().zip(&ranges).map(|(x, [low, high])| x.max(*low).min(*high));
+            self.of_free(clamped)
         })
     }
 
@@ -117,33 +117,38 @@ impl Structure {
         Some((structure, x))
     }
 
-    /// The free numbers of each factor of this power, in turn, from the roots; `None` where they do not fit.
-    fn assigned(&self, power: f64, roots: Vec<Complex64>) -> Option<Vec<Vec<f64>>> {
-        if roots.iter().any(|root| root.re >= 0.0) {
-            return None;
-        }
-        let (real, complex): (Vec<Complex64>, Vec<Complex64>) =
-            roots.into_iter().partition(|root| root.im == 0.0);
-        let mut complex = complex.into_iter().filter(|root| root.im > 0.0);
-        let mut real = real.into_iter();
-        let factors: Vec<Factor> = self.factors().filter(|factor| factor.power == power).collect();
-        let mut numbers: Vec<Option<Vec<f64>>> = factors
-            .iter()
-            .map(|factor| match factor.pair {
-                true => complex.next().map(|root| of_pair([root, root.conj()])),
-                false => real.next().map(|root| vec![-root.re]),
-            })
-            .collect();
-        for (slot, _) in numbers.iter_mut().zip(&factors).filter(|(_, factor)| factor.pair) {
-            if slot.is_none() {
-                *slot = Some(of_pair([real.next()?, real.next()?]));
-            }
-        }
-        if complex.next().is_some() || real.next().is_some() {
-            return None;
-        }
-        numbers.into_iter().collect()
+    /// The free numbers of each factor of this power, in turn, from the roots.
+    fn assigned(&self, power: f64, roots: &[Complex64]) -> Option<Vec<Vec<f64>>> {
+        let ranges = self.parts.iter().filter(|part| part.factor().is_some_and(|own| own.power == power));
+        let ranges: Vec<Vec<[f64; 2]>> = ranges.map(Part::ranges).collect();
+        let upper: Vec<Complex64> = roots.iter().copied().filter(|root| root.im >= 0.0).collect();
+        assigned(&ranges, &upper)
     }
+}
+
+/// For each list of ranges a real root, or a pair of two of them, within them, such that no root is left: the first choice that
+/// works, roots tried in the order of their magnitude. Of complex roots only the upper ones are given.
+fn assigned(ranges: &[Vec<[f64; 2]>], roots: &[Complex64]) -> Option<Vec<Vec<f64>>> {
+    let Some((own, others)) = ranges.split_first() else { return roots.is_empty().then(Vec::new) };
+    let left = |taken: &[usize]| -> Vec<Complex64> {
+        let left = roots.iter().enumerate().filter(|(index, _)| !taken.contains(index));
+        left.map(|(_, root)| *root).collect()
+    };
+    let of = |taken: &[usize], numbers: Vec<f64>| {
+        let inside = |(value, [low, high]): (&f64, &[f64; 2])| {
+            low * (1.0 - SAME) <= *value && *value <= high * (1.0 + SAME)
+        };
+        let fits = numbers.iter().zip(own).all(inside);
+        fits.then(|| assigned(others, &left(taken))).flatten().map(|rest| [vec![numbers], rest].concat())
+    };
+    roots.iter().enumerate().find_map(|(index, &root)| match (own.len(), root.im > 0.0) {
+        (1, false) => of(&[index], vec![-root.re]),
+        (2, true) => of(&[index], of_pair([root, root.conj()])),
+        (2, false) => roots.iter().enumerate().skip(index + 1).find_map(|(second, &other)| {
+            (other.im == 0.0).then(|| of(&[index, second], of_pair([root, other]))).flatten()
+        }),
+        _ => None,
+    })
 }
 
 /// Natural frequency and damping ratio of (s - r)(s - t) = s^2 + 2 zeta w s + w^2.

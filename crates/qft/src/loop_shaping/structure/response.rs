@@ -133,7 +133,8 @@ impl StructureResponse {
         match &self.evaluation {
             Evaluation::Factors(points) => {
                 let (_, numbers) = self.numbers(x);
-                Ok(points.iter().map(|(s, _)| factor_slopes(&numbers, *s)).collect())
+                let own = |s| self.structure.of_free(factor_slopes(&numbers, s));
+                Ok(points.iter().map(|(s, _)| own(*s)).collect())
             }
             Evaluation::Sampling { .. } => self.differences(x),
         }
@@ -157,7 +158,7 @@ impl StructureResponse {
 
     /// The gain, and the factors with frequency and damping ratio.
     fn numbers(&self, x: &[f64]) -> (f64, Vec<(Factor, [f64; 2])>) {
-        let mut numbers = x.iter().map(|&x| portable::exp(x));
+        let mut numbers = self.structure.numbers(x).into_iter();
         let mut next = || numbers.next().unwrap_or(f64::NAN);
         let gain = next();
         let factors = self.structure.factors();

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::DOMAINS;
 use crate::catalogue::Catalogue;
 use crate::project::formula::{Formula, Variable};
 use crate::project::key::{key, plain};
@@ -51,6 +52,8 @@ pub struct Element {
     pub zeros: Vec<[f64; 2]>,
     /// Real and imaginary parts, 1/s.
     pub poles: Vec<[f64; 2]>,
+    /// Whether gain, zeros and poles are in s (absent) or in z.
+    pub domain: Option<Variable>,
 }
 
 /// Which element.
@@ -132,6 +135,7 @@ impl Default for Element {
             gain: None,
             zeros: vec![],
             poles: vec![],
+            domain: None,
         }
     }
 }
@@ -140,7 +144,8 @@ impl Element {
     /// Whether it is written in `z`.
     pub fn is_sampled(&self) -> bool {
         let formulas = [&self.numerator, &self.denominator];
-        formulas.into_iter().flatten().any(|formula| formula.variable() == Some(Variable::Z))
+        self.domain == Some(Variable::Z)
+            || formulas.into_iter().flatten().any(|formula| formula.variable() == Some(Variable::Z))
     }
 
     /// As an inline table of the project file, which reads back as the same element.
@@ -210,5 +215,7 @@ impl Element {
         v.optional(k, &mut self.gain);
         v.complexes(key("zeros", &RATIO, "Of a general element in factors."), &mut self.zeros);
         v.complexes(key("poles", &RATIO, "Of a general element in factors."), &mut self.poles);
+        let k = plain("domain", "Of a general element in factors: in s, or in z when sampled.");
+        v.choice(k, &DOMAINS, &mut self.domain, false);
     }
 }

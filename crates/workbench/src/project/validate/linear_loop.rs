@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::project::{
-    AntiWindup, Discretization, Element, ElementKind, Formula, Project, Transfer, Variable,
+    AntiWindup, Discretization, Element, ElementKind, Formula, Project, Quantization, Transfer, Variable,
 };
 
 /// Most zeros, poles or elements of a transfer function.
@@ -10,7 +10,9 @@ const MAXIMUM_ORDER: usize = 50;
 
 pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
     if let Some(controller) = &project.controller {
-        transfer(&controller.transfer, "controller", controller.sample_time, check);
+        let timing = ["sample_time", "delay", "discretization", "saturation", "anti_windup"];
+        let only_timing = timing.iter().any(|name| check.declared(&format!("controller.{name}")));
+        transfer(&controller.transfer, "controller", controller.sample_time, only_timing, check);
         if controller.anti_windup != AntiWindup::None && controller.saturation.is_none() {
             check.warning("controller.anti_windup", "`anti_windup` has no effect without `saturation`");
         }
@@ -20,9 +22,33 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
             let why = if discrete { "the controller is in `z` already" } else { "there is no `sample_time`" };
             check.warning("controller.discretization", format!("`discretization` has no effect: {why}"));
         }
+        if let Some(declared) = &controller.quantization {
+            quantization(declared, controller.sample_time, check);
+        }
     }
     if let Some(prefilter) = &project.prefilter {
-        transfer(&prefilter.transfer, "prefilter", prefilter.sample_time, check);
+        transfer(&prefilter.transfer, "prefilter", prefilter.sample_time, false, check);
+    }
+}
+
+fn quantization(declared: &Quantization, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
+    let path = "controller.quantization";
+    if sample_time.is_none() {
+        check.error(path, "only a sampled controller rounds: [controller] gives no `sample_time`");
+    }
+    for (name, bits, range) in [
+        ("command", declared.command_bits, declared.command_range),
+        ("measurement", declared.measurement_bits, declared.measurement_range),
+    ] {
+        if (bits > 0) != range.is_some() {
+            check.error(path, format!("`{name}_bits` and `{name}_range` make a converter together"));
+        }
+        if range.is_some_and(|[low, high]| low >= high) {
+            check.error(
+                &format!("{path}.{name}_range"),
+                format!("`{name}_range` is empty or reversed: the lower value comes first"),
+            );
+        }
     }
 }
 
@@ -44,17 +70,26 @@ pub(super) fn sensor(project: &Project, check: &mut Check<'_, '_>) {
 
 fn is_discrete(transfer: &Transfer) -> bool {
     let sampled = |formula: &Formula| formula.variable() == Some(Variable::Z);
-    [&transfer.numerator, &transfer.denominator].into_iter().flatten().any(sampled)
+    transfer.domain == Some(Variable::Z)
+        || [&transfer.numerator, &transfer.denominator].into_iter().flatten().any(sampled)
         || transfer.elements.iter().any(|element| element.enabled && element.is_sampled())
 }
 
-fn transfer(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
+/// Without a law a controller that says when it acts is one to be designed.
+fn transfer(
+    transfer: &Transfer,
+    path: &str,
+    sample_time: Option<f64>,
+    may_be_designed: bool,
+    check: &mut Check<'_, '_>,
+) {
     let declared = |check: &Check<'_, '_>, name: &str| check.declared(&format!("{path}.{name}"));
     let polynomials = declared(check, "numerator") || declared(check, "denominator");
     let factors = ["gain", "zeros", "poles"].iter().any(|name| declared(check, name));
     let elements = declared(check, "elements");
     let forms = "`numerator` and `denominator`, or `gain` with `zeros` and `poles`, or `elements`";
     match [polynomials, factors, elements].iter().filter(|is| **is).count() {
+        0 if may_be_designed => {}
         0 => check.missing(path, "numerator", format!("an empty [{path}]: it takes {forms}")),
         1 => {}
         _ => check.error(path, format!("more than one form in [{path}]: it takes either {forms}")),
@@ -96,8 +131,13 @@ fn rational_form(
         if transfer.gain == Some(0.0) {
             check.error(&format!("{path}.gain"), "`gain` is zero");
         }
+        sample_time_of_z(transfer, path, sample_time, check);
         conjugates(&transfer.zeros, &format!("{path}.zeros"), check);
         conjugates(&transfer.poles, &format!("{path}.poles"), check);
+    }
+    if transfer.domain.is_some() && !factors {
+        let message = "`domain` belongs to `gain`, `zeros` and `poles`: formulas say `s` or `z`";
+        check.error(&format!("{path}.domain"), message);
     }
 }
 
@@ -113,8 +153,11 @@ fn polynomial_form(transfer: &Transfer, path: &str, sample_time: Option<f64>, ch
     {
         check.error(&format!("{path}.denominator"), "numerator and denominator mix `s` and `z`");
     }
-    let sampled = [numerator, denominator].iter().any(|formula| formula.variable() == Some(Variable::Z));
-    if sampled && sample_time.is_none() {
+    sample_time_of_z(transfer, path, sample_time, check);
+}
+
+fn sample_time_of_z(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
+    if is_discrete(transfer) && sample_time.is_none() {
         let table = path.split('.').next().unwrap_or(path);
         let message = format!("missing `sample_time` in [{table}]: it is written in `z`");
         check.missing(path, "sample_time", message);
@@ -123,10 +166,11 @@ fn polynomial_form(transfer: &Transfer, path: &str, sample_time: Option<f64>, ch
 
 /// Powers of all numerators less those of all denominators, where they can be told.
 fn excess(transfer: &Transfer) -> Option<i64> {
-    transfer.as_elements().iter().filter(|element| element.enabled).map(excess_of).sum()
+    transfer.as_elements().iter().filter(|element| element.enabled).map(element_excess).sum()
 }
 
-fn excess_of(element: &Element) -> Option<i64> {
+/// Zeros less poles of an element, where they can be told.
+pub(super) fn element_excess(element: &Element) -> Option<i64> {
     let power = |count: usize| i64::try_from(count).ok();
     Some(match element.kind {
         ElementKind::Gain | ElementKind::Lead | ElementKind::Lag | ElementKind::Notch => 0,
@@ -205,7 +249,7 @@ pub(super) fn one_element(
 }
 
 /// Every key of an element but `kind` and `enabled`.
-const ELEMENT_KEYS: [&str; 15] = [
+const ELEMENT_KEYS: [&str; 16] = [
     "value",
     "frequency",
     "damping_ratio",
@@ -221,6 +265,7 @@ const ELEMENT_KEYS: [&str; 15] = [
     "gain",
     "zeros",
     "poles",
+    "domain",
 ];
 
 /// What an element needs, and what else it takes.
@@ -237,7 +282,7 @@ fn keys_of(kind: ElementKind) -> (&'static [&'static str], &'static [&'static st
         ElementKind::ProportionalIntegralDerivative => {
             (&["proportional_gain", "integral_gain", "derivative_gain", "filter_time"], &[])
         }
-        ElementKind::General => (&[], &["numerator", "denominator", "gain", "zeros", "poles"]),
+        ElementKind::General => (&[], &["numerator", "denominator", "gain", "zeros", "poles", "domain"]),
     }
 }
 
@@ -259,6 +304,7 @@ fn general(element: &Element, path: &str, sample_time: Option<f64>, check: &mut 
         gain: element.gain,
         zeros: element.zeros.clone(),
         poles: element.poles.clone(),
+        domain: element.domain,
         elements: vec![],
     };
     rational_form(&transfer, path, sample_time, [polynomials, factors], check);

@@ -1,0 +1,49 @@
+//! What the specification costs: which limit binds the loop at each frequency.
+
+use super::result::{BindingLimit, Conflict};
+use crate::verification::{Audit, WorstCase};
+
+/// At each design frequency of a specification the one that leaves the loop least room, by increasing frequency.
+pub(super) fn binding_limits(audit: &Audit) -> Vec<BindingLimit> {
+    let mut limits: Vec<BindingLimit> = Vec::new();
+    for (specification, finding) in audit.specifications.iter().enumerate() {
+        for case in &finding.at_design_frequencies {
+            let found = limits.iter_mut().find(|limit| limit.frequency_rad_per_s == case.frequency_rad_per_s);
+            match found {
+                Some(limit) if limit.margin_db <= case.margin_db => {}
+                Some(limit) => *limit = binding(specification, case),
+                None => limits.push(binding(specification, case)),
+            }
+        }
+    }
+    limits.sort_by(|one, other| one.frequency_rad_per_s.total_cmp(&other.frequency_rad_per_s));
+    limits
+}
+
+fn binding(specification: usize, case: &WorstCase) -> BindingLimit {
+    BindingLimit {
+        specification,
+        frequency_rad_per_s: case.frequency_rad_per_s,
+        plant: case.plant.clone(),
+        margin_db: case.margin_db,
+    }
+}
+
+/// The worst violations of every specification that is broken, the worst first: what stands against one another where the common
+/// relaxation is as small as it can be.
+pub(super) fn conflicts(audit: &Audit, tolerance_db: f64) -> Vec<Conflict> {
+    let mut found: Vec<Conflict> = Vec::new();
+    for (specification, finding) in audit.specifications.iter().enumerate() {
+        let bands = finding.violations.iter().map(|band| &band.worst);
+        for case in bands.filter(|case| case.margin_db < -tolerance_db) {
+            found.push(Conflict {
+                specification,
+                frequency_rad_per_s: case.frequency_rad_per_s,
+                plant: case.plant.clone(),
+                margin_db: case.margin_db,
+            });
+        }
+    }
+    found.sort_by(|one, other| one.margin_db.total_cmp(&other.margin_db));
+    found
+}

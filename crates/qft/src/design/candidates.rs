@@ -1,0 +1,211 @@
+//! Which structures are tried, and in which order.
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{Compensator, Element};
+use phea_dynamics::frequency::logarithmic_grid;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable;
+use phea_dynamics::uncertain_plant::RationalCoefficients;
+
+use super::problem::DesignProblem;
+use crate::family::Family;
+use crate::loop_shaping::{Part, Structure};
+use crate::specification::{Limit, Requirement, Specification};
+use crate::verification::corners;
+
+/// How far the corners of a controller may lie below and above the highest frequency of the specifications, and below the lowest, as
+/// factors.
+const BELOW_HIGHEST: f64 = 1e-3;
+const ABOVE: f64 = 200.0;
+const BELOW_LOWEST: f64 = 0.1;
+/// Corners at which a factor is added to a simpler controller.
+const CORNERS: usize = 9;
+/// Damping ratios of free pairs; beyond 1 a pair is two real roots.
+const DAMPING_RATIOS: [f64; 2] = [0.1, 20.0];
+/// Decades that the gain may lie beyond those that put the crossover on a frequency of the specifications.
+const GAIN_ROOM: f64 = 100.0;
+/// Two limits that differ by less than this share at low frequency ask for one gain.
+const SAME: f64 = 1e-6;
+
+/// What the structures of a problem have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Ground {
+    /// Integrators that the specifications ask for beyond those of the plants.
+    pub(super) integrators: usize,
+    sign: f64,
+    corner: [f64; 2],
+    gain: [f64; 2],
+}
+
+impl Ground {
+    /// What every structure that may solve the problem begins with.
+    pub(super) fn new(problem: &DesignProblem) -> Ground {
+        let span = span(&problem.specifications);
+        let low = LowFrequency::of(problem, span[0]);
+        let wanted = problem.specifications.iter().map(wanted_type).max().unwrap_or(0);
+        let integrators = usize::try_from(wanted - low.plant_type).unwrap_or(0);
+        let corner = [(BELOW_LOWEST * span[0]).max(BELOW_HIGHEST * span[1]), ABOVE * span[1]];
+        // With k = w^integrators / |P(jw)| the loop of unit corners crosses over at w.
+        let crossover = |frequency: &f64| {
+            let plant = portable::magnitude(low.response(problem, *frequency)?);
+            let gain = portable::exp(integrators as f64 * portable::ln(*frequency)) / plant;
+            (gain.is_finite() && gain > 0.0).then_some([gain, gain])
+        };
+        let along = logarithmic_grid(span[0], span[1] * ABOVE.sqrt(), 30);
+        let gains = along.unwrap_or_default().iter().filter_map(crossover).reduce(joined);
+        let gains = gains.unwrap_or([1.0, 1.0]);
+        let gain = [gains[0] / GAIN_ROOM, gains[1] * GAIN_ROOM];
+        Ground { integrators, sign: low.sign, corner, gain }
+    }
+
+    /// Points of a structure from which it can do what a simpler controller does, or nearly: poles and zeros are added at one corner each, where
+    /// they cancel if there are as many of one as of the other; a zero too many is left out.
+    pub(super) fn grown(&self, structure: &Structure, simpler: &TransferFunction) -> Vec<Vec<f64>> {
+        let mut zeros = simpler.zeros().to_vec();
+        zeros.sort_by(|one, other| one.norm_sqr().total_cmp(&other.norm_sqr()));
+        let wanted = |power: f64| structure.roots(power);
+        let grown = |corner: &f64| {
+            let mut gain = simpler.gain();
+            let (mut zeros, mut poles) = (zeros.clone(), simpler.poles().to_vec());
+            while zeros.len() > wanted(1.0) {
+                gain *= portable::magnitude(zeros.pop()?);
+            }
+            let added = Complex64::new(-corner, 0.0);
+            while zeros.len() < wanted(1.0) {
+                zeros.push(added);
+                gain /= corner;
+            }
+            while poles.len() < wanted(-1.0) {
+                poles.push(added);
+                gain *= corner;
+            }
+            let function = TransferFunction::from_factors(gain, zeros, poles).ok()?;
+            structure.point_of(&Compensator::new(vec![Element::General(function)]))
+        };
+        let middle =
+            [self.corner[0].max(10.0 * BELOW_HIGHEST * self.corner[1] / ABOVE), 0.3 * self.corner[1]];
+        let corners = logarithmic_grid(middle[0], middle[1], CORNERS).unwrap_or_default();
+        corners.iter().filter_map(grown).collect()
+    }
+
+    /// The structure of this order with so many zeros.
+    pub(super) fn structure(&self, order: usize, zeros: usize) -> Structure {
+        let integrator = std::iter::repeat_n(Part::Fixed(Element::Integrator), self.integrators);
+        let poles = order.saturating_sub(self.integrators);
+        let pair = |is_pole: bool| {
+            let (natural_frequency, damping_ratio) = (self.corner, DAMPING_RATIOS);
+            if is_pole {
+                Part::PolePair { natural_frequency, damping_ratio }
+            } else {
+                Part::ZeroPair { natural_frequency, damping_ratio }
+            }
+        };
+        let single = |is_pole: bool| {
+            let frequency = self.corner;
+            if is_pole { Part::RealPole { frequency } } else { Part::RealZero { frequency } }
+        };
+        let factors = |count: usize, is_pole: bool| {
+            std::iter::repeat_n(pair(is_pole), count / 2)
+                .chain(std::iter::repeat_n(single(is_pole), count % 2))
+                .collect::<Vec<Part>>()
+        };
+        let parts = integrator.chain(factors(zeros, false)).chain(factors(poles, true)).collect();
+        Structure { sign: self.sign, gain: self.gain, parts }
+    }
+}
+
+fn joined(left: [f64; 2], right: [f64; 2]) -> [f64; 2] {
+    [left[0].min(right[0]), left[1].max(right[1])]
+}
+
+/// Least and greatest finite positive frequency that a specification names.
+pub(super) fn span(specifications: &[Specification]) -> [f64; 2] {
+    let named = specifications.iter().flat_map(|one| {
+        one.frequencies_rad_per_s.iter().chain(&one.band_rad_per_s).map(|frequency| [*frequency; 2])
+    });
+    let inside = named.filter(|[frequency, _]| *frequency > 0.0 && frequency.is_finite());
+    inside.reduce(joined).unwrap_or([0.1, 10.0])
+}
+
+/// The exponent of w with which a loop must grow as w tends to zero, if this specification is to be kept to.
+fn wanted_type(specification: &Specification) -> i64 {
+    match &specification.requirement {
+        Requirement::Sensitivity(limit) => order_at_zero(limit).max(0),
+        Requirement::Tracking { lower, upper } => {
+            let at_zero = |limit: &Limit| match limit {
+                Limit::Constant(value) => Some(*value),
+                Limit::Rational(function) => Some(function.dc_gain().abs()),
+                // what a table says below its first point is nothing
+                Limit::Table(_) => None,
+            };
+            let narrow = at_zero(lower).zip(at_zero(upper));
+            i64::from(narrow.is_some_and(|(low, high)| high - low <= SAME * high))
+        }
+        Requirement::RobustStability(_)
+        | Requirement::PlantInputDisturbance(_)
+        | Requirement::ControlEffort(_)
+        | Requirement::LoadMotion(_) => 0,
+    }
+}
+
+/// n where the limit tends to zero as w^n.
+fn order_at_zero(limit: &Limit) -> i64 {
+    let Limit::Rational(function) = limit else { return 0 };
+    let at_origin = |roots: &[Complex64]| roots.iter().filter(|root| root.norm_sqr() == 0.0).count() as i64;
+    at_origin(function.zeros()) - at_origin(function.poles())
+}
+
+/// What the plants are at low frequency.
+struct LowFrequency {
+    /// Least number of integrators of a plant.
+    plant_type: i64,
+    sign: f64,
+}
+
+impl LowFrequency {
+    fn of(problem: &DesignProblem, lowest: f64) -> LowFrequency {
+        match &problem.family {
+            Family::Uncertain(family) => {
+                let nominal = family.plant().nominal();
+                let corners = corners(family);
+                let values = std::iter::once(&nominal).chain(&corners);
+                let types = values.map(|values| plant_type(&family.plant().coefficients(values).command));
+                let command = family.plant().coefficients(&nominal).command;
+                LowFrequency { plant_type: types.min().unwrap_or(0), sign: lowest_sign(&command) }
+            }
+            Family::Measured(family) => {
+                let first = family.plants().first();
+                let response = first.and_then(|plant| {
+                    let start = plant.frequencies_rad_per_s.first().copied().unwrap_or(lowest);
+                    plant.response(start)
+                });
+                let sign = response.map_or(1.0, |(command, _)| if command.re < 0.0 { -1.0 } else { 1.0 });
+                LowFrequency { plant_type: 0, sign }
+            }
+        }
+    }
+
+    /// P of the nominal plant.
+    fn response(&self, problem: &DesignProblem, frequency: f64) -> Option<Complex64> {
+        match &problem.family {
+            Family::Uncertain(family) => {
+                let command = family.plant().coefficients(&family.plant().nominal()).command;
+                Some(command.at_frequency(frequency))
+            }
+            Family::Measured(family) => Some(family.plants().first()?.response(frequency)?.0),
+        }
+    }
+}
+
+/// Poles less zeros at the origin.
+fn plant_type(command: &RationalCoefficients<f64>) -> i64 {
+    let at_origin = |coefficients: &[f64]| coefficients.iter().rev().take_while(|one| **one == 0.0).count();
+    at_origin(&command.denominator) as i64 - at_origin(&command.numerator) as i64
+}
+
+/// The sign of the ratio of the lowest coefficients that are not zero: of lim s^type P(s).
+fn lowest_sign(command: &RationalCoefficients<f64>) -> f64 {
+    let lowest =
+        |coefficients: &[f64]| coefficients.iter().rev().copied().find(|one| *one != 0.0).unwrap_or(1.0);
+    1.0_f64.copysign(lowest(&command.numerator) * lowest(&command.denominator))
+}

@@ -1,0 +1,250 @@
+//! What can be said of a problem before any search.
+
+use num_complex::Complex64;
+
+use crate::verification::PlantPoint;
+
+/// How much a finding says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// No controller whatever meets the specifications.
+    Impossible,
+    /// It is hard, or not what was meant.
+    Warning,
+}
+
+/// Where T or S is known whatever the controller, or where S + T = 1 is held against the limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// A pole of P H in the right half plane, rad/s: T = 1 there.
+    UnstablePole(Complex64),
+    /// A zero of P H in the right half plane, rad/s: S = 1 there. In a sampled loop z = e^(sT) is a zero of the sampled plant.
+    RightHalfPlaneZero(Complex64),
+    /// A positive real s, rad/s; infinite for z = infinity in a sampled loop.
+    Point(f64),
+}
+
+/// What the limits leave at a point s of the right half plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constraint {
+    /// The point.
+    pub place: Place,
+    /// The plant.
+    pub plant: PlantPoint,
+    /// Dead time of plant, sensor and loop, with the samples of delay in a sampled loop, s.
+    pub dead_time_s: f64,
+    /// The greatest |S(s)| that the limits leave.
+    pub sensitivity: f64,
+    /// The greatest |T(s)| that the limits leave.
+    pub complementary: f64,
+    /// At a pole the frequency above which |T| must stay below 1, at a zero that up to which |S| must, rad/s.
+    pub crossover_rad_per_s: Option<f64>,
+    /// The specifications that matter.
+    pub specifications: Vec<usize>,
+}
+
+/// A specification that takes part in a contradiction, with the plant that it concerns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Party {
+    /// Index of the specification.
+    pub specification: usize,
+    /// The plant with the least margin; of tracking, the one with the greatest |T|.
+    pub plant: PlantPoint,
+    /// Of tracking, the plant with the least |T|.
+    pub other: Option<PlantPoint>,
+    /// Its margin where the contradiction is least, dB.
+    pub margin_db: f64,
+}
+
+/// One limit with the specification that sets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SharedLimit {
+    /// Index of the specification.
+    pub specification: usize,
+    /// What it leaves of |S| or |T|.
+    pub limit: f64,
+}
+
+/// A fact about a problem that no search can change.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// The lower limit of tracking lies above the upper one.
+    CrossedLimits {
+        /// Index of the specification.
+        specification: usize,
+        /// Where they are worst crossed, rad/s.
+        frequency_rad_per_s: f64,
+        /// The lower limit there.
+        lower: f64,
+        /// The upper limit there.
+        upper: f64,
+        /// dB added to the upper and taken from the lower one that would bring them together.
+        relaxation_db: f64,
+    },
+    /// At one frequency the limits leave |S| + |T| < 1, though S + T = 1.
+    SumBelowOne {
+        /// Where it is worst, rad/s.
+        frequency_rad_per_s: f64,
+        /// The plant.
+        plant: PlantPoint,
+        /// What is left of |S|.
+        sensitivity: SharedLimit,
+        /// What is left of |T|.
+        complementary: SharedLimit,
+        /// The least relaxation of every limit under which it would do, dB.
+        relaxation_db: f64,
+    },
+    /// At one design frequency every loop is forbidden by some bound.
+    Contradiction {
+        /// rad/s
+        frequency_rad_per_s: f64,
+        /// Phase of the nominal loop where the contradiction is least, rad.
+        phase_rad: f64,
+        /// Its gain there.
+        gain: f64,
+        /// Who stands against whom there.
+        parties: Vec<Party>,
+        /// Between which bounds the least relaxation of every limit lies that leaves a loop at this frequency, dB.
+        relaxation_db: [f64; 2],
+    },
+    /// A pole of P H on the axis makes T = 1 there, which a limit forbids.
+    PoleOnTheAxis {
+        /// rad/s
+        frequency_rad_per_s: f64,
+        /// The plant.
+        plant: PlantPoint,
+        /// The limit of |T|.
+        complementary: SharedLimit,
+    },
+    /// A zero of P on the axis makes S = 1 and F P G S = 0 there, which a limit forbids.
+    ZeroOnTheAxis {
+        /// rad/s
+        frequency_rad_per_s: f64,
+        /// The plant.
+        plant: PlantPoint,
+        /// The specification, with its limit of |S|, or the lower one of tracking.
+        limit: SharedLimit,
+    },
+    /// At a point of the right half plane the limits leave |S| + |T| < 1.
+    RightHalfPlane {
+        /// What is left there.
+        constraint: Constraint,
+        /// The least relaxation of every limit under which it would do at this point, dB; infinite if none would.
+        relaxation_db: f64,
+    },
+    /// Plants whose gain has different signs where every closed loop must have the same.
+    GainSign {
+        /// 0 for the static gain, otherwise the unstable pole that the plants have in common, rad/s.
+        pole_rad_per_s: f64,
+        /// Two plants of different sign.
+        plants: [PlantPoint; 2],
+    },
+    /// More delay margin is asked for than an unstable pole leaves.
+    DelayMargin {
+        /// The pole, rad/s.
+        pole_rad_per_s: f64,
+        /// The plant.
+        plant: PlantPoint,
+        /// What is asked for, s.
+        demanded_s: f64,
+        /// What no linear controller exceeds, 2/p, s.
+        greatest_s: f64,
+    },
+    /// Where nothing is limited, |S| or |T| must rise at least so far.
+    ForcedPeak {
+        /// What is left at the point, without what is not limited.
+        constraint: Constraint,
+        /// The least peak, dB.
+        peak_db: f64,
+    },
+    /// Only a controller that is unstable itself can stabilise the plant.
+    UnstableController {
+        /// The plant.
+        plant: PlantPoint,
+        /// An odd number of its real unstable poles lies between these zeros (the second may be infinite), rad/s.
+        between_zeros_rad_per_s: [f64; 2],
+    },
+    /// Design frequencies that the loop or a measurement does not reach: nothing can be said there.
+    OutOfReach {
+        /// Index of the specification.
+        specification: usize,
+        /// The first of them, rad/s.
+        frequency_rad_per_s: f64,
+        /// What is reached, rad/s.
+        reach_rad_per_s: [f64; 2],
+        /// The measured plant; `None` where the sampling ends the band.
+        plant: Option<PlantPoint>,
+    },
+    /// Both limits of tracking at zero frequency exclude 1: the output is not to follow the reference at rest.
+    StaticGain {
+        /// Index of the specification.
+        specification: usize,
+        /// The lower limit.
+        lower: f64,
+        /// The upper limit.
+        upper: f64,
+    },
+}
+
+impl Finding {
+    /// How much it says.
+    pub fn severity(&self) -> Severity {
+        match self {
+            Finding::CrossedLimits { .. }
+            | Finding::SumBelowOne { .. }
+            | Finding::Contradiction { .. }
+            | Finding::PoleOnTheAxis { .. }
+            | Finding::ZeroOnTheAxis { .. }
+            | Finding::RightHalfPlane { .. }
+            | Finding::GainSign { .. }
+            | Finding::DelayMargin { .. } => Severity::Impossible,
+            Finding::ForcedPeak { .. }
+            | Finding::UnstableController { .. }
+            | Finding::OutOfReach { .. }
+            | Finding::StaticGain { .. } => Severity::Warning,
+        }
+    }
+
+    /// Indices of the specifications that it concerns, in increasing order.
+    pub fn specifications(&self) -> Vec<usize> {
+        let mut all = match self {
+            Finding::SumBelowOne { sensitivity, complementary, .. } => {
+                vec![sensitivity.specification, complementary.specification]
+            }
+            Finding::Contradiction { parties, .. } => {
+                parties.iter().map(|party| party.specification).collect()
+            }
+            Finding::PoleOnTheAxis { complementary: limit, .. } | Finding::ZeroOnTheAxis { limit, .. } => {
+                vec![limit.specification]
+            }
+            Finding::RightHalfPlane { constraint, .. } | Finding::ForcedPeak { constraint, .. } => {
+                constraint.specifications.clone()
+            }
+            Finding::CrossedLimits { specification, .. }
+            | Finding::OutOfReach { specification, .. }
+            | Finding::StaticGain { specification, .. } => vec![*specification],
+            Finding::GainSign { .. } | Finding::DelayMargin { .. } | Finding::UnstableController { .. } => {
+                Vec::new()
+            }
+        };
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// The least common relaxation of all limits without which nothing can be met, dB: a lower bound of what a design would need. `None` where
+    /// no relaxation helps, or none is needed.
+    pub fn relaxation_db(&self) -> Option<f64> {
+        match self {
+            Finding::CrossedLimits { relaxation_db, .. }
+            | Finding::SumBelowOne { relaxation_db, .. }
+            | Finding::RightHalfPlane { relaxation_db, .. } => Some(*relaxation_db),
+            Finding::Contradiction { relaxation_db, .. } => Some(relaxation_db[0]),
+            Finding::PoleOnTheAxis { complementary: limit, .. } | Finding::ZeroOnTheAxis { limit, .. } => {
+                (limit.limit < 1.0).then(|| -20.0 * phea_dynamics::portable::log10(limit.limit))
+            }
+            _ => None,
+        }
+        .filter(|relaxation| relaxation.is_finite())
+    }
+}

@@ -1,0 +1,226 @@
+//! Findings in words.
+
+use std::f64::consts::TAU;
+use std::fmt::{Display, Formatter, Result};
+
+use num_complex::Complex64;
+
+use super::finding::{Constraint, Finding, Party, Place};
+use crate::verification::rounded;
+
+impl Display for Finding {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        match self {
+            Finding::CrossedLimits { specification, frequency_rad_per_s, lower, upper, relaxation_db } => {
+                write!(
+                    f,
+                    "tracking cannot be met: at {} rad/s the lower limit {} of specification {} lies above its upper one {}; {} dB on both \
+                 sides would bring them together",
+                    rounded(*frequency_rad_per_s),
+                    rounded(*lower),
+                    number(*specification),
+                    rounded(*upper),
+                    rounded(*relaxation_db)
+                )
+            }
+            Finding::SumBelowOne {
+                frequency_rad_per_s, sensitivity, complementary, relaxation_db, ..
+            } => write!(
+                f,
+                "no loop meets specifications {} and {} together: at {} rad/s they leave |S| <= {} and |T| <= {}, but S + T = 1; {}",
+                number(sensitivity.specification),
+                number(complementary.specification),
+                rounded(*frequency_rad_per_s),
+                rounded(sensitivity.limit),
+                rounded(complementary.limit),
+                relaxed(*relaxation_db)
+            ),
+            Finding::Contradiction { frequency_rad_per_s, phase_rad, gain, parties, relaxation_db } => {
+                contradiction(f, *frequency_rad_per_s, [*phase_rad, *gain], parties, *relaxation_db)
+            }
+            Finding::RightHalfPlane { constraint, relaxation_db } => {
+                constrained(f, constraint)?;
+                write!(f, "; {}", relaxed(*relaxation_db))
+            }
+            Finding::ForcedPeak { constraint, peak_db } if constraint.specifications.is_empty() => write!(
+                f,
+                "whatever the controller, {} with the plant's other poles, zeros and dead time in the right half plane raises |S| or |T| to {} dB",
+                place(constraint.place),
+                rounded(*peak_db)
+            ),
+            Finding::ForcedPeak { constraint, peak_db } => {
+                constrained(f, constraint)?;
+                write!(
+                    f,
+                    ", unless |S| or |T| rises to {} dB where no specification limits them",
+                    rounded(*peak_db)
+                )
+            }
+            Finding::PoleOnTheAxis { .. }
+            | Finding::ZeroOnTheAxis { .. }
+            | Finding::GainSign { .. }
+            | Finding::DelayMargin { .. }
+            | Finding::UnstableController { .. }
+            | Finding::OutOfReach { .. }
+            | Finding::StaticGain { .. } => of_the_plants(self, f),
+        }
+    }
+}
+
+fn of_the_plants(finding: &Finding, f: &mut Formatter<'_>) -> Result {
+    match finding {
+        Finding::PoleOnTheAxis { frequency_rad_per_s, complementary, .. } => write!(
+            f,
+            "the plant has a pole at {} rad/s on the axis, where T = 1: specification {} allows only {}",
+            rounded(*frequency_rad_per_s),
+            number(complementary.specification),
+            rounded(complementary.limit)
+        ),
+        Finding::ZeroOnTheAxis { frequency_rad_per_s, limit, .. } => write!(
+            f,
+            "the plant passes nothing at {} rad/s, where S = 1 and F T = 0: the limit {} of specification {} cannot be kept",
+            rounded(*frequency_rad_per_s),
+            rounded(limit.limit),
+            number(limit.specification)
+        ),
+        Finding::GainSign { pole_rad_per_s: 0.0, .. } => write!(
+            f,
+            "the static gain changes its sign over the family: with integral action no controller stabilises plants of both signs"
+        ),
+        Finding::GainSign { pole_rad_per_s, .. } => write!(
+            f,
+            "the plants share the unstable pole {} rad/s, but not the sign of their gain there: no controller stabilises both signs",
+            rounded(*pole_rad_per_s)
+        ),
+        Finding::DelayMargin { pole_rad_per_s, demanded_s, greatest_s, .. } => write!(
+            f,
+            "a plant with an unstable pole at {} rad/s bears less than {} s of delay whatever the controller: {} s are asked for",
+            rounded(*pole_rad_per_s),
+            rounded(*greatest_s),
+            rounded(*demanded_s)
+        ),
+        Finding::UnstableController { between_zeros_rad_per_s: [low, high], .. } => write!(
+            f,
+            "an odd number of unstable poles lies between the plant's zeros at {} and {} rad/s: only a controller that is unstable itself \
+             stabilises it",
+            rounded(*low),
+            rounded(*high)
+        ),
+        Finding::OutOfReach { specification, frequency_rad_per_s, reach_rad_per_s: [from, to], plant } => {
+            write!(
+                f,
+                "the design frequency {} rad/s of specification {} lies outside of {}, {} to {} rad/s: nothing can be said there",
+                rounded(*frequency_rad_per_s),
+                number(*specification),
+                if plant.is_some() { "what was measured" } else { "the frequencies of a sampled loop" },
+                rounded(*from),
+                rounded(*to)
+            )
+        }
+        Finding::StaticGain { specification, lower, upper } => write!(
+            f,
+            "at rest specification {} wants {} to {} of the reference, which excludes 1: the output will not follow it",
+            number(*specification),
+            rounded(*lower),
+            rounded(*upper)
+        ),
+        _ => Ok(()),
+    }
+}
+
+/// Specifications are counted from 1, as a reader counts.
+fn number(specification: usize) -> usize {
+    specification + 1
+}
+
+fn numbers(specifications: &[usize]) -> String {
+    let all: Vec<String> = specifications.iter().map(|index| number(*index).to_string()).collect();
+    match all.as_slice() {
+        [] => "no specification".to_string(),
+        [one] => format!("specification {one}"),
+        [first @ .., last] => format!("specifications {} and {last}", first.join(", ")),
+    }
+}
+
+fn relaxed(relaxation_db: f64) -> String {
+    if relaxation_db.is_finite() {
+        format!("nothing below {} dB more on every limit would do", rounded(relaxation_db))
+    } else {
+        "no relaxation of the limits would do".to_string()
+    }
+}
+
+fn contradiction(
+    f: &mut Formatter<'_>,
+    frequency: f64,
+    [phase_rad, gain]: [f64; 2],
+    parties: &[Party],
+    [low, high]: [f64; 2],
+) -> Result {
+    let specifications: Vec<usize> = parties.iter().map(|party| party.specification).collect();
+    write!(f, "at {} rad/s the bounds leave no loop", rounded(frequency))?;
+    if !high.is_finite() {
+        return write!(f, ", however far the limits are relaxed");
+    }
+    write!(
+        f,
+        ": {} collide, least at {} degrees and a nominal gain of {}; ",
+        numbers(&specifications),
+        rounded(phase_rad / TAU * 360.0),
+        rounded(gain)
+    )?;
+    write!(f, "every limit would need {} to {} dB more", rounded(low), rounded(high))
+}
+
+fn constrained(f: &mut Formatter<'_>, constraint: &Constraint) -> Result {
+    let Constraint { dead_time_s, sensitivity, complementary, crossover_rad_per_s, .. } = constraint;
+    let by = numbers(&constraint.specifications);
+    let leave = if constraint.specifications.len() == 1 { "leaves" } else { "leave" };
+    let delay = if *dead_time_s > 0.0 {
+        format!(", dead time of {} s included", rounded(*dead_time_s))
+    } else {
+        String::new()
+    };
+    let (sensitivity, complementary) = (rounded(*sensitivity), rounded(*complementary));
+    match constraint.place {
+        Place::UnstablePole(pole) => {
+            write!(f, "the unstable pole at {} rad/s demands |T| = 1 there, and {by}", root(pole))?;
+            if let Some(crossover) = crossover_rad_per_s {
+                write!(f, ", with |T| below 1 above {} rad/s,", rounded(*crossover))?;
+            }
+            write!(f, " {leave} at most {complementary}{delay}")
+        }
+        Place::RightHalfPlaneZero(zero) => {
+            write!(
+                f,
+                "the zero at {} rad/s in the right half plane demands |S| = 1 there, and {by}",
+                root(zero)
+            )?;
+            if let Some(crossover) = crossover_rad_per_s {
+                write!(f, ", with |S| below 1 up to {} rad/s,", rounded(*crossover))?;
+            }
+            write!(f, " {leave} at most {sensitivity}")
+        }
+        Place::Point(s) => write!(
+            f,
+            "S + T = 1 holds at s = {} rad/s too, and there {by} {leave} at most |S| = {sensitivity} and |T| = {complementary}{delay}",
+            rounded(s)
+        ),
+    }
+}
+
+fn place(place: Place) -> String {
+    match place {
+        Place::UnstablePole(pole) => format!("the unstable pole at {} rad/s", root(pole)),
+        Place::RightHalfPlaneZero(zero) => format!("the zero at {} rad/s", root(zero)),
+        Place::Point(s) => format!("S + T = 1 at s = {} rad/s", rounded(s)),
+    }
+}
+
+fn root(root: Complex64) -> String {
+    if root.im == 0.0 {
+        format!("{}", rounded(root.re))
+    } else {
+        format!("{} +- {}i", rounded(root.re), rounded(root.im.abs()))
+    }
+}

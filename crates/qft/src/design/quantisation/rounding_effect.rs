@@ -1,0 +1,327 @@
+//! What the rounding of converters does to force and command.
+//!
+//! ```text
+//! y(k) = sum h(i) e(k - i),  |e| <= q/2:      |y| <= q/2 sum |h(i)|,       white e:  rms(y) = q/sqrt(12) sqrt(sum h(i)^2)
+//! ```
+//!
+//! The responses h are those of the closed loop to one rounding, run sample by sample.
+
+use std::collections::VecDeque;
+
+use phea_dynamics::controller::Section;
+use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
+
+use super::{Quantisation, QuantisationError};
+use crate::closed_loop::{Compensation, Member};
+
+/// Samples that are run at least, and at most.
+const SAMPLES_MINIMUM: usize = 4096;
+const SAMPLES_MAXIMUM: usize = 1 << 21;
+/// The last half of the samples may add this share.
+const SETTLED: f64 = 1e-6;
+
+/// The largest effect of a rounding among the plants, in the unit of what it acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundingEffect {
+    /// No rounding, however unlucky, does more at any sample: q/2 times the sum of |h|.
+    pub peak: f64,
+    /// Index of the plant with this peak.
+    pub peak_plant: usize,
+    /// Rms of what roundings do that are independent of each other: q/sqrt(12) times the root of the sum of h^2.
+    pub rms: f64,
+    /// Index of the plant with this rms.
+    pub rms_plant: usize,
+}
+
+/// Whether the loop can come to rest between the levels of its converters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LimitCycle {
+    /// The controller does not integrate, so that it need not find the one command that leaves no error.
+    NotIntegrating,
+    /// Some level of the command leaves no error that the measurement shows, for every plant.
+    CanRest {
+        /// What one step of the command makes of the measurement at rest, at most.
+        rest_step: f64,
+        /// One step of the measurement.
+        measurement_step: f64,
+    },
+    /// For this plant no level need: the command then wanders between two of them for ever.
+    Expected {
+        /// Index of the plant with the largest step.
+        plant: usize,
+        /// What one step of the command makes of the measurement at rest; infinite for a plant that integrates.
+        rest_step: f64,
+        /// One step of the measurement.
+        measurement_step: f64,
+    },
+}
+
+/// What the converters do to a loop; what needs a converter that is absent is `None`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundingEffects {
+    /// The rounded command on the output.
+    pub force_from_command: Option<RoundingEffect>,
+    /// The rounded measurement on the output.
+    pub force_from_measurement: Option<RoundingEffect>,
+    /// The rounded measurement on the command.
+    pub command_from_measurement: Option<RoundingEffect>,
+    /// Steps by which the command jumps at once where the measurement moves by one step, |G(z = infinity)| q_y/q_u: far above one the
+    /// valve is shaken by the last bit of the sensor, far below one it does not see it until the controller has integrated.
+    pub command_steps_at_once: Option<f64>,
+    /// Whether the loop can come to rest.
+    pub limit_cycle: Option<LimitCycle>,
+}
+
+/// What rounding does to the loops of these plants, at the samples.
+///
+/// An integrating controller can rest if one step of the command moves the measurement by less than one step of its own,
+///
+/// ```text
+/// |P H (z = 1)| q_u < q_y
+/// ```
+///
+/// Source: Peterchev and Sanders (2003), the condition on resolutions. Friction and dead band of a valve make limit cycles of their own,
+/// of which a linear loop knows nothing.
+///
+/// # Errors
+/// [`QuantisationError::Continuous`] for a continuous loop or a plant that was measured; [`QuantisationError::NotSettled`] for a loop
+/// that is not stable; [`QuantisationError::Linear`] for a controller that cannot be run.
+///
+/// # Example
+/// k/s with the gain g closes to z - 1 + K, K = g k T. A rounded command moves the output by k T (1 - K)^n, in all by 1/g:
+/// ```
+/// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
+/// use phea_dynamics::linear::TransferFunction;
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+/// use phea_qft::closed_loop::Compensation;
+/// use phea_qft::design::quantisation::{Converter, Quantisation, rounding_effects};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let timing = Timing { sample_time_s: Some(0.01), ..Timing::default() };
+/// let feedback = Compensator::new(vec![Element::Gain(5.0)]);
+/// let controller = Controller { feedback, timing, ..Controller::default() };
+/// let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0))?;
+/// let command = RationalCoefficients { numerator: vec![2.0], denominator: vec![1.0, 0.0] };
+/// let plant = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 })?;
+/// let converter = Some(Converter::new(10, [-1.0, 1.0])?);
+/// let quantisation = Quantisation { command: converter, ..Quantisation::default() };
+/// let effect = rounding_effects(&compensation, &[plant], &quantisation)?.force_from_command.ok_or("no effect")?;
+/// assert!((effect.peak - 0.5 * 2.0 / 1024.0 / 5.0).abs() < 1e-9);
+/// # Ok(())
+/// # }
+/// ```
+pub fn rounding_effects(
+    compensation: &Compensation,
+    members: &[Member],
+    quantisation: &Quantisation,
+) -> Result<RoundingEffects, QuantisationError> {
+    let (command, measurement) =
+        (quantisation.command.map(|found| found.step()), quantisation.measurement.map(|found| found.step()));
+    let mut effects = RoundingEffects {
+        force_from_command: None,
+        force_from_measurement: None,
+        command_from_measurement: None,
+        command_steps_at_once: measurement
+            .zip(command)
+            .map(|(of, to)| at_once(compensation.feedback()).abs() * of / to),
+        limit_cycle: None,
+    };
+    let mut rest: Option<(f64, usize)> = None;
+    for (plant, member) in members.iter().enumerate() {
+        let Member::Sampled { command: output, with_sensor, .. } = member else {
+            return Err(QuantisationError::Continuous);
+        };
+        let sampled_loop = SampledLoop::new(output, with_sensor, compensation.feedback())?;
+        let settled = |error| {
+            sampled_loop
+                .response(error)
+                .ok_or(QuantisationError::NotSettled { plant, samples: SAMPLES_MAXIMUM })
+        };
+        if let Some(step) = command {
+            take(&mut effects.force_from_command, settled([1.0, 0.0])?.0.effect(step, plant));
+        }
+        if let Some(step) = measurement {
+            let (force, command) = settled([0.0, 1.0])?;
+            take(&mut effects.force_from_measurement, force.effect(step, plant));
+            take(&mut effects.command_from_measurement, command.effect(step, plant));
+        }
+        let gain = with_sensor.dc_gain().abs();
+        if rest.is_none_or(|(largest, _)| gain > largest) {
+            rest = Some((gain, plant));
+        }
+    }
+    if let (Some(of), Some(to), Some((gain, plant))) = (command, measurement, rest) {
+        effects.limit_cycle = Some(limit_cycle(compensation.feedback(), gain * of, to, plant));
+    }
+    Ok(effects)
+}
+
+fn limit_cycle(
+    feedback: &TransferFunction,
+    rest_step: f64,
+    measurement_step: f64,
+    plant: usize,
+) -> LimitCycle {
+    if feedback.dc_gain().is_finite() {
+        LimitCycle::NotIntegrating
+    } else if rest_step < measurement_step {
+        LimitCycle::CanRest { rest_step, measurement_step }
+    } else {
+        LimitCycle::Expected { plant, rest_step, measurement_step }
+    }
+}
+
+/// G(z = infinity)
+fn at_once(feedback: &TransferFunction) -> f64 {
+    let prompt = feedback.zeros().len() == feedback.poles().len() && feedback.dead_time_s() == 0.0;
+    if prompt { feedback.gain() } else { 0.0 }
+}
+
+/// Keeps the larger peak and the larger rms.
+fn take(worst: &mut Option<RoundingEffect>, found: RoundingEffect) {
+    let kept = worst.get_or_insert(found);
+    if found.peak > kept.peak {
+        (kept.peak, kept.peak_plant) = (found.peak, found.peak_plant);
+    }
+    if found.rms > kept.rms {
+        (kept.rms, kept.rms_plant) = (found.rms, found.rms_plant);
+    }
+}
+
+/// Sums of |h| and of h^2.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    magnitudes: f64,
+    squares: f64,
+}
+
+impl Sums {
+    fn add(&mut self, value: f64) {
+        self.magnitudes += value.abs();
+        self.squares += value * value;
+    }
+
+    fn effect(&self, step: f64, plant: usize) -> RoundingEffect {
+        RoundingEffect {
+            peak: 0.5 * step * self.magnitudes,
+            peak_plant: plant,
+            rms: step * (self.squares / 12.0).sqrt(),
+            rms_plant: plant,
+        }
+    }
+
+    fn settled_since(&self, earlier: &Sums) -> bool {
+        self.magnitudes - earlier.magnitudes <= SETTLED * self.magnitudes
+    }
+}
+
+/// Sections in series behind whole samples of delay.
+#[derive(Clone, Debug)]
+struct Chain {
+    sections: Vec<Section>,
+    states: Vec<[f64; 2]>,
+    waiting: VecDeque<f64>,
+}
+
+/// Output, measurement and controller at rest.
+#[derive(Clone, Debug)]
+struct SampledLoop {
+    output: Chain,
+    measured: Chain,
+    feedback: Chain,
+}
+
+impl SampledLoop {
+    fn new(
+        output: &TransferFunction,
+        measured: &TransferFunction,
+        feedback: &TransferFunction,
+    ) -> Result<SampledLoop, QuantisationError> {
+        let [output, measured, feedback] =
+            [Chain::new(output)?, Chain::new(measured)?, Chain::new(feedback)?];
+        Ok(SampledLoop { output, measured, feedback })
+    }
+
+    /// The sums of what output and command do after one error of command and measurement; `None` if they do not settle.
+    fn response(&self, error: [f64; 2]) -> Option<(Sums, Sums)> {
+        let mut running = self.clone();
+        let (mut output, mut command) = (Sums::default(), Sums::default());
+        let mut error = error;
+        let (mut samples, mut end) = (0, SAMPLES_MINIMUM);
+        while end <= SAMPLES_MAXIMUM {
+            let (output_before, command_before) = (output, command);
+            while samples < end {
+                let (y, u) = running.step(error);
+                output.add(y);
+                command.add(u);
+                error = [0.0, 0.0];
+                samples += 1;
+            }
+            let first = end == SAMPLES_MINIMUM;
+            if !first && output.settled_since(&output_before) && command.settled_since(&command_before) {
+                return Some((output, command));
+            }
+            end *= 2;
+        }
+        None
+    }
+
+    /// One sample: output and command.
+    ///
+    /// ```text
+    /// u = -G m,   m = P H v + e_y,   y = P v,   v = u + e_u
+    /// ```
+    ///
+    /// Where controller and plant both answer at once, u is solved for.
+    fn step(&mut self, [command_error, measurement_error]: [f64; 2]) -> (f64, f64) {
+        let (plant, controller) = (self.measured.at_once(), self.feedback.at_once());
+        let measured = self.measured.free() + plant * command_error + measurement_error;
+        let command = (self.feedback.free() - controller * measured) / (1.0 + controller * plant);
+        let input = command + command_error;
+        let output = self.output.free() + self.output.at_once() * input;
+        self.output.advance(input);
+        self.measured.advance(input);
+        self.feedback.advance(-(measured + plant * command));
+        (output, command)
+    }
+}
+
+impl Chain {
+    fn new(function: &TransferFunction) -> Result<Chain, LinearError> {
+        let samples = match function.domain() {
+            TimeDomain::Discrete { sample_time_s } => {
+                (function.dead_time_s() / sample_time_s).round() as usize
+            }
+            TimeDomain::Continuous => 0,
+        };
+        let sections = Section::in_series(&function.clone().with_dead_time(0.0)?)?;
+        let states = vec![[0.0; 2]; sections.len()];
+        Ok(Chain { sections, states, waiting: VecDeque::from(vec![0.0; samples]) })
+    }
+
+    /// By how much an input of one changes the output at once.
+    fn at_once(&self) -> f64 {
+        if !self.waiting.is_empty() {
+            return 0.0;
+        }
+        self.sections.iter().map(|section| section.numerator[0]).product()
+    }
+
+    /// The output without an input.
+    fn free(&self) -> f64 {
+        let first = self.waiting.front().copied().unwrap_or(0.0);
+        self.sections
+            .iter()
+            .zip(&self.states)
+            .fold(first, |signal, (section, state)| section.output(*state, signal))
+    }
+
+    fn advance(&mut self, input: f64) {
+        self.waiting.push_back(input);
+        let mut signal = self.waiting.pop_front().unwrap_or(input);
+        for (section, state) in self.sections.iter().zip(&mut self.states) {
+            let output = section.output(*state, signal);
+            *state = section.advance(*state, signal, output);
+            signal = output;
+        }
+    }
+}

@@ -1,0 +1,458 @@
+//! Downhill from one point: a sequence of convex subproblems within a trust region.
+
+mod curvature;
+mod outcome;
+mod place;
+
+use std::collections::BTreeMap;
+
+use super::search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
+use super::subproblem::{Answer, Failure, Subproblem, dot};
+pub(super) use curvature::Curvature;
+pub use outcome::{Binding, DescentStatus, Work};
+use place::Place;
+
+/// First trust region, and the largest, in units of x.
+const RADIUS_FIRST: f64 = 0.3;
+const RADIUS_LARGEST: f64 = 2.0;
+/// A trust region below this ends the descent.
+const RADIUS_LEAST: f64 = 1e-8;
+/// Share of the promised decrease from which a step is taken, from which the region is kept, and from which it may grow.
+const TAKEN: f64 = 0.05;
+const KEPT: f64 = 0.25;
+const GROWN: f64 = 0.7;
+/// Corrections of one step at most.
+const CORRECTIONS_MAXIMUM: usize = 3;
+/// dB of the objective for each dB of violation: the first penalty, its growth, its largest.
+const PENALTY_FIRST: f64 = 10.0;
+const PENALTY_GROWTH: f64 = 4.0;
+const PENALTY_LARGEST: f64 = 1e7;
+/// Share of the tolerance by which margins may miss the reserve for the objective to be aimed at.
+const ENTERED: f64 = 0.5;
+/// How far the slopes that are left may still lead, in units of x, for a point to count as the end.
+const REACH: f64 = 0.1;
+/// Subproblems without an answer, one after the other, until the descent gives up.
+const FAILURES_MAXIMUM: usize = 8;
+/// A multiplier below this share of the largest is rounding.
+const MULTIPLIER_LEAST: f64 = 1e-6;
+
+/// What a descent looks for, how closely, and how long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DescentOptions {
+    /// What is made least or greatest.
+    pub aim: Aim,
+    /// Least margin to be left, dB, for [`Aim::Objective`]. Limits that leave no room, as those of tracking at low frequency, keep none; a
+    /// negative reserve, of what an audit tolerates, takes them for what they are worth.
+    pub reserve_db: f64,
+    /// The objective, or the worst margin that is looked for, is found to this, and a margin may miss its reserve by this; dB.
+    pub tolerance_db: f64,
+    /// Steps at most.
+    pub steps_maximum: usize,
+}
+
+impl DescentOptions {
+    /// No reserve, a tolerance of 0.0001 dB, 200 steps.
+    pub fn new(aim: Aim) -> DescentOptions {
+        DescentOptions { aim, reserve_db: 0.0, tolerance_db: 1e-4, steps_maximum: 200 }
+    }
+
+    /// Whether a worst margin keeps the reserve, but for a share of the tolerance.
+    fn keeps(&self, worst_margin_db: f64, share: f64) -> bool {
+        worst_margin_db >= self.reserve_db - share * self.tolerance_db
+    }
+}
+
+/// A descent from one point, stepped by its owner.
+///
+/// ```text
+/// merit(x) = f(x) + sigma max(0, m_r - m(x)),   m(x) the worst margin;     -m(x) for Aim::WorstMargin
+/// ```
+///
+/// Each step minimises a convex model of the merit within a box (sequential quadratic programming, the box a trust region, the
+/// penalty exact), and is taken if the merit falls by a share of what the model promises; a step into an unstable region never is.
+/// A step that the curvature of the margins spoils is corrected with the margins found at its end (second-order correction). The
+/// curvature of the Lagrangian is learnt from its slopes (damped BFGS). For [`Aim::Objective`] the worst margin is raised first, until
+/// all margins keep their reserve.
+///
+/// The end is a local optimum. Source: Fletcher (1987), chapters 12 and 14; Nocedal and Wright (2006), chapter 18.
+///
+/// # Example
+/// ```
+/// use phea_qft::loop_shaping::{
+///     Aim, Descent, DescentOptions, DescentStatus, Judgement, MarginRow, SearchProblem, Slopes,
+/// };
+///
+/// /// Least x + y with margin 1 - x^2 - y^2: at x = y = -sqrt(1/2).
+/// struct Disc([[f64; 2]; 2]);
+///
+/// impl SearchProblem for Disc {
+///     fn bounds(&self) -> &[[f64; 2]] {
+///         &self.0
+///     }
+///     fn judge(&mut self, x: &[f64]) -> Judgement {
+///         let margin = 1.0 - x[0] * x[0] - x[1] * x[1];
+///         Judgement { objective_db: x[0] + x[1], worst_margin_db: margin, stable: true, instability: 0.0 }
+///     }
+///     fn slopes(&mut self, x: &[f64]) -> Slopes {
+///         let margin_db = self.judge(x).worst_margin_db;
+///         let row = MarginRow { sample: 0, margin_db, rate: 1.0, slopes: vec![-2.0 * x[0], -2.0 * x[1]] };
+///         Slopes { objective_db: x[0] + x[1], objective_slopes: vec![1.0, 1.0], margins: vec![row] }
+///     }
+/// }
+///
+/// let mut disc = Disc([[-3.0, 3.0]; 2]);
+/// let options = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(Aim::Objective) };
+/// let mut descent = Descent::new(&[2.0, 1.0], options);
+/// while descent.step(&mut disc) {}
+/// assert_eq!(descent.status(), Some(DescentStatus::Converged));
+/// assert!((descent.judgement().unwrap().objective_db + 2_f64.sqrt()).abs() < 1e-4);
+/// let multiplier = 0.5_f64.sqrt(); // of x + y against the square of the radius
+/// assert!((descent.binding()[0].multiplier - multiplier).abs() < 1e-2);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Descent {
+    options: DescentOptions,
+    x: Vec<f64>,
+    /// Where it stands; `None` before it has begun.
+    here: Option<Place>,
+    /// What is aimed at now: the worst margin before the objective.
+    aim: Aim,
+    radius: f64,
+    penalty: f64,
+    curvature: Option<Curvature>,
+    binding: Vec<Binding>,
+    failures: usize,
+    steps: usize,
+    work: Work,
+    status: Option<DescentStatus>,
+}
+
+impl Descent {
+    /// A descent that has not begun.
+    pub fn new(x: &[f64], options: DescentOptions) -> Descent {
+        Descent {
+            options,
+            x: x.to_vec(),
+            here: None,
+            aim: options.aim,
+            radius: RADIUS_FIRST,
+            penalty: PENALTY_FIRST,
+            curvature: None,
+            binding: vec![],
+            failures: 0,
+            steps: 0,
+            work: Work::default(),
+            status: None,
+        }
+    }
+
+    /// Where it stands.
+    pub fn x(&self) -> &[f64] {
+        self.here.as_ref().map_or(&self.x, |here| &here.x)
+    }
+
+    /// The judgement of where it stands; `None` before the first step.
+    pub fn judgement(&self) -> Option<Judgement> {
+        self.here.as_ref().map(|here| here.judgement)
+    }
+
+    /// Why it ended; `None` as long as it goes on.
+    pub fn status(&self) -> Option<DescentStatus> {
+        self.status
+    }
+
+    /// The margins that stood in the way of the last step, the strongest first.
+    pub fn binding(&self) -> &[Binding] {
+        &self.binding
+    }
+
+    /// Work done so far.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Begins again from where it stands, after the problem has been given further margins: what was learnt of curvature and penalty
+    /// is kept, all else is judged afresh.
+    pub fn resume(&mut self) {
+        if let Some(here) = self.here.take() {
+            self.x = here.x;
+        }
+        self.radius = self.radius.clamp(RADIUS_FIRST / 10.0, RADIUS_FIRST);
+        (self.steps, self.failures, self.status) = (0, 0, None);
+        self.binding.clear();
+    }
+
+    /// Makes one step, of a few judgements; whether there is more to do.
+    pub fn step(&mut self, problem: &mut dyn SearchProblem) -> bool {
+        if self.status.is_some() {
+            return false;
+        }
+        match self.here.take() {
+            None => self.begin(problem),
+            Some(here) if self.steps >= self.options.steps_maximum => {
+                self.status = Some(DescentStatus::BudgetSpent { steps: self.steps });
+                self.here = Some(here);
+            }
+            Some(here) => {
+                self.steps += 1;
+                self.here = Some(self.advanced(problem, here));
+            }
+        }
+        self.status.is_none()
+    }
+
+    fn begin(&mut self, problem: &mut dyn SearchProblem) {
+        let inside = |(x, [low, high]): (&f64, &[f64; 2])| low <= x && x <= high;
+        let bounds = problem.bounds();
+        if bounds.len() != self.x.len() || !self.x.iter().zip(bounds).all(inside) {
+            self.status = Some(DescentStatus::StartOutside);
+            return;
+        }
+        let x = self.x.clone();
+        let judgement = self.judged(problem, &x);
+        let slopes = match is_usable(&judgement) {
+            true => self.slopes_at(problem, &x),
+            false => {
+                self.status = Some(DescentStatus::StartUnusable);
+                Slopes { objective_db: judgement.objective_db, objective_slopes: vec![], margins: vec![] }
+            }
+        };
+        self.aim = match self.options.aim {
+            Aim::Objective if self.options.keeps(judgement.worst_margin_db, ENTERED) => Aim::Objective,
+            _ => Aim::WorstMargin,
+        };
+        self.here = Some(Place { x, judgement, slopes, beyond: vec![] });
+    }
+
+    /// One step: the place that it leads to, or where it began.
+    fn advanced(&mut self, problem: &mut dyn SearchProblem, here: Place) -> Place {
+        let bounds = problem.bounds().to_vec();
+        let answer = match self.solved(&here, &here.rows(), &bounds) {
+            Ok(answer) => answer,
+            Err(failure) => return self.without_answer(failure, here),
+        };
+        self.note_binding(&here, &answer);
+        if !self.goes_on(&here, &answer) {
+            return here;
+        }
+        let (x, judgement) = self.tried(problem, &here, &answer.step, &bounds);
+        let share = self.gain(&here, &judgement) / answer.decrease_db;
+        if !is_usable(&judgement) {
+            self.shrink(greatest(&answer.step) / 4.0);
+            return here;
+        }
+        let there = Place { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
+        self.learn(&here, &there, &answer);
+        if share >= GROWN {
+            self.taken(there, &answer, share)
+        } else {
+            self.corrected(problem, here, there, &answer, share, &bounds)
+        }
+    }
+
+    /// The step again, with the margins that were found at its end: theirs are the constants, those of the start the slopes; and again, as
+    /// long as that is better. The best is taken, if it is good enough.
+    fn corrected(
+        &mut self,
+        problem: &mut dyn SearchProblem,
+        here: Place,
+        there: Place,
+        answer: &Answer,
+        share: f64,
+        bounds: &[[f64; 2]],
+    ) -> Place {
+        let (mut last, mut last_step) = (there.clone(), answer.step.clone());
+        let mut best = (share, there, answer.clone());
+        for _ in 0..CORRECTIONS_MAXIMUM {
+            let Ok(next) = self.solved(&here, &here.corrected_rows(&last, &last_step), bounds) else { break };
+            let (x, judgement) = self.tried(problem, &here, &next.step, bounds);
+            let share = self.gain(&here, &judgement) / answer.decrease_db;
+            if share <= best.0 || !is_usable(&judgement) {
+                break;
+            }
+            last = Place { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
+            last_step.clone_from(&next.step);
+            self.learn(&here, &last, &next);
+            best = (share, last.clone(), next);
+            if share >= GROWN {
+                break;
+            }
+        }
+        let (share, there, taken) = best;
+        if share >= TAKEN {
+            return self.taken(there, &taken, share);
+        }
+        self.shrink(greatest(&answer.step) / 3.0);
+        here.with_rows_of(&there)
+    }
+
+    /// Moves on, and fits the trust region to how well the step kept its promise.
+    fn taken(&mut self, there: Place, answer: &Answer, share: f64) -> Place {
+        let size = greatest(&answer.step);
+        if share < KEPT {
+            self.radius = size / 2.0;
+        } else if share > GROWN && size > 0.9 * self.radius {
+            self.radius = (2.0 * self.radius).min(RADIUS_LARGEST);
+        }
+        let is_feasible = self.options.keeps(there.judgement.worst_margin_db, ENTERED);
+        if self.aim == Aim::WorstMargin && self.options.aim == Aim::Objective && is_feasible {
+            self.aim = Aim::Objective;
+            self.curvature = None;
+        }
+        there
+    }
+
+    /// The answer of the subproblem around a place, the penalty raised as long as that lessens the violation.
+    fn solved(&mut self, here: &Place, rows: &[MarginRow], bounds: &[[f64; 2]]) -> Result<Answer, Failure> {
+        let reach =
+            |(x, [low, high]): (&f64, &[f64; 2])| [(low - x).max(-self.radius), (high - x).min(self.radius)];
+        let step_bounds: Vec<[f64; 2]> = here.x.iter().zip(bounds).map(reach).collect();
+        let subproblem = |penalty| Subproblem {
+            aim: self.aim,
+            objective_slopes: &here.slopes.objective_slopes,
+            curvature: self.curvature.as_ref(),
+            margins: rows,
+            step_bounds: &step_bounds,
+            reserve_db: self.options.reserve_db,
+            penalty,
+        };
+        let (mut penalty, mut solved) = (self.penalty, 1);
+        let mut answer = subproblem(penalty).solve()?;
+        while self.aim == Aim::Objective
+            && answer.violation_db > self.options.tolerance_db
+            && penalty < PENALTY_LARGEST
+        {
+            solved += 1;
+            match subproblem(PENALTY_GROWTH * penalty).solve() {
+                Ok(stricter) if stricter.violation_db < 0.9 * answer.violation_db => answer = stricter,
+                _ => break,
+            }
+            penalty *= PENALTY_GROWTH;
+        }
+        self.penalty = penalty;
+        self.work.subproblems += solved;
+        Ok(answer)
+    }
+
+    /// A smaller region, and nothing presumed of the curvature, after a subproblem without an answer.
+    fn without_answer(&mut self, failure: Failure, here: Place) -> Place {
+        self.work.subproblems += 1;
+        self.failures += 1;
+        let hopeless = matches!(failure, Failure::NotFinite | Failure::NothingToDo);
+        if hopeless || self.failures >= FAILURES_MAXIMUM {
+            self.status = Some(DescentStatus::NoStep { penalty: self.penalty });
+        }
+        self.curvature = None;
+        self.shrink(self.radius / 2.0);
+        here
+    }
+
+    /// Whether the step is worth a try. Where nothing more is to be gained, by the model, `status` says what that means; where only the
+    /// curvature says so, it is forgotten.
+    fn goes_on(&mut self, here: &Place, answer: &Answer) -> bool {
+        self.failures = 0;
+        let tolerance = self.options.tolerance_db;
+        let left = self.curvature.as_ref().map_or(0.0, |curvature| {
+            curvature.times(&answer.step).iter().map(|slope| slope.abs()).sum::<f64>()
+        });
+        if answer.decrease_db > tolerance / 10.0 {
+            return true;
+        }
+        if REACH * left > 10.0 * tolerance {
+            let is_stuck = answer.decrease_db <= tolerance / 1e4;
+            self.curvature = self.curvature.take().filter(|_| !is_stuck);
+            return !is_stuck;
+        }
+        let size = greatest(&answer.step);
+        if size > 0.9 * self.radius && self.radius < REACH / 10.0 && answer.decrease_db > tolerance / 1e4 {
+            return true;
+        }
+        let worst_margin_db = here.judgement.worst_margin_db;
+        let misses = !self.options.keeps(worst_margin_db, 1.0);
+        if self.aim == Aim::Objective && misses && self.penalty < PENALTY_LARGEST {
+            self.penalty *= PENALTY_GROWTH;
+            return false;
+        }
+        self.status = Some(match self.options.aim {
+            Aim::Objective if misses => DescentStatus::Infeasible { worst_margin_db },
+            _ => DescentStatus::Converged,
+        });
+        false
+    }
+
+    fn note_binding(&mut self, here: &Place, answer: &Answer) {
+        let largest =
+            answer.multipliers.iter().fold(0.0, |largest: f64, &multiplier| largest.max(multiplier));
+        let mut strengths: BTreeMap<usize, f64> = BTreeMap::new();
+        for (row, &multiplier) in here.rows().iter().zip(&answer.multipliers) {
+            if multiplier > MULTIPLIER_LEAST * largest {
+                *strengths.entry(row.sample).or_default() += multiplier;
+            }
+        }
+        self.binding =
+            strengths.into_iter().map(|(sample, multiplier)| Binding { sample, multiplier }).collect();
+        self.binding.sort_by(|a, b| b.multiplier.total_cmp(&a.multiplier));
+    }
+
+    /// Takes what a step shows of the curvature of the Lagrangian.
+    fn learn(&mut self, here: &Place, there: &Place, answer: &Answer) {
+        let step: Vec<f64> = there.x.iter().zip(&here.x).map(|(there, here)| there - here).collect();
+        let change = here.change_of_slopes(there, self.aim, &answer.multipliers);
+        self.curvature = match &self.curvature {
+            Some(curvature) if dot(&step, &step) > 0.0 => curvature.updated(&step, &change),
+            _ => Curvature::first(&step, &change),
+        };
+    }
+
+    fn shrink(&mut self, radius: f64) {
+        self.radius = radius;
+        if radius < RADIUS_LEAST && self.status.is_none() {
+            self.status = Some(DescentStatus::TrustRegionTooSmall { radius });
+        }
+    }
+
+    /// How much less the merit is there, dB; minus infinity where margins mean nothing.
+    fn gain(&self, here: &Place, there: &Judgement) -> f64 {
+        let merit = |judgement: &Judgement| match self.aim {
+            Aim::WorstMargin => -judgement.worst_margin_db,
+            Aim::Objective => {
+                let violation = (self.options.reserve_db - judgement.worst_margin_db).max(0.0);
+                judgement.objective_db + self.penalty * violation
+            }
+        };
+        if is_usable(there) { merit(&here.judgement) - merit(there) } else { f64::NEG_INFINITY }
+    }
+
+    fn tried(
+        &mut self,
+        problem: &mut dyn SearchProblem,
+        here: &Place,
+        step: &[f64],
+        bounds: &[[f64; 2]],
+    ) -> (Vec<f64>, Judgement) {
+        let moved = here.x.iter().zip(step).zip(bounds);
+        let x: Vec<f64> = moved.map(|((x, d), [low, high])| (x + d).max(*low).min(*high)).collect();
+        let judgement = self.judged(problem, &x);
+        (x, judgement)
+    }
+
+    fn judged(&mut self, problem: &mut dyn SearchProblem, x: &[f64]) -> Judgement {
+        self.work.judgements += 1;
+        problem.judge(x)
+    }
+
+    fn slopes_at(&mut self, problem: &mut dyn SearchProblem, x: &[f64]) -> Slopes {
+        self.work.slopes += 1;
+        problem.slopes(x)
+    }
+}
+
+/// Whether margins mean anything.
+pub(super) fn is_usable(judgement: &Judgement) -> bool {
+    judgement.stable && judgement.worst_margin_db.is_finite() && judgement.objective_db.is_finite()
+}
+
+/// Largest magnitude.
+fn greatest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |greatest, value| greatest.max(value.abs()))
+}

@@ -1,0 +1,64 @@
+//! What a descent ends with.
+
+/// Why a descent ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DescentStatus {
+    /// No small step gains more than the tolerance, and no margin misses its reserve by more: a local optimum.
+    Converged,
+    /// No small step brings the worst margin nearer to the reserve, dB: a local optimum of the worst margin.
+    Infeasible {
+        /// The worst margin there.
+        worst_margin_db: f64,
+    },
+    /// Only steps below this gain anything, and less than was promised: a kink, or slopes that are not those of the margins.
+    TrustRegionTooSmall {
+        /// Size of the last step that was tried, in units of x.
+        radius: f64,
+    },
+    /// The steps allowed were made.
+    BudgetSpent {
+        /// How many.
+        steps: usize,
+    },
+    /// The subproblem had no usable answer several times in succession.
+    NoStep {
+        /// The penalty then, dB for each dB.
+        penalty: f64,
+    },
+    /// The start is not stable, or has margins that are no numbers.
+    StartUnusable,
+    /// The start lies outside of the bounds.
+    StartOutside,
+}
+
+/// Work done: counts, not times.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Points judged.
+    pub judgements: usize,
+    /// Points at which slopes were taken.
+    pub slopes: usize,
+    /// Convex subproblems solved.
+    pub subproblems: usize,
+}
+
+impl std::ops::Add for Work {
+    type Output = Work;
+
+    fn add(self, other: Work) -> Work {
+        Work {
+            judgements: self.judgements + other.judgements,
+            slopes: self.slopes + other.slopes,
+            subproblems: self.subproblems + other.subproblems,
+        }
+    }
+}
+
+/// A margin that stands in the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Binding {
+    /// Its [`MarginRow::sample`](crate::loop_shaping::MarginRow::sample).
+    pub sample: usize,
+    /// What one dB more of this margin would gain: dB of the objective, or of the common margin.
+    pub multiplier: f64,
+}

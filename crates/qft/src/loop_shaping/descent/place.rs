@@ -1,0 +1,79 @@
+//! A point with all that is known around it.
+
+use std::collections::BTreeMap;
+
+use super::super::search::{Aim, Judgement, MarginRow, Slopes};
+use super::super::subproblem::dot;
+
+/// A point, its judgement, its slopes, and margins that a refused step has shown to matter nearby.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Place {
+    pub(super) x: Vec<f64>,
+    pub(super) judgement: Judgement,
+    pub(super) slopes: Slopes,
+    /// Margins that the slopes here leave out, as they look from the end of a refused step.
+    pub(super) beyond: Vec<MarginRow>,
+}
+
+impl Place {
+    /// All margins that are known around here, those beyond last.
+    pub(super) fn rows(&self) -> Vec<MarginRow> {
+        self.slopes.margins.iter().chain(&self.beyond).cloned().collect()
+    }
+
+    fn by_sample(&self) -> BTreeMap<usize, &MarginRow> {
+        self.slopes.margins.iter().map(|row| (row.sample, row)).collect()
+    }
+
+    /// The margins of another place that are not among those here, continued to here along their slopes. None is worse here than the
+    /// worst margin, which is known.
+    fn unknown_rows(&self, there: &Place) -> Vec<MarginRow> {
+        let known = self.by_sample();
+        let back: Vec<f64> = self.x.iter().zip(&there.x).map(|(here, there)| here - there).collect();
+        let unknown = there.slopes.margins.iter().filter(|row| !known.contains_key(&row.sample));
+        let continued = unknown.map(|row| {
+            let margin_db = row.margin_db + dot(&row.slopes, &back);
+            let worst = row.rate * self.judgement.worst_margin_db;
+            MarginRow { margin_db: margin_db.max(worst), ..row.clone() }
+        });
+        continued.collect()
+    }
+
+    /// The rows here so moved that they have the margins found at the end of a step, with those that only appear there.
+    pub(super) fn corrected_rows(&self, there: &Place, step: &[f64]) -> Vec<MarginRow> {
+        let found = there.by_sample();
+        let corrected = |row: &MarginRow| match found.get(&row.sample) {
+            Some(seen) => MarginRow { margin_db: seen.margin_db - dot(&row.slopes, step), ..row.clone() },
+            None => row.clone(),
+        };
+        let mut rows: Vec<MarginRow> = self.slopes.margins.iter().map(corrected).collect();
+        rows.extend(self.unknown_rows(there));
+        rows
+    }
+
+    /// The same place, with the margins that only appear at the end of a refused step.
+    pub(super) fn with_rows_of(mut self, there: &Place) -> Place {
+        let unknown = self.unknown_rows(there);
+        self.beyond.retain(|row| unknown.iter().all(|new| new.sample != row.sample));
+        self.beyond.extend(unknown);
+        self
+    }
+
+    /// How much the slopes of the Lagrangian f - sum lambda_i m_i change from here to there; a margin that is not given at both places
+    /// is taken as straight.
+    pub(super) fn change_of_slopes(&self, there: &Place, aim: Aim, multipliers: &[f64]) -> Vec<f64> {
+        let slopes = there.slopes.objective_slopes.iter().zip(&self.slopes.objective_slopes);
+        let mut change: Vec<f64> = match aim {
+            Aim::WorstMargin => vec![0.0; self.x.len()],
+            Aim::Objective => slopes.map(|(there, here)| there - here).collect(),
+        };
+        let found = there.by_sample();
+        for (row, multiplier) in self.slopes.margins.iter().zip(multipliers) {
+            let Some(seen) = found.get(&row.sample) else { continue };
+            for ((change, there), here) in change.iter_mut().zip(&seen.slopes).zip(&row.slopes) {
+                *change -= multiplier * (there - here);
+            }
+        }
+        change
+    }
+}

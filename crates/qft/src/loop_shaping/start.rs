@@ -1,0 +1,363 @@
+//! The global search: points spread over the bounds, evolution where none of them is stable, descents from the best.
+
+mod evolution;
+mod spread;
+
+use std::cmp::Ordering;
+
+use super::descent::{Binding, Descent, DescentOptions, DescentStatus, Work, is_usable};
+use super::search::{Aim, Judgement, SearchProblem};
+use evolution::Evolution;
+use spread::Spread;
+
+/// Starts nearer to one another than this share of the bounds in every coordinate count as one.
+const DISTINCT: f64 = 0.05;
+/// Steps of each descent before the better ones are chosen.
+const STEPS_ROUGH: usize = 12;
+
+/// How widely a search looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchOptions {
+    /// Equal seeds give equal results, byte by byte.
+    pub seed: u64,
+    /// Points spread over the bounds.
+    pub samples: usize,
+    /// Points that descents begin from.
+    pub starts: usize,
+    /// Descents that are led to their end.
+    pub finished: usize,
+    /// Generations of evolution at most, where fewer samples than `starts` are stable.
+    pub generations: usize,
+    /// What each descent looks for.
+    pub descent: DescentOptions,
+}
+
+impl SearchOptions {
+    /// 300 samples, 8 starts, 4 of them finished, 60 generations.
+    pub fn new(aim: Aim, seed: u64) -> SearchOptions {
+        let descent = DescentOptions::new(aim);
+        SearchOptions { seed, samples: 300, starts: 8, finished: 4, generations: 60, descent }
+    }
+}
+
+/// Why a search ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SearchStatus {
+    /// The best descent ended so.
+    Ended(DescentStatus),
+    /// No point that was looked at is stable.
+    NotStabilised {
+        /// The least [`Judgement::instability`].
+        instability: f64,
+    },
+}
+
+/// Where one descent ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct End {
+    /// x
+    pub x: Vec<f64>,
+    /// Its judgement.
+    pub judgement: Judgement,
+    /// Why it ended there.
+    pub status: DescentStatus,
+}
+
+/// What a search found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SearchResult {
+    /// Why it ended.
+    pub status: SearchStatus,
+    /// The best point; the least unstable one where none is stable.
+    pub x: Vec<f64>,
+    /// Its judgement.
+    pub judgement: Judgement,
+    /// The margins that stand in the way there, the strongest first.
+    pub binding: Vec<Binding>,
+    /// Every descent that was led to its end, the best first.
+    pub ends: Vec<End>,
+    /// How much worse the worst of these ends is than the best, dB: of the objective, or of the worst margin where that is aimed at or no
+    /// end keeps the reserve; infinite where only some do. `None` with fewer than two ends.
+    pub spread_db: Option<f64>,
+    /// All work, that of descents left behind included.
+    pub work: Work,
+}
+
+/// A point and its judgement.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Candidate {
+    pub(super) x: Vec<f64>,
+    pub(super) judgement: Judgement,
+}
+
+impl Candidate {
+    /// Stable before unstable; then the larger worst margin, or the lesser instability.
+    fn is_better_than(&self, other: &Candidate) -> bool {
+        match (is_usable(&self.judgement), is_usable(&other.judgement)) {
+            (true, true) => self.judgement.worst_margin_db > other.judgement.worst_margin_db,
+            (false, false) => self.judgement.instability < other.judgement.instability,
+            (usable, _) => usable,
+        }
+    }
+
+    /// The best first, equals in their order.
+    fn sort(candidates: &mut [Candidate]) {
+        candidates.sort_by(|a, b| match a.is_better_than(b) {
+            true => Ordering::Less,
+            false if b.is_better_than(a) => Ordering::Greater,
+            false => Ordering::Equal,
+        });
+    }
+}
+
+#[derive(Clone, Debug)]
+enum Stage {
+    Sampling(Option<Spread>),
+    Evolving(Evolution),
+    /// Which of the descents goes on, and how many steps it has made in this stage.
+    Rough {
+        at: usize,
+        steps: usize,
+    },
+    Fine {
+        at: usize,
+    },
+    Done,
+}
+
+/// A search from many starts, stepped by its owner: it may be left at any step, and is the same on every machine.
+///
+/// ```text
+/// samples -> (evolution, if too few are stable) -> a few steps down from the best distinct ones -> the best of these to their end
+/// ```
+///
+/// The result is the best local optimum that was met; how far the other ends are from it says what that is worth.
+///
+/// # Example
+/// ```
+/// use phea_qft::loop_shaping::{Aim, Judgement, MarginRow, Search, SearchOptions, SearchProblem, Slopes};
+///
+/// /// Least x with margin (x^2 - 1)^2 - 1/4: there are walls around -1 and 1 that no descent passes.
+/// struct Walls([[f64; 2]; 1]);
+///
+/// impl SearchProblem for Walls {
+///     fn bounds(&self) -> &[[f64; 2]] {
+///         &self.0
+///     }
+///     fn judge(&mut self, x: &[f64]) -> Judgement {
+///         let wall = x[0] * x[0] - 1.0;
+///         Judgement { objective_db: x[0], worst_margin_db: wall * wall - 0.25, stable: true, instability: 0.0 }
+///     }
+///     fn slopes(&mut self, x: &[f64]) -> Slopes {
+///         let slope = 4.0 * x[0] * (x[0] * x[0] - 1.0);
+///         let margin_db = self.judge(x).worst_margin_db;
+///         let row = MarginRow { sample: 0, margin_db, rate: 1.0, slopes: vec![slope] };
+///         Slopes { objective_db: x[0], objective_slopes: vec![1.0], margins: vec![row] }
+///     }
+/// }
+///
+/// let mut search = Search::new(SearchOptions::new(Aim::Objective, 1));
+/// let mut walls = Walls([[-2.0, 2.0]]);
+/// while search.step(&mut walls) {}
+/// let found = search.result().unwrap();
+/// assert_eq!(found.x, [-2.0]);
+/// assert_eq!(found.ends[1].x, [-2.0]); // the next start agrees,
+/// assert!(found.spread_db.unwrap() > 1.0); // one behind a wall does not
+/// ```
+#[derive(Clone, Debug)]
+pub struct Search {
+    options: SearchOptions,
+    stage: Stage,
+    /// Points that are looked at before any that is spread.
+    given: Vec<Vec<f64>>,
+    candidates: Vec<Candidate>,
+    descents: Vec<Descent>,
+    /// Work of samples, evolution, and descents left behind.
+    other_work: Work,
+    random: u64,
+}
+
+impl Search {
+    /// A search that has not begun.
+    pub fn new(options: SearchOptions) -> Search {
+        Search {
+            options,
+            stage: Stage::Sampling(None),
+            given: vec![],
+            candidates: vec![],
+            descents: vec![],
+            other_work: Work::default(),
+            random: options.seed,
+        }
+    }
+
+    /// Looks at these points too, within the bounds: where a simpler problem ended, say.
+    pub fn beginning_with(self, given: Vec<Vec<f64>>) -> Search {
+        Search { given, ..self }
+    }
+
+    /// Does a small part of the work: a sample, or a step of a descent. Whether there is more to do.
+    pub fn step(&mut self, problem: &mut dyn SearchProblem) -> bool {
+        self.stage = match std::mem::replace(&mut self.stage, Stage::Done) {
+            Stage::Sampling(spread) => self.sampled(problem, spread),
+            Stage::Evolving(evolution) => self.evolved(problem, evolution),
+            Stage::Rough { at, steps } => self.roughly(problem, at, steps),
+            Stage::Fine { at } => self.finely(problem, at),
+            Stage::Done => Stage::Done,
+        };
+        !matches!(self.stage, Stage::Done)
+    }
+
+    /// The share of the work that is done, 0 to 1: an estimate, for the steps of the descents are not known before.
+    pub fn progress(&self) -> f64 {
+        let share = |done: usize, of: usize| done as f64 / of.max(1) as f64;
+        match &self.stage {
+            Stage::Sampling(_) => 0.2 * share(self.candidates.len(), self.options.samples),
+            Stage::Evolving(evolution) => 0.2 + 0.2 * share(evolution.generation(), self.options.generations),
+            Stage::Rough { at, .. } => 0.4 + 0.3 * share(*at, self.descents.len()),
+            Stage::Fine { at } => 0.7 + 0.3 * share(*at, self.descents.len()),
+            Stage::Done => 1.0,
+        }
+    }
+
+    /// What was found, once [`Search::step`] has answered that there is nothing left; `None` before, and if not one sample was allowed.
+    pub fn result(&self) -> Option<SearchResult> {
+        if !matches!(self.stage, Stage::Done) {
+            return None;
+        }
+        let end = |descent: &Descent| {
+            Some(End { x: descent.x().to_vec(), judgement: descent.judgement()?, status: descent.status()? })
+        };
+        let ends: Vec<End> = self.descents.iter().filter_map(end).collect();
+        let work = self.descents.iter().fold(self.other_work, |sum, descent| sum + descent.work());
+        let (status, best) = match ends.first() {
+            Some(End { x, judgement, status }) => {
+                (SearchStatus::Ended(*status), Candidate { x: x.clone(), judgement: *judgement })
+            }
+            None => {
+                let best = self.candidates.first()?.clone();
+                (SearchStatus::NotStabilised { instability: best.judgement.instability }, best)
+            }
+        };
+        Some(SearchResult {
+            status,
+            x: best.x,
+            judgement: best.judgement,
+            binding: self.descents.first().map_or(vec![], |descent| descent.binding().to_vec()),
+            spread_db: self.spread_db(&ends),
+            ends,
+            work,
+        })
+    }
+
+    fn sampled(&mut self, problem: &mut dyn SearchProblem, spread: Option<Spread>) -> Stage {
+        if let Some(x) = self.given.pop() {
+            let judgement = problem.judge(&x);
+            self.other_work.judgements += 1;
+            self.candidates.push(Candidate { x, judgement });
+            return Stage::Sampling(spread);
+        }
+        if self.candidates.len() < self.options.samples {
+            let bounds = problem.bounds();
+            let spread = spread.unwrap_or_else(|| Spread::new(bounds.len(), &mut self.random));
+            let x = spread.point(self.candidates.len(), bounds);
+            let judgement = problem.judge(&x);
+            self.other_work.judgements += 1;
+            self.candidates.push(Candidate { x, judgement });
+            return Stage::Sampling(Some(spread));
+        }
+        Candidate::sort(&mut self.candidates);
+        let evolution = Evolution::new(&self.candidates, problem.bounds());
+        match self.is_enough(evolution.candidates()) || evolution.is_too_small() {
+            true => self.chosen(problem),
+            false => Stage::Evolving(evolution),
+        }
+    }
+
+    fn evolved(&mut self, problem: &mut dyn SearchProblem, mut evolution: Evolution) -> Stage {
+        if evolution.generation() < self.options.generations && !self.is_enough(evolution.candidates()) {
+            evolution.step(problem, &mut self.random);
+            self.other_work.judgements += 1;
+            return Stage::Evolving(evolution);
+        }
+        self.candidates = evolution.candidates().to_vec();
+        Candidate::sort(&mut self.candidates);
+        self.chosen(problem)
+    }
+
+    fn is_enough(&self, candidates: &[Candidate]) -> bool {
+        candidates.iter().filter(|candidate| is_usable(&candidate.judgement)).count() >= self.options.starts
+    }
+
+    /// Descents from the best candidates that are distinct; the candidates are sorted.
+    fn chosen(&mut self, problem: &dyn SearchProblem) -> Stage {
+        let bounds = problem.bounds();
+        let mut starts: Vec<&Candidate> = vec![];
+        for candidate in self.candidates.iter().filter(|candidate| is_usable(&candidate.judgement)) {
+            if starts.len() < self.options.starts
+                && starts.iter().all(|start| is_distinct(candidate, start, bounds))
+            {
+                starts.push(candidate);
+            }
+        }
+        self.descents = starts.iter().map(|start| Descent::new(&start.x, self.options.descent)).collect();
+        if self.descents.is_empty() { Stage::Done } else { Stage::Rough { at: 0, steps: 0 } }
+    }
+
+    fn roughly(&mut self, problem: &mut dyn SearchProblem, at: usize, steps: usize) -> Stage {
+        let Some(descent) = self.descents.get_mut(at) else {
+            self.sort_descents();
+            for left in self.descents.drain(self.options.finished.max(1).min(self.descents.len())..) {
+                self.other_work = self.other_work + left.work();
+            }
+            return Stage::Fine { at: 0 };
+        };
+        match steps < STEPS_ROUGH && descent.step(problem) {
+            true => Stage::Rough { at, steps: steps + 1 },
+            false => Stage::Rough { at: at + 1, steps: 0 },
+        }
+    }
+
+    fn finely(&mut self, problem: &mut dyn SearchProblem, at: usize) -> Stage {
+        match self.descents.get_mut(at).map(|descent| descent.step(problem)) {
+            Some(true) => Stage::Fine { at },
+            Some(false) => Stage::Fine { at: at + 1 },
+            None => {
+                self.sort_descents();
+                Stage::Done
+            }
+        }
+    }
+
+    fn sort_descents(&mut self) {
+        let standing = |descent: &Descent| standing(&self.options.descent, descent.judgement());
+        self.descents.sort_by(|a, b| {
+            let (a, b) = (standing(a), standing(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+    }
+
+    fn spread_db(&self, ends: &[End]) -> Option<f64> {
+        let standing = |end: &End| standing(&self.options.descent, Some(end.judgement));
+        let [best, .., worst] = ends else { return None };
+        let (best, worst) = (standing(best), standing(worst));
+        Some(if best.0 == worst.0 { worst.1 - best.1 } else { f64::INFINITY })
+    }
+}
+
+/// Whether a point misses the reserve, and how good it is besides, dB, less being better: the order of descents.
+fn standing(options: &DescentOptions, judgement: Option<Judgement>) -> (bool, f64) {
+    let Some(judgement) = judgement else { return (true, f64::INFINITY) };
+    let misses = judgement.worst_margin_db < options.reserve_db - options.tolerance_db;
+    match options.aim {
+        Aim::Objective if misses => (true, -judgement.worst_margin_db),
+        Aim::Objective => (false, judgement.objective_db),
+        Aim::WorstMargin => (false, -judgement.worst_margin_db),
+    }
+}
+
+/// Whether two points differ by a share of the bounds worth a second descent.
+fn is_distinct(a: &Candidate, b: &Candidate, bounds: &[[f64; 2]]) -> bool {
+    let apart = a.x.iter().zip(&b.x).zip(bounds);
+    apart.into_iter().any(|((a, b), [low, high])| (a - b).abs() > DISTINCT * (high - low))
+}

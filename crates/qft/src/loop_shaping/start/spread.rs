@@ -1,0 +1,80 @@
+//! Points spread evenly over a box.
+
+use phea_dynamics::portable;
+
+use crate::random::share;
+
+/// Steps of the fixed-point iteration, which gains a digit in two or three.
+const ITERATIONS: usize = 64;
+
+/// Additive recurrence from a random beginning: every point is the last one moved by steps that fill the unit cube evenly.
+///
+/// ```text
+/// e_j(i) = frac(shift_j + i phi^-j),     phi^(n + 1) = phi + 1,     j = 1 ... n
+/// ```
+///
+/// Source: Weyl (1916) on additive recurrences; Roberts (2018) on these steps.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Spread {
+    shifts: Vec<f64>,
+    steps: Vec<f64>,
+}
+
+impl Spread {
+    pub(super) fn new(dimension: usize, random: &mut u64) -> Spread {
+        let root = 1.0 / (dimension as f64 + 1.0);
+        let ratio = (0..ITERATIONS).fold(2.0, |ratio, _| portable::pow(1.0 + ratio, root));
+        let step = |power: usize| portable::pow(ratio, -(power as f64));
+        Spread {
+            shifts: (0..dimension).map(|_| share(random)).collect(),
+            steps: (1..=dimension).map(step).collect(),
+        }
+    }
+
+    /// One of the points, between the bounds.
+    pub(super) fn point(&self, index: usize, bounds: &[[f64; 2]]) -> Vec<f64> {
+        let shares =
+            self.shifts.iter().zip(&self.steps).map(|(shift, step)| (shift + index as f64 * step).fract());
+        shares.zip(bounds).map(|(share, [low, high])| low + share * (high - low)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Spread;
+
+    /// In one dimension the step is the golden section, with which any n points leave gaps of at most (1 + golden)/n.
+    #[test]
+    fn one_dimension_is_filled_by_the_golden_section() {
+        let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+        let spread = Spread::new(1, &mut 5);
+        assert!((spread.steps[0] - golden).abs() < 1e-14);
+        for count in [10, 57, 233] {
+            let mut points: Vec<f64> =
+                (0..count).map(|index| spread.point(index, &[[0.0, 1.0]])[0]).collect();
+            points.sort_by(f64::total_cmp);
+            let ring =
+                points.windows(2).map(|pair| pair[1] - pair[0]).chain([1.0 + points[0] - points[count - 1]]);
+            let widest = ring.fold(0.0, f64::max);
+            assert!(widest < (1.0 + golden) / count as f64 + 1e-12, "{count} {widest}");
+        }
+    }
+
+    /// In several dimensions every slab of a tenth holds nearly a tenth of the points, and all points lie within the bounds.
+    #[test]
+    fn every_slab_has_its_share() {
+        let bounds = [[-1.0, 3.0], [2.0, 2.5], [0.0, 1e3], [-7.0, -6.0], [1.0, 1.0]];
+        let spread = Spread::new(5, &mut 11);
+        let points: Vec<Vec<f64>> = (0..500).map(|index| spread.point(index, &bounds)).collect();
+        for (coordinate, [low, high]) in bounds.into_iter().enumerate() {
+            assert!(points.iter().all(|point| low <= point[coordinate] && point[coordinate] <= high));
+            for slab in 0..10 {
+                let edge = |of: usize| low + of as f64 / 10.0 * (high - low);
+                let inside =
+                    |point: &&Vec<f64>| edge(slab) <= point[coordinate] && point[coordinate] < edge(slab + 1);
+                let count = points.iter().filter(inside).count();
+                assert!(low == high || (42..=58).contains(&count), "{coordinate} {slab} {count}");
+            }
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Structures of prefilters, by growing order.
+
+use phea_dynamics::portable;
+
+use super::PrefilterBand;
+use crate::loop_shaping::{Part, Structure};
+
+/// A pair of poles or zeros may ring as much as 0.3 allows, and be two real ones at a ratio of some 3600.
+const DAMPING_RATIO: [f64; 2] = [0.3, 30.0];
+/// How far above the highest frequency a pole or zero may lie: from there on it does nothing.
+const BEYOND: f64 = 10.0;
+/// The gain may differ by this much, dB, where tracking is not limited from below.
+const GAIN_RANGE_DB: f64 = 40.0;
+
+/// Every structure up to this order, the lowest order first and of these the fewest zeros first.
+///
+/// ```text
+/// F = k (zeros)/(poles),     poles and zeros in pairs, and one by itself where their number is odd
+/// ```
+pub(super) fn structures(
+    band: &PrefilterBand,
+    least_relative_degree: usize,
+    maximum_order: usize,
+) -> Vec<Structure> {
+    let [least, greatest] = band.relative_degree;
+    let least = least.max(least_relative_degree.min(greatest));
+    let orders = 0..=maximum_order;
+    let degrees = orders.flat_map(|order| (0..=order).map(move |zeros| (order, zeros)));
+    let allowed = degrees.filter(|(order, zeros)| (least..=greatest).contains(&(order - zeros)));
+    allowed.map(|(order, zeros)| structure(band, order, zeros)).collect()
+}
+
+fn structure(band: &PrefilterBand, order: usize, zeros: usize) -> Structure {
+    let [from, to] = band.span;
+    let range = [from, BEYOND * to];
+    let pole = Part::RealPole { frequency: range };
+    let pole_pair = Part::PolePair { natural_frequency: range, damping_ratio: DAMPING_RATIO };
+    let zero = Part::RealZero { frequency: range };
+    let zero_pair = Part::ZeroPair { natural_frequency: range, damping_ratio: DAMPING_RATIO };
+    let mut parts = vec![pole_pair; order / 2];
+    parts.extend(vec![pole; order % 2]);
+    parts.extend(vec![zero_pair; zeros / 2]);
+    parts.extend(vec![zero; zeros % 2]);
+    let gain = gain_db(band.gain_db).map(|decibels| portable::pow(10.0, decibels / 20.0));
+    Structure { sign: 1.0, gain, parts }
+}
+
+/// The range of the gain: the middle of edges that have passed one another, and an end where nothing is demanded from below.
+fn gain_db([least, greatest]: [f64; 2]) -> [f64; 2] {
+    if least > greatest {
+        return [(least + greatest) / 2.0; 2];
+    }
+    [least.max(greatest - GAIN_RANGE_DB), greatest]
+}

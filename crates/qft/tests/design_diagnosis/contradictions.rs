@@ -1,0 +1,134 @@
+//! Limits that contradict each other at a frequency.
+
+use phea_qft::design::{Finding, diagnose};
+use phea_qft::specification::{Limit, Requirement};
+
+use crate::problems::{
+    boxed, decibels, demand, everywhere, impossibilities, plain, problem, rational, single,
+};
+
+/// |S| + |T| >= 1: a share of each is missing, and a common factor brings the sum to 1.
+#[test]
+fn sensitivity_against_complementary_sensitivity() {
+    let of = |limit_of_s: f64| {
+        let specifications = vec![
+            demand(Requirement::Sensitivity(Limit::Constant(limit_of_s)), &[2.0], [1.0, 3.0]),
+            demand(Requirement::RobustStability(Limit::Constant(0.5)), &[2.0], [2.0, 100.0]),
+        ];
+        problem(single(&[1.0], &[1.0, 1.0], 0.0), specifications)
+    };
+    assert_eq!(impossibilities(&of(0.51)), []);
+    let found = impossibilities(&of(0.3));
+    let [
+        Finding::SumBelowOne { frequency_rad_per_s, sensitivity, complementary, relaxation_db, .. },
+        rest @ ..,
+    ] = found.as_slice()
+    else {
+        panic!("{found:?}")
+    };
+    assert!((2.0..=3.0).contains(frequency_rad_per_s));
+    assert_eq!([sensitivity.specification, complementary.specification], [0, 1]);
+    assert!((relaxation_db - decibels(1.0 / 0.8)).abs() < 1e-3);
+    // the bounds at the design frequency say the same
+    let [Finding::Contradiction { frequency_rad_per_s: 2.0, parties, relaxation_db, .. }] = rest else {
+        panic!("{rest:?}")
+    };
+    assert!(relaxation_db[0] <= decibels(1.0 / 0.8) && decibels(1.0 / 0.8) <= relaxation_db[1] + 1e-3);
+    assert!(relaxation_db[1] - relaxation_db[0] < 0.1);
+    assert_eq!(parties.iter().map(|party| party.specification).collect::<Vec<_>>(), [0, 1]);
+}
+
+/// Control effort bounds |T| by |G S| |P|, a disturbance at the plant's input |S| by |P S|/|P|.
+#[test]
+fn effort_against_disturbance() {
+    // ORIGIN: analytic, |P(j 2)| = 8/4 for 8/(s^2): |T| <= 0.2 * 2, |S| <= 1/2
+    let specifications = vec![
+        demand(Requirement::ControlEffort(Limit::Constant(0.2)), &[], [2.0, 2.0]),
+        demand(Requirement::PlantInputDisturbance(Limit::Constant(1.0)), &[2.0], [2.0, 2.0]),
+        demand(Requirement::ControlEffort(Limit::Constant(0.2)), &[2.0], [1.99, 2.01]),
+    ];
+    let found = impossibilities(&problem(single(&[8.0], &[1.0, 0.0, 0.0], 0.0), specifications));
+    let contradiction = found.iter().find_map(|finding| match finding {
+        Finding::Contradiction { relaxation_db, .. } => Some(*relaxation_db),
+        _ => None,
+    });
+    let [low, high] = contradiction.unwrap();
+    let truth = decibels(1.0 / 0.9);
+    assert!(low <= truth && truth <= high + 1e-3 && high - low < 0.1, "{low} {truth} {high}");
+}
+
+/// Two plants of opposite phase and |T| <= 1.2: more gain for tracking is no gain at all, and it takes plants in the plural to see it.
+#[test]
+fn spread_against_stability_takes_two_plants() {
+    let of = |ratio: f64| {
+        let family =
+            boxed(&[("k", 1.0, 1.0, 10.0)], 3, |p| plain(vec![p[0]], vec![1.0.into(), 1.0.into()], 0.0));
+        let tracking =
+            Requirement::Tracking { lower: Limit::Constant(1.0 / ratio), upper: Limit::Constant(ratio) };
+        let effort = Requirement::ControlEffort(Limit::Constant(0.5));
+        problem(family, vec![demand(tracking, &[1.0], [1.0, 1.0]), demand(effort, &[1.0], [1.0, 1.0])])
+    };
+    // |G| must be small: the spread stays near 10, whatever the limits of |T|
+    let found = impossibilities(&of(1.2));
+    let Some(Finding::Contradiction { parties, relaxation_db, frequency_rad_per_s: 1.0, .. }) = found.first()
+    else {
+        panic!("{found:?}")
+    };
+    assert_eq!(parties.iter().map(|party| party.specification).collect::<Vec<_>>(), [0, 1]);
+    assert!(parties[0].other.is_some() && parties[0].plant != *parties[0].other.as_ref().unwrap());
+    assert!(relaxation_db[0] > 1.0);
+    assert_eq!(impossibilities(&of(5.0)), []);
+}
+
+#[test]
+fn crossed_limits_of_tracking() {
+    let tracking = Requirement::Tracking {
+        lower: rational(&[10.0], &[1.0, 10.0]),
+        upper: rational(&[9.0], &[1.0, 9.0]),
+    };
+    let found = impossibilities(&problem(
+        single(&[1.0], &[1.0, 0.0], 0.0),
+        vec![demand(tracking, &[1.0], [0.0, 50.0])],
+    ));
+    let [Finding::CrossedLimits { frequency_rad_per_s, lower, upper, relaxation_db, .. }] = found.as_slice()
+    else {
+        panic!("{found:?}")
+    };
+    assert!(*frequency_rad_per_s == 50.0 && lower > upper);
+    assert!((relaxation_db - decibels(lower / upper) / 2.0).abs() < 1e-9);
+}
+
+/// T = 1 at a pole on the axis, S = 1 and T = 0 at a zero.
+#[test]
+fn poles_and_zeros_on_the_axis() {
+    let low = Requirement::RobustStability(Limit::Constant(0.9));
+    let found =
+        impossibilities(&problem(single(&[1.0], &[1.0, 0.0, 4.0], 0.0), vec![demand(low, &[], [1.0, 3.0])]));
+    assert!(matches!(found[0], Finding::PoleOnTheAxis { frequency_rad_per_s: 2.0, .. }), "{found:?}");
+    let following = Requirement::Tracking { lower: Limit::Constant(0.5), upper: Limit::Constant(1.5) };
+    let found = impossibilities(&problem(
+        single(&[1.0, 0.0], &[1.0, 1.0], 0.0),
+        vec![demand(following, &[], [0.0, 1.0])],
+    ));
+    assert!(matches!(found[0], Finding::ZeroOnTheAxis { frequency_rad_per_s: 0.0, .. }), "{found:?}");
+    let quiet = Requirement::Sensitivity(Limit::Constant(0.5));
+    let found = impossibilities(&problem(
+        single(&[1.0, 0.0, 9.0], &[1.0, 2.0, 1.0], 0.0),
+        vec![demand(quiet, &[], [2.9, 3.1])],
+    ));
+    assert!(matches!(found[0], Finding::ZeroOnTheAxis { frequency_rad_per_s: 3.0, .. }), "{found:?}");
+}
+
+/// The sentences name frequencies, specifications counted from 1, and what it would take.
+#[test]
+fn findings_read_as_sentences() {
+    let specifications = vec![
+        everywhere(Requirement::Sensitivity(Limit::Constant(0.3))),
+        everywhere(Requirement::RobustStability(Limit::Constant(0.5))),
+    ];
+    let found = diagnose(&problem(single(&[1.0], &[1.0, -2.0], 0.0), specifications));
+    let text = found[0].to_string();
+    assert!(text.contains("specifications 1 and 2") && text.contains("1.938 dB"), "{text}");
+    let pole = found.iter().map(Finding::to_string).find(|text| text.contains("unstable pole at 2 rad/s"));
+    assert!(pole.unwrap().contains("|T| = 1"));
+}

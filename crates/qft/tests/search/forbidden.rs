@@ -1,0 +1,34 @@
+//! Regions that no step may enter.
+
+use phea_qft::loop_shaping::{Aim, DescentStatus};
+
+use crate::formula::{Formula, check_objective, descended};
+
+fn squared_radius(x: &[f64]) -> f64 {
+    x[0] * x[0] + x[1] * x[1]
+}
+
+/// Within the unit disc nothing is stable, and it lies across the straight way; the margin falls towards it, as that of a loop does.
+#[test]
+fn descent_goes_around_an_unstable_region() {
+    let objective = |x: &[f64]| (x[0] - 2.0).powi(2) + x[1] * x[1];
+    let mut problem = Formula::new(2, objective, |x| vec![10.0 * squared_radius(x).log10()]);
+    problem.instability = |x| 1.0 - squared_radius(x);
+    let descent = check_objective(problem, &[-2.0, 1.0], 0.0);
+    assert!(descent.judgement().unwrap().stable);
+}
+
+/// Where no margin warns of the region, the descent stops at its edge, outside, and says so.
+#[test]
+fn descent_stops_at_an_edge_without_warning() {
+    let mut problem = Formula::new(1, |x| x[0], |_| vec![1.0]);
+    problem.instability = |x| 1.0 - x[0];
+    let descent = descended(&mut problem, &[2.0], Aim::Objective);
+    let judgement = descent.judgement().unwrap();
+    assert!(
+        matches!(descent.status(), Some(DescentStatus::TrustRegionTooSmall { .. })),
+        "{:?}",
+        descent.status()
+    );
+    assert!(judgement.stable && (descent.x()[0] - 1.0).abs() < 1e-4, "{:?}", descent.x());
+}

@@ -1,0 +1,86 @@
+//! The search from many starts.
+
+use phea_qft::loop_shaping::{Aim, DescentStatus, Search, SearchOptions, SearchResult, SearchStatus};
+
+use crate::formula::Formula;
+
+fn searched(problem: &mut Formula, options: SearchOptions) -> SearchResult {
+    let mut search = Search::new(options);
+    let mut progress = 0.0;
+    assert_eq!(search.result(), None);
+    while search.step(problem) {
+        assert!((progress..=1.0).contains(&search.progress()), "{progress} {}", search.progress());
+        progress = search.progress();
+    }
+    search.result().unwrap()
+}
+
+/// Rastrigin's function, softened: 25 valleys within these bounds, the deepest one at the origin.
+fn hills() -> Formula {
+    fn hill(x: &f64) -> f64 {
+        x * x + 1.5 * (1.0 - (2.0 * std::f64::consts::PI * x).cos())
+    }
+    let mut problem = Formula::new(2, |_| 0.0, |x| vec![-x.iter().map(hill).sum::<f64>()]);
+    problem.bounds = vec![[-2.6, 2.4]; 2];
+    problem
+}
+
+#[test]
+fn the_best_of_many_valleys_is_found_from_every_seed() {
+    for seed in 1..=5 {
+        let found = searched(&mut hills(), SearchOptions::new(Aim::WorstMargin, seed));
+        assert_eq!(found.status, SearchStatus::Ended(DescentStatus::Converged));
+        assert!(found.judgement.worst_margin_db > -1e-4, "{seed} {found:?}");
+        assert!(found.ends.len() == 4 && found.spread_db.unwrap() >= 0.0);
+    }
+}
+
+#[test]
+fn equal_seeds_give_equal_bytes() {
+    let found = |seed| searched(&mut hills(), SearchOptions::new(Aim::WorstMargin, seed));
+    let (first, second, other) = (found(3), found(3), found(4));
+    assert_eq!(format!("{first:?}"), format!("{second:?}"));
+    assert_ne!(format!("{first:?}"), format!("{other:?}"));
+}
+
+/// Stable is only a ball, within which lies the smaller ball that the margin allows, as with the loops of a controller. It holds
+/// a six-thousandth of the box: no sample is expected there, evolution follows the instability.
+#[test]
+fn evolution_finds_a_small_stable_region() {
+    fn outside(x: &[f64]) -> f64 {
+        x.iter().map(|x| (x - 7.0) * (x - 7.0)).sum::<f64>() - 25.0
+    }
+    let mut problem = Formula::new(5, |x| x[0] + x[1], |x| vec![-outside(x) - 16.0]);
+    problem.instability = outside;
+    let found =
+        searched(&mut problem, SearchOptions { samples: 60, ..SearchOptions::new(Aim::Objective, 2) });
+    assert_eq!(found.status, SearchStatus::Ended(DescentStatus::Converged));
+    assert!((found.judgement.objective_db - (14.0 - 18_f64.sqrt())).abs() < 2e-3, "{found:?}");
+    assert!(found.work.judgements > 100, "{:?}", found.work);
+}
+
+#[test]
+fn nothing_stable_is_reported_with_the_least_instability() {
+    let mut problem = Formula::new(2, |x| x[0], |x| vec![x[0]]);
+    problem.instability = |x| 2.0 + x[0] * x[0] + x[1] * x[1];
+    let found = searched(&mut problem, SearchOptions::new(Aim::Objective, 1));
+    let SearchStatus::NotStabilised { instability } = found.status else { panic!("{found:?}") };
+    assert!(instability >= 2.0 && instability - 2.0 < 1e-3, "{instability}");
+    assert!(found.ends.is_empty() && found.spread_db.is_none() && !found.judgement.stable);
+}
+
+/// Starts that end feasible and starts that do not: the feasible one wins, whatever the others reach, and the spread is infinite.
+#[test]
+fn feasible_ends_come_first() {
+    let margins = |x: &[f64]| vec![(0.5 - (x[0] - 3.0).abs()).max(-0.1 - (x[0] + 3.0).powi(2))];
+    let mut problem = Formula::new(1, |x| x[0], margins);
+    problem.bounds = vec![[-5.0, 5.0]];
+    let found =
+        searched(&mut problem, SearchOptions { finished: 8, ..SearchOptions::new(Aim::Objective, 1) });
+    assert!((found.x[0] - 2.5).abs() < 2e-3, "{found:?}");
+    assert_eq!(found.spread_db, Some(f64::INFINITY));
+    let last = found.ends.last().unwrap();
+    assert!(
+        matches!(last.status, DescentStatus::Infeasible { worst_margin_db } if (worst_margin_db + 0.1).abs() < 1e-3)
+    );
+}

@@ -1,0 +1,171 @@
+//! The design of a controller and its prefilter: from the project to a law that keeps to every specification, beside the one that was
+//! published, and how both are told.
+
+mod answer;
+mod comparison;
+mod explanation;
+mod factors;
+mod problem;
+mod rounding;
+mod side;
+mod stages;
+mod text;
+mod words;
+
+#[cfg(test)]
+mod printing;
+
+pub use answer::json;
+pub use explanation::Explanation;
+pub use factors::Factors;
+pub use problem::{design_options, design_problem};
+pub use rounding::Rounding;
+pub use side::{LoopFigures, NominalMargins, Side};
+pub use stages::{DESIGNED_PROJECT, files, stage_files};
+pub use text::text;
+
+use phea_qft::closed_loop::Compensation;
+use phea_qft::design::quantisation::CoefficientFormat;
+use phea_qft::design::{Design, DesignOptions, DesignRun, PrefilterChoice};
+use phea_qft::verification::Verdict;
+
+use crate::audit::{ProjectAudit, audit_problem};
+use crate::command::{CommandError, Progress, Watch};
+use crate::control::{controller, deployed, quantisation, sensor};
+use crate::project::{self, Loaded, Project};
+use crate::robust::{RobustProblem, robust_problem};
+use crate::source::Source;
+
+/// Why nothing is designed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DesignError {
+    /// There is nothing that a controller must keep to.
+    #[error("the project states no [[specification]] to design a controller for")]
+    NoSpecification,
+    /// The search found no controller at all; with what could be said of the problem before it.
+    #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
+    NoController(Vec<String>),
+    /// A part of the problem cannot be searched with.
+    #[error(transparent)]
+    Search(#[from] phea_qft::design::DesignError),
+}
+
+/// A design, beside the controller that was published.
+#[derive(Clone, Debug)]
+pub struct ProjectDesign {
+    /// What was found.
+    pub design: Design,
+    /// How it was looked for.
+    pub options: DesignOptions,
+    /// Whether whoever watched it stopped it: then it is the best so far.
+    pub stopped: bool,
+    /// The designed controller with its audit.
+    pub designed: Side,
+    /// The controller that the project gives, with its audit; absent where it gives none.
+    pub published: Option<Side>,
+    /// What no controller can do, and what will be hard, whatever the search found.
+    pub explanations: Vec<Explanation>,
+    /// What the computer's converters do to the designed loop; absent where nothing is rounded.
+    pub rounding: Option<Rounding>,
+    /// The designed controller as a project declares it.
+    pub declared_controller: project::Controller,
+    /// The designed prefilter likewise; absent where none was designed.
+    pub declared_prefilter: Option<project::Prefilter>,
+}
+
+impl ProjectDesign {
+    /// Whether the designed controller keeps to every specification.
+    pub fn is_met(&self) -> bool {
+        self.designed.view.audit.verdict == Verdict::Met
+    }
+}
+
+/// Designs a controller for the project, after the audit of the one that it gives.
+///
+/// # Errors
+/// [`CommandError`] for a project without a specification, a part of it that is no transfer function, a family that cannot be
+/// built, or a watcher that stops it before anything was found.
+pub fn design_project(
+    source: &dyn Source,
+    loaded: &Loaded,
+    seed: Option<u32>,
+    watch: Watch<'_>,
+) -> Result<ProjectDesign, CommandError> {
+    let project = &loaded.project;
+    if project.specifications.is_empty() {
+        return Err(DesignError::NoSpecification.into());
+    }
+    let given = robust_problem(source, project)?;
+    let published = match controller(project)? {
+        None => None,
+        Some(law) => {
+            let view = audit_problem(&given, watch)?;
+            Some(Side::new(law, given.clone(), view)?)
+        }
+    };
+    let problem = design_problem(project, &given)?;
+    let options = design_options(project, &given, seed)?;
+    let explanations = explanation::explanations(&problem);
+    let mut run = DesignRun::new(problem, options);
+    let mut stopped = false;
+    while !stopped && run.step().map_err(DesignError::from)? {
+        stopped = !watch(Progress { stage: run.stage(), share: run.progress() });
+    }
+    let (options, found) = (run.options().clone(), run.design().cloned());
+    match found {
+        Some(design) => {
+            let told = told(project, &given, design, options, watch)?;
+            Ok(ProjectDesign { stopped, published, explanations, ..told })
+        }
+        None if stopped => Err(CommandError::Stopped),
+        None => {
+            let sentences = explanations.into_iter().map(|explanation| explanation.sentence).collect();
+            Err(DesignError::NoController(sentences).into())
+        }
+    }
+}
+
+/// A design with what is to be told of it alone.
+fn told(
+    project: &Project,
+    given: &RobustProblem,
+    design: Design,
+    options: DesignOptions,
+    watch: Watch<'_>,
+) -> Result<ProjectDesign, CommandError> {
+    let has_prefilter = options.prefilter != PrefilterChoice::None;
+    let law = design.controller.clone();
+    let problem = RobustProblem {
+        compensation: Compensation::new(&deployed(project, &law)?, sensor(project)?)?,
+        has_controller: true,
+        has_prefilter,
+        ..given.clone()
+    };
+    // rounded coefficients make another controller, which has an audit of its own
+    let view = match quantisation(project)?.coefficients {
+        CoefficientFormat::Double => ProjectAudit::new(&problem, design.audit.clone()),
+        _ => audit_problem(&problem, watch)?,
+    };
+    let rounding = rounding::rounding(project, &problem)?;
+    let declared = project.controller.clone().unwrap_or_default();
+    let declared_controller =
+        project::Controller { transfer: factors::declared(&law.feedback.transfer_function()?), ..declared };
+    let declared_prefilter = match options.prefilter {
+        PrefilterChoice::Grow { .. } => Some(project::Prefilter {
+            transfer: factors::declared(&law.prefilter.transfer_function()?),
+            sample_time: None,
+        }),
+        PrefilterChoice::None | PrefilterChoice::Given(_) => None,
+    };
+    Ok(ProjectDesign {
+        designed: Side::new(law, problem, view)?,
+        design,
+        options,
+        stopped: false,
+        published: None,
+        explanations: vec![],
+        rounding,
+        declared_controller,
+        declared_prefilter,
+    })
+}

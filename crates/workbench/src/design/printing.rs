@@ -1,0 +1,262 @@
+//! What is printed and written of a design, whatever found it: a design made by hand.
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{Compensator, Controller, Element};
+use phea_dynamics::frequency::decibels;
+use phea_dynamics::linear::TransferFunction;
+use phea_qft::audit::AuditRun;
+use phea_qft::design::{
+    BindingLimit, Conflict, ControllerChoice, Design, DesignRound, DesignStatus, PrefilterChoice, Relaxation,
+};
+use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::verification::{PlantPoint, TOLERANCE_DB, TrackingJudgement, Verdict};
+
+use super::*;
+use crate::command::{Request, answer};
+use crate::source::Memory;
+
+/// k/(s (s + 10)) with two specifications and a law that is too slow for the second.
+const PROJECT: &str = "schema = 1\ntitle = \"drive\"\n\n[plant]\nnumerator = \"k\"\ndenominator = \"s*(s + 10)\"\n\n\
+    [uncertainty]\nk = { nominal = 10, minimum = 10, maximum = 20, points = 2 }\n\n\
+    [[specification]]\nkind = \"robust_stability\"\nlimit = 1.3\nfrequencies = [1, 10]\nband = [0, inf]\n\n\
+    [[specification]]\nkind = \"tracking\"\nfrequencies = [0.1, 1]\nupper = 1.2\nlower = \"4/(s + 4)\"\n\n\
+    [controller]        # by hand\nnumerator = \"1\"  # slow\ndenominator = \"1\"\nsaturation = \"10 V\"\nTIMING\n\
+    [prefilter]\nnumerator = \"1\"\ndenominator = \"1\"\n";
+
+fn loaded(text: &str) -> (Memory, Loaded) {
+    let source = Memory::default().with("drive.toml", text);
+    let loaded = project::read(&source, "drive.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
+    (source, loaded)
+}
+
+/// 5 (s/50 + 1)/(s/500 + 1) and a prefilter of first order, as if a search had found them.
+fn design(problem: &phea_qft::design::DesignProblem, status: DesignStatus) -> Design {
+    let lead = Element::LeadLag { zero_frequency: 50.0, pole_frequency: 500.0 };
+    let controller = Controller {
+        feedback: Compensator::new(vec![Element::Gain(5.0), lead]),
+        prefilter: Compensator::new(vec![Element::RealPole { frequency: 6.0 }]),
+        timing: problem.timing,
+        ..Controller::default()
+    };
+    let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
+    let mut run = AuditRun::new(
+        &problem.family,
+        &compensation,
+        &problem.specifications,
+        TrackingJudgement::Magnitude,
+        TOLERANCE_DB,
+    );
+    while run.step() {}
+    let structure = Structure {
+        sign: 1.0,
+        gain: [0.1, 100.0],
+        parts: vec![Part::RealZero { frequency: [1.0, 100.0] }, Part::RealPole { frequency: [10.0, 1000.0] }],
+    };
+    let plant = PlantPoint::Parameters(vec![20.0]);
+    Design {
+        status,
+        controller,
+        structure: structure.clone(),
+        objective_db: 34.0,
+        audit: run.audit(),
+        binding: vec![BindingLimit { specification: 1, frequency_rad_per_s: 1.0, plant, margin_db: 0.0 }],
+        rounds: vec![DesignRound {
+            structure,
+            objective_db: 34.0,
+            plants: 4,
+            frequencies: 20,
+            searched_margin_db: 0.0,
+            audited_margin_db: None,
+        }],
+    }
+}
+
+fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
+    let (source, loaded) = loaded(text);
+    let given = robust_problem(&source, &loaded.project).unwrap();
+    let law = controller(&loaded.project).unwrap().unwrap();
+    let audit = audit_problem(&given, &mut |_| true).unwrap();
+    let published = Side::new(law, given.clone(), audit).unwrap();
+    let problem = design_problem(&loaded.project, &given).unwrap();
+    let options = design_options(&loaded.project, &given, Some(7)).unwrap();
+    assert_eq!(options.controller, ControllerChoice::Grow { maximum_order: 4 });
+    assert_eq!(options.prefilter, PrefilterChoice::Grow { maximum_order: 3 });
+    let view = told(&loaded.project, &given, design(&problem, status), options, &mut |_| true).unwrap();
+    (source, loaded, ProjectDesign { published: Some(published), ..view })
+}
+
+fn infeasible() -> DesignStatus {
+    let plant = PlantPoint::Parameters(vec![10.0]);
+    let conflict = Conflict { specification: 0, frequency_rad_per_s: 10.0, plant, margin_db: -1.25 };
+    DesignStatus::Infeasible(Relaxation { relaxation_db: 1.25, conflicts: vec![conflict] })
+}
+
+#[test]
+fn people_read_the_status_first_and_the_law_as_it_is_pasted() {
+    let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", ""), infeasible());
+    let text = text(&loaded, &view).unwrap();
+    assert!(
+        text.starts_with("Design: infeasible: no controller that was tried, of order 4 at most, "),
+        "{text}"
+    );
+    for words in [
+        "with every limit 1.25 dB wider one does",
+        "G(s) = 50 (s + 50) / (s + 500)",
+        "F(s) = 6 / (s + 6)",
+        "[controller]\ngain = 50\nzeros = [-50]\npoles = [-500]\nsaturation = \"10 V\"\n",
+        "[prefilter]\ngain = 6\npoles = [-6]\n",
+        "published    designed",
+        "1 robust stability  10     -1.25 dB  10",
+        "zero, pole",
+    ] {
+        assert!(text.contains(words), "{words} is missing in\n{text}");
+    }
+}
+
+#[test]
+fn programs_read_the_keys_that_stay() {
+    let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", ""), infeasible());
+    let object: serde_json::Value = serde_json::from_str(&json(&loaded, &view).unwrap()).unwrap();
+    assert_eq!((object["command"].as_str(), object["status"].as_str()), (Some("design"), Some("infeasible")));
+    assert_eq!(object["relaxation_db"], 1.25);
+    assert_eq!(object["conflicts"][0]["plant"]["k"], 10.0);
+    assert_eq!(object["binding"][0]["kind"], "tracking");
+    assert_eq!(object["controller"]["zeros"], serde_json::json!([[-50.0, 0.0]]));
+    assert_eq!(
+        (object["controller"]["domain"].as_str(), object["controller"]["gain"].as_f64()),
+        (Some("s"), Some(50.0))
+    );
+    assert_eq!(object["prefilter"]["poles"], serde_json::json!([[-6.0, 0.0]]));
+    assert_eq!(object["structure"]["parts"][1]["frequency_rad_per_s"], serde_json::json!([10.0, 1000.0]));
+    assert_eq!(object["seed"], 7);
+    // the same object that `verify` prints, beside what every object carries
+    let designed = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
+    let (source, loaded) = self::loaded(&designed);
+    let verified = answer(&source, &loaded, &[], &Request::Verify).unwrap().json;
+    let verified: serde_json::Value = serde_json::from_str(&verified).unwrap();
+    for (key, value) in object["verification"].as_object().unwrap() {
+        assert_eq!(*value, verified[key], "{key}");
+    }
+    assert!(object["published"]["verification"]["verdict"].is_string());
+}
+
+/// The project that is written says what was designed, and everything else as it was written.
+#[test]
+fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
+    let timing = "sample_time = \"2 ms\"\ndelay = \"1 ms\"\ndiscretization = \"matched\"\n";
+    let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", timing), DesignStatus::Met);
+    let object: serde_json::Value = serde_json::from_str(&json(&loaded, &view).unwrap()).unwrap();
+    assert_eq!(
+        (object["controller"]["domain"].as_str(), object["controller"]["sample_time_s"].as_f64()),
+        (Some("z"), Some(0.002))
+    );
+    assert_eq!(object["continuous_law"]["controller"]["poles"], serde_json::json!([[-500.0, 0.0]]));
+    let pole = object["controller"]["poles"][0][0].as_f64().unwrap();
+    // ORIGIN: analytic, exp(-500 0.002)
+    assert!((pole - 0.367_879_441_171_442_3).abs() < 1e-12, "{pole}");
+    let text = text(&loaded, &view).unwrap();
+    assert!(
+        text.contains("G(s) = ") && text.contains("G(z) = ") && text.contains("sampled every 2.00 ms"),
+        "{text}"
+    );
+    let written = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
+    let expected = PROJECT
+        .replace(
+            "numerator = \"1\"  # slow\ndenominator = \"1\"\nsaturation",
+            "gain = 50\nzeros = [-50]\npoles = [-500]\nsaturation",
+        )
+        .replace(
+            "[prefilter]\nnumerator = \"1\"\ndenominator = \"1\"\n",
+            "[prefilter]\ngain = 6\npoles = [-6]\n",
+        )
+        .replace("TIMING\n", timing);
+    assert_eq!(written, expected);
+}
+
+#[test]
+fn every_stage_is_a_file() {
+    let (_, loaded, mut view) = view(&PROJECT.replace("TIMING\n", ""), DesignStatus::Met);
+    let names =
+        |files: Vec<crate::answer::OutputFile>| files.into_iter().map(|file| file.name).collect::<Vec<_>>();
+    let files = stage_files(&loaded, &view, &mut |_| true).unwrap();
+    let content = |name: &str| {
+        let file = files.iter().find(|file| file.name == name).unwrap_or_else(|| panic!("no {name}"));
+        String::from_utf8(file.bytes.clone()).unwrap()
+    };
+    for name in
+        ["bounds.csv", "templates.csv", "margins.csv", "rounds.csv", "verification.json", DESIGNED_PROJECT]
+    {
+        assert!(content(name).lines().count() > 1, "{name}");
+    }
+    // |L| of the nominal plant at 1 rad/s: ORIGIN: analytic, 5 10 |1 + j/50| / (|10 + j| |1 + j/500|)
+    let looped = content("loop.csv");
+    let row: Vec<&str> = looped.lines().find(|line| line.starts_with("1,")).unwrap().split(',').collect();
+    let expected = decibels(50.0 * 1.0004_f64.sqrt() / 101.0_f64.sqrt() / 1.000_004_f64.sqrt());
+    assert!((row[1].parse::<f64>().unwrap() - expected).abs() < 1e-9, "{row:?}");
+    assert!(["true", "false"].contains(&row[3]), "{row:?}");
+    // what is left above and below the band adds up to the band less the spread
+    for line in content("prefilter_band.csv").lines().skip(1) {
+        let row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        assert!((row[6] + row[7] - ((row[5] - row[2]) - (row[4] - row[3]))).abs() < 1e-9, "{line}");
+        assert!((0.1..=1.0).contains(&row[1]));
+    }
+    assert_eq!(view.designed.view.audit.verdict == Verdict::Met, view.is_met());
+    view.stopped = true;
+    let left = names(stage_files(&loaded, &view, &mut |_| false).unwrap());
+    assert!(!left.contains(&"bounds.csv".to_string()) && left.contains(&"loop.csv".to_string()), "{left:?}");
+    assert!(
+        text(&loaded, &view)
+            .unwrap()
+            .starts_with("Design: stopped: this is the best controller found so far")
+    );
+}
+
+/// A published law of elements is the product of those that act, and all of them go where the designed one comes.
+#[test]
+fn elements_are_a_published_law() {
+    let elements = "elements = [\n  { kind = \"gain\", value = 3 },  # loud\n  { kind = \"pi\", proportional_gain = 2, integral_gain = 4 },\n  \
+        { kind = \"pid\", proportional_gain = 1, integral_gain = 2, derivative_gain = 3, filter_time = \"0.1 s\" },\n  \
+        { kind = \"lead\", zero_frequency = 1, pole_frequency = 9, enabled = false },\n  { kind = \"lag\", zero_frequency = 9, pole_frequency = 1 },\n  \
+        { kind = \"roll_off\", frequency = 40, damping_ratio = 0.5 },\n  { kind = \"general\", numerator = \"s + 5\", denominator = \"s + 7\" },\n]\n";
+    let polynomials = "numerator = \"1\"  # slow\ndenominator = \"1\"\nsaturation";
+    let text = PROJECT.replace("TIMING\n", "").replace(polynomials, &format!("{elements}saturation"));
+    let (_, loaded, view) = view(&text, DesignStatus::Met);
+    let law = view.published.as_ref().unwrap().controller.feedback.transfer_function().unwrap();
+    let s = Complex64::new(0.0, 6.0);
+    let pid = 1.0 + 2.0 / s + 3.0 * s / (0.1 * s + 1.0);
+    let lag = (s / 9.0 + 1.0) / (s + 1.0);
+    let expected =
+        3.0 * (2.0 + 4.0 / s) * pid * lag * 1600.0 / (s * s + 40.0 * s + 1600.0) * (s + 5.0) / (s + 7.0);
+    let found = law.at_frequency(6.0);
+    assert!((found - expected).norm_sqr() < 1e-20 * expected.norm_sqr(), "{found} {expected}");
+    let written = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
+    assert_eq!(
+        written,
+        text.replace(elements, "gain = 50\nzeros = [-50]\npoles = [-500]\n").replace(
+            "[prefilter]\nnumerator = \"1\"\ndenominator = \"1\"\n",
+            "[prefilter]\ngain = 6\npoles = [-6]\n",
+        )
+    );
+}
+
+/// With rounded coefficients it is the rounded controller that is audited, here and by `verify`.
+#[test]
+fn what_the_computer_rounds_is_part_of_the_design() {
+    let timing = "sample_time = \"2 ms\"\nquantization = { command_bits = 12, command_range = [-10, 10], coefficients = \"f32\" }\n";
+    let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", timing), DesignStatus::Met);
+    let object: serde_json::Value = serde_json::from_str(&json(&loaded, &view).unwrap()).unwrap();
+    let pole = object["controller"]["poles"][0][0].as_f64().unwrap();
+    assert_eq!(pole, f64::from(pole as f32));
+    let effect = &object["rounding"]["effects"][0];
+    assert_eq!((effect["of"].as_str(), effect["on"].as_str()), (Some("command"), Some("output")));
+    // no rounding does less than it would at rest: half a step of 20 V/4096 through 1/G(z = 1), where the plant integrates
+    // ORIGIN: analytic, 20/4096/2/5
+    assert!(effect["peak"].as_f64().unwrap() >= 0.999 * 20.0 / 4096.0 / 2.0 / 5.0, "{effect}");
+    assert!(effect["peak_plant"]["k"].is_number());
+    assert!(text(&loaded, &view).unwrap().contains("the rounded command moves the output by "));
+    let designed = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
+    let (source, loaded) = self::loaded(&designed);
+    let verified = answer(&source, &loaded, &[], &Request::Verify).unwrap().json;
+    let verified: serde_json::Value = serde_json::from_str(&verified).unwrap();
+    assert_eq!(object["verification"]["specifications"], verified["specifications"]);
+}

@@ -1,0 +1,161 @@
+//! The stages of a design as files: templates, bounds, loop, prefilter, audit, rounds, and the project that it makes.
+
+use std::fmt::Write as _;
+
+use phea_dynamics::frequency::decibels;
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::portable;
+use phea_qft::bound::Placement;
+use phea_qft::specification::Requirement;
+
+use super::factors::Factors;
+use super::words::structure_words;
+use super::{ProjectDesign, Side};
+use crate::answer::OutputFile;
+use crate::audit;
+use crate::command::{CommandError, Watch};
+use crate::project::{Loaded, with_laws};
+use crate::report::bound_files;
+use crate::robust::{DesignFrequency, RobustProblem};
+
+/// Name of the file with the project that a design makes.
+pub const DESIGNED_PROJECT: &str = "designed.toml";
+
+/// How far the drawn frequencies reach beyond the design frequencies.
+const BEYOND: [f64; 2] = [0.1, 30.0];
+
+/// The project with the designed controller and prefilter in it, everything else byte for byte as it was.
+pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
+    let bytes = with_laws(
+        &loaded.bytes,
+        &loaded.settings,
+        &view.declared_controller,
+        view.declared_prefilter.as_ref(),
+    );
+    vec![OutputFile { name: DESIGNED_PROJECT.to_string(), bytes }]
+}
+
+/// Every stage; a design that was stopped has no templates and bounds, which take their time.
+///
+/// # Errors
+/// [`CommandError`] for a template that cannot be computed, or a watcher that stops.
+pub fn stage_files(
+    loaded: &Loaded,
+    view: &ProjectDesign,
+    watch: Watch<'_>,
+) -> Result<Vec<OutputFile>, CommandError> {
+    let side = &view.designed;
+    let found = if view.stopped { vec![] } else { side.problem.at_design_frequencies(watch)? };
+    let mut files = files(loaded, view);
+    if !view.stopped {
+        files.extend(bound_files(&side.problem, &found));
+    }
+    files.push(file("loop.csv", nominal_loop(&side.problem, &found)?));
+    files.push(file("controller.json", transfer_json(&Factors::of(side.problem.compensation.feedback()))));
+    if side.problem.has_prefilter {
+        files
+            .push(file("prefilter.json", transfer_json(&Factors::of(side.problem.compensation.prefilter()))));
+    }
+    if let Some(band) = prefilter_band(side)? {
+        files.push(file("prefilter_band.csv", band));
+    }
+    files.push(file("verification.json", audit::json(loaded, &side.view)));
+    files.extend(audit::files(&side.view));
+    files.push(file("rounds.csv", rounds(view)));
+    Ok(files)
+}
+
+fn file(name: &str, text: String) -> OutputFile {
+    OutputFile { name: name.to_string(), bytes: text.into_bytes() }
+}
+
+fn transfer_json(factors: &Factors) -> String {
+    serde_json::to_string_pretty(factors).unwrap_or_default()
+}
+
+fn drawn(problem: &RobustProblem) -> Vec<f64> {
+    let frequencies = problem.design_frequencies();
+    match (frequencies.first(), frequencies.last()) {
+        (Some(first), Some(last)) => problem.drawn_frequencies(first * BEYOND[0], last * BEYOND[1]),
+        _ => vec![],
+    }
+}
+
+/// L0 over frequency, and at the design frequencies how far it lies from the bounds.
+fn nominal_loop(problem: &RobustProblem, found: &[DesignFrequency]) -> Result<String, LinearError> {
+    let mut csv = String::from("frequency_rad_per_s,magnitude_db,phase_deg,allowed,distance_db\n");
+    let Some(nominal) = problem.nominal()? else { return Ok(csv) };
+    for frequency in drawn(problem) {
+        let Some(response) = problem.response(&nominal, frequency) else { continue };
+        let value = response.open_loop();
+        let (magnitude, phase) = (portable::magnitude(value), portable::argument(value).to_degrees());
+        let place = found.iter().find(|one| one.frequency_rad_per_s == frequency);
+        let (allowed, distance) = match place.map(|one| &one.filled_placement) {
+            None => ("", String::new()),
+            Some(Placement::Allowed { slack_db }) => ("true", slack_db.to_string()),
+            Some(Placement::Forbidden { nearest_db, .. }) => {
+                ("false", nearest_db.map_or(String::new(), |distance| distance.to_string()))
+            }
+        };
+        let _ = writeln!(csv, "{frequency},{},{phase},{allowed},{distance}", decibels(magnitude));
+    }
+    Ok(csv)
+}
+
+/// Least and greatest |F T| of the members against the limits of tracking, and what is left on either side; `None` without tracking or
+/// prefilter.
+fn prefilter_band(side: &Side) -> Result<Option<String>, LinearError> {
+    let problem = &side.problem;
+    let mut csv = String::from(
+        "specification,frequency_rad_per_s,lower_db,least_db,greatest_db,upper_db,left_below_db,left_above_db\n",
+    );
+    let tracking = problem.specifications.iter().enumerate();
+    let mut any = false;
+    for (index, one) in tracking {
+        let Requirement::Tracking { lower, upper } = &one.requirement else { continue };
+        if !problem.has_prefilter {
+            continue;
+        }
+        any = true;
+        let [from, to] = one.band_rad_per_s;
+        let members = problem.members()?;
+        for frequency in drawn(problem).into_iter().filter(|frequency| (from..=to).contains(frequency)) {
+            let [mut least, mut greatest] = [f64::INFINITY, 0.0_f64];
+            for response in members.iter().filter_map(|member| problem.response(member, frequency)) {
+                let size = portable::magnitude(one.requirement.closed_loop(&response));
+                (least, greatest) = (least.min(size), greatest.max(size));
+            }
+            let [Some(low), Some(high)] = [lower, upper].map(|limit| limit.magnitude(frequency)) else {
+                continue;
+            };
+            let [low, least, greatest, high] = [low, least, greatest, high].map(decibels);
+            let _ = writeln!(
+                csv,
+                "{index},{frequency},{low},{least},{greatest},{high},{},{}",
+                least - low,
+                high - greatest
+            );
+        }
+    }
+    Ok(any.then_some(csv))
+}
+
+fn rounds(view: &ProjectDesign) -> String {
+    let mut csv = String::from(
+        "round,structure,objective_db,plants,frequencies,searched_margin_db,audited_margin_db\n",
+    );
+    for (index, round) in view.design.rounds.iter().enumerate() {
+        let audited = round.audited_margin_db.map_or(String::new(), |margin| margin.to_string());
+        let structure = structure_words(&round.structure).replace(", ", " + ");
+        let _ = writeln!(
+            csv,
+            "{},{structure},{},{},{},{},{audited}",
+            index + 1,
+            round.objective_db,
+            round.plants,
+            round.frequencies,
+            round.searched_margin_db
+        );
+    }
+    csv
+}

@@ -1,0 +1,166 @@
+use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
+use phea_qft::design::DesignStatus;
+use phea_qft::verification::PlantPoint;
+
+use super::comparison::compared;
+use super::factors::factored;
+use super::words::{status_sentence, structure_words};
+use super::{Explanation, ProjectDesign, Rounding};
+use crate::answer::{significant, table};
+use crate::audit::{self, frequency_number, margin_words, numbered, summary};
+use crate::project::{Loaded, snippet};
+use crate::quantity::DisplayUnit;
+
+/// Digits of the numbers of a law, for people.
+const DIGITS: usize = 5;
+
+/// What `design` says to people: the status first, then the law, what it reaches, and what that rests on.
+pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError> {
+    let mut out = format!("Design: {}\n", status_sentence(view));
+    for explanation in &view.explanations {
+        out.push_str(&format!("  {}\n", explanation_words(view, explanation)));
+    }
+    for sentence in
+        summary(&view.designed.view).into_iter().chain(view.rounding.iter().flat_map(Rounding::sentences))
+    {
+        out.push_str(&format!("  {sentence}\n"));
+    }
+    out.push_str(&format!("\nController\n{}", laws(view)?));
+    out.push_str(&format!("\n{}\n", side_by_side(view)));
+    out.push_str(&format!(
+        "\nTo be pasted into the project\n{}",
+        snippet(&view.declared_controller, view.declared_prefilter.as_ref())
+    ));
+    if let Some(conflicts) = conflicts(view) {
+        out.push_str(&format!("\nWhat stands against one another\n{conflicts}\n"));
+    }
+    if let Some(binding) = binding(view) {
+        out.push_str(&format!(
+            "\nWhat the specifications cost: the limits that the loop touches\n{binding}\n"
+        ));
+    }
+    out.push_str(&format!("\nRounds of search and audit\n{}\n", rounds(view)));
+    out.push_str(&format!("\nAudit of the designed controller\n{}", audit::text(&view.designed.view)));
+    out.push_str(&settings_sentence(loaded));
+    Ok(out)
+}
+
+/// The sentence, and the first plant that it concerns.
+fn explanation_words(view: &ProjectDesign, explanation: &Explanation) -> String {
+    let kind = if explanation.is_impossible { "" } else { "to be kept in mind: " };
+    let plant = explanation.plants.first().map(|plant| view.designed.view.names.text(plant));
+    let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
+    format!("{kind}{}{plant}", explanation.sentence)
+}
+
+/// The laws in factored form; those of a sampled loop as they are deployed, and before.
+fn laws(view: &ProjectDesign) -> Result<String, LinearError> {
+    let side = &view.designed;
+    let deployed = &side.problem.compensation;
+    let law = side.controller.feedback.transfer_function()?;
+    let prefilter = side.controller.prefilter.transfer_function()?;
+    let mut lines = Vec::new();
+    let mut tell = |name: &str, function: &TransferFunction| {
+        let variable = if function.domain() == TimeDomain::Continuous { "s" } else { "z" };
+        lines.push(format!("  {name}({variable}) = {}\n", factored(function, DIGITS)));
+    };
+    tell("G", &law);
+    if law != *deployed.feedback() {
+        tell("G", deployed.feedback());
+    }
+    if side.problem.has_prefilter {
+        tell("F", &prefilter);
+        if prefilter != *deployed.prefilter() {
+            tell("F", deployed.prefilter());
+        }
+    }
+    if let Some(sample_time) = deployed.sample_time_s() {
+        lines.push(format!("  sampled every {}\n", DisplayUnit::MILLISECOND.text(sample_time, 3)));
+    }
+    Ok(lines.concat())
+}
+
+/// What is compared, a row each; the published controller beside the designed one.
+fn side_by_side(view: &ProjectDesign) -> String {
+    let designed = compared(&view.designed);
+    let published = view.published.as_ref().map(compared);
+    let mut headings = vec![""];
+    headings.extend(published.iter().map(|_| "published"));
+    headings.push("designed");
+    let mut rows = table(&headings);
+    for (index, (name, cell)) in designed.into_iter().enumerate() {
+        let beside = published.as_ref().and_then(|rows| rows.get(index)).map(|(_, cell)| cell.clone());
+        rows.add_row([name].into_iter().chain(beside).chain([cell]));
+    }
+    rows.trim_fmt()
+}
+
+/// The limits at which the smallest relaxation is found, with their plants.
+fn conflicts(view: &ProjectDesign) -> Option<String> {
+    let DesignStatus::Infeasible(relaxation) = &view.design.status else { return None };
+    let rows = relaxation.conflicts.iter();
+    limits(view, rows.map(|one| (one.specification, one.frequency_rad_per_s, one.margin_db, &one.plant)))
+}
+
+fn binding(view: &ProjectDesign) -> Option<String> {
+    let rows = view.design.binding.iter();
+    limits(view, rows.map(|one| (one.specification, one.frequency_rad_per_s, one.margin_db, &one.plant)))
+}
+
+fn limits<'a>(
+    view: &ProjectDesign,
+    rows: impl Iterator<Item = (usize, f64, f64, &'a PlantPoint)>,
+) -> Option<String> {
+    let names = &view.designed.view.names;
+    let mut headings = vec!["specification", "rad/s", "margin"];
+    headings.extend(names.headings());
+    let mut found = table(&headings);
+    let mut any = false;
+    for (specification, frequency, margin, plant) in rows {
+        let Some(one) = view.designed.problem.specifications.get(specification) else { continue };
+        let mut row = vec![
+            numbered(specification, &one.requirement),
+            frequency_number(frequency),
+            margin_words(margin),
+        ];
+        row.extend(names.cells(plant));
+        found.add_row(row);
+        any = true;
+    }
+    any.then(|| found.trim_fmt())
+}
+
+fn rounds(view: &ProjectDesign) -> String {
+    let headings =
+        ["", "structure", "objective", "plants", "frequencies", "margin searched", "margin audited"];
+    let mut rows = table(&headings);
+    for (index, round) in view.design.rounds.iter().enumerate() {
+        rows.add_row([
+            (index + 1).to_string(),
+            structure_words(&round.structure),
+            format!("{} dB", significant(round.objective_db, 5)),
+            round.plants.to_string(),
+            round.frequencies.to_string(),
+            margin_words(round.searched_margin_db),
+            round.audited_margin_db.map_or("unstable".to_string(), margin_words),
+        ]);
+    }
+    rows.trim_fmt()
+}
+
+/// What was set on the command line is not in the file that a design writes.
+fn settings_sentence(loaded: &Loaded) -> String {
+    let others: Vec<&str> = loaded
+        .settings
+        .iter()
+        .map(|setting| setting.trim())
+        .filter(|setting| !setting.starts_with("controller") || setting.contains("quantization"))
+        .collect();
+    if others.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\nA project written by this design does not hold what was set beside it: --set {}\n",
+        others.join(" --set ")
+    )
+}

@@ -1,0 +1,108 @@
+//! What `design` takes and answers: the section of the project, a controller that gives its timing alone, and the keys other programs
+//! read.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+#[path = "truth/ask.rs"]
+mod ask;
+
+use ask::{HOSE, json, load, try_answer};
+use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
+use phea_qft::loop_shaping::{Part, Structure};
+use phea_workbench::audit::AuditError;
+use phea_workbench::command::{CommandError, Request};
+use phea_workbench::design::{DesignError, design_options, design_problem};
+use phea_workbench::robust::robust_problem;
+use phea_workbench::source::Memory;
+
+const TIMED: &str = include_str!("project_valid/design.toml");
+const DESIGN: Request = Request::Design { seed: None, stages: false };
+
+fn begun(project: &str, settings: &[&str], seed: Option<u32>) -> (DesignProblem, DesignOptions) {
+    let project = load(project, settings, &[]).project;
+    let given = robust_problem(&Memory::default(), &project).unwrap();
+    (design_problem(&project, &given).unwrap(), design_options(&project, &given, seed).unwrap())
+}
+
+#[test]
+fn the_section_becomes_what_a_design_begins_with() {
+    let (problem, options) = begun(TIMED, &[], None);
+    assert_eq!((problem.timing.sample_time_s, problem.timing.delay_s), (Some(0.001), 0.0005));
+    assert_eq!(problem.minimum_delay_margin_s, 0.002);
+    assert_eq!((options.objective, options.seed), (Objective::BestWorstMargin, 7));
+    let ControllerChoice::Given(Structure { sign, gain, parts }) = &options.controller else {
+        panic!("{options:?}")
+    };
+    assert_eq!((*sign, *gain, parts.len()), (-1.0, [0.1, 100.0], 6));
+    // ORIGIN: analytic, 1 Hz
+    let pair = [std::f64::consts::TAU, 100.0];
+    assert!(matches!(&parts[2], Part::ZeroPair { natural_frequency, .. } if *natural_frequency == pair));
+    assert_eq!(parts[3], Part::RealPole { frequency: [10.0, 2000.0] });
+    // around the design frequencies, 0.1 and 1 rad/s, where the project says nothing
+    let Part::RealZero { frequency: [low, high] } = parts[1] else { panic!("{parts:?}") };
+    assert!(low < 0.1 && high > 1.0, "{low} {high}");
+    // a prefilter beside a controller without a law is kept
+    let PrefilterChoice::Given(kept) = &options.prefilter else { panic!("{options:?}") };
+    assert_eq!((kept.gain(), kept.poles()[0].re), (0.1, 0.9));
+    assert_eq!(begun(TIMED, &[], Some(3)).1.seed, 3);
+}
+
+#[test]
+fn without_the_section_orders_grow_and_tracking_decides_on_a_prefilter() {
+    let options = |settings: &[&str]| begun(HOSE, settings, None).1;
+    let plain = options(&[]);
+    assert_eq!(plain.objective, Objective::LeastHighFrequencyGain);
+    assert_eq!(plain.controller, ControllerChoice::Grow { maximum_order: 4 });
+    assert_eq!((plain.prefilter, plain.seed), (PrefilterChoice::Grow { maximum_order: 3 }, 1));
+    let (head, tail) = HOSE.split_once("[[specification]]\nkind = \"tracking\"").unwrap();
+    let untracked = format!("{head}[controller]{}", tail.split_once("[controller]").unwrap().1);
+    // nothing asks for the prefilter, and so nothing takes it away
+    let given = |text: &str| begun(text, &[], None).1.prefilter;
+    assert!(matches!(given(&untracked), PrefilterChoice::Given(_)));
+    let bare = untracked.split("[controller]").next().unwrap();
+    assert_eq!(given(bare), PrefilterChoice::None);
+    assert_eq!(
+        given(&format!(
+            "{}[design]\nprefilter_maximum_order = 0\n",
+            HOSE.split("[controller]").next().unwrap()
+        )),
+        PrefilterChoice::None
+    );
+}
+
+/// The gain of a structure that says nothing of it lies around 1/|P0| at the design frequencies, its sign opposes the plant.
+#[test]
+fn the_gain_of_a_structure_is_wide_and_of_the_right_sign() {
+    let text = |numerator: &str| {
+        format!(
+            "schema = 1\n[plant]\nnumerator = \"{numerator}\"\ndenominator = \"s + 1\"\n[[specification]]\n\
+             kind = \"sensitivity\"\nlimit = 2\nfrequencies = [1]\n[design]\nstructure = [{{ kind = \"pole\" }}]\n"
+        )
+    };
+    for (numerator, expected) in [("4", 1.0), ("-4", -1.0)] {
+        let options = begun(&text(numerator), &[], None).1;
+        let ControllerChoice::Given(Structure { sign, gain: [low, high], .. }) = options.controller else {
+            panic!("{:?}", options.controller)
+        };
+        assert_eq!(sign, expected);
+        // ORIGIN: analytic, |4/(j + 1)|
+        let middle = 2.0_f64.sqrt() / 4.0;
+        assert!(low < middle / 1e3 && high > middle * 1e3, "{low} {high}");
+    }
+}
+
+#[test]
+fn a_controller_may_give_its_timing_alone() {
+    let object = json(TIMED, &[], &[], &Request::Check);
+    assert_eq!(object["command"], "check");
+    let refused = try_answer(TIMED, &[], &[], &Request::Verify).unwrap_err();
+    assert!(matches!(refused, CommandError::Audit(AuditError::NoLaw)), "{refused}");
+    assert!(refused.to_string().contains("phea design"), "{refused}");
+}
+
+#[test]
+fn nothing_is_designed_for_no_specification() {
+    let bare = include_str!("project_valid/design_growing.toml");
+    let refused = try_answer(bare, &[], &[], &DESIGN).unwrap_err();
+    assert!(matches!(refused, CommandError::Design(DesignError::NoSpecification)), "{refused}");
+}
