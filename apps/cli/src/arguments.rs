@@ -2,7 +2,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-/// Hydraulic force control through added compliance: size the hose, see the models, audit or design the controller, get the report.
+use crate::changes::Changes;
+
+/// Hydraulic force control through added compliance: size the hose, see the models, audit, shape or design the controller, get the report.
 #[derive(Debug, Parser)]
 #[command(name = "phea", version, arg_required_else_help = true)]
 #[command(after_help = "Exit status: 0 done, 1 the answer is no or not proven, 2 the input is wrong.")]
@@ -35,6 +37,19 @@ pub(crate) enum Command {
     Linearize(Common),
     /// Audit the given controller and prefilter: every plant of the family, every specification, its whole band
     Verify(Common),
+    /// Shape the controller by hand: change its elements in the order given, see every margin at the design frequencies
+    Shape {
+        #[command(flatten)]
+        common: Common,
+        #[command(flatten)]
+        changes: Changes,
+        /// Change the prefilter instead of the controller
+        #[arg(long)]
+        prefilter: bool,
+        /// Write the project with the changed elements to this file; all else of it stays byte for byte
+        #[arg(long, value_name = "FILE")]
+        save: Option<PathBuf>,
+    },
     /// Find a controller and prefilter that keep to every specification, for every plant; Ctrl-C gives the best so far
     Design {
         #[command(flatten)]

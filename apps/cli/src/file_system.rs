@@ -71,14 +71,16 @@ fn reason(error: &std::io::Error) -> String {
     }
 }
 
-/// Writes files into a folder, which is made if need be; gives their paths.
+/// Writes files into a folder; gives their paths.
 pub(crate) fn write(folder: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, String> {
-    fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
     files.iter().map(|file| write_as(&folder.join(&file.name), file)).collect()
 }
 
-/// Writes a file under a path of its own, and gives that.
+/// Writes a file under a path of its own, whose folder is made if need be, and gives that.
 pub(crate) fn write_as(path: &Path, file: &OutputFile) -> Result<PathBuf, String> {
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
+    }
     fs::write(path, &file.bytes).map_err(|error| unwritten(path, &error)).map(|()| path.to_path_buf())
 }
 

@@ -1,6 +1,7 @@
 //! The `phea` command: a thin shell over `phea_workbench`. It opens paths and prints; it computes nothing.
 
 mod arguments;
+mod changes;
 mod file_system;
 mod interruption;
 mod run;

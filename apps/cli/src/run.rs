@@ -6,6 +6,7 @@ use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, Request};
 use phea_workbench::design::DESIGNED_PROJECT;
 use phea_workbench::project::{self, Loaded, STARTER};
+use phea_workbench::shaping::{SHAPED_PROJECT, Shaped};
 
 use crate::arguments::{Arguments, Command, Common};
 use crate::file_system::{FileSystem, write, write_as, write_starter};
@@ -30,6 +31,10 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }),
         Command::Linearize(common) => on_project(&common, &Request::Linearize),
         Command::Verify(common) => on_project(&common, &Request::Verify),
+        Command::Shape { common, changes, prefilter, save } => {
+            let shaped = if prefilter { Shaped::Prefilter } else { Shaped::Controller };
+            on_project_saving(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())
+        }
         Command::Design { common, seed, save } => {
             let request = Request::Design { seed, stages: common.out.is_some() };
             on_project_saving(&common, &request, save.as_deref())
@@ -73,7 +78,7 @@ fn on_project(common: &Common, request: &Request) -> Result<u8, String> {
     on_project_saving(common, request, None)
 }
 
-/// The same, the designed project written to a file of its own.
+/// The same, the designed or shaped project written to a file of its own.
 fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, String> {
     match answered(common, request, save) {
         Ok((answer, _)) if common.json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
@@ -128,9 +133,10 @@ fn answered(
     })?;
     let explain = |message: String| failed(request, &loaded, &message);
     let mut written = write_files(common, request, &answer).map_err(explain)?;
-    let designed = answer.files.iter().find(|file| file.name == DESIGNED_PROJECT);
-    if let (Some(path), Some(designed)) = (save, designed) {
-        written.insert(0, write_as(path, designed).map_err(explain)?);
+    let project =
+        answer.files.iter().find(|file| [DESIGNED_PROJECT, SHAPED_PROJECT].contains(&file.name.as_str()));
+    if let (Some(path), Some(project)) = (save, project) {
+        written.insert(0, write_as(path, project).map_err(explain)?);
     }
     Ok((answer, written))
 }

@@ -57,6 +57,16 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["verify", "hose.toml", "--set", "controller.numerator=\"1000\""], 1),
     (&["verify", "loop.toml"], 0),
     (&["verify", "plant.toml"], 2),
+    (&["shape", "loop.toml"], 0),
+    (&["shape", "plant.toml", "--add", "{ kind = \"integrator\" }", "--remove", "1"], 0),
+    (&["shape", "loop.toml", "--pass", "gain through -6 dB at 1", "--save", "saved/shaped.toml"], 0),
+    (&["shape", "loop.toml", "--prefilter", "--add", "{ kind = \"pole\", frequency = 3 }"], 0),
+    (&["shape", "plant.toml", "--prefilter"], 2),
+    (&["shape", "loop.toml", "--add", "lead"], 2),
+    (&["shape", "loop.toml", "--remove", "2"], 2),
+    (&["shape", "loop.toml", "--move", "-1=1"], 2),
+    (&["shape", "loop.toml", "--pass", "pole through +20 deg at 1"], 2),
+    (&["shape", "loop.toml", "--save", "empty.toml/shaped.toml"], 2),
     (&["check", "timed.toml"], 0),
     (&["verify", "timed.toml"], 2),
     (&["design", "plant.toml"], 2),
@@ -138,6 +148,46 @@ fn a_bad_row_of_a_measurement_has_its_place() {
     assert!(object["project_sha256"].is_string());
     let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(complaint.contains("--> drive.csv:3:3"), "{complaint}");
+}
+
+/// Changes are made in the order of the command line; the file is written where it is said, and the same bytes where nothing changes.
+#[test]
+fn shape_writes_what_was_asked_for_and_nothing_else() {
+    let folder = folder("shape");
+    let text = |name: &str| std::fs::read_to_string(folder.join(name)).expect("a text");
+    let before = text("loop.toml");
+    let pole = "{ kind = \"pole\", frequency = 3 }";
+    let zero = "{ kind = \"zero\", frequency = 9 }";
+    let saved = |arguments: &[&str]| {
+        let output = phea(&folder, &[&["shape", "loop.toml", "--save", "new.toml"], arguments].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        text("new.toml")
+    };
+    assert_eq!(saved(&[]), before);
+    let one = saved(&["--add", pole, "--add", zero, "--remove", "2"]);
+    assert!(one.contains("kind = \"zero\"") && !one.contains("kind = \"pole\""), "{one}");
+    let other = saved(&["--add", zero, "--remove", "2", "--add", pole]);
+    assert!(other.contains("kind = \"pole\"") && !other.contains("kind = \"zero\""), "{other}");
+    let files = |of: &str| {
+        let mut names: Vec<_> = std::fs::read_dir(folder.join(of))
+            .expect("a folder")
+            .map(|file| file.expect("a file").file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    };
+    let there = files(".");
+    assert_eq!(phea(&folder, &["shape", "loop.toml", "--add", pole]).status.code(), Some(0));
+    assert_eq!((text("loop.toml"), files(".")), (before, there));
+    assert_eq!(phea(&folder, &["shape", "loop.toml", "--out", "out"]).status.code(), Some(0));
+    assert_eq!(files("out"), ["margins.csv", "shaped.toml"]);
+    let here = ["shape", "loop.toml", "--add", pole, "--save", "loop.toml"];
+    assert_eq!(phea(&folder, &here).status.code(), Some(0));
+    assert!(
+        text("loop.toml").contains(r#"{ kind = "pole", frequency = "3 rad/s" }"#),
+        "{}",
+        text("loop.toml")
+    );
 }
 
 #[test]

@@ -9,6 +9,7 @@ pub mod closed_loop;
 pub mod design;
 pub mod family;
 pub mod loop_shaping;
+pub mod manual_shaping;
 pub mod prefilter;
 mod random;
 mod sampled;

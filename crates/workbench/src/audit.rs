@@ -10,10 +10,10 @@ pub(crate) use answer::{Body, body};
 pub use answer::{files, json};
 pub use plant::{NamedPlant, PlantNames};
 pub use text::text;
-pub(crate) use text::{basis, summary, worst_plants};
+pub(crate) use text::{basis, stability_sentence, summary, worst_plants};
 pub(crate) use words::{
     closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words, margin_words, meaning,
-    numbered, verdict_words, worst_at_design,
+    numbered, verdict_key, verdict_words, worst_at_design,
 };
 
 use phea_dynamics::portable;
@@ -83,7 +83,8 @@ pub(crate) fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result
     Ok(ProjectAudit::new(problem, run.audit()))
 }
 
-fn names(family: &Family) -> PlantNames {
+/// What the plants of a family are called.
+pub(crate) fn names(family: &Family) -> PlantNames {
     match family {
         Family::Uncertain(family) => PlantNames::of_parameters(
             family.plant().parameters().iter().map(|parameter| parameter.name.as_str()),

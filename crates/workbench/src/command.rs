@@ -16,6 +16,7 @@ use crate::project::{Loaded, Report as Refusal, Severity, sha256};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
+use crate::shaping::{self, RequestedChange, Shaped, ShapingError, shape};
 use crate::sizing::{self, Question, size};
 use crate::source::Source;
 use crate::specification::{self, specifications, wishes};
@@ -36,6 +37,13 @@ pub enum Request {
     Linearize,
     /// The audit of the given controller.
     Verify,
+    /// Shaping by hand, elements changed in order.
+    Shape {
+        /// What is shaped.
+        shaped: Shaped,
+        /// The changes.
+        changes: Vec<RequestedChange>,
+    },
     /// A controller that keeps to the specifications.
     Design {
         /// In place of the project's.
@@ -57,6 +65,7 @@ impl Request {
             Request::Size { .. } => "size",
             Request::Linearize => "linearize",
             Request::Verify => "verify",
+            Request::Shape { .. } => "shape",
             Request::Design { .. } => "design",
             Request::Report | Request::Page => "report",
         }
@@ -115,6 +124,9 @@ pub enum CommandError {
     /// Templates or bounds cannot be computed.
     #[error(transparent)]
     Robust(#[from] crate::robust::RobustError),
+    /// A controller cannot be shaped so.
+    #[error(transparent)]
+    Shaping(ShapingError),
     /// A plant that is no actuator, and nothing demanded of it.
     #[error(
         "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
@@ -131,6 +143,7 @@ impl CommandError {
         match self {
             CommandError::Catalogue(report) => Some(report),
             CommandError::Family(FamilyError::Measurement(report)) => Some(report),
+            CommandError::Shaping(ShapingError::Refused(report)) => Some(report),
             _ => None,
         }
     }
@@ -180,6 +193,11 @@ pub fn answer_watched(
         }
         Request::Linearize => linearize_answer(loaded),
         Request::Verify => verify_answer(source, loaded, watch),
+        Request::Shape { shaped, changes } => {
+            let shaping = shape(source, loaded, *shaped, changes, watch)?;
+            let (text, json) = (shaping::text(&shaping), shaping::json(loaded, &shaping));
+            Ok(Answer { text, json, files: shaping::files(&shaping), affirmative: true })
+        }
         Request::Design { seed, stages } => design_answer(source, loaded, *seed, *stages, watch),
         Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
         Request::Page => {

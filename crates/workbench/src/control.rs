@@ -1,16 +1,14 @@
 //! The controller and prefilter of a project as values of `phea_dynamics`, and the linear loop they close.
 
 use num_complex::Complex64;
-use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Timing};
+use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Stage, Timing};
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantisation::{
     CoefficientFormat, Converter, Quantisation, QuantisationError, rounded,
 };
 
-use crate::project::{
-    self, ElementKind, Formula, FormulaError, Project, Rational, Transfer, TransferForm, Variable,
-};
+use crate::project::{self, ElementKind, Formula, FormulaError, Project, Rational, Transfer};
 
 /// Why a declared controller or prefilter is no transfer function.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -143,46 +141,16 @@ pub fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
     delayed.map_err(|error| ControlError::Linear { place, error })
 }
 
-fn compensator(
+/// The elements in series, those that do not act among them.
+pub(crate) fn compensator(
     place: &'static str,
     transfer: &Transfer,
     sample_time: Option<f64>,
 ) -> Result<Compensator, ControlError> {
-    let linear = |error| ControlError::Linear { place, error };
-    let elements = match transfer.form() {
-        None => vec![],
-        Some(TransferForm::Elements(elements)) => elements.iter().map(element).collect(),
-        Some(TransferForm::Polynomials { numerator, denominator }) => {
-            let function = from_formulas(numerator, denominator)
-                .map_err(|error| ControlError::Formula { place, error })?
-                .map_err(linear)?;
-            let sampled =
-                [numerator, denominator].iter().any(|formula| formula.variable() == Some(Variable::Z));
-            vec![Element::General(in_domain(function, sampled, sample_time, place)?)]
-        }
-        Some(TransferForm::Factors { gain, zeros, poles, is_discrete }) => {
-            let roots = |pairs: &[[f64; 2]]| pairs.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
-            let function =
-                TransferFunction::from_factors(gain, roots(zeros), roots(poles)).map_err(linear)?;
-            vec![Element::General(in_domain(function, is_discrete, sample_time, place)?)]
-        }
+    let stage = |declared: &project::Element| {
+        Ok(Stage { element: element(place, declared, sample_time)?, enabled: declared.enabled })
     };
-    Ok(Compensator::new(elements))
-}
-
-fn in_domain(
-    function: TransferFunction,
-    is_discrete: bool,
-    sample_time: Option<f64>,
-    place: &'static str,
-) -> Result<TransferFunction, ControlError> {
-    match (is_discrete, sample_time) {
-        (false, _) => Ok(function),
-        (true, None) => Err(ControlError::SampleTime { place }),
-        (true, Some(sample_time_s)) => function
-            .in_domain(TimeDomain::Discrete { sample_time_s })
-            .map_err(|error| ControlError::Linear { place, error }),
-    }
+    Ok(Compensator { stages: transfer.as_elements().iter().map(stage).collect::<Result<_, ControlError>>()? })
 }
 
 /// A ratio of two formulas without parameters.
@@ -198,11 +166,15 @@ pub(crate) fn from_formulas(
 }
 
 /// A validated element has every number its kind needs; a missing one is refused as not finite further on.
-pub(crate) fn element(declared: &project::Element) -> Element {
+pub(crate) fn element(
+    place: &'static str,
+    declared: &project::Element,
+    sample_time: Option<f64>,
+) -> Result<Element, ControlError> {
     let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let frequency = number(declared.frequency);
     let damping_ratio = number(declared.damping_ratio);
-    match declared.kind {
+    Ok(match declared.kind {
         ElementKind::Gain => Element::Gain(number(declared.value)),
         ElementKind::Integrator => Element::Integrator,
         ElementKind::Differentiator => Element::Differentiator,
@@ -210,7 +182,7 @@ pub(crate) fn element(declared: &project::Element) -> Element {
         ElementKind::Pole => Element::RealPole { frequency },
         ElementKind::ComplexZeros => Element::ComplexZeros { natural_frequency: frequency, damping_ratio },
         ElementKind::ComplexPoles => Element::ComplexPoles { natural_frequency: frequency, damping_ratio },
-        ElementKind::Lead => Element::LeadLag {
+        ElementKind::Lead | ElementKind::Lag => Element::LeadLag {
             zero_frequency: number(declared.zero_frequency),
             pole_frequency: number(declared.pole_frequency),
         },
@@ -219,5 +191,47 @@ pub(crate) fn element(declared: &project::Element) -> Element {
             zero_damping_ratio: number(declared.numerator_damping_ratio),
             pole_damping_ratio: damping_ratio,
         },
+        ElementKind::RollOff => Element::ComplexPoles {
+            natural_frequency: frequency,
+            damping_ratio: declared.damping_ratio.unwrap_or(std::f64::consts::FRAC_1_SQRT_2),
+        },
+        ElementKind::ProportionalIntegral => Element::ProportionalIntegral {
+            proportional_gain: number(declared.proportional_gain),
+            integral_gain: number(declared.integral_gain),
+        },
+        ElementKind::ProportionalIntegralDerivative => Element::ProportionalIntegralDerivative {
+            proportional_gain: number(declared.proportional_gain),
+            integral_gain: number(declared.integral_gain),
+            derivative_gain: number(declared.derivative_gain),
+            filter_time: number(declared.filter_time),
+        },
+        ElementKind::General => Element::General(general(place, declared, sample_time)?),
+    })
+}
+
+/// A ratio of polynomials, or factors.
+fn general(
+    place: &'static str,
+    declared: &project::Element,
+    sample_time: Option<f64>,
+) -> Result<TransferFunction, ControlError> {
+    let linear = |error| ControlError::Linear { place, error };
+    let function = match (&declared.numerator, &declared.denominator) {
+        (Some(numerator), Some(denominator)) => from_formulas(numerator, denominator)
+            .map_err(|error| ControlError::Formula { place, error })?
+            .map_err(linear)?,
+        _ => {
+            let roots = |pairs: &[[f64; 2]]| pairs.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
+            let gain = declared.gain.unwrap_or(f64::NAN);
+            TransferFunction::from_factors(gain, roots(&declared.zeros), roots(&declared.poles))
+                .map_err(linear)?
+        }
+    };
+    match (declared.is_sampled(), sample_time) {
+        (false, _) => Ok(function),
+        (true, None) => Err(ControlError::SampleTime { place }),
+        (true, Some(sample_time_s)) => {
+            function.in_domain(TimeDomain::Discrete { sample_time_s }).map_err(linear)
+        }
     }
 }

@@ -18,6 +18,7 @@ pub mod quantity;
 pub mod report;
 pub mod rig;
 pub mod robust;
+pub mod shaping;
 pub mod sizing;
 pub mod source;
 pub mod specification;

@@ -61,9 +61,9 @@ pub use valve::*;
 
 pub(crate) use key::{key, plain};
 pub(crate) use reader::Reader;
-pub(crate) use rewrite::{snippet, with_laws};
+pub(crate) use rewrite::{snippet, with_law, with_laws};
 pub(crate) use text::{Findings, Found, Place};
-pub(crate) use tree::{Node, Value as TreeValue, read as read_tree};
+pub(crate) use tree::{Entry, Node, Value as TreeValue, read as read_tree, value_or_finding};
 pub(crate) use visitor::Visitor;
 
 use crate::quantity::RATIO;
@@ -136,6 +136,8 @@ pub struct Loaded {
     pub warnings: Vec<Diagnostic>,
     /// Name and content of every text a warning points into.
     pub texts: Vec<(String, String)>,
+    /// Where the file is, as it was given.
+    pub path: String,
     /// The file's bytes.
     pub bytes: Vec<u8>,
     /// Of the file's bytes, in hexadecimal.

@@ -14,7 +14,7 @@ use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Template
 use phea_qft::verification::PlantPoint;
 
 use crate::command::{CommandError, Progress, Watch};
-use crate::control::{compensation, sensor, timing};
+use crate::control::{compensation, prefilter, sensor, timing};
 use crate::family::family;
 use crate::project::Project;
 use crate::source::Source;
@@ -82,7 +82,8 @@ pub fn robust_problem(source: &dyn Source, project: &Project) -> Result<RobustPr
     let compensation = match given {
         Some(given) => given,
         None => {
-            let open = Controller { timing: timing(project), ..Controller::default() };
+            let prefilter = prefilter(project)?.unwrap_or_default();
+            let open = Controller { prefilter, timing: timing(project), ..Controller::default() };
             Compensation::new(&open, sensor(project)?)?
         }
     };

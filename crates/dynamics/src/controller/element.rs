@@ -96,16 +96,23 @@ impl Compensator {
         Compensator { stages: elements.into_iter().map(|element| Stage { element, enabled: true }).collect() }
     }
 
-    /// The product of the enabled elements.
+    /// The product of the enabled elements. A gain is the same in s and in z, and so joins elements of either.
     ///
     /// # Errors
     /// A frequency of zero or a number that is not finite; elements in different time domains.
     pub fn transfer_function(&self) -> Result<TransferFunction, LinearError> {
-        let mut enabled = self.stages.iter().filter(|stage| stage.enabled);
-        let first = enabled
+        let enabled = self.stages.iter().filter(|stage| stage.enabled).map(|stage| &stage.element);
+        let (gains, others): (Vec<&Element>, Vec<&Element>) =
+            enabled.partition(|element| matches!(element, Element::Gain(_)));
+        let mut others = others.into_iter();
+        let first = others
             .next()
-            .map_or(Ok(TransferFunction::gain_only(1.0)), |stage| stage.element.transfer_function())?;
-        enabled.try_fold(first, |product, stage| product.series(&stage.element.transfer_function()?))
+            .map_or(Ok(TransferFunction::gain_only(1.0)), |element| element.transfer_function())?;
+        let product =
+            others.try_fold(first, |product, element| product.series(&element.transfer_function()?))?;
+        gains.into_iter().try_fold(product, |product, gain| {
+            product.series(&gain.transfer_function()?.in_domain(product.domain())?)
+        })
     }
 }
 
@@ -201,6 +208,7 @@ fn quadratic_roots(natural_frequency: f64, damping_ratio: f64) -> Vec<Complex64>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::TimeDomain;
     use crate::portable;
 
     fn at(element: Element, frequency: f64) -> Complex64 {
@@ -249,6 +257,17 @@ mod tests {
         let function = compensator.transfer_function().unwrap();
         assert_eq!((function.gain(), function.poles().len()), (6.0, 0));
         assert_eq!(Compensator::default().transfer_function().unwrap().gain(), 1.0);
+    }
+
+    #[test]
+    fn a_gain_joins_elements_in_z() {
+        let domain = TimeDomain::Discrete { sample_time_s: 0.01 };
+        let delay = TransferFunction::from_factors(1.0, vec![], vec![Complex64::new(0.0, 0.0)]).unwrap();
+        let delay = Element::General(delay.in_domain(domain).unwrap());
+        let scaled = Compensator::new(vec![Element::Gain(2.0), delay.clone()]).transfer_function().unwrap();
+        assert_eq!((scaled.gain(), scaled.domain()), (2.0, domain));
+        let mixed = Compensator::new(vec![Element::Integrator, delay]);
+        assert_eq!(mixed.transfer_function(), Err(LinearError::DomainMismatch));
     }
 
     #[test]

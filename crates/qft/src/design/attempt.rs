@@ -383,7 +383,13 @@ impl Attempt {
         let mut news = false;
         let [lowest, highest] = self.frequency_range();
         for example in examples {
-            let at = example.frequency_rad_per_s.unwrap_or(lowest);
+            // towards the ends of the axis a decade at a time
+            let at = match example.frequency_rad_per_s {
+                None => lowest,
+                Some(frequency) if frequency <= 0.0 => 0.1 * lowest,
+                Some(frequency) if frequency.is_infinite() => 10.0 * highest,
+                Some(frequency) => frequency,
+            };
             news |= self.shaping.add(&example.plants, at)?;
             // a peak moves with the next controller: its neighbourhood is looked at too
             for share in NEIGHBOURS.into_iter().filter(|_| example.frequency_rad_per_s.is_some()) {

@@ -3,7 +3,7 @@
 use crate::specification::Requirement;
 use crate::verification::{Audit, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict, WorstCase};
 
-/// A plant, or the pair of a spread, and the frequency at which it breaks a limit, where there is one.
+/// A plant, or the pair of a spread, and the frequency at which it breaks a limit (0 and infinity included), where there is one.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counterexample {
     pub(super) plants: Vec<PlantPoint>,
@@ -25,17 +25,13 @@ pub(super) fn counterexamples(
         let cases = cases.chain(&finding.at_design_frequencies);
         for case in cases.filter(|case| case.margin_db < -tolerance) {
             let plants = std::iter::once(&case.plant).chain(&case.other).cloned().collect();
-            let example = Counterexample { plants, frequency_rad_per_s: inside(case) };
+            let example = Counterexample { plants, frequency_rad_per_s: Some(case.frequency_rad_per_s) };
             if !found.contains(&example) {
                 found.push(example);
             }
         }
     }
     found
-}
-
-fn inside(case: &WorstCase) -> Option<f64> {
-    Some(case.frequency_rad_per_s).filter(|frequency| *frequency > 0.0 && frequency.is_finite())
 }
 
 /// The plant that makes a family unstable.

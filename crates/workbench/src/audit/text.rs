@@ -1,10 +1,10 @@
-use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
+use phea_qft::verification::{SpecificationFinding, StabilityFinding, Verdict, WorstCase};
 
-use super::ProjectAudit;
 use super::words::{
     closed_loop_symbol, evidence_sentence, finding_sentence, frequency_number, kind_words, margin_words,
     numbered, place_words, verdict_words, worst_at_design,
 };
+use super::{PlantNames, ProjectAudit};
 use crate::answer::{significant, table};
 use crate::quantity::DisplayUnit;
 
@@ -31,7 +31,7 @@ pub fn text(view: &ProjectAudit) -> String {
 
 /// Stability, delay margin and each specification, a sentence each.
 pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
-    let mut sentences = vec![stability_sentence(view)];
+    let mut sentences = vec![stability_sentence(&view.audit.stability, &view.names)];
     sentences.extend(delay_sentence(view));
     let stable = view.audit.stability.verdict != Verdict::Violated;
     let findings = view.audit.specifications.iter().enumerate();
@@ -42,9 +42,9 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     sentences
 }
 
-fn stability_sentence(view: &ProjectAudit) -> String {
-    let stability = &view.audit.stability;
-    let plant = view.names.text(&stability.plant);
+/// Whether the family is stable, and how it is known.
+pub(crate) fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
+    let plant = names.text(&stability.plant);
     let rate = |value: f64| significant(value, 3);
     match (stability.verdict, stability.largest_real_part) {
         (Verdict::Met, Some(real)) => {

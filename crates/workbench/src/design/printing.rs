@@ -1,5 +1,6 @@
 //! What is printed and written of a design, whatever found it: a design made by hand.
 
+use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::TransferFunction;
@@ -207,6 +208,34 @@ fn every_stage_is_a_file() {
         text(&loaded, &view)
             .unwrap()
             .starts_with("Design: stopped: this is the best controller found so far")
+    );
+}
+
+/// A published law of elements is the product of those that act, and all of them go where the designed one comes.
+#[test]
+fn elements_are_a_published_law() {
+    let elements = "elements = [\n  { kind = \"gain\", value = 3 },  # loud\n  { kind = \"pi\", proportional_gain = 2, integral_gain = 4 },\n  \
+        { kind = \"pid\", proportional_gain = 1, integral_gain = 2, derivative_gain = 3, filter_time = \"0.1 s\" },\n  \
+        { kind = \"lead\", zero_frequency = 1, pole_frequency = 9, enabled = false },\n  { kind = \"lag\", zero_frequency = 9, pole_frequency = 1 },\n  \
+        { kind = \"roll_off\", frequency = 40, damping_ratio = 0.5 },\n  { kind = \"general\", numerator = \"s + 5\", denominator = \"s + 7\" },\n]\n";
+    let polynomials = "numerator = \"1\"  # slow\ndenominator = \"1\"\nsaturation";
+    let text = PROJECT.replace("TIMING\n", "").replace(polynomials, &format!("{elements}saturation"));
+    let (_, loaded, view) = view(&text, DesignStatus::Met);
+    let law = view.published.as_ref().unwrap().controller.feedback.transfer_function().unwrap();
+    let s = Complex64::new(0.0, 6.0);
+    let pid = 1.0 + 2.0 / s + 3.0 * s / (0.1 * s + 1.0);
+    let lag = (s / 9.0 + 1.0) / (s + 1.0);
+    let expected =
+        3.0 * (2.0 + 4.0 / s) * pid * lag * 1600.0 / (s * s + 40.0 * s + 1600.0) * (s + 5.0) / (s + 7.0);
+    let found = law.at_frequency(6.0);
+    assert!((found - expected).norm_sqr() < 1e-20 * expected.norm_sqr(), "{found} {expected}");
+    let written = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
+    assert_eq!(
+        written,
+        text.replace(elements, "gain = 50\nzeros = [-50]\npoles = [-500]\n").replace(
+            "[prefilter]\nnumerator = \"1\"\ndenominator = \"1\"\n",
+            "[prefilter]\ngain = 6\npoles = [-6]\n",
+        )
     );
 }
 

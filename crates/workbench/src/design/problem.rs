@@ -9,7 +9,7 @@ use phea_qft::specification::Requirement;
 use phea_qft::verification::TOLERANCE_DB;
 
 use crate::command::CommandError;
-use crate::control::{element, prefilter, sensor, timing};
+use crate::control::{ControlError, element, prefilter, sensor, timing};
 use crate::project::{DesignObjective, PartKind, Project, StructurePart};
 use crate::robust::RobustProblem;
 
@@ -47,7 +47,7 @@ pub fn design_options(
     } else {
         let problem = design_problem(project, given)?;
         let frequencies = given.design_frequencies();
-        ControllerChoice::Given(structure(&design.structure, design.gain, &problem, &frequencies))
+        ControllerChoice::Given(structure(&design.structure, design.gain, &problem, &frequencies)?)
     };
     Ok(DesignOptions {
         objective: match design.objective {
@@ -89,29 +89,33 @@ fn structure(
     gain: Option<[f64; 2]>,
     problem: &DesignProblem,
     frequencies: &[f64],
-) -> Structure {
+) -> Result<Structure, ControlError> {
     let first = frequencies.first().copied().unwrap_or(1.0);
     let last = frequencies.last().copied().unwrap_or(1.0);
     let wide = [first * FREQUENCY_FACTORS[0], last * FREQUENCY_FACTORS[1]];
-    let parts: Vec<Part> = declared.iter().map(|one| part(one, wide)).collect();
+    let parts = declared.iter().map(|one| part(one, wide)).collect::<Result<Vec<Part>, ControlError>>()?;
     let (sign, gain) = match gain {
         Some([low, high]) if high < 0.0 => (-1.0, [-high, -low]),
         Some(gain) => (1.0, gain),
         None => gain_range(problem),
     };
-    Structure { sign, gain, parts }
+    Ok(Structure { sign, gain, parts })
 }
 
 /// A part that the project declares; validated, so that a fixed one has its element.
-fn part(declared: &StructurePart, wide: [f64; 2]) -> Part {
+fn part(declared: &StructurePart, wide: [f64; 2]) -> Result<Part, ControlError> {
     let frequency = declared.frequency.unwrap_or(wide);
     let damping_ratio = declared.damping_ratio.unwrap_or(DAMPING_RATIOS);
-    match declared.kind {
+    Ok(match declared.kind {
         PartKind::Integrator => Part::Fixed(Element::Integrator),
         PartKind::Zero => Part::RealZero { frequency },
         PartKind::Pole => Part::RealPole { frequency },
         PartKind::ZeroPair => Part::ZeroPair { natural_frequency: frequency, damping_ratio },
         PartKind::PolePair => Part::PolePair { natural_frequency: frequency, damping_ratio },
-        PartKind::Fixed => Part::Fixed(declared.element.as_ref().map_or(Element::Gain(1.0), element)),
-    }
+        PartKind::Fixed => Part::Fixed(match &declared.element {
+            // in s, as every factor is
+            Some(fixed) => element("[design]", fixed, None)?,
+            None => Element::Gain(1.0),
+        }),
+    })
 }

@@ -1,9 +1,17 @@
 //! `[controller]` and `[prefilter]`.
 
+mod element;
+
+pub use element::{Element, ElementKind};
+
 use super::formula::{Formula, Variable};
 use super::key::{key, plain};
+use super::reader::Reader;
+use super::text::Findings;
+use super::tree::Node;
 use super::visitor::{Shape, Visitor};
-use crate::quantity::{ANGULAR_FREQUENCY, FORCE, RATIO, TIME, VOLTAGE};
+use crate::catalogue::Catalogue;
+use crate::quantity::{FORCE, RATIO, TIME, VOLTAGE};
 
 /// A transfer function in one of three forms: polynomials, factors, or elements in series.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,44 +33,43 @@ pub struct Transfer {
 }
 
 /// The words of `domain`.
-static DOMAINS: [(&str, Option<Variable>); 2] = [("s", Some(Variable::S)), ("z", Some(Variable::Z))];
-
-/// Which of its forms a [`Transfer`] is written in.
-#[derive(Clone, Debug, PartialEq)]
-pub enum TransferForm<'a> {
-    /// Polynomials.
-    Polynomials {
-        /// As written.
-        numerator: &'a Formula,
-        /// As written.
-        denominator: &'a Formula,
-    },
-    /// k Π(s - z)/Π(s - p).
-    Factors {
-        /// k.
-        gain: f64,
-        /// Real and imaginary parts.
-        zeros: &'a [[f64; 2]],
-        /// Real and imaginary parts.
-        poles: &'a [[f64; 2]],
-        /// Whether they are in z.
-        is_discrete: bool,
-    },
-    /// In series.
-    Elements(&'a [Element]),
-}
+pub(super) static DOMAINS: [(&str, Option<Variable>); 2] =
+    [("s", Some(Variable::S)), ("z", Some(Variable::Z))];
 
 impl Transfer {
-    /// The form it is written in; `None` only for one that was not read from a valid project.
-    pub fn form(&self) -> Option<TransferForm<'_>> {
-        if let (Some(numerator), Some(denominator)) = (&self.numerator, &self.denominator) {
-            return Some(TransferForm::Polynomials { numerator, denominator });
+    /// All of it as elements in series: polynomials and factors are one general element, with every number as it was written.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_workbench::project::{ElementKind, Transfer};
+    /// let transfer = Transfer { gain: Some(2.0), poles: vec![[-3.0, 0.0]], ..Transfer::default() };
+    /// let [general] = &transfer.as_elements()[..] else { panic!() };
+    /// assert_eq!((general.kind, general.gain, &general.poles), (ElementKind::General, Some(2.0), &transfer.poles));
+    /// assert!(Transfer::default().as_elements().is_empty());
+    /// ```
+    pub fn as_elements(&self) -> Vec<Element> {
+        let polynomials = self.numerator.is_some() && self.denominator.is_some();
+        if !polynomials && self.gain.is_none() {
+            return self.elements.clone();
         }
-        if let Some(gain) = self.gain {
-            let is_discrete = self.domain == Some(Variable::Z);
-            return Some(TransferForm::Factors { gain, zeros: &self.zeros, poles: &self.poles, is_discrete });
-        }
-        if self.elements.is_empty() { None } else { Some(TransferForm::Elements(&self.elements)) }
+        vec![Element {
+            kind: ElementKind::General,
+            numerator: self.numerator.clone(),
+            denominator: self.denominator.clone(),
+            gain: self.gain,
+            zeros: self.zeros.clone(),
+            poles: self.poles.clone(),
+            domain: self.domain,
+            ..Element::default()
+        }]
+    }
+
+    /// What a table says of it, other keys left alone.
+    pub(crate) fn read(table: &Node, findings: &mut Findings) -> Transfer {
+        let catalogue = Catalogue::default();
+        let mut transfer = Transfer::default();
+        transfer.visit(&mut Reader::new(table, table.place.text, &catalogue, findings));
+        transfer
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
@@ -83,78 +90,6 @@ impl Transfer {
         let k = plain("domain", "Of gain, zeros and poles: in s, or in z when sampled.");
         v.choice(k, &DOMAINS, &mut self.domain, false);
         v.tables(plain("elements", "Elements in series."), &mut self.elements, Element::visit);
-    }
-}
-
-/// One element of a controller; every kind but the gain has unit gain at zero frequency (integrator and
-/// differentiator: at 1 rad/s).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Element {
-    /// Which element.
-    pub kind: ElementKind,
-    /// Of a gain.
-    pub value: Option<f64>,
-    /// rad/s: corner or natural frequency.
-    pub frequency: Option<f64>,
-    /// Of a complex pair, or of a notch's denominator.
-    pub damping_ratio: Option<f64>,
-    /// Of a notch's numerator.
-    pub numerator_damping_ratio: Option<f64>,
-    /// rad/s, corner of a lead's numerator.
-    pub zero_frequency: Option<f64>,
-    /// rad/s, corner of a lead's denominator.
-    pub pole_frequency: Option<f64>,
-}
-
-/// Which element.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ElementKind {
-    /// `value`.
-    #[default]
-    Gain,
-    /// 1/s.
-    Integrator,
-    /// s.
-    Differentiator,
-    /// 1 + s/ω.
-    Zero,
-    /// 1/(1 + s/ω).
-    Pole,
-    /// 1 + 2ζs/ω + s²/ω².
-    ComplexZeros,
-    /// 1/(1 + 2ζs/ω + s²/ω²).
-    ComplexPoles,
-    /// (1 + s/ω_z)/(1 + s/ω_p), lead or lag.
-    Lead,
-    /// (s² + 2ζ_z ωs + ω²)/(s² + 2ζ_p ωs + ω²).
-    Notch,
-}
-
-impl Element {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let words = &[
-            ("gain", ElementKind::Gain),
-            ("integrator", ElementKind::Integrator),
-            ("differentiator", ElementKind::Differentiator),
-            ("zero", ElementKind::Zero),
-            ("pole", ElementKind::Pole),
-            ("complex_zeros", ElementKind::ComplexZeros),
-            ("complex_poles", ElementKind::ComplexPoles),
-            ("lead", ElementKind::Lead),
-            ("notch", ElementKind::Notch),
-        ];
-        v.choice(plain("kind", "Which element."), words, &mut self.kind, true);
-        v.optional(key("value", &RATIO, "Of a gain."), &mut self.value);
-        let k = key("frequency", &ANGULAR_FREQUENCY, "Corner or natural frequency.");
-        v.optional(k.positive(), &mut self.frequency);
-        let k = key("damping_ratio", &RATIO, "Of a complex pair or of a notch's denominator.").not_negative();
-        v.optional(k, &mut self.damping_ratio);
-        let k = key("numerator_damping_ratio", &RATIO, "Of a notch's numerator.").not_negative();
-        v.optional(k, &mut self.numerator_damping_ratio);
-        let k = key("zero_frequency", &ANGULAR_FREQUENCY, "Corner of a lead's numerator.").positive();
-        v.optional(k, &mut self.zero_frequency);
-        let k = key("pole_frequency", &ANGULAR_FREQUENCY, "Corner of a lead's denominator.").positive();
-        v.optional(k, &mut self.pole_frequency);
     }
 }
 
@@ -244,7 +179,7 @@ pub enum Discretization {
 impl Controller {
     /// Whether it says what it does, and not only when: without a law it is to be designed.
     pub fn has_law(&self) -> bool {
-        self.transfer.form().is_some()
+        !self.transfer.as_elements().is_empty()
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {

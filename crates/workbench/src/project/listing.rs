@@ -111,6 +111,10 @@ impl Visitor for Listing {
         self.list(key, "true or false", false);
     }
 
+    fn switch(&mut self, key: Key, field: &mut bool) {
+        self.flag(key, field);
+    }
+
     fn text(&mut self, key: Key, _field: &mut Option<String>, required: bool) {
         self.list(key, "a text", required);
     }

@@ -55,6 +55,11 @@ impl Printer {
         Printer { open: vec![Section::default()], named }
     }
 
+    /// What was written since the beginning as one inline table.
+    pub(crate) fn finish_inline(self) -> Option<String> {
+        self.open.first().and_then(Section::inline)
+    }
+
     /// The lines of the outermost table alone: each key with its value.
     pub(crate) fn lines(self) -> Vec<(String, String)> {
         self.open.into_iter().next().unwrap_or_default().lines
@@ -168,6 +173,12 @@ impl Visitor for Printer {
 
     fn flag(&mut self, key: Key, field: &mut bool) {
         if *field {
+            self.line(key.name, field.to_string());
+        }
+    }
+
+    fn switch(&mut self, key: Key, field: &mut bool) {
+        if !*field {
             self.line(key.name, field.to_string());
         }
     }

@@ -66,7 +66,8 @@ pub fn read(
     let sha256 = sha256(&bytes);
     let warnings = report.diagnostics;
     let (settings, texts) = (settings.to_vec(), report.texts);
-    Ok(Loaded { project, warnings, texts, bytes, sha256, settings, catalogue_files, provenance })
+    let path = path.to_string();
+    Ok(Loaded { project, warnings, texts, path, bytes, sha256, settings, catalogue_files, provenance })
 }
 
 /// The hash by which answers name a project.

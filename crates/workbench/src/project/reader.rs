@@ -30,6 +30,8 @@ pub(crate) struct Reader<'a> {
     pub(crate) parameters: Vec<String>,
     /// Where each value is written, by its path.
     pub(crate) places: BTreeMap<String, Place>,
+    /// Where each table of a list is written, by its path.
+    pub(crate) item_places: BTreeMap<String, Place>,
     pub(crate) provenance: Vec<Provenance>,
     pub(crate) catalogue_files: Vec<String>,
 }
@@ -81,6 +83,7 @@ impl<'a> Reader<'a> {
             named: BTreeMap::new(),
             parameters: Vec::new(),
             places: BTreeMap::new(),
+            item_places: BTreeMap::new(),
             provenance: Vec::new(),
             catalogue_files: Vec::new(),
         };

@@ -37,6 +37,11 @@ pub(crate) fn with_laws(
     format!("{mark}{content}").into_bytes()
 }
 
+/// The text with these lines in place of whatever law the table has.
+pub(crate) fn with_law(text: &str, table: &str, lines: &[(String, String)]) -> String {
+    replaced(text, table, &LAW, lines)
+}
+
 /// Controller and prefilter as tables of a project file, ready to be pasted into one.
 pub(crate) fn snippet(controller: &Controller, prefilter: Option<&Prefilter>) -> String {
     let table = |name: &str, lines: Lines| {
@@ -71,7 +76,7 @@ fn controller_lines(controller: &Controller) -> Lines {
 }
 
 /// The text with these keys of a top-level table taken out and these lines in their place.
-fn replaced(text: &str, table: &str, keys: &[&str], lines: &Lines) -> String {
+fn replaced(text: &str, table: &str, keys: &[&str], lines: &[(String, String)]) -> String {
     let end = if text.contains("\r\n") { "\r\n" } else { "\n" };
     let mut surgery =
         Surgery { table, keys, lines, end, out: String::new(), inserted: false, section: vec![] };
@@ -91,7 +96,7 @@ struct Surgery<'a> {
     table: &'a str,
     /// Keys of it that are taken out.
     keys: &'a [&'a str],
-    lines: &'a Lines,
+    lines: &'a [(String, String)],
     /// End of a line.
     end: &'static str,
     out: String,

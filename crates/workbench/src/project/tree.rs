@@ -116,6 +116,24 @@ pub(crate) fn value(text: usize, range: std::ops::Range<usize>, findings: &mut F
     Some(node)
 }
 
+/// The same, its syntax error among the findings.
+pub(crate) fn value_or_finding(
+    text: usize,
+    range: std::ops::Range<usize>,
+    findings: &mut Findings,
+) -> Option<Node> {
+    let content = findings.content(text).get(range.clone())?.to_string();
+    let found = value(text, range.clone(), findings);
+    if found.is_none() {
+        let error = DeValue::parse(&content).err();
+        let span = error.as_ref().and_then(toml::de::Error::span).unwrap_or(0..content.len());
+        let message = error.map_or("nested too deep".to_string(), |error| error.message().to_string());
+        let place = Place { text, start: range.start + span.start, end: range.start + span.end };
+        findings.push(Found::error(place, message).syntax());
+    }
+    found
+}
+
 /// Moves a whole tree to where it stands in the text.
 fn shift(node: &mut Node, by: usize) {
     node.place.start += by;

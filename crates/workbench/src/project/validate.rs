@@ -9,7 +9,7 @@ mod wishes;
 
 use super::reader::Reader;
 use super::text::{Found, Place};
-use super::{LINEAR_PARAMETERS, Project};
+use super::{Element, LINEAR_PARAMETERS, Project};
 
 /// Reports everything that cannot be together.
 pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
@@ -32,6 +32,11 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     design::design(project, &mut check);
 }
 
+/// Reports what cannot be in one element; `path` leads to it.
+pub(super) fn element(element: &Element, path: &str, sample_time: Option<f64>, reader: &mut Reader<'_>) {
+    linear_loop::one_element(element, path, sample_time, &mut Check { reader });
+}
+
 /// Reports findings at the places of values.
 struct Check<'r, 'a> {
     reader: &'r mut Reader<'a>,
@@ -42,7 +47,8 @@ impl Check<'_, '_> {
     fn place(&self, path: &str) -> Place {
         let mut path = path;
         loop {
-            if let Some(place) = self.reader.places.get(path) {
+            let known = self.reader.places.get(path).or_else(|| self.reader.item_places.get(path));
+            if let Some(place) = known {
                 return *place;
             }
             match path.rfind(['.', '[']) {

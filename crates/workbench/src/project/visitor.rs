@@ -23,6 +23,8 @@ pub(crate) trait Visitor: Sized {
     fn count(&mut self, key: Key, field: &mut u32);
     /// True or false; absent, the field keeps its value.
     fn flag(&mut self, key: Key, field: &mut bool);
+    /// True or false; absent, it is true.
+    fn switch(&mut self, key: Key, field: &mut bool);
     /// A text; required if `required`.
     fn text(&mut self, key: Key, field: &mut Option<String>, required: bool);
     /// A list of texts.

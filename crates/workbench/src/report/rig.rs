@@ -106,12 +106,15 @@ fn line(declared: &project::Line) -> LineSymbol {
 }
 
 fn controller_words(project: &Project, controller: &project::Controller) -> Vec<String> {
-    let words = |letter: &str, transfer: &project::Transfer| match transfer.form() {
-        Some(project::TransferForm::Polynomials { numerator, denominator }) => {
-            Some(format!("{letter} = {}/{}", polynomial(numerator.text()), polynomial(denominator.text())))
-        }
-        _ => None,
-    };
+    let words =
+        |letter: &str, transfer: &project::Transfer| match (&transfer.numerator, &transfer.denominator) {
+            (Some(numerator), Some(denominator)) => Some(format!(
+                "{letter} = {}/{}",
+                polynomial(numerator.text()),
+                polynomial(denominator.text())
+            )),
+            _ => None,
+        };
     let mut rows: Vec<String> = words("G", &controller.transfer).into_iter().collect();
     rows.extend(project.prefilter.as_ref().and_then(|prefilter| words("F", &prefilter.transfer)));
     if let Some(sample_time) = controller.sample_time {

@@ -84,6 +84,10 @@ impl Visitor for Reader<'_> {
         }
     }
 
+    fn switch(&mut self, key: Key, field: &mut bool) {
+        self.flag(key, field);
+    }
+
     fn text(&mut self, key: Key, field: &mut Option<String>, required: bool) {
         match self.find(key) {
             Some(hit) => match &hit.node.value {
@@ -221,6 +225,7 @@ impl Visitor for Reader<'_> {
         };
         for (index, node) in items.iter().enumerate() {
             let path = format!("{}[{index}]", self.path(key.name));
+            self.item_places.insert(path.clone(), node.place);
             if self.enter(key, Hit { node, entry: hit.entry }, path) {
                 let mut value = T::default();
                 visit(&mut value, self);

@@ -1,8 +1,8 @@
 //! `[design]`.
 
 use super::Check;
-use super::linear_loop::one_element;
-use crate::project::{PartKind, Project, StructurePart};
+use super::linear_loop::{element_excess, one_element};
+use crate::project::{Element, PartKind, Project, StructurePart};
 
 /// Most factors of a structure.
 const MAXIMUM_PARTS: usize = 40;
@@ -37,7 +37,7 @@ pub(super) fn design(project: &Project, check: &mut Check<'_, '_>) {
     for (index, one) in design.structure.iter().enumerate() {
         part(one, &format!("design.structure[{index}]"), check);
     }
-    if design.structure.iter().map(excess).sum::<i32>() > 0 {
+    if design.structure.iter().map(excess).sum::<i64>() > 0 {
         check.error(
             "design.structure",
             "the structure has more zeros than poles: no controller can be built so",
@@ -63,7 +63,7 @@ fn part(part: &StructurePart, path: &str, check: &mut Check<'_, '_>) {
     check.ascending(&format!("{path}.frequency"), part.frequency);
     check.ascending(&format!("{path}.damping_ratio"), part.damping_ratio);
     match &part.element {
-        Some(element) => one_element(element, &format!("{path}.element"), check),
+        Some(element) => fixed(element, &format!("{path}.element"), check),
         None if part.kind == PartKind::Fixed => {
             check.error(&format!("{path}.kind"), "a fixed factor needs `element`");
         }
@@ -71,13 +71,25 @@ fn part(part: &StructurePart, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Zeros less poles of a factor.
-fn excess(part: &StructurePart) -> i32 {
+/// An element that acts, in s as every factor is.
+fn fixed(element: &Element, path: &str, check: &mut Check<'_, '_>) {
+    if !element.enabled {
+        check.error(&format!("{path}.enabled"), "a fixed factor acts; without acting it is none");
+    }
+    if element.is_sampled() {
+        check.error(path, "this element is in `z`, but factors of a structure are in `s`");
+    } else {
+        one_element(element, path, None, check);
+    }
+}
+
+/// Zeros less poles of a factor, where they can be told.
+fn excess(part: &StructurePart) -> i64 {
     match part.kind {
         PartKind::Integrator | PartKind::Pole => -1,
         PartKind::Zero => 1,
         PartKind::ZeroPair => 2,
         PartKind::PolePair => -2,
-        PartKind::Fixed => part.element.as_ref().map_or(0, super::linear_loop::element_excess),
+        PartKind::Fixed => part.element.as_ref().and_then(element_excess).unwrap_or(0),
     }
 }

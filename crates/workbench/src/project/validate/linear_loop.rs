@@ -2,8 +2,7 @@
 
 use super::Check;
 use crate::project::{
-    AntiWindup, Discretization, Element, ElementKind, Formula, Project, Quantization, Transfer, TransferForm,
-    Variable,
+    AntiWindup, Discretization, Element, ElementKind, Formula, Project, Quantization, Transfer, Variable,
 };
 
 /// Most zeros, poles or elements of a transfer function.
@@ -70,11 +69,10 @@ pub(super) fn sensor(project: &Project, check: &mut Check<'_, '_>) {
 }
 
 fn is_discrete(transfer: &Transfer) -> bool {
-    if transfer.domain == Some(Variable::Z) {
-        return true;
-    }
-    let formulas = [&transfer.numerator, &transfer.denominator];
-    formulas.into_iter().flatten().any(|formula| formula.variable() == Some(Variable::Z))
+    let sampled = |formula: &Formula| formula.variable() == Some(Variable::Z);
+    transfer.domain == Some(Variable::Z)
+        || [&transfer.numerator, &transfer.denominator].into_iter().flatten().any(sampled)
+        || transfer.elements.iter().any(|element| element.enabled && element.is_sampled())
 }
 
 /// Without a law a controller that says when it acts is one to be designed.
@@ -96,6 +94,33 @@ fn transfer(
         1 => {}
         _ => check.error(path, format!("more than one form in [{path}]: it takes either {forms}")),
     }
+    rational_form(transfer, path, sample_time, [polynomials, factors], check);
+    if transfer.elements.len() > MAXIMUM_ORDER {
+        check.error(&format!("{path}.elements"), format!("more than {MAXIMUM_ORDER} elements"));
+    }
+    if excess(transfer).is_some_and(|excess| excess > 0) {
+        let message =
+            format!("[{path}] has more zeros than poles: it can be verified, but not simulated or sampled");
+        check.warning(path, message);
+    }
+    let sampled = is_discrete(transfer);
+    for (index, element) in transfer.elements.iter().enumerate().take(MAXIMUM_ORDER) {
+        let path = format!("{path}.elements[{index}]");
+        one_element(element, &path, sample_time, check);
+        if sampled && element.enabled && element.kind != ElementKind::Gain && !element.is_sampled() {
+            check.error(&path, "this element is in `s`, but another one is in `z`");
+        }
+    }
+}
+
+/// Polynomials or factors, whichever of them is written.
+fn rational_form(
+    transfer: &Transfer,
+    path: &str,
+    sample_time: Option<f64>,
+    [polynomials, factors]: [bool; 2],
+    check: &mut Check<'_, '_>,
+) {
     if polynomials {
         polynomial_form(transfer, path, sample_time, check);
     }
@@ -111,20 +136,8 @@ fn transfer(
         conjugates(&transfer.poles, &format!("{path}.poles"), check);
     }
     if transfer.domain.is_some() && !factors {
-        let message =
-            "`domain` belongs to `gain`, `zeros` and `poles`: formulas say `s` or `z`, elements are in `s`";
+        let message = "`domain` belongs to `gain`, `zeros` and `poles`: formulas say `s` or `z`";
         check.error(&format!("{path}.domain"), message);
-    }
-    if transfer.elements.len() > MAXIMUM_ORDER {
-        check.error(&format!("{path}.elements"), format!("more than {MAXIMUM_ORDER} elements"));
-    }
-    if excess(transfer).is_some_and(|excess| excess > 0) {
-        let message =
-            format!("[{path}] has more zeros than poles: it can be verified, but not simulated or sampled");
-        check.warning(path, message);
-    }
-    for (index, element) in transfer.elements.iter().enumerate() {
-        one_element(element, &format!("{path}.elements[{index}]"), check);
     }
 }
 
@@ -145,34 +158,34 @@ fn polynomial_form(transfer: &Transfer, path: &str, sample_time: Option<f64>, ch
 
 fn sample_time_of_z(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
     if is_discrete(transfer) && sample_time.is_none() {
-        let message = format!("missing `sample_time` in [{path}]: it is written in `z`");
+        let table = path.split('.').next().unwrap_or(path);
+        let message = format!("missing `sample_time` in [{table}]: it is written in `z`");
         check.missing(path, "sample_time", message);
     }
 }
 
-/// Power of the numerator less that of the denominator, where both can be told.
+/// Powers of all numerators less those of all denominators, where they can be told.
 fn excess(transfer: &Transfer) -> Option<i64> {
-    let power = |count: usize| i64::try_from(count).ok();
-    match transfer.form()? {
-        TransferForm::Polynomials { numerator, denominator } => {
-            Some(power(numerator.polynomial()?.len())? - power(denominator.polynomial()?.len())?)
-        }
-        TransferForm::Factors { zeros, poles, .. } => Some(power(zeros.len())? - power(poles.len())?),
-        TransferForm::Elements(elements) => {
-            Some(elements.iter().map(|element| i64::from(element_excess(element))).sum())
-        }
-    }
+    transfer.as_elements().iter().filter(|element| element.enabled).map(element_excess).sum()
 }
 
-/// Zeros less poles of an element.
-pub(super) fn element_excess(element: &Element) -> i32 {
-    match element.kind {
-        ElementKind::Gain | ElementKind::Lead | ElementKind::Notch => 0,
+/// Zeros less poles of an element, where they can be told.
+pub(super) fn element_excess(element: &Element) -> Option<i64> {
+    let power = |count: usize| i64::try_from(count).ok();
+    Some(match element.kind {
+        ElementKind::Gain | ElementKind::Lead | ElementKind::Lag | ElementKind::Notch => 0,
+        ElementKind::ProportionalIntegral | ElementKind::ProportionalIntegralDerivative => 0,
         ElementKind::Zero | ElementKind::Differentiator => 1,
         ElementKind::Pole | ElementKind::Integrator => -1,
         ElementKind::ComplexZeros => 2,
-        ElementKind::ComplexPoles => -2,
-    }
+        ElementKind::ComplexPoles | ElementKind::RollOff => -2,
+        ElementKind::General => match (&element.numerator, &element.denominator) {
+            (Some(numerator), Some(denominator)) => {
+                power(numerator.polynomial()?.len())? - power(denominator.polynomial()?.len())?
+            }
+            _ => power(element.zeros.len())? - power(element.poles.len())?,
+        },
+    })
 }
 
 /// Complex numbers must come with their conjugates, since coefficients are real.
@@ -189,33 +202,110 @@ fn conjugates(roots: &[[f64; 2]], path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-pub(super) fn one_element(element: &Element, path: &str, check: &mut Check<'_, '_>) {
-    let needs: &[&str] = match element.kind {
-        ElementKind::Gain => &["value"],
-        ElementKind::Integrator | ElementKind::Differentiator => &[],
-        ElementKind::Zero | ElementKind::Pole => &["frequency"],
-        ElementKind::ComplexZeros | ElementKind::ComplexPoles => &["frequency", "damping_ratio"],
-        ElementKind::Lead => &["zero_frequency", "pole_frequency"],
-        ElementKind::Notch => &["frequency", "damping_ratio", "numerator_damping_ratio"],
-    };
-    let values = [
-        ("value", element.value),
-        ("frequency", element.frequency),
-        ("damping_ratio", element.damping_ratio),
-        ("numerator_damping_ratio", element.numerator_damping_ratio),
-        ("zero_frequency", element.zero_frequency),
-        ("pole_frequency", element.pole_frequency),
-    ];
-    for (name, value) in values {
-        let needed = needs.contains(&name);
-        if needed && value.is_none() {
+/// One element, wherever it is written; `path` leads to it.
+pub(super) fn one_element(
+    element: &Element,
+    path: &str,
+    sample_time: Option<f64>,
+    check: &mut Check<'_, '_>,
+) {
+    let kind = format!("{path}.kind");
+    if !check.declared(&kind) || check.refused(&kind) {
+        return; // nothing follows from a kind that is not known
+    }
+    let (needs, may) = keys_of(element.kind);
+    for name in ELEMENT_KEYS {
+        let written = check.declared(&format!("{path}.{name}"));
+        if needs.contains(&name) && !written {
             check.missing(path, name, format!("this element needs `{name}`"));
         }
-        if !needed && value.is_some() {
+        if written && !needs.contains(&name) && !may.contains(&name) {
             check.error(&format!("{path}.{name}"), format!("`{name}` has no meaning for this element"));
         }
     }
-    if element.kind == ElementKind::Gain && element.value == Some(0.0) {
-        check.error(&format!("{path}.value"), "a gain of zero");
+    let zero = |value: Option<f64>| value == Some(0.0);
+    let all_zero = match element.kind {
+        ElementKind::Gain => zero(element.value),
+        ElementKind::ProportionalIntegral => zero(element.proportional_gain) && zero(element.integral_gain),
+        ElementKind::ProportionalIntegralDerivative => {
+            zero(element.proportional_gain) && zero(element.integral_gain) && zero(element.derivative_gain)
+        }
+        _ => false,
+    };
+    if all_zero {
+        let name = if element.kind == ElementKind::Gain { "value" } else { "proportional_gain" };
+        check.error(&format!("{path}.{name}"), "a gain of zero");
     }
+    if let (ElementKind::Lag, Some(zero), Some(pole)) =
+        (element.kind, element.zero_frequency, element.pole_frequency)
+        && zero <= pole
+    {
+        let message = "a lag has its zero above its pole";
+        check.error_with_help(&format!("{path}.zero_frequency"), message, "write kind = \"lead\"");
+    }
+    if element.kind == ElementKind::General {
+        general(element, path, sample_time, check);
+    }
+}
+
+/// Every key of an element but `kind` and `enabled`.
+const ELEMENT_KEYS: [&str; 16] = [
+    "value",
+    "frequency",
+    "damping_ratio",
+    "numerator_damping_ratio",
+    "zero_frequency",
+    "pole_frequency",
+    "proportional_gain",
+    "integral_gain",
+    "derivative_gain",
+    "filter_time",
+    "numerator",
+    "denominator",
+    "gain",
+    "zeros",
+    "poles",
+    "domain",
+];
+
+/// What an element needs, and what else it takes.
+fn keys_of(kind: ElementKind) -> (&'static [&'static str], &'static [&'static str]) {
+    match kind {
+        ElementKind::Gain => (&["value"], &[]),
+        ElementKind::Integrator | ElementKind::Differentiator => (&[], &[]),
+        ElementKind::Zero | ElementKind::Pole => (&["frequency"], &[]),
+        ElementKind::ComplexZeros | ElementKind::ComplexPoles => (&["frequency", "damping_ratio"], &[]),
+        ElementKind::Lead | ElementKind::Lag => (&["zero_frequency", "pole_frequency"], &[]),
+        ElementKind::Notch => (&["frequency", "damping_ratio", "numerator_damping_ratio"], &[]),
+        ElementKind::RollOff => (&["frequency"], &["damping_ratio"]),
+        ElementKind::ProportionalIntegral => (&["proportional_gain", "integral_gain"], &[]),
+        ElementKind::ProportionalIntegralDerivative => {
+            (&["proportional_gain", "integral_gain", "derivative_gain", "filter_time"], &[])
+        }
+        ElementKind::General => (&[], &["numerator", "denominator", "gain", "zeros", "poles", "domain"]),
+    }
+}
+
+fn general(element: &Element, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
+    let declared = |check: &Check<'_, '_>, name: &str| check.declared(&format!("{path}.{name}"));
+    let polynomials = ["numerator", "denominator"].iter().any(|name| declared(check, name));
+    let factors = ["gain", "zeros", "poles"].iter().any(|name| declared(check, name));
+    let forms = "`numerator` and `denominator`, or `gain` with `zeros` and `poles`";
+    match [polynomials, factors] {
+        [false, false] => check.missing(path, "numerator", format!("a general element takes {forms}")),
+        [true, true] => {
+            check.error(path, format!("more than one form: a general element takes either {forms}"))
+        }
+        _ => {}
+    }
+    let transfer = Transfer {
+        numerator: element.numerator.clone(),
+        denominator: element.denominator.clone(),
+        gain: element.gain,
+        zeros: element.zeros.clone(),
+        poles: element.poles.clone(),
+        domain: element.domain,
+        elements: vec![],
+    };
+    rational_form(&transfer, path, sample_time, [polynomials, factors], check);
 }

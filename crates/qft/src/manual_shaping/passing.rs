@@ -1,0 +1,234 @@
+//! An element solved so that the loop passes a wanted point of the chart.
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{Element, Timing};
+use phea_dynamics::linear::Discretization;
+use phea_dynamics::portable;
+
+use super::reach::{Change, Pattern, Reach};
+use crate::verification::rounded;
+
+/// A point of the Nichols chart, or one of its coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WantedPoint {
+    /// w, rad/s
+    pub frequency_rad_per_s: f64,
+    /// 20 log10 |L|; `None`: any.
+    pub magnitude_db: Option<f64>,
+    /// arg L in degrees, whole turns left out; `None`: any.
+    pub phase_deg: Option<f64>,
+}
+
+/// Why no element is found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PassError {
+    /// A frequency that is not positive, or beyond what a sampled loop has.
+    #[error("the loop has no point at {frequency_rad_per_s} rad/s")]
+    Frequency {
+        /// rad/s
+        frequency_rad_per_s: f64,
+    },
+    /// A loop that is zero or not finite, which no element moves.
+    #[error("the loop is {present} at {frequency_rad_per_s} rad/s: no element moves it")]
+    NoLoop {
+        /// The loop as it is.
+        present: Complex64,
+        /// rad/s
+        frequency_rad_per_s: f64,
+    },
+    /// The point does not say what the element needs.
+    #[error("{} needs {needs} of the point", pattern.name())]
+    Incomplete {
+        /// Which element.
+        pattern: Pattern,
+        /// What of the point.
+        needs: &'static str,
+    },
+    /// Numbers of the element that are given cannot be.
+    #[error("{} cannot have {what} {value}", pattern.name())]
+    Number {
+        /// Which element.
+        pattern: Pattern,
+        /// Which of its numbers.
+        what: &'static str,
+        /// As given.
+        value: f64,
+    },
+    /// A sampled loop whose elements are not discretised by the bilinear rule, for which alone there is a closed form.
+    #[error("in a sampled loop an element is solved for with the discretization `tustin` alone")]
+    Discretization,
+    /// The element cannot move the loop there.
+    #[error("{}", unreachable_words(*pattern, *turn_deg, *raise_db, reach))]
+    Unreachable {
+        /// Which element.
+        pattern: Pattern,
+        /// The change of phase that it takes, degrees; `None` where no phase is wanted.
+        turn_deg: Option<f64>,
+        /// The change of magnitude that it takes, dB; `None` where no magnitude is wanted.
+        raise_db: Option<f64>,
+        /// What it can do.
+        reach: Reach,
+    },
+}
+
+/// The element that moves the loop from where it is, `present` = L(jw), to the wanted point.
+///
+/// With r = |L wanted|/|L| and theta = arg L wanted - arg L, E(jw) = r e^(j theta):
+///
+/// ```text
+/// gain              k = r                                                       theta = 0
+/// real pole         p = w/tan(-theta)               r = cos theta               -90 < theta < 0 degrees
+/// real zero         z = w/tan(theta)                r = 1/cos theta             0 < theta < 90
+/// lead, lag         z = w sin theta/(r - cos theta),  p = w sin theta/(cos theta - 1/r)
+///                   lead: r > 1/cos theta, 0 < theta < 90;   lag: r < cos theta, -90 < theta < 0
+/// complex poles     w_n = w/sqrt(1 - cos theta/r),  zeta = -sin theta w_n/(2 r w)    r > cos theta, -180 < theta < 0
+/// complex zeros     w_n = w/sqrt(1 - r cos theta),  zeta = r sin theta w_n/(2 w)     r cos theta < 1, 0 < theta < 180
+/// roll-off          w_n from theta, or from r <= 1 (the falling side of a peak), zeta given       -180 < theta < 0
+/// PI                K_p = r cos theta,  K_i = -w r sin theta                    -90 < theta < 0
+/// notch here        zeta_z = r zeta_p               r < 1                       theta = 0
+/// notch beside      zeta_z, zeta_p = (1 - w^2/w_n^2) w_n/(2 w) times the lag's w/z, w/p
+///                   r < cos theta, -90 < theta < 0 below w_n, 0 < theta < 90 above it
+/// ```
+///
+/// Elements with one number need one coordinate of the point; given both, the point must lie on their curve. In a sampled loop the bilinear
+/// rule makes of E(s) at frequency w what E is at w' = 2/T tan(w T/2), and w' takes the place of w.
+///
+/// # Errors
+/// [`PassError`]; what cannot be reached comes with what can.
+///
+/// # Example
+/// A lead that lifts a loop from -12 dB, -160 degrees to 0 dB, -120 degrees at 20 rad/s; and what no lead can do:
+/// ```
+/// use num_complex::Complex64;
+/// use phea_dynamics::controller::Timing;
+/// use phea_qft::manual_shaping::{PassError, Pattern, WantedPoint, pass_through};
+/// let polar = |size: f64, degrees: f64| {
+///     Complex64::new(size * degrees.to_radians().cos(), size * degrees.to_radians().sin())
+/// };
+/// let present = polar(0.251_188_643, -160.0);
+/// let wanted = WantedPoint { frequency_rad_per_s: 20.0, magnitude_db: Some(0.0), phase_deg: Some(-120.0) };
+/// let lead = pass_through(Pattern::Lead, &wanted, present, &Timing::default())?;
+/// let reached = present * lead.transfer_function().unwrap().at_frequency(20.0);
+/// assert!((reached - polar(1.0, -120.0)).norm_sqr() < 1e-28);
+/// let ahead = WantedPoint { phase_deg: Some(-60.0), ..wanted };
+/// let refused = pass_through(Pattern::Lead, &ahead, present, &Timing::default());
+/// assert!(matches!(refused, Err(PassError::Unreachable { reach, .. }) if reach.turn_deg == [0.0, 90.0]));
+/// # Ok::<(), PassError>(())
+/// ```
+pub fn pass_through(
+    pattern: Pattern,
+    wanted: &WantedPoint,
+    present: Complex64,
+    timing: &Timing,
+) -> Result<Element, PassError> {
+    check_numbers(pattern)?;
+    let change = change(pattern, wanted, present, timing)?;
+    let (turn, raise) = (wanted.phase_deg.map(|_| change.turn), wanted.magnitude_db.map(|_| change.ratio));
+    let incomplete = |needs| Err(PassError::Incomplete { pattern, needs });
+    let element = match (raise, turn) {
+        (None, None) => return incomplete("magnitude or phase"),
+        (Some(_), Some(_)) => pattern.through(&change),
+        _ if !pattern.has_one_number() => return incomplete("magnitude and phase"),
+        (Some(_), None) => pattern.of_magnitude(&change),
+        (None, Some(_)) if pattern.keeps_phase() => return incomplete("the magnitude"),
+        (None, Some(_)) => pattern.of_phase(&change),
+    };
+    element.ok_or_else(|| PassError::Unreachable {
+        pattern,
+        turn_deg: turn.map(f64::to_degrees),
+        raise_db: raise.map(decibel),
+        reach: pattern.reach(change.frequency, turn),
+    })
+}
+
+/// What the element must be, and at which frequency of its own.
+fn change(
+    pattern: Pattern,
+    wanted: &WantedPoint,
+    present: Complex64,
+    timing: &Timing,
+) -> Result<Change, PassError> {
+    let frequency_rad_per_s = wanted.frequency_rad_per_s;
+    if !(frequency_rad_per_s > 0.0 && frequency_rad_per_s.is_finite()) {
+        return Err(PassError::Frequency { frequency_rad_per_s });
+    }
+    let size = portable::magnitude(present);
+    if !(size > 0.0 && size.is_finite()) {
+        return Err(PassError::NoLoop { present, frequency_rad_per_s });
+    }
+    let magnitude = wanted.magnitude_db.map_or(size, |decibels| portable::pow(10.0, decibels / 20.0));
+    let turn = wanted.phase_deg.map_or(0.0, |degrees| degrees.to_radians() - portable::argument(present));
+    Ok(Change {
+        frequency: element_frequency(pattern, frequency_rad_per_s, timing)?,
+        ratio: magnitude / size,
+        turn: principal(turn),
+    })
+}
+
+/// w, or what the bilinear rule makes of it; a gain has no frequency.
+fn element_frequency(pattern: Pattern, frequency_rad_per_s: f64, timing: &Timing) -> Result<f64, PassError> {
+    let Some(sample_time_s) = timing.sample_time_s else { return Ok(frequency_rad_per_s) };
+    let half = frequency_rad_per_s * sample_time_s / 2.0;
+    if half >= std::f64::consts::FRAC_PI_2 {
+        return Err(PassError::Frequency { frequency_rad_per_s });
+    }
+    match (pattern, timing.discretization) {
+        (Pattern::Gain, _) => Ok(frequency_rad_per_s),
+        (_, Discretization::Tustin) => Ok(2.0 / sample_time_s * portable::tan(half)),
+        _ => Err(PassError::Discretization),
+    }
+}
+
+/// The same angle in (-pi, pi].
+fn principal(angle: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    let rest = angle - turn * (angle / turn).round();
+    if rest <= -std::f64::consts::PI { rest + turn } else { rest }
+}
+
+fn check_numbers(pattern: Pattern) -> Result<(), PassError> {
+    let (what, value) = match pattern {
+        Pattern::RollOff { damping_ratio } => ("a damping ratio of", damping_ratio),
+        Pattern::NotchHere { pole_damping_ratio } => ("a damping ratio of", pole_damping_ratio),
+        Pattern::NotchBeside { natural_frequency } => ("a frequency of", natural_frequency),
+        _ => return Ok(()),
+    };
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(PassError::Number { pattern, what, value }) }
+}
+
+fn decibel(ratio: f64) -> f64 {
+    20.0 * portable::log10(ratio)
+}
+
+fn signed(value: f64) -> String {
+    if value > 0.0 { format!("+{}", rounded(value)) } else { rounded(value).to_string() }
+}
+
+fn unreachable_words(
+    pattern: Pattern,
+    turn_deg: Option<f64>,
+    raise_db: Option<f64>,
+    reach: &Reach,
+) -> String {
+    let name = pattern.name();
+    if let (Some(turn), None) = (turn_deg, reach.raise_db) {
+        let [low, high] = reach.turn_deg;
+        let can = if low == high {
+            "leaves the phase as it is".to_string()
+        } else {
+            format!("turns the loop by more than {low} and less than {high} degrees")
+        };
+        return format!("{name} {can}; the point needs {} degrees", signed(turn));
+    }
+    let range = match reach.raise_db {
+        Some([low, high]) if low == high => format!("by {} dB", signed(low)),
+        Some([low, high]) if low == f64::NEG_INFINITY => format!("by less than {} dB", signed(high)),
+        Some([low, f64::INFINITY]) => format!("by more than {} dB", signed(low)),
+        Some([low, high]) => format!("by more than {} and less than {} dB", signed(low), signed(high)),
+        None => "by nothing".to_string(),
+    };
+    let there = turn_deg.map_or(String::new(), |turn| format!(", turning it by {} degrees,", signed(turn)));
+    let needs = raise_db
+        .map_or("rounding leaves none".to_string(), |raise| format!("the point needs {} dB", signed(raise)));
+    format!("{name}{there} raises the loop {range}; {needs}")
+}

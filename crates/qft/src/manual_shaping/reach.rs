@@ -1,0 +1,288 @@
+//! What one more element can do to the loop at one frequency.
+
+use num_complex::Complex64;
+use phea_dynamics::controller::Element;
+use phea_dynamics::portable;
+
+/// Which element is to be solved for, and its numbers that are not free.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pattern {
+    /// k > 0: the magnitude alone.
+    Gain,
+    /// 1/(s/p + 1): magnitude or phase.
+    RealPole,
+    /// s/z + 1: magnitude or phase.
+    RealZero,
+    /// (s/z + 1)/(s/p + 1), z < p: both.
+    Lead,
+    /// (s/z + 1)/(s/p + 1), z > p: both.
+    Lag,
+    /// 1/(s^2/w^2 + 2 zeta s/w + 1): both.
+    ComplexPoles,
+    /// s^2/w^2 + 2 zeta s/w + 1: both.
+    ComplexZeros,
+    /// 1/(s^2/w^2 + 2 zeta s/w + 1) of this damping: magnitude or phase.
+    RollOff {
+        /// zeta
+        damping_ratio: f64,
+    },
+    /// K_p + K_i/s: both.
+    ProportionalIntegral,
+    /// A notch at the frequency of the point, of this width: the magnitude alone.
+    NotchHere {
+        /// zeta_p
+        pole_damping_ratio: f64,
+    },
+    /// A notch at another frequency, its depth and width free: both.
+    NotchBeside {
+        /// w, rad/s
+        natural_frequency: f64,
+    },
+}
+
+/// What a pattern can make of the loop at one frequency. Ends are excluded, unless both are the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// From and to which change of phase, degrees.
+    pub turn_deg: [f64; 2],
+    /// From and to which change of magnitude at the wanted change of phase, dB; `None` where that phase is out of reach.
+    pub raise_db: Option<[f64; 2]>,
+}
+
+/// What an element must be at one frequency: E = r e^(j theta).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Change {
+    /// w, rad/s
+    pub(super) frequency: f64,
+    /// r
+    pub(super) ratio: f64,
+    /// theta in (-pi, pi], rad
+    pub(super) turn: f64,
+}
+
+/// Two magnitudes, or angles in rad, that are as good as equal.
+const TOLERANCE: f64 = 1e-9;
+
+impl Pattern {
+    /// Its name, with an article.
+    pub fn name(self) -> &'static str {
+        match self {
+            Pattern::Gain => "a gain",
+            Pattern::RealPole => "a real pole",
+            Pattern::RealZero => "a real zero",
+            Pattern::Lead => "a lead",
+            Pattern::Lag => "a lag",
+            Pattern::ComplexPoles => "a complex pair of poles",
+            Pattern::ComplexZeros => "a complex pair of zeros",
+            Pattern::RollOff { .. } => "a roll-off",
+            Pattern::ProportionalIntegral => "a PI element",
+            Pattern::NotchHere { .. } => "a notch at this frequency",
+            Pattern::NotchBeside { .. } => "a notch beside this frequency",
+        }
+    }
+
+    /// Whether one of magnitude and phase decides it.
+    pub(super) fn has_one_number(self) -> bool {
+        use Pattern::{Gain, NotchHere, RealPole, RealZero, RollOff};
+        matches!(self, Gain | RealPole | RealZero | RollOff { .. } | NotchHere { .. })
+    }
+
+    /// Whether it leaves the phase alone.
+    pub(super) fn keeps_phase(self) -> bool {
+        matches!(self, Pattern::Gain | Pattern::NotchHere { .. })
+    }
+
+    /// What it can do; the magnitudes at this change of phase, or at any where none is given.
+    pub(super) fn reach(self, frequency: f64, turn: Option<f64>) -> Reach {
+        let (back, ahead) = ([-90.0, 0.0], [0.0, 90.0]);
+        let turn_deg = match self {
+            Pattern::Gain | Pattern::NotchHere { .. } => [0.0, 0.0],
+            Pattern::RealPole | Pattern::Lag | Pattern::ProportionalIntegral => back,
+            Pattern::RealZero | Pattern::Lead => ahead,
+            Pattern::ComplexPoles | Pattern::RollOff { .. } => [-180.0, 0.0],
+            Pattern::ComplexZeros => [0.0, 180.0],
+            Pattern::NotchBeside { natural_frequency } if frequency < natural_frequency => back,
+            Pattern::NotchBeside { .. } => ahead,
+        };
+        let raise_db = match turn {
+            Some(turn) if !within(turn.to_degrees(), turn_deg) => None,
+            turn => Some(self.raise(turn).map(|ratio| 20.0 * portable::log10(ratio))),
+        };
+        Reach { turn_deg, raise_db }
+    }
+
+    /// Least and greatest ratio of magnitudes at a change of phase that can be reached.
+    fn raise(self, turn: Option<f64>) -> [f64; 2] {
+        let whole = [0.0, f64::INFINITY];
+        let cosine = turn.map_or(1.0, portable::cos);
+        match (self, turn) {
+            (Pattern::Gain | Pattern::ProportionalIntegral, _) => whole,
+            (Pattern::NotchHere { .. }, _) => [0.0, 1.0],
+            (Pattern::Lag | Pattern::NotchBeside { .. }, _) => [0.0, cosine],
+            (Pattern::Lead, _) => [1.0 / cosine, f64::INFINITY],
+            (Pattern::RealPole, None) => [0.0, 1.0],
+            (Pattern::RealZero, None) => [1.0, f64::INFINITY],
+            (Pattern::RealPole, Some(_)) => [cosine; 2],
+            (Pattern::RealZero, Some(_)) => [1.0 / cosine; 2],
+            (Pattern::ComplexPoles | Pattern::ComplexZeros, None) => whole,
+            (Pattern::ComplexPoles, Some(_)) => [cosine.max(0.0), f64::INFINITY],
+            (Pattern::ComplexZeros, Some(_)) if cosine > 0.0 => [0.0, 1.0 / cosine],
+            (Pattern::ComplexZeros, Some(_)) => whole,
+            (Pattern::RollOff { damping_ratio }, None) => [0.0, peak(damping_ratio)],
+            (Pattern::RollOff { damping_ratio }, Some(turn)) => {
+                [magnitude_of_pair(relative_frequency(damping_ratio, -turn), damping_ratio); 2]
+            }
+        }
+    }
+
+    /// The element with E(jw) = r e^(j theta); `None` where there is none.
+    pub(super) fn through(self, change: &Change) -> Option<Element> {
+        let reach = self.reach(change.frequency, Some(change.turn));
+        let ratio_db = 20.0 * portable::log10(change.ratio);
+        if !reach.raise_db.is_some_and(|range| within(ratio_db, range)) {
+            return None;
+        }
+        if self.keeps_phase() {
+            return self.of_magnitude(change);
+        }
+        if self.has_one_number() {
+            return self.of_phase(change);
+        }
+        self.of_both(change)
+    }
+
+    /// The element whose magnitude is right, whatever its phase.
+    pub(super) fn of_magnitude(self, change: &Change) -> Option<Element> {
+        let &Change { frequency: w, ratio: r, .. } = change;
+        let [least, greatest] = self.raise(None);
+        let element = match self {
+            Pattern::Gain => Element::Gain(r),
+            Pattern::RealPole => Element::RealPole { frequency: w * r / ((1.0 - r) * (1.0 + r)).sqrt() },
+            Pattern::RealZero => Element::RealZero { frequency: w / ((r - 1.0) * (r + 1.0)).sqrt() },
+            Pattern::RollOff { damping_ratio } => {
+                // (1 - u^2)^2 + (2 zeta u)^2 = 1/r^2, the falling side of a peak
+                let half = 1.0 - 2.0 * damping_ratio * damping_ratio;
+                let square = half + (half * half - (1.0 - 1.0 / r) * (1.0 + 1.0 / r)).sqrt();
+                Element::ComplexPoles { natural_frequency: w / square.sqrt(), damping_ratio }
+            }
+            Pattern::NotchHere { pole_damping_ratio } => Element::Notch {
+                natural_frequency: w,
+                zero_damping_ratio: r * pole_damping_ratio,
+                pole_damping_ratio,
+            },
+            _ => return None,
+        };
+        (least < r && r < greatest && is_sound(&element)).then_some(element)
+    }
+
+    /// The element whose phase is right, whatever its magnitude.
+    pub(super) fn of_phase(self, change: &Change) -> Option<Element> {
+        let &Change { frequency: w, turn, .. } = change;
+        self.reach(w, Some(turn)).raise_db?;
+        let element = match self {
+            Pattern::RealPole => Element::RealPole { frequency: w / portable::tan(-turn) },
+            Pattern::RealZero => Element::RealZero { frequency: w / portable::tan(turn) },
+            Pattern::RollOff { damping_ratio } => {
+                let u = relative_frequency(damping_ratio, -turn);
+                Element::ComplexPoles { natural_frequency: w / u, damping_ratio }
+            }
+            _ => return None,
+        };
+        is_sound(&element).then_some(element)
+    }
+
+    /// Two numbers for two conditions.
+    fn of_both(self, change: &Change) -> Option<Element> {
+        let &Change { frequency: w, ratio: r, turn } = change;
+        let e = Complex64::new(r * portable::cos(turn), r * portable::sin(turn));
+        let element = match self {
+            Pattern::Lead | Pattern::Lag => {
+                let [x, y] = corners(change);
+                Element::LeadLag { zero_frequency: w / x, pole_frequency: w / y }
+            }
+            Pattern::NotchBeside { natural_frequency } => {
+                let [x, y] = corners(change);
+                let u = w / natural_frequency;
+                let half = (1.0 - u) * (1.0 + u) / (2.0 * u);
+                Element::Notch {
+                    natural_frequency,
+                    zero_damping_ratio: x * half,
+                    pole_damping_ratio: y * half,
+                }
+            }
+            Pattern::ComplexZeros => {
+                let (natural_frequency, damping_ratio) = pair(w, e)?;
+                Element::ComplexZeros { natural_frequency, damping_ratio }
+            }
+            Pattern::ComplexPoles => {
+                let (natural_frequency, damping_ratio) = pair(w, 1.0 / e)?;
+                Element::ComplexPoles { natural_frequency, damping_ratio }
+            }
+            Pattern::ProportionalIntegral => {
+                Element::ProportionalIntegral { proportional_gain: e.re, integral_gain: -w * e.im }
+            }
+            _ => return None,
+        };
+        is_sound(&element).then_some(element)
+    }
+}
+
+/// x and y of a first-order pair.
+///
+/// ```text
+/// (1 + j x)/(1 + j y) = r e^(j theta):    x = (r - cos theta)/sin theta,    y = (cos theta - 1/r)/sin theta
+/// ```
+fn corners(change: &Change) -> [f64; 2] {
+    let &Change { ratio: r, turn, .. } = change;
+    let (cosine, sine) = (portable::cos(turn), portable::sin(turn));
+    [(r - cosine) / sine, (cosine - 1.0 / r) / sine]
+}
+
+/// Natural frequency and damping of a second-order pair.
+///
+/// ```text
+/// 1 - u^2 + 2 j zeta u = z,  u = w/w_n:    u = sqrt(1 - Re z),    zeta = Im z/(2 u)
+/// ```
+fn pair(w: f64, z: Complex64) -> Option<(f64, f64)> {
+    let square = 1.0 - z.re;
+    if square > 0.0 { Some((w / square.sqrt(), z.im / (2.0 * square.sqrt()))) } else { None }
+}
+
+/// u = w/w_n at which a pair of poles lags by psi.
+///
+/// ```text
+/// u^2 sin psi + 2 zeta u cos psi - sin psi = 0,    the positive root
+/// ```
+fn relative_frequency(damping_ratio: f64, psi: f64) -> f64 {
+    let (cosine, sine) = (damping_ratio * portable::cos(psi), portable::sin(psi));
+    let root = portable::hypot(cosine, sine);
+    // of the two forms of the root, the one without a difference of nearly equal numbers
+    if cosine > 0.0 { sine / (root + cosine) } else { (root - cosine) / sine }
+}
+
+fn magnitude_of_pair(u: f64, damping_ratio: f64) -> f64 {
+    1.0 / portable::hypot((1.0 - u) * (1.0 + u), 2.0 * damping_ratio * u)
+}
+
+/// The greatest magnitude of a pair of poles.
+fn peak(damping_ratio: f64) -> f64 {
+    let square = damping_ratio * damping_ratio;
+    if square >= 0.5 {
+        1.0
+    } else {
+        0.5 / (damping_ratio * ((1.0 - damping_ratio) * (1.0 + damping_ratio)).sqrt())
+    }
+}
+
+/// Inside the ends, or at them where they are one.
+fn within(value: f64, [low, high]: [f64; 2]) -> bool {
+    if low == high { (value - low).abs() <= TOLERANCE } else { low < value && value < high }
+}
+
+/// Whether rounding left a transfer function with numbers that can be.
+fn is_sound(element: &Element) -> bool {
+    element.transfer_function().is_ok_and(|function| {
+        let roots = function.zeros().iter().chain(function.poles());
+        function.gain() > 0.0 && roots.into_iter().all(|root| root.is_finite() && root.re <= 0.0)
+    })
+}

@@ -1,0 +1,356 @@
+//! Elements solved for a point really pass it, what cannot be reached is refused, and every change can be taken back.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{Compensator, Controller, Element, Stage, Timing};
+use phea_dynamics::linear::{Discretization, TransferFunction};
+use phea_dynamics::portable::{argument, magnitude};
+use phea_dynamics::uncertain_plant::{
+    PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
+};
+use phea_qft::bound::Placement;
+use phea_qft::closed_loop::Compensation;
+use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
+use phea_qft::manual_shaping::{
+    DesignChart, Edit, History, PassError, Pattern, WantedPoint, apply, pass_through,
+};
+use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::template::{TemplateOptions, template};
+use phea_qft::verification::TrackingJudgement;
+
+/// Shares in [0, 1) from a linear congruential generator (Knuth 1997, MMIX).
+struct Shares(u64);
+
+impl Shares {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.next() * count as f64) as usize
+    }
+}
+
+const PATTERNS: [Pattern; 14] = [
+    Pattern::Gain,
+    Pattern::RealPole,
+    Pattern::RealZero,
+    Pattern::Lead,
+    Pattern::Lag,
+    Pattern::ComplexPoles,
+    Pattern::ComplexZeros,
+    Pattern::RollOff { damping_ratio: 0.3 },
+    Pattern::RollOff { damping_ratio: 0.8 },
+    Pattern::RollOff { damping_ratio: 2.5 },
+    Pattern::ProportionalIntegral,
+    Pattern::NotchHere { pole_damping_ratio: 0.6 },
+    Pattern::NotchBeside { natural_frequency: 0.5 },
+    Pattern::NotchBeside { natural_frequency: 1e4 },
+];
+
+fn polar(decibels: f64, degrees: f64) -> Complex64 {
+    let (size, angle) = (10_f64.powf(decibels / 20.0), degrees.to_radians());
+    Complex64::new(size * angle.cos(), size * angle.sin())
+}
+
+/// What an element makes of a loop that samples, or does not, as loop and verification see it: beside a pair of poles, without which a
+/// zero could not be sampled.
+fn response(element: Element, timing: Timing, frequency: f64) -> Complex64 {
+    let pair = Element::ComplexPoles { natural_frequency: 300.0, damping_ratio: 0.7 };
+    let of = |elements| {
+        let controller = Controller { feedback: Compensator::new(elements), timing, ..Controller::default() };
+        let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
+        compensation.response(frequency).feedback
+    };
+    of(vec![pair.clone(), element]) / of(vec![pair])
+}
+
+/// An element solved for a random point either passes it, or the point lies outside of what it says it can reach.
+#[test]
+fn every_solved_element_passes_its_point() {
+    let mut shares = Shares(1);
+    let sampled = Timing { sample_time_s: Some(1e-3), ..Timing::default() };
+    for pattern in PATTERNS {
+        let (mut passed, mut refused) = (0, 0);
+        for round in 0..3000 {
+            let timing = if round % 2 == 0 { Timing::default() } else { sampled };
+            let frequency = 10_f64.powf(shares.between(0.0, 3.0));
+            let [present_db, present_deg] = [shares.between(-40.0, 40.0), shares.between(-360.0, 0.0)];
+            let [raise, turn] = [shares.between(-30.0, 30.0), shares.between(-179.0, 180.0)];
+            let wants =
+                if matches!(pattern, Pattern::Gain | Pattern::NotchHere { .. }) { 0 } else { round % 3 };
+            let wanted = WantedPoint {
+                frequency_rad_per_s: frequency,
+                magnitude_db: (wants != 1).then_some(present_db + raise),
+                phase_deg: (wants != 0).then_some(present_deg + turn),
+            };
+            let present = polar(present_db, present_deg);
+            match pass_through(pattern, &wanted, present, &timing) {
+                Ok(element) => {
+                    let reached = present * response(element.clone(), timing, frequency);
+                    if wanted.magnitude_db.is_some() {
+                        let error = 20.0 * magnitude(reached).log10() - (present_db + raise);
+                        assert!(error.abs() < 1e-9, "{element:?}: {error} dB");
+                    }
+                    if wanted.phase_deg.is_some() {
+                        let turned = reached / polar(0.0, present_deg + turn);
+                        assert!(argument(turned).abs() < 1e-9, "{element:?}: {} rad", argument(turned));
+                    }
+                    passed += 1;
+                }
+                Err(PassError::Unreachable { reach, .. }) => {
+                    let [low, high] = reach.turn_deg;
+                    let turns = wants == 0 || (low < turn && turn < high);
+                    let raises = wants == 1
+                        || reach.raise_db.is_some_and(|[least, most]| least < raise && raise < most);
+                    assert!(!(turns && raises), "{pattern:?} {raise} dB, {turn} degrees: {reach:?}");
+                    refused += 1;
+                }
+                Err(PassError::Incomplete { needs, .. }) => assert_eq!(needs, "magnitude and phase"),
+                Err(other) => panic!("{pattern:?}: {other}"),
+            }
+        }
+        assert!(passed > 50 && (refused > 50 || pattern == Pattern::Gain), "{pattern:?} {passed} {refused}");
+    }
+}
+
+/// Points on the boundary of what an element can do, at 10 rad/s from L = 1: refused there, solved a little inside.
+#[test]
+fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
+    let at = |pattern, magnitude_db: f64, phase_deg: f64| {
+        let wanted = WantedPoint {
+            frequency_rad_per_s: 10.0,
+            magnitude_db: Some(magnitude_db),
+            phase_deg: Some(phase_deg),
+        };
+        pass_through(pattern, &wanted, Complex64::new(1.0, 0.0), &Timing::default())
+    };
+    let lift = -20.0 * 60_f64.to_radians().cos().log10();
+    let beside = Pattern::NotchBeside { natural_frequency: 20.0 };
+    for (pattern, edge_db, inward_db, edge_deg, inward_deg) in [
+        (Pattern::Lead, lift, 0.01_f64, 60.0, 0.0),
+        (Pattern::Lag, -lift, -0.01, -60.0, 0.0),
+        (Pattern::ComplexPoles, -lift, 0.01, -60.0, 0.0),
+        (Pattern::ComplexPoles, -40.0, 0.0, -180.0, 0.01),
+        (Pattern::ComplexZeros, lift, -0.01, 60.0, 0.0),
+        (Pattern::ProportionalIntegral, 3.0, 0.0, -90.0, 0.01),
+        (Pattern::ProportionalIntegral, 3.0, 0.0, 0.0, -0.01),
+        (beside, -lift, -0.01, -60.0, 0.0),
+    ] {
+        let outside = at(pattern, edge_db - inward_db, edge_deg - inward_deg);
+        assert!(matches!(outside, Err(PassError::Unreachable { .. })), "{pattern:?}: {outside:?}");
+        let inside = at(pattern, edge_db + inward_db, edge_deg + inward_deg);
+        assert!(inside.is_ok(), "{pattern:?}: {inside:?}");
+    }
+}
+
+/// A first-order element reaches one curve: both coordinates are accepted on it, and nowhere else.
+#[test]
+fn a_real_pole_reaches_its_curve_and_says_so() {
+    let wanted = |magnitude_db| WantedPoint {
+        frequency_rad_per_s: 10.0,
+        magnitude_db: Some(magnitude_db),
+        phase_deg: Some(-45.0),
+    };
+    let solved = |magnitude_db| {
+        let one = Complex64::new(1.0, 0.0);
+        pass_through(Pattern::RealPole, &wanted(magnitude_db), one, &Timing::default())
+    };
+    let Ok(Element::RealPole { frequency }) = solved(-10.0 * 2_f64.log10()) else { panic!() };
+    assert!((frequency - 10.0).abs() < 1e-12);
+    let message = solved(-6.0).unwrap_err().to_string();
+    assert_eq!(
+        message,
+        "a real pole, turning it by -45 degrees, raises the loop by -3.01 dB; the point needs -6 dB"
+    );
+}
+
+#[test]
+fn what_an_element_cannot_do_is_said_in_words() {
+    let message = |pattern, magnitude_db, phase_deg, timing: Timing| {
+        let wanted = WantedPoint { frequency_rad_per_s: 20.0, magnitude_db, phase_deg };
+        pass_through(pattern, &wanted, polar(-10.0, -150.0), &timing).unwrap_err().to_string()
+    };
+    let continuous = Timing::default();
+    assert_eq!(
+        message(Pattern::Lead, Some(0.0), Some(-30.0), continuous),
+        "a lead turns the loop by more than 0 and less than 90 degrees; the point needs +120 degrees"
+    );
+    assert_eq!(
+        message(Pattern::Lead, Some(-9.0), Some(-110.0), continuous),
+        "a lead, turning it by +40 degrees, raises the loop by more than +2.315 dB; the point needs +1 dB"
+    );
+    assert_eq!(
+        message(Pattern::Gain, Some(0.0), Some(-140.0), continuous),
+        "a gain leaves the phase as it is; the point needs +10 degrees"
+    );
+    assert_eq!(
+        message(Pattern::RealZero, Some(-12.0), None, continuous),
+        "a real zero raises the loop by more than 0 dB; the point needs -2 dB"
+    );
+    assert_eq!(
+        message(Pattern::Lag, Some(-12.0), None, continuous),
+        "a lag needs magnitude and phase of the point"
+    );
+    assert_eq!(
+        message(Pattern::NotchHere { pole_damping_ratio: 0.5 }, None, Some(-170.0), continuous),
+        "a notch at this frequency needs the magnitude of the point"
+    );
+    let held =
+        Timing { sample_time_s: Some(0.01), discretization: Discretization::Matched, ..Timing::default() };
+    assert_eq!(
+        message(Pattern::Lag, Some(-12.0), Some(-160.0), held),
+        "in a sampled loop an element is solved for with the discretization `tustin` alone"
+    );
+}
+
+/// k/(s + a), k from 1 to 4 and a from 1 to 3.
+fn box_family() -> Family {
+    let range =
+        |name: &str, maximum| UncertainParameter { name: name.into(), nominal: 1.0, minimum: 1.0, maximum };
+    let plant = UncertainPlant::record(vec![range("k", 4.0), range("a", 3.0)], |p| PlantCoefficients {
+        command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), p[1]] },
+        disturbance: None,
+        dead_time_s: 0.0.into(),
+    })
+    .unwrap();
+    let along = |index| Coordinate {
+        parameters: vec![index],
+        opposed: vec![],
+        spacing: vec![Spacing::Linear],
+        points: 4,
+    };
+    let coordinates = vec![along(0), along(1)];
+    let members = grid(&plant, &coordinates).unwrap();
+    Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap())
+}
+
+fn loop_of(elements: Vec<Element>) -> Compensation {
+    let controller = Controller { feedback: Compensator::new(elements), ..Controller::default() };
+    Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap()
+}
+
+/// Two independent ways to judge a loop agree: a plant with a negative margin means a forbidden loop, and the loop that was raised or lowered
+/// as far as it has to be has none.
+#[test]
+fn what_a_margin_asks_for_brings_it_to_zero() {
+    let family = box_family();
+    let specification = |requirement| Specification {
+        requirement,
+        frequencies_rad_per_s: vec![2.0],
+        band_rad_per_s: [2.0, 2.0],
+    };
+    let specifications = [
+        specification(Requirement::RobustStability(Limit::Constant(1.2))),
+        specification(Requirement::Sensitivity(Limit::Constant(0.5))),
+        specification(Requirement::ControlEffort(Limit::Constant(3.0))),
+    ];
+    let built = template(&family, &loop_of(vec![]), 2.0, &TemplateOptions::default()).unwrap();
+    let chart = DesignChart::new(&family, vec![built.template], &specifications).unwrap();
+    let mut shares = Shares(3);
+    let (mut violated, mut moved) = (0, 0);
+    for _ in 0..300 {
+        let gain = Element::Gain(10_f64.powf(shares.between(-1.0, 1.5)));
+        let lag = Element::ComplexPoles {
+            natural_frequency: 10_f64.powf(shares.between(-0.5, 2.0)),
+            damping_ratio: shares.between(0.2, 1.5),
+        };
+        let elements = vec![gain, lag];
+        let margins = chart.margins(&loop_of(elements.clone()), TrackingJudgement::Spread);
+        assert_eq!(margins.len(), 3);
+        assert!(margins.windows(2).all(|pair| pair[0].margin_db <= pair[1].margin_db));
+        for margin in margins {
+            let Placement::Forbidden { nearest_db, .. } = margin.placement else {
+                assert!(margin.margin_db > -1e-9, "{margin:?}");
+                continue;
+            };
+            violated += usize::from(margin.margin_db < 0.0);
+            let Some(change) = nearest_db else { continue };
+            let scaled = [elements.clone(), vec![Element::Gain(10_f64.powf(change / 20.0))]].concat();
+            let again = chart.margins(&loop_of(scaled), TrackingJudgement::Spread);
+            let again = again.iter().find(|one| one.specification == margin.specification).unwrap();
+            assert!(again.margin_db > -1e-9, "{margin:?} {again:?}");
+            moved += 1;
+        }
+    }
+    assert!(violated > 100 && moved > 100, "{violated} {moved}");
+}
+
+fn random_edit(shares: &mut Shares, count: usize) -> Edit {
+    let [one, other] = [0, 1].map(|_| 10_f64.powf(shares.between(-1.0, 3.0)));
+    let element = match shares.below(4) {
+        0 => Element::Integrator,
+        1 => Element::RealPole { frequency: one },
+        2 => Element::LeadLag { zero_frequency: one, pole_frequency: other },
+        _ => Element::Gain(one),
+    };
+    let enabled = shares.next() < 0.7;
+    match shares.below(6) {
+        0 if count > 0 => Edit::Remove(shares.below(count)),
+        1 if count > 0 => Edit::Replace(shares.below(count), element),
+        2 if count > 0 => Edit::Enable(shares.below(count), enabled),
+        3 if count > 0 => Edit::Move { from: shares.below(count), to: shares.below(count) },
+        4 => Edit::ScaleGain(shares.between(0.1, 10.0)),
+        _ => Edit::Add { at: shares.below(count + 1), stage: Stage { element, enabled } },
+    }
+}
+
+/// A hundred random sequences of edits: undo leads back through every state to the first, redo forward again, and the
+/// response is at each step that of the elements multiplied one by one.
+#[test]
+fn every_sequence_of_edits_can_be_taken_back_and_made_again() {
+    let mut shares = Shares(2);
+    for _ in 0..100 {
+        let given = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
+        let mut history = History::new(given.clone());
+        let mut states = vec![given];
+        for _ in 0..shares.below(40) {
+            let edit = random_edit(&mut shares, history.present().stages.len());
+            let expected = apply(history.present(), &edit).unwrap();
+            assert_eq!(*history.edit(&edit).unwrap(), expected);
+            states.push(expected);
+        }
+        for state in &states {
+            let product = state
+                .stages
+                .iter()
+                .filter(|stage| stage.enabled)
+                .fold(Complex64::new(1.0, 0.0), |product, stage| {
+                    product * stage.element.transfer_function().unwrap().at_frequency(3.0)
+                });
+            let whole = state.transfer_function().unwrap().at_frequency(3.0);
+            assert!(magnitude(whole - product) <= 1e-12 * magnitude(product));
+        }
+        for state in states.iter().rev().skip(1) {
+            assert_eq!(history.undo(), Some(state));
+        }
+        assert_eq!(history.undo(), None);
+        for state in states.iter().skip(1) {
+            assert_eq!(history.redo(), Some(state));
+        }
+        assert_eq!(history.redo(), None);
+    }
+}
+
+#[test]
+fn snapshots_are_kept_beside_the_steps() {
+    let mut history = History::new(Compensator::default());
+    history.snapshot("empty");
+    history.edit(&Edit::ScaleGain(3.0)).unwrap();
+    let branch = history.clone();
+    history.edit(&Edit::ScaleGain(2.0)).unwrap();
+    history.undo();
+    assert_eq!(history.present(), branch.present());
+    assert!(history.restore("never kept").is_none());
+    assert!(history.restore("empty").unwrap().stages.is_empty());
+    assert!(history.redo().is_none(), "a step forgets what was undone");
+    assert_eq!(history.undo(), Some(branch.present()));
+    assert_eq!(history.snapshots().keys().collect::<Vec<_>>(), ["empty"]);
+}

@@ -1,0 +1,164 @@
+use phea_qft::bound::Placement;
+use phea_qft::verification::Verdict;
+use serde::Serialize;
+
+use super::Shaping;
+use super::text::polar;
+use crate::answer::{self, Number, OutputFile};
+use crate::audit::{NamedPlant, kind_key, verdict_key};
+use crate::project::Loaded;
+
+#[derive(Serialize)]
+struct Body<'a> {
+    shaped: &'static str,
+    changes: usize,
+    elements: Vec<ElementRow>,
+    stable: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stable_reason: Option<&'a str>,
+    stability: StabilityRow<'a>,
+    margins: Vec<MarginRow>,
+    #[serde(rename = "loop")]
+    points: Vec<PointRow>,
+    unreached_rad_per_s: &'a [f64],
+}
+
+#[derive(Serialize)]
+struct ElementRow {
+    number: usize,
+    kind: &'static str,
+    enabled: bool,
+    element: String,
+}
+
+#[derive(Serialize)]
+struct StabilityRow<'a> {
+    verdict: &'static str,
+    plant: NamedPlant,
+    reason: &'a str,
+}
+
+#[derive(Serialize)]
+struct MarginRow {
+    specification: usize,
+    kind: &'static str,
+    frequency_rad_per_s: f64,
+    margin_db: Number,
+    plant: NamedPlant,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other_plant: Option<NamedPlant>,
+    #[serde(flatten)]
+    placement: PlacementRow,
+}
+
+#[derive(Serialize)]
+struct PointRow {
+    frequency_rad_per_s: f64,
+    magnitude_db: Number,
+    phase_deg: Number,
+    #[serde(flatten)]
+    placement: PlacementRow,
+}
+
+#[derive(Serialize)]
+struct PlacementRow {
+    allowed: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    slack_db: Option<Number>,
+    gain_change_db: Number,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gain_change_db_reason: Option<&'static str>,
+}
+
+fn placement(placement: &Placement) -> PlacementRow {
+    match placement {
+        Placement::Allowed { slack_db } => PlacementRow {
+            allowed: true,
+            slack_db: Some(Number(*slack_db)),
+            gain_change_db: Number(0.0),
+            gain_change_db_reason: None,
+        },
+        Placement::Forbidden { nearest_db, .. } => PlacementRow {
+            allowed: false,
+            slack_db: None,
+            gain_change_db: Number(nearest_db.unwrap_or(f64::NAN)),
+            gain_change_db_reason: nearest_db.is_none().then_some("no gain is allowed at this phase"),
+        },
+    }
+}
+
+fn margin_rows(view: &Shaping) -> Vec<MarginRow> {
+    let kind = |index: usize| {
+        view.problem
+            .specifications
+            .get(index)
+            .map_or("", |specification| kind_key(&specification.requirement))
+    };
+    let row = |margin: &phea_qft::manual_shaping::DesignMargin| MarginRow {
+        specification: margin.specification + 1,
+        kind: kind(margin.specification),
+        frequency_rad_per_s: margin.frequency_rad_per_s,
+        margin_db: Number(margin.margin_db),
+        plant: view.names.named(&margin.plant),
+        other_plant: margin.other.as_ref().map(|other| view.names.named(other)),
+        placement: placement(&margin.placement),
+    };
+    view.margins.iter().map(row).collect()
+}
+
+/// The JSON object of `shape`.
+pub fn json(loaded: &Loaded, view: &Shaping) -> String {
+    let element = |(index, element): (usize, &crate::project::Element)| ElementRow {
+        number: index + 1,
+        kind: element.kind.name(),
+        enabled: element.enabled,
+        element: element.print(),
+    };
+    let point = |point: &phea_qft::manual_shaping::DesignPoint| {
+        let (decibels, degrees) = polar(point.nominal_loop);
+        PointRow {
+            frequency_rad_per_s: point.frequency_rad_per_s,
+            magnitude_db: Number(decibels),
+            phase_deg: Number(degrees),
+            placement: placement(&point.placement),
+        }
+    };
+    let stability = &view.stability;
+    let body = Body {
+        shaped: view.shaped.table(),
+        changes: view.changes,
+        elements: view.elements.iter().enumerate().map(element).collect(),
+        stable: match stability.verdict {
+            Verdict::Met => Some(true),
+            Verdict::Violated => Some(false),
+            Verdict::NotProven => None,
+        },
+        stable_reason: (stability.verdict == Verdict::NotProven).then_some(stability.reason.as_str()),
+        stability: StabilityRow {
+            verdict: verdict_key(stability.verdict),
+            plant: view.names.named(&stability.plant),
+            reason: &stability.reason,
+        },
+        margins: margin_rows(view),
+        points: view.points.iter().map(point).collect(),
+        unreached_rad_per_s: &view.unreached_rad_per_s,
+    };
+    answer::json("shape", loaded, body)
+}
+
+/// Name of the project with the changed elements in it.
+pub const SHAPED_PROJECT: &str = "shaped.toml";
+
+/// The project file with the changed elements; then the margins as a table for other programs.
+pub fn files(view: &Shaping) -> Vec<OutputFile> {
+    let mut csv = String::from("specification,kind,frequency_rad_per_s,margin_db,allowed\n");
+    for MarginRow { specification, kind, frequency_rad_per_s, margin_db, placement, .. } in margin_rows(view)
+    {
+        let (margin, allowed) = (margin_db.0, placement.allowed);
+        csv.push_str(&format!("{specification},{kind},{frequency_rad_per_s},{margin},{allowed}\n"));
+    }
+    vec![
+        OutputFile { name: SHAPED_PROJECT.to_string(), bytes: view.saved.clone() },
+        OutputFile { name: "margins.csv".to_string(), bytes: csv.into_bytes() },
+    ]
+}

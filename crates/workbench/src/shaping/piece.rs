@@ -1,0 +1,81 @@
+//! A part of a text that knows where it stands.
+
+use crate::project::{Findings, Found, Place};
+
+/// A part of a text, without the space around it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece<'a> {
+    pub(super) words: &'a str,
+    text: usize,
+    start: usize,
+}
+
+impl<'a> Piece<'a> {
+    /// The whole of a text.
+    pub(super) fn whole(words: &'a str, text: usize) -> Piece<'a> {
+        Piece { words, text, start: 0 }.trimmed()
+    }
+
+    pub(super) fn place(&self) -> Place {
+        Place { text: self.text, start: self.start, end: self.start + self.words.len() }
+    }
+
+    /// Where a part of it stands.
+    pub(super) fn place_of(&self, range: &std::ops::Range<usize>) -> Place {
+        Place { text: self.text, start: self.start + range.start, end: self.start + range.end }
+    }
+
+    pub(super) fn text(&self) -> usize {
+        self.text
+    }
+
+    pub(super) fn range(&self) -> std::ops::Range<usize> {
+        self.start..self.start + self.words.len()
+    }
+
+    /// What stands before and after the first place of a separator.
+    pub(super) fn split(&self, separator: &str) -> Option<[Piece<'a>; 2]> {
+        self.words.find(separator).map(|at| self.cut(at, at + separator.len()))
+    }
+
+    /// What stands before and after the last place of a separator.
+    pub(super) fn split_last(&self, separator: &str) -> Option<[Piece<'a>; 2]> {
+        self.words.rfind(separator).map(|at| self.cut(at, at + separator.len()))
+    }
+
+    /// What stands before an ending.
+    pub(super) fn before(&self, ending: &str) -> Option<Piece<'a>> {
+        let words = self.words.strip_suffix(ending)?;
+        Some(Piece { words, ..*self }.trimmed())
+    }
+
+    /// Its first word, and the rest.
+    pub(super) fn first_word(&self) -> [Piece<'a>; 2] {
+        let end = self.words.find(char::is_whitespace).unwrap_or(self.words.len());
+        self.cut(end, end)
+    }
+
+    /// Refuses it.
+    pub(super) fn refuse<T>(
+        &self,
+        findings: &mut Findings,
+        message: impl Into<String>,
+        help: &str,
+    ) -> Option<T> {
+        findings.push(Found::error(self.place(), message).help(help));
+        None
+    }
+
+    fn cut(&self, end: usize, start: usize) -> [Piece<'a>; 2] {
+        let part = |from: usize, to: usize| {
+            let words = self.words.get(from..to).unwrap_or_default();
+            Piece { words, text: self.text, start: self.start + from }.trimmed()
+        };
+        [part(0, end), part(start, self.words.len())]
+    }
+
+    fn trimmed(self) -> Piece<'a> {
+        let skipped = self.words.len() - self.words.trim_start().len();
+        Piece { words: self.words.trim(), start: self.start + skipped, ..self }
+    }
+}

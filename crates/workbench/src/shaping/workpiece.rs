@@ -1,0 +1,179 @@
+//! The elements in both their forms: as the project file has them, and as the loop does.
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{Compensator, Element, Stage, Timing};
+use phea_dynamics::linear::{TimeDomain, TransferFunction};
+
+use super::Shaped;
+use crate::control::{self, ControlError};
+use crate::project::{self, ElementKind, Project, Transfer};
+
+/// The elements of a project, and every element that was ever named, so that none loses the form in which it was written.
+pub(super) struct Workpiece<'a> {
+    project: &'a Project,
+    shaped: Shaped,
+    given: Compensator,
+    known: Vec<(Element, project::Element)>,
+}
+
+impl<'a> Workpiece<'a> {
+    /// The elements that the project gives; none where it gives nothing.
+    pub(super) fn new(project: &'a Project, shaped: Shaped) -> Result<Workpiece<'a>, ControlError> {
+        let mut workpiece = Workpiece { project, shaped, given: Compensator::default(), known: vec![] };
+        let declared = workpiece.transfer().map(Transfer::as_elements).unwrap_or_default();
+        for declared in declared {
+            let stage = workpiece.know(declared)?;
+            workpiece.given.stages.push(stage);
+        }
+        Ok(workpiece)
+    }
+
+    pub(super) fn given(&self) -> &Compensator {
+        &self.given
+    }
+
+    pub(super) fn shaped(&self) -> Shaped {
+        self.shaped
+    }
+
+    /// s; `None` for a continuous controller.
+    pub(super) fn sample_time(&self) -> Option<f64> {
+        let own = match self.shaped {
+            Shaped::Controller => None,
+            Shaped::Prefilter => self.project.prefilter.as_ref().and_then(|prefilter| prefilter.sample_time),
+        };
+        own.or(self.timing().sample_time_s)
+    }
+
+    /// When the loop acts.
+    pub(super) fn timing(&self) -> Timing {
+        control::timing(self.project)
+    }
+
+    /// Takes an element in as it is declared, and gives it as the loop has it.
+    pub(super) fn know(&mut self, declared: project::Element) -> Result<Stage, ControlError> {
+        let place = match self.shaped {
+            Shaped::Controller => "[controller]",
+            Shaped::Prefilter => "[prefilter]",
+        };
+        let element = control::element(place, &declared, self.sample_time())?;
+        let enabled = declared.enabled;
+        self.known.push((element.clone(), declared));
+        Ok(Stage { element, enabled })
+    }
+
+    /// The elements as the project file has them: each in the form in which it was named, new ones in that of their kind.
+    pub(super) fn declared(&self, compensator: &Compensator) -> Vec<project::Element> {
+        let mut free: Vec<&(Element, project::Element)> = self.known.iter().collect();
+        let declared = |stage: &Stage| {
+            let same = |known: &&(Element, project::Element)| known.0 == stage.element;
+            let found = match free.iter().position(same) {
+                Some(index) => Some(free.remove(index)),
+                None => self.known.iter().find(same),
+            };
+            let named = found.map_or_else(|| declared_of(&stage.element), |known| known.1.clone());
+            project::Element { enabled: stage.enabled, ..named }
+        };
+        compensator.stages.iter().map(declared).collect()
+    }
+
+    /// G(jw) or F(jw), sampled where the loop samples.
+    pub(super) fn response(
+        &self,
+        compensator: &Compensator,
+        frequency: f64,
+    ) -> Result<Complex64, ControlError> {
+        let place = "the elements";
+        let explain = |error| ControlError::Linear { place, error };
+        let function: TransferFunction = compensator.transfer_function().map_err(explain)?;
+        let timing = self.timing();
+        let function = match (self.sample_time(), function.domain()) {
+            (Some(sample_time_s), TimeDomain::Continuous) => {
+                function.discretized(sample_time_s, timing.discretization).map_err(explain)?
+            }
+            _ => function,
+        };
+        Ok(function.at_frequency(frequency))
+    }
+
+    fn transfer(&self) -> Option<&'a Transfer> {
+        match self.shaped {
+            Shaped::Controller => self.project.controller.as_ref().map(|controller| &controller.transfer),
+            Shaped::Prefilter => self.project.prefilter.as_ref().map(|prefilter| &prefilter.transfer),
+        }
+    }
+}
+
+/// The project with these elements in place of what it gives.
+pub(super) fn with_elements(project: &Project, shaped: Shaped, elements: &[project::Element]) -> Project {
+    let transfer = Transfer { elements: elements.to_vec(), ..Transfer::default() };
+    let mut project = project.clone();
+    match shaped {
+        Shaped::Controller => project.controller.get_or_insert_default().transfer = transfer,
+        Shaped::Prefilter => project.prefilter.get_or_insert_default().transfer = transfer,
+    }
+    project
+}
+
+/// An element that was never declared: a gain that was scaled, or one that was solved for.
+fn declared_of(element: &Element) -> project::Element {
+    let of = |kind| project::Element { kind, ..project::Element::default() };
+    match *element {
+        Element::Gain(value) => project::Element { value: Some(value), ..of(ElementKind::Gain) },
+        Element::Integrator => of(ElementKind::Integrator),
+        Element::Differentiator => of(ElementKind::Differentiator),
+        Element::RealPole { frequency } => {
+            project::Element { frequency: Some(frequency), ..of(ElementKind::Pole) }
+        }
+        Element::RealZero { frequency } => {
+            project::Element { frequency: Some(frequency), ..of(ElementKind::Zero) }
+        }
+        Element::ComplexPoles { natural_frequency, damping_ratio } => project::Element {
+            frequency: Some(natural_frequency),
+            damping_ratio: Some(damping_ratio),
+            ..of(ElementKind::ComplexPoles)
+        },
+        Element::ComplexZeros { natural_frequency, damping_ratio } => project::Element {
+            frequency: Some(natural_frequency),
+            damping_ratio: Some(damping_ratio),
+            ..of(ElementKind::ComplexZeros)
+        },
+        Element::LeadLag { zero_frequency, pole_frequency } => project::Element {
+            zero_frequency: Some(zero_frequency),
+            pole_frequency: Some(pole_frequency),
+            ..of(if zero_frequency > pole_frequency { ElementKind::Lag } else { ElementKind::Lead })
+        },
+        Element::Notch { natural_frequency, zero_damping_ratio, pole_damping_ratio } => project::Element {
+            frequency: Some(natural_frequency),
+            damping_ratio: Some(pole_damping_ratio),
+            numerator_damping_ratio: Some(zero_damping_ratio),
+            ..of(ElementKind::Notch)
+        },
+        Element::ProportionalIntegral { proportional_gain, integral_gain } => project::Element {
+            proportional_gain: Some(proportional_gain),
+            integral_gain: Some(integral_gain),
+            ..of(ElementKind::ProportionalIntegral)
+        },
+        Element::ProportionalIntegralDerivative {
+            proportional_gain,
+            integral_gain,
+            derivative_gain,
+            filter_time,
+        } => project::Element {
+            proportional_gain: Some(proportional_gain),
+            integral_gain: Some(integral_gain),
+            derivative_gain: Some(derivative_gain),
+            filter_time: Some(filter_time),
+            ..of(ElementKind::ProportionalIntegralDerivative)
+        },
+        Element::General(ref function) => {
+            let pairs = |roots: &[Complex64]| roots.iter().map(|root| [root.re, root.im]).collect();
+            project::Element {
+                gain: Some(function.gain()),
+                zeros: pairs(function.zeros()),
+                poles: pairs(function.poles()),
+                ..of(ElementKind::General)
+            }
+        }
+    }
+}
