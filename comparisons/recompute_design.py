@@ -213,7 +213,7 @@ def published_limits(top):
     return [("T", lambda s: 1.2 + 0 * s, 0, np.inf), ("track", (upper, lower), 0.1, top)]
 
 
-def servo_problem(feedback, top, prefilter=None):
+def servo_problem(feedback, top, prefilter=None, **other_limits):
     """k a/(s (s + a)) of the examples B and D."""
     rational = lambda p: (p[:, :1] * p[:, 1:], np.stack([np.ones(len(p)), p[:, 1], np.zeros(len(p))], axis=1))
     plants = Plants(rational, np.array([[1, 10.0], [1, 10.0]]), [True, True])
@@ -221,7 +221,7 @@ def servo_problem(feedback, top, prefilter=None):
     shares = np.stack([a.ravel() for a in np.meshgrid(side, side)], axis=1)
     grid = np.concatenate([np.geomspace(0.1, top, 60), np.geomspace(top, 2e4, 70)])
     second = None if prefilter is None else Structure(prefilter, (0.3, 1e3), (0.2, 3), gain=(1, 1), start=(1, 20))
-    limits = dict(frequency=(0.05, 3e4), damping=(0.2, 2), start=(0.5, 3e3))
+    limits = dict(frequency=(0.05, 3e4), damping=(0.2, 2), start=(0.5, 3e3)) | other_limits
     return Problem(plants, published_limits(top), grid, Structure(feedback, **limits), second, scale=50, shares=shares)
 
 
@@ -248,6 +248,11 @@ def examples(rng):
         x, gain, _, _ = least_gain(problem, rng, 5, margin=1e-5)
         show(problem, x)
         check(f"D, {feedback}: least lim s G, dB", gain, expected, 5e-3)
+    # corners that may not reach the 837 rad/s of the least gain
+    problem = servo_problem("Z PP", 15, frequency=(0.1, 300), damping=(0.1, 5), start=(0.5, 300))
+    x, found, _ = relaxation(problem, rng, 8)
+    show(problem, x)
+    check("D, Z PP, corners up to 300 rad/s: smallest relaxation, dB", found, 2.7336, 2e-3)
     problem = servo_problem("Z PP", 10, "PP")
     x, gain, worst, _ = least_gain(problem, rng, 5)
     show(problem, x)

@@ -1,0 +1,164 @@
+//! Problems that several tests share, and the audit that judges every answer anew.
+
+use phea_dynamics::controller::{Element, Timing};
+use phea_dynamics::expression::Recorded;
+use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::uncertain_plant::{
+    PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
+};
+use phea_qft::audit::AuditRun;
+use phea_qft::closed_loop::Compensation;
+use phea_qft::design::{
+    ControllerChoice, Design, DesignOptions, DesignProblem, DesignRun, DesignStatus, Objective,
+    PrefilterChoice,
+};
+use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
+use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::verification::{Audit, TOLERANCE_DB, TrackingJudgement, Verdict};
+
+pub(crate) const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];
+
+type Coefficients<'t> = (Vec<Recorded<'t>>, Vec<Recorded<'t>>);
+
+pub(crate) fn uncertain(
+    parameters: &[(&str, f64, f64, f64)],
+    coefficients: impl for<'t> Fn(&[Recorded<'t>]) -> Coefficients<'t>,
+) -> UncertainPlant {
+    let parameter = |&(name, nominal, minimum, maximum): &(&str, f64, f64, f64)| UncertainParameter {
+        name: name.into(),
+        nominal,
+        minimum,
+        maximum,
+    };
+    UncertainPlant::record(parameters.iter().map(parameter).collect(), |p| {
+        let (numerator, denominator) = coefficients(p);
+        let command = RationalCoefficients { numerator, denominator };
+        PlantCoefficients { command, disturbance: None, dead_time_s: 0.0.into() }
+    })
+    .unwrap()
+}
+
+/// The whole box of the plant's parameters.
+pub(crate) fn boxed(plant: UncertainPlant, spacing: Spacing, points: usize) -> Family {
+    let along =
+        |index| Coordinate { parameters: vec![index], opposed: vec![], spacing: vec![spacing], points };
+    let coordinates: Vec<Coordinate> = (0..plant.parameters().len()).map(along).collect();
+    let members = grid(&plant, &coordinates).unwrap();
+    Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap())
+}
+
+/// k a/(s (s + a)), k and a from 1 to 10.
+pub(crate) fn servo() -> Family {
+    let plant = uncertain(&[("k", 1.0, 1.0, 10.0), ("a", 1.0, 1.0, 10.0)], |p| {
+        (vec![p[0] * p[1]], vec![1.0.into(), p[1], 0.0.into()])
+    });
+    boxed(plant, Spacing::Logarithmic, 7)
+}
+
+/// k/s, k from 1 to this.
+pub(crate) fn integrator(greatest: f64) -> Family {
+    let plant = uncertain(&[("k", 1.0, 1.0, greatest)], |p| (vec![p[0]], vec![1.0.into(), 0.0.into()]));
+    boxed(plant, Spacing::Linear, 3)
+}
+
+pub(crate) fn rational(numerator: &[f64], denominator: &[f64]) -> Limit {
+    let polynomial = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());
+    Limit::Rational(
+        TransferFunction::from_polynomials(&polynomial(numerator), &polynomial(denominator)).unwrap(),
+    )
+}
+
+pub(crate) fn demand(requirement: Requirement, frequencies: &[f64], band: [f64; 2]) -> Specification {
+    Specification { requirement, frequencies_rad_per_s: frequencies.to_vec(), band_rad_per_s: band }
+}
+
+pub(crate) fn stability(limit: f64, frequencies: &[f64]) -> Specification {
+    demand(Requirement::RobustStability(Limit::Constant(limit)), frequencies, EVERYWHERE)
+}
+
+/// The tracking of the servo up to this frequency, rad/s.
+pub(crate) fn following(frequencies: &[f64], to: f64) -> Specification {
+    let requirement = Requirement::Tracking {
+        lower: rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]),
+        upper: rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]),
+    };
+    demand(requirement, frequencies, [0.0, to])
+}
+
+/// Example D: the servo, |T| <= 1.2 everywhere, tracking up to 15 rad/s.
+pub(crate) fn example_d() -> DesignProblem {
+    let specifications =
+        vec![stability(1.2, &[0.1, 0.5, 1.0, 15.0, 100.0]), following(&[0.1, 0.5, 1.0, 15.0], 15.0)];
+    problem(servo(), specifications)
+}
+
+pub(crate) fn problem(family: Family, specifications: Vec<Specification>) -> DesignProblem {
+    DesignProblem {
+        family,
+        sensor: TransferFunction::gain_only(1.0),
+        timing: Timing::default(),
+        specifications,
+        minimum_delay_margin_s: 0.0,
+    }
+}
+
+/// Zeros and poles with corners and damping ratios in these ranges: of `I Z ZZ P PP` an integrator, a zero, a pair of zeros, and so on.
+pub(crate) fn structure(
+    text: &str,
+    gain: [f64; 2],
+    frequency: [f64; 2],
+    damping_ratio: [f64; 2],
+) -> Structure {
+    let natural_frequency = frequency;
+    let part = |word| match word {
+        "I" => Part::Fixed(Element::Integrator),
+        "Z" => Part::RealZero { frequency },
+        "P" => Part::RealPole { frequency },
+        "ZZ" => Part::ZeroPair { natural_frequency, damping_ratio },
+        "PP" => Part::PolePair { natural_frequency, damping_ratio },
+        _ => panic!("{word}"),
+    };
+    Structure { sign: 1.0, gain, parts: text.split_whitespace().map(part).collect() }
+}
+
+/// The least high-frequency gain among the controllers of a structure, tracking judged by its spread.
+pub(crate) fn least_gain(structure: Structure, seed: u64) -> DesignOptions {
+    DesignOptions {
+        objective: Objective::LeastHighFrequencyGain,
+        controller: ControllerChoice::Given(structure),
+        prefilter: PrefilterChoice::None,
+        seed,
+        tolerance_db: TOLERANCE_DB,
+    }
+}
+
+pub(crate) fn designed(problem: &DesignProblem, options: DesignOptions) -> Design {
+    let mut run = DesignRun::new(problem.clone(), options);
+    while run.step().unwrap() {}
+    run.design().unwrap().clone()
+}
+
+/// An audit of its own of a design.
+pub(crate) fn audited(problem: &DesignProblem, design: &Design, tracking: TrackingJudgement) -> Audit {
+    let compensation = Compensation::new(&design.controller, problem.sensor.clone()).unwrap();
+    let (family, specifications) = (&problem.family, &problem.specifications);
+    let mut run = AuditRun::new(family, &compensation, specifications, tracking, TOLERANCE_DB);
+    while run.step() {}
+    run.audit()
+}
+
+/// That it is met, by its own account and by an audit of its own.
+pub(crate) fn assert_met(problem: &DesignProblem, design: &Design, tracking: TrackingJudgement) {
+    assert_eq!(design.status, DesignStatus::Met, "{:?}", design.rounds);
+    let audit = audited(problem, design, tracking);
+    assert_eq!(audit.verdict, Verdict::Met, "{:?}", audit.specifications);
+    assert_eq!(audit, design.audit);
+}
+
+/// 20 log10 |lim s^r G| and r.
+pub(crate) fn high_frequency_gain(design: &Design) -> (f64, i32) {
+    let function = design.controller.feedback.transfer_function().unwrap();
+    let degree = function.poles().len() as i32 - function.zeros().len() as i32;
+    (20.0 * function.gain().abs().log10(), degree)
+}
