@@ -1,7 +1,7 @@
 //! What an audit teaches the search: plants and frequencies that it had not looked at.
 
 use crate::specification::Requirement;
-use crate::verification::{Audit, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict, WorstCase};
+use crate::verification::{Audit, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict};
 
 /// A plant, or the pair of a spread, and the frequency at which it breaks a limit (0 and infinity included), where there is one.
 #[derive(Clone, Debug, PartialEq)]
