@@ -3,7 +3,7 @@
 use phea_qft::design::{ControllerChoice, DesignOptions, DesignRun, DesignStatus};
 use phea_qft::verification::{TrackingJudgement, Verdict};
 
-use crate::problems::{assert_met, designed, example_d, high_frequency_gain, least_gain, structure};
+use crate::problems::{assert_met, designed, example_d, least_gain, structure};
 
 fn complex_poles(seed: u64) -> DesignOptions {
     least_gain(structure("Z PP", [1e-2, 1e4], [0.1, 1e5], [0.1, 5.0]), seed)
@@ -40,6 +40,5 @@ fn a_run_that_is_stopped_has_the_best_so_far() {
     assert!(shown > 0 && met_at.unwrap() < steps, "{met_at:?} of {steps}");
     let design = run.design().unwrap().clone();
     assert_met(&problem, &design, TrackingJudgement::Spread);
-    assert!(high_frequency_gain(&design).1 >= 1);
     assert!(!run.step().unwrap() && run.design() == Some(&design), "it goes on after its end");
 }
