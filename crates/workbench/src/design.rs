@@ -24,6 +24,10 @@ pub use side::{LoopFigures, NominalMargins, Side};
 pub use stages::{DESIGNED_PROJECT, files, stage_files};
 pub use text::text;
 
+pub(crate) use comparison::compared;
+pub(crate) use text::explanation_words;
+pub(crate) use words::{status_sentence, structure_words};
+
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantisation::CoefficientFormat;
 use phea_qft::design::{Design, DesignOptions, DesignRun, PrefilterChoice};

@@ -28,6 +28,7 @@ pub mod placement;
 pub mod plot;
 pub mod png;
 pub mod pole_map;
+pub mod prefilter_band;
 pub mod scene;
 pub mod schematic;
 pub mod simplify;
@@ -43,12 +44,15 @@ pub mod typeset;
 pub use crate::quantity::DisplayUnit;
 pub use bode::{BodeInput, FrequencySeries, bode};
 pub use colour::{Theme, style_sheet};
-pub use family_magnitude::{FamilyMagnitudeInput, MagnitudeCurve, MagnitudeMark, family_magnitude};
+pub use family_magnitude::{
+    FamilyEnvelope, FamilyMagnitudeInput, MagnitudeCurve, MagnitudeMark, family_magnitude,
+};
 pub use family_step::{FamilyStepInput, family_step};
 pub use impedance::{Asymptote, ImpedanceInput, impedance};
 pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, nichols};
 pub use nomograph::{NomographBore, NomographInput, nomograph};
 pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
+pub use prefilter_band::{PrefilterPanel, PrefilterPoint, prefilter_band};
 pub use schematic::{
     ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, schematic,
 };

@@ -5,6 +5,7 @@ mod bounds;
 mod chapter;
 mod closed_loops;
 mod derived;
+mod design;
 mod family_steps;
 mod impedance;
 mod load_motion;
@@ -61,7 +62,8 @@ const SETTLING_BAND: f64 = 1.0;
 const PNG_SCALE: f64 = 2.0;
 
 /// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, specifications, templates and
-/// bounds, the audit of the given controller, provenance; of a plant given as a transfer function, the robust part of it.
+/// bounds, the audit of the given controller, provenance; of a plant given as a transfer function, the robust part of it. Where the
+/// project has [design], or gives no controller, one is designed and shown beside the given one.
 ///
 /// # Errors
 /// [`CommandError`] if there is nothing to report on or something in it cannot be computed.
@@ -79,20 +81,7 @@ pub fn report(
     };
     let mut tables = Vec::new();
     if !project.specifications.is_empty() {
-        let robust = robust_problem(source, project)?;
-        chapters.push(specifications::chapter(project, &robust.specifications)?);
-        let view = match robust.has_controller {
-            true => Some(audit_problem(&robust, watch)?),
-            false => None,
-        };
-        let found = robust.at_design_frequencies(watch)?;
-        chapters.push(bounds::chapter(&robust, &found, view.as_ref())?);
-        tables = bounds::files(&robust, &found);
-        if let Some(view) = &view {
-            chapters.push(audit::chapter(&robust, view)?);
-            facts.push(("Audit of the controller", audit_words(view)));
-            tables.extend(crate::audit::files(view));
-        }
+        tables = robust_chapters(source, loaded, watch, (&mut chapters, &mut facts))?;
     }
     chapters.push(provenance::chapter(loaded));
     let html = page::page(&project.title, &heading(project, &facts), &chapters, &footer(loaded));
@@ -102,6 +91,37 @@ pub fn report(
 
 /// What the report says in a few numbers: name and text.
 type Facts = Vec<(&'static str, String)>;
+
+/// Adds the chapters on the robust method with their facts, and gives their tables.
+fn robust_chapters(
+    source: &dyn Source,
+    loaded: &Loaded,
+    watch: Watch<'_>,
+    (chapters, facts): (&mut Vec<Chapter>, &mut Facts),
+) -> Result<Vec<OutputFile>, CommandError> {
+    let project = &loaded.project;
+    let robust = robust_problem(source, project)?;
+    chapters.push(specifications::chapter(project, &robust.specifications)?);
+    let view = match robust.has_controller {
+        true => Some(audit_problem(&robust, watch)?),
+        false => None,
+    };
+    let found = robust.at_design_frequencies(watch)?;
+    chapters.push(bounds::chapter(&robust, &found, view.as_ref())?);
+    let mut tables = bounds::files(&robust, &found);
+    if let Some(view) = &view {
+        chapters.push(audit::chapter(&robust, view)?);
+        facts.push(("Audit of the controller", audit_words(view)));
+        tables.extend(crate::audit::files(view));
+    }
+    if design::is_asked_for(project) {
+        let designed = design::designed(source, loaded, watch)?;
+        chapters.push(designed.chapter(&found)?);
+        facts.push(("Designed controller", designed.words()));
+        tables.extend(designed.files(loaded));
+    }
+    Ok(tables)
+}
 
 /// The chapters on an actuator, and its facts.
 fn rig_chapters(

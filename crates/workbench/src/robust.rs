@@ -44,6 +44,8 @@ pub struct DesignFrequency {
     pub template: BuiltTemplate,
     /// Bounds with the template's interior counted as plants.
     pub bounds: CombinedBound,
+    /// The same before they were sampled: they judge any loop there.
+    pub exact_bounds: FrequencyBounds,
     /// The nominal loop L0 there.
     pub nominal_loop: Complex64,
     /// Where it lies among bounds that count the plants of the template alone.
@@ -144,6 +146,7 @@ impl RobustProblem {
             nominal_loop,
             placement: points.placement(nominal_loop),
             filled_placement: filled.placement(nominal_loop),
+            exact_bounds: filled,
             template,
         })
     }

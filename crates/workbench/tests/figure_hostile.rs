@@ -352,7 +352,11 @@ fn families_over_frequency() {
             text: r.name(),
             is_violation: r.unit() < 0.5,
         };
+        let envelope =
+            |r: &mut Random| FamilyEnvelope { name: r.name(), greatest: curve(r), least: r.maybe(curve) };
         let input = FamilyMagnitudeInput {
+            name: r.name(),
+            others: r.many(2, envelope),
             quantity: r.name(),
             unit: r.name(),
             upper_limit: r.maybe(curve),
@@ -365,6 +369,20 @@ fn families_over_frequency() {
             marks: r.many(3, mark),
         };
         family_magnitude(r.words(), &input)
+    });
+}
+
+#[test]
+fn prefilters_in_their_band() {
+    repeat(14, |r| {
+        let point = |r: &mut Random| PrefilterPoint {
+            frequency_rad_per_s: r.number(),
+            least_db: r.number(),
+            greatest_db: r.number(),
+            prefilter_db: r.number(),
+        };
+        let panel = |r: &mut Random| PrefilterPanel { name: r.name(), points: r.many(6, point) };
+        prefilter_band(r.words(), &r.many(3, panel))
     });
 }
 

@@ -1,6 +1,6 @@
 //! What the figures of the robust method promise: contours that are contours, edges that enclose what is forbidden.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 #[path = "../examples/figures/gallery_qft.rs"]
 mod gallery_qft;
@@ -233,6 +233,97 @@ fn violated_areas_begin_where_the_limit_is_crossed() {
         let to = areas[0].iter().map(part).fold(0.0, f64::max);
         assert!((from - parts.0).abs() < 1e-9 && (to - parts.1).abs() < 1e-9, "{from} {to}");
     }
+}
+
+/// What another loop violates is painted too, beside what the first keeps to.
+#[test]
+fn the_other_loop_is_judged_by_the_same_limit() {
+    let (one, rising) =
+        (magnitudes(&[0.1, 10.0], &[1.0, 1.0]), magnitudes(&[0.1, 0.3, 10.0], &[0.1, 0.3, 10.0]));
+    let kept = magnitudes(&[0.1, 10.0], &[0.5, 0.5]);
+    let other = FamilyEnvelope { name: "other".to_string(), greatest: rising, least: None };
+    let input = FamilyMagnitudeInput {
+        name: "one".to_string(),
+        upper_limit: Some(one),
+        greatest: kept,
+        others: vec![other],
+        ..FamilyMagnitudeInput::default()
+    };
+    let figure = family_magnitude(Words::new("f", "f", "f"), &input);
+    let (areas, (left, right)) = (painted(&figure, Role::Bad), frame_of(&figure));
+    assert_eq!(areas.len(), 1);
+    let from = areas[0].iter().map(|p| (p.x - left) / (right - left)).fold(1.0, f64::min);
+    assert!((from - 0.5).abs() < 1e-9, "{from}");
+    let texts: Vec<String> = figure.scene.texts().map(|text| text.content.clone()).collect();
+    assert!(texts.contains(&"one: greatest".to_string()) && texts.contains(&"other: greatest".to_string()));
+}
+
+/// Edges that cross at 1 rad/s, halfway along the axis, leave a band below it and nothing above.
+#[test]
+fn the_band_of_a_prefilter_ends_where_its_edges_cross() {
+    let point = |frequency: f64, least_db: f64| PrefilterPoint {
+        frequency_rad_per_s: frequency,
+        least_db,
+        greatest_db: 0.0,
+        prefilter_db: -1.0,
+    };
+    let panel = PrefilterPanel { name: "loop".to_string(), points: vec![point(0.1, -5.0), point(10.0, 5.0)] };
+    let figure = prefilter_band(Words::new("p", "p", "p"), &[panel]);
+    let (left, right) = frame_of(&figure);
+    for (role, ends) in [(Role::Good, [0.0, 0.5]), (Role::Bad, [0.5, 1.0])] {
+        let areas = painted(&figure, role);
+        assert_eq!(areas.len(), 1, "{role:?}");
+        let parts = areas[0].iter().map(|p| (p.x - left) / (right - left));
+        let found = [parts.clone().fold(1.0, f64::min), parts.fold(0.0, f64::max)];
+        assert!((found[0] - ends[0]).abs() < 1e-9 && (found[1] - ends[1]).abs() < 1e-9, "{role:?} {found:?}");
+    }
+    let texts: Vec<String> = figure.scene.texts().map(|text| text.content.clone()).collect();
+    assert!(texts.iter().any(|text| text.starts_with("nothing left")), "{texts:?}");
+}
+
+/// Every loop has its own form of marks, and what violates is crossed out where its own loop is, on its own turn.
+#[test]
+fn a_violation_lies_on_the_loop_that_it_belongs_to() {
+    let w = vec![1.0, 10.0];
+    let level = |phase: f64, magnitude: f64| FrequencySeries {
+        name: format!("at {phase}"),
+        response: vec![open_loop((phase, magnitude)), open_loop((phase, magnitude - 20.0))],
+        frequencies_rad_per_s: w.clone(),
+    };
+    let input = NicholsInput {
+        loops: vec![level(-100.0, 30.0), level(-200.0, 10.0)],
+        design_frequencies_rad_per_s: w.clone(),
+        violations: vec![OpenLoopViolation {
+            frequency_rad_per_s: 1.0,
+            open_loop: open_loop((-200.0, 10.0)),
+            text: "second".to_string(),
+        }],
+        ..NicholsInput::default()
+    };
+    let figure = nichols(Words::new("n", "n", "n"), &input);
+    // middle of the corners of everything that is drawn with this note
+    let place = |note: &str| {
+        let found = figure.scene.items.iter().find_map(|item| match item {
+            Item::Drawing { shape: Shape::Path(steps), note: Some(found), .. } if found == note => {
+                Some(steps)
+            }
+            _ => None,
+        });
+        let corners = found.unwrap_or_else(|| panic!("{note}")).iter().filter_map(|step| match step {
+            PathStep::Move(p) | PathStep::Line(p) => Some(*p),
+            _ => None,
+        });
+        let corners: Vec<Point> = corners.collect();
+        let count = corners.len() as f64;
+        let sum = corners.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.x, sum.1 + p.y));
+        (sum.0 / count, sum.1 / count)
+    };
+    let (cross, square) = (place("second"), place("1 rad/s: \u{2212}200°, 10 dB"));
+    assert!((cross.0 - square.0).abs() < 1e-9 && (cross.1 - square.1).abs() < 1e-9, "{cross:?} {square:?}");
+    let circles = figure.scene.items.iter().filter(|item| {
+        matches!(item, Item::Drawing { shape: Shape::Circle(..), note: Some(note), .. } if note.contains("rad/s"))
+    });
+    assert_eq!(circles.count(), 2, "the first loop keeps its circles");
 }
 
 /// The chart of a loop that turns three times is wide enough for what can be seen of it.

@@ -1,5 +1,7 @@
 //! What controllers are compared by, in words.
 
+use phea_qft::verification::Verdict;
+
 use super::side::Side;
 use crate::answer::significant;
 use crate::audit::{margin_words, numbered, verdict_words};
@@ -32,7 +34,7 @@ pub(crate) fn compared(side: &Side) -> Vec<(String, String)> {
         ),
         (
             "phase margin of the nominal loop",
-            or_dash(nominal.map(|margins| limited(margins.phase_margin_deg, "deg"))),
+            or_dash(nominal.map(|margins| phase_words(side, margins.phase_margin_deg))),
         ),
         (
             "modulus margin of the family",
@@ -54,6 +56,14 @@ fn high_frequency_words(side: &Side) -> String {
         0 => format!("{gain} dB"),
         1 => format!("{gain} dB, s G"),
         degree => format!("{gain} dB, s^{degree} G"),
+    }
+}
+
+/// The least change of phase that reaches -1; a stable loop with several crossovers may be nearest to it in lead.
+fn phase_words(side: &Side, phase_deg: f64) -> String {
+    match side.view.audit.stability.verdict {
+        Verdict::Met if phase_deg < 0.0 => format!("{}, of lead", limited(-phase_deg, "deg")),
+        _ => limited(phase_deg, "deg"),
     }
 }
 

@@ -93,7 +93,7 @@ impl Rounding {
     }
 
     /// In sentences.
-    pub(super) fn sentences(&self) -> Vec<String> {
+    pub(crate) fn sentences(&self) -> Vec<String> {
         let effects = match &self.effects {
             Ok(effects) => effects,
             Err(reason) => return vec![format!("what the converters do cannot be told: {reason}")],

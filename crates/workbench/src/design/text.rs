@@ -46,7 +46,7 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
 }
 
 /// The sentence, and the first plant that it concerns.
-fn explanation_words(view: &ProjectDesign, explanation: &Explanation) -> String {
+pub(crate) fn explanation_words(view: &ProjectDesign, explanation: &Explanation) -> String {
     let kind = if explanation.is_impossible { "" } else { "to be kept in mind: " };
     let plant = explanation.plants.first().map(|plant| view.designed.view.names.text(plant));
     let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));

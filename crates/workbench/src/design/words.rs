@@ -64,7 +64,7 @@ pub(super) fn objective_key(objective: Objective) -> &'static str {
 }
 
 /// `integrator, zero, pole pair`
-pub(super) fn structure_words(structure: &Structure) -> String {
+pub(crate) fn structure_words(structure: &Structure) -> String {
     let words: Vec<String> = structure.parts.iter().map(|part| part_key(part).replace('_', " ")).collect();
     if words.is_empty() { "gain".to_string() } else { words.join(", ") }
 }

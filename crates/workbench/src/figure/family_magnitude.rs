@@ -3,7 +3,7 @@
 use phea_dynamics::portable::log10;
 
 use super::axis::{Axis, extent};
-use super::colour::Role;
+use super::colour::{Role, series_role};
 use super::legend::LegendEntry;
 use super::open_loop::decibel_axis;
 use super::plot::{Direction, Mark, Marker, MarkerStyle, Panel, Plot};
@@ -32,9 +32,22 @@ pub struct MagnitudeMark {
     pub is_violation: bool,
 }
 
+/// The extremes of a family within another loop, to be compared with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FamilyEnvelope {
+    /// Which loop.
+    pub name: String,
+    /// The greatest magnitude of the family.
+    pub greatest: MagnitudeCurve,
+    /// The least, where there is a lower limit.
+    pub least: Option<MagnitudeCurve>,
+}
+
 /// What the figure shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FamilyMagnitudeInput {
+    /// Which loop, where another one is beside it.
+    pub name: String,
     /// The closed loop, such as `|L/(1+L)|`.
     pub quantity: String,
     /// Its unit, such as `V/N`; empty for a ratio.
@@ -47,6 +60,8 @@ pub struct FamilyMagnitudeInput {
     pub greatest: MagnitudeCurve,
     /// The least magnitude of the family, where there is a lower limit.
     pub least: Option<MagnitudeCurve>,
+    /// The family within other loops.
+    pub others: Vec<FamilyEnvelope>,
     /// Some members.
     pub members: Vec<MagnitudeCurve>,
     /// Frequencies to mark on the axis, rad/s.
@@ -104,6 +119,11 @@ fn least_stroke() -> Stroke {
     Stroke::solid(FAMILY, 2.0).dashed(Dash::Dashed)
 }
 
+fn other_strokes(index: usize) -> [Stroke; 2] {
+    let role = series_role(index + 1);
+    [Stroke::solid(role, 2.2).dashed(Dash::DashDot), Stroke::solid(role, 2.0).dashed(Dash::Dotted)]
+}
+
 /// (rad/s, dB)
 fn points(curve: &MagnitudeCurve) -> Vec<(f64, f64)> {
     let values = curve.magnitudes.iter().map(|magnitude| 20.0 * log10(*magnitude));
@@ -112,7 +132,8 @@ fn points(curve: &MagnitudeCurve) -> Vec<(f64, f64)> {
 
 fn curves(input: &FamilyMagnitudeInput) -> impl Iterator<Item = &MagnitudeCurve> {
     let limits = input.upper_limit.iter().chain(&input.lower_limit);
-    limits.chain([&input.greatest]).chain(&input.least)
+    let others = input.others.iter().flat_map(|other| [&other.greatest].into_iter().chain(&other.least));
+    limits.chain([&input.greatest]).chain(&input.least).chain(others)
 }
 
 fn frequencies(input: &FamilyMagnitudeInput) -> Vec<f64> {
@@ -133,20 +154,25 @@ fn magnitude_axis(input: &FamilyMagnitudeInput) -> Axis {
     let marked = input.marks.iter().map(|mark| 20.0 * log10(mark.magnitude)).filter(finite);
     let wanted: Vec<f64> = limits.into_iter().chain(marked).collect();
     let (lowest, _) = extent(wanted.iter().copied());
-    let family = of(&input.greatest).chain(input.least.iter().flat_map(of));
+    let others =
+        input.others.iter().flat_map(|other| of(&other.greatest).chain(other.least.iter().flat_map(of)));
+    let family = of(&input.greatest).chain(input.least.iter().flat_map(of)).chain(others);
     let family = family.filter(|value| lowest.is_nan() || *value > lowest - DEPTH_DB);
     decibel_axis(&title, wanted.iter().copied().chain(family))
 }
 
 /// The family between its greatest and least magnitude, what lies beyond a limit, and faintly the frequencies where it does.
 fn areas(input: &FamilyMagnitudeInput) -> Vec<Mark> {
-    let greatest = points(&input.greatest);
-    let least = input.least.as_ref().map(points);
     let mut marks = Vec::new();
-    if let Some(least) = &least {
-        let around = greatest.iter().chain(least.iter().rev()).copied().collect();
-        marks.push(Mark::Area { corners: around, fill: Fill { role: FAMILY, opacity: 0.1 } });
+    let mut between = |greatest: &MagnitudeCurve, least: &Option<MagnitudeCurve>, role: Role| {
+        let Some(least) = least else { return };
+        let around = points(greatest).into_iter().chain(points(least).into_iter().rev()).collect();
+        marks.push(Mark::Area { corners: around, fill: Fill { role, opacity: 0.1 } });
+    };
+    for (index, other) in input.others.iter().enumerate() {
+        between(&other.greatest, &other.least, series_role(index + 1));
     }
+    between(&input.greatest, &input.least, FAMILY);
     for corners in violated(input) {
         let (from, to) = extent(corners.iter().map(|corner| corner.0));
         let (direction, fill) = (Direction::X, Fill { opacity: 0.09, ..EXCESS });
@@ -156,21 +182,30 @@ fn areas(input: &FamilyMagnitudeInput) -> Vec<Mark> {
     marks
 }
 
-/// What lies beyond a limit by more than the tolerance.
+/// What lies beyond a limit by more than the tolerance, of every loop.
 fn violated(input: &FamilyMagnitudeInput) -> Vec<Vec<(f64, f64)>> {
     let moved = |curve: &MagnitudeCurve, by: f64| -> Vec<(f64, f64)> {
         points(curve).into_iter().map(|(frequency, value)| (frequency, value + by)).collect()
     };
-    let upper = input.upper_limit.iter().map(|limit| moved(limit, input.tolerance_db));
-    let over = upper.flat_map(|limit| excess(&points(&input.greatest), &limit));
-    let lower = input.lower_limit.iter().map(|limit| moved(limit, -input.tolerance_db));
-    let under = lower.zip(&input.least).flat_map(|(limit, least)| excess(&limit, &points(least)));
-    over.chain(under).collect()
+    let upper = input.upper_limit.as_ref().map(|limit| moved(limit, input.tolerance_db));
+    let lower = input.lower_limit.as_ref().map(|limit| moved(limit, -input.tolerance_db));
+    let mut areas = Vec::new();
+    let others = input.others.iter().map(|other| (&other.greatest, &other.least));
+    for (greatest, least) in [(&input.greatest, &input.least)].into_iter().chain(others) {
+        areas.extend(upper.iter().flat_map(|limit| excess(&points(greatest), limit)));
+        areas.extend(lower.iter().zip(least).flat_map(|(limit, least)| excess(limit, &points(least))));
+    }
+    areas
 }
 
 fn lines(input: &FamilyMagnitudeInput) -> Vec<Mark> {
     let line = |curve: &MagnitudeCurve, stroke: Stroke| Mark::Line { points: points(curve), stroke };
     let mut marks: Vec<Mark> = input.members.iter().map(|member| line(member, member_stroke())).collect();
+    for (index, other) in input.others.iter().enumerate() {
+        let [greatest, least] = other_strokes(index);
+        marks.extend(other.least.iter().map(|curve| line(curve, least)));
+        marks.push(line(&other.greatest, greatest));
+    }
     marks.push(line(&input.greatest, greatest_stroke()));
     marks.extend(input.least.iter().map(|least| line(least, least_stroke())));
     let upper = input.upper_limit.iter().map(|limit| points(limit).into_iter().rev().collect());
@@ -184,7 +219,7 @@ fn lines(input: &FamilyMagnitudeInput) -> Vec<Mark> {
 }
 
 /// The areas where the first curve lies above the second, straight in dB over log frequency between points.
-fn excess(above: &[(f64, f64)], below: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
+pub(super) fn excess(above: &[(f64, f64)], below: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
     let mut frequencies: Vec<f64> = above.iter().chain(below).map(|point| point.0).collect();
     frequencies.retain(|frequency| frequency.is_finite() && *frequency > 0.0);
     frequencies.sort_by(f64::total_cmp);
@@ -240,10 +275,20 @@ fn between(curve: &[(f64, f64)], frequency: f64) -> Option<f64> {
 
 fn legend(input: &FamilyMagnitudeInput) -> Vec<LegendEntry> {
     let mut legend = Vec::new();
-    let greatest = if input.least.is_some() { "greatest of the family" } else { "worst of the family" };
-    legend.push(LegendEntry::line(greatest, greatest_stroke()));
-    if input.least.is_some() {
-        legend.push(LegendEntry::line("least", least_stroke()));
+    let named = |name: &str, greatest: &str| {
+        if name.is_empty() { greatest.to_string() } else { format!("{name}: {greatest}") }
+    };
+    let mut family = |name: &str, [greatest, least]: [Stroke; 2], has_least: bool| {
+        let word = if has_least || !name.is_empty() { "greatest" } else { "worst" };
+        let word = if name.is_empty() { format!("{word} of the family") } else { word.to_string() };
+        legend.push(LegendEntry::line(named(name, &word), greatest));
+        if has_least {
+            legend.push(LegendEntry::line(named(name, "least"), least));
+        }
+    };
+    family(&input.name, [greatest_stroke(), least_stroke()], input.least.is_some());
+    for (index, other) in input.others.iter().enumerate() {
+        family(&other.name, other_strokes(index), other.least.is_some());
     }
     if !input.members.is_empty() {
         legend.push(LegendEntry::line("members", member_stroke()));

@@ -42,9 +42,9 @@ pub struct OpenLoopViolation {
 /// What the chart shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NicholsInput<'a> {
-    /// Open loops; the first is the nominal one, at which templates and marks are put.
+    /// Open loops; the first is the one at which templates and the words of marks are put.
     pub loops: Vec<FrequencySeries>,
-    /// Frequencies to mark on the first loop, rad/s.
+    /// Frequencies to mark on the loops, rad/s.
     pub design_frequencies_rad_per_s: Vec<f64>,
     /// Bounds; more than one group are told apart by their dashes, frequencies by colour.
     pub bounds: Vec<BoundGroup<'a>>,

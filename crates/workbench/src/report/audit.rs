@@ -15,7 +15,7 @@ use crate::robust::RobustProblem;
 
 pub(super) fn chapter(problem: &RobustProblem, view: &ProjectAudit) -> Result<Chapter, CommandError> {
     let mut figures = closed_loops::figures(problem, &view.audit.specifications, view.audit.tolerance_db)?;
-    let steps = family_steps::figure(problem, view);
+    let steps = family_steps::figure(problem, view, ["family_steps", "Step responses of the family"]);
     let body = html! {
         (verdict(view))
         h3 { "Specifications" }
@@ -40,14 +40,17 @@ pub(super) fn chapter(problem: &RobustProblem, view: &ProjectAudit) -> Result<Ch
     Ok(Chapter { anchor: "audit", title: "Audit of the controller", body, figures })
 }
 
-fn verdict(view: &ProjectAudit) -> Markup {
-    let class = match view.audit.verdict {
+pub(super) fn verdict_edge(verdict: Verdict) -> &'static str {
+    match verdict {
         Verdict::Met => "callout good-edge",
         Verdict::Violated => "callout bad-edge",
         Verdict::NotProven => "callout",
-    };
+    }
+}
+
+fn verdict(view: &ProjectAudit) -> Markup {
     html! {
-        div class=(class) {
+        div class=(verdict_edge(view.audit.verdict)) {
             p { b { "Verdict: " (verdict_words(view.audit.verdict)) "." } }
             ul { @for sentence in summary(view) { li { (prose(&sentence)) } } }
         }

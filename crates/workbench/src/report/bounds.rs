@@ -2,6 +2,7 @@
 //! whether the given loop keeps to it.
 
 use maud::{Markup, html};
+use phea_dynamics::linear::LinearError;
 use phea_qft::bound::{Bound, Collision, Feasibility, Placement};
 use phea_qft::template::{Resolution, Template};
 use phea_qft::verification::Verdict;
@@ -92,7 +93,8 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
     figures
 }
 
-fn nominal_loop(problem: &RobustProblem) -> Result<Option<FrequencySeries>, CommandError> {
+/// L0 over the frequencies around those of the design; `None` without a controller or a nominal plant.
+pub(super) fn nominal_loop(problem: &RobustProblem) -> Result<Option<FrequencySeries>, LinearError> {
     if !problem.has_controller {
         return Ok(None);
     }

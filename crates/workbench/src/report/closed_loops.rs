@@ -90,7 +90,6 @@ fn figure(
     let name = format!("audit_{number}_{}", kind_key(requirement));
     let input = FamilyMagnitudeInput {
         quantity: closed_loop_symbol(requirement).to_string(),
-        unit: String::new(),
         upper_limit: Some(limit(upper)),
         lower_limit: lower.map(limit),
         greatest,
@@ -99,6 +98,7 @@ fn figure(
         design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
         tolerance_db,
         marks: finding.worst.iter().filter_map(|worst| mark(problem, requirement, finding, worst)).collect(),
+        ..FamilyMagnitudeInput::default()
     };
     let title = format!("Specification {number}, {}", kind_words(requirement));
     Ok(family_magnitude(Words::new(name, title, caption), &input))
@@ -113,25 +113,8 @@ fn spread_figure(
     family: [MagnitudeCurve; 2],
     tolerance_db: f64,
 ) -> Figure {
-    let quotient = |[low, high]: [MagnitudeCurve; 2]| MagnitudeCurve {
-        magnitudes: high.magnitudes.iter().zip(&low.magnitudes).map(|(high, low)| high / low).collect(),
-        frequencies_rad_per_s: high.frequencies_rad_per_s,
-    };
     let allowed = quotient(limits);
-    let mark = finding.worst.as_ref().and_then(|worst| {
-        let place = worst.frequency_rad_per_s;
-        let index = allowed.frequencies_rad_per_s.partition_point(|&frequency| frequency < place);
-        let is_violation = finding.verdict == Verdict::Violated;
-        let size = significant(worst.margin_db.abs(), 3);
-        let word = if is_violation { "over" } else { "to spare" };
-        Some(MagnitudeMark {
-            frequency_rad_per_s: place,
-            magnitude: allowed.magnitudes.get(index)?
-                * portable::exp(-worst.margin_db / 20.0 * std::f64::consts::LN_10),
-            text: format!("{size} dB {word} {}", frequency_words(place)),
-            is_violation,
-        })
-    });
+    let mark = spread_mark(&allowed, finding);
     let input = FamilyMagnitudeInput {
         quantity: "max|T|/min|T|".to_string(),
         unit: String::new(),
@@ -150,7 +133,31 @@ fn spread_figure(
     family_magnitude(words, &input)
 }
 
-fn curve(
+/// The second over the first.
+pub(super) fn quotient([low, high]: [MagnitudeCurve; 2]) -> MagnitudeCurve {
+    MagnitudeCurve {
+        magnitudes: high.magnitudes.iter().zip(&low.magnitudes).map(|(high, low)| high / low).collect(),
+        frequencies_rad_per_s: high.frequencies_rad_per_s,
+    }
+}
+
+/// Where the spread is worst against what is allowed.
+pub(super) fn spread_mark(allowed: &MagnitudeCurve, finding: &SpecificationFinding) -> Option<MagnitudeMark> {
+    let worst = finding.worst.as_ref()?;
+    let place = worst.frequency_rad_per_s;
+    let index = allowed.frequencies_rad_per_s.partition_point(|&frequency| frequency < place);
+    let is_violation = finding.verdict == Verdict::Violated;
+    let word = if is_violation { "over" } else { "to spare" };
+    Some(MagnitudeMark {
+        frequency_rad_per_s: place,
+        magnitude: allowed.magnitudes.get(index)?
+            * portable::exp(-worst.margin_db / 20.0 * std::f64::consts::LN_10),
+        text: distance_words(worst, word),
+        is_violation,
+    })
+}
+
+pub(super) fn curve(
     problem: &RobustProblem,
     requirement: &Requirement,
     member: &Member,
@@ -165,7 +172,7 @@ fn curve(
     curve
 }
 
-fn limit_curve(limit: &Limit, band: [f64; 2], frequencies: &[f64]) -> MagnitudeCurve {
+pub(super) fn limit_curve(limit: &Limit, band: [f64; 2], frequencies: &[f64]) -> MagnitudeCurve {
     let within = frequencies.iter().filter(|frequency| (band[0]..=band[1]).contains(*frequency));
     let (frequencies_rad_per_s, magnitudes) =
         within.filter_map(|&frequency| Some((frequency, limit.magnitude(frequency)?))).unzip();
@@ -173,7 +180,7 @@ fn limit_curve(limit: &Limit, band: [f64; 2], frequencies: &[f64]) -> MagnitudeC
 }
 
 /// The extreme of all curves at the frequencies of the first; measured ones that reach less far are left out there.
-fn extreme(curves: &[MagnitudeCurve], choose: fn(f64, f64) -> f64) -> MagnitudeCurve {
+pub(super) fn extreme(curves: &[MagnitudeCurve], choose: fn(f64, f64) -> f64) -> MagnitudeCurve {
     let mut extreme = curves.first().cloned().unwrap_or_default();
     let count = extreme.magnitudes.len();
     for curve in curves.iter().filter(|curve| curve.magnitudes.len() == count) {
@@ -184,7 +191,8 @@ fn extreme(curves: &[MagnitudeCurve], choose: fn(f64, f64) -> f64) -> MagnitudeC
     extreme
 }
 
-fn mark(
+/// Where a finding is worst, and by how much.
+pub(super) fn mark(
     problem: &RobustProblem,
     requirement: &Requirement,
     finding: &SpecificationFinding,
@@ -198,19 +206,27 @@ fn mark(
     let response = problem.response(&member, frequency)?;
     let magnitude = portable::magnitude(requirement.closed_loop(&response));
     let is_violation = finding.verdict == Verdict::Violated;
-    let size = significant(worst.margin_db.abs(), 3);
-    let place = frequency_words(frequency);
-    let text = if is_violation {
-        let side = match requirement.limits() {
+    let word = if is_violation {
+        match requirement.limits() {
             (Some(_), upper) => {
                 let below = upper.magnitude(frequency).is_some_and(|limit| decibels(magnitude / limit) < 0.0);
                 if below { "short" } else { "over" }
             }
             (None, _) => "over",
-        };
-        format!("{size} dB {side} {place}")
+        }
     } else {
-        format!("{size} dB to spare {place}")
+        "to spare"
     };
+    let text = distance_words(worst, word);
     Some(MagnitudeMark { frequency_rad_per_s: frequency, magnitude, text, is_violation })
+}
+
+/// `19.2 dB over at 1304 rad/s`; what a reader cannot tell from the limit is at it.
+fn distance_words(worst: &WorstCase, word: &str) -> String {
+    const DISTINGUISHED_DB: f64 = 2e-3;
+    let (size, place) = (worst.margin_db.abs(), frequency_words(worst.frequency_rad_per_s));
+    if size < DISTINGUISHED_DB {
+        return format!("at the limit {place}");
+    }
+    format!("{} dB {word} {place}", significant(size, 3))
 }

@@ -17,8 +17,12 @@ const SAMPLES: usize = 600;
 /// Time constants of the slowest pole of the lower limit that are shown.
 const TIME_CONSTANTS: f64 = 8.0;
 
-/// The figure, or why there is none; `None` where no tracking is specified by transfer functions.
-pub(super) fn figure(problem: &RobustProblem, view: &ProjectAudit) -> Option<Result<Figure, String>> {
+/// The figure under a name and a title, or why there is none; `None` where no tracking is specified by transfer functions.
+pub(super) fn figure(
+    problem: &RobustProblem,
+    view: &ProjectAudit,
+    names: [&str; 2],
+) -> Option<Result<Figure, String>> {
     let limits =
         problem.specifications.iter().find_map(|specification| match &specification.requirement {
             Requirement::Tracking { lower: Limit::Rational(lower), upper: Limit::Rational(upper) } => {
@@ -32,7 +36,8 @@ pub(super) fn figure(problem: &RobustProblem, view: &ProjectAudit) -> Option<Res
     let Family::Uncertain(family) = &problem.family else {
         return Some(Err("measured responses have no step response".to_string()));
     };
-    Some(drawn(problem, family, view, limits).map_err(|error| error.to_string()))
+    let drawn = drawn(problem, family, view, limits);
+    Some(drawn.map(|input| family_step(words(names), &input)).map_err(|error| error.to_string()))
 }
 
 fn drawn(
@@ -40,7 +45,7 @@ fn drawn(
     family: &UncertainFamily,
     view: &ProjectAudit,
     (lower, upper): (&TransferFunction, &TransferFunction),
-) -> Result<Figure, TimeResponseError> {
+) -> Result<FamilyStepInput, TimeResponseError> {
     let duration = duration(lower);
     let times = match problem.compensation.sample_time_s() {
         None => uniform_times(duration, SAMPLES)?,
@@ -74,7 +79,7 @@ fn drawn(
         Some(PlantPoint::Parameters(values)) => vec![member("the plant that tracks worst", values)?],
         _ => vec![],
     };
-    let input = FamilyStepInput {
+    Ok(FamilyStepInput {
         quantity: "Output, part of the step".to_string(),
         bounds: Some(TimeBounds {
             upper: series("upper limit", upper, &limit_times)?,
@@ -83,9 +88,12 @@ fn drawn(
         nominal: Some(member("nominal plant", &family.plant().nominal())?),
         members,
         named,
-    };
+    })
+}
+
+fn words([name, title]: [&str; 2]) -> Words {
     let caption = "Step responses of plants of the family (thin) and those of the tracking limits. A limit on magnitudes does not bound a response in time: the band is what the limits themselves do.";
-    Ok(family_step(Words::new("family_steps", "Step responses of the family", caption), &input))
+    Words::new(name, title, caption)
 }
 
 /// F P G/(1 + P G H), sampled where the loop samples.

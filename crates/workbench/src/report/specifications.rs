@@ -3,7 +3,7 @@
 
 use maud::{Markup, html};
 use num_complex::Complex64;
-use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 use phea_qft::specification::{
     GuaranteedMargins, Limit, LimitOrder, Requirement, Specification, guaranteed_margins, tracking_spread,
@@ -80,8 +80,9 @@ fn number(value: f64) -> String {
 }
 
 /// `28.213 (s + 75)/(s^2 + 73.6 s + 2116)`.
-fn function_text(function: &TransferFunction) -> String {
-    let (zeros, poles) = (factors(function.zeros()), factors(function.poles()));
+pub(super) fn function_text(function: &TransferFunction) -> String {
+    let variable = if function.domain() == TimeDomain::Continuous { 's' } else { 'z' };
+    let (zeros, poles) = (factors(function.zeros(), variable), factors(function.poles(), variable));
     let above = match (number(function.gain()), zeros.join(" ")) {
         (gain, zeros) if zeros.is_empty() => gain,
         (gain, zeros) if gain == "1" => zeros,
@@ -95,24 +96,24 @@ fn function_text(function: &TransferFunction) -> String {
 }
 
 /// Real factors of a polynomial with these roots, which come with their conjugates.
-fn factors(roots: &[Complex64]) -> Vec<String> {
+fn factors(roots: &[Complex64], variable: char) -> Vec<String> {
     let term = |value: f64| {
         let sign = if value < 0.0 { '-' } else { '+' };
         (sign, number(value.abs()))
     };
     let factor = |root: &Complex64| {
         if root.im == 0.0 && root.re == 0.0 {
-            return "s".to_string();
+            return variable.to_string();
         }
         if root.im == 0.0 {
             let (sign, corner) = term(-root.re);
-            return format!("(s {sign} {corner})");
+            return format!("({variable} {sign} {corner})");
         }
         let ((sign, middle), square) = (term(-2.0 * root.re), number(root.norm_sqr()));
         if root.re == 0.0 {
-            format!("(s^2 + {square})")
+            format!("({variable}^2 + {square})")
         } else {
-            format!("(s^2 {sign} {middle} s + {square})")
+            format!("({variable}^2 {sign} {middle} {variable} + {square})")
         }
     };
     roots.iter().filter(|root| root.im >= 0.0).map(factor).collect()

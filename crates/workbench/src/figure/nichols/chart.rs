@@ -3,14 +3,14 @@
 use phea_qft::bound::Bound;
 
 use super::super::axis::{Axis, extent};
-use super::super::colour::{Role, ramp_role, series_dash};
+use super::super::colour::{Role, ramp_role, series_dash, series_marker, series_role};
 use super::super::legend::LegendEntry;
 use super::super::open_loop::{OpenLoop, decibel, decibel_axis, phase_near};
 use super::super::plot::{Mark, Marker, MarkerStyle, Side};
 use super::super::scene::{Dash, Stroke};
 use super::super::templates::PlacedTemplate;
 use super::super::ticks::{Steps, decimal, plain};
-use super::{Boundary, NicholsInput, boundaries, magnitude_contour};
+use super::{Boundary, NicholsInput, OpenLoopViolation, boundaries, magnitude_contour};
 
 /// Most turns that an axis of phase shows on either side of -360 to 0 degrees.
 const TURNS: i32 = 2;
@@ -20,8 +20,7 @@ pub(super) struct Chart<'a> {
     input: &'a NicholsInput<'a>,
     frequencies: Vec<f64>,
     loops: Vec<OpenLoop>,
-    /// (rad/s, degrees, dB)
-    marks: Vec<(f64, f64, f64)>,
+    marks: Vec<LoopMark>,
     violations: Vec<(f64, f64)>,
     templates: Vec<PlacedTemplate>,
     /// For each group and each of its bounds: edges between -360 and 0 degrees.
@@ -36,13 +35,11 @@ impl<'a> Chart<'a> {
         let loops: Vec<OpenLoop> = input.loops.iter().map(OpenLoop::new).collect();
         let nominal = loops.first();
         let on_loop = |frequency: f64| nominal.and_then(|nominal| nominal.at(frequency));
-        let marks = input.design_frequencies_rad_per_s.iter();
-        let marks: Vec<(f64, f64, f64)> =
-            marks.filter_map(|&w| on_loop(w).map(|(phase, magnitude)| (w, phase, magnitude))).collect();
-        let violations = input.violations.iter().map(|violation| {
-            let near = on_loop(violation.frequency_rad_per_s).map_or(-180.0, |(phase, _)| phase);
-            (phase_near(violation.open_loop, near), decibel(violation.open_loop))
-        });
+        let marks = loop_marks(&loops, &input.design_frequencies_rad_per_s);
+        let violations = input
+            .violations
+            .iter()
+            .map(|violation| (phase_on_nearest(&loops, violation), decibel(violation.open_loop)));
         let violations: Vec<(f64, f64)> = violations.collect();
         let templates = input.templates.iter().filter_map(|template| {
             let place = on_loop(template.frequency_rad_per_s)?;
@@ -83,7 +80,11 @@ impl<'a> Chart<'a> {
 
     /// Holds marks, templates, violations, and of bounds what lies between -60 and 80 dB; of loops without marks likewise.
     fn magnitude_axis(&self) -> Axis {
-        let marked = self.marks.iter().map(|mark| mark.2).chain(self.violations.iter().map(|place| place.1));
+        let marked = self
+            .marks
+            .iter()
+            .map(|mark| mark.magnitude_db)
+            .chain(self.violations.iter().map(|place| place.1));
         let filled = self.templates.iter().flat_map(|template| template.extent().map(|place| place.1));
         let edges = self.boundaries.iter().flatten().flatten().flat_map(|edge| &edge.points);
         let unmarked = self.loops.iter().filter(|_| self.marks.is_empty()).flat_map(|one| &one.points);
@@ -170,11 +171,12 @@ impl<'a> Chart<'a> {
             .loops
             .iter()
             .enumerate()
-            .map(|(index, one)| Mark::Line { points: one.points.clone(), stroke: loop_stroke(index) });
-        let marks = self.marks.iter().map(|&(frequency, phase, magnitude)| {
+            .map(|(index, one)| Mark::Line { points: one.points.clone(), stroke: self.loop_stroke(index) });
+        let marks = self.marks.iter().map(|mark| {
+            let (frequency, phase, magnitude) = (mark.frequency, mark.phase_deg, mark.magnitude_db);
             let note = format!("{} rad/s: {}°, {} dB", plain(frequency), plain(phase), plain(magnitude));
             let style =
-                MarkerStyle { marker: Marker::Circle, role: role(&self.frequencies, frequency), radius: 4.5 };
+                MarkerStyle { role: role(&self.frequencies, frequency), ..loop_marker(mark.loop_index) };
             Mark::Markers { points: vec![(phase, magnitude, note)], style }
         });
         lines.chain(marks).collect()
@@ -202,15 +204,23 @@ impl<'a> Chart<'a> {
             .collect()
     }
 
+    /// On the first loop; the colour tells the frequency on the others.
     fn frequency_labels(&self) -> Vec<Mark> {
         self.marks
             .iter()
-            .map(|&(frequency, phase, magnitude)| Mark::Callout {
-                at: vec![(phase, magnitude)],
-                text: format!("{} rad/s", plain(frequency)),
+            .filter(|mark| mark.loop_index == 0)
+            .map(|mark| Mark::Callout {
+                at: vec![(mark.phase_deg, mark.magnitude_db)],
+                text: format!("{} rad/s", plain(mark.frequency)),
                 role: Role::Text,
             })
             .collect()
+    }
+
+    /// One loop is ink; several are told apart by colour and dashes.
+    fn loop_stroke(&self, index: usize) -> Stroke {
+        let role = if self.loops.len() > 1 { series_role(index) } else { Role::Text };
+        Stroke::solid(role, 2.4).dashed(series_dash(index))
     }
 
     /// The frequency upon the longest edge of each bound, at another part of it for each.
@@ -257,10 +267,12 @@ impl<'a> Chart<'a> {
     pub(super) fn legend(&self) -> Vec<LegendEntry> {
         let loops = self.input.loops.iter().enumerate();
         let mut legend: Vec<LegendEntry> =
-            loops.map(|(index, one)| LegendEntry::line(&one.name, loop_stroke(index))).collect();
-        if !self.marks.is_empty() {
-            let style = MarkerStyle { marker: Marker::Circle, role: Role::Text, radius: 4.5 };
-            legend.push(LegendEntry::marker("design frequency", style));
+            loops.map(|(index, one)| LegendEntry::line(&one.name, self.loop_stroke(index))).collect();
+        if self.loops.len() > 1 {
+            let entries = legend.iter_mut().enumerate();
+            entries.for_each(|(index, entry)| entry.marker = Some(loop_marker(index)));
+        } else if !self.marks.is_empty() {
+            legend.push(LegendEntry::marker("design frequency", loop_marker(0)));
         }
         let several = self.input.bounds.len() > 1;
         for (index, group) in self.input.bounds.iter().enumerate() {
@@ -288,8 +300,42 @@ fn contour_stroke() -> Stroke {
     Stroke::solid(Role::Muted, 0.6)
 }
 
-fn loop_stroke(index: usize) -> Stroke {
-    Stroke::solid(Role::Text, 2.4).dashed(series_dash(index))
+/// A design frequency on one of the loops.
+struct LoopMark {
+    loop_index: usize,
+    /// rad/s
+    frequency: f64,
+    phase_deg: f64,
+    magnitude_db: f64,
+}
+
+fn loop_marks(loops: &[OpenLoop], frequencies: &[f64]) -> Vec<LoopMark> {
+    let mut marks = Vec::new();
+    for (loop_index, one) in loops.iter().enumerate() {
+        let at = |&frequency: &f64| {
+            let (phase_deg, magnitude_db) = one.at(frequency)?;
+            Some(LoopMark { loop_index, frequency, phase_deg, magnitude_db })
+        };
+        marks.extend(frequencies.iter().filter_map(at));
+    }
+    marks
+}
+
+/// Circles on the first loop, squares on the second, and so on.
+fn loop_marker(index: usize) -> MarkerStyle {
+    MarkerStyle { role: Role::Text, radius: 4.5, ..series_marker(index) }
+}
+
+/// Degrees, on the turn of the loop that passes nearest at that frequency.
+fn phase_on_nearest(loops: &[OpenLoop], violation: &OpenLoopViolation) -> f64 {
+    let magnitude = decibel(violation.open_loop);
+    let places = loops.iter().filter_map(|one| one.at(violation.frequency_rad_per_s));
+    let turned = places.map(|(phase, other)| {
+        let on_turn = phase_near(violation.open_loop, phase);
+        (on_turn, (on_turn - phase).abs() + (magnitude - other).abs())
+    });
+    let nearest = turned.min_by(|one, other| one.1.total_cmp(&other.1));
+    nearest.map_or_else(|| phase_near(violation.open_loop, -180.0), |(phase, _)| phase)
 }
 
 /// All frequencies of the chart, rising.

@@ -1,0 +1,55 @@
+//! The nominal loops of both controllers among the bounds (thesis, Figure 6.14).
+
+use phea_dynamics::linear::LinearError;
+use phea_qft::bound::{Bound, Placement};
+
+use super::super::bounds::nominal_loop;
+use crate::audit::frequency_number;
+use crate::design::{ProjectDesign, Side};
+use crate::figure::{BoundGroup, Figure, FrequencySeries, NicholsInput, OpenLoopViolation, Words, nichols};
+use crate::robust::DesignFrequency;
+
+/// The chart; `None` without a nominal plant.
+pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<Option<Figure>, LinearError> {
+    let alone = view.published.is_none();
+    let mut loops = Vec::new();
+    let mut violations = Vec::new();
+    for (name, side) in [("designed", Some(&view.designed)), ("published", view.published.as_ref())] {
+        let Some(side) = side else { continue };
+        let Some(series) = nominal_loop(&side.problem)? else { continue };
+        loops.push(FrequencySeries { name: format!("{name}, nominal plant"), ..series });
+        violations.extend(found.iter().filter_map(|one| forbidden(side, if alone { "" } else { name }, one)));
+    }
+    if loops.is_empty() {
+        return Ok(None);
+    }
+    let bounds: Vec<Bound> = found.iter().map(|one| one.bounds.union.clone()).collect();
+    let input = NicholsInput {
+        loops,
+        design_frequencies_rad_per_s: view.designed.problem.design_frequencies(),
+        bounds: vec![BoundGroup { name: "bounds of all specifications".to_string(), bounds: &bounds }],
+        violations,
+        ..NicholsInput::default()
+    };
+    let (title, whose) = match alone {
+        true => ("Nichols chart of the designed loop", "loop"),
+        false => ("Nichols chart of both loops", "loops"),
+    };
+    let caption = format!(
+        "The nominal {whose} among the bounds of all specifications. At a crossed-out frequency the loop lies where its bound forbids it. Bounds speak of their own frequency alone; the tables say what holds between them."
+    );
+    Ok(Some(nichols(Words::new("design_nichols", title, caption), &input)))
+}
+
+/// The loop of a side where it lies in a bound.
+fn forbidden(side: &Side, name: &str, one: &DesignFrequency) -> Option<OpenLoopViolation> {
+    let frequency_rad_per_s = one.frequency_rad_per_s;
+    let feedback = side.problem.compensation.response(frequency_rad_per_s).feedback;
+    let open_loop = one.template.template.nominal * feedback;
+    let Placement::Forbidden { .. } = one.exact_bounds.placement(open_loop) else { return None };
+    let text = match name {
+        "" => "forbidden".to_string(),
+        name => format!("{name} at {}", frequency_number(frequency_rad_per_s)),
+    };
+    Some(OpenLoopViolation { frequency_rad_per_s, open_loop, text })
+}

@@ -1,0 +1,121 @@
+//! What each loop leaves for its prefilter, and the prefilter in it (thesis 3.1.5).
+
+use phea_dynamics::frequency::decibels;
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::portable;
+use phea_qft::prefilter::{PrefilterBand, PrefilterBandPoint};
+use phea_qft::specification::{Requirement, Specification};
+use phea_qft::verification::Verdict;
+
+use crate::answer::significant;
+use crate::audit::frequency_words;
+use crate::design::{ProjectDesign, Side};
+use crate::figure::{Figure, PrefilterPanel, PrefilterPoint, Words, prefilter_band};
+
+/// Limits of tracking that lie nearer to one another are not told apart in a figure, dB.
+const DISTINGUISHED_DB: f64 = 0.01;
+/// How far the drawn frequencies reach below and above the design frequencies.
+const BEYOND: [f64; 2] = [0.1, 10.0];
+
+/// One figure for each tracking specification that a prefilter was designed for.
+pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
+    let mut figures = Vec::new();
+    for (index, one) in view.designed.problem.specifications.iter().enumerate() {
+        if matches!(one.requirement, Requirement::Tracking { .. }) && view.designed.problem.has_prefilter {
+            figures.extend(figure(view, index, one)?);
+        }
+    }
+    Ok(figures)
+}
+
+fn figure(
+    view: &ProjectDesign,
+    index: usize,
+    specification: &Specification,
+) -> Result<Option<Figure>, LinearError> {
+    let mut panels = Vec::new();
+    let mut tightest = Vec::new();
+    for (name, side) in [("designed", Some(&view.designed)), ("published", view.published.as_ref())] {
+        let Some((panel, sentence)) =
+            side.map(|side| panel(name, side, index, specification)).transpose()?.flatten()
+        else {
+            continue;
+        };
+        panels.push(panel);
+        tightest.push(sentence);
+    }
+    if panels.is_empty() {
+        return Ok(None);
+    }
+    let caption = format!(
+        "What the spread of the family leaves for |F|, from the lower limit over the least |T| to the upper one over the greatest, and the prefilter. {}",
+        tightest.join(" ")
+    );
+    let name = format!("design_{}_prefilter", index + 1);
+    let words = Words::new(name, format!("Prefilter for specification {}", index + 1), caption);
+    Ok(Some(prefilter_band(words, &panels)))
+}
+
+/// The band of one loop, with a sentence on where it is tightest; `None` of a loop that is not stable, or is not known.
+fn panel(
+    name: &str,
+    side: &Side,
+    index: usize,
+    specification: &Specification,
+) -> Result<Option<(PrefilterPanel, String)>, LinearError> {
+    let problem = &side.problem;
+    let frequencies = problem.design_frequencies();
+    let (Some(first), Some(last)) = (frequencies.first(), frequencies.last()) else { return Ok(None) };
+    if side.view.audit.stability.verdict == Verdict::Violated {
+        return Ok(None);
+    }
+    let drawn = problem.drawn_frequencies(first * BEYOND[0], last * BEYOND[1]);
+    let finding = side.view.audit.specifications.get(index);
+    let worst = finding.and_then(|found| problem.member(&found.worst.as_ref()?.plant));
+    let mut members = problem.members()?;
+    members.extend(worst);
+    let band = PrefilterBand::of_family(&problem.compensation, &members, &drawn, specification);
+    // a measurement that does not reach, or a band that no frequency is in, leaves nothing to draw
+    let Ok(band) = band else { return Ok(None) };
+    let size = |frequency: f64| match problem.has_prefilter {
+        true => decibels(portable::magnitude(problem.compensation.response(frequency).prefilter)),
+        false => f64::NAN,
+    };
+    let shown = shown(&band, &drawn);
+    let points = shown.iter().map(|point| PrefilterPoint {
+        frequency_rad_per_s: point.frequency_rad_per_s,
+        least_db: point.least_db,
+        greatest_db: point.greatest_db,
+        prefilter_db: size(point.frequency_rad_per_s),
+    });
+    let sentence = sentence(name, &band, &shown);
+    Ok(Some((PrefilterPanel { name: name.to_string(), points: points.collect() }, sentence)))
+}
+
+/// The band at drawn frequencies, from where its limits can be told apart.
+fn shown(band: &PrefilterBand, drawn: &[f64]) -> Vec<PrefilterBandPoint> {
+    let ends = drawn.first().copied().unwrap_or_default()..=drawn.last().copied().unwrap_or_default();
+    let inside = band.points().iter().filter(|point| ends.contains(&point.frequency_rad_per_s));
+    let points: Vec<PrefilterBandPoint> = inside.copied().collect();
+    let first = points.iter().position(|point| point.allowed_db >= DISTINGUISHED_DB).unwrap_or(0);
+    points.into_iter().skip(first).collect()
+}
+
+fn sentence(name: &str, band: &PrefilterBand, shown: &[PrefilterBandPoint]) -> String {
+    if let Some(closed) = band.closed(0.0) {
+        return format!(
+            "The {name} loop leaves none: the family spreads {} dB too far {}.",
+            significant(-closed.width_db(), 3),
+            frequency_words(closed.frequency_rad_per_s)
+        );
+    }
+    let share = |point: &PrefilterBandPoint| point.width_db() / point.allowed_db;
+    let tightest = shown.iter().min_by(|one, other| share(one).total_cmp(&share(other)));
+    let Some(tightest) = tightest else { return String::new() };
+    format!(
+        "The {name} loop uses most of its share {}: {} of {} dB are left.",
+        frequency_words(tightest.frequency_rad_per_s),
+        significant(tightest.width_db(), 3),
+        significant(tightest.allowed_db, 3)
+    )
+}
