@@ -99,7 +99,7 @@ pub(super) fn binding(view: &ProjectDesign) -> Markup {
     let rows = rows.map(|one| (one.specification, one.frequency_rad_per_s, one.margin_db, &one.plant));
     html! {
         p {
-            "The specification that leaves the designed loop least room at each design frequency, with the plant that sets it. Where the margin is next to nothing the limit costs: eased there it would leave a controller of less gain; easing any other gains nothing."
+            "The specification that leaves the designed loop least room at each design frequency, with the plant that sets it. Where the margin is next to nothing the limit costs: eased there it would leave a controller of less gain; easing any other gains nothing. The head of the chapter names where each specification is worst over its whole band, which may lie between these frequencies."
         }
         (limits(view, rows))
     }
@@ -132,8 +132,8 @@ fn limits<'a>(view: &ProjectDesign, rows: impl Iterator<Item = LimitRow<'a>>) ->
 
 /// Parameters of a plant that are told in the row of its limit.
 const NAMED_IN_PLACE: usize = 2;
-/// Plants side by side in one table.
-const PLANTS_IN_A_TABLE: usize = 5;
+/// Plants side by side in one table, as many as a page is wide.
+const PLANTS_IN_A_TABLE: usize = 4;
 
 /// A to Z, then numbers.
 fn plant_letter(number: usize) -> String {
@@ -142,8 +142,9 @@ fn plant_letter(number: usize) -> String {
 }
 
 fn plant_tables(names: &PlantNames, plants: &[&PlantPoint]) -> Markup {
-    let tables = plants.chunks(PLANTS_IN_A_TABLE).enumerate().map(|(chunk, plants)| {
-        let letters = (0..plants.len()).map(|index| plant_letter(PLANTS_IN_A_TABLE * chunk + index));
+    let width = plants.len().div_ceil(plants.len().div_ceil(PLANTS_IN_A_TABLE).max(1)).max(1);
+    let tables = plants.chunks(width).enumerate().map(|(chunk, plants)| {
+        let letters = (0..plants.len()).map(|index| plant_letter(width * chunk + index));
         let mut headings = vec!["plant".to_string()];
         headings.extend(letters);
         let values: Vec<Vec<String>> = plants.iter().map(|plant| names.cells(plant)).collect();
