@@ -52,7 +52,7 @@ pub(crate) fn compared(side: &Side) -> Vec<(String, String)> {
 fn high_frequency_words(side: &Side) -> String {
     let gain = significant(side.figures.high_frequency_gain_db, 5);
     match side.figures.relative_degree {
-        _ if side.problem.compensation.sample_time_s().is_some() => format!("{gain} dB, |G| at pi/T"),
+        _ if side.is_in_z() => format!("{gain} dB, |G| at pi/T"),
         0 => format!("{gain} dB"),
         1 => format!("{gain} dB, s G"),
         degree => format!("{gain} dB, s^{degree} G"),

@@ -2,7 +2,7 @@
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::{decibels, margins};
-use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
+use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 use phea_qft::closed_loop::Member;
 use phea_qft::verification::Verdict;
@@ -30,7 +30,7 @@ pub struct LoopFigures {
     pub order: usize,
     /// Poles less zeros of the same.
     pub relative_degree: i64,
-    /// lim s^r G(s) for that relative degree r; in a sampled loop |G| at pi/T; dB.
+    /// lim s^r G(s) for that relative degree r, of the continuous law where there is one; of a law in z |G| at pi/T; dB.
     pub high_frequency_gain_db: f64,
     /// Poles of the prefilter, likewise.
     pub prefilter_order: usize,
@@ -68,6 +68,12 @@ impl Side {
         let figures = figures(&controller, &problem, &view)?;
         Ok(Side { controller, problem, view, figures })
     }
+
+    /// Whether the law itself is given in z.
+    pub(crate) fn is_in_z(&self) -> bool {
+        let law = self.controller.feedback.transfer_function();
+        law.is_ok_and(|law| law.domain() != TimeDomain::Continuous)
+    }
 }
 
 fn figures(
@@ -84,9 +90,9 @@ fn figures(
     Ok(LoopFigures {
         order: law.poles().len(),
         relative_degree: poles - zeros,
-        high_frequency_gain_db: decibels(match problem.compensation.sample_time_s() {
-            None => law.gain().abs(),
-            Some(_) => portable::magnitude(deployed.at_frequency(end)),
+        high_frequency_gain_db: decibels(match law.domain() {
+            TimeDomain::Continuous => law.gain().abs(),
+            TimeDomain::Discrete { .. } => portable::magnitude(deployed.at_frequency(end)),
         }),
         prefilter_order: controller.prefilter.transfer_function()?.poles().len(),
         nominal,
