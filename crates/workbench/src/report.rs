@@ -63,7 +63,7 @@ const PNG_SCALE: f64 = 2.0;
 
 /// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, specifications, templates and
 /// bounds, the audit of the given controller, provenance; of a plant given as a transfer function, the robust part of it. Where the
-/// project has [design], or gives no controller, one is designed and shown beside the given one.
+/// project has `[design]`, or gives no controller, one is designed and shown beside the given one.
 ///
 /// # Errors
 /// [`CommandError`] if there is nothing to report on or something in it cannot be computed.

@@ -32,7 +32,7 @@ pub fn design_problem(project: &Project, given: &RobustProblem) -> Result<Design
     })
 }
 
-/// How a design is made: by [design], or its defaults; `seed` in place of the project's.
+/// How a design is made: by `[design]`, or its defaults; `seed` in place of the project's.
 ///
 /// # Errors
 /// [`CommandError`] for a prefilter that is no transfer function, or a nominal plant that cannot be sampled.
