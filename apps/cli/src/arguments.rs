@@ -61,7 +61,7 @@ pub(crate) enum Command {
         #[arg(long, value_name = "FILE")]
         save: Option<PathBuf>,
     },
-    /// Everything above as one self-contained HTML page; a controller is designed where the project has [design] or gives no law
+    /// Everything above as one self-contained HTML page; a controller is designed where the project has a design section or gives no law
     Report(Common),
 }
 

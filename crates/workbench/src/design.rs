@@ -28,9 +28,10 @@ pub(crate) use comparison::compared;
 pub(crate) use text::explanation_words;
 pub(crate) use words::{status_sentence, structure_words};
 
+use phea_dynamics::controller::{Controller, Timing};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantisation::CoefficientFormat;
-use phea_qft::design::{Design, DesignOptions, DesignRun, PrefilterChoice};
+use phea_qft::design::{Design, DesignOptions, DesignProblem, DesignRun, PrefilterChoice};
 use phea_qft::verification::Verdict;
 
 use crate::audit::{ProjectAudit, audit_problem};
@@ -61,12 +62,16 @@ pub struct ProjectDesign {
     pub design: Design,
     /// How it was looked for.
     pub options: DesignOptions,
+    /// Delay beyond that of the loop that was asked for, s.
+    pub minimum_delay_margin_s: f64,
     /// Whether whoever watched it stopped it: then it is the best so far.
     pub stopped: bool,
     /// The designed controller with its audit.
     pub designed: Side,
     /// The controller that the project gives, with its audit; absent where it gives none.
     pub published: Option<Side>,
+    /// In a sampled loop: the design that was made for the continuous one, sampled and audited as the loop is.
+    pub continuous: Option<Side>,
     /// What no controller can do, and what will be hard, whatever the search found.
     pub explanations: Vec<Explanation>,
     /// What the computer's converters do to the designed loop; absent where nothing is rounded.
@@ -78,9 +83,15 @@ pub struct ProjectDesign {
 }
 
 impl ProjectDesign {
+    /// Whether the loop bears the delay that was asked for, to a hundredth of it.
+    pub fn bears_its_delay(&self) -> bool {
+        let borne = self.designed.figures.delay_margin_s.unwrap_or(0.0);
+        borne >= 0.99 * self.minimum_delay_margin_s
+    }
+
     /// Whether the designed controller keeps to every specification.
     pub fn is_met(&self) -> bool {
-        self.designed.view.audit.verdict == Verdict::Met
+        self.designed.view.audit.verdict == Verdict::Met && self.bears_its_delay()
     }
 }
 
@@ -115,11 +126,15 @@ pub fn design_project(
     while !stopped && run.step().map_err(DesignError::from)? {
         stopped = !watch(Progress { stage: run.stage(), share: run.progress() });
     }
+    if stopped {
+        run.conclude().map_err(DesignError::from)?;
+    }
     let (options, found) = (run.options().clone(), run.design().cloned());
     match found {
         Some(design) => {
             let told = told(project, &given, design, options, watch)?;
-            Ok(ProjectDesign { stopped, published, explanations, ..told })
+            let continuous = if stopped { None } else { continuous_as_sampled(&run, &told, watch)? };
+            Ok(ProjectDesign { stopped, published, explanations, continuous, ..told })
         }
         None if stopped => Err(CommandError::Stopped),
         None => {
@@ -127,6 +142,33 @@ pub fn design_project(
             Err(DesignError::NoController(sentences).into())
         }
     }
+}
+
+/// What a design that knows nothing of samples and delay becomes by them: made for the continuous loop, audited in the sampled one. `None`
+/// where the loop does not sample, or no such design is found.
+fn continuous_as_sampled(
+    sampled: &DesignRun,
+    told: &ProjectDesign,
+    watch: Watch<'_>,
+) -> Result<Option<Side>, CommandError> {
+    let timing = sampled.problem().timing;
+    if timing.sample_time_s.is_none() {
+        return Ok(None);
+    }
+    let problem = DesignProblem { timing: Timing::default(), ..sampled.problem().clone() };
+    let mut run = DesignRun::new(problem, sampled.options().clone());
+    while run.step().map_err(DesignError::from)? {
+        if !watch(Progress { stage: "designing without samples", share: run.progress() }) {
+            return Ok(None);
+        }
+    }
+    let Some(design) = run.design() else { return Ok(None) };
+    let controller = Controller { timing, ..design.controller.clone() };
+    let sensor = told.designed.problem.compensation.sensor().clone();
+    let compensation = Compensation::new(&controller, sensor)?;
+    let problem = RobustProblem { compensation, ..told.designed.problem.clone() };
+    let view = audit_problem(&problem, watch)?;
+    Ok(Some(Side::new(controller, problem, view)?))
 }
 
 /// A design with what is to be told of it alone.
@@ -165,8 +207,10 @@ fn told(
         designed: Side::new(law, problem, view)?,
         design,
         options,
+        minimum_delay_margin_s: project.design.clone().unwrap_or_default().minimum_delay_margin,
         stopped: false,
         published: None,
+        continuous: None,
         explanations: vec![],
         rounding,
         declared_controller,

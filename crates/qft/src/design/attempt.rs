@@ -4,7 +4,7 @@
 use phea_dynamics::linear::{LinearError, TransferFunction};
 
 use super::counterexample::{
-    Counterexample, counterexamples, unstable_plant, worst_margin_db, worst_over_rate_db,
+    Counterexample, counterexamples, too_little_delay, unstable_plant, worst_margin_db, worst_over_rate_db,
 };
 use super::problem::{DesignOptions, DesignProblem, Objective, PrefilterChoice};
 use super::result::DesignRound;
@@ -355,10 +355,12 @@ impl Attempt {
         let judgement = self.shaping.judge(&self.x);
         let stable = audit.stability.verdict == Verdict::Met;
         self.note(stable.then(|| worst_margin_db(&audit.specifications)), &judgement);
-        if audit.verdict == Verdict::Met {
+        let delayed = too_little_delay(&audit, self.shaping.samples().problem().minimum_delay_margin_s);
+        if audit.verdict == Verdict::Met && delayed.is_empty() {
             return Ok(Stage::Ended(Ending::Met(audit)));
         }
         let mut examples = unstable_plant(&audit);
+        examples.extend(delayed);
         let tolerance_db = self.new_below_db(&judgement);
         examples.extend(counterexamples(&audit.specifications, tolerance_db, self.shaping.tracking()));
         Ok(self.with(&examples)?.unwrap_or(Stage::Ended(if self.relaxes {

@@ -21,8 +21,8 @@ const INTERIOR_PLANTS: usize = 32;
 /// Members of a family without a box that a search begins with.
 const MEMBERS_MAXIMUM: usize = 200;
 
-/// Order of the controller by which a relaxation is found where no controller of any order will do.
-const ORDER_OF_A_RELAXATION: usize = 2;
+/// A larger order is worth its poles where it lowers the relaxation by more than this, dB.
+const RELAXATION_GAINED_DB: f64 = 0.01;
 
 /// What is tried after what.
 #[derive(Clone, Debug)]
@@ -65,7 +65,7 @@ impl DesignRun {
     /// A design that has not begun.
     pub fn new(problem: DesignProblem, options: DesignOptions) -> DesignRun {
         let ground = Ground::new(&problem);
-        let mut waiting: VecDeque<(usize, usize)> = match options.controller {
+        let waiting: VecDeque<(usize, usize)> = match options.controller {
             ControllerChoice::Given(_) => VecDeque::from([(0, 0)]),
             ControllerChoice::Grow { maximum_order } => {
                 let sampled = problem.timing.sample_time_s.is_some();
@@ -74,15 +74,8 @@ impl DesignRun {
                     .collect()
             }
         };
-        let mut nearest = None;
+        // where no controller of any order will do, what is left is by how much
         let impossible = diagnose(&problem).iter().any(|finding| finding.severity() == Severity::Impossible);
-        if let (true, ControllerChoice::Grow { maximum_order }) = (impossible, &options.controller) {
-            // no controller of any order will do: what is left is by how much
-            waiting.clear();
-            let order =
-                ORDER_OF_A_RELAXATION.clamp(ground.integrators, (*maximum_order).max(ground.integrators));
-            nearest = Some((f64::NEG_INFINITY, ground.structure(order, order.saturating_sub(1)), None));
-        }
         DesignRun {
             plan: Plan { ground, all: waiting.len(), waiting, found: false, again: false },
             problem,
@@ -90,9 +83,9 @@ impl DesignRun {
             attempt: None,
             current: None,
             samples: None,
-            nearest,
+            nearest: None,
             before: None,
-            relaxing: false,
+            relaxing: impossible,
             unstable: None,
             again: None,
             rounds: vec![],
@@ -128,6 +121,25 @@ impl DesignRun {
             }
         }
         Ok(!self.done)
+    }
+
+    /// Ends it as it stands: where no design is there yet, the controller at hand is audited and becomes one that is not converged.
+    ///
+    /// # Errors
+    /// Those of [`DesignRun::step`].
+    pub fn conclude(&mut self) -> Result<(), DesignError> {
+        let attempt = self.attempt.take().filter(|attempt| !attempt.x().is_empty());
+        if let (None, Some(attempt)) = (&self.design, attempt) {
+            let mut attempt = attempt.audited_as_it_is()?;
+            while attempt.step()? {}
+            if let Some(Ending::Hopeless(audit)) = attempt.ending() {
+                let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
+                self.rounds.extend_from_slice(attempt.rounds());
+                self.take(&attempt, status, audit);
+            }
+        }
+        self.done = true;
+        Ok(())
     }
 
     /// What is being done.
@@ -194,9 +206,10 @@ impl DesignRun {
         match attempt.ending() {
             Some(Ending::Met(audit)) => {
                 self.take(&attempt, DesignStatus::Met, audit);
+                self.done = self.relaxing && !self.plan.again;
                 self.plan.found = true;
                 self.plan.waiting = fewer_zeros(self.current);
-                self.done = self.relaxing || self.plan.waiting.is_empty();
+                self.done |= self.plan.waiting.is_empty();
             }
             Some(Ending::Missed { worst_margin_db, audit: Some(_) })
                 if *worst_margin_db > FEASIBLE_DB && !self.plan.again =>
@@ -207,10 +220,18 @@ impl DesignRun {
             }
             Some(Ending::Missed { worst_margin_db, audit: Some(audit) }) => {
                 let relaxation_db = -worst_margin_db;
-                let conflicts = conflicts(audit, 0.8 * relaxation_db);
-                let status = DesignStatus::Infeasible(Relaxation { relaxation_db, conflicts });
-                self.take(&attempt, status, audit);
-                self.done = true;
+                let is_less = match &self.design {
+                    Some(Design { status: DesignStatus::Infeasible(known), .. }) => {
+                        relaxation_db < known.relaxation_db - RELAXATION_GAINED_DB
+                    }
+                    _ => true,
+                };
+                if is_less {
+                    let conflicts = conflicts(audit, 0.8 * relaxation_db);
+                    let status = DesignStatus::Infeasible(Relaxation { relaxation_db, conflicts });
+                    self.take(&attempt, status, audit);
+                }
+                self.done = self.plan.waiting.is_empty();
             }
             Some(Ending::Missed { worst_margin_db, audit: None }) => {
                 if self.nearest.as_ref().is_none_or(|(best, ..)| worst_margin_db > best) {

@@ -29,6 +29,10 @@ struct Body<'a> {
     structure: StructureRow,
     verification: audit::Body<'a>,
     published: Option<PublishedRow<'a>>,
+    /// In a sampled loop: the design that was made without samples, as it fares here.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    continuous_as_sampled: Option<PublishedRow<'a>>,
+    minimum_delay_margin_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     published_reason: Option<&'static str>,
     rounds: Vec<RoundRow>,
@@ -152,6 +156,8 @@ pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
         structure: structure(&design.structure),
         verification: audit::body(&view.designed.view),
         published: view.published.as_ref().map(published),
+        continuous_as_sampled: view.continuous.as_ref().map(published),
+        minimum_delay_margin_s: view.minimum_delay_margin_s,
         published_reason: view.published.is_none().then_some("the project gives no controller"),
         rounds: design.rounds.iter().map(round).collect(),
         binding: design.binding.iter().map(|limit| binding(view, limit)).collect(),

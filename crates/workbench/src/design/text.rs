@@ -25,10 +25,16 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
     {
         out.push_str(&format!("  {sentence}\n"));
     }
+    if view.minimum_delay_margin_s > 0.0 {
+        let is = if view.bears_its_delay() { "is" } else { "is not" };
+        let asked = DisplayUnit::MILLISECOND.text(view.minimum_delay_margin_s, 3);
+        out.push_str(&format!("  the delay of {asked} that was asked for {is} borne\n"));
+    }
     out.push_str(&format!("\nController\n{}", laws(view)?));
     out.push_str(&format!("\n{}\n", side_by_side(view)));
+    let caution = if view.is_met() { "" } else { ", though it does not keep to every specification" };
     out.push_str(&format!(
-        "\nTo be pasted into the project\n{}",
+        "\nTo be pasted into the project{caution}\n{}",
         snippet(&view.declared_controller, view.declared_prefilter.as_ref())
     ));
     if let Some(conflicts) = conflicts(view) {
@@ -80,17 +86,21 @@ fn laws(view: &ProjectDesign) -> Result<String, LinearError> {
     Ok(lines.concat())
 }
 
-/// What is compared, a row each; the published controller beside the designed one.
+/// What is compared, a row each: the published controller, the designed one, and in a sampled loop the one that was designed without samples.
 fn side_by_side(view: &ProjectDesign) -> String {
     let designed = compared(&view.designed);
     let published = view.published.as_ref().map(compared);
     let mut headings = vec![""];
     headings.extend(published.iter().map(|_| "published"));
     headings.push("designed");
+    let continuous = view.continuous.as_ref().map(compared);
+    headings.extend(continuous.iter().map(|_| "made without samples"));
     let mut rows = table(&headings);
     for (index, (name, cell)) in designed.into_iter().enumerate() {
-        let beside = published.as_ref().and_then(|rows| rows.get(index)).map(|(_, cell)| cell.clone());
-        rows.add_row([name].into_iter().chain(beside).chain([cell]));
+        let of = |other: &Option<Vec<(String, String)>>| {
+            other.as_ref().and_then(|rows| rows.get(index)).map(|(_, cell)| cell.clone())
+        };
+        rows.add_row([name].into_iter().chain(of(&published)).chain([cell]).chain(of(&continuous)));
     }
     rows.trim_fmt()
 }

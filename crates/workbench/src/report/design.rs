@@ -18,7 +18,7 @@ use crate::answer::{OutputFile, significant};
 use crate::audit::{basis, summary};
 use crate::command::{CommandError, Watch};
 use crate::design::{
-    DesignError, ProjectDesign, Rounding, Side, design_project, explanation_words, files, status_sentence,
+    DesignError, ProjectDesign, Rounding, design_project, explanation_words, files, status_sentence,
 };
 use crate::figure::Figure;
 use crate::project::{Loaded, Project};
@@ -41,8 +41,6 @@ pub(super) enum Designed {
 /// A design with what the chapter compares it with.
 pub(super) struct FoundDesign {
     view: ProjectDesign,
-    /// The designed laws of a sampled loop, were they neither sampled nor delayed.
-    unsampled: Option<Side>,
 }
 
 /// Looks for a controller.
@@ -65,8 +63,7 @@ pub(super) fn designed(
         Err(CommandError::Design(error)) => return Ok(Designed::Nothing(vec![error.to_string()])),
         Err(error) => return Err(error),
     };
-    let unsampled = sampling::unsampled(&view.designed, watch)?;
-    Ok(Designed::Found(Box::new(FoundDesign { view, unsampled })))
+    Ok(Designed::Found(Box::new(FoundDesign { view })))
 }
 
 impl Designed {
@@ -138,8 +135,8 @@ fn chapter(found: &FoundDesign, bounds: &[DesignFrequency]) -> Result<Chapter, C
         h3 { "The laws" }
         (tables::laws(view)?)
         h3 { @if view.published.is_some() { "Given and designed side by side" } @else { "What it reaches" } }
-        (tables::comparison(view, found.unsampled.as_ref()))
-        @if let Some(unsampled) = &found.unsampled { p { (sampling::sentence(side, unsampled)) } }
+        (tables::comparison(view))
+        @if let Some(continuous) = &view.continuous { p { (sampling::sentence(side, continuous)) } }
         (opened("The loops among the bounds", &nichols.iter().collect::<Vec<_>>()))
         (opened("The closed loops of the family", &magnitudes.iter().collect::<Vec<_>>()))
         (opened("The prefilter", &prefilters.iter().collect::<Vec<_>>()))

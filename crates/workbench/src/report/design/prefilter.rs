@@ -5,7 +5,7 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_qft::prefilter::{PrefilterBand, PrefilterBandPoint};
 use phea_qft::specification::{Requirement, Specification};
-use phea_qft::verification::Verdict;
+use phea_qft::verification::{TOLERANCE_DB, Verdict};
 
 use crate::answer::significant;
 use crate::audit::frequency_words;
@@ -102,7 +102,7 @@ fn shown(band: &PrefilterBand, drawn: &[f64]) -> Vec<PrefilterBandPoint> {
 }
 
 fn sentence(name: &str, band: &PrefilterBand, shown: &[PrefilterBandPoint]) -> String {
-    if let Some(closed) = band.closed(0.0) {
+    if let Some(closed) = band.closed(TOLERANCE_DB) {
         return format!(
             "The {name} loop leaves none: the family spreads {} dB too far {}.",
             significant(-closed.width_db(), 3),

@@ -44,7 +44,7 @@ fn side_laws(name: &str, side: &Side) -> Result<Vec<Vec<Markup>>, LinearError> {
 }
 
 /// What controllers are compared by, a row each.
-pub(super) fn comparison(view: &ProjectDesign, unsampled: Option<&Side>) -> Markup {
+pub(super) fn comparison(view: &ProjectDesign) -> Markup {
     let mut headings = vec![""];
     let mut columns = Vec::new();
     if let Some(published) = &view.published {
@@ -53,9 +53,9 @@ pub(super) fn comparison(view: &ProjectDesign, unsampled: Option<&Side>) -> Mark
     }
     headings.push("designed");
     columns.push(compared(&view.designed));
-    if let Some(unsampled) = unsampled {
-        headings.push("not sampled");
-        columns.push(compared(unsampled));
+    if let Some(continuous) = &view.continuous {
+        headings.push("made without samples");
+        columns.push(compared(continuous));
     }
     let names = compared(&view.designed).into_iter().map(|(name, _)| name).enumerate();
     let row = |(index, name): (usize, String)| {
