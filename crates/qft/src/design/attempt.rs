@@ -371,12 +371,15 @@ impl Attempt {
         })))
     }
 
-    /// A margin below minus this is new: under a relaxation only what is worse than all that was looked at.
-    fn new_below_db(&self, judgement: &Judgement) -> f64 {
-        if self.relaxes {
-            RELAXATION_TOLERANCE_DB - judgement.worst_margin_db.min(0.0)
-        } else {
-            0.5 * self.options.tolerance_db
+    /// Margins below minus these are new, of single limits and of tracking: where the worst margin itself is looked for, what is worse than all
+    /// that was looked at. Limits of tracking may meet, and a margin to them counts by its share of the room: a negative one is new.
+    fn new_below_db(&self, judgement: &Judgement) -> [f64; 2] {
+        let worst_db = judgement.worst_margin_db;
+        let ordinary = 0.5 * self.options.tolerance_db;
+        match self.aim {
+            Aim::WorstMargin if self.relaxes => [RELAXATION_TOLERANCE_DB - worst_db.min(0.0); 2],
+            Aim::WorstMargin => [ordinary.min(RELAXATION_TOLERANCE_DB - worst_db), ordinary],
+            Aim::Objective => [ordinary; 2],
         }
     }
 

@@ -13,16 +13,20 @@ pub(super) struct Counterexample {
     pub(super) frequency_rad_per_s: Option<f64>,
 }
 
-/// The plants that break a limit by more than `tolerance_db` (both limits of a spread by that much), each once with each of its
+/// The plants whose margin lies below minus a tolerance (that of tracking counts for both limits of a spread), each once with each of its
 /// frequencies.
 pub(super) fn counterexamples(
     findings: &[SpecificationFinding],
-    tolerance_db: f64,
+    [tolerance_db, of_tracking_db]: [f64; 2],
     tracking: TrackingJudgement,
 ) -> Vec<Counterexample> {
     let mut found: Vec<Counterexample> = Vec::new();
     for finding in findings {
-        let tolerance = if is_spread(finding, tracking) { 2.0 * tolerance_db } else { tolerance_db };
+        let tolerance = match finding.requirement {
+            Requirement::Tracking { .. } if tracking == TrackingJudgement::Spread => 2.0 * of_tracking_db,
+            Requirement::Tracking { .. } => of_tracking_db,
+            _ => tolerance_db,
+        };
         let bands = finding.violations.iter().map(|band| &band.worst);
         let cases = finding.worst.iter().chain(&finding.interior).chain(bands);
         let cases = cases.chain(&finding.at_design_frequencies);
