@@ -133,22 +133,22 @@ fn both_controllers_stand_side_by_side_as_their_audits_found_them() {
     assert_eq!(cost.matches(">k ").count(), 5, "{cost}");
 }
 
-/// A sampled loop shows its law as it runs, and what the same law would do without sampling.
+/// A sampled loop shows its law as it runs, and beside it the design that was made without samples: that of the same project when it is continuous.
 #[test]
 fn a_sampled_loop_is_shown_with_what_sampling_changes() {
     let settings = ["controller.sample_time=\"5 ms\"", "controller.delay=\"2 ms\""];
     let report = report_of(LAG, &settings);
     let chapter = chapter(&report).unwrap();
-    for words in
-        ["<i>G</i>(<i>s</i>)", "<i>G</i>(<i>z</i>)", "<i>F</i>(<i>z</i>)", "neither sampled nor delayed"]
-    {
+    for words in ["<i>G</i>(<i>s</i>)", "<i>G</i>(<i>z</i>)", "<i>F</i>(<i>z</i>)", "made without samples"] {
         assert!(chapter.contains(words), "{words}");
     }
     assert_eq!(row(chapter, "verdict").len(), 4);
-    let milliseconds = |cell: &str| cell.trim_end_matches(" ms").parse::<f64>().unwrap();
-    let delays = row(chapter, "delay margin of the family");
-    // the hold delays by half a sample at least, and the loop by 2 ms
-    assert!(milliseconds(delays[3]) > milliseconds(delays[2]) + 2.0, "{delays:?}");
+    let continuous = report_of(LAG, &["controller.delay=\"0 s\""]);
+    let alone = self::chapter(&continuous).unwrap();
+    for name in ["high-frequency gain", "order of controller and prefilter"] {
+        assert_eq!(row(chapter, name)[3], row(alone, name)[2], "{name}");
+    }
+    assert!(chapter.contains("The last column is the design for the continuous loop without delay"));
 }
 
 #[test]
