@@ -13,6 +13,8 @@ mod mistakes;
 mod problems;
 #[path = "design_diagnosis/published.rs"]
 mod published;
+#[path = "rig/thesis.rs"]
+mod rig;
 #[path = "design_diagnosis/soundness.rs"]
 mod soundness;
 #[path = "design_diagnosis/whole_families.rs"]

@@ -11,6 +11,8 @@ mod margins;
 mod published;
 #[path = "shaping/random.rs"]
 mod random;
+#[path = "rig/thesis.rs"]
+mod rig;
 #[path = "shaping/samples.rs"]
 mod samples;
 #[path = "shaping/slopes.rs"]

@@ -12,6 +12,9 @@ use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, gri
 use phea_qft::stability::{FamilyStability, StabilityAudit};
 use phea_qft::verification::{Evidence, PlantPoint, Verdict};
 
+#[path = "rig/thesis.rs"]
+mod rig;
+
 fn parameter(name: &str, minimum: f64, nominal: f64, maximum: f64) -> UncertainParameter {
     UncertainParameter { name: name.into(), nominal, minimum, maximum }
 }
@@ -110,19 +113,8 @@ fn thesis_family(points: [usize; 6]) -> Family {
 }
 
 fn fifth_order<S: Scalar>(p: &[S]) -> PlantCoefficients<S> {
-    let &[friction, flow_gain, leakage, stiffness, w, damping] = p else { panic!("six parameters") };
-    let (area, mass, sensor) = (S::from(1.58336e-3), S::from(13.1), S::from(2e7));
-    let (area2, w2, spool) = (area * area, w * w, S::from(2.0) * damping * w);
-    let (leak, springs) = (leakage * stiffness, stiffness + sensor);
-    let denominator = vec![
-        area2 * mass,
-        spool * area2 * mass + area2 * friction + leak * mass,
-        spool * area2 * friction + w2 * area2 * mass + leak * (spool * mass + friction) + area2 * springs,
-        spool * area2 * springs + w2 * area2 * friction + leak * (spool * friction + w2 * mass + sensor),
-        w2 * area2 * springs + leak * (spool * sensor + w2 * friction),
-        w2 * leak * sensor,
-    ];
-    without_load(vec![area * stiffness * flow_gain * sensor * w2], denominator, S::from(0.0))
+    let RationalCoefficients { numerator, denominator } = rig::force(p);
+    without_load(numerator, denominator, S::from(0.0))
 }
 
 #[test]

@@ -17,5 +17,7 @@ mod plants;
 mod properties;
 #[path = "verification/reach.rs"]
 mod reach;
+#[path = "rig/thesis.rs"]
+mod rig;
 #[path = "verification/thesis.rs"]
 mod thesis;

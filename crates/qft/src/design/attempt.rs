@@ -30,6 +30,8 @@ const ASTRAY_DB: f64 = -6.0;
 const NEIGHBOURS: [f64; 4] = [0.94, 0.97, 1.03, 1.06];
 /// Audits of one structure at most.
 const ROUNDS_MAXIMUM: usize = 40;
+/// Room that a start of a prefilter may take from both edges of its band, dB.
+const BAND_ROOM_DB: f64 = 3.0;
 /// How far inside its limits a search stays, dB: what the audit finds between the samples then still meets them.
 const RESERVE_DB: f64 = 0.001;
 
@@ -281,7 +283,6 @@ impl Attempt {
         if is_near {
             return Ok(self.descend(false));
         }
-        let missed = |_: &Self| Ok(Stage::Ended(Ending::Missed { worst_margin_db, audit: None }));
         match self.options.prefilter {
             PrefilterChoice::Grow { maximum_order } if self.prefilter_order < maximum_order => {
                 self.prefilter_order += 1;
@@ -290,7 +291,7 @@ impl Attempt {
                 self.shaping = Shaping::new(self.structure.clone(), None, self.options.objective, samples)?;
                 self.fit_or(Self::check)
             }
-            _ => missed(self),
+            _ => Ok(Stage::Ended(Ending::Missed { worst_margin_db, audit: None })),
         }
     }
 
@@ -324,7 +325,10 @@ impl Attempt {
             return self.audit();
         }
         self.note(Some(audited_margin_db), &judgement);
-        Ok(self.with(&examples)?.unwrap_or(self.audit()?))
+        match self.with(&examples)? {
+            Some(next) => Ok(next),
+            None => self.audit(),
+        }
     }
 
     fn audit(&self) -> Result<Stage, DesignError> {
@@ -355,7 +359,7 @@ impl Attempt {
         let judgement = self.shaping.judge(&self.x);
         let stable = audit.stability.verdict == Verdict::Met;
         self.note(stable.then(|| worst_margin_db(&audit.specifications)), &judgement);
-        let delayed = too_little_delay(&audit, self.shaping.samples().problem().minimum_delay_margin_s);
+        let delayed = too_little_delay(&audit, self.shaping.samples().problem());
         if audit.verdict == Verdict::Met && delayed.is_empty() {
             return Ok(Stage::Ended(Ending::Met(audit)));
         }
@@ -451,11 +455,8 @@ impl Attempt {
     }
 }
 
-/// Room that a start of a prefilter may take from both edges of its band, dB.
-const BAND_ROOM_DB: f64 = 3.0;
-
 /// Index of the tracking specification, if there is one.
-pub(super) fn tracks(problem: &DesignProblem) -> Option<usize> {
+fn tracks(problem: &DesignProblem) -> Option<usize> {
     problem.specifications.iter().position(|one| matches!(one.requirement, Requirement::Tracking { .. }))
 }
 

@@ -158,7 +158,7 @@ fn joined(left: [f64; 2], right: [f64; 2]) -> [f64; 2] {
 }
 
 /// Least and greatest finite positive frequency that a specification names.
-pub(super) fn span(specifications: &[Specification]) -> [f64; 2] {
+fn span(specifications: &[Specification]) -> [f64; 2] {
     let named = specifications.iter().flat_map(|one| {
         one.frequencies_rad_per_s.iter().chain(&one.band_rad_per_s).map(|frequency| [*frequency; 2])
     });

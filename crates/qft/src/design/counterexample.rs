@@ -1,10 +1,8 @@
 //! What an audit teaches the search: plants and frequencies that it had not looked at.
 
+use super::problem::DesignProblem;
 use crate::specification::Requirement;
 use crate::verification::{Audit, DelayMargin, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict};
-
-/// A delay that is missed by less than this share of it counts as borne.
-const DELAY_SHARE: f64 = 0.01;
 
 /// A plant, or the pair of a spread, and the frequency at which it breaks a limit (0 and infinity included), where there is one.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +21,7 @@ pub(super) fn counterexamples(
     let mut found: Vec<Counterexample> = Vec::new();
     for finding in findings {
         let tolerance = match finding.requirement {
-            Requirement::Tracking { .. } if tracking == TrackingJudgement::Spread => 2.0 * of_tracking_db,
+            _ if is_spread(finding, tracking) => 2.0 * of_tracking_db,
             Requirement::Tracking { .. } => of_tracking_db,
             _ => tolerance_db,
         };
@@ -51,14 +49,14 @@ pub(super) fn unstable_plant(audit: &Audit) -> Vec<Counterexample> {
     }
 }
 
-/// The plant that bears less delay than is demanded, if by more than a share of it.
-pub(super) fn too_little_delay(audit: &Audit, demanded_s: f64) -> Vec<Counterexample> {
-    let borne = audit.delay_margin.iter().filter(|margin| margin.delay_s < (1.0 - DELAY_SHARE) * demanded_s);
+/// The plant that bears less delay than is demanded.
+pub(super) fn too_little_delay(audit: &Audit, problem: &DesignProblem) -> Vec<Counterexample> {
+    let least = audit.delay_margin.iter().filter(|margin| !problem.bears_its_delay(margin.delay_s));
     let example = |margin: &DelayMargin| Counterexample {
         plants: vec![margin.plant.clone()],
         frequency_rad_per_s: Some(margin.frequency_rad_per_s),
     };
-    borne.map(example).collect()
+    least.map(example).collect()
 }
 
 /// The least margin of all specifications, dB.

@@ -22,6 +22,16 @@ pub struct DesignProblem {
     pub minimum_delay_margin_s: f64,
 }
 
+/// A delay that is missed by less than this share of it counts as borne.
+const DELAY_SHARE: f64 = 0.01;
+
+impl DesignProblem {
+    /// Whether a loop with this delay margin in s bears the delay that is asked for, to a hundredth of it.
+    pub fn bears_its_delay(&self, delay_margin_s: f64) -> bool {
+        delay_margin_s >= (1.0 - DELAY_SHARE) * self.minimum_delay_margin_s
+    }
+}
+
 /// What is made least or greatest among the controllers that keep to every specification.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Objective {

@@ -2,14 +2,14 @@
 
 use std::collections::VecDeque;
 
+use phea_dynamics::linear::TransferFunction;
+
 use super::attempt::{Attempt, DesignError, Ending, FEASIBLE_DB};
 use super::binding::{binding_limits, conflicts};
 use super::candidates::Ground;
-use super::diagnosis::{Severity, diagnose};
+use super::diagnosis::{Finding, Severity, diagnose};
 use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
-use phea_dynamics::linear::TransferFunction;
-
 use crate::family::{Extent, Family, random};
 use crate::loop_shaping::{Samples, Structure, search_frequencies};
 use crate::verification::{Audit, PlantPoint, corners};
@@ -42,10 +42,9 @@ struct Plan {
 pub struct DesignRun {
     problem: DesignProblem,
     options: DesignOptions,
+    findings: Vec<Finding>,
     plan: Plan,
     attempt: Option<Attempt>,
-    /// (order, zeros) of the attempt.
-    current: Option<(usize, usize)>,
     samples: Option<Samples>,
     /// The attempt that came nearest, with its worst margin over rate.
     nearest: Option<(f64, Structure, Option<TransferFunction>)>,
@@ -75,13 +74,14 @@ impl DesignRun {
             }
         };
         // where no controller of any order will do, what is left is by how much
-        let impossible = diagnose(&problem).iter().any(|finding| finding.severity() == Severity::Impossible);
+        let findings = diagnose(&problem);
+        let impossible = findings.iter().any(|finding| finding.severity() == Severity::Impossible);
         DesignRun {
             plan: Plan { ground, all: waiting.len(), waiting, found: false, again: false },
             problem,
             options,
+            findings,
             attempt: None,
-            current: None,
             samples: None,
             nearest: None,
             before: None,
@@ -102,6 +102,11 @@ impl DesignRun {
     /// How it works.
     pub fn options(&self) -> &DesignOptions {
         &self.options
+    }
+
+    /// What no controller can do, and what will be hard; see [`diagnose`].
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
     }
 
     /// Does a small part of the work; whether there is more to do.
@@ -170,10 +175,7 @@ impl DesignRun {
         let structure = match (&self.options.controller, self.plan.waiting.pop_front()) {
             (_, None) => return self.end(),
             (ControllerChoice::Given(structure), Some(_)) => structure.clone(),
-            (ControllerChoice::Grow { .. }, Some((order, zeros))) => {
-                self.current = Some((order, zeros));
-                self.plan.ground.structure(order, zeros)
-            }
+            (ControllerChoice::Grow { .. }, Some((order, zeros))) => self.plan.ground.structure(order, zeros),
         };
         let beginning = match &self.before {
             Some(before) => self.plan.ground.grown(&structure, before),
@@ -206,10 +208,9 @@ impl DesignRun {
         match attempt.ending() {
             Some(Ending::Met(audit)) => {
                 self.take(&attempt, DesignStatus::Met, audit);
-                self.done = self.relaxing && !self.plan.again;
                 self.plan.found = true;
-                self.plan.waiting = fewer_zeros(self.current);
-                self.done |= self.plan.waiting.is_empty();
+                self.plan.waiting = fewer_zeros(&self.options.controller, attempt.structure());
+                self.done = self.relaxing || self.plan.waiting.is_empty();
             }
             Some(Ending::Missed { worst_margin_db, audit: Some(_) })
                 if *worst_margin_db > FEASIBLE_DB && !self.plan.again =>
@@ -297,9 +298,11 @@ fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize
     }
 }
 
-/// The same order with one zero fewer: a larger relative degree has less gain at high frequency than any smaller one.
-fn fewer_zeros(current: Option<(usize, usize)>) -> VecDeque<(usize, usize)> {
-    current.and_then(|(order, zeros)| Some((order, zeros.checked_sub(1)?))).into_iter().collect()
+/// The same order with one zero fewer, where structures grow: a larger relative degree has less gain at high frequency than any smaller one.
+fn fewer_zeros(choice: &ControllerChoice, structure: &Structure) -> VecDeque<(usize, usize)> {
+    let [order, zeros] = [structure.roots(-1.0), structure.roots(1.0)];
+    let fewer = zeros.checked_sub(1).filter(|_| matches!(choice, ControllerChoice::Grow { .. }));
+    fewer.map(|zeros| (order, zeros)).into_iter().collect()
 }
 
 /// The plants that a search begins with, the nominal one first.

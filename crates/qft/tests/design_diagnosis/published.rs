@@ -1,14 +1,13 @@
 //! No false alarm on what was published and can be met.
 
 use phea_dynamics::expression::Recorded;
-use phea_dynamics::uncertain_plant::{
-    PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
-};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
 use phea_qft::design::{Severity, diagnose};
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::specification::{Limit, Requirement, Specification};
 
 use crate::problems::{EVERYWHERE, boxed, demand, plain, problem, rational, sampled};
+use crate::rig::force;
 
 fn stability(limit: f64, frequencies: &[f64]) -> Specification {
     demand(Requirement::RobustStability(Limit::Constant(limit)), frequencies, EVERYWHERE)
@@ -102,26 +101,8 @@ fn unstable() {
     assert_eq!(of(0.49).first().map(|finding| finding.severity()), Some(Severity::Impossible));
 }
 
-/// Equation 6.7 with A = 1.58336e-3 m2, M = 13.1 kg, K_S = 2e7 N/m; parameters f_v, K_qU, K_c, K_H, w_nv, xi_v.
-fn force<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
-    let [f, kq, kc, kh, w, xi] = [p[0], p[1], p[2], p[3], p[4], p[5]];
-    let number = |value: f64| Recorded::from(value);
-    let (area, a2) = (number(1.58336e-3), number(1.58336e-3 * 1.58336e-3));
-    let (m, ks, two) = (number(13.1), number(2e7), number(2.0));
-    let (w2, spool, leak, springs) = (w * w, two * xi * w, kc * kh, kh + ks);
-    let denominator = vec![
-        a2 * m,
-        spool * a2 * m + a2 * f + leak * m,
-        spool * a2 * f + w2 * a2 * m + leak * (spool * m + f) + a2 * springs,
-        spool * a2 * springs + w2 * a2 * f + leak * (spool * f + w2 * m + ks),
-        w2 * a2 * springs + leak * (spool * ks + w2 * f),
-        w2 * leak * ks,
-    ];
-    PlantCoefficients {
-        command: RationalCoefficients { numerator: vec![area * kh * kq * ks * w2], denominator },
-        disturbance: None,
-        dead_time_s: 0.0.into(),
-    }
+fn rig<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
+    PlantCoefficients { command: force(p), disturbance: None, dead_time_s: 0.0.into() }
 }
 
 /// The whole of Table 6.3 with the limits of 6.30 to 6.32, continuous and sampled at 1 kHz with 0.5 ms of delay.
@@ -146,7 +127,7 @@ fn thesis() {
         demand(sensitivity, &slow[..5], [0.01, 10.0]),
         demand(tracking, &slow, [0.0, 150.0]),
     ];
-    let continuous = problem(boxed(&parameters, 2, force), specifications);
+    let continuous = problem(boxed(&parameters, 2, rig), specifications);
     assert_eq!(diagnose(&continuous), []);
     let found = diagnose(&sampled(continuous, 1e-3, 0.5e-3));
     assert!(found.iter().all(|finding| finding.severity() == Severity::Warning), "{found:?}");

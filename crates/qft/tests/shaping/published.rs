@@ -12,6 +12,7 @@ use phea_qft::loop_shaping::{Samples, Shaping, Structure, search_frequencies};
 use phea_qft::specification::{Limit, Requirement, Specification};
 
 use crate::random::{plants, rational};
+use crate::rig::force;
 
 const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];
 const POINTS_PER_DECADE: f64 = 40.0;
@@ -196,22 +197,9 @@ fn between_its_design_frequencies_this_design_fails() {
     assert!(given > 0.07, "{given}");
 }
 
-/// Equation 6.7 with A = 1.58336e-3 m2, M = 13.1 kg, K_S = 2e7 N/m; parameters f_v, K_qU, K_c, K_H, w_nv, xi_v.
-fn force<'t>(p: &[Recorded<'t>]) -> (Vec<Recorded<'t>>, Vec<Recorded<'t>>) {
-    let [f, kq, kc, kh, w, xi] = [p[0], p[1], p[2], p[3], p[4], p[5]];
-    let number = |value: f64| Recorded::from(value);
-    let (area, a2) = (number(1.58336e-3), number(1.58336e-3 * 1.58336e-3));
-    let (m, ks, two) = (number(13.1), number(2e7), number(2.0));
-    let (w2, spool, leak, springs) = (w * w, two * xi * w, kc * kh, kh + ks);
-    let denominator = vec![
-        a2 * m,
-        spool * a2 * m + a2 * f + leak * m,
-        spool * a2 * f + w2 * a2 * m + leak * (spool * m + f) + a2 * springs,
-        spool * a2 * springs + w2 * a2 * f + leak * (spool * f + w2 * m + ks),
-        w2 * a2 * springs + leak * (spool * ks + w2 * f),
-        w2 * leak * ks,
-    ];
-    (vec![area * kh * kq * ks * w2], denominator)
+fn rig<'t>(p: &[Recorded<'t>]) -> (Vec<Recorded<'t>>, Vec<Recorded<'t>>) {
+    let RationalCoefficients { numerator, denominator } = force(p);
+    (numerator, denominator)
 }
 
 /// The thesis' controller at the corners of Table 6.3, where its worst plants are at low frequency; with its prefilter, and by spread.
@@ -226,7 +214,7 @@ fn the_published_force_controller() {
         parameter("valve_natural_frequency", 879.0, 1319.0),
         parameter("valve_damping_ratio", 0.72, 1.08),
     ];
-    let plant = recorded(parameters, force);
+    let plant = recorded(parameters, rig);
     let coordinates = along(&plant, Spacing::Linear, 2);
     let members = vertices(&plant, &coordinates).unwrap();
     let family = family(plant, coordinates, members);

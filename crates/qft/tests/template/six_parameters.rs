@@ -1,33 +1,15 @@
 use phea_dynamics::expression::Recorded;
-use phea_dynamics::uncertain_plant::PlantCoefficients;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 use phea_qft::family::Family;
 use phea_qft::family::Spacing::{Linear, Logarithmic};
 use phea_qft::template::{Resolution, TemplateOptions, Templates};
 
+use crate::rig::force;
 use crate::support::{Range, beyond, coefficients, family, plain_loop, random_values};
 
-/// Command to force of a servovalve, cylinder and load cell: thesis 6.7 with A_u 1.58336e-3 m2, M 13.1 kg, K_S 2e7 N/m.
 fn actuator<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
-    let [friction, flow_gain, leak, stiffness, w, damping] = [p[0], p[1], p[2], p[3], p[4], p[5]];
-    let fixed = |value: f64| Recorded::from(value);
-    let area = 1.58336e-3;
-    let (area_squared, mass, sensor) = (fixed(area * area), fixed(13.1), fixed(2e7));
-    let (w_squared, spool) = (w * w, fixed(2.0) * damping * w);
-    let (leak, springs) = (leak * stiffness, stiffness + sensor);
-    let denominator = vec![
-        area_squared * mass,
-        spool * area_squared * mass + area_squared * friction + leak * mass,
-        spool * area_squared * friction
-            + w_squared * area_squared * mass
-            + leak * (spool * mass + friction)
-            + area_squared * springs,
-        spool * area_squared * springs
-            + w_squared * area_squared * friction
-            + leak * (spool * friction + w_squared * mass + sensor),
-        w_squared * area_squared * springs + leak * (spool * sensor + w_squared * friction),
-        w_squared * leak * sensor,
-    ];
-    coefficients(vec![fixed(area) * stiffness * flow_gain * sensor * w_squared], denominator)
+    let RationalCoefficients { numerator, denominator } = force(p);
+    coefficients(numerator, denominator)
 }
 
 /// Ranges of thesis Table 6.3.

@@ -2,36 +2,19 @@
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
-use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainPlant};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Family, Spacing};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{PlantPoint, SpecificationFinding, TrackingJudgement, Verdict, WorstCase};
 
 use crate::plants::{along, audited, compensation, on_grid, parameter, rational, specification, stability};
+use crate::rig::force;
 
 const SLOW: [f64; 8] = [0.01, 0.1, 1.0, 5.0, 10.0, 50.0, 100.0, 150.0];
 
-/// Equation 6.7 with A = 1.58336e-3 m2, M = 13.1 kg, K_S = 2e7 N/m; parameters f_v, K_qU, K_c, K_H, w_nv, xi_v.
-fn force<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
-    let [f, kq, kc, kh, w, xi] = [p[0], p[1], p[2], p[3], p[4], p[5]];
-    let number = |value: f64| Recorded::from(value);
-    let (area, a2) = (number(1.58336e-3), number(1.58336e-3 * 1.58336e-3));
-    let (m, ks, two) = (number(13.1), number(2e7), number(2.0));
-    let (w2, spool, leak, springs) = (w * w, two * xi * w, kc * kh, kh + ks);
-    let denominator = vec![
-        a2 * m,
-        spool * a2 * m + a2 * f + leak * m,
-        spool * a2 * f + w2 * a2 * m + leak * (spool * m + f) + a2 * springs,
-        spool * a2 * springs + w2 * a2 * f + leak * (spool * f + w2 * m + ks),
-        w2 * a2 * springs + leak * (spool * ks + w2 * f),
-        w2 * leak * ks,
-    ];
-    PlantCoefficients {
-        command: RationalCoefficients { numerator: vec![area * kh * kq * ks * w2], denominator },
-        disturbance: None,
-        dead_time_s: 0.0.into(),
-    }
+fn plant<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
+    PlantCoefficients { command: force(p), disturbance: None, dead_time_s: 0.0.into() }
 }
 
 pub(crate) fn thesis_family(points: [usize; 6]) -> Family {
@@ -45,7 +28,7 @@ pub(crate) fn thesis_family(points: [usize; 6]) -> Family {
     ];
     let spacing = |index| if index == 0 || index == 2 { Spacing::Logarithmic } else { Spacing::Linear };
     let coordinates = (0..6).map(|index| along(index, spacing(index), points[index])).collect();
-    on_grid(UncertainPlant::record(parameters, force).unwrap(), coordinates)
+    on_grid(UncertainPlant::record(parameters, plant).unwrap(), coordinates)
 }
 
 pub(crate) fn thesis_loop(delay_s: f64) -> Compensation {

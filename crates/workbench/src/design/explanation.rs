@@ -1,6 +1,6 @@
 //! What can be said of a problem whatever a search finds: impossibilities, and what will be hard.
 
-use phea_qft::design::{DesignProblem, Finding, Severity, diagnose};
+use phea_qft::design::{Finding, Severity};
 use phea_qft::verification::PlantPoint;
 
 /// One sentence on what a controller cannot do, or only hardly.
@@ -20,9 +20,9 @@ pub struct Explanation {
     pub relaxation_db: Option<f64>,
 }
 
-/// All of a problem, impossibilities first.
-pub(super) fn explanations(problem: &DesignProblem) -> Vec<Explanation> {
-    diagnose(problem).iter().map(explanation).collect()
+/// In the order of the findings, impossibilities first.
+pub(super) fn explanations(findings: &[Finding]) -> Vec<Explanation> {
+    findings.iter().map(explanation).collect()
 }
 
 fn explanation(finding: &Finding) -> Explanation {
@@ -77,6 +77,8 @@ fn plants(finding: &Finding) -> Vec<PlantPoint> {
 
 #[cfg(test)]
 mod tests {
+    use phea_qft::design::diagnose;
+
     use super::*;
     use crate::design::design_problem;
     use crate::robust::robust_problem;
@@ -89,7 +91,7 @@ mod tests {
         let source = Memory::default().with("mistake.toml", CONTRADICTORY);
         let project = crate::project::read(&source, "mistake.toml", &[], &[]).unwrap().project;
         let given = robust_problem(&source, &project).unwrap();
-        let found = explanations(&design_problem(&project, &given).unwrap());
+        let found = explanations(&diagnose(&design_problem(&project, &given).unwrap()));
         let impossible = found.iter().find(|one| one.is_impossible && one.specifications == [0, 1]).unwrap();
         // |S| <= w/|jw + 30| up to 10 rad/s and |T| <= 5/|jw + 5| from 8 rad/s: both hold there alone
         assert!((8.0..=10.0).contains(&impossible.frequency_rad_per_s.unwrap()), "{impossible:?}");

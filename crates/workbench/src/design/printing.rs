@@ -81,7 +81,8 @@ fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
     let options = design_options(&loaded.project, &given, Some(7)).unwrap();
     assert_eq!(options.controller, ControllerChoice::Grow { maximum_order: 4 });
     assert_eq!(options.prefilter, PrefilterChoice::Grow { maximum_order: 3 });
-    let view = told(&loaded.project, &given, design(&problem, status), options, &mut |_| true).unwrap();
+    let view =
+        told(&loaded.project, &given, &problem, design(&problem, status), options, &mut |_| true).unwrap();
     (source, loaded, ProjectDesign { published: Some(published), ..view })
 }
 

@@ -26,7 +26,7 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
         out.push_str(&format!("  {sentence}\n"));
     }
     if view.minimum_delay_margin_s > 0.0 {
-        let is = if view.bears_its_delay() { "is" } else { "is not" };
+        let is = if view.bears_its_delay { "is" } else { "is not" };
         let asked = DisplayUnit::MILLISECOND.text(view.minimum_delay_margin_s, 3);
         out.push_str(&format!("  the delay of {asked} that was asked for {is} borne\n"));
     }
