@@ -9,5 +9,6 @@ pub mod frequency;
 pub mod linear;
 pub mod portable;
 pub mod scalar;
+pub mod simulation;
 pub mod time_response;
 pub mod uncertain_plant;

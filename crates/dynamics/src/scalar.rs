@@ -2,8 +2,9 @@
 //!
 //! A model equation is one generic function over [`Scalar`] and never branches on a value: a choice between two
 //! formulas is [`Scalar::less_than`] followed by [`Scalar::select`]. So the same text serves plain numbers
-//! (simulation), [`Dual`] numbers (exact Jacobians) and [`crate::expression::Recorded`] expressions (uncertain plants,
-//! generated code), and leaves room for SIMD lanes and intervals, whose comparison is not a `bool`.
+//! (simulation), [`Lanes`] (ensembles), [`Dual`] numbers (exact Jacobians), [`Dependence`] (their pattern) and
+//! [`crate::expression::Recorded`] expressions (uncertain plants, generated code), and leaves room for intervals, whose
+//! comparison is not a `bool`.
 //!
 //! # Example
 //! One equation, three users:
@@ -20,12 +21,16 @@
 //! assert_eq!(recorded.evaluate(&[2.0, 9.0]), vec![6.0]);
 //! ```
 
+mod dependence;
 mod dual;
+mod lanes;
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+pub use dependence::Dependence;
 pub use dual::Dual;
+pub use lanes::Lanes;
 
 use crate::portable;
 
@@ -75,21 +80,27 @@ pub trait Scalar:
 impl Scalar for f64 {
     type Mask = bool;
 
+    #[inline]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
+    #[inline]
     fn exp(self) -> Self {
         portable::exp(self)
     }
+    #[inline]
     fn ln(self) -> Self {
         portable::ln(self)
     }
+    #[inline]
     fn abs(self) -> Self {
         f64::abs(self)
     }
+    #[inline]
     fn less_than(self, other: Self) -> bool {
         self < other
     }
+    #[inline]
     fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
         if mask { if_true } else { if_false }
     }

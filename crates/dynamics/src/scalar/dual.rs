@@ -1,13 +1,14 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Scalar;
-use crate::portable;
+use super::{Lanes, Scalar};
 
 /// A number and its gradient with respect to N variables: exact first derivatives of a model equation.
 ///
 /// ```text
 /// (u, u') (v, v') = (u v, u' v + u v')                  forward-mode differentiation
 /// ```
+///
+/// The number itself is any scalar S, so that lanes have their derivatives too.
 ///
 /// # Example
 /// d(x² y)/dx = 2 x y and d(x² y)/dy = x²
@@ -18,116 +19,167 @@ use crate::portable;
 /// assert_eq!((x.squared() * y).gradient(), &[30.0, 9.0]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dual<const N: usize> {
-    value: f64,
-    gradient: [f64; N],
+pub struct Dual<const N: usize, S = f64> {
+    value: S,
+    gradient: [S; N],
 }
 
-impl<const N: usize> Dual<N> {
+impl<const N: usize, S: Scalar> Dual<N, S> {
+    /// A number with this gradient.
+    pub fn new(value: S, gradient: [S; N]) -> Self {
+        Dual { value, gradient }
+    }
+
     /// A number that depends on no variable.
-    pub fn constant(value: f64) -> Self {
-        Dual { value, gradient: [0.0; N] }
+    pub fn constant(value: S) -> Self {
+        Dual { value, gradient: [S::from(0.0); N] }
     }
 
     /// The variable with this index, at this value. An index of N or more belongs to no variable: a constant.
-    pub fn variable(value: f64, index: usize) -> Self {
-        let mut gradient = [0.0; N];
+    pub fn variable(value: S, index: usize) -> Self {
+        let mut gradient = [S::from(0.0); N];
         if let Some(slot) = gradient.get_mut(index) {
-            *slot = 1.0;
+            *slot = S::from(1.0);
         }
         Dual { value, gradient }
     }
 
     /// The value.
-    pub fn value(&self) -> f64 {
+    pub fn value(&self) -> S {
         self.value
     }
 
     /// The partial derivatives, one a variable.
-    pub fn gradient(&self) -> &[f64; N] {
+    pub fn gradient(&self) -> &[S; N] {
         &self.gradient
     }
 
     /// f(u), given f(u) and f'(u) as numbers.
-    fn chain(self, value: f64, slope: f64) -> Self {
+    #[inline]
+    fn chain(self, value: S, slope: S) -> Self {
         Dual { value, gradient: self.gradient.map(|g| slope * g) }
     }
 
     /// f(u, v), given its value and its two partial derivatives.
-    fn chain_two(self, other: Self, value: f64, slope: f64, other_slope: f64) -> Self {
-        let mut gradient = [0.0; N];
-        for ((g, a), b) in gradient.iter_mut().zip(self.gradient).zip(other.gradient) {
-            *g = slope * a + other_slope * b;
+    #[inline]
+    fn chain_two(self, other: Self, value: S, slope: S, other_slope: S) -> Self {
+        let mut gradient = self.gradient;
+        for (g, b) in gradient.iter_mut().zip(other.gradient) {
+            *g = slope * *g + other_slope * b;
         }
         Dual { value, gradient }
     }
 }
 
 impl<const N: usize> From<f64> for Dual<N> {
+    #[inline]
     fn from(value: f64) -> Self {
         Dual::constant(value)
     }
 }
 
-impl<const N: usize> Add for Dual<N> {
+impl<const N: usize, const L: usize> From<f64> for Dual<N, Lanes<L>> {
+    #[inline]
+    fn from(value: f64) -> Self {
+        Dual::constant(Lanes::from(value))
+    }
+}
+
+impl<const N: usize, const L: usize> From<Lanes<L>> for Dual<N, Lanes<L>> {
+    #[inline]
+    fn from(value: Lanes<L>) -> Self {
+        Dual::constant(value)
+    }
+}
+
+impl<const N: usize, S: Scalar> Add for Dual<N, S> {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
-        self.chain_two(other, self.value + other.value, 1.0, 1.0)
+        let mut gradient = self.gradient;
+        for (g, b) in gradient.iter_mut().zip(other.gradient) {
+            *g = *g + b;
+        }
+        Dual { value: self.value + other.value, gradient }
     }
 }
 
-impl<const N: usize> Sub for Dual<N> {
+impl<const N: usize, S: Scalar> Sub for Dual<N, S> {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
-        self.chain_two(other, self.value - other.value, 1.0, -1.0)
+        let mut gradient = self.gradient;
+        for (g, b) in gradient.iter_mut().zip(other.gradient) {
+            *g = *g - b;
+        }
+        Dual { value: self.value - other.value, gradient }
     }
 }
 
-impl<const N: usize> Mul for Dual<N> {
+impl<const N: usize, S: Scalar> Mul for Dual<N, S> {
     type Output = Self;
+    #[inline]
     fn mul(self, other: Self) -> Self {
         self.chain_two(other, self.value * other.value, other.value, self.value)
     }
 }
 
-impl<const N: usize> Div for Dual<N> {
+impl<const N: usize, S: Scalar> Div for Dual<N, S> {
     type Output = Self;
+    #[inline]
     fn div(self, other: Self) -> Self {
         let quotient = self.value / other.value;
-        self.chain_two(other, quotient, 1.0 / other.value, -quotient / other.value)
+        let slope = S::from(1.0) / other.value;
+        self.chain_two(other, quotient, slope, -quotient * slope)
     }
 }
 
-impl<const N: usize> Neg for Dual<N> {
+impl<const N: usize, S: Scalar> Neg for Dual<N, S> {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
-        self.chain(-self.value, -1.0)
+        Dual { value: -self.value, gradient: self.gradient.map(|g| -g) }
     }
 }
 
-impl<const N: usize> Scalar for Dual<N> {
-    type Mask = bool;
+impl<const N: usize, S: Scalar> Scalar for Dual<N, S>
+where
+    Dual<N, S>: From<f64>,
+{
+    type Mask = S::Mask;
 
+    #[inline]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        self.chain(root, 0.5 / root)
+        self.chain(root, S::from(0.5) / root)
     }
+    #[inline]
     fn exp(self) -> Self {
-        let value = portable::exp(self.value);
+        let value = self.value.exp();
         self.chain(value, value)
     }
+    #[inline]
     fn ln(self) -> Self {
-        self.chain(portable::ln(self.value), 1.0 / self.value)
+        self.chain(self.value.ln(), S::from(1.0) / self.value)
     }
+    #[inline]
     fn abs(self) -> Self {
-        let slope = if self.value == 0.0 { 0.0 } else { self.value.signum() };
+        let zero = S::from(0.0);
+        let negative = S::select(self.value.less_than(zero), S::from(-1.0), zero);
+        let slope = S::select(zero.less_than(self.value), S::from(1.0), negative);
         self.chain(self.value.abs(), slope)
     }
-    fn less_than(self, other: Self) -> bool {
-        self.value < other.value
+    #[inline]
+    fn less_than(self, other: Self) -> S::Mask {
+        self.value.less_than(other.value)
     }
-    fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
-        if mask { if_true } else { if_false }
+    #[inline]
+    fn select(mask: S::Mask, if_true: Self, if_false: Self) -> Self {
+        let mut gradient = if_true.gradient;
+        for (g, b) in gradient.iter_mut().zip(if_false.gradient) {
+            *g = S::select(mask, *g, b);
+        }
+        Dual { value: S::select(mask, if_true.value, if_false.value), gradient }
     }
 }
 

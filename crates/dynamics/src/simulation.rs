@@ -1,0 +1,131 @@
+//! Nonlinear systems in time: equations written once over [`Scalar`], an L-stable method with error control, inputs that
+//! are known functions of time, delays, samples and events.
+//!
+//! Time enters a system through its inputs alone. Whoever drives it knows each input and its slope at any time, and the
+//! times at which they break, so that no step ever crosses a break and every restart is exact.
+
+use crate::scalar::{Lanes, Scalar};
+
+/// A system of ordinary differential equations.
+///
+/// ```text
+/// dy/dt = f(y, w)            y states, w inputs; both in SI units
+/// ```
+///
+/// Parameters are of type `S`: one number, or lanes of them. The equations are evaluated over any `T` that such parameters
+/// can enter as constants: `S` itself, its dual numbers, and [`crate::scalar::Dependence`].
+pub trait System<S: Scalar> {
+    /// Number of states.
+    fn states(&self) -> usize;
+
+    /// Number of inputs, delayed waves included.
+    fn inputs(&self) -> usize;
+
+    /// Typical magnitude of each state, in its unit: what the error is measured by where the state itself is smaller.
+    fn scales(&self) -> Vec<f64>;
+
+    /// Rates of all states, per second.
+    fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]);
+
+    /// How long each delayed wave travels, in s. The last inputs are these waves as they arrive, in this order.
+    fn delays(&self) -> Vec<S> {
+        Vec::new()
+    }
+
+    /// What is sent into each delay.
+    fn outgoing<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _waves: &mut [T]) {}
+
+    /// Number of indicators.
+    fn indicators(&self) -> usize {
+        0
+    }
+
+    /// Quantities whose change of sign is an event (contact, cavitation): reported with its time, never acted on.
+    fn indicate<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _indicators: &mut [T]) {}
+}
+
+/// A plant that a controller commands.
+///
+/// ```text
+/// dy/dt = f(y, u, w),        F = h(y, w)          u the command, w other inputs, F what the controller measures
+/// ```
+pub trait Plant<S: Scalar> {
+    /// Number of states.
+    fn states(&self) -> usize;
+
+    /// Number of inputs beside the command, delayed waves included.
+    fn inputs(&self) -> usize;
+
+    /// Typical magnitude of each state, in its unit.
+    fn scales(&self) -> Vec<f64>;
+
+    /// Rates of all states, per second.
+    fn rates<T: Scalar + From<S>>(&self, state: &[T], command: T, inputs: &[T], rates: &mut [T]);
+
+    /// What the controller measures.
+    fn measurement<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T;
+
+    /// As [`System::delays`].
+    fn delays(&self) -> Vec<S> {
+        Vec::new()
+    }
+
+    /// As [`System::outgoing`].
+    fn outgoing<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _waves: &mut [T]) {}
+
+    /// As [`System::indicators`].
+    fn indicators(&self) -> usize {
+        0
+    }
+
+    /// As [`System::indicate`].
+    fn indicate<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _indicators: &mut [T]) {}
+}
+
+/// A scalar that is one or several numbers side by side.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::scalar::Lanes;
+/// use phea_dynamics::simulation::Lane;
+/// assert_eq!(2.5_f64.lane(0), 2.5);
+/// assert_eq!(Lanes([1.0, 2.0]).with_lane(1, 5.0), Lanes([1.0, 5.0]));
+/// ```
+pub trait Lane: Scalar {
+    /// How many numbers.
+    const COUNT: usize;
+
+    /// The number in one lane. A lane beyond the last is the last.
+    fn lane(self, index: usize) -> f64;
+
+    /// With another number in one lane.
+    fn with_lane(self, index: usize, value: f64) -> Self;
+}
+
+impl Lane for f64 {
+    const COUNT: usize = 1;
+
+    #[inline]
+    fn lane(self, _index: usize) -> f64 {
+        self
+    }
+    #[inline]
+    fn with_lane(self, _index: usize, value: f64) -> f64 {
+        value
+    }
+}
+
+impl<const L: usize> Lane for Lanes<L> {
+    const COUNT: usize = L;
+
+    #[inline]
+    fn lane(self, index: usize) -> f64 {
+        self.0[index.min(L - 1)]
+    }
+    #[inline]
+    fn with_lane(self, index: usize, value: f64) -> Self {
+        let mut lanes = self.0;
+        lanes[index.min(L - 1)] = value;
+        Lanes(lanes)
+    }
+}
