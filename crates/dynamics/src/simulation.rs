@@ -4,6 +4,10 @@
 //! Time enters a system through its inputs alone. Whoever drives it knows each input and its slope at any time, and the
 //! times at which they break, so that no step ever crosses a break and every restart is exact.
 
+mod profile;
+
+pub use profile::{Moment, Piece, Profile, ProfileError};
+
 use crate::scalar::{Lanes, Scalar};
 
 /// A system of ordinary differential equations.

@@ -1,0 +1,300 @@
+//! Known functions of time: references and load motions, smooth between breaks.
+
+mod interpolation;
+mod piece;
+
+pub use piece::{Moment, Piece};
+
+use piece::Shape;
+
+/// A known function of time w(t), in whatever unit its user gives it: smooth pieces, one after the other.
+///
+/// ```text
+/// w(t) = p_k(t)     for b_k <= t < b_{k+1},      b_0 = -inf          p_k smooth, b_1, b_2 ... the breaks
+/// ```
+///
+/// At a break the new piece holds already. Whoever integrates across a break asks for the [`Piece`] of each side: a piece is
+/// an analytic function that can be evaluated beyond its ends.
+///
+/// # Example
+/// A load that moves by 5 mm in 0.1 s, three seconds after the start
+/// ```
+/// use phea_dynamics::simulation::Profile;
+/// let motion = Profile::smooth_step(3.0, 0.1, 5e-3)?;
+/// assert_eq!((motion.value(2.9), motion.value(3.2)), (0.0, 5e-3));
+/// assert!((motion.value(3.05) - 2.5e-3).abs() < 1e-15);
+/// assert!((motion.rate(3.05) - 15.0 / 8.0 * 5e-3 / 0.1).abs() < 1e-12);
+/// assert_eq!(motion.breaks(), [3.0, 3.1]);
+/// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    first: Piece,
+    later: Vec<(f64, Piece)>,
+}
+
+/// Why there is no such function of time.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ProfileError {
+    /// A number outside the range in which the function has a meaning.
+    #[error("{what} is {value}; it must be {expected}")]
+    OutOfRange {
+        /// What the number is.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The range, in words.
+        expected: &'static str,
+    },
+    /// Times that do not rise strictly, or are not finite.
+    #[error("time number {index} ({time_s} s) does not come after the one before it")]
+    TimeOrder {
+        /// Position in the list, from zero.
+        index: usize,
+        /// The time, s.
+        time_s: f64,
+    },
+    /// Too few points to interpolate between, or a value missing.
+    #[error("{values} values at {times} times; as many of each are needed, and at least two")]
+    Count {
+        /// How many times there are.
+        times: usize,
+        /// How many values there are.
+        values: usize,
+    },
+}
+
+impl Profile {
+    /// Always this value.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::simulation::Profile;
+    /// assert_eq!((Profile::constant(4.0).value(1e3), Profile::constant(4.0).rate(0.0)), (4.0, 0.0));
+    /// ```
+    pub fn constant(value: f64) -> Profile {
+        Profile { first: Piece::new(Shape::Constant { value }), later: Vec::new() }
+    }
+
+    /// Piecewise constant: `initial`, and from each time on the value beside it.
+    ///
+    /// # Errors
+    /// [`ProfileError::TimeOrder`] unless the times rise strictly, [`ProfileError::OutOfRange`] for a value that is not finite.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::simulation::Profile;
+    /// let reference = Profile::steps(0.0, &[(2.0, 4000.0), (4.0, 1000.0)])?;
+    /// assert_eq!([1.0, 2.0, 3.9, 4.0].map(|time_s| reference.value(time_s)), [0.0, 4000.0, 4000.0, 1000.0]);
+    /// assert_eq!(reference.breaks(), [2.0, 4.0]);
+    /// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
+    /// ```
+    pub fn steps(initial: f64, steps: &[(f64, f64)]) -> Result<Profile, ProfileError> {
+        rising(steps.iter().map(|step| step.0))?;
+        for value in steps.iter().map(|step| step.1).chain([initial]) {
+            finite("a value of the steps", value)?;
+        }
+        let piece = |&(time_s, value): &(f64, f64)| (time_s, Piece::new(Shape::Constant { value }));
+        Ok(Profile { later: steps.iter().map(piece).collect(), ..Profile::constant(initial) })
+    }
+
+    /// From zero to `distance` within `duration_s`, with velocity and acceleration zero at both ends.
+    ///
+    /// ```text
+    /// w = d (10 s^3 - 15 s^4 + 6 s^5),     s = (t - t_0)/D in [0, 1];      greatest rate 15/8 d/D at s = 1/2
+    /// ```
+    ///
+    /// # Errors
+    /// [`ProfileError::OutOfRange`] unless the duration is positive and all numbers are finite.
+    pub fn smooth_step(start_s: f64, duration_s: f64, distance: f64) -> Result<Profile, ProfileError> {
+        finite("the start of a smooth step", start_s)?;
+        positive("the duration of a smooth step", duration_s)?;
+        finite("the distance of a smooth step", distance)?;
+        let coefficients = [0.0, 0.0, 0.0, 10.0, -15.0, 6.0].map(|coefficient| coefficient * distance);
+        let rise = Shape::Polynomial { origin_s: start_s, span_s: duration_s, coefficients };
+        let end = Shape::Constant { value: distance };
+        Ok(Profile::from_rest(&[(start_s, rise), (start_s + duration_s, end)]))
+    }
+
+    /// From zero towards `distance`, as a first-order lag answers a step.
+    ///
+    /// ```text
+    /// w = d (1 - exp(-(t - t_0)/tau)),     t >= t_0;      rate d/tau at t_0
+    /// ```
+    ///
+    /// # Errors
+    /// [`ProfileError::OutOfRange`] unless the time constant is positive and all numbers are finite.
+    pub fn first_order(start_s: f64, time_constant_s: f64, distance: f64) -> Result<Profile, ProfileError> {
+        finite("the start of a first-order step", start_s)?;
+        positive("the time constant of a first-order step", time_constant_s)?;
+        finite("the distance of a first-order step", distance)?;
+        let approach = Shape::Exponential { origin_s: start_s, time_constant_s, distance };
+        Ok(Profile::from_rest(&[(start_s, approach)]))
+    }
+
+    /// Zero, and a sine from its start on; the rate jumps there.
+    ///
+    /// ```text
+    /// w = a sin(omega (t - t_0)),     t >= t_0;      omega in rad/s
+    /// ```
+    ///
+    /// # Errors
+    /// [`ProfileError::OutOfRange`] unless the frequency is positive and all numbers are finite.
+    pub fn sine(start_s: f64, amplitude: f64, frequency_rad_per_s: f64) -> Result<Profile, ProfileError> {
+        finite("the start of a sine", start_s)?;
+        finite("the amplitude of a sine", amplitude)?;
+        positive("the frequency of a sine", frequency_rad_per_s)?;
+        let sine = Shape::Sine {
+            origin_s: start_s,
+            amplitude,
+            frequency_rad_per_s,
+            sweep_rad_per_s2: 0.0,
+            span_s: 0.0,
+        };
+        Ok(Profile::from_rest(&[(start_s, sine)]))
+    }
+
+    /// Zero, a sine whose frequency moves evenly from one to the other, and the value it ends with.
+    ///
+    /// ```text
+    /// w = a sin(omega_0 tau + (omega_1 - omega_0) tau^2/(2 D)),     tau = t - t_0 in [0, D];      omega in rad/s
+    /// ```
+    ///
+    /// # Errors
+    /// [`ProfileError::OutOfRange`] unless duration and frequencies are positive and all numbers are finite.
+    pub fn chirp(
+        start_s: f64,
+        duration_s: f64,
+        amplitude: f64,
+        [initial_rad_per_s, final_rad_per_s]: [f64; 2],
+    ) -> Result<Profile, ProfileError> {
+        finite("the start of a chirp", start_s)?;
+        positive("the duration of a chirp", duration_s)?;
+        finite("the amplitude of a chirp", amplitude)?;
+        positive("the initial frequency of a chirp", initial_rad_per_s)?;
+        positive("the final frequency of a chirp", final_rad_per_s)?;
+        let sine = Shape::Sine {
+            origin_s: start_s,
+            amplitude,
+            frequency_rad_per_s: initial_rad_per_s,
+            sweep_rad_per_s2: (final_rad_per_s - initial_rad_per_s) / duration_s,
+            span_s: duration_s,
+        };
+        let end_s = start_s + duration_s;
+        let end = Shape::Constant { value: Piece::new(sine).at(end_s).value };
+        Ok(Profile::from_rest(&[(start_s, sine), (end_s, end)]))
+    }
+
+    /// Through measured points by a shape-preserving cubic, held before the first and after the last; each point is a break.
+    ///
+    /// ```text
+    /// h_k = t_{k+1} - t_k,   s_k = (w_{k+1} - w_k)/h_k
+    /// m_k = 0                                                                     if s_{k-1} s_k <= 0
+    /// m_k = 3 (h_{k-1} + h_k)/((2 h_k + h_{k-1})/s_{k-1} + (h_k + 2 h_{k-1})/s_k)   otherwise
+    /// ```
+    ///
+    /// with w(t_k) = w_k and w'(t_k) = m_k at both ends of each cubic. The velocity is continuous between first and last point,
+    /// and no motion beyond the measured values is made up: between two points the curve stays between them. (Straight
+    /// lines would make the velocity jump at each point, an ordinary spline would overshoot.) At the first and the
+    /// last point the slope is the three-point one of the two nearest intervals, limited to keep the shape. Source: Fritsch
+    /// and Butland 1984, a method for constructing local monotone piecewise cubic interpolants.
+    ///
+    /// # Errors
+    /// [`ProfileError::Count`], [`ProfileError::TimeOrder`], [`ProfileError::OutOfRange`] for a value that is not finite.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::simulation::Profile;
+    /// let measured = Profile::table(&[0.0, 1.0, 2.0], &[0.0, 1.0, 1.0])?;
+    /// assert_eq!((measured.value(1.0), measured.value(1.5), measured.rate(1.0)), (1.0, 1.0, 0.0));
+    /// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
+    /// ```
+    pub fn table(times_s: &[f64], values: &[f64]) -> Result<Profile, ProfileError> {
+        if times_s.len() != values.len() || values.len() < 2 {
+            return Err(ProfileError::Count { times: times_s.len(), values: values.len() });
+        }
+        rising(times_s.iter().copied())?;
+        for &value in values {
+            finite("a value of the table", value)?;
+        }
+        Ok(interpolation::through(times_s, values))
+    }
+
+    /// The function at a time.
+    pub fn value(&self, time_s: f64) -> f64 {
+        self.piece(time_s).at(time_s).value
+    }
+
+    /// Its first derivative, per second.
+    pub fn rate(&self, time_s: f64) -> f64 {
+        self.piece(time_s).at(time_s).rate
+    }
+
+    /// Its second derivative, per second squared.
+    pub fn acceleration(&self, time_s: f64) -> f64 {
+        self.piece(time_s).at(time_s).acceleration
+    }
+
+    /// The piece that holds from this time on.
+    ///
+    /// # Example
+    /// Both sides of a break
+    /// ```
+    /// use phea_dynamics::simulation::Profile;
+    /// let reference = Profile::steps(0.0, &[(2.0, 4000.0)])?;
+    /// assert_eq!((reference.piece(1.9).at(2.0).value, reference.piece(2.0).at(2.0).value), (0.0, 4000.0));
+    /// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
+    /// ```
+    pub fn piece(&self, time_s: f64) -> Piece {
+        let begun = self.later.partition_point(|(start_s, _)| *start_s <= time_s);
+        begun.checked_sub(1).and_then(|last| self.later.get(last)).map_or(self.first, |(_, piece)| *piece)
+    }
+
+    /// The times at which the function or one of its derivatives jumps, rising.
+    pub fn breaks(&self) -> Vec<f64> {
+        self.later.iter().map(|(start_s, _)| *start_s).collect()
+    }
+
+    /// The longest step that cannot pass over a swing unseen, in s: a quarter of the shortest period; none without a swing.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::simulation::Profile;
+    /// let sine = Profile::sine(0.0, 1.0, 2.0 * std::f64::consts::PI)?;
+    /// assert_eq!((sine.longest_step(), Profile::constant(1.0).longest_step()), (Some(0.25), None));
+    /// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
+    /// ```
+    pub fn longest_step(&self) -> Option<f64> {
+        let pieces = self.later.iter().map(|(_, piece)| piece).chain([&self.first]);
+        pieces.filter_map(Piece::quarter_period_s).reduce(f64::min)
+    }
+
+    /// Zero, then these.
+    fn from_rest(shapes: &[(f64, Shape)]) -> Profile {
+        let later = shapes.iter().map(|&(start_s, shape)| (start_s, Piece::new(shape))).collect();
+        Profile { later, ..Profile::constant(0.0) }
+    }
+}
+
+fn rising(times_s: impl Iterator<Item = f64>) -> Result<(), ProfileError> {
+    let mut last = f64::NEG_INFINITY;
+    for (index, time_s) in times_s.enumerate() {
+        if !(time_s.is_finite() && time_s > last) {
+            return Err(ProfileError::TimeOrder { index, time_s });
+        }
+        last = time_s;
+    }
+    Ok(())
+}
+
+fn finite(what: &'static str, value: f64) -> Result<(), ProfileError> {
+    if value.is_finite() { Ok(()) } else { Err(ProfileError::OutOfRange { what, value, expected: "finite" }) }
+}
+
+fn positive(what: &'static str, value: f64) -> Result<(), ProfileError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(())
+    } else {
+        Err(ProfileError::OutOfRange { what, value, expected: "positive and finite" })
+    }
+}

@@ -1,0 +1,79 @@
+use crate::portable;
+
+/// One smooth piece of a [`super::Profile`]: an analytic function, defined beyond its ends as well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece(Shape);
+
+/// A function of time at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Its value.
+    pub value: f64,
+    /// Its first derivative, per second.
+    pub rate: f64,
+    /// Its second derivative, per second squared.
+    pub acceleration: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Shape {
+    /// A value.
+    Constant { value: f64 },
+    /// Sum over k of c_k s^k, s = (t - origin)/span; lowest power first.
+    Polynomial { origin_s: f64, span_s: f64, coefficients: [f64; 6] },
+    /// d (1 - exp(-(t - origin)/tau)).
+    Exponential { origin_s: f64, time_constant_s: f64, distance: f64 },
+    /// a sin(omega tau + r tau^2/2), tau = t - origin; the frequency omega + r tau holds up to the span.
+    Sine { origin_s: f64, amplitude: f64, frequency_rad_per_s: f64, sweep_rad_per_s2: f64, span_s: f64 },
+}
+
+impl Piece {
+    pub(super) fn new(shape: Shape) -> Piece {
+        Piece(shape)
+    }
+
+    /// The function, its rate and its acceleration at a time.
+    #[inline]
+    pub fn at(&self, time_s: f64) -> Moment {
+        match self.0 {
+            Shape::Constant { value } => Moment { value, rate: 0.0, acceleration: 0.0 },
+            Shape::Polynomial { origin_s, span_s, coefficients } => {
+                polynomial(coefficients, (time_s - origin_s) / span_s, span_s)
+            }
+            Shape::Exponential { origin_s, time_constant_s, distance } => {
+                let approached = portable::expm1(-(time_s - origin_s) / time_constant_s);
+                let rate = distance * (1.0 + approached) / time_constant_s;
+                Moment { value: -distance * approached, rate, acceleration: -rate / time_constant_s }
+            }
+            Shape::Sine { origin_s, amplitude, frequency_rad_per_s, sweep_rad_per_s2, .. } => {
+                let tau = time_s - origin_s;
+                let phase = (frequency_rad_per_s + 0.5 * sweep_rad_per_s2 * tau) * tau;
+                let frequency = frequency_rad_per_s + sweep_rad_per_s2 * tau;
+                let (sine, cosine) = (portable::sin(phase), portable::cos(phase));
+                Moment {
+                    value: amplitude * sine,
+                    rate: amplitude * frequency * cosine,
+                    acceleration: amplitude * (sweep_rad_per_s2 * cosine - frequency * frequency * sine),
+                }
+            }
+        }
+    }
+
+    /// A quarter of the shortest period within the piece, in s; none without a swing.
+    pub(super) fn quarter_period_s(&self) -> Option<f64> {
+        let Shape::Sine { frequency_rad_per_s, sweep_rad_per_s2, span_s, .. } = self.0 else { return None };
+        let highest = frequency_rad_per_s.max(frequency_rad_per_s + sweep_rad_per_s2 * span_s);
+        Some(0.5 * std::f64::consts::PI / highest)
+    }
+}
+
+/// Horner's scheme, for the polynomial and both derivatives at once.
+fn polynomial(coefficients: [f64; 6], s: f64, span_s: f64) -> Moment {
+    let (mut value, mut first, mut half_second) = (0.0, 0.0, 0.0);
+    for coefficient in coefficients.into_iter().rev() {
+        half_second = half_second * s + first;
+        first = first * s + value;
+        value = value * s + coefficient;
+    }
+    Moment { value, rate: first / span_s, acceleration: 2.0 * half_second / (span_s * span_s) }
+}
