@@ -118,6 +118,9 @@ pub enum LinearError {
         /// `"continuous"` or `"sampled"`.
         needed: &'static str,
     },
+    /// A strictly proper compensator where the output must follow the input at once.
+    #[error("the compensator is strictly proper: no error brings its output to a limit at once")]
+    NoFeedthrough,
     /// A sample time that is zero, negative or not finite.
     #[error("a sample time must be positive, not {sample_time_s} s")]
     SampleTime {

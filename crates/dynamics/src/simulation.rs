@@ -4,9 +4,22 @@
 //! Time enters a system through its inputs alone. Whoever drives it knows each input and its slope at any time, and the
 //! times at which they break, so that no step ever crosses a break and every restart is exact.
 
+mod closed_loop;
+mod course;
+mod driver;
+mod history;
+mod passage;
+mod pattern;
 mod profile;
+mod rosenbrock;
+mod step_matrix;
+mod trajectory;
 
+pub use closed_loop::{ClosedLoop, HeldPlant, LoopSignals};
+pub use course::{Course, Event, Input, Observer, Outcome, Sampler, Settings, SimulationError, Status, Work};
+pub use driver::{Queue, Task, drive};
 pub use profile::{Moment, Piece, Profile, ProfileError};
+pub use trajectory::{Simulated, Trajectory, simulate};
 
 use crate::scalar::{Lanes, Scalar};
 
@@ -63,11 +76,22 @@ pub trait Plant<S: Scalar> {
     /// Typical magnitude of each state, in its unit.
     fn scales(&self) -> Vec<f64>;
 
+    /// Typical magnitude of the command, in its unit.
+    fn command_scale(&self) -> f64;
+
+    /// Typical magnitude of what is measured, in its unit.
+    fn measurement_scale(&self) -> f64;
+
     /// Rates of all states, per second.
     fn rates<T: Scalar + From<S>>(&self, state: &[T], command: T, inputs: &[T], rates: &mut [T]);
 
     /// What the controller measures.
     fn measurement<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T;
+
+    /// What a feed-forward would compensate: the velocity of a load, in m/s.
+    fn disturbance<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T]) -> T {
+        T::from(0.0)
+    }
 
     /// As [`System::delays`].
     fn delays(&self) -> Vec<S> {

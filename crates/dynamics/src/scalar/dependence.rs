@@ -15,7 +15,7 @@ use super::{Lanes, Scalar};
 /// assert!(result.includes(0) && result.includes(1) && result.includes(2));
 /// assert!(!(x + y).includes(2));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dependence([u64; 4]);
 
 impl Dependence {

@@ -1,0 +1,332 @@
+//! A plant under a controller: one that acts continuously, or one that holds its command between samples.
+
+use super::{Plant, System};
+use crate::controller::{AntiWindup, Controller};
+use crate::linear::{LinearError, StateSpace, TimeDomain, TransferFunction};
+use crate::scalar::Scalar;
+
+/// A compensator as states, its zeros left out.
+///
+/// ```text
+/// dx/dt = A x + B e,        y = C x + D e
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+struct Realization {
+    states: usize,
+    /// (row, column, value) of A.
+    dynamics: Vec<(usize, usize, f64)>,
+    /// (row, value) of B.
+    drive: Vec<(usize, f64)>,
+    /// (column, value) of C.
+    taps: Vec<(usize, f64)>,
+    feedthrough: f64,
+}
+
+impl Realization {
+    fn new(function: &TransferFunction) -> Result<Realization, LinearError> {
+        if function.domain() != TimeDomain::Continuous {
+            return Err(LinearError::WrongDomain {
+                operation: "acting between samples",
+                needed: "continuous",
+            });
+        }
+        let system = StateSpace::from_transfer_function(function)?;
+        let states = system.order();
+        let entries = (0..states).flat_map(|row| (0..states).map(move |column| (row, column)));
+        let dynamics = entries.map(|(row, column)| (row, column, system.a()[(row, column)]));
+        let drive = (0..states).map(|row| (row, system.b()[(row, 0)]));
+        let taps = (0..states).map(|column| (column, system.c()[(0, column)]));
+        Ok(Realization {
+            states,
+            dynamics: dynamics.filter(|entry| entry.2 != 0.0).collect(),
+            drive: drive.filter(|entry| entry.1 != 0.0).collect(),
+            taps: taps.filter(|entry| entry.1 != 0.0).collect(),
+            feedthrough: system.d()[(0, 0)],
+        })
+    }
+
+    /// Magnitudes of the states that make an output of this magnitude, directly or through the states they drive.
+    fn scales(&self, output: f64) -> Vec<f64> {
+        let mut scales = vec![f64::INFINITY; self.states];
+        for &(column, value) in &self.taps {
+            scales[column] = output / value.abs();
+        }
+        let rate = |state: usize| {
+            let own = self.dynamics.iter().find(|&&(row, column, _)| row == state && column == state);
+            own.map_or(1.0, |entry| entry.2.abs())
+        };
+        // A chain of sections lists the last one first: what a state drives stands before it.
+        for state in 0..self.states {
+            for &(row, column, value) in self.dynamics.iter().filter(|entry| entry.0 < state) {
+                if column == state && scales[row].is_finite() {
+                    scales[state] = scales[state].min(scales[row] * rate(row) / value.abs());
+                }
+            }
+        }
+        scales.iter().map(|&scale| if scale.is_finite() { scale } else { output }).collect()
+    }
+
+    /// C x.
+    fn tapped<T: Scalar>(&self, state: &[T]) -> T {
+        let products = self.taps.iter().map(|&(column, value)| T::from(value) * state[column]);
+        products.fold(T::from(0.0), |sum, product| sum + product)
+    }
+
+    fn output<T: Scalar>(&self, state: &[T], input: T) -> T {
+        self.tapped(state) + T::from(self.feedthrough) * input
+    }
+
+    fn rates<T: Scalar>(&self, state: &[T], input: T, rates: &mut [T]) {
+        rates.fill(T::from(0.0));
+        for &(row, column, value) in &self.dynamics {
+            rates[row] = rates[row] + T::from(value) * state[column];
+        }
+        for &(row, value) in &self.drive {
+            rates[row] = rates[row] + T::from(value) * input;
+        }
+    }
+}
+
+/// A plant under a continuous controller.
+///
+/// ```text
+/// u = G (F r - y) + k d,    |u| <= limit,    delayed;        inputs r and those of the plant; states of plant, G, F
+/// ```
+///
+/// The plant's disturbance d (a load's velocity) may be fed forward. A limited command stops the integral part as the
+/// controller's [`AntiWindup`] says: clamping holds the states of G while the error drives the command further out, back
+/// calculation drives them with the error that would have given the limited command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosedLoop<P> {
+    plant: P,
+    feedback: Realization,
+    prefilter: Realization,
+    limit: f64,
+    anti_windup: AntiWindup,
+    feed_forward: f64,
+    delay_s: f64,
+}
+
+impl<P> ClosedLoop<P> {
+    /// This plant under this controller, the disturbance fed forward with this gain.
+    ///
+    /// # Errors
+    /// [`LinearError::WrongDomain`] for a sampled controller; [`LinearError::Improper`]; [`LinearError::NotRational`] for a
+    /// compensator with dead time; [`LinearError::NoFeedthrough`] for back calculation through a strictly proper compensator,
+    /// whose command no error can bring to its limit at once.
+    pub fn new(plant: P, controller: &Controller, feed_forward: f64) -> Result<Self, LinearError> {
+        let feedback = Realization::new(&controller.feedback.transfer_function()?)?;
+        let prefilter = Realization::new(&controller.prefilter.transfer_function()?)?;
+        let anti_windup = controller.anti_windup;
+        if anti_windup == AntiWindup::BackCalculation && feedback.feedthrough == 0.0 {
+            return Err(LinearError::NoFeedthrough);
+        }
+        let limit = controller.command_limit.unwrap_or(f64::INFINITY);
+        let delay_s = controller.timing.delay_s;
+        Ok(ClosedLoop { plant, feedback, prefilter, limit, anti_windup, feed_forward, delay_s })
+    }
+
+    /// The plant.
+    pub fn plant(&self) -> &P {
+        &self.plant
+    }
+
+    /// The plant, to be changed.
+    pub fn plant_mut(&mut self) -> &mut P {
+        &mut self.plant
+    }
+
+    /// How many states controller and prefilter have.
+    pub fn controller_states(&self) -> usize {
+        self.feedback.states + self.prefilter.states
+    }
+
+    fn is_delayed(&self) -> bool {
+        self.delay_s > 0.0
+    }
+
+    /// Command before and after its limit, error, and reference behind the prefilter, for states and inputs of the loop.
+    pub fn signals<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> LoopSignals<T>
+    where
+        P: Plant<S>,
+    {
+        let (of_plant, of_controller) = state.split_at(self.plant.states());
+        let (of_feedback, of_prefilter) = of_controller.split_at(self.feedback.states);
+        let own = &inputs[1..1 + self.plant.inputs()];
+        let filtered_reference = self.prefilter.output(of_prefilter, inputs[0]);
+        let measurement = self.plant.measurement(of_plant, own);
+        let error = filtered_reference - measurement;
+        let mut wanted = self.feedback.output(of_feedback, error);
+        if self.feed_forward != 0.0 {
+            wanted = wanted + T::from(self.feed_forward) * self.plant.disturbance(of_plant, own);
+        }
+        let command = wanted.minimum(T::from(self.limit)).maximum(T::from(-self.limit));
+        LoopSignals { filtered_reference, measurement, error, wanted, command }
+    }
+
+    /// What drives the states of G.
+    fn driving<T: Scalar>(&self, signals: &LoopSignals<T>) -> T {
+        match self.anti_windup {
+            AntiWindup::BackCalculation => {
+                signals.error + (signals.command - signals.wanted) / T::from(self.feedback.feedthrough)
+            }
+            AntiWindup::None | AntiWindup::Clamping => signals.error,
+        }
+    }
+}
+
+/// Signals of a control loop at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopSignals<T> {
+    /// F r.
+    pub filtered_reference: T,
+    /// y.
+    pub measurement: T,
+    /// F r - y.
+    pub error: T,
+    /// The command before its limit.
+    pub wanted: T,
+    /// The command within its limit, before any delay.
+    pub command: T,
+}
+
+impl<S: Scalar, P: Plant<S>> System<S> for ClosedLoop<P> {
+    fn states(&self) -> usize {
+        self.plant.states() + self.feedback.states + self.prefilter.states
+    }
+
+    fn inputs(&self) -> usize {
+        1 + self.plant.inputs() + usize::from(self.is_delayed())
+    }
+
+    fn scales(&self) -> Vec<f64> {
+        let mut scales = self.plant.scales();
+        scales.extend(self.feedback.scales(self.plant.command_scale()));
+        scales.extend(self.prefilter.scales(self.plant.measurement_scale()));
+        scales
+    }
+
+    fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
+        let signals = self.signals::<S, T>(state, inputs);
+        let (of_plant, of_controller) = state.split_at(self.plant.states());
+        let (of_feedback, of_prefilter) = of_controller.split_at(self.feedback.states);
+        let (plant_rates, controller_rates) = rates.split_at_mut(of_plant.len());
+        let (feedback_rates, prefilter_rates) = controller_rates.split_at_mut(of_feedback.len());
+        let plant_inputs = self.plant.inputs();
+        let command = if self.is_delayed() { inputs[1 + plant_inputs] } else { signals.command };
+        self.plant.rates(of_plant, command, &inputs[1..1 + plant_inputs], plant_rates);
+        self.feedback.rates(of_feedback, self.driving(&signals), feedback_rates);
+        if self.anti_windup == AntiWindup::Clamping {
+            let limited = T::from(self.limit).less_than(signals.wanted.abs());
+            let outwards = T::from(0.0).less_than(signals.wanted * signals.error);
+            for rate in feedback_rates.iter_mut() {
+                *rate = T::select(limited, T::select(outwards, T::from(0.0), *rate), *rate);
+            }
+        }
+        self.prefilter.rates(of_prefilter, inputs[0], prefilter_rates);
+    }
+
+    fn delays(&self) -> Vec<S> {
+        let mut delays = self.plant.delays();
+        if self.is_delayed() {
+            delays.push(S::from(self.delay_s));
+        }
+        delays
+    }
+
+    fn outgoing<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
+        let own = &inputs[1..1 + self.plant.inputs()];
+        let plant_waves = waves.len() - usize::from(self.is_delayed());
+        self.plant.outgoing(&state[..self.plant.states()], own, &mut waves[..plant_waves]);
+        if self.is_delayed() {
+            waves[plant_waves] = self.signals::<S, T>(state, inputs).command;
+        }
+    }
+
+    fn indicators(&self) -> usize {
+        self.plant.indicators() + usize::from(self.limit.is_finite())
+    }
+
+    fn indicate<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], indicators: &mut [T]) {
+        let own = &inputs[1..1 + self.plant.inputs()];
+        let of_plant = self.plant.indicators();
+        self.plant.indicate(&state[..self.plant.states()], own, &mut indicators[..of_plant]);
+        if let Some(limited) = indicators.get_mut(of_plant) {
+            *limited = self.signals::<S, T>(state, inputs).wanted.abs() - T::from(self.limit);
+        }
+    }
+}
+
+/// A plant whose command is held between samples, its reference filtered continuously.
+///
+/// ```text
+/// inputs u, r and those of the plant; states of the plant and of F
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeldPlant<P> {
+    plant: P,
+    prefilter: Realization,
+}
+
+impl<P> HeldPlant<P> {
+    /// This plant behind a hold, the reference behind this prefilter (one for a prefilter that is sampled too).
+    ///
+    /// # Errors
+    /// As [`ClosedLoop::new`].
+    pub fn new(plant: P, prefilter: &TransferFunction) -> Result<Self, LinearError> {
+        Ok(HeldPlant { plant, prefilter: Realization::new(prefilter)? })
+    }
+
+    /// The plant.
+    pub fn plant(&self) -> &P {
+        &self.plant
+    }
+
+    /// What the controller samples: reference behind the prefilter, and measurement.
+    pub fn sampled<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; 2]
+    where
+        P: Plant<S>,
+    {
+        let (of_plant, of_prefilter) = state.split_at(self.plant.states());
+        [self.prefilter.output(of_prefilter, inputs[1]), self.plant.measurement(of_plant, &inputs[2..])]
+    }
+}
+
+impl<S: Scalar, P: Plant<S>> System<S> for HeldPlant<P> {
+    fn states(&self) -> usize {
+        self.plant.states() + self.prefilter.states
+    }
+
+    fn inputs(&self) -> usize {
+        2 + self.plant.inputs()
+    }
+
+    fn scales(&self) -> Vec<f64> {
+        let mut scales = self.plant.scales();
+        scales.extend(self.prefilter.scales(self.plant.measurement_scale()));
+        scales
+    }
+
+    fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
+        let (of_plant, of_prefilter) = state.split_at(self.plant.states());
+        let (plant_rates, prefilter_rates) = rates.split_at_mut(of_plant.len());
+        self.plant.rates(of_plant, inputs[0], &inputs[2..], plant_rates);
+        self.prefilter.rates(of_prefilter, inputs[1], prefilter_rates);
+    }
+
+    fn delays(&self) -> Vec<S> {
+        self.plant.delays()
+    }
+
+    fn outgoing<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
+        self.plant.outgoing(&state[..self.plant.states()], &inputs[2..], waves);
+    }
+
+    fn indicators(&self) -> usize {
+        self.plant.indicators()
+    }
+
+    fn indicate<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], indicators: &mut [T]) {
+        self.plant.indicate(&state[..self.plant.states()], &inputs[2..], indicators);
+    }
+}

@@ -1,0 +1,175 @@
+//! What a system is driven by, and what comes out.
+
+use super::Profile;
+
+/// How long a system is driven, by what, and how often it is looked at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// From time zero, in s; positive.
+    pub duration_s: f64,
+    /// Time between rows of the result in s; positive.
+    pub output_step_s: f64,
+    /// One for each input of the system, in order; delayed waves follow by themselves.
+    pub inputs: Vec<Input>,
+}
+
+/// What an input is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Input {
+    /// A known function of time.
+    Value(Profile),
+    /// Its first derivative.
+    Rate(Profile),
+    /// What the sampler last commanded; zero before.
+    Command,
+}
+
+/// What acts once a sample: a digital controller with its converters.
+pub trait Sampler {
+    /// Time between samples in s; positive. The first is at time zero.
+    fn sample_time_s(&self) -> f64;
+
+    /// Time from a sample until its command takes effect, in s; zero or positive.
+    fn delay_s(&self) -> f64;
+
+    /// The command for the state and the inputs at a sample.
+    fn command(&mut self, time_s: f64, state: &[f64], inputs: &[f64]) -> f64;
+}
+
+/// What is looked at on the way.
+pub trait Observer {
+    /// Indices of the states it wants, in the order it wants them.
+    fn wanted(&self) -> &[usize];
+
+    /// Called at each row of the result with those states and all inputs, beginning with time zero. At a break it sees the
+    /// inputs as they are from then on.
+    fn observe(&mut self, time_s: f64, states: &[f64], inputs: &[f64]);
+
+    /// Whether it looks at the inputs; otherwise it is given none.
+    fn wants_inputs(&self) -> bool {
+        true
+    }
+}
+
+/// How exactly, and how much work at most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Largest error of a step, relative to the state plus its scale.
+    pub tolerance: f64,
+    /// Steps, rejected ones included, after which it ends.
+    pub maximum_steps: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { tolerance: 1e-6, maximum_steps: 10_000_000 }
+    }
+}
+
+/// How a simulation ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Status {
+    /// At the end of its course.
+    Completed,
+    /// By whoever watched it.
+    Cancelled {
+        /// When, in s of simulated time.
+        time_s: f64,
+    },
+    /// No step was short enough for the tolerance.
+    StepTooSmall {
+        /// When, in s of simulated time.
+        time_s: f64,
+    },
+    /// A rate or an input was not a finite number.
+    NotFinite {
+        /// When, in s of simulated time.
+        time_s: f64,
+    },
+    /// It took more steps than it was allowed.
+    TooManySteps {
+        /// When, in s of simulated time.
+        time_s: f64,
+    },
+}
+
+/// An indicator that changed its sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// When, in s of simulated time.
+    pub time_s: f64,
+    /// Which indicator.
+    pub indicator: usize,
+    /// Whether it became positive.
+    pub rising: bool,
+}
+
+/// What it cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Steps tried again with a shorter one.
+    pub rejected: u64,
+    /// Evaluations of the rates, those for derivatives not counted.
+    pub evaluations: u64,
+    /// Evaluations of the Jacobian.
+    pub jacobians: u64,
+}
+
+/// What came of one simulation, beside what its observer saw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// How it ended.
+    pub status: Status,
+    /// What happened on the way, in the order of time.
+    pub events: Vec<Event>,
+    /// What it cost.
+    pub work: Work,
+    /// State at the end.
+    pub end: Vec<f64>,
+}
+
+/// Why a system is not driven at all.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimulationError {
+    /// A count does not fit the system.
+    #[error("{found} {what} where the system has {expected}")]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// A time or a tolerance that is none.
+    #[error("{what} is {value}, but must be {requirement}")]
+    Setting {
+        /// Which.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        requirement: &'static str,
+    },
+    /// A state at the start is not a finite number.
+    #[error("state {index} is {value} at the start")]
+    Start {
+        /// Which state.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// More states and inputs than a simulation can have.
+    #[error(
+        "{states} states and {inputs} inputs are more than {} together",
+        crate::scalar::Dependence::CAPACITY
+    )]
+    TooLarge {
+        /// Number of states.
+        states: usize,
+        /// Number of inputs.
+        inputs: usize,
+    },
+}

@@ -1,0 +1,405 @@
+//! Drives systems through their courses, one in each lane.
+
+use super::course::{Event, Observer, Outcome, Sampler, Settings, SimulationError, Status};
+use super::history::NODES;
+use super::passage::Passage;
+use super::rosenbrock::{DIRECTIONS, Extension, Rosenbrock, STAGE_TIMES, StepInputs};
+use super::{Course, Lane, System};
+use crate::scalar::{Dependence, Dual};
+
+/// One machine to be driven.
+pub struct Task<'a, O> {
+    /// State at time zero.
+    pub start: Vec<f64>,
+    /// What it is driven by.
+    pub course: &'a Course,
+    /// A digital controller, if one commands it.
+    pub sampler: Option<Box<dyn Sampler + 'a>>,
+    /// Who looks at it.
+    pub observer: O,
+}
+
+/// Where machines come from, and where their outcomes go.
+pub trait Queue<'a, E> {
+    /// Who looks at each machine.
+    type Observer: Observer;
+
+    /// The next machine: its parameters put into this lane of the system, and what is to be done with it. `None` when there
+    /// are no more.
+    fn next(&mut self, system: &mut E, lane: usize) -> Option<Task<'a, Self::Observer>>;
+
+    /// Takes back what came of the machine in this lane.
+    fn done(&mut self, lane: usize, outcome: Outcome, observer: Self::Observer);
+
+    /// Asked once a step with the simulated time of a lane: false ends everything.
+    fn goes_on(&mut self, lane: usize, time_s: f64) -> bool;
+}
+
+/// A machine in its lane.
+struct Slot<'a, O> {
+    passage: Passage<'a>,
+    sampler: Option<Box<dyn Sampler + 'a>>,
+    observer: O,
+    /// A state or input at one time, for sampler and observer.
+    states: Vec<f64>,
+    inputs: Vec<f64>,
+}
+
+/// All lanes and the method they share.
+struct Drive<'a, S, O> {
+    method: Rosenbrock<S>,
+    settings: Settings,
+    slots: Vec<Option<Slot<'a, O>>>,
+    state: Vec<S>,
+    step: S,
+    inputs: StepInputs<S>,
+    indicators: Vec<S>,
+    /// Where a step is looked at between its ends.
+    between: Between<S>,
+}
+
+struct Between<S> {
+    extensions: Vec<Extension<S>>,
+    state: Vec<S>,
+    inputs: Vec<S>,
+    indicators: Vec<S>,
+    waves: Vec<S>,
+}
+
+/// Drives every machine of a queue to its end. A lane that is done takes the next machine; each has its own time, step and
+/// breaks, and its outcome does not depend on its neighbours.
+///
+/// # Errors
+/// [`SimulationError`] when a task does not fit the system.
+pub fn drive<'a, S, E, Q>(system: &mut E, queue: &mut Q, settings: &Settings) -> Result<(), SimulationError>
+where
+    S: Lane,
+    E: System<S>,
+    Q: Queue<'a, E>,
+    Dependence: From<S>,
+    Dual<DIRECTIONS, S>: From<f64> + From<S>,
+{
+    let tolerance = settings.tolerance;
+    if !(tolerance > 0.0 && tolerance < 1.0) {
+        let requirement = "above 0 and below 1";
+        return Err(SimulationError::Setting { what: "tolerance", value: tolerance, requirement });
+    }
+    let mut drive = Drive::new(system, settings)?;
+    let mut empty = false;
+    loop {
+        for lane in 0..S::COUNT {
+            if drive.slots[lane].is_none() && !empty {
+                match queue.next(system, lane) {
+                    Some(task) => drive.enter(system, lane, task)?,
+                    None => empty = true,
+                }
+            }
+        }
+        if drive.slots.iter().all(Option::is_none) {
+            return Ok(());
+        }
+        drive.step(system);
+        for lane in 0..S::COUNT {
+            let Some(slot) = &mut drive.slots[lane] else { continue };
+            if slot.passage.status.is_none() && !queue.goes_on(lane, slot.passage.time_s) {
+                slot.passage.status = Some(Status::Cancelled { time_s: slot.passage.time_s });
+            }
+            if let Some((outcome, observer)) = drive.leave(lane) {
+                queue.done(lane, outcome, observer);
+            }
+        }
+    }
+}
+
+impl<'a, S: Lane, O: Observer> Drive<'a, S, O>
+where
+    Dependence: From<S>,
+    Dual<DIRECTIONS, S>: From<f64> + From<S>,
+{
+    fn new<E: System<S>>(system: &E, settings: &Settings) -> Result<Self, SimulationError> {
+        let (states, inputs, zero) = (system.states(), system.inputs(), S::from(0.0));
+        let method = Rosenbrock::new(system).ok_or(SimulationError::TooLarge { states, inputs })?;
+        let none = vec![zero; inputs];
+        let stages = [none.clone(), none.clone(), none.clone(), none.clone(), none.clone(), none.clone()];
+        Ok(Drive {
+            method,
+            settings: *settings,
+            slots: (0..S::COUNT).map(|_| None).collect(),
+            state: vec![zero; states],
+            step: S::from(1e-6),
+            inputs: StepInputs { stages, slopes: none.clone(), moving: false },
+            indicators: vec![zero; system.indicators()],
+            between: Between {
+                extensions: Vec::new(),
+                state: vec![zero; states],
+                inputs: none,
+                indicators: vec![zero; system.indicators()],
+                waves: vec![zero; system.delays().len()],
+            },
+        })
+    }
+
+    /// Puts a machine into a free lane.
+    fn enter<E: System<S>>(
+        &mut self,
+        system: &E,
+        lane: usize,
+        task: Task<'a, O>,
+    ) -> Result<(), SimulationError> {
+        let delays: Vec<f64> = system.delays().iter().map(|delay| delay.lane(lane)).collect();
+        check(system, &task, &delays)?;
+        for (state, &value) in self.state.iter_mut().zip(&task.start) {
+            *state = state.with_lane(lane, value);
+        }
+        let mut passage = Passage::new(task.course);
+        let mut inputs = vec![0.0; system.inputs()];
+        passage.inputs_at(0.0, &mut inputs);
+        if !delays.is_empty() {
+            set_lane(&mut self.between.inputs, lane, &inputs);
+            system.outgoing(&self.state, &self.between.inputs, &mut self.between.waves);
+            let waves: Vec<f64> = self.between.waves.iter().map(|wave| wave.lane(lane)).collect();
+            passage = passage.with_waves(&delays, &waves);
+            passage.inputs_at(0.0, &mut inputs);
+        }
+        set_lane(&mut self.between.inputs, lane, &inputs);
+        system.rates(&self.state, &self.between.inputs, &mut self.between.state);
+        passage.begin(self.method.magnitude(&self.between.state, &self.state, lane), self.settings.tolerance);
+        if !self.indicators.is_empty() {
+            system.indicate(&self.state, &self.between.inputs, &mut self.between.indicators);
+            for (kept, new) in self.indicators.iter_mut().zip(&self.between.indicators) {
+                *kept = kept.with_lane(lane, new.lane(lane));
+            }
+        }
+        let states = vec![0.0; system.states()];
+        let Task { sampler, observer, .. } = task;
+        self.slots[lane] = Some(Slot { passage, sampler, observer, states, inputs });
+        Ok(())
+    }
+
+    /// Tries one step in every lane.
+    fn step<E: System<S>>(&mut self, system: &E) {
+        for lane in 0..S::COUNT {
+            self.prepare(lane);
+        }
+        self.method.linearize(system, &self.state, &self.inputs);
+        let error =
+            self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
+        self.between.extensions.clear();
+        for lane in 0..S::COUNT {
+            let Some(slot) = &mut self.slots[lane] else { continue };
+            if slot.passage.status.is_some() {
+                continue;
+            }
+            slot.passage.work.jacobians += 1;
+            slot.passage.work.evaluations += 7;
+            if slot.passage.judge(error.lane(lane)) {
+                self.take(system, lane);
+            } else if slot.passage.work.steps + slot.passage.work.rejected >= self.settings.maximum_steps {
+                slot.passage.status = Some(Status::TooManySteps { time_s: slot.passage.time_s });
+            }
+        }
+    }
+
+    /// Lets the sampler act, chooses the step and sets its inputs in one lane.
+    fn prepare(&mut self, lane: usize) {
+        let Some(slot) = &mut self.slots[lane] else { return };
+        let Slot { passage, sampler, states, inputs, .. } = slot;
+        let mut sample_time_s = None;
+        if let Some(sampler) = sampler {
+            sample_time_s = Some(sampler.sample_time_s());
+            if passage.samples_now(sampler.sample_time_s()) {
+                for (place, value) in states.iter_mut().zip(&self.state) {
+                    *place = value.lane(lane);
+                }
+                passage.inputs_at(passage.time_s, inputs);
+                passage.act(sampler.as_mut(), states, inputs);
+            }
+        }
+        passage.choose(sample_time_s);
+        self.step = self.step.with_lane(lane, passage.step_s);
+        for (part, stage) in STAGE_TIMES.iter().zip(&mut self.inputs.stages) {
+            passage.inputs_within(*part, inputs);
+            set_lane(stage, lane, inputs);
+        }
+        self.inputs.moving = passage.slopes(inputs) || (lane > 0 && self.inputs.moving);
+        set_lane(&mut self.inputs.slopes, lane, inputs);
+    }
+
+    /// Moves one lane to the end of the step it took.
+    fn take<E: System<S>>(&mut self, system: &E, lane: usize) {
+        if self.between.extensions.is_empty() {
+            let starts = self.state.iter().enumerate();
+            self.between.extensions =
+                starts.map(|(index, &start)| self.method.extension(index, start)).collect();
+        }
+        self.send_waves(system, lane);
+        self.find_events(system, lane);
+        let Some(slot) = &mut self.slots[lane] else { return };
+        observe(slot, &self.between.extensions, lane, slot.passage.end_s());
+        for (state, end) in self.state.iter_mut().zip(&self.method.end) {
+            *state = state.with_lane(lane, end.lane(lane));
+        }
+        slot.passage.arrive();
+        if slot.passage.status == Some(Status::Completed) {
+            observe_end(slot, &self.state, lane);
+        }
+    }
+
+    /// State and inputs of one lane at a part of the step it took.
+    fn look(&mut self, lane: usize, part: f64) {
+        let Some(slot) = &mut self.slots[lane] else { return };
+        for (state, extension) in self.between.state.iter_mut().zip(&self.between.extensions) {
+            *state = extension.at(S::from(part));
+        }
+        slot.passage.inputs_within(part, &mut slot.inputs);
+        set_lane(&mut self.between.inputs, lane, &slot.inputs);
+    }
+
+    fn send_waves<E: System<S>>(&mut self, system: &E, lane: usize) {
+        if self.between.waves.is_empty() {
+            return;
+        }
+        let mut sent = vec![[0.0; NODES.len()]; self.between.waves.len()];
+        for (node, part) in NODES.into_iter().enumerate() {
+            self.look(lane, part);
+            system.outgoing(&self.between.state, &self.between.inputs, &mut self.between.waves);
+            for (values, wave) in sent.iter_mut().zip(&self.between.waves) {
+                values[node] = wave.lane(lane);
+            }
+        }
+        if let Some(Slot { passage, .. }) = &mut self.slots[lane] {
+            let (start_s, length_s) = (passage.time_s, passage.end_s() - passage.time_s);
+            for (history, values) in passage.histories.iter_mut().zip(sent) {
+                history.send(start_s, length_s, values);
+            }
+        }
+    }
+
+    fn find_events<E: System<S>>(&mut self, system: &E, lane: usize) {
+        for index in 0..self.indicators.len() {
+            let before = self.indicators[index].lane(lane);
+            let after = self.indicator(system, lane, index, 1.0);
+            self.indicators[index] = self.indicators[index].with_lane(lane, after);
+            if (before > 0.0) == (after > 0.0) {
+                continue;
+            }
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                let same = (self.indicator(system, lane, index, middle) > 0.0) == (before > 0.0);
+                (low, high) = if same { (middle, high) } else { (low, middle) };
+            }
+            if let Some(Slot { passage, .. }) = &mut self.slots[lane] {
+                let time_s = passage.time_s + high * passage.step_s;
+                passage.events.push(Event { time_s, indicator: index, rising: after > 0.0 });
+            }
+        }
+    }
+
+    fn indicator<E: System<S>>(&mut self, system: &E, lane: usize, index: usize, part: f64) -> f64 {
+        self.look(lane, part);
+        system.indicate(&self.between.state, &self.between.inputs, &mut self.between.indicators);
+        self.between.indicators[index].lane(lane)
+    }
+
+    /// Takes a machine that is done out of its lane.
+    fn leave(&mut self, lane: usize) -> Option<(Outcome, O)> {
+        let status = self.slots[lane].as_ref()?.passage.status?;
+        let Slot { passage, observer, .. } = self.slots[lane].take()?;
+        let mut events = passage.events;
+        events.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+        let end = self.state.iter().map(|state| state.lane(lane)).collect();
+        Some((Outcome { status, events, work: passage.work, end }, observer))
+    }
+}
+
+/// Shows the observer every row before this time.
+fn observe<S: Lane, O: Observer>(
+    slot: &mut Slot<'_, O>,
+    extensions: &[Extension<S>],
+    lane: usize,
+    before_s: f64,
+) {
+    let Slot { passage, observer, states, inputs, .. } = slot;
+    let (start_s, step_s) = (passage.time_s, passage.step_s);
+    loop {
+        let time_s = passage.row as f64 * passage.course.output_step_s;
+        if time_s >= before_s {
+            return;
+        }
+        let part = ((time_s - start_s) / step_s).max(0.0);
+        let mut count = 0;
+        for (place, &index) in states.iter_mut().zip(observer.wanted()) {
+            *place = extensions.get(index).map_or(f64::NAN, |extension| extension.lane(lane).at(part));
+            count += 1;
+        }
+        let wanted = if observer.wants_inputs() { inputs.len() } else { 0 };
+        if wanted > 0 {
+            passage.inputs_at(time_s, inputs);
+        }
+        observer.observe(time_s, &states[..count], &inputs[..wanted]);
+        passage.row += 1;
+    }
+}
+
+/// Shows the observer the last row, at the end of the course.
+fn observe_end<S: Lane, O: Observer>(slot: &mut Slot<'_, O>, state: &[S], lane: usize) {
+    let Slot { passage, observer, states, inputs, .. } = slot;
+    let time_s = passage.row as f64 * passage.course.output_step_s;
+    let duration_s = passage.course.duration_s;
+    if time_s > duration_s * (1.0 + 4.0 * f64::EPSILON) {
+        return;
+    }
+    let mut count = 0;
+    for (place, &index) in states.iter_mut().zip(observer.wanted()) {
+        *place = state.get(index).map_or(f64::NAN, |state| state.lane(lane));
+        count += 1;
+    }
+    let wanted = if observer.wants_inputs() { inputs.len() } else { 0 };
+    if wanted > 0 {
+        passage.inputs_at(duration_s, inputs);
+    }
+    observer.observe(duration_s, &states[..count], &inputs[..wanted]);
+}
+
+fn set_lane<S: Lane>(places: &mut [S], lane: usize, values: &[f64]) {
+    for (place, &value) in places.iter_mut().zip(values) {
+        *place = place.with_lane(lane, value);
+    }
+}
+
+fn check<S: Lane, E: System<S>, O: Observer>(
+    system: &E,
+    task: &Task<'_, O>,
+    delays: &[f64],
+) -> Result<(), SimulationError> {
+    let Course { duration_s, output_step_s, inputs } = task.course;
+    let counts = [
+        ("states at the start", task.start.len(), system.states()),
+        ("inputs", inputs.len() + delays.len(), system.inputs()),
+        ("scales", system.scales().len(), system.states()),
+    ];
+    for (what, found, expected) in counts {
+        if found != expected {
+            return Err(SimulationError::Count { what, found, expected });
+        }
+    }
+    let sample_time = task.sampler.as_ref().map(|sampler| sampler.sample_time_s());
+    let delay = task.sampler.as_ref().map_or(0.0, |sampler| sampler.delay_s());
+    let positive = [("duration", *duration_s), ("output step", *output_step_s)];
+    let sample = sample_time.map(|value| ("sample time", value));
+    let travel = delays.iter().map(|&delay| ("delay of a wave", delay));
+    for (what, value) in positive.into_iter().chain(sample).chain(travel) {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(SimulationError::Setting { what, value, requirement: "positive" });
+        }
+    }
+    if !(delay >= 0.0 && delay.is_finite()) {
+        let requirement = "zero or positive";
+        return Err(SimulationError::Setting { what: "delay of the command", value: delay, requirement });
+    }
+    match task.start.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+        Some((index, &value)) => Err(SimulationError::Start { index, value }),
+        None => Ok(()),
+    }
+}

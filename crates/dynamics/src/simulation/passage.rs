@@ -1,0 +1,240 @@
+//! One machine's way through time: where it stands, how far the next step may go, what breaks ahead.
+
+use std::collections::VecDeque;
+
+use super::history::History;
+use super::{Course, Event, Input, Sampler, Status, Work};
+use crate::portable;
+
+/// No step grows by more than this, nor shrinks below the other.
+const GROWTH: [f64; 2] = [0.1, 6.0];
+/// What is kept of the step that the error would allow.
+const SAFETY: f64 = 0.9;
+/// A break's waves are met by restarts this many times; by then they are smooth.
+const ECHOES: u8 = 4;
+
+/// One machine's way through time.
+pub(super) struct Passage<'a> {
+    pub(super) course: &'a Course,
+    pub(super) time_s: f64,
+    /// The next step, if nothing breaks before.
+    proposed_s: f64,
+    /// No step is longer.
+    longest_s: f64,
+    /// Where the step being tried ends, if at a break.
+    target_s: Option<f64>,
+    pub(super) step_s: f64,
+    /// Times to restart at, rising, with how many delays each has been through.
+    breaks: VecDeque<(f64, u8)>,
+    pub(super) histories: Vec<History>,
+    sample: u64,
+    pending: VecDeque<(f64, f64)>,
+    command: f64,
+    pub(super) row: u64,
+    rejected: bool,
+    pub(super) work: Work,
+    pub(super) events: Vec<Event>,
+    pub(super) status: Option<Status>,
+}
+
+impl<'a> Passage<'a> {
+    /// At time zero.
+    pub(super) fn new(course: &'a Course) -> Passage<'a> {
+        let mut times: Vec<f64> = Vec::new();
+        let mut longest_s = course.duration_s;
+        for input in &course.inputs {
+            if let Input::Value(profile) | Input::Rate(profile) = input {
+                times.extend(profile.breaks().into_iter().filter(|&time| time > 0.0));
+                longest_s = longest_s.min(profile.longest_step().unwrap_or(longest_s));
+            }
+        }
+        times.push(course.duration_s);
+        times.retain(|&time| time <= course.duration_s);
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        Passage {
+            course,
+            time_s: 0.0,
+            proposed_s: longest_s,
+            longest_s,
+            target_s: None,
+            step_s: 0.0,
+            breaks: times.into_iter().map(|time| (time, 0)).collect(),
+            histories: Vec::new(),
+            sample: 0,
+            pending: VecDeque::new(),
+            command: 0.0,
+            row: 0,
+            rejected: false,
+            work: Work::default(),
+            events: Vec::new(),
+            status: None,
+        }
+    }
+
+    /// Waves in delays, each with what it was before time zero.
+    pub(super) fn with_waves(mut self, delays_s: &[f64], initial: &[f64]) -> Passage<'a> {
+        self.histories = delays_s.iter().zip(initial).map(|(&d, &value)| History::new(d, value)).collect();
+        for &delay in delays_s {
+            self.longest_s = self.longest_s.min(delay);
+            self.meet_again(0.0, 0);
+        }
+        self.proposed_s = self.proposed_s.min(self.longest_s);
+        self
+    }
+
+    /// A first step from how fast the state changes, per second and relative to its scale.
+    pub(super) fn begin(&mut self, rate: f64, tolerance: f64) {
+        let guess = 0.1 * portable::pow(tolerance, 0.2) / rate;
+        if guess.is_finite() {
+            self.proposed_s = guess.min(self.longest_s);
+        }
+    }
+
+    /// Sets the length of the step to try.
+    pub(super) fn choose(&mut self, sample_time_s: Option<f64>) {
+        let mut target = self.breaks.front().map_or(self.course.duration_s, |&(time, _)| time);
+        if let Some(sample_time_s) = sample_time_s {
+            target = target.min(self.sample as f64 * sample_time_s);
+        }
+        if let Some(&(arrival, _)) = self.pending.front() {
+            target = target.min(arrival);
+        }
+        let left = target - self.time_s;
+        let wanted = self.proposed_s.min(self.longest_s);
+        (self.step_s, self.target_s) = if wanted >= 0.99 * left {
+            (left, Some(target))
+        } else if wanted > 0.5 * left {
+            (0.5 * left, None)
+        } else {
+            (wanted, None)
+        };
+    }
+
+    /// Inputs at a part of the step being tried. The end of a step that ends at a break is seen from within.
+    pub(super) fn inputs_within(&self, part: f64, inputs: &mut [f64]) {
+        let time = match self.target_s {
+            Some(target) if part == 1.0 => target.next_down(),
+            _ => self.time_s + part * self.step_s,
+        };
+        self.inputs_at(time, inputs);
+    }
+
+    /// Inputs at a time, waves included.
+    pub(super) fn inputs_at(&self, time_s: f64, inputs: &mut [f64]) {
+        let known = self.course.inputs.iter().map(|input| match input {
+            Input::Value(profile) => profile.value(time_s),
+            Input::Rate(profile) => profile.rate(time_s),
+            Input::Command => self.command,
+        });
+        let waves = self.histories.iter().map(|history| history.arriving(time_s)[0]);
+        for (place, value) in inputs.iter_mut().zip(known.chain(waves)) {
+            *place = value;
+        }
+    }
+
+    /// Slopes of all inputs where the step begins; whether any is not zero.
+    pub(super) fn slopes(&self, slopes: &mut [f64]) -> bool {
+        let known = self.course.inputs.iter().map(|input| match input {
+            Input::Value(profile) => profile.rate(self.time_s),
+            Input::Rate(profile) => profile.acceleration(self.time_s),
+            Input::Command => 0.0,
+        });
+        let waves = self.histories.iter().map(|history| history.arriving(self.time_s)[1]);
+        let mut moving = false;
+        for (place, value) in slopes.iter_mut().zip(known.chain(waves)) {
+            *place = value;
+            moving |= value != 0.0;
+        }
+        moving
+    }
+
+    /// Where the step being tried ends.
+    pub(super) fn end_s(&self) -> f64 {
+        self.target_s.unwrap_or(self.time_s + self.step_s)
+    }
+
+    /// Takes the step or shortens it, by its error in units of the tolerance; whether it was taken.
+    pub(super) fn judge(&mut self, error: f64) -> bool {
+        let taken = error <= 1.0;
+        let factor = if error.is_finite() {
+            (SAFETY * portable::pow(error.max(1e-10), -0.2)).clamp(GROWTH[0], GROWTH[1])
+        } else {
+            GROWTH[0]
+        };
+        if taken {
+            let factor = if self.rejected { factor.min(1.0) } else { factor };
+            // A step cut short by a break says nothing against the longer one proposed.
+            let grown = self.step_s * factor;
+            let cut = self.target_s.is_some() && factor >= 1.0;
+            self.proposed_s = if cut { grown.max(self.proposed_s) } else { grown };
+            self.work.steps += 1;
+        } else {
+            self.proposed_s = self.step_s * factor.min(0.9);
+            self.work.rejected += 1;
+            if self.time_s + self.proposed_s * 0.01 <= self.time_s || self.proposed_s < 1e-14 {
+                let time_s = self.time_s;
+                self.status = Some(if error.is_finite() {
+                    Status::StepTooSmall { time_s }
+                } else {
+                    Status::NotFinite { time_s }
+                });
+            }
+        }
+        self.rejected = !taken;
+        taken
+    }
+
+    /// Stands at the end of the step that was taken; what happens there: breaks, arriving commands.
+    pub(super) fn arrive(&mut self) {
+        self.time_s = self.end_s();
+        while self.breaks.front().is_some_and(|&(time, _)| time <= self.time_s) {
+            if let Some((time, generation)) = self.breaks.pop_front() {
+                self.meet_again(time, generation);
+            }
+        }
+        while self.pending.front().is_some_and(|&(arrival, _)| arrival <= self.time_s) {
+            if let Some((_, command)) = self.pending.pop_front() {
+                self.command = command;
+            }
+        }
+        if self.time_s >= self.course.duration_s {
+            self.status = Some(Status::Completed);
+        }
+    }
+
+    /// Whether the sampler acts now.
+    pub(super) fn samples_now(&self, sample_time_s: f64) -> bool {
+        self.time_s >= self.sample as f64 * sample_time_s
+    }
+
+    /// Lets the sampler act.
+    pub(super) fn act(&mut self, sampler: &mut dyn Sampler, state: &[f64], inputs: &[f64]) {
+        let command = sampler.command(self.time_s, state, inputs);
+        if !command.is_finite() {
+            self.status = Some(Status::NotFinite { time_s: self.time_s });
+        }
+        self.sample += 1;
+        if sampler.delay_s() == 0.0 {
+            self.command = command;
+        } else {
+            self.pending.push_back((self.time_s + sampler.delay_s(), command));
+        }
+    }
+
+    /// The waves that leave at a break arrive as breaks.
+    fn meet_again(&mut self, time_s: f64, generation: u8) {
+        if generation >= ECHOES {
+            return;
+        }
+        for history in &self.histories {
+            let arrival = time_s + history.delay_s();
+            if arrival < self.course.duration_s {
+                let place = self.breaks.partition_point(|&(time, _)| time < arrival);
+                if self.breaks.get(place).is_none_or(|&(time, _)| time > arrival) {
+                    self.breaks.insert(place, (arrival, generation + 1));
+                }
+            }
+        }
+    }
+}

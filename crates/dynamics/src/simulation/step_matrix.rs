@@ -1,0 +1,239 @@
+//! The linear equations of a step, eliminated in an order found once.
+
+use super::Lane;
+
+/// `value[target] -= value[multiplier] * value[source]`.
+#[derive(Clone, Copy, Debug)]
+struct Update {
+    target: u32,
+    multiplier: u32,
+    source: u32,
+}
+
+/// Elimination of one state: its place on the diagonal, the entries that become multipliers, what they update.
+#[derive(Clone, Debug)]
+struct Pivot {
+    state: usize,
+    diagonal: u32,
+    /// (row, entry) below the pivot.
+    below: Vec<(u32, u32)>,
+    /// (column, entry) beside the pivot.
+    beside: Vec<(u32, u32)>,
+    updates: Vec<Update>,
+}
+
+/// A matrix whose pattern is fixed, with its triangular factors in its own place.
+///
+/// ```text
+/// W = I/(h gamma) - J = L U          pivots on the diagonal, in an order that fills in least (Markowitz 1957)
+/// ```
+///
+/// The order is that of the pattern and not of the values, so that lanes share it and no step searches for pivots. As the
+/// step h falls W tends to a multiple of the identity: a pivot that lost its digits asks for a shorter step.
+#[derive(Clone, Debug)]
+pub(super) struct StepMatrix<S> {
+    values: Vec<S>,
+    pivots: Vec<Pivot>,
+    /// Entry of each (row, column) of the pattern it was made with, row by row.
+    entries: Vec<Vec<u32>>,
+    diagonal: Vec<u32>,
+    /// The diagonal before elimination.
+    untouched: Vec<S>,
+}
+
+/// A pivot below this part of the diagonal it was made from has lost its digits.
+const LOST_DIGITS: f64 = 1e-10;
+
+impl<S: Lane> StepMatrix<S> {
+    /// For matrices with these columns in each row, the diagonal besides.
+    pub(super) fn new(rows: &[Vec<usize>]) -> StepMatrix<S> {
+        let count = rows.len();
+        let mut filled: Vec<Vec<bool>> = vec![vec![false; count]; count];
+        for (row, columns) in rows.iter().enumerate() {
+            filled[row][row] = true;
+            for &column in columns {
+                filled[row][column] = true;
+            }
+        }
+        let order = order_of_elimination(&mut filled);
+        let mut place = vec![vec![u32::MAX; count]; count];
+        let mut used = 0;
+        for (row, columns) in filled.iter().enumerate() {
+            for (column, _) in columns.iter().enumerate().filter(|(_, filled)| **filled) {
+                place[row][column] = used;
+                used += 1;
+            }
+        }
+        let pivots = pivots(&order, &filled, &place);
+        let entries = rows
+            .iter()
+            .enumerate()
+            .map(|(row, columns)| columns.iter().map(|&column| place[row][column]).collect())
+            .collect();
+        let diagonal = (0..count).map(|state| place[state][state]).collect();
+        let zero = S::from(0.0);
+        StepMatrix {
+            values: vec![zero; used as usize],
+            pivots,
+            entries,
+            diagonal,
+            untouched: vec![zero; count],
+        }
+    }
+
+    /// All entries zero but those of `diagonal` times the identity.
+    pub(super) fn reset(&mut self, diagonal: S) {
+        self.values.fill(S::from(0.0));
+        for &entry in &self.diagonal {
+            self.values[entry as usize] = diagonal;
+        }
+    }
+
+    /// Subtracts a number from the entry at this place of this row of the pattern.
+    #[inline]
+    pub(super) fn subtract(&mut self, row: usize, place: usize, value: S) {
+        let entry = self.entries[row][place] as usize;
+        self.values[entry] = self.values[entry] - value;
+    }
+
+    /// Factors the matrix where it stands; positive in each lane where every pivot kept its digits.
+    pub(super) fn factor(&mut self) -> S {
+        let mut least = S::from(f64::INFINITY);
+        let values = &mut self.values;
+        for (untouched, &entry) in self.untouched.iter_mut().zip(&self.diagonal) {
+            *untouched = S::from(LOST_DIGITS) * values[entry as usize].abs();
+        }
+        for pivot in &self.pivots {
+            let value = values[pivot.diagonal as usize];
+            let inverse = S::from(1.0) / value;
+            least = least.minimum(value.abs() - self.untouched[pivot.state]);
+            values[pivot.diagonal as usize] = inverse;
+            for &(_, entry) in &pivot.below {
+                values[entry as usize] = values[entry as usize] * inverse;
+            }
+            for &Update { target, multiplier, source } in &pivot.updates {
+                let product = values[multiplier as usize] * values[source as usize];
+                values[target as usize] = values[target as usize] - product;
+            }
+        }
+        least
+    }
+
+    /// Solves W x = b in the place of b.
+    #[inline]
+    pub(super) fn solve(&self, vector: &mut [S]) {
+        for pivot in &self.pivots {
+            let known = vector[pivot.state];
+            for &(row, entry) in &pivot.below {
+                vector[row as usize] = vector[row as usize] - self.values[entry as usize] * known;
+            }
+        }
+        for pivot in self.pivots.iter().rev() {
+            let mut sum = vector[pivot.state];
+            for &(column, entry) in &pivot.beside {
+                sum = sum - self.values[entry as usize] * vector[column as usize];
+            }
+            vector[pivot.state] = sum * self.values[pivot.diagonal as usize];
+        }
+    }
+}
+
+/// The order in which states are eliminated, each time the one whose elimination touches the fewest entries; entries that
+/// fill in are marked.
+fn order_of_elimination(filled: &mut [Vec<bool>]) -> Vec<usize> {
+    let count = filled.len();
+    let mut left: Vec<usize> = (0..count).collect();
+    let mut order = Vec::with_capacity(count);
+    while !left.is_empty() {
+        let cost = |state: usize| {
+            let below = left.iter().filter(|&&row| row != state && filled[row][state]).count();
+            let beside = left.iter().filter(|&&column| column != state && filled[state][column]).count();
+            below * beside
+        };
+        let Some(position) = (0..left.len()).min_by_key(|&position| cost(left[position])) else { break };
+        let pivot = left.remove(position);
+        for &row in &left {
+            for &column in &left {
+                filled[row][column] |= filled[row][pivot] && filled[pivot][column];
+            }
+        }
+        order.push(pivot);
+    }
+    order
+}
+
+fn pivots(order: &[usize], filled: &[Vec<bool>], place: &[Vec<u32>]) -> Vec<Pivot> {
+    let mut later: Vec<usize> = order.to_vec();
+    let mut pivots = Vec::with_capacity(order.len());
+    for &state in order {
+        later.retain(|&other| other != state);
+        let rows: Vec<usize> = later.iter().copied().filter(|&row| filled[row][state]).collect();
+        let columns: Vec<usize> = later.iter().copied().filter(|&column| filled[state][column]).collect();
+        let update = |row: usize, column: usize| Update {
+            target: place[row][column],
+            multiplier: place[row][state],
+            source: place[state][column],
+        };
+        let updates = rows.iter().flat_map(|&row| columns.iter().map(move |&column| update(row, column)));
+        pivots.push(Pivot {
+            state,
+            diagonal: place[state][state],
+            below: rows.iter().map(|&row| (row as u32, place[row][state])).collect(),
+            beside: columns.iter().map(|&column| (column as u32, place[state][column])).collect(),
+            updates: updates.collect(),
+        });
+    }
+    pivots
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::scalar::Lanes;
+
+    /// An arrow with a band: fill-in, several pivots with nothing below, and numbers from a small recurrence.
+    #[test]
+    fn solves_as_a_dense_factorisation_does() {
+        let count = 9_usize;
+        let rows: Vec<Vec<usize>> = (0..count)
+            .map(|row| {
+                (0..count).filter(|&c| c == 0 || row == 0 || row.abs_diff(c) == 1 || c + 4 == row).collect()
+            })
+            .collect();
+        let mut matrix = StepMatrix::<Lanes<2>>::new(&rows);
+        let mut dense =
+            [DMatrix::<f64>::identity(count, count) * 40.0, DMatrix::identity(count, count) * -30.0];
+        matrix.reset(Lanes([40.0, -30.0]));
+        let mut number = 0.4;
+        for (row, columns) in rows.iter().enumerate() {
+            for (place, &column) in columns.iter().enumerate() {
+                number = 3.9 * number * (1.0 - number);
+                matrix.subtract(row, place, Lanes([10.0 * number, -7.0 * number]));
+                dense[0][(row, column)] -= 10.0 * number;
+                dense[1][(row, column)] += 7.0 * number;
+            }
+        }
+        assert!(matrix.factor().0.iter().all(|&kept| kept > 0.0));
+        let right = DVector::from_fn(count, |row, _| row as f64 - 3.5);
+        let mut solution: Vec<Lanes<2>> = right.iter().map(|&value| Lanes([value; 2])).collect();
+        matrix.solve(&mut solution);
+        for (lane, dense) in dense.into_iter().enumerate() {
+            let expected = dense.lu().solve(&right).unwrap();
+            for (value, expected) in solution.iter().zip(expected.iter()) {
+                assert!((value.0[lane] - expected).abs() < 1e-12 * expected.abs().max(1.0));
+            }
+        }
+    }
+
+    /// [1 1; 1 1] plus rounding has no second pivot worth the name.
+    #[test]
+    fn a_pivot_without_digits_is_told() {
+        let mut matrix = StepMatrix::<f64>::new(&[vec![1], vec![0]]);
+        matrix.reset(1.0);
+        matrix.subtract(0, 0, 1.0);
+        matrix.subtract(1, 0, 1.0 - 1e-13);
+        assert!(matrix.factor() < 0.0);
+    }
+}

@@ -1,0 +1,117 @@
+//! One system driven through one course, every state recorded.
+
+use super::driver::{Queue, Task, drive};
+use super::{Course, Observer, Outcome, Sampler, Settings, SimulationError, System};
+
+/// States and inputs at the rows of a result.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trajectory {
+    /// Times of the rows in s.
+    pub times_s: Vec<f64>,
+    /// All states at each.
+    pub states: Vec<Vec<f64>>,
+    /// All inputs at each; at a break, as they are from then on.
+    pub inputs: Vec<Vec<f64>>,
+}
+
+/// What came of a simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulated {
+    /// What was seen on the way, up to where it ended.
+    pub trajectory: Trajectory,
+    /// How it ended, what happened and what it cost.
+    pub outcome: Outcome,
+}
+
+struct Recorder {
+    wanted: Vec<usize>,
+    trajectory: Trajectory,
+}
+
+impl Observer for Recorder {
+    fn wanted(&self) -> &[usize] {
+        &self.wanted
+    }
+
+    fn observe(&mut self, time_s: f64, states: &[f64], inputs: &[f64]) {
+        self.trajectory.times_s.push(time_s);
+        self.trajectory.states.push(states.to_vec());
+        self.trajectory.inputs.push(inputs.to_vec());
+    }
+}
+
+/// A queue of one.
+struct Single<'a, 'w> {
+    task: Option<Task<'a, Recorder>>,
+    watch: &'w mut dyn FnMut(f64) -> bool,
+    result: Option<Simulated>,
+}
+
+impl<'a, E> Queue<'a, E> for Single<'a, '_> {
+    type Observer = Recorder;
+
+    fn next(&mut self, _system: &mut E, _lane: usize) -> Option<Task<'a, Recorder>> {
+        self.task.take()
+    }
+
+    fn done(&mut self, _lane: usize, outcome: Outcome, observer: Recorder) {
+        self.result = Some(Simulated { trajectory: observer.trajectory, outcome });
+    }
+
+    fn goes_on(&mut self, _lane: usize, time_s: f64) -> bool {
+        (self.watch)(time_s)
+    }
+}
+
+/// Drives a system from a state at time zero through a course. `watch` is told the simulated time after each step; when it
+/// answers false the simulation ends there.
+///
+/// # Errors
+/// [`SimulationError`] when start, course or settings do not fit the system. What goes wrong on the way is in the status.
+///
+/// # Example
+/// A mass of 2 kg on a spring of 8 N/m, pulled by 1 m and let go
+/// ```
+/// use phea_dynamics::scalar::Scalar;
+/// use phea_dynamics::simulation::{Course, Settings, Status, System, simulate};
+/// #[derive(Clone)]
+/// struct Oscillator;
+/// impl System<f64> for Oscillator {
+///     fn states(&self) -> usize {
+///         2
+///     }
+///     fn inputs(&self) -> usize {
+///         0
+///     }
+///     fn scales(&self) -> Vec<f64> {
+///         vec![1.0, 2.0]
+///     }
+///     fn rates<T: Scalar + From<f64>>(&self, state: &[T], _inputs: &[T], rates: &mut [T]) {
+///         rates[0] = state[1];
+///         rates[1] = T::from(-8.0) * state[0] / T::from(2.0);
+///     }
+/// }
+/// let course = Course { duration_s: 3.0, output_step_s: 0.5, inputs: vec![] };
+/// let settings = Settings { tolerance: 1e-9, ..Settings::default() };
+/// let result = simulate(&Oscillator, &[1.0, 0.0], &course, None, &settings, &mut |_| true)?;
+/// assert_eq!(result.outcome.status, Status::Completed);
+/// for (time, state) in result.trajectory.times_s.iter().zip(&result.trajectory.states) {
+///     assert!((state[0] - (2.0 * time).cos()).abs() < 1e-7);
+/// }
+/// # Ok::<(), phea_dynamics::simulation::SimulationError>(())
+/// ```
+pub fn simulate<E: System<f64> + Clone>(
+    system: &E,
+    start: &[f64],
+    course: &Course,
+    sampler: Option<Box<dyn Sampler + '_>>,
+    settings: &Settings,
+    watch: &mut dyn FnMut(f64) -> bool,
+) -> Result<Simulated, SimulationError> {
+    let recorder = Recorder { wanted: (0..system.states()).collect(), trajectory: Trajectory::default() };
+    let task = Task { start: start.to_vec(), course, sampler, observer: recorder };
+    let mut queue = Single { task: Some(task), watch, result: None };
+    drive(&mut system.clone(), &mut queue, settings)?;
+    let nothing = SimulationError::Count { what: "results", found: 0, expected: 1 };
+    queue.result.ok_or(nothing)
+}
