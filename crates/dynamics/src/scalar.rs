@@ -71,6 +71,12 @@ pub trait Scalar:
         Self::select(other.less_than(self), other, self)
     }
 
+    /// The product with a plain number.
+    #[inline]
+    fn times(self, factor: f64) -> Self {
+        self * Self::from(factor)
+    }
+
     /// x², cheaper and more exact than a power.
     fn squared(self) -> Self {
         self * self

@@ -39,7 +39,7 @@ pub trait System<S: Scalar> {
     fn inputs(&self) -> usize;
 
     /// Typical magnitude of each state, in its unit: what the error is measured by where the state itself is smaller.
-    fn scales(&self) -> Vec<f64>;
+    fn scales(&self) -> Vec<S>;
 
     /// Rates of all states, per second.
     fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]);
@@ -74,13 +74,13 @@ pub trait Plant<S: Scalar> {
     fn inputs(&self) -> usize;
 
     /// Typical magnitude of each state, in its unit.
-    fn scales(&self) -> Vec<f64>;
+    fn scales(&self) -> Vec<S>;
 
     /// Typical magnitude of the command, in its unit.
-    fn command_scale(&self) -> f64;
+    fn command_scale(&self) -> S;
 
     /// Typical magnitude of what is measured, in its unit.
-    fn measurement_scale(&self) -> f64;
+    fn measurement_scale(&self) -> S;
 
     /// Rates of all states, per second.
     fn rates<T: Scalar + From<S>>(&self, state: &[T], command: T, inputs: &[T], rates: &mut [T]);

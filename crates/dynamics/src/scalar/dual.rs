@@ -149,6 +149,10 @@ where
     type Mask = S::Mask;
 
     #[inline]
+    fn times(self, factor: f64) -> Self {
+        Dual { value: self.value.times(factor), gradient: self.gradient.map(|g| g.times(factor)) }
+    }
+    #[inline]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.chain(root, S::from(0.5) / root)

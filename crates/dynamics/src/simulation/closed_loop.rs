@@ -46,10 +46,10 @@ impl Realization {
     }
 
     /// Magnitudes of the states that make an output of this magnitude, directly or through the states they drive.
-    fn scales(&self, output: f64) -> Vec<f64> {
-        let mut scales = vec![f64::INFINITY; self.states];
+    fn scales<S: Scalar>(&self, output: S) -> Vec<S> {
+        let mut parts = vec![f64::INFINITY; self.states];
         for &(column, value) in &self.taps {
-            scales[column] = output / value.abs();
+            parts[column] = 1.0 / value.abs();
         }
         let rate = |state: usize| {
             let own = self.dynamics.iter().find(|&&(row, column, _)| row == state && column == state);
@@ -58,31 +58,31 @@ impl Realization {
         // A chain of sections lists the last one first: what a state drives stands before it.
         for state in 0..self.states {
             for &(row, column, value) in self.dynamics.iter().filter(|entry| entry.0 < state) {
-                if column == state && scales[row].is_finite() {
-                    scales[state] = scales[state].min(scales[row] * rate(row) / value.abs());
+                if column == state && parts[row].is_finite() {
+                    parts[state] = parts[state].min(parts[row] * rate(row) / value.abs());
                 }
             }
         }
-        scales.iter().map(|&scale| if scale.is_finite() { scale } else { output }).collect()
+        parts.iter().map(|&part| output.times(if part.is_finite() { part } else { 1.0 })).collect()
     }
 
     /// C x.
     fn tapped<T: Scalar>(&self, state: &[T]) -> T {
-        let products = self.taps.iter().map(|&(column, value)| T::from(value) * state[column]);
+        let products = self.taps.iter().map(|&(column, value)| state[column].times(value));
         products.fold(T::from(0.0), |sum, product| sum + product)
     }
 
     fn output<T: Scalar>(&self, state: &[T], input: T) -> T {
-        self.tapped(state) + T::from(self.feedthrough) * input
+        self.tapped(state) + input.times(self.feedthrough)
     }
 
     fn rates<T: Scalar>(&self, state: &[T], input: T, rates: &mut [T]) {
         rates.fill(T::from(0.0));
         for &(row, column, value) in &self.dynamics {
-            rates[row] = rates[row] + T::from(value) * state[column];
+            rates[row] = rates[row] + state[column].times(value);
         }
         for &(row, value) in &self.drive {
-            rates[row] = rates[row] + T::from(value) * input;
+            rates[row] = rates[row] + input.times(value);
         }
     }
 }
@@ -158,7 +158,7 @@ impl<P> ClosedLoop<P> {
         let error = filtered_reference - measurement;
         let mut wanted = self.feedback.output(of_feedback, error);
         if self.feed_forward != 0.0 {
-            wanted = wanted + T::from(self.feed_forward) * self.plant.disturbance(of_plant, own);
+            wanted = wanted + self.plant.disturbance(of_plant, own).times(self.feed_forward);
         }
         let command = wanted.minimum(T::from(self.limit)).maximum(T::from(-self.limit));
         LoopSignals { filtered_reference, measurement, error, wanted, command }
@@ -168,7 +168,7 @@ impl<P> ClosedLoop<P> {
     fn driving<T: Scalar>(&self, signals: &LoopSignals<T>) -> T {
         match self.anti_windup {
             AntiWindup::BackCalculation => {
-                signals.error + (signals.command - signals.wanted) / T::from(self.feedback.feedthrough)
+                signals.error + (signals.command - signals.wanted).times(1.0 / self.feedback.feedthrough)
             }
             AntiWindup::None | AntiWindup::Clamping => signals.error,
         }
@@ -199,7 +199,7 @@ impl<S: Scalar, P: Plant<S>> System<S> for ClosedLoop<P> {
         1 + self.plant.inputs() + usize::from(self.is_delayed())
     }
 
-    fn scales(&self) -> Vec<f64> {
+    fn scales(&self) -> Vec<S> {
         let mut scales = self.plant.scales();
         scales.extend(self.feedback.scales(self.plant.command_scale()));
         scales.extend(self.prefilter.scales(self.plant.measurement_scale()));
@@ -301,7 +301,7 @@ impl<S: Scalar, P: Plant<S>> System<S> for HeldPlant<P> {
         2 + self.plant.inputs()
     }
 
-    fn scales(&self) -> Vec<f64> {
+    fn scales(&self) -> Vec<S> {
         let mut scales = self.plant.scales();
         scales.extend(self.prefilter.scales(self.plant.measurement_scale()));
         scales

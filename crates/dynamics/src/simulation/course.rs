@@ -111,10 +111,8 @@ pub struct Work {
     pub steps: u64,
     /// Steps tried again with a shorter one.
     pub rejected: u64,
-    /// Evaluations of the rates, those for derivatives not counted.
+    /// Evaluations of the rates, that for derivatives at the start of each step not counted.
     pub evaluations: u64,
-    /// Evaluations of the Jacobian.
-    pub jacobians: u64,
 }
 
 /// What came of one simulation, beside what its observer saw.

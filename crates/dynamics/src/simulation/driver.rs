@@ -51,6 +51,8 @@ struct Drive<'a, S, O> {
     settings: Settings,
     slots: Vec<Option<Slot<'a, O>>>,
     state: Vec<S>,
+    /// Whether a state is not the one last linearised at.
+    fresh: bool,
     step: S,
     inputs: StepInputs<S>,
     indicators: Vec<S>,
@@ -126,6 +128,7 @@ where
             settings: *settings,
             slots: (0..S::COUNT).map(|_| None).collect(),
             state: vec![zero; states],
+            fresh: true,
             step: S::from(1e-6),
             inputs: StepInputs { stages, slopes: none.clone(), moving: false },
             indicators: vec![zero; system.indicators()],
@@ -151,6 +154,7 @@ where
         for (state, &value) in self.state.iter_mut().zip(&task.start) {
             *state = state.with_lane(lane, value);
         }
+        self.method.scales = system.scales();
         let mut passage = Passage::new(task.course);
         let mut inputs = vec![0.0; system.inputs()];
         passage.inputs_at(0.0, &mut inputs);
@@ -170,6 +174,7 @@ where
                 *kept = kept.with_lane(lane, new.lane(lane));
             }
         }
+        self.fresh = true;
         let states = vec![0.0; system.states()];
         let Task { sampler, observer, .. } = task;
         self.slots[lane] = Some(Slot { passage, sampler, observer, states, inputs });
@@ -181,7 +186,11 @@ where
         for lane in 0..S::COUNT {
             self.prepare(lane);
         }
-        self.method.linearize(system, &self.state, &self.inputs);
+        self.inputs.moving = self.slots.iter().flatten().any(|slot| !slot.passage.still);
+        if self.fresh {
+            self.method.linearize(system, &self.state, &self.inputs);
+        }
+        self.fresh = false;
         let error =
             self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
         self.between.extensions.clear();
@@ -190,9 +199,9 @@ where
             if slot.passage.status.is_some() {
                 continue;
             }
-            slot.passage.work.jacobians += 1;
             slot.passage.work.evaluations += 7;
             if slot.passage.judge(error.lane(lane)) {
+                self.fresh = true;
                 self.take(system, lane);
             } else if slot.passage.work.steps + slot.passage.work.rejected >= self.settings.maximum_steps {
                 slot.passage.status = Some(Status::TooManySteps { time_s: slot.passage.time_s });
@@ -217,11 +226,14 @@ where
         }
         passage.choose(sample_time_s);
         self.step = self.step.with_lane(lane, passage.step_s);
+        if passage.stands_still() {
+            return;
+        }
         for (part, stage) in STAGE_TIMES.iter().zip(&mut self.inputs.stages) {
             passage.inputs_within(*part, inputs);
             set_lane(stage, lane, inputs);
         }
-        self.inputs.moving = passage.slopes(inputs) || (lane > 0 && self.inputs.moving);
+        passage.slopes(inputs);
         set_lane(&mut self.inputs.slopes, lane, inputs);
     }
 

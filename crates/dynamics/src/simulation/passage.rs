@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::history::History;
-use super::{Course, Event, Input, Sampler, Status, Work};
+use super::{Course, Event, Input, Piece, Sampler, Status, Work};
 use crate::portable;
 
 /// No step grows by more than this, nor shrinks below the other.
@@ -13,9 +13,21 @@ const SAFETY: f64 = 0.9;
 /// A break's waves are met by restarts this many times; by then they are smooth.
 const ECHOES: u8 = 4;
 
+/// An input between two breaks.
+#[derive(Clone, Copy, Debug)]
+enum Segment {
+    Still(f64),
+    Value(Piece),
+    Rate(Piece),
+}
+
 /// One machine's way through time.
 pub(super) struct Passage<'a> {
     pub(super) course: &'a Course,
+    /// The inputs of the course up to the next break.
+    segments: Vec<Segment>,
+    /// Whether no input moves before the next break.
+    pub(super) still: bool,
     pub(super) time_s: f64,
     /// The next step, if nothing breaks before.
     proposed_s: f64,
@@ -32,6 +44,8 @@ pub(super) struct Passage<'a> {
     command: f64,
     pub(super) row: u64,
     rejected: bool,
+    /// Error of the last step.
+    before: f64,
     pub(super) work: Work,
     pub(super) events: Vec<Event>,
     pub(super) status: Option<Status>,
@@ -54,6 +68,8 @@ impl<'a> Passage<'a> {
         times.dedup();
         Passage {
             course,
+            segments: course.inputs.iter().map(|input| segment(input, 0.0, 0.0)).collect(),
+            still: false,
             time_s: 0.0,
             proposed_s: longest_s,
             longest_s,
@@ -66,6 +82,7 @@ impl<'a> Passage<'a> {
             command: 0.0,
             row: 0,
             rejected: false,
+            before: 1.0,
             work: Work::default(),
             events: Vec::new(),
             status: None,
@@ -111,21 +128,18 @@ impl<'a> Passage<'a> {
         };
     }
 
-    /// Inputs at a part of the step being tried. The end of a step that ends at a break is seen from within.
+    /// Inputs at a part of the step being tried.
     pub(super) fn inputs_within(&self, part: f64, inputs: &mut [f64]) {
-        let time = match self.target_s {
-            Some(target) if part == 1.0 => target.next_down(),
-            _ => self.time_s + part * self.step_s,
-        };
-        self.inputs_at(time, inputs);
+        let time_s = if part == 1.0 { self.end_s() } else { self.time_s + part * self.step_s };
+        self.inputs_at(time_s, inputs);
     }
 
-    /// Inputs at a time, waves included.
+    /// Inputs at a time up to the next break, waves included.
     pub(super) fn inputs_at(&self, time_s: f64, inputs: &mut [f64]) {
-        let known = self.course.inputs.iter().map(|input| match input {
-            Input::Value(profile) => profile.value(time_s),
-            Input::Rate(profile) => profile.rate(time_s),
-            Input::Command => self.command,
+        let known = self.segments.iter().map(|segment| match segment {
+            Segment::Still(value) => *value,
+            Segment::Value(piece) => piece.at(time_s).value,
+            Segment::Rate(piece) => piece.at(time_s).rate,
         });
         let waves = self.histories.iter().map(|history| history.arriving(time_s)[0]);
         for (place, value) in inputs.iter_mut().zip(known.chain(waves)) {
@@ -133,20 +147,17 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Slopes of all inputs where the step begins; whether any is not zero.
-    pub(super) fn slopes(&self, slopes: &mut [f64]) -> bool {
-        let known = self.course.inputs.iter().map(|input| match input {
-            Input::Value(profile) => profile.rate(self.time_s),
-            Input::Rate(profile) => profile.acceleration(self.time_s),
-            Input::Command => 0.0,
+    /// Slopes of all inputs where the step begins.
+    pub(super) fn slopes(&self, slopes: &mut [f64]) {
+        let known = self.segments.iter().map(|segment| match segment {
+            Segment::Still(_) => 0.0,
+            Segment::Value(piece) => piece.at(self.time_s).rate,
+            Segment::Rate(piece) => piece.at(self.time_s).acceleration,
         });
         let waves = self.histories.iter().map(|history| history.arriving(self.time_s)[1]);
-        let mut moving = false;
         for (place, value) in slopes.iter_mut().zip(known.chain(waves)) {
             *place = value;
-            moving |= value != 0.0;
         }
-        moving
     }
 
     /// Where the step being tried ends.
@@ -158,7 +169,11 @@ impl<'a> Passage<'a> {
     pub(super) fn judge(&mut self, error: f64) -> bool {
         let taken = error <= 1.0;
         let factor = if error.is_finite() {
-            (SAFETY * portable::pow(error.max(1e-10), -0.2)).clamp(GROWTH[0], GROWTH[1])
+            // A proportional-integral controller of the step (Gustafsson 1991): error^(-3/16) before^(1/16).
+            let (eighth, before) =
+                (error.max(1e-8).sqrt().sqrt().sqrt(), self.before.sqrt().sqrt().sqrt().sqrt());
+            let damped = if taken { before } else { 1.0 };
+            (SAFETY * damped / (eighth * eighth.sqrt())).clamp(GROWTH[0], GROWTH[1])
         } else {
             GROWTH[0]
         };
@@ -168,6 +183,7 @@ impl<'a> Passage<'a> {
             let grown = self.step_s * factor;
             let cut = self.target_s.is_some() && factor >= 1.0;
             self.proposed_s = if cut { grown.max(self.proposed_s) } else { grown };
+            self.before = error.max(1e-3);
             self.work.steps += 1;
         } else {
             self.proposed_s = self.step_s * factor.min(0.9);
@@ -188,15 +204,21 @@ impl<'a> Passage<'a> {
     /// Stands at the end of the step that was taken; what happens there: breaks, arriving commands.
     pub(super) fn arrive(&mut self) {
         self.time_s = self.end_s();
+        let mut broken = false;
         while self.breaks.front().is_some_and(|&(time, _)| time <= self.time_s) {
             if let Some((time, generation)) = self.breaks.pop_front() {
                 self.meet_again(time, generation);
+                broken = true;
             }
         }
         while self.pending.front().is_some_and(|&(arrival, _)| arrival <= self.time_s) {
             if let Some((_, command)) = self.pending.pop_front() {
                 self.command = command;
+                broken = true;
             }
+        }
+        if broken {
+            self.hold();
         }
         if self.time_s >= self.course.duration_s {
             self.status = Some(Status::Completed);
@@ -217,9 +239,26 @@ impl<'a> Passage<'a> {
         self.sample += 1;
         if sampler.delay_s() == 0.0 {
             self.command = command;
+            self.hold();
         } else {
             self.pending.push_back((self.time_s + sampler.delay_s(), command));
         }
+    }
+
+    /// Takes the inputs as they are from now on.
+    fn hold(&mut self) {
+        self.before = 1.0;
+        let (time_s, command) = (self.time_s, self.command);
+        self.segments = self.course.inputs.iter().map(|input| segment(input, time_s, command)).collect();
+        self.still = false;
+    }
+
+    /// Whether no input has moved or will move before the next break, and this was so before.
+    pub(super) fn stands_still(&mut self) -> bool {
+        let was = self.still;
+        self.still =
+            self.histories.is_empty() && self.segments.iter().all(|s| matches!(s, Segment::Still(_)));
+        was && self.still
     }
 
     /// The waves that leave at a break arrive as breaks.
@@ -235,6 +274,20 @@ impl<'a> Passage<'a> {
                     self.breaks.insert(place, (arrival, generation + 1));
                 }
             }
+        }
+    }
+}
+
+fn segment(input: &Input, time_s: f64, command: f64) -> Segment {
+    match input {
+        Input::Command => Segment::Still(command),
+        Input::Value(profile) => {
+            let piece = profile.piece(time_s);
+            piece.constant().map_or(Segment::Value(piece), Segment::Still)
+        }
+        Input::Rate(profile) => {
+            let piece = profile.piece(time_s);
+            piece.constant().map_or(Segment::Rate(piece), |_| Segment::Still(0.0))
         }
     }
 }

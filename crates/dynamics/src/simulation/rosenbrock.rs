@@ -14,50 +14,37 @@ pub(super) const DIRECTIONS: usize = 6;
 /// gamma, on the diagonal of every stage.
 const GAMMA: f64 = 0.21193756319429014;
 
-/// a_ij: what the stages before add to the state of stage i; those of the last two stages are one.
-const A: [[f64; 5]; 6] = [
-    [0.0; 5],
-    [3.0, 0.0, 0.0, 0.0, 0.0],
-    [2.849394379747939, 0.45842242204463923, 0.0, 0.0, 0.0],
-    [-6.954028509809101, 2.489845061869568, -10.358996098473584, 0.0, 0.0],
-    [2.8029986275628964, 0.5072464736228206, -0.3988312541770524, -0.04721187230404641, 0.0],
-    [-7.502846399306121, 2.561846144803919, -11.627539656261098, -0.18268767659942256, 0.030198172008377946],
-];
+/// a_ij: what the stages before add to the state of stages 2 to 6; the last two stages each add the increment before them.
+const A2: [f64; 1] = [3.0];
+const A3: [f64; 2] = [2.849394379747939, 0.45842242204463923];
+const A4: [f64; 3] = [-6.954028509809101, 2.489845061869568, -10.358996098473584];
+const A5: [f64; 4] = [2.8029986275628964, 0.5072464736228206, -0.3988312541770524, -0.04721187230404641];
+const A6: [f64; 5] =
+    [-7.502846399306121, 2.561846144803919, -11.627539656261098, -0.18268767659942256, 0.030198172008377946];
 
-/// c_ij: what the stages before add to the right-hand side of stage i, over h.
-const C: [[f64; 7]; STAGES] = [
-    [0.0; 7],
-    [-14.155112264123755, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [-17.97296035885952, -2.859693295451294, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [147.12150275711716, -1.41221402718213, 71.68940251302358, 0.0, 0.0, 0.0, 0.0],
-    [165.43517024871676, -0.4592823456491126, 42.90938336958603, -5.961986721573306, 0.0, 0.0, 0.0],
-    [
-        24.854864614690072,
-        -3.0009227002832186,
-        47.4931110020768,
-        5.5814197821558125,
-        -0.6610691825249471,
-        0.0,
-        0.0,
-    ],
-    [
-        30.91273214028599,
-        -3.1208243349937974,
-        77.79954646070892,
-        34.28646028294783,
-        -19.097331116725623,
-        -28.087943162872662,
-        0.0,
-    ],
-    [
-        37.80277123390563,
-        -3.2571969029072276,
-        112.26918849496327,
-        66.9347231244047,
-        -40.06618937091002,
-        -54.66780262877968,
-        -9.48861652309627,
-    ],
+/// c_ij: what the stages before add to the right-hand side of stages 2 to 8, over h.
+const C2: [f64; 1] = [-14.155112264123755];
+const C3: [f64; 2] = [-17.97296035885952, -2.859693295451294];
+const C4: [f64; 3] = [147.12150275711716, -1.41221402718213, 71.68940251302358];
+const C5: [f64; 4] = [165.43517024871676, -0.4592823456491126, 42.90938336958603, -5.961986721573306];
+const C6: [f64; 5] =
+    [24.854864614690072, -3.0009227002832186, 47.4931110020768, 5.5814197821558125, -0.6610691825249471];
+const C7: [f64; 6] = [
+    30.91273214028599,
+    -3.1208243349937974,
+    77.79954646070892,
+    34.28646028294783,
+    -19.097331116725623,
+    -28.087943162872662,
+];
+const C8: [f64; 7] = [
+    37.80277123390563,
+    -3.2571969029072276,
+    112.26918849496327,
+    66.9347231244047,
+    -40.06618937091002,
+    -54.66780262877968,
+    -9.48861652309627,
 ];
 
 /// Where in the step the inputs of each stage are taken.
@@ -113,6 +100,17 @@ pub(super) struct StepInputs<S> {
     pub(super) moving: bool,
 }
 
+/// Where an entry of the Jacobian is found.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    row: usize,
+    /// Which evaluation finds it, and in which direction.
+    pass: usize,
+    direction: usize,
+    /// Its place in the step's matrix.
+    entry: usize,
+}
+
 /// The method with its memory, for a system of one pattern.
 ///
 /// ```text
@@ -126,17 +124,20 @@ pub(super) struct StepInputs<S> {
 pub(super) struct Rosenbrock<S> {
     pattern: Pattern,
     matrix: StepMatrix<S>,
-    scales: Vec<f64>,
-    increments: Vec<[S; STAGES]>,
+    /// Typical magnitudes of the states; those of a lane change with its machine.
+    pub(super) scales: Vec<S>,
+    /// u_i, stage by stage.
+    increments: Vec<S>,
     stage: Vec<S>,
     rates: Vec<S>,
-    right: Vec<S>,
+    rates_of_stage: Vec<S>,
     slopes: Vec<S>,
     seeded: Vec<Dual<DIRECTIONS, S>>,
     seeded_inputs: Vec<Dual<DIRECTIONS, S>>,
     seeded_rates: Vec<Dual<DIRECTIONS, S>>,
-    /// J, row by row as in the pattern.
-    jacobian: Vec<Vec<S>>,
+    /// J, in the order in which it is found.
+    jacobian: Vec<S>,
+    found: Vec<Found>,
     /// State at the end of the last step.
     pub(super) end: Vec<S>,
 }
@@ -152,58 +153,62 @@ where
         let (states, inputs) = (system.states(), system.inputs());
         let zero = S::from(0.0);
         let seeded = vec![Dual::constant(zero); states];
+        let matrix = StepMatrix::new(&pattern.rows);
+        let found = found(&pattern, &matrix);
         Some(Rosenbrock {
-            matrix: StepMatrix::new(&pattern.rows),
             scales: system.scales(),
-            increments: vec![[zero; STAGES]; states],
+            increments: vec![zero; STAGES * states],
             stage: vec![zero; states],
             rates: vec![zero; states],
-            right: vec![zero; states],
+            rates_of_stage: vec![zero; states],
             slopes: vec![zero; states],
             seeded_inputs: vec![Dual::constant(zero); inputs],
             seeded_rates: seeded.clone(),
             seeded,
-            jacobian: pattern.rows.iter().map(|row| vec![zero; row.len()]).collect(),
+            jacobian: vec![zero; found.len()],
+            found,
             end: vec![zero; states],
+            matrix,
             pattern,
         })
     }
 
     /// Rates, Jacobian and slopes in time at the start of a step.
     pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>) {
-        let zero = S::from(0.0);
-        self.slopes.fill(zero);
         // The slope in time is one more direction.
-        let directions = self.pattern.colour_count + usize::from(inputs.moving);
-        for first in (0..directions.max(1)).step_by(DIRECTIONS) {
+        let in_time = self.pattern.colour_count;
+        let directions = (in_time + usize::from(inputs.moving)).max(1);
+        for (seeded, &value) in self.seeded_inputs.iter_mut().zip(&inputs.stages[0]) {
+            *seeded = Dual::constant(value);
+        }
+        for pass in 0..directions.div_ceil(DIRECTIONS) {
+            let first = pass * DIRECTIONS;
             for ((seeded, &value), &colour) in self.seeded.iter_mut().zip(state).zip(&self.pattern.colours) {
-                *seeded = match colour.checked_sub(first) {
-                    Some(direction) => Dual::variable(value, direction),
-                    None => Dual::constant(value),
-                };
+                *seeded = Dual::variable(value, colour.wrapping_sub(first));
             }
-            let in_time = self.pattern.colour_count.checked_sub(first).filter(|_| inputs.moving);
-            let at_start = self.seeded_inputs.iter_mut().zip(&inputs.stages[0]).zip(&inputs.slopes);
-            for ((seeded, &value), &slope) in at_start {
-                let mut gradient = [zero; DIRECTIONS];
-                if let Some(place) = in_time.and_then(|direction| gradient.get_mut(direction)) {
-                    *place = slope;
+            let time_here = inputs.moving && (first..first + DIRECTIONS).contains(&in_time);
+            if time_here {
+                let at_start = self.seeded_inputs.iter_mut().zip(&inputs.slopes);
+                for (seeded, &slope) in at_start {
+                    let mut gradient = [S::from(0.0); DIRECTIONS];
+                    gradient[in_time - first] = slope;
+                    *seeded = Dual::new(seeded.value(), gradient);
                 }
-                *seeded = Dual::new(value, gradient);
             }
             system.rates(&self.seeded, &self.seeded_inputs, &mut self.seeded_rates);
-            for (row, rate) in self.seeded_rates.iter().enumerate() {
-                for (entry, &column) in self.jacobian[row].iter_mut().zip(&self.pattern.rows[row]) {
-                    let direction = self.pattern.colours[column].checked_sub(first);
-                    if let Some(&value) = direction.and_then(|direction| rate.gradient().get(direction)) {
-                        *entry = value;
-                    }
+            for (value, found) in self.jacobian.iter_mut().zip(&self.found) {
+                if found.pass == pass {
+                    *value = self.seeded_rates[found.row].gradient()[found.direction];
                 }
-                if let Some(&slope) = in_time.and_then(|direction| rate.gradient().get(direction)) {
-                    self.slopes[row] = slope;
-                }
-                self.rates[row] = rate.value();
             }
+            if time_here {
+                for (slope, rate) in self.slopes.iter_mut().zip(&self.seeded_rates) {
+                    *slope = rate.gradient()[in_time - first];
+                }
+            }
+        }
+        for (value, rate) in self.rates.iter_mut().zip(&self.seeded_rates) {
+            *value = rate.value();
         }
     }
 
@@ -219,86 +224,83 @@ where
     ) -> S {
         let per_step = S::from(1.0) / step;
         self.matrix.reset(per_step * S::from(1.0 / GAMMA));
-        for (row, entries) in self.jacobian.iter().enumerate() {
-            for (place, &entry) in entries.iter().enumerate() {
-                self.matrix.subtract(row, place, entry);
-            }
+        for (&value, found) in self.jacobian.iter().zip(&self.found) {
+            self.matrix.subtract(found.entry, value);
         }
         let kept = self.matrix.factor();
-        for stage in 0..STAGES {
+        self.finish_stage(0, step, per_step, inputs.moving);
+        for stage in 1..STAGES {
             self.begin_stage(stage, state);
-            if stage > 0 {
-                let at = stage.min(STAGE_TIMES.len() - 1);
-                system.rates(&self.stage, &inputs.stages[at], &mut self.right);
-            } else {
-                self.right.copy_from_slice(&self.rates);
-            }
+            let at = stage.min(STAGE_TIMES.len() - 1);
+            system.rates(&self.stage, &inputs.stages[at], &mut self.rates_of_stage);
             self.finish_stage(stage, step, per_step, inputs.moving);
         }
-        let last = self.increments.iter().map(|increments| increments[STAGES - 1]);
-        for ((end, &stage), increment) in self.end.iter_mut().zip(&self.stage).zip(last) {
+        let last = &self.increments[(STAGES - 1) * state.len()..];
+        for ((end, &stage), &increment) in self.end.iter_mut().zip(&self.stage).zip(last) {
             *end = stage + increment;
         }
         let error = self.error(state, tolerance);
         S::select(S::from(0.0).less_than(kept), error, S::from(f64::INFINITY))
     }
 
+    /// y + sum a_ij u_j.
     fn begin_stage(&mut self, stage: usize, state: &[S]) {
-        match A.get(stage) {
-            Some(weights) => {
-                let of_state = self.stage.iter_mut().zip(state).zip(&self.increments);
-                for ((value, &start), increments) in of_state {
-                    let mut sum = start;
-                    for (&weight, &increment) in weights.iter().zip(increments).take(stage) {
-                        sum = sum + S::from(weight) * increment;
-                    }
-                    *value = sum;
-                }
-            }
-            None => {
-                for (value, increments) in self.stage.iter_mut().zip(&self.increments) {
-                    *value = *value + increments[stage - 1];
+        let states = state.len();
+        let (sums, increments) = (&mut self.stage[..], &self.increments[..]);
+        match stage {
+            1 => combine(sums, state, &A2, S::from(1.0), increments),
+            2 => combine(sums, state, &A3, S::from(1.0), increments),
+            3 => combine(sums, state, &A4, S::from(1.0), increments),
+            4 => combine(sums, state, &A5, S::from(1.0), increments),
+            5 => combine(sums, state, &A6, S::from(1.0), increments),
+            _ => {
+                let before = &increments[(stage - 1) * states..stage * states];
+                for (value, &increment) in sums.iter_mut().zip(before) {
+                    *value = *value + increment;
                 }
             }
         }
     }
 
+    /// The increment of a stage from its rates.
     fn finish_stage(&mut self, stage: usize, step: S, per_step: S, moving: bool) {
-        let weights = &C[stage];
-        for (right, increments) in self.right.iter_mut().zip(&self.increments) {
-            let mut sum = S::from(0.0);
-            for (&weight, &increment) in weights.iter().zip(increments).take(stage) {
-                sum = sum + S::from(weight) * increment;
-            }
-            *right = *right + sum * per_step;
+        let states = self.rates.len();
+        let (before, after) = self.increments.split_at_mut(stage * states);
+        let Some(right) = after.get_mut(..states) else { return };
+        match stage {
+            1 => combine(right, &self.rates_of_stage, &C2, per_step, before),
+            2 => combine(right, &self.rates_of_stage, &C3, per_step, before),
+            3 => combine(right, &self.rates_of_stage, &C4, per_step, before),
+            4 => combine(right, &self.rates_of_stage, &C5, per_step, before),
+            5 => combine(right, &self.rates_of_stage, &C6, per_step, before),
+            6 => combine(right, &self.rates_of_stage, &C7, per_step, before),
+            7 => combine(right, &self.rates_of_stage, &C8, per_step, before),
+            _ => right.copy_from_slice(&self.rates),
         }
         if let Some(&weight) = SLOPE_WEIGHTS.get(stage).filter(|_| moving) {
-            let weighted = S::from(weight) * step;
-            for (right, &slope) in self.right.iter_mut().zip(&self.slopes) {
+            let weighted = step.times(weight);
+            for (right, &slope) in right.iter_mut().zip(&self.slopes) {
                 *right = *right + weighted * slope;
             }
         }
-        self.matrix.solve(&mut self.right);
-        for (increments, &solution) in self.increments.iter_mut().zip(&self.right) {
-            increments[stage] = solution;
-        }
+        self.matrix.solve(right);
     }
 
     /// Root mean square of the error over tolerance (scale + |y|).
     fn error(&self, state: &[S], tolerance: f64) -> S {
         let mut sum = S::from(0.0);
-        for (index, increments) in self.increments.iter().enumerate() {
-            let magnitude = state[index].abs().maximum(self.end[index].abs());
-            let allowed = S::from(tolerance) * (S::from(self.scales[index]) + magnitude);
-            sum = sum + (increments[STAGES - 1] / allowed).squared();
+        let last = &self.increments[(STAGES - 1) * state.len()..];
+        for (((&error, &start), &end), &scale) in last.iter().zip(state).zip(&self.end).zip(&self.scales) {
+            let magnitude = start.abs().maximum(end.abs());
+            sum = sum + (error / (scale + magnitude)).squared();
         }
-        (sum / S::from(self.increments.len().max(1) as f64)).sqrt()
+        (sum * S::from(1.0 / self.scales.len().max(1) as f64)).sqrt() * S::from(1.0 / tolerance)
     }
 
     /// Root mean square of rates over (scale + |y|) in one lane, per second.
     pub(super) fn magnitude(&self, rates: &[S], state: &[S], lane: usize) -> f64 {
         let parts = rates.iter().zip(state).zip(&self.scales).map(|((rate, state), scale)| {
-            let part = rate.lane(lane) / (scale + state.lane(lane).abs());
+            let part = rate.lane(lane) / (scale.lane(lane) + state.lane(lane).abs());
             part * part
         });
         (parts.sum::<f64>() / rates.len().max(1) as f64).sqrt()
@@ -310,14 +312,48 @@ where
     /// y(theta) = (1 - theta) y_0 + theta (y_1 + (1 - theta) (k_1 + theta (k_2 + theta k_3)))
     /// ```
     pub(super) fn extension(&self, index: usize, start: S) -> Extension<S> {
-        let increments = &self.increments[index];
-        let combine = |weights: &[f64; STAGES]| {
-            let products = weights.iter().zip(increments);
-            products.fold(S::from(0.0), |sum, (&weight, &increment)| sum + S::from(weight) * increment)
-        };
-        let [first, second, third] = [0, 1, 2].map(|row| combine(&EXTENSION[row]));
-        Extension { start, end: self.end[index], coefficients: [first, second, third] }
+        let states = self.end.len();
+        let mut coefficients = [S::from(0.0); 3];
+        for (stage, increments) in self.increments.chunks_exact(states).enumerate() {
+            for (coefficient, weights) in coefficients.iter_mut().zip(&EXTENSION) {
+                *coefficient = *coefficient + increments[index].times(weights[stage]);
+            }
+        }
+        Extension { start, end: self.end[index], coefficients }
     }
+}
+
+/// base + factor sum w_j u_j over the first K stages, state by state.
+#[inline]
+fn combine<S: Lane, const K: usize>(
+    sums: &mut [S],
+    base: &[S],
+    weights: &[f64; K],
+    factor: S,
+    increments: &[S],
+) {
+    let states = sums.len();
+    let stages: [&[S]; K] = std::array::from_fn(|stage| &increments[stage * states..][..states]);
+    for (index, (sum, &base)) in sums.iter_mut().zip(base).enumerate() {
+        let mut total = stages[0][index].times(weights[0]);
+        for (stage, &weight) in stages.iter().zip(weights).skip(1) {
+            total = total + stage[index].times(weight);
+        }
+        *sum = base + factor * total;
+    }
+}
+
+/// Where each entry of the pattern is found and where it goes.
+fn found<S: Lane>(pattern: &Pattern, matrix: &StepMatrix<S>) -> Vec<Found> {
+    let mut all = Vec::new();
+    for (row, columns) in pattern.rows.iter().enumerate() {
+        for (place, &column) in columns.iter().enumerate() {
+            let colour = pattern.colours[column];
+            let (pass, direction) = (colour / DIRECTIONS, colour % DIRECTIONS);
+            all.push(Found { row, pass, direction, entry: matrix.entry(row, place) });
+        }
+    }
+    all
 }
 
 /// A state over one step.

@@ -2,7 +2,7 @@
 
 use super::Lane;
 
-/// `value[target] -= value[multiplier] * value[source]`.
+/// `entry[target] -= entry[multiplier] * entry[source]`.
 #[derive(Clone, Copy, Debug)]
 struct Update {
     target: u32,
@@ -10,22 +10,28 @@ struct Update {
     source: u32,
 }
 
-/// Elimination of one state: its place on the diagonal, the entries that become multipliers, what they update.
+/// One row of a triangle: `vector[state] -= sum of entry * vector[other]`.
+#[derive(Clone, Debug)]
+struct Row {
+    state: usize,
+    /// (entry, other)
+    terms: Vec<(u32, u32)>,
+}
+
+/// Elimination of one state: its place on the diagonal, the entries below and beside it, what they update.
 #[derive(Clone, Debug)]
 struct Pivot {
     state: usize,
-    diagonal: u32,
-    /// (row, entry) below the pivot.
-    below: Vec<(u32, u32)>,
-    /// (column, entry) beside the pivot.
-    beside: Vec<(u32, u32)>,
+    diagonal: usize,
+    below: Vec<u32>,
+    beside: Vec<u32>,
     updates: Vec<Update>,
 }
 
 /// A matrix whose pattern is fixed, with its triangular factors in its own place.
 ///
 /// ```text
-/// W = I/(h gamma) - J = L U          pivots on the diagonal, in an order that fills in least (Markowitz 1957)
+/// W = I/(h gamma) - J = L D U        L and U with ones on the diagonal; pivots on the diagonal, in an order that fills in least (Markowitz 1957)
 /// ```
 ///
 /// The order is that of the pattern and not of the values, so that lanes share it and no step searches for pivots. As the
@@ -34,6 +40,9 @@ struct Pivot {
 pub(super) struct StepMatrix<S> {
     values: Vec<S>,
     pivots: Vec<Pivot>,
+    /// Forward and backward substitution.
+    forward: Vec<Row>,
+    backward: Vec<Row>,
     /// Entry of each (row, column) of the pattern it was made with, row by row.
     entries: Vec<Vec<u32>>,
     diagonal: Vec<u32>,
@@ -65,20 +74,16 @@ impl<S: Lane> StepMatrix<S> {
             }
         }
         let pivots = pivots(&order, &filled, &place);
+        let [forward, backward] = substitutions(&order, &filled, &place);
         let entries = rows
             .iter()
             .enumerate()
             .map(|(row, columns)| columns.iter().map(|&column| place[row][column]).collect())
             .collect();
         let diagonal = (0..count).map(|state| place[state][state]).collect();
-        let zero = S::from(0.0);
-        StepMatrix {
-            values: vec![zero; used as usize],
-            pivots,
-            entries,
-            diagonal,
-            untouched: vec![zero; count],
-        }
+        let values = vec![S::from(0.0); used as usize];
+        let untouched = vec![S::from(0.0); count];
+        StepMatrix { values, pivots, forward, backward, entries, diagonal, untouched }
     }
 
     /// All entries zero but those of `diagonal` times the identity.
@@ -89,10 +94,14 @@ impl<S: Lane> StepMatrix<S> {
         }
     }
 
-    /// Subtracts a number from the entry at this place of this row of the pattern.
+    /// Where the entry at this place of this row of the pattern is held.
+    pub(super) fn entry(&self, row: usize, place: usize) -> usize {
+        self.entries[row][place] as usize
+    }
+
+    /// Subtracts a number from an entry.
     #[inline]
-    pub(super) fn subtract(&mut self, row: usize, place: usize, value: S) {
-        let entry = self.entries[row][place] as usize;
+    pub(super) fn subtract(&mut self, entry: usize, value: S) {
         self.values[entry] = self.values[entry] - value;
     }
 
@@ -104,16 +113,19 @@ impl<S: Lane> StepMatrix<S> {
             *untouched = S::from(LOST_DIGITS) * values[entry as usize].abs();
         }
         for pivot in &self.pivots {
-            let value = values[pivot.diagonal as usize];
+            let value = values[pivot.diagonal];
             let inverse = S::from(1.0) / value;
             least = least.minimum(value.abs() - self.untouched[pivot.state]);
-            values[pivot.diagonal as usize] = inverse;
-            for &(_, entry) in &pivot.below {
+            values[pivot.diagonal] = inverse;
+            for &entry in &pivot.below {
                 values[entry as usize] = values[entry as usize] * inverse;
             }
             for &Update { target, multiplier, source } in &pivot.updates {
                 let product = values[multiplier as usize] * values[source as usize];
                 values[target as usize] = values[target as usize] - product;
+            }
+            for &entry in &pivot.beside {
+                values[entry as usize] = values[entry as usize] * inverse;
             }
         }
         least
@@ -122,18 +134,21 @@ impl<S: Lane> StepMatrix<S> {
     /// Solves W x = b in the place of b.
     #[inline]
     pub(super) fn solve(&self, vector: &mut [S]) {
-        for pivot in &self.pivots {
-            let known = vector[pivot.state];
-            for &(row, entry) in &pivot.below {
-                vector[row as usize] = vector[row as usize] - self.values[entry as usize] * known;
-            }
+        self.substitute(&self.forward, vector);
+        for (value, &entry) in vector.iter_mut().zip(&self.diagonal) {
+            *value = *value * self.values[entry as usize];
         }
-        for pivot in self.pivots.iter().rev() {
-            let mut sum = vector[pivot.state];
-            for &(column, entry) in &pivot.beside {
-                sum = sum - self.values[entry as usize] * vector[column as usize];
+        self.substitute(&self.backward, vector);
+    }
+
+    #[inline]
+    fn substitute(&self, rows: &[Row], vector: &mut [S]) {
+        for Row { state, terms } in rows {
+            let mut sum = vector[*state];
+            for &(entry, other) in terms {
+                sum = sum - self.values[entry as usize] * vector[other as usize];
             }
-            vector[pivot.state] = sum * self.values[pivot.diagonal as usize];
+            vector[*state] = sum;
         }
     }
 }
@@ -177,13 +192,26 @@ fn pivots(order: &[usize], filled: &[Vec<bool>], place: &[Vec<u32>]) -> Vec<Pivo
         let updates = rows.iter().flat_map(|&row| columns.iter().map(move |&column| update(row, column)));
         pivots.push(Pivot {
             state,
-            diagonal: place[state][state],
-            below: rows.iter().map(|&row| (row as u32, place[row][state])).collect(),
-            beside: columns.iter().map(|&column| (column as u32, place[state][column])).collect(),
+            diagonal: place[state][state] as usize,
+            below: rows.iter().map(|&row| place[row][state]).collect(),
+            beside: columns.iter().map(|&column| place[state][column]).collect(),
             updates: updates.collect(),
         });
     }
     pivots
+}
+
+/// Forward substitution through L, backward through U.
+fn substitutions(order: &[usize], filled: &[Vec<bool>], place: &[Vec<u32>]) -> [Vec<Row>; 2] {
+    let row = |state: usize, known: &[usize]| {
+        let known = known.iter().filter(|&&other| filled[state][other]);
+        Row { state, terms: known.map(|&other| (place[state][other], other as u32)).collect() }
+    };
+    let positions = order.iter().enumerate();
+    let forward = positions.clone().map(|(position, &state)| row(state, &order[..position]));
+    let backward = positions.rev().map(|(position, &state)| row(state, &order[position + 1..]));
+    let [forward, backward] = [forward.collect::<Vec<_>>(), backward.collect()];
+    [forward, backward].map(|rows| rows.into_iter().filter(|row| !row.terms.is_empty()).collect())
 }
 
 #[cfg(test)]
@@ -210,7 +238,8 @@ mod tests {
         for (row, columns) in rows.iter().enumerate() {
             for (place, &column) in columns.iter().enumerate() {
                 number = 3.9 * number * (1.0 - number);
-                matrix.subtract(row, place, Lanes([10.0 * number, -7.0 * number]));
+                let entry = matrix.entry(row, place);
+                matrix.subtract(entry, Lanes([10.0 * number, -7.0 * number]));
                 dense[0][(row, column)] -= 10.0 * number;
                 dense[1][(row, column)] += 7.0 * number;
             }
@@ -232,8 +261,8 @@ mod tests {
     fn a_pivot_without_digits_is_told() {
         let mut matrix = StepMatrix::<f64>::new(&[vec![1], vec![0]]);
         matrix.reset(1.0);
-        matrix.subtract(0, 0, 1.0);
-        matrix.subtract(1, 0, 1.0 - 1e-13);
+        matrix.subtract(matrix.entry(0, 0), 1.0);
+        matrix.subtract(matrix.entry(1, 0), 1.0 - 1e-13);
         assert!(matrix.factor() < 0.0);
     }
 }

@@ -59,6 +59,14 @@ impl Piece {
         }
     }
 
+    /// The value of a piece that does not change.
+    pub(in crate::simulation) fn constant(&self) -> Option<f64> {
+        match self.0 {
+            Shape::Constant { value } => Some(value),
+            _ => None,
+        }
+    }
+
     /// A quarter of the shortest period within the piece, in s; none without a swing.
     pub(super) fn quarter_period_s(&self) -> Option<f64> {
         let Shape::Sine { frequency_rad_per_s, sweep_rad_per_s2, span_s, .. } = self.0 else { return None };
