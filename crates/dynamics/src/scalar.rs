@@ -23,6 +23,7 @@
 
 mod dependence;
 mod dual;
+mod exponential;
 mod lanes;
 
 use std::fmt::Debug;
@@ -92,7 +93,7 @@ impl Scalar for f64 {
     }
     #[inline]
     fn exp(self) -> Self {
-        portable::exp(self)
+        exponential::exponential(self)
     }
     #[inline]
     fn ln(self) -> Self {

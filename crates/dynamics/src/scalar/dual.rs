@@ -55,13 +55,13 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     }
 
     /// f(u), given f(u) and f'(u) as numbers.
-    #[inline]
+    #[inline(always)]
     fn chain(self, value: S, slope: S) -> Self {
         Dual { value, gradient: self.gradient.map(|g| slope * g) }
     }
 
     /// f(u, v), given its value and its two partial derivatives.
-    #[inline]
+    #[inline(always)]
     fn chain_two(self, other: Self, value: S, slope: S, other_slope: S) -> Self {
         let mut gradient = self.gradient;
         for (g, b) in gradient.iter_mut().zip(other.gradient) {
@@ -72,21 +72,21 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
 }
 
 impl<const N: usize> From<f64> for Dual<N> {
-    #[inline]
+    #[inline(always)]
     fn from(value: f64) -> Self {
         Dual::constant(value)
     }
 }
 
 impl<const N: usize, const L: usize> From<f64> for Dual<N, Lanes<L>> {
-    #[inline]
+    #[inline(always)]
     fn from(value: f64) -> Self {
         Dual::constant(Lanes::from(value))
     }
 }
 
 impl<const N: usize, const L: usize> From<Lanes<L>> for Dual<N, Lanes<L>> {
-    #[inline]
+    #[inline(always)]
     fn from(value: Lanes<L>) -> Self {
         Dual::constant(value)
     }
@@ -94,7 +94,7 @@ impl<const N: usize, const L: usize> From<Lanes<L>> for Dual<N, Lanes<L>> {
 
 impl<const N: usize, S: Scalar> Add for Dual<N, S> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         let mut gradient = self.gradient;
         for (g, b) in gradient.iter_mut().zip(other.gradient) {
@@ -106,7 +106,7 @@ impl<const N: usize, S: Scalar> Add for Dual<N, S> {
 
 impl<const N: usize, S: Scalar> Sub for Dual<N, S> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         let mut gradient = self.gradient;
         for (g, b) in gradient.iter_mut().zip(other.gradient) {
@@ -118,7 +118,7 @@ impl<const N: usize, S: Scalar> Sub for Dual<N, S> {
 
 impl<const N: usize, S: Scalar> Mul for Dual<N, S> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         self.chain_two(other, self.value * other.value, other.value, self.value)
     }
@@ -126,7 +126,7 @@ impl<const N: usize, S: Scalar> Mul for Dual<N, S> {
 
 impl<const N: usize, S: Scalar> Div for Dual<N, S> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
         let quotient = self.value / other.value;
         let slope = S::from(1.0) / other.value;
@@ -136,7 +136,7 @@ impl<const N: usize, S: Scalar> Div for Dual<N, S> {
 
 impl<const N: usize, S: Scalar> Neg for Dual<N, S> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Dual { value: -self.value, gradient: self.gradient.map(|g| -g) }
     }
@@ -148,36 +148,36 @@ where
 {
     type Mask = S::Mask;
 
-    #[inline]
+    #[inline(always)]
     fn times(self, factor: f64) -> Self {
         Dual { value: self.value.times(factor), gradient: self.gradient.map(|g| g.times(factor)) }
     }
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.chain(root, S::from(0.5) / root)
     }
-    #[inline]
+    #[inline(always)]
     fn exp(self) -> Self {
         let value = self.value.exp();
         self.chain(value, value)
     }
-    #[inline]
+    #[inline(always)]
     fn ln(self) -> Self {
         self.chain(self.value.ln(), S::from(1.0) / self.value)
     }
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         let zero = S::from(0.0);
         let negative = S::select(self.value.less_than(zero), S::from(-1.0), zero);
         let slope = S::select(zero.less_than(self.value), S::from(1.0), negative);
         self.chain(self.value.abs(), slope)
     }
-    #[inline]
+    #[inline(always)]
     fn less_than(self, other: Self) -> S::Mask {
         self.value.less_than(other.value)
     }
-    #[inline]
+    #[inline(always)]
     fn select(mask: S::Mask, if_true: Self, if_false: Self) -> Self {
         let mut gradient = if_true.gradient;
         for (g, b) in gradient.iter_mut().zip(if_false.gradient) {

@@ -1,6 +1,7 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::Scalar;
+use super::exponential::exponential;
 use crate::portable;
 
 /// L numbers side by side, every operation on all of them at once: the same equation for L machines.
@@ -21,19 +22,19 @@ use crate::portable;
 pub struct Lanes<const L: usize>(pub [f64; L]);
 
 impl<const L: usize> From<f64> for Lanes<L> {
-    #[inline]
+    #[inline(always)]
     fn from(value: f64) -> Self {
         Lanes([value; L])
     }
 }
 
 impl<const L: usize> Lanes<L> {
-    #[inline]
+    #[inline(always)]
     fn each(self, function: impl Fn(f64) -> f64) -> Self {
         Lanes(self.0.map(function))
     }
 
-    #[inline]
+    #[inline(always)]
     fn pairs(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
         let mut lanes = self.0;
         for (lane, with) in lanes.iter_mut().zip(other.0) {
@@ -45,7 +46,7 @@ impl<const L: usize> Lanes<L> {
 
 impl<const L: usize> Add for Lanes<L> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         self.pairs(other, |a, b| a + b)
     }
@@ -53,7 +54,7 @@ impl<const L: usize> Add for Lanes<L> {
 
 impl<const L: usize> Sub for Lanes<L> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self.pairs(other, |a, b| a - b)
     }
@@ -61,7 +62,7 @@ impl<const L: usize> Sub for Lanes<L> {
 
 impl<const L: usize> Mul for Lanes<L> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         self.pairs(other, |a, b| a * b)
     }
@@ -69,7 +70,7 @@ impl<const L: usize> Mul for Lanes<L> {
 
 impl<const L: usize> Div for Lanes<L> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
         self.pairs(other, |a, b| a / b)
     }
@@ -77,7 +78,7 @@ impl<const L: usize> Div for Lanes<L> {
 
 impl<const L: usize> Neg for Lanes<L> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         self.each(|a| -a)
     }
@@ -86,23 +87,23 @@ impl<const L: usize> Neg for Lanes<L> {
 impl<const L: usize> Scalar for Lanes<L> {
     type Mask = [bool; L];
 
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         self.each(f64::sqrt)
     }
-    #[inline]
+    #[inline(always)]
     fn exp(self) -> Self {
-        self.each(portable::exp)
+        self.each(exponential)
     }
-    #[inline]
+    #[inline(always)]
     fn ln(self) -> Self {
         self.each(portable::ln)
     }
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         self.each(f64::abs)
     }
-    #[inline]
+    #[inline(always)]
     fn less_than(self, other: Self) -> [bool; L] {
         let mut mask = [false; L];
         for ((flag, a), b) in mask.iter_mut().zip(self.0).zip(other.0) {
@@ -110,7 +111,7 @@ impl<const L: usize> Scalar for Lanes<L> {
         }
         mask
     }
-    #[inline]
+    #[inline(always)]
     fn select(mask: [bool; L], if_true: Self, if_false: Self) -> Self {
         let mut lanes = if_false.0;
         for ((lane, flag), value) in lanes.iter_mut().zip(mask).zip(if_true.0) {

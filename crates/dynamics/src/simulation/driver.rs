@@ -65,6 +65,8 @@ struct Between<S> {
     state: Vec<S>,
     inputs: Vec<S>,
     indicators: Vec<S>,
+    /// Indicators at the end of the step.
+    ends: Vec<S>,
     waves: Vec<S>,
 }
 
@@ -137,6 +139,7 @@ where
                 state: vec![zero; states],
                 inputs: none,
                 indicators: vec![zero; system.indicators()],
+                ends: vec![zero; system.indicators()],
                 waves: vec![zero; system.delays().len()],
             },
         })
@@ -194,6 +197,7 @@ where
         let error =
             self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
         self.between.extensions.clear();
+        self.indicate_ends(system);
         for lane in 0..S::COUNT {
             let Some(slot) = &mut self.slots[lane] else { continue };
             if slot.passage.status.is_some() {
@@ -287,10 +291,24 @@ where
         }
     }
 
+    /// Indicators at the end of the step, in every lane.
+    fn indicate_ends<E: System<S>>(&mut self, system: &E) {
+        if self.indicators.is_empty() {
+            return;
+        }
+        for lane in 0..S::COUNT {
+            if let Some(slot) = &mut self.slots[lane] {
+                slot.passage.inputs_within(1.0, &mut slot.inputs);
+                set_lane(&mut self.between.inputs, lane, &slot.inputs);
+            }
+        }
+        system.indicate(&self.method.end, &self.between.inputs, &mut self.between.ends);
+    }
+
     fn find_events<E: System<S>>(&mut self, system: &E, lane: usize) {
         for index in 0..self.indicators.len() {
             let before = self.indicators[index].lane(lane);
-            let after = self.indicator(system, lane, index, 1.0);
+            let after = self.between.ends[index].lane(lane);
             self.indicators[index] = self.indicators[index].with_lane(lane, after);
             if (before > 0.0) == (after > 0.0) {
                 continue;
