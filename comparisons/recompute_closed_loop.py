@@ -1,8 +1,9 @@
 """Recomputes the trajectories of the closed loop that solvers are measured on, and checks the committed ones.
 
 Independent of phea: CVODE's backward differentiation at tolerance 1e-12 and 1e-11, its Adams method, and Runge-Kutta in
-fixed steps of 10 us in double and in extended precision, all in C (benches/peers). Prints how far they are apart, for
-the continuous controller and for the one sampled at 1 kHz. Without SUNDIALS only Runge-Kutta is compared.
+fixed steps of 10 us in double and in extended precision, all in C (benches/peers); and SciPy's LSODA on the equations
+written a second time, in Python. Prints how far they are apart, for the continuous controller and for the one sampled
+at 1 kHz. Without SUNDIALS the rest is compared.
 
     python comparisons/recompute_closed_loop.py            # recompute and check
     python comparisons/recompute_closed_loop.py --write    # and write crates/workbench/tests/golden
@@ -12,6 +13,7 @@ import sys
 
 import numpy as np
 
+import closed_loop_scipy
 from closed_loop import FORCE, POSITION, ROOT, TIME, cvode, has_sundials, runge_kutta
 
 GOLDEN = ROOT / "crates" / "workbench" / "tests" / "golden"
@@ -19,6 +21,7 @@ CASES = {"closed_loop": 0.0, "closed_loop_sampled": 1e-3}
 COLUMNS = ["time_s", "force_n", "spool_v", "pressure_a_pa", "pressure_b_pa", "command_v", "position_m"]
 STORED = range(5)
 LARGEST_FORCE_ERROR = 1e-4
+LARGEST_SCIPY_ERROR = 5e-4
 ORIGIN = "recomputed by comparisons/recompute_closed_loop.py (CVODE 6.4.1, backward differentiation, tolerance 1e-12)"
 
 
@@ -50,8 +53,12 @@ def recompute(sample_time):
     fixed = runge_kutta(100, sample_time=sample_time)
     distance("Runge-Kutta in 10 us against long double", fixed, runge_kutta(100, True, sample_time=sample_time))
     distance("Runge-Kutta in 10 us against 5 us", fixed, runge_kutta(200, sample_time=sample_time))
+    if not sample_time:
+        apart = np.abs(closed_loop_scipy.force(1e-10) - fixed[:, FORCE]).max()
+        print(f"  {'Runge-Kutta in 10 us against LSODA 1e-10':42s} force_n {apart:.2e}")
+        assert apart < LARGEST_SCIPY_ERROR
     if not has_sundials():
-        print("  SKIPPED: no SUNDIALS here (Debian: libsundials-dev); the committed values meet Runge-Kutta alone")
+        print("  SKIPPED: no SUNDIALS here (Debian: libsundials-dev); the committed values meet the others alone")
         return fixed
     best = cvode("bdf", 1e-12, sample_time=sample_time)
     others = {

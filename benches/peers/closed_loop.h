@@ -2,8 +2,8 @@
  *
  *   valve      spool'' = w^2 (command - spool) - 2 D w spool'
  *   edges      q = (K n + L sech(lambda n)) dp / (dp^2 + dp_t^2)^(1/4),   n = spool / nominal voltage, on its own side only
- *   pressures  C_A p_A' = q_PA - q_AT - A_A v,   C_B p_B' = q_PB - q_BT + A_B v
- *              C_A = V_lA/beta_lA + A_A x/beta,  C_B = V_lB/beta_lB + A_B (stroke - x)/beta
+ *   pressures  C_A p_A' = q_PA - q_AT - q_AB - A_A v,   C_B p_B' = q_PB - q_BT + q_AB + A_B v,   q_AB = G (p_A - p_B)
+ *              C_A = V_lA/beta_lA + (V_0A + A_A x)/beta,    C_B = V_lB/beta_lB + (V_0B + A_B (stroke - x))/beta
  *   piston     M v' = A_A p_A - A_B p_B - F_f - F_e,   F_e = K_S d,   d' = v - v_L,   x = x_L + d
  *   friction   z' = v - sigma_0 |v| z / g(v),   g = F_C + (F_S - F_C) exp(-|v/v_S|^alpha),   F_f = sigma_0 z + sigma_1 z' + sigma_2 v
  *   control    u = K_p e + I, limited, I' = K_i e without anti-windup, e = r - F_e
@@ -36,6 +36,7 @@
     X(leakage_supply_to_b, 1.7e-9) X(leakage_b_to_tank, 2.35e-9)                                                       \
     X(area_a, 1.583e-3) X(area_b, 1.583e-3) X(stroke, 0.5) X(chamber_modulus, 2.6e8)                                   \
     X(line_volume_a, 1.9e-4) X(line_volume_b, 1.9e-4) X(line_modulus_a, 2.6e8) X(line_modulus_b, 2.6e8)                \
+    X(dead_volume_a, 0.0) X(dead_volume_b, 0.0) X(piston_leakage, 0.0)                                                 \
     X(moving_mass, 13.1) X(sensor_stiffness, 2e7)                                                                      \
     X(coulomb, 80.0) X(static_friction, 120.0) X(stribeck_velocity, 0.01) X(stribeck_exponent, 2.0)                    \
     X(bristle_stiffness, 1e7) X(bristle_damping, 2e3) X(viscous, 100.0)                                                \
@@ -121,7 +122,7 @@ static inline REAL edge_root(REAL drop, REAL transition) {
     return drop / sqrt(sqrt(drop * drop + transition * transition));
 }
 
-/* Net flow into chamber A and out of the supply into B, m3/s. */
+/* Net flow of the valve into chamber A and into chamber B, m3/s. */
 static inline void valve_flows(const struct closed_loop *rig, const REAL *y, REAL *into_a, REAL *into_b) {
     REAL opening = y[SPOOL] / rig->nominal_voltage, leak = 1 / cosh(rig->leakage_shape * opening);
     REAL forward = opening > 0 ? opening : 0, backward = opening < 0 ? -opening : 0, tp = rig->transition_pressure;
@@ -151,10 +152,13 @@ static inline void rates(const struct closed_loop *rig, const struct inputs *inp
     dy[SPOOL_RATE] = w * w * (limited_command(rig, inputs, y) - y[SPOOL]) - 2 * rig->valve_damping * w * y[SPOOL_RATE];
 
     REAL position = load_position + y[DEFLECTION], v = y[VELOCITY];
-    REAL capacity_a = rig->line_volume_a / rig->line_modulus_a + rig->area_a * position / rig->chamber_modulus;
-    REAL capacity_b = rig->line_volume_b / rig->line_modulus_b + rig->area_b * (rig->stroke - position) / rig->chamber_modulus;
-    dy[PRESSURE_A] = (into_a - rig->area_a * v) / capacity_a;
-    dy[PRESSURE_B] = (into_b + rig->area_b * v) / capacity_b;
+    REAL chamber_a = rig->dead_volume_a + rig->area_a * position;
+    REAL chamber_b = rig->dead_volume_b + rig->area_b * (rig->stroke - position);
+    REAL capacity_a = rig->line_volume_a / rig->line_modulus_a + chamber_a / rig->chamber_modulus;
+    REAL capacity_b = rig->line_volume_b / rig->line_modulus_b + chamber_b / rig->chamber_modulus;
+    REAL across = rig->piston_leakage * (y[PRESSURE_A] - y[PRESSURE_B]);
+    dy[PRESSURE_A] = (into_a - across - rig->area_a * v) / capacity_a;
+    dy[PRESSURE_B] = (into_b + across + rig->area_b * v) / capacity_b;
 
     REAL ratio = fabs(v) / rig->stribeck_velocity;
     REAL power = rig->stribeck_exponent == 2 ? ratio * ratio : pow(ratio, (REAL)rig->stribeck_exponent);
