@@ -1,11 +1,13 @@
 //! CVODE (Hindmarsh and others, 2005) for right-hand sides written in Rust.
 //!
-//! One function, [`integrate`]. Built against SUNDIALS 6 as Debian 12 packages it; another major version is refused when
+//! [`integrate`] for any right-hand side, [`follow`] for a system and a course of phea. Built against SUNDIALS 6 as Debian 12 packages it; another major version is refused when
 //! it is met, because its C interface differs.
 
+mod course;
 mod interface;
 mod session;
 
+pub use course::follow;
 use session::Session;
 
 /// How CVODE steps; both solve their implicit equations by Newton's method with a dense Jacobian of difference quotients.

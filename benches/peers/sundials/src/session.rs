@@ -22,6 +22,8 @@ struct Caller<'a> {
 /// An initialised integrator.
 pub(crate) struct Session<'a> {
     objects: Objects,
+    /// Where CVODE began, or began anew.
+    begun: f64,
     /// Owned; a bare pointer, because CVODE keeps a copy of it.
     caller: *mut Caller<'a>,
     owned: PhantomData<Caller<'a>>,
@@ -50,7 +52,8 @@ impl<'a> Session<'a> {
         check_version()?;
         let objects = Objects::new(start, absolute, method)?;
         let caller = Caller { rates, states: start.len(), from: time, until: time, panic: None };
-        let session = Self { objects, caller: Box::into_raw(Box::new(caller)), owned: PhantomData };
+        let session =
+            Self { objects, begun: time, caller: Box::into_raw(Box::new(caller)), owned: PhantomData };
         let Objects { state, tolerances, matrix, solver, cvode, .. } = session.objects;
         // SAFETY: all objects are alive and of one context; the caller outlives the integrator (see `drop`).
         let statuses = unsafe {
@@ -76,8 +79,12 @@ impl<'a> Session<'a> {
         self.judge(unsafe { c::CVodeSetStopTime(self.objects.cvode, end) }, end)
     }
 
-    /// The state at `time`, at or before the end that was set.
+    /// The state at `time`, at or before the end that was set. CVODE does not begin for a few roundings of time:
+    /// there the state is still the one it begins with.
     pub(crate) fn advance(&mut self, time: f64) -> Result<Vec<f64>, CvodeError> {
+        if time - self.begun <= 4.0 * f64::EPSILON * time.abs().max(self.begun.abs()) {
+            return Ok(self.state());
+        }
         let mut reached = time;
         // SAFETY: integrator and state are alive; `right_hand_side` lets no panic out.
         let status =
@@ -87,17 +94,22 @@ impl<'a> Session<'a> {
             resume_unwind(panic);
         }
         self.judge(status, reached)?;
-        // SAFETY: the caller is alive; the vector was made with so many elements, and nobody writes to it now.
-        Ok(unsafe {
+        Ok(self.state())
+    }
+
+    fn state(&self) -> Vec<f64> {
+        // SAFETY: the vector was made with so many elements, and nobody writes to it now; the caller is alive.
+        unsafe {
             let first = c::N_VGetArrayPointer(self.objects.state);
             std::slice::from_raw_parts(first, (*self.caller).states).to_vec()
-        })
+        }
     }
 
     /// Forgets what was learned before `time`; the state stays.
     pub(crate) fn restart(&mut self, time: f64) -> Result<(), CvodeError> {
         // SAFETY: as in `set_end`.
         unsafe { (*self.caller).from = time };
+        self.begun = time;
         self.judge(unsafe { c::CVodeReInit(self.objects.cvode, time, self.objects.state) }, time)
     }
 

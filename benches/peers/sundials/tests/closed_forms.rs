@@ -69,6 +69,17 @@ fn rates_that_jump_at_a_stop_are_right_on_both_sides() {
 }
 
 #[test]
+fn times_that_differ_by_a_rounding_are_one_time() {
+    let mut rates = |_: f64, y: &[f64], dy: &mut [f64]| dy[0] = -y[0];
+    let stop = 1.0f64.next_up();
+    for times in [[0.0, 1.0, stop, 2.0], [0.0, 1.0, stop.next_up(), 2.0]] {
+        let states =
+            integrate(&mut rates, &[1.0], &times, 1e-9, &[1e-9], Method::Adams, &[1.0, stop]).unwrap();
+        assert!((states[2][0] - states[1][0]).abs() < 1e-12 && (states[3][0] - (-2.0f64).exp()).abs() < 1e-7);
+    }
+}
+
+#[test]
 fn a_solution_that_ends_is_an_error_with_its_time() {
     // y' = y², y = 1/(1 - t).
     let mut rates = |_: f64, y: &[f64], dy: &mut [f64]| dy[0] = y[0] * y[0];
