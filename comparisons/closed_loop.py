@@ -4,6 +4,7 @@ Independent of phea. Results are arrays with the columns time, force, spool, pre
 """
 
 import ctypes
+import functools
 import pathlib
 import re
 import subprocess
@@ -22,6 +23,7 @@ DEFAULTS = {
 }
 
 
+@functools.cache
 def program(name, *flags, library=False, suffix=""):
     """Path of a compiled program or library; raises CalledProcessError where it does not compile."""
     BUILT.mkdir(parents=True, exist_ok=True)

@@ -3,7 +3,8 @@
 Processor time of one thread, the best of many runs, largest error of the force at 1 ms against CVODE at 1e-12. With
 stability-limit detection CVODE falls by chance into one of two regimes, a factor of two apart in steps: the tolerance is
 varied by 20 % either way, and the fastest is reported beside the one asked for. Restarting at the load's motion or not
-is tried as well. The machine should be quiet.
+is tried as well. The machine should be quiet. The curves of work against precision are left in
+target/peers/work_precision.csv.
 
     python benches/peers/closed_loop_times.py              # needs SUNDIALS: libsundials-dev of Debian
 """
@@ -37,7 +38,7 @@ def error(rows, reference):
 
 def line(name, milliseconds, work, force_error):
     evaluations = work.get("evaluations", 4 * work["steps"]) + work.get("jacobian_evaluations", 0)
-    print(f"  {name:46s} {milliseconds:9.2f} ms {force_error:11.3e} N {work['steps']:9.0f} steps {evaluations:9.0f} evaluations")
+    print(f"  {name:46s}{milliseconds:9.2f} ms {force_error:11.3e} N {work['steps']:9.0f} steps {evaluations:9.0f} evaluations")
 
 
 def baseline(reference, *changes):
@@ -57,17 +58,19 @@ def baseline(reference, *changes):
             line(f"   slowest within 20 %: {tolerance * slowest[3]:.3g}", slowest[0], slowest[1], error(slowest[2], reference))
 
 
-def work_and_precision(reference, methods, *changes):
+def work_and_precision(controller, reference, methods, *changes):
+    """Lines of the curves: controller, method, tolerance or step in s, milliseconds, largest error of the force in N."""
+    points = []
     for method in methods:
         for exponent in np.arange(-4, -10.5, -0.5):
             milliseconds, work, rows = run("cvode_closed_loop", method, f"{10**exponent:.3e}", *changes)
             line(f"CVODE {method} 1e{exponent:g}", milliseconds, work, error(rows, reference))
-
-
-def fixed_steps(reference, *changes):
+            points.append((controller, method, f"{10**exponent:.3e}", milliseconds, f"{error(rows, reference):.4e}"))
     for steps in (5, 10, 20, 50):
         milliseconds, work, rows = run("runge_kutta_closed_loop", steps, *changes)
         line(f"Runge-Kutta in {1e3 / steps:g} us", milliseconds, work, error(rows, reference))
+        points.append((controller, "runge_kutta", 1e-3 / steps, milliseconds, f"{error(rows, reference):.4e}"))
+    return points
 
 
 def main():
@@ -77,12 +80,13 @@ def main():
     print(f"continuous, 5 s; the reference is {error(runge_kutta(200), reference):.1e} N from Runge-Kutta in 5 us")
     baseline(reference)
     print("work against precision, continuous")
-    work_and_precision(reference, ("bdf_stability", "bdf", "adams"))
-    fixed_steps(reference)
+    points = work_and_precision("continuous", reference, ("bdf_stability", "bdf", "adams"))
     sampled = cvode("bdf", 1e-12, sample_time=1e-3)
     print("controller sampled at 1 kHz, CVODE started anew at each sample")
-    work_and_precision(sampled, ("bdf", "adams", "adams_functional"), "sample_time=1e-3")
-    fixed_steps(sampled, "sample_time=1e-3")
+    points += work_and_precision("sampled", sampled, ("bdf", "adams", "adams_functional"), "sample_time=1e-3")
+    header = "controller,method,tolerance_or_step_s,processor_ms,force_error_n"
+    text = "\n".join([header, *(",".join(map(str, point)) for point in points)])
+    (BUILT / "work_precision.csv").write_text(text + "\n")
 
 
 if __name__ == "__main__":
