@@ -51,6 +51,7 @@ const STAGES: &[(&str, Stage)] = &[
     ("rustdoc", rustdoc),
     ("tidy", tidy),
     ("wasm32", wasm32),
+    ("peers", peers),
     ("comparisons", comparisons::run),
 ];
 
@@ -159,4 +160,14 @@ fn wasm32(root: &Path) -> Outcome {
     }
     let packages = ["-p", "phea-dynamics", "-p", "phea-hydraulics", "-p", "phea-qft"];
     execute(root, "cargo", &[&["check", "--target", TARGET][..], &packages].concat())
+}
+
+/// What is compared with CVODE: a package outside the workspace, because it links a library in C.
+fn peers(root: &Path) -> Outcome {
+    if let Err(missing) = tools::sundials() {
+        println!("\n**** SKIPPED: {missing}\n**** nothing was compared with CVODE in this run\n");
+        return Outcome::Skipped(missing);
+    }
+    let manifest = "benches/peers/sundials/Cargo.toml";
+    execute(root, "cargo", &["test", "--manifest-path", manifest, "--target-dir", "target", "--no-fail-fast"])
 }

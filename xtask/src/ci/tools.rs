@@ -20,6 +20,19 @@ pub(super) fn target(name: &str) -> Result<(), String> {
     Err(format!("the target {name} is missing and `rustup target add {name}` did not bring it"))
 }
 
+/// Sees to it that SUNDIALS can be linked against; says what is missing where it cannot. Root of a Debian may install it.
+pub(super) fn sundials() -> Result<(), String> {
+    let header = ["-fsyntax-only", "-include", "cvode/cvode.h", "-x", "c", "/dev/null"];
+    let install = || {
+        quietly("apt-get", &["update", "-qq"])
+            && quietly("apt-get", &["install", "-y", "-qq", "libsundials-dev"])
+    };
+    if quietly("cc", &header) || (install() && quietly("cc", &header)) {
+        return Ok(());
+    }
+    Err("SUNDIALS is missing and `apt-get install libsundials-dev` did not bring it".to_string())
+}
+
 fn is_target_there(name: &str) -> bool {
     let printed = Command::new("rustc").args(["--print", "target-libdir", "--target", name]).output();
     printed.is_ok_and(|output| {

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use super::Violation;
 use crate::repository::Repository;
 
-/// The packages of the workspace by their folder, and those of ours that each may use.
+/// The packages by their folder, those outside the workspace too, and those of ours that each may use.
 const ALLOWED: &[(&str, &[&str])] = &[
     ("crates/dynamics", &[]),
     ("crates/hydraulics", &["phea-dynamics"]),
@@ -19,6 +19,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("crates/workbench", &["phea-dynamics", "phea-hydraulics", "phea-qft"]),
     ("apps/cli", &["phea-workbench"]),
     ("fuzz", &["phea-workbench"]),
+    ("benches/peers/sundials", &["phea-dynamics", "phea-hydraulics", "phea-workbench"]),
     ("xtask", &["phea-dynamics", "phea-hydraulics", "phea-qft", "phea-workbench"]),
 ];
 

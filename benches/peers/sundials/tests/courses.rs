@@ -1,0 +1,159 @@
+//! phea's method and CVODE on the same equations, inputs and samples.
+
+use phea_dynamics::scalar::Scalar;
+use phea_dynamics::simulation::{Course, Input, Profile, Sampler, Settings, Status, System, simulate};
+use sundials::{CvodeError, Method, follow};
+
+/// y'' = mu (1 - y^2) y' - y + w1 + c w2, with a load's motion w1 and its velocity w2, and a command.
+#[derive(Clone)]
+struct Oscillator {
+    mu: f64,
+}
+
+impl System<f64> for Oscillator {
+    fn states(&self) -> usize {
+        2
+    }
+
+    fn inputs(&self) -> usize {
+        3
+    }
+
+    fn scales(&self) -> Vec<f64> {
+        vec![1.0, 1.0 + self.mu]
+    }
+
+    fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
+        let damping = T::from(self.mu) * (T::from(1.0) - state[0] * state[0]);
+        rates[0] = state[1];
+        rates[1] = damping * state[1] - state[0] + inputs[0] + T::from(0.3) * inputs[1] + inputs[2];
+    }
+}
+
+/// u = -k y, sampled, and late.
+struct Feedback {
+    gain: f64,
+    sample_time_s: f64,
+    delay_s: f64,
+}
+
+impl Sampler for Feedback {
+    fn sample_time_s(&self) -> f64 {
+        self.sample_time_s
+    }
+
+    fn delay_s(&self) -> f64 {
+        self.delay_s
+    }
+
+    fn command(&mut self, _time_s: f64, state: &[f64], _inputs: &[f64]) -> f64 {
+        -self.gain * state[0]
+    }
+}
+
+/// y' = u.
+#[derive(Clone)]
+struct Integrator;
+
+impl System<f64> for Integrator {
+    fn states(&self) -> usize {
+        1
+    }
+
+    fn inputs(&self) -> usize {
+        1
+    }
+
+    fn scales(&self) -> Vec<f64> {
+        vec![1.0]
+    }
+
+    fn rates<T: Scalar + From<f64>>(&self, _state: &[T], inputs: &[T], rates: &mut [T]) {
+        rates[0] = inputs[0];
+    }
+}
+
+fn course(motion: &Profile, output_step_s: f64) -> Course {
+    let inputs = vec![Input::Value(motion.clone()), Input::Rate(motion.clone()), Input::Command];
+    Course { duration_s: 10.0, output_step_s, inputs }
+}
+
+#[test]
+fn a_stiff_oscillator_moves_alike_under_both_methods() {
+    let motions = [
+        Profile::smooth_step(1.0, 0.01, 2.0).unwrap(),
+        Profile::first_order(1.0, 0.02, 2.0).unwrap(),
+        Profile::sine(0.5, 1.0, 30.0).unwrap(),
+    ];
+    for motion in &motions {
+        for mu in [0.1, 5.0, 100.0] {
+            let (system, course) = (Oscillator { mu }, course(motion, 0.05));
+            let settings = Settings { tolerance: 1e-10, ..Settings::default() };
+            let ours = simulate(&system, &[1.5, 0.0], &course, None, &settings, &mut |_| true).unwrap();
+            assert_eq!(ours.outcome.status, Status::Completed);
+            let rows =
+                follow(&system, &[1.5, 0.0], &course, None, 1e-10, Method::BackwardDifferentiation).unwrap();
+            assert_eq!(rows.len(), ours.trajectory.states.len());
+            for (theirs, ours) in rows.iter().zip(&ours.trajectory.states) {
+                assert!((theirs[0] - ours[0]).abs() < 1e-5, "mu {mu}: {theirs:?} {ours:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn samples_and_late_commands_act_alike() {
+    let motion = Profile::smooth_step(1.0, 0.1, 2.0).unwrap();
+    // Rows that fall on samples, and rows that do not.
+    for (output_step_s, delay_s) in [(0.05, 0.0), (0.05, 0.013), (0.07, 0.031)] {
+        let (system, course) = (Oscillator { mu: 2.0 }, course(&motion, output_step_s));
+        let mut feedback = Feedback { gain: 3.0, sample_time_s: 0.025, delay_s };
+        let settings = Settings { tolerance: 1e-10, ..Settings::default() };
+        let sampler = Box::new(Feedback { ..feedback });
+        let ours = simulate(&system, &[1.5, 0.0], &course, Some(sampler), &settings, &mut |_| true).unwrap();
+        let rows = follow(&system, &[1.5, 0.0], &course, Some(&mut feedback), 1e-10, Method::Adams).unwrap();
+        assert_eq!(rows.len(), ours.trajectory.states.len(), "{output_step_s}");
+        for (theirs, ours) in rows.iter().zip(&ours.trajectory.states) {
+            assert!((theirs[0] - ours[0]).abs() < 1e-6, "{delay_s}: {theirs:?} {ours:?}");
+        }
+    }
+}
+
+#[test]
+fn a_sampled_integrator_shrinks_by_the_same_factor_each_sample() {
+    let course = Course { duration_s: 2.0, output_step_s: 0.1, inputs: vec![Input::Command] };
+    let mut feedback = Feedback { gain: 2.0, sample_time_s: 0.1, delay_s: 0.0 };
+    let rows = follow(&Integrator, &[1.0], &course, Some(&mut feedback), 1e-9, Method::Adams).unwrap();
+    assert_eq!(rows.len(), 21);
+    let mut expected = 1.0;
+    for row in rows {
+        assert!((row[0] - expected).abs() < 1e-9, "{row:?} {expected}");
+        expected *= 1.0 - 2.0 * 0.1;
+    }
+}
+
+#[test]
+fn delayed_waves_are_refused() {
+    #[derive(Clone)]
+    struct Line;
+    impl System<f64> for Line {
+        fn states(&self) -> usize {
+            1
+        }
+        fn inputs(&self) -> usize {
+            1
+        }
+        fn scales(&self) -> Vec<f64> {
+            vec![1.0]
+        }
+        fn rates<T: Scalar + From<f64>>(&self, _state: &[T], inputs: &[T], rates: &mut [T]) {
+            rates[0] = inputs[0];
+        }
+        fn delays(&self) -> Vec<f64> {
+            vec![1e-3]
+        }
+    }
+    let course = Course { duration_s: 1.0, output_step_s: 0.1, inputs: vec![] };
+    let answer = follow(&Line, &[0.0], &course, None, 1e-6, Method::Adams);
+    assert!(matches!(answer, Err(CvodeError::Argument(_))));
+}

@@ -1,0 +1,105 @@
+"""The closed loop of benches/peers/closed_loop.h written a second time, in Python, on SciPy's LSODA: continuous controller.
+
+    python comparisons/closed_loop_scipy.py      # poles of the loop at rest, and while sliding
+"""
+
+from math import cosh, exp, sqrt
+from types import SimpleNamespace
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from closed_loop import DEFAULTS
+
+# Spool, its rate, pressures A and B, load cell deflection, velocity, bristle, integral part, filtered reference, its rate.
+MAGNITUDES = np.array([1.0, 1e3, 1e5, 1e5, 1e-4, 1e-2, 1e-5, 1.0, 1e3, 1e5])
+
+
+def root(drop, transition):
+    return drop / (drop**2 + transition**2) ** 0.25
+
+
+def load(rig, time):
+    s = min(max((time - rig.motion_start) / rig.motion_duration, 0.0), 1.0)
+    moved = rig.motion_distance * (6 * s**5 - 15 * s**4 + 10 * s**3)
+    return rig.start_position + moved, rig.motion_distance / rig.motion_duration * 30 * (s**2 - s) ** 2
+
+
+def flows(rig, spool, pressure_a, pressure_b):
+    opening = spool / rig.nominal_voltage
+    sech = 1 / cosh(rig.leakage_shape * opening)
+
+    def edge(gain, side, leak, drop):
+        return (gain * max(side * opening, 0.0) + leak * sech) * root(drop, rig.transition_pressure)
+
+    supply, tank = rig.supply_pressure, rig.tank_pressure
+    into_a = edge(rig.flow_supply_to_a, 1, rig.leakage_supply_to_a, supply - pressure_a)
+    into_a -= edge(rig.flow_a_to_tank, -1, rig.leakage_a_to_tank, pressure_a - tank)
+    into_b = edge(rig.flow_supply_to_b, -1, rig.leakage_supply_to_b, supply - pressure_b)
+    into_b -= edge(rig.flow_b_to_tank, 1, rig.leakage_b_to_tank, pressure_b - tank)
+    return into_a, into_b
+
+
+def rates(time, state, rig, reference):
+    spool, spool_rate, pressure_a, pressure_b, deflection, v, z, integral, r, r_rate = (state * MAGNITUDES).tolist()
+    load_position, load_velocity = load(rig, time)
+    position, force = load_position + deflection, rig.sensor_stiffness * deflection
+    error = r - force
+    command = min(max(rig.proportional_gain * error + integral, -rig.saturation), rig.saturation)
+    into_a, into_b = flows(rig, spool, pressure_a, pressure_b)
+    volume_a = rig.line_volume_a + rig.area_a * position
+    volume_b = rig.line_volume_b + rig.area_b * (rig.stroke - position)
+    level = rig.coulomb + (rig.static_friction - rig.coulomb) * exp(-((v / rig.stribeck_velocity) ** 2))
+    z_rate = v - rig.bristle_stiffness * abs(v) / level * z
+    friction = rig.bristle_stiffness * z + rig.bristle_damping * z_rate + rig.viscous * v
+    pull = rig.area_a * pressure_a - rig.area_b * pressure_b
+    rate = [
+        spool_rate,
+        rig.valve_frequency**2 * (command - spool) - 2 * rig.valve_damping * rig.valve_frequency * spool_rate,
+        rig.chamber_modulus / volume_a * (into_a - rig.area_a * v),
+        rig.chamber_modulus / volume_b * (into_b + rig.area_b * v),
+        v - load_velocity,
+        (pull - friction - force) / rig.moving_mass,
+        z_rate,
+        rig.integral_gain * error,
+        r_rate,
+        rig.prefilter_stiffness * (reference - r) - rig.prefilter_damping * r_rate,
+    ]
+    return np.array(rate) / MAGNITUDES
+
+
+def force(tolerance):
+    """The force each millisecond of 5 s, for the default rig."""
+    rig = SimpleNamespace(**DEFAULTS)
+    state = np.zeros(10)
+    state[2:4] = rig.start_pressure_a, rig.start_pressure_b
+    state, times, forces = state / MAGNITUDES, np.round(np.arange(5001) * 1e-3, 6), [np.zeros(1)]
+    ends = [rig.reference_time, rig.motion_start, rig.motion_start + rig.motion_duration, rig.duration]
+    for start, end in zip([0.0, *ends], ends):
+        wanted = np.unique([*times[(times > start + 1e-9) & (times < end + 1e-9)], end])
+        given = (rig, rig.reference_force if start >= rig.reference_time else 0.0)
+        solved = solve_ivp(rates, (start, end), state, "LSODA", wanted, args=given, rtol=tolerance, atol=tolerance)
+        assert solved.success, solved.message
+        state = solved.y[:, -1]
+        forces.append(rig.sensor_stiffness * MAGNITUDES[4] * solved.y[4])
+    return np.concatenate(forces)
+
+
+def poles(velocity, rig=SimpleNamespace(**DEFAULTS)):
+    """Of the loop linearised at the start's pressures and a piston velocity, the bristle settled."""
+    level = rig.coulomb + (rig.static_friction - rig.coulomb) * exp(-((velocity / rig.stribeck_velocity) ** 2))
+    settled = level / rig.bristle_stiffness * np.sign(velocity)
+    point = np.array([0, 0, rig.start_pressure_a, rig.start_pressure_b, 0, velocity, settled, 0, 0, 0]) / MAGNITUDES
+    steps = 1e-5 * np.eye(10)
+    columns = [(rates(0, point + step, rig, 0) - rates(0, point - step, rig, 0)) / 2e-5 for step in steps]
+    return np.linalg.eigvals(np.array(columns).T)
+
+
+def main():
+    for velocity in (0.0, 0.01, 0.05, 0.094):
+        listed = ", ".join(f"{pole:.4g}" for pole in sorted(poles(velocity), key=abs))
+        print(f"poles at {velocity} m/s in 1/s: {listed}")
+
+
+if __name__ == "__main__":
+    main()
