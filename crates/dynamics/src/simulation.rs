@@ -11,7 +11,9 @@ mod history;
 mod passage;
 mod pattern;
 mod profile;
+mod propagator;
 mod rosenbrock;
+mod slot;
 mod step_matrix;
 mod trajectory;
 

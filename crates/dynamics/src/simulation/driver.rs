@@ -3,9 +3,15 @@
 use super::course::{Event, Observer, Outcome, Sampler, Settings, SimulationError, Status};
 use super::history::NODES;
 use super::passage::Passage;
+use super::propagator::Propagator;
 use super::rosenbrock::{DIRECTIONS, Extension, Rosenbrock, STAGE_TIMES, StepInputs};
+use super::slot::{Slot, observe, observe_end};
 use super::{Course, Lane, System};
 use crate::scalar::{Dependence, Dual};
+
+/// Largest error of a step with known matrices, in units of the tolerance: such errors have one sign for many samples and
+/// add up.
+const PROPAGATED: f64 = 0.1;
 
 /// One machine to be driven.
 pub struct Task<'a, O> {
@@ -35,19 +41,11 @@ pub trait Queue<'a, E> {
     fn goes_on(&mut self, lane: usize, time_s: f64) -> bool;
 }
 
-/// A machine in its lane.
-struct Slot<'a, O> {
-    passage: Passage<'a>,
-    sampler: Option<Box<dyn Sampler + 'a>>,
-    observer: O,
-    /// A state or input at one time, for sampler and observer.
-    states: Vec<f64>,
-    inputs: Vec<f64>,
-}
-
 /// All lanes and the method they share.
 struct Drive<'a, S, O> {
     method: Rosenbrock<S>,
+    /// For lanes that are sampled.
+    propagator: Propagator<S>,
     settings: Settings,
     slots: Vec<Option<Slot<'a, O>>>,
     state: Vec<S>,
@@ -62,6 +60,8 @@ struct Drive<'a, S, O> {
 
 struct Between<S> {
     extensions: Vec<Extension<S>>,
+    /// State at the end of the step.
+    end: Vec<S>,
     state: Vec<S>,
     inputs: Vec<S>,
     indicators: Vec<S>,
@@ -127,6 +127,7 @@ where
         let stages = [none.clone(), none.clone(), none.clone(), none.clone(), none.clone(), none.clone()];
         Ok(Drive {
             method,
+            propagator: Propagator::new(states),
             settings: *settings,
             slots: (0..S::COUNT).map(|_| None).collect(),
             state: vec![zero; states],
@@ -136,6 +137,7 @@ where
             indicators: vec![zero; system.indicators()],
             between: Between {
                 extensions: Vec::new(),
+                end: vec![zero; states],
                 state: vec![zero; states],
                 inputs: none,
                 indicators: vec![zero; system.indicators()],
@@ -178,16 +180,20 @@ where
             }
         }
         self.fresh = true;
+        self.propagator.forget(lane);
         let states = vec![0.0; system.states()];
         let Task { sampler, observer, .. } = task;
-        self.slots[lane] = Some(Slot { passage, sampler, observer, states, inputs });
+        self.slots[lane] = Some(Slot { passage, sampler, observer, propagated: false, states, inputs });
         Ok(())
     }
 
-    /// Tries one step in every lane.
+    /// Tries one step in every lane: where its matrices are known by them, where that is not good enough by the method.
     fn step<E: System<S>>(&mut self, system: &E) {
         for lane in 0..S::COUNT {
             self.prepare(lane);
+        }
+        if self.propagate(system) {
+            return;
         }
         self.inputs.moving = self.slots.iter().flatten().any(|slot| !slot.passage.still);
         if self.fresh {
@@ -196,16 +202,18 @@ where
         self.fresh = false;
         let error =
             self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
+        self.learn(error);
         self.between.extensions.clear();
+        self.between.end.copy_from_slice(&self.method.end);
         self.indicate_ends(system);
         for lane in 0..S::COUNT {
             let Some(slot) = &mut self.slots[lane] else { continue };
-            if slot.passage.status.is_some() {
+            if slot.passage.status.is_some() || slot.propagated {
                 continue;
             }
             slot.passage.work.evaluations += 7;
             if slot.passage.judge(error.lane(lane)) {
-                self.fresh = true;
+                self.extend(|drive, index, start| drive.method.extension(index, start));
                 self.take(system, lane);
             } else if slot.passage.work.steps + slot.passage.work.rejected >= self.settings.maximum_steps {
                 slot.passage.status = Some(Status::TooManySteps { time_s: slot.passage.time_s });
@@ -241,18 +249,76 @@ where
         set_lane(&mut self.inputs.slopes, lane, inputs);
     }
 
+    /// Takes a step with known matrices in every lane that has them; whether this was so in all.
+    fn propagate<E: System<S>>(&mut self, system: &E) -> bool {
+        let mut any = false;
+        for lane in 0..S::COUNT {
+            let Some(slot) = &mut self.slots[lane] else { continue };
+            let whole = slot.sampler.as_ref().and_then(|_| slot.passage.whole_step());
+            slot.propagated = whole.is_some_and(|step_s| self.propagator.knows(lane, step_s));
+            any |= slot.propagated;
+        }
+        if !any {
+            return false;
+        }
+        let (inputs, tolerance) = (&self.inputs.stages[0], self.settings.tolerance);
+        let error = self.propagator.attempt(system, &self.state, inputs, &self.method, tolerance);
+        self.between.extensions.clear();
+        self.between.end.copy_from_slice(&self.propagator.end);
+        let mut all = true;
+        for lane in 0..S::COUNT {
+            let Some(slot) = &mut self.slots[lane] else { continue };
+            slot.propagated &= error.lane(lane) <= PROPAGATED;
+            all &= slot.propagated;
+            if slot.propagated {
+                slot.passage.go_whole();
+                self.step = self.step.with_lane(lane, slot.passage.step_s);
+                slot.passage.work.steps += 1;
+                slot.passage.work.evaluations += 2;
+            }
+        }
+        self.indicate_ends(system);
+        for lane in 0..S::COUNT {
+            if self.slots[lane].as_ref().is_some_and(|slot| slot.propagated) {
+                self.extend(|drive, index, start| {
+                    let slopes = drive.propagator.rates.each_ref().map(|rates| rates[index] * drive.step);
+                    Extension::cubic([start, drive.between.end[index]], slopes)
+                });
+                self.take(system, lane);
+            }
+        }
+        all
+    }
+
+    /// Finds the matrices of lanes that a step of the method brought from sample to sample.
+    fn learn(&mut self, error: S) {
+        for lane in 0..S::COUNT {
+            let Some(slot) = &self.slots[lane] else { continue };
+            let step_s = slot.passage.step_s;
+            let whole = slot.passage.whole_step() == Some(step_s);
+            let taken = slot.sampler.is_some() && !slot.propagated && error.lane(lane) <= 1.0;
+            if whole && taken && self.propagator.may_learn(lane) {
+                self.propagator.learn(lane, step_s, &self.method);
+            }
+        }
+    }
+
+    /// Coefficients of every state over the step, once for all lanes.
+    fn extend(&mut self, extension: impl Fn(&Self, usize, S) -> Extension<S>) {
+        if self.between.extensions.is_empty() {
+            let all = self.state.iter().enumerate().map(|(index, &start)| extension(self, index, start));
+            self.between.extensions = all.collect();
+        }
+    }
+
     /// Moves one lane to the end of the step it took.
     fn take<E: System<S>>(&mut self, system: &E, lane: usize) {
-        if self.between.extensions.is_empty() {
-            let starts = self.state.iter().enumerate();
-            self.between.extensions =
-                starts.map(|(index, &start)| self.method.extension(index, start)).collect();
-        }
+        self.fresh = true;
         self.send_waves(system, lane);
         self.find_events(system, lane);
         let Some(slot) = &mut self.slots[lane] else { return };
         observe(slot, &self.between.extensions, lane, slot.passage.end_s());
-        for (state, end) in self.state.iter_mut().zip(&self.method.end) {
+        for (state, end) in self.state.iter_mut().zip(&self.between.end) {
             *state = state.with_lane(lane, end.lane(lane));
         }
         slot.passage.arrive();
@@ -302,7 +368,7 @@ where
                 set_lane(&mut self.between.inputs, lane, &slot.inputs);
             }
         }
-        system.indicate(&self.method.end, &self.between.inputs, &mut self.between.ends);
+        system.indicate(&self.between.end, &self.between.inputs, &mut self.between.ends);
     }
 
     fn find_events<E: System<S>>(&mut self, system: &E, lane: usize) {
@@ -341,55 +407,6 @@ where
         let end = self.state.iter().map(|state| state.lane(lane)).collect();
         Some((Outcome { status, events, work: passage.work, end }, observer))
     }
-}
-
-/// Shows the observer every row before this time.
-fn observe<S: Lane, O: Observer>(
-    slot: &mut Slot<'_, O>,
-    extensions: &[Extension<S>],
-    lane: usize,
-    before_s: f64,
-) {
-    let Slot { passage, observer, states, inputs, .. } = slot;
-    let (start_s, step_s) = (passage.time_s, passage.step_s);
-    loop {
-        let time_s = passage.row as f64 * passage.course.output_step_s;
-        if time_s >= before_s {
-            return;
-        }
-        let part = ((time_s - start_s) / step_s).max(0.0);
-        let mut count = 0;
-        for (place, &index) in states.iter_mut().zip(observer.wanted()) {
-            *place = extensions.get(index).map_or(f64::NAN, |extension| extension.lane(lane).at(part));
-            count += 1;
-        }
-        let wanted = if observer.wants_inputs() { inputs.len() } else { 0 };
-        if wanted > 0 {
-            passage.inputs_at(time_s, inputs);
-        }
-        observer.observe(time_s, &states[..count], &inputs[..wanted]);
-        passage.row += 1;
-    }
-}
-
-/// Shows the observer the last row, at the end of the course.
-fn observe_end<S: Lane, O: Observer>(slot: &mut Slot<'_, O>, state: &[S], lane: usize) {
-    let Slot { passage, observer, states, inputs, .. } = slot;
-    let time_s = passage.row as f64 * passage.course.output_step_s;
-    let duration_s = passage.course.duration_s;
-    if time_s > duration_s * (1.0 + 4.0 * f64::EPSILON) {
-        return;
-    }
-    let mut count = 0;
-    for (place, &index) in states.iter_mut().zip(observer.wanted()) {
-        *place = state.get(index).map_or(f64::NAN, |state| state.lane(lane));
-        count += 1;
-    }
-    let wanted = if observer.wants_inputs() { inputs.len() } else { 0 };
-    if wanted > 0 {
-        passage.inputs_at(duration_s, inputs);
-    }
-    observer.observe(duration_s, &states[..count], &inputs[..wanted]);
 }
 
 fn set_lane<S: Lane>(places: &mut [S], lane: usize, values: &[f64]) {

@@ -35,6 +35,8 @@ pub(super) struct Passage<'a> {
     longest_s: f64,
     /// Where the step being tried ends, if at a break.
     target_s: Option<f64>,
+    /// The next break, sample or arrival.
+    goal_s: f64,
     pub(super) step_s: f64,
     /// Times to restart at, rising, with how many delays each has been through.
     breaks: VecDeque<(f64, u8)>,
@@ -74,6 +76,7 @@ impl<'a> Passage<'a> {
             proposed_s: longest_s,
             longest_s,
             target_s: None,
+            goal_s: course.duration_s,
             step_s: 0.0,
             breaks: times.into_iter().map(|time| (time, 0)).collect(),
             histories: Vec::new(),
@@ -117,6 +120,7 @@ impl<'a> Passage<'a> {
         if let Some(&(arrival, _)) = self.pending.front() {
             target = target.min(arrival);
         }
+        self.goal_s = target;
         let left = target - self.time_s;
         let wanted = self.proposed_s.min(self.longest_s);
         (self.step_s, self.target_s) = if wanted >= 0.99 * left {
@@ -126,6 +130,20 @@ impl<'a> Passage<'a> {
         } else {
             (wanted, None)
         };
+    }
+
+    /// Length of the step to the next break, if no input moves and no row is looked at on the way.
+    pub(super) fn whole_step(&self) -> Option<f64> {
+        let step_s = self.goal_s - self.time_s;
+        let past = self.row as f64 * self.course.output_step_s <= self.time_s;
+        let next_row_s = (self.row + u64::from(past)) as f64 * self.course.output_step_s;
+        let seen = next_row_s < self.time_s + step_s * (1.0 - 1e-9);
+        (self.still && !seen).then_some(step_s)
+    }
+
+    /// Makes the step being tried that to the next break.
+    pub(super) fn go_whole(&mut self) {
+        (self.step_s, self.target_s) = (self.goal_s - self.time_s, Some(self.goal_s));
     }
 
     /// Inputs at a part of the step being tried.

@@ -323,6 +323,15 @@ where
     }
 }
 
+impl<S: Lane> Rosenbrock<S> {
+    /// Row, column and value of every entry of the Jacobian that can differ from zero.
+    pub(super) fn jacobian_entries(&self) -> impl Iterator<Item = (usize, usize, S)> + '_ {
+        let places = self.pattern.rows.iter().enumerate();
+        let places = places.flat_map(|(row, columns)| columns.iter().map(move |&column| (row, column)));
+        places.zip(&self.jacobian).map(|((row, column), &value)| (row, column, value))
+    }
+}
+
 /// base + factor sum w_j u_j over the first K stages, state by state.
 #[inline]
 fn combine<S: Lane, const K: usize>(
@@ -365,6 +374,13 @@ pub(super) struct Extension<S> {
 }
 
 impl<S: Lane> Extension<S> {
+    /// The cubic with these ends and slopes, both times the step.
+    pub(super) fn cubic([start, end]: [S; 2], [first, last]: [S; 2]) -> Extension<S> {
+        let rise = end - start;
+        let coefficients = [first - rise, rise.times(2.0) - first - last, S::from(0.0)];
+        Extension { start, end, coefficients }
+    }
+
     /// The same in one lane.
     pub(super) fn lane(&self, index: usize) -> Extension<f64> {
         let coefficients = self.coefficients.map(|coefficient| coefficient.lane(index));

@@ -1,0 +1,67 @@
+//! A machine in its lane, and what its observer is shown.
+
+use super::Lane;
+use super::course::{Observer, Sampler};
+use super::passage::Passage;
+use super::rosenbrock::Extension;
+
+/// A machine in its lane.
+pub(super) struct Slot<'a, O> {
+    pub(super) passage: Passage<'a>,
+    pub(super) sampler: Option<Box<dyn Sampler + 'a>>,
+    pub(super) observer: O,
+    /// Whether its last step was taken with known matrices.
+    pub(super) propagated: bool,
+    /// A state or input at one time, for sampler and observer.
+    pub(super) states: Vec<f64>,
+    pub(super) inputs: Vec<f64>,
+}
+
+/// Shows the observer every row before this time.
+pub(super) fn observe<S: Lane, O: Observer>(
+    slot: &mut Slot<'_, O>,
+    extensions: &[Extension<S>],
+    lane: usize,
+    before_s: f64,
+) {
+    let Slot { passage, observer, states, inputs, .. } = slot;
+    let (start_s, step_s) = (passage.time_s, passage.step_s);
+    loop {
+        let time_s = passage.row as f64 * passage.course.output_step_s;
+        if time_s >= before_s {
+            return;
+        }
+        let part = ((time_s - start_s) / step_s).max(0.0);
+        let mut count = 0;
+        for (place, &index) in states.iter_mut().zip(observer.wanted()) {
+            *place = extensions.get(index).map_or(f64::NAN, |extension| extension.lane(lane).at(part));
+            count += 1;
+        }
+        let wanted = if observer.wants_inputs() { inputs.len() } else { 0 };
+        if wanted > 0 {
+            passage.inputs_at(time_s, inputs);
+        }
+        observer.observe(time_s, &states[..count], &inputs[..wanted]);
+        passage.row += 1;
+    }
+}
+
+/// Shows the observer the last row, at the end of the course.
+pub(super) fn observe_end<S: Lane, O: Observer>(slot: &mut Slot<'_, O>, state: &[S], lane: usize) {
+    let Slot { passage, observer, states, inputs, .. } = slot;
+    let time_s = passage.row as f64 * passage.course.output_step_s;
+    let duration_s = passage.course.duration_s;
+    if time_s > duration_s * (1.0 + 4.0 * f64::EPSILON) {
+        return;
+    }
+    let mut count = 0;
+    for (place, &index) in states.iter_mut().zip(observer.wanted()) {
+        *place = state.get(index).map_or(f64::NAN, |state| state.lane(lane));
+        count += 1;
+    }
+    let wanted = if observer.wants_inputs() { inputs.len() } else { 0 };
+    if wanted > 0 {
+        passage.inputs_at(duration_s, inputs);
+    }
+    observer.observe(duration_s, &states[..count], &inputs[..wanted]);
+}
