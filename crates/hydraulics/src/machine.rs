@@ -18,6 +18,7 @@
 mod chambers;
 mod contact;
 mod equations;
+mod ledger;
 mod load;
 mod options;
 mod power_unit;
@@ -27,6 +28,7 @@ mod state;
 
 pub use chambers::{AeratedChambers, Chambers};
 pub use contact::Contact;
+pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, LoadMotion};
 pub use options::{LineDynamics, MachineError, MachineOptions, VAPOUR_PRESSURE_ABSOLUTE};
 pub use power_unit::{Accumulator, PowerUnit, PumpLimited};

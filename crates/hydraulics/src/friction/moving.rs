@@ -28,7 +28,7 @@ pub enum MovingFriction<S = f64> {
     },
 }
 
-/// Friction at one instant. Units: N, m/s, W.
+/// Friction at one instant. Units: N, m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionForce<S> {
     /// Force in N that opposes the motion.
@@ -107,6 +107,27 @@ impl<S: Scalar> MovingFriction<S> {
         match self {
             MovingFriction::LuGre { lugre, .. } => S::from(0.5) * lugre.bristle_stiffness * bristle.squared(),
             _ => S::from(0.0),
+        }
+    }
+
+    /// Power in W that friction turns into heat: what the motion gives, less what the bristles' springs store.
+    ///
+    /// ```text
+    /// F v - sigma_0 z dz/dt = sigma_0^2 |v| z^2/g(v) + sigma_1 v dz/dt + sigma_2 v^2              LuGre
+    /// ```
+    ///
+    /// Not negative, but for LuGre outside [`super::LuGre::passivity`].
+    pub fn dissipated(&self, velocity: S, bristle: S) -> S {
+        let FrictionForce { force, bristle_rate } = self.at(velocity, bristle);
+        match self {
+            MovingFriction::LuGre { lugre, shape } => {
+                let spring = lugre.bristle_stiffness * bristle;
+                let sliding = lugre.curve.sliding_force_of(*shape, velocity);
+                spring.squared() * velocity.abs() / sliding
+                    + lugre.bristle_damping * velocity * bristle_rate
+                    + lugre.curve.viscous * velocity.squared()
+            }
+            _ => force * velocity,
         }
     }
 }

@@ -59,4 +59,10 @@ impl<S: Scalar> Contact<S> {
     pub fn stored_energy(&self, penetration: S) -> S {
         S::from(0.5) * self.stiffness * penetration.maximum(S::from(0.0)).squared()
     }
+
+    /// Power in W that the contact turns into heat: never negative.
+    pub fn dissipated(&self, penetration: S, rate: S) -> S {
+        let elastic = self.stiffness * penetration.maximum(S::from(0.0));
+        (self.force(penetration, rate) - elastic) * rate
+    }
 }

@@ -94,8 +94,7 @@ impl<S: Copy> LoadModel<S> {
 }
 
 impl<S: Scalar> LoadModel<S> {
-    /// Force in N with which the environment holds the load back, and the load's acceleration in m/s2 under the sensor's
-    /// force in N. Both zero for a prescribed motion, which yields to no force.
+    /// The load's acceleration in m/s2 under the sensor's force in N; zero for a prescribed motion, which yields to none.
     #[inline]
     pub fn acceleration(&self, sensed: S, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> S {
         let relative = relative(load, ground);
@@ -107,6 +106,30 @@ impl<S: Scalar> LoadModel<S> {
             LoadModel::Wall { mass, damping, gap, contact } => {
                 let pressed = contact.force(relative.position - *gap, relative.velocity);
                 (sensed - pressed - *damping * relative.velocity) / *mass
+            }
+        }
+    }
+
+    /// Energy in J that the load holds, what its ground takes from it in W, and what it turns into heat in W.
+    pub(super) fn powers(&self, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> [S; 3] {
+        let (zero, half) = (S::from(0.0), S::from(0.5));
+        let relative = relative(load, ground);
+        match self {
+            LoadModel::Prescribed => [zero; 3],
+            LoadModel::SpringMassDamper { mass, stiffness, damping } => {
+                let held = *stiffness * relative.position + *damping * relative.velocity;
+                let stored = *mass * load.velocity.squared() + *stiffness * relative.position.squared();
+                [half * stored, held * ground.velocity, *damping * relative.velocity.squared()]
+            }
+            LoadModel::Wall { mass, damping, gap, contact } => {
+                let penetration = relative.position - *gap;
+                let held = contact.force(penetration, relative.velocity) + *damping * relative.velocity;
+                [
+                    half * *mass * load.velocity.squared() + contact.stored_energy(penetration),
+                    held * ground.velocity,
+                    *damping * relative.velocity.squared()
+                        + contact.dissipated(penetration, relative.velocity),
+                ]
             }
         }
     }
