@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use phea_dynamics::linear::StateSpace;
-use phea_dynamics::portable::{cosh, expm1};
+use phea_dynamics::portable::{cosh, expm1, pow};
 use phea_dynamics::scalar::{Dependence, Dual, Lanes};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
@@ -12,7 +12,8 @@ use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, Stribeck};
 use phea_hydraulics::line::Member;
 use phea_hydraulics::machine::{
-    Accumulator, Contact, LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited,
+    Accumulator, Contact, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, PowerUnit,
+    PumpLimited,
 };
 use phea_hydraulics::operating_point::{Condition, Load, operating_point};
 use phea_hydraulics::reference_rig::{benchmark_components, components, cylinder, hose_line, pipe_line};
@@ -156,6 +157,77 @@ fn the_benchmark_is_the_text_of_its_equations() {
             assert!((found - expected).abs() < 1e-11 * scale, "{index}: {found} against {expected}");
         }
     }
+}
+
+/// A machine with everything, in another form: one side at a time, forces and flows case by case.
+fn full_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 12] {
+    let &[u, r, p_a, p_b, d, v, z, x_l, v_l, p_s, f, lag] = state else { unreachable!() };
+    let spool_rate = r.clamp(-4000.0, 4000.0);
+    let opening = u - 0.014 - lag;
+    let root = |drop: f64| drop.signum() * (drop * drop / (drop * drop + 1e6).sqrt()).sqrt();
+    let leak = 1.0 / cosh(10.0 * opening);
+    let edge = |flow: f64, open: f64, leakage: f64| flow * open.max(0.0) / 10.0 + leakage * leak;
+    let from_s =
+        [edge(3.2e-7, opening, 2.35e-9) * root(p_s - p_a), edge(2.0e-7, -opening, 1.7e-9) * root(p_s - p_b)];
+    let to_t = [edge(2.5e-7, -opening, 2.2e-9) * root(p_a), edge(3.85e-7, opening, 2.35e-9) * root(p_b)];
+    let across = 3e-13 * (p_a - p_b);
+    let x = x_l + d;
+    let bore = std::f64::consts::PI * 12.7e-3 * 12.7e-3;
+    let wall = 5.0 * (bore + 4.0 * 1.56e-5) / (4.0 * 2.236e-12);
+    let hose = bore / 4.0 * 1.5 * (1.0 / wall + 1.0 / 1.45e9);
+    let area = std::f64::consts::PI / 4.0 * (0.05 * 0.05 - 0.022 * 0.022);
+    let compliance = |length: f64| hose + area * length / 1.45e9;
+    let slide = 120.0 + 40.0 * expm1(-v * v / 1e-4);
+    let z_rate = v * (1.0 - 1e7 * z * v.signum() / slide);
+    let contact = |depth: f64, rate: f64| {
+        if depth > 0.0 && 1.0 + 0.3 * rate > 0.0 { 1e8 * depth * (1.0 + 0.3 * rate) } else { 0.0 }
+    };
+    let friction = 1e7 * z + 2e3 * z_rate + 100.0 * v;
+    let pushing = area * p_a - area * p_b - friction - 2e7 * d + contact(-x, -v) - contact(x - 0.5, v);
+    let (way, closing) = (x_l - inputs[0], v_l - inputs[1]);
+    let tare = 7.55e-6 * root(p_s) / root(70e5);
+    let relief = if p_s > 65e5 { 1.633e-4 * (p_s - 65e5) / 5e5 } else { 0.0 };
+    let gas = 1e-3 * pow((40e5 + 101325.0) / (p_s + 101325.0), 1.0 / 1.3) / (1.3 * (p_s + 101325.0));
+    let stored = 5e-4 / 1e9 + if p_s > 40e5 { gas } else { 0.0 };
+    [
+        spool_rate,
+        1099.0 * (1099.0 * (command.clamp(-10.0, 10.0) - u - f) - 1.8 * r),
+        (from_s[0] - to_t[0] - across - area * v) / compliance(x),
+        (from_s[1] - to_t[1] + across + area * v) / compliance(0.5 - x),
+        v - v_l,
+        pushing / 13.1,
+        z_rate,
+        v_l,
+        (2e7 * d - contact(way - 2e-3, closing) - 50.0 * closing) / 8.0,
+        (1.633e-4 - relief - from_s[0] - from_s[1] - tare) / stored,
+        20.0 * (spool_rate - spool_rate.abs() * f / 0.02),
+        0.5 * (spool_rate - spool_rate.abs() * lag / 0.044),
+    ]
+}
+
+#[test]
+fn a_machine_with_everything_is_the_text_of_its_equations() {
+    let machine = machines()[2];
+    let mut noise = Noise(11);
+    let mut contacts = 0;
+    for index in 0..600 {
+        let (mut state, command, mut inputs) = some_state(&machine, &mut noise);
+        // Everywhere, in the stops, and at the wall.
+        state[7] = [0.25 + 0.2 * noise.next(), 1e-4 * noise.next(), 0.5 + 1e-4 * noise.next()][index % 3];
+        state[9] = 55e5 + 20e5 * noise.next();
+        inputs[0] = state[7] - 2e-3 + 1e-4 * noise.next();
+        let rates = rates_of(&machine, &state, 1.5 * command, &inputs);
+        let mut indicators = [0.0; INDICATORS.len()];
+        machine.indicate(&state, &inputs, &mut indicators);
+        contacts += usize::from(indicators[2].min(indicators[3]) < 0.0 && indicators[6] < 0.0);
+        for (index, (found, expected)) in
+            rates.iter().zip(full_rates(&state, 1.5 * command, &inputs)).enumerate()
+        {
+            let scale = expected.abs().max(machine.scales()[index]);
+            assert!((found - expected).abs() < 1e-10 * scale, "{index}: {found} against {expected}");
+        }
+    }
+    assert!(contacts > 50);
 }
 
 /// Derivatives by dual numbers agree with central differences, and differ from zero only where the pattern says so.
