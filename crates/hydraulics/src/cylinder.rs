@@ -54,6 +54,20 @@ impl Cylinder {
     }
 }
 
+impl<S: Copy> Cylinder<S> {
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Cylinder<T> {
+        Cylinder {
+            area_a: of(self.area_a),
+            area_b: of(self.area_b),
+            stroke: of(self.stroke),
+            moving_mass: of(self.moving_mass),
+            dead_volume_a: of(self.dead_volume_a),
+            dead_volume_b: of(self.dead_volume_b),
+        }
+    }
+}
+
 /// Annulus areas in m2 on the A and B sides, from the piston diameter and the rod diameters on each side in m (zero
 /// for no rod).
 ///

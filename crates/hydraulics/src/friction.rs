@@ -1,10 +1,12 @@
 //! Friction of the piston and rods: viscous, Stribeck or LuGre, and the one slope a linear model can keep of it.
 
 mod lugre;
+mod moving;
 mod stribeck;
 
 pub use lugre::{LuGre, LuGrePassivity};
-pub use stribeck::Stribeck;
+pub use moving::{FrictionForce, MovingFriction};
+pub use stribeck::{Stribeck, StribeckShape};
 
 use phea_dynamics::scalar::{Dual, Scalar};
 

@@ -15,6 +15,7 @@ pub mod friction;
 pub mod impedance;
 pub mod line;
 pub mod linear;
+pub mod machine;
 pub mod operating_point;
 pub mod orifice;
 pub mod parameter;

@@ -8,7 +8,7 @@ use crate::actuator::Components;
 use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
 use crate::force_sensor::ForceSensor;
-use crate::friction::Friction;
+use crate::friction::{Friction, LuGre, Stribeck};
 use crate::line::{Hose, Line, Pipe, PipeWall, Stiffening};
 use crate::linear::LinearParameters;
 use crate::servovalve::{Edges, Servovalve, Supply};
@@ -89,6 +89,28 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
         friction: Friction::Viscous { viscous: 100.0 },
         force_sensor: ForceSensor { stiffness: 2e7 },
         stiffness_model,
+    }
+}
+
+/// The rig that solvers of differential equations are compared on: the valve and hose of the thesis in round numbers, LuGre
+/// friction, one modulus for line and chamber.
+///
+/// ```text
+/// A_u = 1.583e-3 m2, V_line = 1.9e-4 m3, beta_e = 2.6e8 Pa, sigma_0 = 1e7 N/m, sigma_1 = 2000 N s/m, sigma_2 = 100 N s/m
+/// ```
+pub fn benchmark_components() -> Components {
+    let line = Line::Volume { volume: 1.9e-4, effective_bulk_modulus: 2.6e8 };
+    let curve = Stribeck {
+        coulomb: 80.0,
+        breakaway: 120.0,
+        stribeck_velocity: 0.01,
+        stribeck_exponent: 2.0,
+        viscous: 100.0,
+    };
+    Components {
+        cylinder: Cylinder { area_a: 1.583e-3, area_b: 1.583e-3, ..cylinder() },
+        friction: Friction::LuGre(LuGre { curve, bristle_stiffness: 1e7, bristle_damping: 2e3 }),
+        ..components(line, StiffnessModel::Uniform)
     }
 }
 

@@ -2,6 +2,8 @@
 
 mod coefficients;
 mod flow;
+mod spool;
+mod tare;
 
 pub use coefficients::{
     ChamberCoefficients, ControlCoefficients, Direction, chamber_coefficients, control_coefficients,
@@ -10,6 +12,8 @@ pub use coefficients::{
 pub use flow::{
     ChamberFlows, EdgeFlows, Openings, chamber_flows, control_flow, edge_flows, hyperbolic_secant,
 };
+pub use spool::{SpoolImperfection, SpoolState};
+pub use tare::tare_flow;
 
 use phea_dynamics::scalar::Scalar;
 
@@ -121,6 +125,29 @@ impl Servovalve {
             damping_ratio: S::from(self.damping_ratio),
             transition_pressure: S::from(self.transition_pressure),
         }
+    }
+}
+
+impl<S: Copy> Servovalve<S> {
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> Servovalve<T> {
+        Servovalve {
+            flow_coefficients: Edges::from_array(self.flow_coefficients.to_array().map(&mut *of)),
+            leakage_coefficients: Edges::from_array(self.leakage_coefficients.to_array().map(&mut *of)),
+            leakage_shape: of(self.leakage_shape),
+            tare_flow: of(self.tare_flow),
+            nominal_voltage: of(self.nominal_voltage),
+            natural_frequency: of(self.natural_frequency),
+            damping_ratio: of(self.damping_ratio),
+            transition_pressure: of(self.transition_pressure),
+        }
+    }
+}
+
+impl<S: Copy> Supply<S> {
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Supply<T> {
+        Supply { pressure: of(self.pressure), tank_pressure: of(self.tank_pressure) }
     }
 }
 

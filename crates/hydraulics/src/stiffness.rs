@@ -104,6 +104,7 @@ pub fn chamber_compliance<S: Scalar>(
 }
 
 /// C_A and C_B at piston position x, in m3/Pa.
+#[inline]
 pub fn compliance_at<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> [S; 2] {
     [
         chambers.constant_a + chambers.slope_a * x,
@@ -136,6 +137,21 @@ impl ChamberCompliance<f64> {
             slope_a: S::from(self.slope_a),
             constant_b: S::from(self.constant_b),
             slope_b: S::from(self.slope_b),
+        }
+    }
+}
+
+impl<S: Copy> ChamberCompliance<S> {
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> ChamberCompliance<T> {
+        ChamberCompliance {
+            area_a: of(self.area_a),
+            area_b: of(self.area_b),
+            stroke: of(self.stroke),
+            constant_a: of(self.constant_a),
+            slope_a: of(self.slope_a),
+            constant_b: of(self.constant_b),
+            slope_b: of(self.slope_b),
         }
     }
 }

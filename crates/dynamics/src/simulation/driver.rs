@@ -15,7 +15,8 @@ const PROPAGATED: f64 = 0.1;
 
 /// One machine to be driven.
 pub struct Task<'a, O> {
-    /// State at time zero.
+    /// State at time zero; behind it, if told, the wave that each delay was sent until then. Untold, it is what the start sends
+    /// while nothing arrives.
     pub start: Vec<f64>,
     /// What it is driven by.
     pub course: &'a Course,
@@ -166,8 +167,9 @@ where
         if !delays.is_empty() {
             set_lane(&mut self.between.inputs, lane, &inputs);
             system.outgoing(&self.state, &self.between.inputs, &mut self.between.waves);
-            let waves: Vec<f64> = self.between.waves.iter().map(|wave| wave.lane(lane)).collect();
-            passage = passage.with_waves(&delays, &waves);
+            let sent: Vec<f64> = self.between.waves.iter().map(|wave| wave.lane(lane)).collect();
+            let told = task.start.get(self.state.len()..).filter(|told| !told.is_empty());
+            passage = passage.with_waves(&delays, told.unwrap_or(&sent));
             passage.inputs_at(0.0, &mut inputs);
         }
         set_lane(&mut self.between.inputs, lane, &inputs);
@@ -421,8 +423,10 @@ fn check<S: Lane, E: System<S>, O: Observer>(
     delays: &[f64],
 ) -> Result<(), SimulationError> {
     let Course { duration_s, output_step_s, inputs } = task.course;
+    let with_waves = system.states() + delays.len();
+    let expected = if task.start.len() == with_waves { with_waves } else { system.states() };
     let counts = [
-        ("states at the start", task.start.len(), system.states()),
+        ("states at the start", task.start.len(), expected),
         ("inputs", inputs.len() + delays.len(), system.inputs()),
         ("scales", system.scales().len(), system.states()),
     ];

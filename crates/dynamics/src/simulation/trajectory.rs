@@ -63,7 +63,7 @@ impl<'a, E> Queue<'a, E> for Single<'a, '_> {
     }
 }
 
-/// Drives a system from a state at time zero through a course. `watch` is told the simulated time after each step; when it
+/// Drives a system from a state at time zero (and the waves under way behind it, if told) through a course. `watch` is told the simulated time after each step; when it
 /// answers false the simulation ends there.
 ///
 /// # Errors

@@ -1,6 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
-use super::Stribeck;
+use super::{Stribeck, StribeckShape};
 use crate::parameter::{ParameterError, Problems};
 
 /// Friction of elastic bristles with mean deflection z. Units: N/m, N s/m.
@@ -56,6 +56,14 @@ impl<S: Scalar> LuGre<S> {
         velocity - self.bristle_stiffness * velocity.abs() * deflection / self.curve.sliding_force(velocity)
     }
 
+    /// Friction force in N and dz/dt in m/s together: the exponential is taken once.
+    #[inline]
+    pub fn force_and_rate(&self, shape: StribeckShape, velocity: S, deflection: S) -> (S, S) {
+        let spring = self.bristle_stiffness * deflection;
+        let rate = velocity - velocity.abs() * spring / self.curve.sliding_force_of(shape, velocity);
+        (spring + self.bristle_damping * rate + self.curve.viscous * velocity, rate)
+    }
+
     /// Friction force in N at sliding velocity v in m/s and bristle deflection z in m.
     pub fn force(&self, velocity: S, deflection: S) -> S {
         self.bristle_stiffness * deflection
@@ -107,6 +115,17 @@ impl LuGre {
             curve: self.curve.map(),
             bristle_stiffness: S::from(self.bristle_stiffness),
             bristle_damping: S::from(self.bristle_damping),
+        }
+    }
+}
+
+impl<S: Copy> LuGre<S> {
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> LuGre<T> {
+        LuGre {
+            curve: self.curve.convert(of),
+            bristle_stiffness: of(self.bristle_stiffness),
+            bristle_damping: of(self.bristle_damping),
         }
     }
 }

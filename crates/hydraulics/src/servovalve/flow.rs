@@ -19,6 +19,7 @@ impl<S: Scalar> Openings<S> {
     ///
     /// The positive part is (U + |U|)/2 and the negative (|U| - U)/2, so that a derivative taken exactly at U = 0 is the
     /// mean of the two one-sided ones.
+    #[inline]
     pub fn at(valve: &Servovalve<S>, spool: S) -> Openings<S> {
         let relative = spool / valve.nominal_voltage;
         let half = S::from(0.5);
@@ -51,6 +52,7 @@ pub struct ChamberFlows<S> {
 /// assert_eq!(hyperbolic_secant(-1e4), 0.0);
 /// assert!((hyperbolic_secant(1.0_f64) - 0.6480542736638855).abs() < 1e-15);
 /// ```
+#[inline]
 pub fn hyperbolic_secant<S: Scalar>(argument: S) -> S {
     let decay = (-argument.abs()).exp();
     S::from(2.0) * decay / (S::from(1.0) + decay.squared())
@@ -67,6 +69,7 @@ pub fn hyperbolic_secant<S: Scalar>(argument: S) -> S {
 ///
 /// with u = U_Csp/U_Cn, its positive and negative parts u+ and u-, and the regular root of [`crate::orifice`]. The
 /// leakage's shape is that of thesis (4.14), here on each edge. `spool` in V, pressures in Pa.
+#[inline]
 pub fn edge_flows<S: Scalar>(
     valve: &Servovalve<S>,
     supply: &Supply<S>,

@@ -1,0 +1,133 @@
+use phea_dynamics::scalar::Scalar;
+
+use super::{Friction, LuGre, Stribeck, StribeckShape};
+
+/// Friction as part of equations that are integrated: every variant is smooth enough, and knows its own shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MovingFriction<S = f64> {
+    /// F = f_v v.
+    Viscous {
+        /// Viscous coefficient f_v in N s/m.
+        viscous: S,
+    },
+    /// The steady curve, its jump at zero velocity smoothed: [`Stribeck::regular_force`].
+    Stribeck {
+        /// The curve.
+        curve: Stribeck<S>,
+        /// How its exponent is evaluated.
+        shape: StribeckShape,
+        /// Velocity v_r in m/s that smooths the jump.
+        regular_velocity: S,
+    },
+    /// Bristles, with their deflection as a state.
+    LuGre {
+        /// The model.
+        lugre: LuGre<S>,
+        /// How the exponent of its curve is evaluated.
+        shape: StribeckShape,
+    },
+}
+
+/// Friction at one instant. Units: N, m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionForce<S> {
+    /// Force in N that opposes the motion.
+    pub force: S,
+    /// Rate dz/dt of the bristles in m/s; zero where there are none.
+    pub bristle_rate: S,
+}
+
+impl MovingFriction {
+    /// This friction, where it can be integrated: the static curve needs a velocity in m/s that smooths its jump, the others
+    /// leave it unused. `None` where that is missing.
+    pub fn new(friction: &Friction, regular_velocity: Option<f64>) -> Option<MovingFriction> {
+        match *friction {
+            Friction::Viscous { viscous } => Some(MovingFriction::Viscous { viscous }),
+            Friction::Stribeck(curve) => regular_velocity.map(|regular_velocity| MovingFriction::Stribeck {
+                curve,
+                shape: curve.shape(),
+                regular_velocity,
+            }),
+            Friction::LuGre(lugre) => Some(MovingFriction::LuGre { lugre, shape: lugre.curve.shape() }),
+        }
+    }
+}
+
+impl<S: Copy> MovingFriction<S> {
+    /// Whether its bristles are a state.
+    pub fn has_bristles(&self) -> bool {
+        matches!(self, MovingFriction::LuGre { .. })
+    }
+
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> MovingFriction<T> {
+        match *self {
+            MovingFriction::Viscous { viscous } => MovingFriction::Viscous { viscous: of(viscous) },
+            MovingFriction::Stribeck { curve, shape, regular_velocity } => MovingFriction::Stribeck {
+                curve: curve.convert(of),
+                shape,
+                regular_velocity: of(regular_velocity),
+            },
+            MovingFriction::LuGre { lugre, shape } => {
+                MovingFriction::LuGre { lugre: lugre.convert(of), shape }
+            }
+        }
+    }
+}
+
+impl<S: Scalar> MovingFriction<S> {
+    /// Force and rate of the bristles at a velocity in m/s and a deflection of the bristles in m.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::friction::{Friction, MovingFriction};
+    /// let friction = MovingFriction::new(&Friction::Viscous { viscous: 100.0 }, None).unwrap();
+    /// assert_eq!(friction.at(0.25, 0.0).force, 25.0);
+    /// ```
+    #[inline]
+    pub fn at(&self, velocity: S, bristle: S) -> FrictionForce<S> {
+        let none = S::from(0.0);
+        match self {
+            MovingFriction::Viscous { viscous } => {
+                FrictionForce { force: *viscous * velocity, bristle_rate: none }
+            }
+            MovingFriction::Stribeck { curve, shape, regular_velocity } => FrictionForce {
+                force: curve.regular_force(*shape, velocity, *regular_velocity),
+                bristle_rate: none,
+            },
+            MovingFriction::LuGre { lugre, shape } => {
+                let (force, bristle_rate) = lugre.force_and_rate(*shape, velocity, bristle);
+                FrictionForce { force, bristle_rate }
+            }
+        }
+    }
+
+    /// Energy in J that the bristles hold: sigma_0 z^2/2.
+    pub fn stored_energy(&self, bristle: S) -> S {
+        match self {
+            MovingFriction::LuGre { lugre, .. } => S::from(0.5) * lugre.bristle_stiffness * bristle.squared(),
+            _ => S::from(0.0),
+        }
+    }
+
+    /// Power in W that friction turns into heat: what the motion gives, less what the bristles' springs store.
+    ///
+    /// ```text
+    /// F v - sigma_0 z dz/dt = sigma_0^2 |v| z^2/g(v) + sigma_1 v dz/dt + sigma_2 v^2              LuGre
+    /// ```
+    ///
+    /// Not negative, but for LuGre outside [`super::LuGre::passivity`].
+    pub fn dissipated(&self, velocity: S, bristle: S) -> S {
+        let FrictionForce { force, bristle_rate } = self.at(velocity, bristle);
+        match self {
+            MovingFriction::LuGre { lugre, shape } => {
+                let spring = lugre.bristle_stiffness * bristle;
+                let sliding = lugre.curve.sliding_force_of(*shape, velocity);
+                spring.squared() * velocity.abs() / sliding
+                    + lugre.bristle_damping * velocity * bristle_rate
+                    + lugre.curve.viscous * velocity.squared()
+            }
+            _ => force * velocity,
+        }
+    }
+}

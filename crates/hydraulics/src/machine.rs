@@ -1,0 +1,264 @@
+//! The nonlinear machine: the whole of the actuator in motion, as a [`Plant`] that a controller commands.
+//!
+//! ```text
+//! spool          dU/dt, dr/dt, ...                              thesis (4.1) with saturation: SpoolImperfection
+//! chambers       C_A(x, p_A) dp_A/dt = q_A - q_i - A_A v        thesis (4.25)
+//!                C_B(x, p_B) dp_B/dt = q_B + q_i + A_B v        thesis (4.26), corrected
+//! leakage        q_i = G_i (p_A - p_B)                          laminar, across the piston
+//! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
+//! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
+//! bristles       dz/dt                                          thesis (4.30), corrected: LuGre
+//! load           prescribed, or dx_L/dt, dv_L/dt                LoadModel
+//! supply         constant, or dp_S/dt                           PowerUnit
+//! ```
+//!
+//! q_A and q_B are the flows of the four edges into the chambers. Nothing is clamped: a chamber below vapour pressure, a
+//! piston beyond its stroke or in its stop, a load at its wall are indicators whose change of sign an integrator reports.
+
+mod chambers;
+mod contact;
+mod equations;
+mod ledger;
+mod load;
+mod options;
+mod power_unit;
+mod signals;
+mod start;
+mod state;
+
+pub use chambers::{AeratedChambers, Chambers};
+pub use contact::Contact;
+pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
+pub use load::{LoadModel, LoadMotion};
+pub use options::{LineDynamics, MachineError, MachineOptions, VAPOUR_PRESSURE_ABSOLUTE};
+pub use power_unit::{Accumulator, PowerUnit, PumpLimited};
+pub use signals::{INDICATORS, SIGNALS};
+pub use start::{Beginning, Start};
+pub use state::MachineState;
+
+use phea_dynamics::scalar::{Lanes, Scalar};
+use phea_dynamics::simulation::Plant;
+
+use crate::actuator::Actuator;
+use crate::cylinder::Cylinder;
+use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+use crate::force_sensor;
+use crate::friction::MovingFriction;
+use crate::servovalve::{Servovalve, SpoolImperfection, Supply};
+use equations::constant;
+use signals::ground_of;
+use state::Layout;
+
+/// An actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of them.
+///
+/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]); its states are named by
+/// [`MachineState`].
+///
+/// # Example
+/// A machine at rest stays at rest.
+/// ```
+/// # use phea_hydraulics::reference_rig::{components, hose_line};
+/// use phea_dynamics::simulation::Plant;
+/// use phea_hydraulics::actuator::Actuator;
+/// use phea_hydraulics::machine::{Machine, MachineOptions};
+/// use phea_hydraulics::operating_point::{Condition, Load, operating_point};
+/// use phea_hydraulics::stiffness::StiffnessModel;
+/// let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume))?;
+/// let machine = Machine::new(&actuator, &MachineOptions::default())?;
+/// let point = operating_point(&actuator, 0.2, Condition::Load(Load::Force(3e3)))?;
+/// let rest = machine.rest(&point)?;
+/// let mut rates = vec![f64::NAN; machine.states()];
+/// machine.rates(&rest.state, rest.command, &rest.inputs, &mut rates);
+/// let largest = rates.iter().zip(machine.scales()).map(|(rate, scale)| (rate / scale).abs()).fold(0.0, f64::max);
+/// assert!(largest < 1e-6 && (machine.measurement(&rest.state, &rest.inputs) - 3e3_f64).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Machine<S = f64> {
+    valve: Servovalve<S>,
+    spool: SpoolImperfection<S>,
+    tare_reference_drop: S,
+    supply: Supply<S>,
+    power_unit: PowerUnit<S>,
+    cylinder: Cylinder<S>,
+    chambers: Chambers<S>,
+    internal_leakage: Option<S>,
+    end_stops: Option<Contact<S>>,
+    friction: MovingFriction<S>,
+    sensor_stiffness: S,
+    load: LoadModel<S>,
+    vapour_pressure: S,
+    layout: Layout,
+}
+
+impl Machine {
+    /// The machine of an actuator with these options.
+    ///
+    /// # Errors
+    /// Options outside physics, all at once; a static friction curve without the velocity that smooths its jump; end stops so
+    /// soft, or dead volumes so small, that the supply pressure would press the piston through a chamber's last fluid.
+    pub fn new(actuator: &Actuator, options: &MachineOptions) -> Result<Machine, MachineError> {
+        let problems = options.problems();
+        if !problems.is_empty() {
+            return Err(MachineError::Impossible { problems });
+        }
+        let components = actuator.components();
+        let friction = MovingFriction::new(&components.friction, options.friction_regular_velocity)
+            .ok_or(MachineError::StaticFriction)?;
+        let Supply { pressure, tank_pressure } = components.supply;
+        let LineDynamics::Lumped = options.line_dynamics;
+        let mut machine = Machine {
+            valve: components.valve,
+            spool: options.spool,
+            tare_reference_drop: options.tare_reference_drop.unwrap_or(pressure - tank_pressure),
+            supply: components.supply,
+            power_unit: options.power_unit,
+            cylinder: components.cylinder,
+            chambers: Chambers::new(actuator, options.member),
+            internal_leakage: options.internal_leakage,
+            end_stops: options.end_stops,
+            friction,
+            sensor_stiffness: components.force_sensor.stiffness,
+            load: options.load,
+            vapour_pressure: options.vapour_pressure_absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE,
+            layout: Layout::default(),
+        };
+        machine.layout = Layout::of(&machine);
+        let volumes = [
+            components.cylinder.dead_volume_a + components.line_a.volume(),
+            components.cylinder.dead_volume_b + components.line_b.volume(),
+        ];
+        machine.check_ends(volumes)?;
+        Ok(machine)
+    }
+
+    /// Refuses end stops into which the supply pressure presses the piston further than these volumes in m3 reach.
+    fn check_ends(&self, [volume_a, volume_b]: [f64; 2]) -> Result<(), MachineError> {
+        let Some(contact) = self.end_stops else {
+            return Ok(());
+        };
+        let Cylinder { area_a, area_b, .. } = self.cylinder;
+        let pressure = self.supply.pressure;
+        // At the A end chamber B presses, and the other way round.
+        for (volume, area, pressing) in [(volume_a, area_a, area_b), (volume_b, area_b, area_a)] {
+            let penetration = pressure.max(0.0) * pressing / contact.stiffness;
+            let left = volume - area * penetration;
+            if left <= 0.0 {
+                return Err(MachineError::ChamberVanishes { penetration, volume: left });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<S: Copy> Machine<S> {
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> Machine<T> {
+        Machine {
+            valve: self.valve.convert(of),
+            spool: self.spool.convert(of),
+            tare_reference_drop: of(self.tare_reference_drop),
+            supply: self.supply.convert(of),
+            power_unit: self.power_unit.convert(of),
+            cylinder: self.cylinder.convert(of),
+            chambers: self.chambers.convert(of),
+            internal_leakage: self.internal_leakage.map(&mut *of),
+            end_stops: self.end_stops.map(|contact| contact.convert(of)),
+            friction: self.friction.convert(of),
+            sensor_stiffness: of(self.sensor_stiffness),
+            load: self.load.convert(of),
+            vapour_pressure: of(self.vapour_pressure),
+            layout: self.layout,
+        }
+    }
+}
+
+impl<const L: usize> Machine<Lanes<L>> {
+    /// L machines side by side, one a lane.
+    ///
+    /// # Errors
+    /// A machine that does not have the components of the first.
+    ///
+    /// # Example
+    /// ```
+    /// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
+    /// # use phea_hydraulics::reference_rig::{components, hose_line, pipe_line};
+    /// # use phea_hydraulics::machine::{Machine, MachineError, MachineOptions};
+    /// let of = |line| Actuator::new(components(line, StiffnessModel::ByVolume));
+    /// let machines = [of(hose_line())?, of(pipe_line())?].map(|a| Machine::new(&a, &MachineOptions::default()));
+    /// let [hose, pipe] = machines;
+    /// assert!(Machine::gather(&[hose.clone()?, pipe?]).is_ok());
+    /// let leaking = MachineOptions { internal_leakage: Some(1e-13), ..MachineOptions::default() };
+    /// let other = Machine::new(&of(hose_line())?, &leaking)?;
+    /// assert_eq!(Machine::gather(&[hose?, other]), Err(MachineError::DifferentStructure { index: 1 }));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn gather(machines: &[Machine; L]) -> Result<Machine<Lanes<L>>, MachineError> {
+        let structure = |machine: &Machine| machine.convert(&mut |_| 0.0);
+        let parameters = machines.each_ref().map(|machine| {
+            let mut values = Vec::new();
+            machine.convert(&mut |value: f64| values.push(value));
+            values.into_iter()
+        });
+        let first = machines.first().map(structure);
+        let other = machines.iter().position(|machine| Some(structure(machine)) != first);
+        match (other, first) {
+            (None, Some(first)) => {
+                let mut parameters = parameters;
+                Ok(first.convert(&mut |_| {
+                    Lanes(parameters.each_mut().map(|values| values.next().unwrap_or(f64::NAN)))
+                }))
+            }
+            (index, _) => Err(MachineError::DifferentStructure { index: index.unwrap_or_default() }),
+        }
+    }
+}
+
+impl<S: Scalar> Plant<S> for Machine<S> {
+    fn states(&self) -> usize {
+        self.layout.count()
+    }
+
+    fn inputs(&self) -> usize {
+        2
+    }
+
+    fn scales(&self) -> Vec<S> {
+        let mut scales = vec![0.0; self.layout.count()];
+        self.layout.write(&state::scales(), &mut scales);
+        scales.into_iter().map(S::from).collect()
+    }
+
+    fn command_scale(&self) -> S {
+        S::from(1.0)
+    }
+
+    fn measurement_scale(&self) -> S {
+        S::from(1e3)
+    }
+
+    #[inline]
+    fn rates<T: Scalar + From<S>>(&self, state: &[T], command: T, inputs: &[T], rates: &mut [T]) {
+        let state = self.layout.read(state);
+        self.layout.write(&self.state_rates(&state, command, &ground_of(inputs)), rates);
+    }
+
+    #[inline]
+    fn measurement<T: Scalar + From<S>>(&self, state: &[T], _inputs: &[T]) -> T {
+        force_sensor::force(constant(self.sensor_stiffness), self.layout.read(state).deflection)
+    }
+
+    fn disturbance<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T {
+        self.load_of(&self.layout.read(state), &ground_of(inputs)).velocity
+    }
+
+    fn indicators(&self) -> usize {
+        INDICATORS.len()
+    }
+
+    fn indicate<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], indicators: &mut [T]) {
+        for (slot, value) in indicators.iter_mut().zip(self.indicated(state, inputs)) {
+            *slot = value;
+        }
+    }
+}

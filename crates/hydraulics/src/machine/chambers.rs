@@ -1,0 +1,163 @@
+use phea_dynamics::scalar::Scalar;
+
+use crate::actuator::Actuator;
+use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
+use crate::line::{Line, Member};
+use crate::stiffness::{ChamberCompliance, StiffnessModel, compliance_at};
+
+/// Absolute pressure in Pa below which the modulus of fluid with air is that at this pressure. Far below any vapour pressure
+/// that is reported, it only keeps a trial step of an integrator a number.
+const LEAST_ABSOLUTE_PRESSURE: f64 = 1.0;
+
+/// Compliance of both chambers with their lines as the machine moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Chambers<S = f64> {
+    /// Fluid without air: compliance depends on the position alone.
+    Clean(ChamberCompliance<S>),
+    /// Fluid with entrained air: it depends on each chamber's pressure too.
+    Aerated(AeratedChambers<S>),
+}
+
+/// Chambers whose fluid carries air.
+///
+/// ```text
+/// C_A(x, p) = (V_A + A_A x)/beta(p) + W_A + w_A x              and likewise C_B with L - x
+/// ```
+///
+/// V holds fluid whose modulus is that of the mixture, W is what walls and stated moduli give. Units: Pa, 1, m, m3, m2, m3/Pa,
+/// m2/Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AeratedChambers<S = f64> {
+    bulk_modulus: S,
+    volume_fraction: S,
+    polytropic_index: S,
+    stroke: S,
+    side_a: AeratedSide<S>,
+    side_b: AeratedSide<S>,
+}
+
+/// One chamber with its line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct AeratedSide<S> {
+    fluid_constant: S,
+    fluid_slope: S,
+    wall_constant: S,
+    wall_slope: S,
+}
+
+impl Chambers {
+    /// The chambers of an actuator with lumped lines; `member` chooses the hose's stiffening.
+    pub fn new(actuator: &Actuator, member: Member) -> Chambers {
+        let components = actuator.components();
+        let cylinder = &components.cylinder;
+        let model = components.stiffness_model;
+        match components.fluid.entrained_air {
+            None => Chambers::Clean(actuator.chamber_compliance([actuator.mean_pressure(); 2], member)),
+            Some(air) => Chambers::Aerated(AeratedChambers {
+                bulk_modulus: components.fluid.bulk_modulus,
+                volume_fraction: air.volume_fraction,
+                polytropic_index: air.polytropic_index,
+                stroke: cylinder.stroke,
+                side_a: aerated_side(
+                    model,
+                    cylinder.area_a,
+                    cylinder.dead_volume_a,
+                    &components.line_a,
+                    member,
+                ),
+                side_b: aerated_side(
+                    model,
+                    cylinder.area_b,
+                    cylinder.dead_volume_b,
+                    &components.line_b,
+                    member,
+                ),
+            }),
+        }
+    }
+}
+
+/// What of a side is fluid with air, and what yields without it.
+fn aerated_side(
+    model: StiffnessModel,
+    area: f64,
+    dead_volume: f64,
+    line: &Line,
+    member: Member,
+) -> AeratedSide<f64> {
+    let (fluid, wall) = match line {
+        Line::Hose { hose, .. } => (1.0, 1.0 / hose.wall_modulus(member)),
+        Line::Pipe { pipe, .. } => (1.0, pipe.wall_compliance()),
+        Line::Volume { effective_bulk_modulus, .. } => (0.0, 1.0 / effective_bulk_modulus),
+    };
+    let (chamber_fluid, chamber_wall) = match model {
+        StiffnessModel::Uniform => (fluid, wall),
+        StiffnessModel::ByVolume => (1.0, 0.0),
+    };
+    let volume = line.volume();
+    AeratedSide {
+        fluid_constant: fluid * volume + chamber_fluid * dead_volume,
+        fluid_slope: chamber_fluid * area,
+        wall_constant: wall * volume + chamber_wall * dead_volume,
+        wall_slope: chamber_wall * area,
+    }
+}
+
+impl<S: Copy> Chambers<S> {
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Chambers<T> {
+        match self {
+            Chambers::Clean(compliance) => Chambers::Clean(compliance.convert(of)),
+            Chambers::Aerated(aerated) => Chambers::Aerated(AeratedChambers {
+                bulk_modulus: of(aerated.bulk_modulus),
+                volume_fraction: of(aerated.volume_fraction),
+                polytropic_index: of(aerated.polytropic_index),
+                stroke: of(aerated.stroke),
+                side_a: aerated.side_a.convert(of),
+                side_b: aerated.side_b.convert(of),
+            }),
+        }
+    }
+}
+
+impl<S: Copy> AeratedSide<S> {
+    fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> AeratedSide<T> {
+        AeratedSide {
+            fluid_constant: of(self.fluid_constant),
+            fluid_slope: of(self.fluid_slope),
+            wall_constant: of(self.wall_constant),
+            wall_slope: of(self.wall_slope),
+        }
+    }
+}
+
+impl<S: Scalar> Chambers<S> {
+    /// C_A and C_B in m3/Pa at piston position `x` in m and chamber pressures in Pa gauge.
+    #[inline]
+    pub fn compliance(&self, x: S, pressures: [S; 2]) -> [S; 2] {
+        match self {
+            Chambers::Clean(compliance) => compliance_at(compliance, x),
+            Chambers::Aerated(aerated) => aerated.compliance(x, pressures),
+        }
+    }
+}
+
+impl<S: Scalar> AeratedChambers<S> {
+    fn compliance(&self, x: S, [pressure_a, pressure_b]: [S; 2]) -> [S; 2] {
+        let side = |side: &AeratedSide<S>, travel: S, pressure: S| {
+            let fluid = side.fluid_constant + side.fluid_slope * travel;
+            fluid / self.modulus(pressure) + side.wall_constant + side.wall_slope * travel
+        };
+        [side(&self.side_a, x, pressure_a), side(&self.side_b, self.stroke - x, pressure_b)]
+    }
+
+    fn modulus(&self, pressure: S) -> S {
+        let absolute = pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        bulk_modulus_with_air(
+            self.bulk_modulus,
+            self.volume_fraction,
+            self.polytropic_index,
+            absolute.maximum(S::from(LEAST_ABSOLUTE_PRESSURE)),
+        )
+    }
+}

@@ -1,0 +1,150 @@
+use phea_dynamics::scalar::Scalar;
+
+use super::Contact;
+use crate::parameter::{ParameterError, Problems};
+
+/// What the force sensor pushes on. Units: kg, N/m, N s/m, m.
+///
+/// Each has a ground, whose position x_0 in m and velocity v_0 in m/s are the two inputs of the machine.
+///
+/// ```text
+/// prescribed motion      x_L = x_0                                           thesis (4.45): the load does not yield
+/// spring, mass, damper   m dv_L/dt = F_e - k (x_L - x_0) - c (v_L - v_0)     relaxed on its ground
+/// wall                   m dv_L/dt = F_e - F_wall - c (v_L - v_0)            F_wall(d = x_L - x_0 - gap), see Contact
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum LoadModel<S = f64> {
+    /// The load moves as its ground does. The sensor's stiffness is that in series with the environment.
+    #[default]
+    Prescribed,
+    /// A mass on a spring. The sensor's stiffness is that of the load cell alone.
+    SpringMassDamper {
+        /// Mass m in kg, all that moves beyond the load cell.
+        mass: S,
+        /// Stiffness k in N/m.
+        stiffness: S,
+        /// Damping c in N s/m.
+        damping: S,
+    },
+    /// A mass guided towards a wall.
+    Wall {
+        /// Mass m in kg, all that moves beyond the load cell.
+        mass: S,
+        /// Damping c of its guide in N s/m.
+        damping: S,
+        /// Distance in m that x_L - x_0 covers before it touches.
+        gap: S,
+        /// The wall.
+        contact: Contact<S>,
+    },
+}
+
+/// Position and velocity of the load or of its ground. Units: m, m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadMotion<S = f64> {
+    /// Position in m.
+    pub position: S,
+    /// Velocity in m/s.
+    pub velocity: S,
+}
+
+impl LoadModel {
+    /// What about this load is impossible; empty if nothing is.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        match *self {
+            LoadModel::Prescribed => {}
+            LoadModel::SpringMassDamper { mass, stiffness, damping } => {
+                problems.positive("mass", mass);
+                problems.not_negative("stiffness", stiffness);
+                problems.not_negative("damping", damping);
+            }
+            LoadModel::Wall { mass, damping, gap, contact } => {
+                problems.positive("mass", mass);
+                problems.not_negative("damping", damping);
+                problems.require("gap", gap, true, "a finite number");
+                problems.component("contact", contact.problems());
+            }
+        }
+        problems.into_vec()
+    }
+}
+
+impl<S: Copy> LoadModel<S> {
+    /// Whether the load's position and velocity are states.
+    pub fn moves(&self) -> bool {
+        !matches!(self, LoadModel::Prescribed)
+    }
+
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> LoadModel<T> {
+        match *self {
+            LoadModel::Prescribed => LoadModel::Prescribed,
+            LoadModel::SpringMassDamper { mass, stiffness, damping } => {
+                LoadModel::SpringMassDamper { mass: of(mass), stiffness: of(stiffness), damping: of(damping) }
+            }
+            LoadModel::Wall { mass, damping, gap, contact } => LoadModel::Wall {
+                mass: of(mass),
+                damping: of(damping),
+                gap: of(gap),
+                contact: contact.convert(of),
+            },
+        }
+    }
+}
+
+impl<S: Scalar> LoadModel<S> {
+    /// The load's acceleration in m/s2 under the sensor's force in N; zero for a prescribed motion, which yields to none.
+    #[inline]
+    pub fn acceleration(&self, sensed: S, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> S {
+        let relative = relative(load, ground);
+        match self {
+            LoadModel::Prescribed => S::from(0.0),
+            LoadModel::SpringMassDamper { mass, stiffness, damping } => {
+                (sensed - *stiffness * relative.position - *damping * relative.velocity) / *mass
+            }
+            LoadModel::Wall { mass, damping, gap, contact } => {
+                let pressed = contact.force(relative.position - *gap, relative.velocity);
+                (sensed - pressed - *damping * relative.velocity) / *mass
+            }
+        }
+    }
+
+    /// Energy in J that the load holds, what its ground takes from it in W, and what it turns into heat in W.
+    pub(super) fn powers(&self, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> [S; 3] {
+        let (zero, half) = (S::from(0.0), S::from(0.5));
+        let relative = relative(load, ground);
+        match self {
+            LoadModel::Prescribed => [zero; 3],
+            LoadModel::SpringMassDamper { mass, stiffness, damping } => {
+                let held = *stiffness * relative.position + *damping * relative.velocity;
+                let stored = *mass * load.velocity.squared() + *stiffness * relative.position.squared();
+                [half * stored, held * ground.velocity, *damping * relative.velocity.squared()]
+            }
+            LoadModel::Wall { mass, damping, gap, contact } => {
+                let penetration = relative.position - *gap;
+                let held = contact.force(penetration, relative.velocity) + *damping * relative.velocity;
+                [
+                    half * *mass * load.velocity.squared() + contact.stored_energy(penetration),
+                    held * ground.velocity,
+                    *damping * relative.velocity.squared()
+                        + contact.dissipated(penetration, relative.velocity),
+                ]
+            }
+        }
+    }
+
+    /// What is left of the gap in m; negative in contact. One metre for loads without a wall.
+    pub fn clearance(&self, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> S {
+        match self {
+            LoadModel::Wall { gap, .. } => *gap - relative(load, ground).position,
+            _ => S::from(1.0),
+        }
+    }
+}
+
+/// Motion of the load seen from its ground.
+#[inline]
+fn relative<S: Scalar>(load: &LoadMotion<S>, ground: &LoadMotion<S>) -> LoadMotion<S> {
+    LoadMotion { position: load.position - ground.position, velocity: load.velocity - ground.velocity }
+}

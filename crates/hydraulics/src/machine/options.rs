@@ -1,0 +1,135 @@
+use super::{Contact, LoadModel, PowerUnit};
+use crate::line::Member;
+use crate::parameter::{ParameterError, Problems};
+use crate::servovalve::SpoolImperfection;
+
+/// Absolute vapour pressure of mineral oil in Pa: a few pascals at working temperatures, nothing beside an atmosphere.
+pub const VAPOUR_PRESSURE_ABSOLUTE: f64 = 0.0;
+
+/// What a machine has beyond its actuator. The default adds nothing: a prescribed load on a constant supply.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MachineOptions {
+    /// Null bias, hysteresis, threshold and rate limit of the spool.
+    pub spool: SpoolImperfection,
+    /// Drop p_S - p_T in Pa at which the valve's tare flow is stated; absent, that of the actuator's own supply.
+    pub tare_reference_drop: Option<f64>,
+    /// Laminar leakage across the piston per pressure difference, in m3/(s Pa).
+    pub internal_leakage: Option<f64>,
+    /// What the piston meets at both ends of its stroke. Absent, the ends are reported and nothing stops the piston.
+    pub end_stops: Option<Contact>,
+    /// Velocity in m/s that smooths the jump of a static friction curve; needed for such a curve alone.
+    pub friction_regular_velocity: Option<f64>,
+    /// Where the supply pressure comes from.
+    pub power_unit: PowerUnit,
+    /// What the force sensor pushes on.
+    pub load: LoadModel,
+    /// Pressure in Pa absolute below which a chamber is reported to cavitate.
+    pub vapour_pressure_absolute: f64,
+    /// Which member of the hoses' stiffening interval.
+    pub member: Member,
+    /// What the lines between valve and chambers do.
+    pub line_dynamics: LineDynamics,
+}
+
+/// How lines enter the machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LineDynamics {
+    /// One pressure for a chamber with its line.
+    #[default]
+    Lumped,
+}
+
+impl Default for MachineOptions {
+    fn default() -> MachineOptions {
+        MachineOptions {
+            spool: SpoolImperfection::default(),
+            tare_reference_drop: None,
+            internal_leakage: None,
+            end_stops: None,
+            friction_regular_velocity: None,
+            power_unit: PowerUnit::Constant,
+            load: LoadModel::Prescribed,
+            vapour_pressure_absolute: VAPOUR_PRESSURE_ABSOLUTE,
+            member: Member::Nominal,
+            line_dynamics: LineDynamics::Lumped,
+        }
+    }
+}
+
+impl MachineOptions {
+    /// What about these options is impossible; empty if nothing is.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.component("valve", self.spool.problems());
+        if let Some(drop) = self.tare_reference_drop {
+            problems.positive("valve.tare_reference_drop", drop);
+        }
+        if let Some(leakage) = self.internal_leakage {
+            problems.positive("cylinder.internal_leakage", leakage);
+        }
+        if let Some(contact) = self.end_stops {
+            problems.component("cylinder.end_stops", contact.problems());
+        }
+        if let Some(velocity) = self.friction_regular_velocity {
+            problems.positive("cylinder.friction.regular_velocity", velocity);
+        }
+        if let PowerUnit::PumpLimited(unit) = self.power_unit {
+            problems.component("supply", unit.problems());
+        }
+        problems.component("load", self.load.problems());
+        problems.not_negative("fluid.vapour_pressure_absolute", self.vapour_pressure_absolute);
+        problems.into_vec()
+    }
+}
+
+/// Why there is no such machine, or no such start.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MachineError {
+    /// Parameters outside physics.
+    #[error("{}", problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Impossible {
+        /// All of them.
+        problems: Vec<ParameterError>,
+    },
+    /// A static friction curve has a jump, which no integrator can hold; it needs a velocity that smooths it, or bristles.
+    #[error("static Stribeck friction jumps at standstill: state a regular velocity, or use LuGre friction")]
+    StaticFriction,
+    /// Pressed into its end stop by the whole supply pressure, the piston would leave no fluid in the chamber.
+    #[error("pressed {penetration} m into its end stop, the piston leaves {volume} m3 in the chamber")]
+    ChamberVanishes {
+        /// How far into the stop, in m.
+        penetration: f64,
+        /// What is left of the smaller chamber with its line, in m3.
+        volume: f64,
+    },
+    /// The start lies outside the stroke.
+    #[error("a start at {position} m is outside the stroke of {stroke} m")]
+    StartOutsideStroke {
+        /// Position asked for, in m.
+        position: f64,
+        /// The stroke, in m.
+        stroke: f64,
+    },
+    /// A starting value is no number, or below vacuum.
+    #[error("a start with {quantity} of {value} is impossible")]
+    ImpossibleStart {
+        /// Which quantity.
+        quantity: &'static str,
+        /// Its value in SI units.
+        value: f64,
+    },
+    /// No state of rest was found near the operating point.
+    #[error(
+        "the machine does not rest at this operating point: a residual of {residual} scales per second remains"
+    )]
+    NoRest {
+        /// The greatest rate that remains, each over the scale of its state, in 1/s.
+        residual: f64,
+    },
+    /// Machines that are to run side by side do not have the same components.
+    #[error("machine {index} does not have the components of the first")]
+    DifferentStructure {
+        /// Which machine, counted from 0.
+        index: usize,
+    },
+}

@@ -1,0 +1,113 @@
+use phea_dynamics::scalar::Scalar;
+
+use super::equations::constant;
+use super::{LoadMotion, Machine};
+
+/// Names of what a machine tells of itself, with units, in the order of [`Machine::outputs`].
+pub const SIGNALS: [&str; 15] = [
+    "force_n",
+    "spool_v",
+    "pressure_a_pa",
+    "pressure_b_pa",
+    "supply_pressure_pa",
+    "position_m",
+    "velocity_m_per_s",
+    "deflection_m",
+    "friction_n",
+    "end_stops_n",
+    "flow_a_m3_per_s",
+    "flow_b_m3_per_s",
+    "supply_flow_m3_per_s",
+    "load_position_m",
+    "load_velocity_m_per_s",
+];
+
+/// Names of the state events of a machine, in the order of its indicators. Each indicator is positive in ordinary operation and
+/// negative while the event lasts.
+///
+/// `cavitation`: the chamber's pressure less vapour pressure in Pa. `end_stop`: the way left to that end in m. `empty`: the
+/// chamber's compliance in m3/Pa, which vanishes with its volume. `load_contact`: the way left to the wall in m.
+/// `supply_lost`: supply less tank pressure in Pa.
+pub const INDICATORS: [&str; 8] = [
+    "cavitation_a",
+    "cavitation_b",
+    "end_stop_a",
+    "end_stop_b",
+    "empty_a",
+    "empty_b",
+    "load_contact",
+    "supply_lost",
+];
+
+impl<S: Scalar> Machine<S> {
+    /// The [`SIGNALS`] at a state and inputs. `spool_v` is the position the edges have: the state less null bias and lag.
+    ///
+    /// # Example
+    /// ```
+    /// # use phea_hydraulics::actuator::Actuator;
+    /// # use phea_hydraulics::reference_rig::{components, hose_line};
+    /// # use phea_hydraulics::stiffness::StiffnessModel;
+    /// use phea_hydraulics::machine::{Machine, MachineOptions, SIGNALS};
+    /// let actuator = Actuator::new(components(hose_line(), StiffnessModel::Uniform))?;
+    /// let machine = Machine::new(&actuator, &MachineOptions::default())?;
+    /// let outputs = machine.outputs(&[0.0, 0.0, 35e5, 35e5, 1e-4, 0.0], &[0.25, 0.0]);
+    /// assert_eq!((SIGNALS[0], outputs[0]), ("force_n", 2e3));
+    /// assert_eq!((SIGNALS[5], outputs[5]), ("position_m", 0.2501));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn outputs<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; SIGNALS.len()] {
+        let state = self.layout.read(state);
+        let load = self.load_of(&state, &ground_of(inputs));
+        let position = load.position + state.deflection;
+        let flows = self.flows(&state);
+        let forces = self.forces(&state, position);
+        [
+            forces.sensed,
+            self.spool.convert(&mut constant::<S, T>).opening(&state.spool),
+            state.pressure_a,
+            state.pressure_b,
+            self.supply_of(&state).pressure,
+            position,
+            state.velocity,
+            state.deflection,
+            forces.friction.force,
+            forces.end_stops,
+            flows.into_a,
+            flows.into_b,
+            self.supply_flow(&state, &flows.edges),
+            load.position,
+            load.velocity,
+        ]
+    }
+
+    /// The [`INDICATORS`] at a state and inputs.
+    pub(super) fn indicated<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; INDICATORS.len()] {
+        let state = self.layout.read(state);
+        let ground = ground_of(inputs);
+        let load = self.load_of(&state, &ground);
+        let position = load.position + state.deflection;
+        let vapour: T = constant(self.vapour_pressure);
+        let chambers = self.chambers.convert(&mut constant::<S, T>);
+        let [compliance_a, compliance_b] =
+            chambers.compliance(position, [state.pressure_a, state.pressure_b]);
+        let supply = self.supply_of(&state);
+        [
+            state.pressure_a - vapour,
+            state.pressure_b - vapour,
+            position,
+            constant::<S, T>(self.cylinder.stroke) - position,
+            compliance_a,
+            compliance_b,
+            self.load.convert(&mut constant::<S, T>).clearance(&load, &ground),
+            supply.pressure - supply.tank_pressure,
+        ]
+    }
+}
+
+/// The machine's inputs by name; what is missing is not a number.
+#[inline]
+pub(super) fn ground_of<T: Scalar>(inputs: &[T]) -> LoadMotion<T> {
+    let mut entries = inputs.iter().copied();
+    let mut next = || entries.next().unwrap_or(T::from(f64::NAN));
+    LoadMotion { position: next(), velocity: next() }
+}

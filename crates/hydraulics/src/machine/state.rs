@@ -1,0 +1,137 @@
+use phea_dynamics::scalar::Scalar;
+
+use super::{LoadMotion, Machine};
+use crate::servovalve::SpoolState;
+
+/// States of a machine, or their rates, by name. What a machine does not have is zero and takes no place in its vector.
+///
+/// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection, velocity, and then what there
+/// is of bristles, load, supply, spool friction, magnetic lag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MachineState<T = f64> {
+    /// Position of the spool in V and what moves it; its two memories stand last in the vector.
+    pub spool: SpoolState<T>,
+    /// Chamber pressure p_A in Pa.
+    pub pressure_a: T,
+    /// Chamber pressure p_B in Pa.
+    pub pressure_b: T,
+    /// Deflection of the force sensor x - x_L in m.
+    pub deflection: T,
+    /// Piston velocity v in m/s.
+    pub velocity: T,
+    /// Deflection z of the bristles in m.
+    pub bristle: T,
+    /// Position and velocity of a load that moves by itself, in m and m/s.
+    pub load: LoadMotion<T>,
+    /// Supply pressure p_S in Pa, where a pump is limited.
+    pub supply_pressure: T,
+}
+
+/// Which states beyond the first six a machine has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Layout {
+    bristle: bool,
+    load: bool,
+    supply: bool,
+    spool_friction: bool,
+    magnetic_lag: bool,
+}
+
+impl<T: Scalar> MachineState<T> {
+    /// Everything zero.
+    pub(super) fn zero() -> MachineState<T> {
+        let zero = T::from(0.0);
+        let spool = SpoolState { spool: zero, spool_rate: zero, spool_friction: zero, magnetic_lag: zero };
+        MachineState {
+            spool,
+            pressure_a: zero,
+            pressure_b: zero,
+            deflection: zero,
+            velocity: zero,
+            bristle: zero,
+            load: LoadMotion { position: zero, velocity: zero },
+            supply_pressure: zero,
+        }
+    }
+}
+
+impl Layout {
+    pub(super) fn of<S: Copy>(machine: &Machine<S>) -> Layout {
+        Layout {
+            bristle: machine.friction.has_bristles(),
+            load: machine.load.moves(),
+            supply: machine.power_unit.yields(),
+            spool_friction: machine.spool.threshold.is_some(),
+            magnetic_lag: machine.spool.hysteresis_width.is_some(),
+        }
+    }
+
+    /// Number of states.
+    pub(super) fn count(&self) -> usize {
+        let Layout { bristle, load, supply, spool_friction, magnetic_lag } = *self;
+        let single = [bristle, supply, spool_friction, magnetic_lag].into_iter().filter(|&there| there);
+        6 + single.count() + if load { 2 } else { 0 }
+    }
+
+    /// The states by name; what the vector lacks is not a number.
+    #[inline]
+    pub(super) fn read<T: Scalar>(&self, vector: &[T]) -> MachineState<T> {
+        let mut state = MachineState::zero();
+        let mut entries = vector.iter();
+        self.visit(&mut state, |slot| *slot = entries.next().copied().unwrap_or(T::from(f64::NAN)));
+        state
+    }
+
+    /// The states in the order of the vector.
+    #[inline]
+    pub(super) fn write<T: Scalar>(&self, state: &MachineState<T>, vector: &mut [T]) {
+        let mut state = *state;
+        let mut entries = vector.iter_mut();
+        self.visit(&mut state, |slot| {
+            if let Some(entry) = entries.next() {
+                *entry = *slot;
+            }
+        });
+    }
+
+    /// Visits the places of all states in the order of the vector.
+    #[inline]
+    fn visit<T>(&self, state: &mut MachineState<T>, mut visit: impl FnMut(&mut T)) {
+        visit(&mut state.spool.spool);
+        visit(&mut state.spool.spool_rate);
+        visit(&mut state.pressure_a);
+        visit(&mut state.pressure_b);
+        visit(&mut state.deflection);
+        visit(&mut state.velocity);
+        if self.bristle {
+            visit(&mut state.bristle);
+        }
+        if self.load {
+            visit(&mut state.load.position);
+            visit(&mut state.load.velocity);
+        }
+        if self.supply {
+            visit(&mut state.supply_pressure);
+        }
+        if self.spool_friction {
+            visit(&mut state.spool.spool_friction);
+        }
+        if self.magnetic_lag {
+            visit(&mut state.spool.magnetic_lag);
+        }
+    }
+}
+
+/// Typical magnitudes of the states, by which errors are measured.
+pub(super) fn scales() -> MachineState {
+    MachineState {
+        spool: SpoolState { spool: 1.0, spool_rate: 1e3, spool_friction: 1e-2, magnetic_lag: 1e-2 },
+        pressure_a: 1e5,
+        pressure_b: 1e5,
+        deflection: 1e-4,
+        velocity: 1e-2,
+        bristle: 1e-5,
+        load: LoadMotion { position: 1e-4, velocity: 1e-2 },
+        supply_pressure: 1e5,
+    }
+}

@@ -1,0 +1,134 @@
+use phea_dynamics::scalar::Scalar;
+
+use super::Servovalve;
+use crate::parameter::{ParameterError, Problems};
+
+/// How much stiffer than its own spring a sticking spool is: of a command within the threshold it follows 1/(1 + this).
+const STICKING_STIFFNESS: f64 = 20.0;
+
+/// What real spools add to the second-order model. Units: V, V/s. [`SpoolImperfection::default`] adds nothing.
+///
+/// ```text
+/// u = U_C within -U_n and U_n                    the amplifier saturates
+/// dU/dt = r within -R and R                      the first stage delivers no more than the rate limit R
+/// dr/dt = w_nv^2 (u - U - f) - 2 xi_v w_nv r     thesis (4.1) where nothing limits: r = dU/dt
+/// df/dt = 20 (dU/dt - |dU/dt| f/h_f)             friction of the spool, h_f half the threshold
+/// dz/dt = 1/2 (dU/dt - |dU/dt| z/h_z)            lag of the torque motor's iron, h_z half of width less threshold
+/// y = U - U_0 - z                                where the edges are, U_0 the null bias
+/// ```
+///
+/// Both memories are of Dahl (1976), "Solid friction damping of mechanical vibrations", AIAA Journal 14(12): independent
+/// of the rate, bounded by their half widths, and without a branch. Turned round far from null, y stands while the
+/// command covers the threshold, and is at last behind by the whole width (ISO 10770-1 on hysteresis and threshold).
+///
+/// Measured on the valve of the thesis (section 5.2.1): null at 0.078 V rising and -0.05 V falling, so that the bias is
+/// 0.014 V and the width 0.128 V. The threshold in it is not told.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpoolImperfection<S = f64> {
+    /// Spool position U_0 in V at which the valve is at null.
+    pub null_bias: S,
+    /// Greatest difference of two commands in V that give the same opening over a slow full cycle, threshold included.
+    pub hysteresis_width: Option<S>,
+    /// Change of command in V that a reversal takes.
+    pub threshold: Option<S>,
+    /// Greatest rate R of the spool in V/s.
+    pub rate_limit: Option<S>,
+}
+
+/// States of the spool, or their rates. Units: V, V/s; the memories are zero where the valve has none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpoolState<S> {
+    /// Spool position U in V.
+    pub spool: S,
+    /// What drives it, r, in V/s: its rate where no limit acts.
+    pub spool_rate: S,
+    /// Friction f in V.
+    pub spool_friction: S,
+    /// Magnetic lag z in V.
+    pub magnetic_lag: S,
+}
+
+impl SpoolImperfection {
+    /// What about this spool is impossible; empty if nothing is.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.require("null_bias", self.null_bias, true, "a finite number");
+        let threshold = self.threshold.unwrap_or(0.0);
+        if let Some(threshold) = self.threshold {
+            problems.positive("threshold", threshold);
+        }
+        if let Some(width) = self.hysteresis_width {
+            problems.require("hysteresis_width", width, width > threshold, "above the threshold it includes");
+        }
+        if let Some(limit) = self.rate_limit {
+            problems.positive("rate_limit", limit);
+        }
+        problems.into_vec()
+    }
+}
+
+impl<S: Copy> SpoolImperfection<S> {
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> SpoolImperfection<T> {
+        SpoolImperfection {
+            null_bias: of(self.null_bias),
+            hysteresis_width: self.hysteresis_width.map(&mut *of),
+            threshold: self.threshold.map(&mut *of),
+            rate_limit: self.rate_limit.map(&mut *of),
+        }
+    }
+}
+
+impl<S: Scalar> SpoolImperfection<S> {
+    /// Position in V that the edges have: the spool's, less null bias and lag.
+    #[inline]
+    pub fn opening(&self, state: &SpoolState<S>) -> S {
+        let unbiased = state.spool - self.null_bias;
+        if self.hysteresis_width.is_some() { unbiased - state.magnetic_lag } else { unbiased }
+    }
+
+    /// Rates of the spool's states at a command in V: the equations at the top.
+    ///
+    /// # Example
+    /// A command beyond the nominal voltage is the nominal voltage.
+    /// ```
+    /// use phea_hydraulics::reference_rig::valve;
+    /// use phea_hydraulics::servovalve::{SpoolImperfection, SpoolState};
+    /// let rest = SpoolState { spool: 0.0, spool_rate: 0.0, spool_friction: 0.0, magnetic_lag: 0.0 };
+    /// let at = |command: f64| SpoolImperfection::default().rates(&valve(), &rest, command).spool_rate;
+    /// assert_eq!(at(1e3), at(10.0));
+    /// assert_eq!(at(-3.0), -3.0 * 1099.0 * 1099.0);
+    /// ```
+    #[inline]
+    pub fn rates(&self, valve: &Servovalve<S>, state: &SpoolState<S>, command: S) -> SpoolState<S> {
+        let SpoolState { spool, spool_rate, spool_friction, magnetic_lag } = *state;
+        let half = S::from(0.5);
+        let nominal = valve.nominal_voltage;
+        let given = command.maximum(-nominal).minimum(nominal);
+        let rate = match self.rate_limit {
+            Some(limit) => spool_rate.maximum(-limit).minimum(limit),
+            None => spool_rate,
+        };
+        let frequency = valve.natural_frequency;
+        let threshold = self.threshold.unwrap_or(S::from(0.0));
+        let held = if self.threshold.is_some() { spool_friction } else { S::from(0.0) };
+        let friction_rate = self.threshold.map_or(S::from(0.0), |threshold| {
+            S::from(STICKING_STIFFNESS) * memory_rate(rate, spool_friction, half * threshold)
+        });
+        let lag_rate = self
+            .hysteresis_width
+            .map_or(S::from(0.0), |width| half * memory_rate(rate, magnetic_lag, half * (width - threshold)));
+        SpoolState {
+            spool: rate,
+            spool_rate: frequency.squared() * (given - spool - held)
+                - S::from(2.0) * valve.damping_ratio * frequency * spool_rate,
+            spool_friction: friction_rate,
+            magnetic_lag: lag_rate,
+        }
+    }
+}
+
+/// Rate of a memory that follows a motion until it reaches its bound: v - |v| z/h.
+fn memory_rate<S: Scalar>(rate: S, memory: S, bound: S) -> S {
+    rate - rate.abs() * memory / bound
+}

@@ -1,0 +1,404 @@
+//! The machine's equations against texts of their own, its Jacobian against differences, and its rests.
+
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+use phea_dynamics::linear::StateSpace;
+use phea_dynamics::portable::{cosh, expm1, pow};
+use phea_dynamics::scalar::{Dependence, Dual, Lanes};
+use phea_dynamics::simulation::Plant;
+use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::fluid::{EntrainedAir, Fluid};
+use phea_hydraulics::friction::{Friction, Stribeck};
+use phea_hydraulics::line::Member;
+use phea_hydraulics::machine::{
+    Accumulator, Contact, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, PowerUnit,
+    PumpLimited,
+};
+use phea_hydraulics::operating_point::{Condition, Load, operating_point};
+use phea_hydraulics::reference_rig::{benchmark_components, components, cylinder, hose_line, pipe_line};
+use phea_hydraulics::servovalve::{Direction, Servovalve, SpoolImperfection};
+use phea_hydraulics::stiffness::StiffnessModel;
+use phea_hydraulics::two_pressure::{TwoPressureModel, linearize, two_pressure_linear_parameters};
+
+/// Uniform numbers from -1 to 1, the same on every machine.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+fn machine_of(components: Components, options: &MachineOptions) -> Machine {
+    Machine::new(&Actuator::new(components).unwrap(), options).unwrap()
+}
+
+fn rates_of(machine: &Machine, state: &[f64], command: f64, inputs: &[f64]) -> Vec<f64> {
+    let mut rates = vec![f64::NAN; state.len()];
+    machine.rates(state, command, inputs, &mut rates);
+    rates
+}
+
+/// Everything a machine can have, on two very different actuators.
+fn machines() -> Vec<Machine> {
+    let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
+    let accumulator = Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_index: 1.3 };
+    let pump = PumpLimited {
+        pump_flow: 1.633e-4,
+        relief_override: 5e5,
+        volume: 5e-4,
+        effective_bulk_modulus: 1e9,
+        accumulator: Some(accumulator),
+    };
+    let spool = SpoolImperfection {
+        null_bias: 0.014,
+        hysteresis_width: Some(0.128),
+        threshold: Some(0.04),
+        rate_limit: Some(4000.0),
+    };
+    let full = MachineOptions {
+        spool,
+        internal_leakage: Some(3e-13),
+        end_stops: Some(contact),
+        power_unit: PowerUnit::PumpLimited(pump),
+        load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 2e-3, contact },
+        ..MachineOptions::default()
+    };
+    let sprung = MachineOptions {
+        friction_regular_velocity: Some(1e-4),
+        load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e6, damping: 200.0 },
+        power_unit: PowerUnit::PumpLimited(PumpLimited { accumulator: None, ..pump }),
+        ..MachineOptions::default()
+    };
+    let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
+    let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_index: 1.4 });
+    let curve = Stribeck {
+        coulomb: 80.0,
+        breakaway: 120.0,
+        stribeck_velocity: 0.01,
+        stribeck_exponent: 1.4,
+        viscous: 100.0,
+    };
+    let hose = components(hose_line(), StiffnessModel::ByVolume);
+    let asymmetric = Components {
+        fluid: Fluid { entrained_air: air, ..hose.fluid },
+        cylinder: Cylinder { area_a, area_b, dead_volume_a: 2e-5, dead_volume_b: 1e-5, ..cylinder() },
+        line_b: pipe_line(),
+        friction: Friction::Stribeck(curve),
+        ..hose
+    };
+    let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
+    let rough = Components { friction: Friction::LuGre(lugre), ..hose };
+    let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric };
+    vec![
+        machine_of(benchmark_components(), &MachineOptions::default()),
+        machine_of(hose, &MachineOptions::default()),
+        machine_of(rough, &full),
+        machine_of(asymmetric, &sprung),
+        machine_of(uniform, &MachineOptions { friction_regular_velocity: Some(1e-3), ..full }),
+    ]
+}
+
+/// State, command and inputs.
+type Instant = (Vec<f64>, f64, [f64; 2]);
+
+/// A state within some hundred scales of a working point, and the command and inputs that go with it.
+fn some_state(machine: &Machine, noise: &mut Noise) -> Instant {
+    let mut state: Vec<f64> = machine.scales().iter().map(|scale| scale * 2.0 * noise.next()).collect();
+    state[2] = 35e5 + 25e5 * noise.next();
+    state[3] = 35e5 + 25e5 * noise.next();
+    for (value, scale) in state.iter_mut().zip(machine.scales()).skip(6) {
+        if scale == 1e5 {
+            *value = 60e5 + 15e5 * noise.next();
+        }
+    }
+    (state, 8.0 * noise.next(), [0.25 + 0.2 * noise.next(), 0.05 * noise.next()])
+}
+
+/// The benchmark's equations in another form: pressures by moduli and volumes, flows by signed roots, hyperbolic cosine.
+fn benchmark_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 7] {
+    let &[voltage, rate, p_a, p_b, deflection, v, z] = state else { unreachable!() };
+    let root = |drop: f64| drop.signum() * (drop * drop / (drop * drop + 1e6).sqrt()).sqrt();
+    let leak = 1.0 / cosh(10.0 * voltage);
+    let [open, close] = [voltage.max(0.0) / 10.0, (-voltage).max(0.0) / 10.0];
+    let q_a =
+        (3.2e-7 * open + 2.35e-9 * leak) * root(7e6 - p_a) - (2.5e-7 * close + 2.2e-9 * leak) * root(p_a);
+    let q_b =
+        (2.0e-7 * close + 1.7e-9 * leak) * root(7e6 - p_b) - (3.85e-7 * open + 2.35e-9 * leak) * root(p_b);
+    let x = inputs[0] + deflection;
+    let area = 1.583e-3;
+    let slide = 120.0 + 40.0 * expm1(-v * v / 1e-4);
+    let z_rate = v * (1.0 - 1e7 * z * v.signum() / slide);
+    let friction = 1e7 * z + 2e3 * z_rate + 100.0 * v;
+    [
+        rate,
+        1099.0 * (1099.0 * (command - voltage) - 1.8 * rate),
+        2.6e8 * (q_a - area * v) / (1.9e-4 + area * x),
+        2.6e8 * (q_b + area * v) / (1.9e-4 + area * (0.5 - x)),
+        v - inputs[1],
+        (area * p_a - area * p_b - friction - 2e7 * deflection) / 13.1,
+        z_rate,
+    ]
+}
+
+#[test]
+fn the_benchmark_is_the_text_of_its_equations() {
+    let machine = machine_of(benchmark_components(), &MachineOptions::default());
+    let mut noise = Noise(1);
+    for _ in 0..300 {
+        let (state, command, inputs) = some_state(&machine, &mut noise);
+        let rates = rates_of(&machine, &state, command, &inputs);
+        for (index, (found, expected)) in
+            rates.iter().zip(benchmark_rates(&state, command, &inputs)).enumerate()
+        {
+            let scale = expected.abs().max(machine.scales()[index]);
+            assert!((found - expected).abs() < 1e-11 * scale, "{index}: {found} against {expected}");
+        }
+    }
+}
+
+/// A machine with everything, in another form: one side at a time, forces and flows case by case.
+fn full_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 12] {
+    let &[u, r, p_a, p_b, d, v, z, x_l, v_l, p_s, f, lag] = state else { unreachable!() };
+    let spool_rate = r.clamp(-4000.0, 4000.0);
+    let opening = u - 0.014 - lag;
+    let root = |drop: f64| drop.signum() * (drop * drop / (drop * drop + 1e6).sqrt()).sqrt();
+    let leak = 1.0 / cosh(10.0 * opening);
+    let edge = |flow: f64, open: f64, leakage: f64| flow * open.max(0.0) / 10.0 + leakage * leak;
+    let from_s =
+        [edge(3.2e-7, opening, 2.35e-9) * root(p_s - p_a), edge(2.0e-7, -opening, 1.7e-9) * root(p_s - p_b)];
+    let to_t = [edge(2.5e-7, -opening, 2.2e-9) * root(p_a), edge(3.85e-7, opening, 2.35e-9) * root(p_b)];
+    let across = 3e-13 * (p_a - p_b);
+    let x = x_l + d;
+    let bore = std::f64::consts::PI * 12.7e-3 * 12.7e-3;
+    let wall = 5.0 * (bore + 4.0 * 1.56e-5) / (4.0 * 2.236e-12);
+    let hose = bore / 4.0 * 1.5 * (1.0 / wall + 1.0 / 1.45e9);
+    let area = std::f64::consts::PI / 4.0 * (0.05 * 0.05 - 0.022 * 0.022);
+    let compliance = |length: f64| hose + area * length / 1.45e9;
+    let slide = 120.0 + 40.0 * expm1(-v * v / 1e-4);
+    let z_rate = v * (1.0 - 1e7 * z * v.signum() / slide);
+    let contact = |depth: f64, rate: f64| {
+        if depth > 0.0 && 1.0 + 0.3 * rate > 0.0 { 1e8 * depth * (1.0 + 0.3 * rate) } else { 0.0 }
+    };
+    let friction = 1e7 * z + 2e3 * z_rate + 100.0 * v;
+    let pushing = area * p_a - area * p_b - friction - 2e7 * d + contact(-x, -v) - contact(x - 0.5, v);
+    let (way, closing) = (x_l - inputs[0], v_l - inputs[1]);
+    let tare = 7.55e-6 * root(p_s) / root(70e5);
+    let relief = if p_s > 65e5 { 1.633e-4 * (p_s - 65e5) / 5e5 } else { 0.0 };
+    let gas = 1e-3 * pow((40e5 + 101325.0) / (p_s + 101325.0), 1.0 / 1.3) / (1.3 * (p_s + 101325.0));
+    let stored = 5e-4 / 1e9 + if p_s > 40e5 { gas } else { 0.0 };
+    [
+        spool_rate,
+        1099.0 * (1099.0 * (command.clamp(-10.0, 10.0) - u - f) - 1.8 * r),
+        (from_s[0] - to_t[0] - across - area * v) / compliance(x),
+        (from_s[1] - to_t[1] + across + area * v) / compliance(0.5 - x),
+        v - v_l,
+        pushing / 13.1,
+        z_rate,
+        v_l,
+        (2e7 * d - contact(way - 2e-3, closing) - 50.0 * closing) / 8.0,
+        (1.633e-4 - relief - from_s[0] - from_s[1] - tare) / stored,
+        20.0 * (spool_rate - spool_rate.abs() * f / 0.02),
+        0.5 * (spool_rate - spool_rate.abs() * lag / 0.044),
+    ]
+}
+
+#[test]
+fn a_machine_with_everything_is_the_text_of_its_equations() {
+    let machine = machines()[2];
+    let mut noise = Noise(11);
+    let mut contacts = 0;
+    for index in 0..600 {
+        let (mut state, command, mut inputs) = some_state(&machine, &mut noise);
+        // Everywhere, in the stops, and at the wall.
+        state[7] = [0.25 + 0.2 * noise.next(), 1e-4 * noise.next(), 0.5 + 1e-4 * noise.next()][index % 3];
+        state[9] = 55e5 + 20e5 * noise.next();
+        inputs[0] = state[7] - 2e-3 + 1e-4 * noise.next();
+        let rates = rates_of(&machine, &state, 1.5 * command, &inputs);
+        let mut indicators = [0.0; INDICATORS.len()];
+        machine.indicate(&state, &inputs, &mut indicators);
+        contacts += usize::from(indicators[2].min(indicators[3]) < 0.0 && indicators[6] < 0.0);
+        for (index, (found, expected)) in
+            rates.iter().zip(full_rates(&state, 1.5 * command, &inputs)).enumerate()
+        {
+            let scale = expected.abs().max(machine.scales()[index]);
+            assert!((found - expected).abs() < 1e-10 * scale, "{index}: {found} against {expected}");
+        }
+    }
+    assert!(contacts > 50);
+}
+
+/// Derivatives by dual numbers agree with central differences, and differ from zero only where the pattern says so.
+#[test]
+fn jacobians_are_slopes_and_keep_to_their_pattern() {
+    let mut noise = Noise(7);
+    for machine in machines() {
+        let count = machine.states();
+        let variables: Vec<Dependence> = (0..count).map(Dependence::on).collect();
+        let mut pattern = vec![Dependence::from(0.0); count];
+        machine.rates(&variables, Dependence::on(count), &[Dependence::from(0.0); 2], &mut pattern);
+        for _ in 0..40 {
+            let (state, command, inputs) = some_state(&machine, &mut noise);
+            let duals: Vec<Dual<13>> =
+                state.iter().enumerate().map(|(index, &value)| Dual::variable(value, index)).collect();
+            let mut rates = vec![Dual::constant(0.0); count];
+            machine.rates(&duals, Dual::variable(command, count), &inputs.map(Dual::constant), &mut rates);
+            let plain = rates_of(&machine, &state, command, &inputs);
+            for (row, rate) in rates.iter().enumerate() {
+                assert!((rate.value() - plain[row]).abs() <= 1e-12 * plain[row].abs());
+            }
+            for column in 0..count {
+                let step = 1e-6 * machine.scales()[column];
+                let moved = |by: f64| {
+                    let mut moved = state.clone();
+                    moved[column] += by;
+                    rates_of(&machine, &moved, command, &inputs)
+                };
+                let (ahead, behind, near) = (moved(step), moved(-step), moved(0.5 * step));
+                for (row, rate) in rates.iter().enumerate() {
+                    let slope = rate.gradient()[column];
+                    assert!(slope == 0.0 || pattern[row].includes(column), "({row}, {column})");
+                    let difference = (ahead[row] - behind[row]) / (2.0 * step);
+                    let kink = (near[row] - plain[row]) / (0.5 * step);
+                    let rounding = 1e-9 * plain[row].abs().max(machine.scales()[row]) / step;
+                    let allowed = 1e-6 * slope.abs() + 2.0 * (kink - difference).abs() + rounding;
+                    assert!(
+                        (slope - difference).abs() <= allowed,
+                        "({row}, {column}): {slope}, {difference}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The viscous rig's Jacobian is the linearised two-pressure model, at rest and in steady motion.
+#[test]
+fn small_motions_are_those_of_the_two_pressure_model() {
+    let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
+    let hose = components(hose_line(), StiffnessModel::ByVolume);
+    let asymmetric =
+        Components { cylinder: Cylinder { area_a, area_b, ..cylinder() }, line_b: pipe_line(), ..hose };
+    for rig in [hose, asymmetric] {
+        let actuator = Actuator::new(rig).unwrap();
+        let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
+        for condition in [Condition::Load(Load::Force(2000.0)), Condition::Motion(1.5, Load::Force(1000.0))] {
+            let point = operating_point(&actuator, 0.1, condition).unwrap();
+            let model = TwoPressureModel::new(&actuator, [0.0; 2], Member::Nominal, 100.0);
+            let parameters = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+            let system = linearize(&parameters).unwrap();
+            let beginning = machine.rest(&point).unwrap();
+            compare(&machine, &system, &beginning.state, beginning.command, &beginning.inputs);
+        }
+    }
+}
+
+fn compare(machine: &Machine, system: &StateSpace, state: &[f64], command: f64, inputs: &[f64; 2]) {
+    let duals: Vec<Dual<8>> =
+        state.iter().enumerate().map(|(index, &value)| Dual::variable(value, index)).collect();
+    let mut rates = vec![Dual::constant(0.0); 6];
+    let inputs = [Dual::constant(inputs[0]), Dual::variable(inputs[1], 7)];
+    machine.rates(&duals, Dual::variable(command, 6), &inputs, &mut rates);
+    for (row, rate) in rates.iter().enumerate() {
+        for (column, &found) in rate.gradient().iter().enumerate() {
+            let expected = if column < 6 { system.a()[(row, column)] } else { system.b()[(row, column - 6)] };
+            // What the deflection does to the compliances vanishes with the net flow.
+            let scale =
+                if column == 4 && row < 4 { rate.gradient()[5].abs() * 100.0 } else { expected.abs() };
+            assert!((found - expected).abs() <= 1e-8 * scale, "({row}, {column}): {found}, {expected}");
+        }
+    }
+    let sensed = machine.measurement(&duals, &inputs).gradient()[4];
+    assert_eq!(sensed, system.c()[(0, 4)]);
+}
+
+/// At an operating point nothing moves, whatever the machine has.
+#[test]
+fn rests_do_not_move() {
+    for machine in machines() {
+        let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume)).unwrap();
+        for (position, command) in [(0.1, 0.02), (0.25, 0.05), (0.4, 0.4)] {
+            let point = operating_point(&actuator, position, Condition::Command(command)).unwrap();
+            let rest = machine.rest(&point).unwrap();
+            let rates = rates_of(&machine, &rest.state, rest.command, &rest.inputs);
+            for (rate, scale) in rates.iter().zip(machine.scales()) {
+                assert!((rate / scale).abs() < 1e-5, "{rates:?}");
+            }
+            let outputs = machine.outputs(&rest.state, &rest.inputs);
+            assert!((outputs[5] - position).abs() < 1e-15 && (outputs[1] - command).abs() < 1e-15);
+        }
+    }
+    let sliding = machine_of(benchmark_components(), &MachineOptions::default());
+    let actuator = Actuator::new(benchmark_components()).unwrap();
+    let point = operating_point(&actuator, 0.2, Condition::Motion(1.0, Load::Force(500.0))).unwrap();
+    let steady = sliding.rest(&point).unwrap();
+    let rates = rates_of(&sliding, &steady.state, steady.command, &steady.inputs);
+    assert!(point.velocity > 0.01 && rates.iter().zip(sliding.scales()).all(|(r, s)| (r / s).abs() < 1e-5));
+}
+
+#[test]
+fn starts_that_cannot_be_are_refused() {
+    let actuator = Actuator::new(benchmark_components()).unwrap();
+    let machine = machine_of(benchmark_components(), &MachineOptions::default());
+    let matched = operating_point(&actuator, 0.2, Condition::Matched(1.0, 10e5)).unwrap();
+    // The balance that is found for this command is steady, though the point was not.
+    let rest = machine.rest(&matched).unwrap();
+    assert!(rest.state[2] != matched.pressure_a);
+    let outside = phea_hydraulics::machine::Start { position: 0.6, ..Default::default() };
+    assert!(matches!(machine.start(&outside), Err(MachineError::StartOutsideStroke { .. })));
+    let vacuum = phea_hydraulics::machine::Start { pressure_a: -2e5, ..Default::default() };
+    assert!(matches!(
+        machine.start(&vacuum),
+        Err(MachineError::ImpossibleStart { quantity: "pressure_a", .. })
+    ));
+    let rough = Components { friction: static_friction(), ..benchmark_components() };
+    let refused = Machine::new(&Actuator::new(rough).unwrap(), &MachineOptions::default());
+    assert_eq!(refused, Err(MachineError::StaticFriction));
+    let soft = Contact { stiffness: 1e4, relative_damping: 0.0 };
+    let soft = MachineOptions { end_stops: Some(soft), ..MachineOptions::default() };
+    assert!(matches!(Machine::new(&actuator, &soft), Err(MachineError::ChamberVanishes { .. })));
+    let spool = SpoolImperfection { threshold: Some(0.2), hysteresis_width: Some(0.1), ..Default::default() };
+    let narrow = MachineOptions { spool, internal_leakage: Some(-1.0), ..MachineOptions::default() };
+    let Err(MachineError::Impossible { problems }) = Machine::new(&actuator, &narrow) else { panic!() };
+    assert_eq!(problems.len(), 2);
+}
+
+fn static_friction() -> Friction {
+    let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
+    Friction::Stribeck(lugre.curve)
+}
+
+/// Lanes compute what each machine computes alone, bit for bit.
+#[test]
+fn lanes_are_machines_side_by_side() {
+    for machine in machines() {
+        let stronger = machine.convert(&mut |value| 1.01 * value);
+        let both = Machine::gather(&[machine, stronger]).unwrap();
+        let mut noise = Noise(3);
+        let starts = [some_state(&machine, &mut noise), some_state(&machine, &mut noise)];
+        let side_by_side = |of: &dyn Fn(&Instant) -> f64| Lanes([of(&starts[0]), of(&starts[1])]);
+        let count = machine.states();
+        let state: Vec<Lanes<2>> = (0..count).map(|index| side_by_side(&|start| start.0[index])).collect();
+        let inputs = [side_by_side(&|start| start.2[0]), side_by_side(&|start| start.2[1])];
+        let mut rates = vec![Lanes([f64::NAN; 2]); count];
+        both.rates(&state, side_by_side(&|start| start.1), &inputs, &mut rates);
+        for (lane, alone) in [machine, stronger].iter().enumerate() {
+            let (state, command, inputs) = &starts[lane];
+            for (found, expected) in rates.iter().zip(rates_of(alone, state, *command, inputs)) {
+                assert_eq!(found.0[lane].to_bits(), expected.to_bits());
+            }
+        }
+    }
+}
+
+/// The valve's own parameters reach the equations.
+#[test]
+fn saturation_is_that_of_the_valve() {
+    let valve = Servovalve { nominal_voltage: 5.0, ..benchmark_components().valve };
+    let machine = machine_of(Components { valve, ..benchmark_components() }, &MachineOptions::default());
+    let state = [0.0, 0.0, 35e5, 35e5, 0.0, 0.0, 0.0];
+    let at = |command| rates_of(&machine, &state, command, &[0.25, 0.0])[1];
+    assert!(at(7.0) == at(5.0) && at(-9.0) == at(-5.0) && at(4.0) < at(5.0));
+}

@@ -1,0 +1,212 @@
+//! Machines driven hard by the method that drives everything: they end where they should, or tell why not.
+
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+use phea_dynamics::scalar::Scalar;
+use phea_dynamics::simulation::{
+    Course, Input, Plant, Profile, Settings, Simulated, Status, System, simulate,
+};
+use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::fluid::{EntrainedAir, Fluid};
+use phea_hydraulics::friction::Friction;
+use phea_hydraulics::machine::{
+    Contact, INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited, SIGNALS, Start,
+};
+use phea_hydraulics::reference_rig::{benchmark_components, components, hose_line};
+use phea_hydraulics::servovalve::{SpoolImperfection, Supply};
+use phea_hydraulics::stiffness::StiffnessModel;
+
+/// A machine whose command is its first input.
+#[derive(Clone)]
+struct Commanded(Machine);
+
+impl System<f64> for Commanded {
+    fn states(&self) -> usize {
+        self.0.states()
+    }
+    fn inputs(&self) -> usize {
+        1 + self.0.inputs()
+    }
+    fn scales(&self) -> Vec<f64> {
+        self.0.scales()
+    }
+    fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
+        if let [command, inputs @ ..] = inputs {
+            self.0.rates(state, *command, inputs, rates);
+        }
+    }
+    fn indicators(&self) -> usize {
+        self.0.indicators()
+    }
+    fn indicate<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], indicators: &mut [T]) {
+        if let [_, inputs @ ..] = inputs {
+            self.0.indicate(state, inputs, indicators);
+        }
+    }
+}
+
+/// The machine over a course that begins at rest of its load; the ground moves from zero, where the piston starts.
+fn drive(
+    machine: Machine,
+    start: &Start,
+    duration_s: f64,
+    command: &[(f64, f64)],
+    ground: Profile,
+) -> (Simulated, Vec<[f64; SIGNALS.len()]>) {
+    let beginning = machine.start(start).unwrap();
+    let command = Profile::steps(0.0, command).unwrap();
+    let inputs = vec![Input::Value(command), Input::Value(ground.clone()), Input::Rate(ground)];
+    let course = Course { duration_s, output_step_s: duration_s / 1000.0, inputs };
+    let settings = Settings { maximum_steps: 200_000, ..Settings::default() };
+    let result =
+        simulate(&Commanded(machine), &beginning.state, &course, None, &settings, &mut |_| true).unwrap();
+    let rows = result.trajectory.states.iter().zip(&result.trajectory.inputs);
+    let outputs: Vec<_> = rows.map(|(state, inputs)| machine.outputs(state, &inputs[1..])).collect();
+    assert!(outputs.iter().flatten().all(|value| value.is_finite()));
+    (result, outputs)
+}
+
+fn machine_of(components: Components, options: &MachineOptions) -> Machine {
+    Machine::new(&Actuator::new(components).unwrap(), options).unwrap()
+}
+
+fn column(outputs: &[[f64; SIGNALS.len()]], name: &str) -> Vec<f64> {
+    let index = SIGNALS.iter().position(|&signal| signal == name).unwrap();
+    outputs.iter().map(|row| row[index]).collect()
+}
+
+fn happened(result: &Simulated, name: &str) -> bool {
+    result.outcome.events.iter().any(|event| INDICATORS[event.indicator] == name && !event.rising)
+}
+
+/// Ground so that the load of a prescribed motion starts where the piston does.
+fn at(position: f64) -> Start {
+    Start { position, pressure_a: 30e5, pressure_b: 30e5, ..Start::default() }
+}
+
+fn end_stops() -> Option<Contact> {
+    Some(Contact { stiffness: 1e8, relative_damping: 0.5 })
+}
+
+fn free_load() -> LoadModel {
+    LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 300.0 }
+}
+
+/// Shut for half a minute, the pressures settle where leakage balances and nothing else happens.
+#[test]
+fn a_shut_valve_settles() {
+    let machine = machine_of(benchmark_components(), &MachineOptions::default());
+    let (result, outputs) = drive(machine, &at(0.25), 30.0, &[], Profile::constant(0.25));
+    assert_eq!(result.outcome.status, Status::Completed);
+    assert!(result.outcome.events.is_empty());
+    let pressure = column(&outputs, "pressure_a_pa");
+    let [before, last] = [pressure[pressure.len() - 10], pressure[pressure.len() - 1]];
+    // ORIGIN: analytic, thesis Table 5.1: p_A = p_S/(1 + (K_vin4/K_vin3)^2) where leakage in equals leakage out
+    assert!((last / (70e5 / (1.0 + (2.2_f64 / 2.35) * (2.2 / 2.35))) - 1.0).abs() < 1e-3);
+    assert!((before - last).abs() < 1e-4 * last && result.outcome.work.steps < 2000);
+}
+
+/// Into the end stop at full command: held there by the whole supply, reported, and back again.
+#[test]
+fn a_piston_meets_its_end_stops() {
+    let options = MachineOptions { end_stops: end_stops(), load: free_load(), ..MachineOptions::default() };
+    let rig = components(hose_line(), StiffnessModel::ByVolume);
+    let course = [(0.0, 10.0), (1.0, -10.0), (3.5, 0.0)];
+    let (result, outputs) = drive(machine_of(rig, &options), &at(0.4), 4.0, &course, Profile::constant(0.0));
+    assert_eq!(result.outcome.status, Status::Completed);
+    assert!(happened(&result, "end_stop_b") && happened(&result, "end_stop_a"));
+    let position = column(&outputs, "position_m");
+    let [largest, least] =
+        [position.iter().copied().fold(0.0, f64::max), position.iter().copied().fold(1.0, f64::min)];
+    assert!(largest > 0.5 && largest < 0.501 && least < 0.0 && least > -0.001);
+}
+
+/// 20 mm of load in 10 ms: chambers cavitate and are reported, not clamped, and the run ends in time.
+#[test]
+fn violent_loads_are_survived() {
+    let air = Some(EntrainedAir { volume_fraction: 0.01, polytropic_index: 1.4 });
+    let rig = benchmark_components();
+    let foamy = Components { fluid: Fluid { entrained_air: air, ..rig.fluid }, ..rig };
+    let hose = components(hose_line(), StiffnessModel::ByVolume);
+    let aerated =
+        Components { fluid: Fluid { entrained_air: air, ..hose.fluid }, friction: rig.friction, ..hose };
+    let ground = Profile::table(
+        &[0.0, 0.1, 0.105, 0.11, 0.3, 0.305, 0.31, 0.5],
+        &[0.25, 0.25, 0.26, 0.27, 0.27, 0.26, 0.25, 0.25],
+    );
+    let ground = ground.unwrap();
+    for rig in [rig, foamy, hose, aerated] {
+        let machine = machine_of(rig, &MachineOptions::default());
+        let (result, outputs) = drive(machine, &at(0.25), 0.5, &[(0.0, 0.5)], ground.clone());
+        assert_eq!(result.outcome.status, Status::Completed);
+        assert!(column(&outputs, "force_n").iter().any(|force| force.abs() > 5e3));
+        assert!(result.outcome.work.steps < 20_000, "{:?}", result.outcome.work);
+    }
+    let machine = machine_of(benchmark_components(), &MachineOptions::default());
+    let start = Start { pressure_a: 2e5, pressure_b: 2e5, ..at(0.25) };
+    let (result, _) = drive(machine, &start, 0.5, &[], ground);
+    assert!(happened(&result, "cavitation_a") && happened(&result, "cavitation_b"));
+}
+
+/// A pump that gives nothing, and a tank above the chambers: oil flows back, the loss is reported.
+#[test]
+fn lost_supplies_and_reversed_pressures_are_no_error() {
+    let unit = PumpLimited {
+        pump_flow: 0.0,
+        relief_override: 5e5,
+        volume: 5e-4,
+        effective_bulk_modulus: 1e9,
+        accumulator: None,
+    };
+    let options = MachineOptions {
+        power_unit: PowerUnit::PumpLimited(unit),
+        end_stops: end_stops(),
+        load: free_load(),
+        ..MachineOptions::default()
+    };
+    let rig = components(hose_line(), StiffnessModel::ByVolume);
+    let course = [(0.5, 5.0), (1.0, -5.0), (1.5, 0.0)];
+    let (result, outputs) = drive(machine_of(rig, &options), &at(0.25), 3.0, &course, Profile::constant(0.0));
+    assert_eq!(result.outcome.status, Status::Completed);
+    let supply = column(&outputs, "supply_pressure_pa");
+    assert!(supply[0] > 60e5 && supply[supply.len() - 1] < 5e5);
+    let reversed =
+        Components { supply: Supply { pressure: 20e5, tank_pressure: 1e5 }, ..benchmark_components() };
+    let start = Start { pressure_a: 60e5, pressure_b: 55e5, ..at(0.25) };
+    let machine = machine_of(reversed, &MachineOptions::default());
+    let (result, outputs) = drive(machine, &start, 1.0, &[(0.0, 0.05)], Profile::constant(0.25));
+    assert_eq!(result.outcome.status, Status::Completed);
+    let taken = column(&outputs, "supply_flow_m3_per_s");
+    assert!(taken[0] < 0.0 && taken[taken.len() - 1] > 0.0);
+}
+
+/// A wall that is met at speed pushes and never pulls, with every kind of friction and every imperfection of the spool.
+#[test]
+fn walls_are_met_with_every_friction() {
+    let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
+    let frictions =
+        [Friction::Viscous { viscous: 100.0 }, Friction::Stribeck(lugre.curve), Friction::LuGre(lugre)];
+    let contact = Contact { stiffness: 5e7, relative_damping: 0.5 };
+    let spool = SpoolImperfection {
+        null_bias: 0.014,
+        hysteresis_width: Some(0.128),
+        threshold: Some(0.03),
+        rate_limit: Some(3000.0),
+    };
+    for friction in frictions {
+        let options = MachineOptions {
+            spool,
+            load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 5e-3, contact },
+            friction_regular_velocity: Some(1e-4),
+            ..MachineOptions::default()
+        };
+        let rig = Components { friction, ..components(hose_line(), StiffnessModel::ByVolume) };
+        let course = [(0.1, 2.0), (0.8, -2.0)];
+        let (result, outputs) =
+            drive(machine_of(rig, &options), &at(0.25), 1.5, &course, Profile::constant(0.25));
+        assert_eq!(result.outcome.status, Status::Completed);
+        assert!(happened(&result, "load_contact") && result.outcome.work.steps < 20_000);
+        let force = column(&outputs, "force_n");
+        assert!(force[500] > 5e3 && force[1000].abs() < 300.0, "{} {}", force[500], force[1000]);
+    }
+}
