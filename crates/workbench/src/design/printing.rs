@@ -55,6 +55,7 @@ fn design(problem: &phea_qft::design::DesignProblem, status: DesignStatus) -> De
     let plant = PlantPoint::Parameters(vec![20.0]);
     Design {
         status,
+        law: controller.clone(),
         controller,
         structure: structure.clone(),
         objective_db: 34.0,
@@ -82,7 +83,7 @@ fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
     assert_eq!(options.controller, ControllerChoice::Grow { maximum_order: 4 });
     assert_eq!(options.prefilter, PrefilterChoice::Grow { maximum_order: 3 });
     let view =
-        told(&loaded.project, &given, &problem, design(&problem, status), options, &mut |_| true).unwrap();
+        told(&loaded.project, &given, &problem, design(&problem, status), options).unwrap();
     (source, loaded, ProjectDesign { published: Some(published), ..view })
 }
 
