@@ -112,7 +112,7 @@ impl<'a> Resolvent<'a> {
         let others = columns.iter().filter(|&&column| column != row && self.matrix[(row, column)] != 0.0);
         others
             .fold(start, |sum, &column| {
-                sum + ComplexDoubleDouble::from(self.matrix[(row, column)]) * solution[column]
+                sum + solution[column].times_real(self.matrix[(row, column)])
             })
             .value()
     }
@@ -130,6 +130,6 @@ pub(crate) fn product<'a>(
     start: f64,
 ) -> Complex64 {
     row.zip(column)
-        .fold(ComplexDoubleDouble::from(start), |sum, (&c, &x)| sum + ComplexDoubleDouble::from(c) * x)
+        .fold(ComplexDoubleDouble::from(start), |sum, (&c, &x)| sum + x.times_real(c))
         .value()
 }

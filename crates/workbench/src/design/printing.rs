@@ -82,8 +82,7 @@ fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
     let options = design_options(&loaded.project, &given, Some(7)).unwrap();
     assert_eq!(options.controller, ControllerChoice::Grow { maximum_order: 4 });
     assert_eq!(options.prefilter, PrefilterChoice::Grow { maximum_order: 3 });
-    let view =
-        told(&loaded.project, &given, &problem, design(&problem, status), options).unwrap();
+    let view = told(&loaded.project, &given, &problem, design(&problem, status), options).unwrap();
     (source, loaded, ProjectDesign { published: Some(published), ..view })
 }
 
@@ -107,7 +106,7 @@ fn people_read_the_status_first_and_the_law_as_it_is_pasted() {
         "F(s) = 6 / (s + 6)",
         "[controller]\ngain = 50\nzeros = [-50]\npoles = [-500]\nsaturation = \"10 V\"\n",
         "[prefilter]\ngain = 6\npoles = [-6]\n",
-        "published    designed",
+        "given        designed",
         "1 robust stability  10     -1.25 dB  10",
         "zero, pole",
     ] {

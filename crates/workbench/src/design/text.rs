@@ -7,7 +7,7 @@ use super::factors::factored;
 use super::words::{status_sentence, structure_words};
 use super::{Explanation, ProjectDesign, Rounding};
 use crate::answer::{significant, table};
-use crate::audit::{self, frequency_number, margin_words, numbered, summary};
+use crate::audit::{self, frequency_number, margin_words, summary};
 use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 
@@ -86,12 +86,12 @@ fn laws(view: &ProjectDesign) -> Result<String, LinearError> {
     Ok(lines.concat())
 }
 
-/// What is compared, a row each: the published controller, the designed one, and in a sampled loop the one that was designed without samples.
+/// What is compared, a row each: the given controller, the designed one, and in a sampled loop the one that was designed without samples.
 fn side_by_side(view: &ProjectDesign) -> String {
     let designed = compared(&view.designed);
     let published = view.published.as_ref().map(compared);
     let mut headings = vec![""];
-    headings.extend(published.iter().map(|_| "published"));
+    headings.extend(published.iter().map(|_| "given"));
     headings.push("designed");
     let continuous = view.continuous.as_ref().map(compared);
     headings.extend(continuous.iter().map(|_| "made without samples"));
@@ -127,9 +127,8 @@ fn limits<'a>(
     let mut found = table(&headings);
     let mut any = false;
     for (specification, frequency, margin, plant) in rows {
-        let Some(one) = view.designed.problem.specifications.get(specification) else { continue };
         let mut row = vec![
-            numbered(specification, &one.requirement),
+            view.designed.view.numbered(specification),
             frequency_number(frequency),
             margin_words(margin),
         ];
