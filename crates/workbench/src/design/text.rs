@@ -1,5 +1,5 @@
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
-use phea_qft::design::DesignStatus;
+use phea_qft::design::{DesignStatus, Objective};
 use phea_qft::verification::PlantPoint;
 
 use super::comparison::compared;
@@ -45,7 +45,7 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
             "\nWhat the specifications cost: the limits that the loop touches\n{binding}\n"
         ));
     }
-    out.push_str(&format!("\nRounds of search and audit\n{}\n", rounds(view)));
+    out.push_str(&format!("\nRounds of search and audit\n{}\n  {}\n", rounds(view), seed_sentence(view)));
     out.push_str(&format!("\nAudit of the designed controller\n{}", audit::text(&view.designed.view)));
     out.push_str(&settings_sentence(loaded));
     Ok(out)
@@ -155,6 +155,17 @@ fn rounds(view: &ProjectDesign) -> String {
         ]);
     }
     rows.trim_fmt()
+}
+
+/// What another seed may do.
+fn seed_sentence(view: &ProjectDesign) -> String {
+    let better = match (&view.design.status, view.options.objective) {
+        (DesignStatus::Infeasible(_), _) => "may need less relaxation",
+        (DesignStatus::NotConverged { .. } | DesignStatus::NotStabilised, _) => "may find one",
+        (DesignStatus::Met, Objective::BestWorstMargin) => "may end with more margin",
+        (DesignStatus::Met, _) => "may end lower",
+    };
+    format!("begun at random points of seed {}; a local optimum: other seeds {better}", view.options.seed)
 }
 
 /// What was set on the command line is not in the file that a design writes.
