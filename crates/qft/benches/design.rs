@@ -16,6 +16,7 @@ use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
+use phea_qft::design::quantisation::CoefficientFormat;
 use phea_qft::design::{
     ControllerChoice, Design, DesignOptions, DesignProblem, DesignRun, DesignStatus, Objective,
     PrefilterChoice,
@@ -119,6 +120,7 @@ fn options(task: &Task, seed: u64) -> DesignOptions {
         prefilter: PrefilterChoice::None,
         seed,
         tolerance_db: TOLERANCE_DB,
+        coefficients: CoefficientFormat::Double,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::closed_loop::Compensation;
 use crate::family::Family;
+use crate::sampled::SampledPlants;
 use crate::specification::{Requirement, Specification};
 use crate::stability::StabilityAudit;
 use crate::verification::{
@@ -76,6 +77,16 @@ impl AuditRun {
             ),
             tolerance_db,
         }
+    }
+
+    /// Takes over plants of the same family within the same loop, whatever its controller, so that none is sampled twice.
+    pub(crate) fn take_over(&mut self, sampled: SampledPlants) {
+        self.stability.take_over(sampled);
+    }
+
+    /// Hands over the plants that were sampled, once all is done.
+    pub(crate) fn take_sampled(&mut self) -> SampledPlants {
+        self.specifications.take_sampled()
     }
 
     /// Does a small part of the work; whether there is more to do.

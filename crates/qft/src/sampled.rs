@@ -8,8 +8,8 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 
 use crate::closed_loop::{Compensation, Member};
 
-/// Plants that are kept.
-const PLANTS_MAXIMUM: usize = 20_000;
+/// Plants that are kept, of less than a kilobyte each.
+const PLANTS_MAXIMUM: usize = 100_000;
 
 /// Plants of one family within one loop that were sampled before, by the bits of their parameter values: sampling costs more than a
 /// thousand responses. A continuous loop takes its plants as they are and keeps none.

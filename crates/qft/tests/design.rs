@@ -11,5 +11,7 @@ mod problems;
 mod published;
 #[path = "design/relaxed.rs"]
 mod relaxed;
+#[path = "design/rounded.rs"]
+mod rounded;
 #[path = "design/servo.rs"]
 mod servo;

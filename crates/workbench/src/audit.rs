@@ -13,7 +13,7 @@ pub use text::text;
 pub(crate) use text::{basis, stability_sentence, summary, worst_plants};
 pub(crate) use words::{
     closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words, margin_words, meaning,
-    numbered, verdict_key, verdict_words, worst_at_design,
+    verdict_key, verdict_words, worst_at_design,
 };
 
 use phea_dynamics::portable;
@@ -102,6 +102,8 @@ pub struct ProjectAudit {
     pub audit: Audit,
     /// What the numbers of a plant are called.
     pub names: PlantNames,
+    /// What each specification is called.
+    pub specification_names: Vec<String>,
     /// Number of plants of the family.
     pub members: usize,
     /// Whether everything between them belongs to the family.
@@ -175,6 +177,7 @@ impl ProjectAudit {
             reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
             audit,
             names: names(family),
+            specification_names: problem.specification_names.clone(),
             members: match family {
                 Family::Uncertain(family) => family.members().len(),
                 Family::Measured(family) => family.plants().len(),
@@ -183,6 +186,16 @@ impl ProjectAudit {
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
         }
+    }
+
+    /// What a specification is called.
+    pub(crate) fn name_of(&self, index: usize) -> &str {
+        self.specification_names.get(index).map_or("", String::as_str)
+    }
+
+    /// A specification by its number, from 1, and name.
+    pub(crate) fn numbered(&self, index: usize) -> String {
+        format!("{} {}", index + 1, self.name_of(index))
     }
 
     fn family_sentence(&self) -> String {

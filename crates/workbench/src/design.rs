@@ -30,13 +30,12 @@ pub(crate) use words::{status_sentence, structure_words};
 
 use phea_dynamics::controller::{Controller, Timing};
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::quantisation::CoefficientFormat;
 use phea_qft::design::{Design, DesignOptions, DesignProblem, DesignRun, PrefilterChoice};
 use phea_qft::verification::Verdict;
 
 use crate::audit::{ProjectAudit, audit_problem};
 use crate::command::{CommandError, Progress, Watch};
-use crate::control::{controller, deployed, quantisation, sensor};
+use crate::control::{controller, deployed, sensor};
 use crate::project::{self, Loaded, Project};
 use crate::robust::{RobustProblem, robust_problem};
 use crate::source::Source;
@@ -128,7 +127,7 @@ pub fn design_project(
     let (options, found) = (run.options().clone(), run.design().cloned());
     match found {
         Some(design) => {
-            let told = told(project, &given, run.problem(), design, options, watch)?;
+            let told = told(project, &given, run.problem(), design, options)?;
             let continuous = if stopped { None } else { continuous_as_sampled(project, &run, &told, watch)? };
             Ok(ProjectDesign { stopped, published, explanations, continuous, ..told })
         }
@@ -160,7 +159,7 @@ fn continuous_as_sampled(
         }
     }
     let Some(design) = run.design() else { return Ok(None) };
-    let controller = Controller { timing, ..design.controller.clone() };
+    let controller = Controller { timing, ..design.law.clone() };
     let compensation = Compensation::new(&deployed(project, &controller)?, sensor(project)?)?;
     let problem = RobustProblem { compensation, ..told.designed.problem.clone() };
     let view = audit_problem(&problem, watch)?;
@@ -174,21 +173,16 @@ fn told(
     asked: &DesignProblem,
     design: Design,
     options: DesignOptions,
-    watch: Watch<'_>,
 ) -> Result<ProjectDesign, CommandError> {
     let has_prefilter = options.prefilter != PrefilterChoice::None;
-    let law = design.controller.clone();
+    let law = design.law.clone();
     let problem = RobustProblem {
-        compensation: Compensation::new(&deployed(project, &law)?, sensor(project)?)?,
+        compensation: Compensation::new(&design.controller, sensor(project)?)?,
         has_controller: true,
         has_prefilter,
         ..given.clone()
     };
-    // rounded coefficients make another controller, which has an audit of its own
-    let view = match quantisation(project)?.coefficients {
-        CoefficientFormat::Double => ProjectAudit::new(&problem, design.audit.clone()),
-        _ => audit_problem(&problem, watch)?,
-    };
+    let view = ProjectAudit::new(&problem, design.audit.clone());
     let rounding = rounding::rounding(project, &problem)?;
     let declared = project.controller.clone().unwrap_or_default();
     let declared_controller =

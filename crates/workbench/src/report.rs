@@ -101,7 +101,7 @@ fn robust_chapters(
 ) -> Result<Vec<OutputFile>, CommandError> {
     let project = &loaded.project;
     let robust = robust_problem(source, project)?;
-    chapters.push(specifications::chapter(project, &robust.specifications)?);
+    chapters.push(specifications::chapter(project, &robust)?);
     let view = match robust.has_controller {
         true => Some(audit_problem(&robust, watch)?),
         false => None,

@@ -13,12 +13,13 @@ use phea_qft::specification::{LoopResponse, Specification};
 use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::PlantPoint;
 
+use crate::audit::kind_words;
 use crate::command::{CommandError, Progress, Watch};
 use crate::control::{compensation, prefilter, sensor, timing};
 use crate::family::family;
 use crate::project::Project;
 use crate::source::Source;
-use crate::specification::specifications;
+use crate::specification::{of_rounding, specifications};
 
 /// A family of plants within a loop, and what the loop must keep to.
 #[derive(Clone, Debug)]
@@ -31,8 +32,10 @@ pub struct RobustProblem {
     pub has_controller: bool,
     /// Whether it gives a prefilter; tracking is judged by its spread where not.
     pub has_prefilter: bool,
-    /// What must be kept to.
+    /// What must be kept to: the specifications in file order, then what the rounding of converters may do.
     pub specifications: Vec<Specification>,
+    /// What each of them is called: by its kind, or by what is rounded.
+    pub specification_names: Vec<String>,
 }
 
 /// Template and bounds at one design frequency.
@@ -78,7 +81,6 @@ pub enum RobustError {
 /// # Errors
 /// [`CommandError`] for parts that are no transfer functions, families or limits.
 pub fn robust_problem(source: &dyn Source, project: &Project) -> Result<RobustProblem, CommandError> {
-    let specifications = specifications(project)?;
     let given = compensation(project)?;
     let has_controller = given.is_some();
     let compensation = match given {
@@ -89,16 +91,44 @@ pub fn robust_problem(source: &dyn Source, project: &Project) -> Result<RobustPr
             Compensation::new(&open, sensor(project)?)?
         }
     };
+    let (specifications, specification_names) =
+        named_specifications(project, compensation.highest_frequency_rad_per_s())?;
     Ok(RobustProblem {
         family: family(project, source)?,
         compensation,
         has_controller,
         has_prefilter: project.prefilter.is_some(),
         specifications,
+        specification_names,
     })
 }
 
+/// What must be kept to, and what it is called. Bounds on the rounding of converters are drawn at every design frequency that the loop
+/// reaches.
+fn named_specifications(
+    project: &Project,
+    highest_frequency_rad_per_s: f64,
+) -> Result<(Vec<Specification>, Vec<String>), CommandError> {
+    let mut specifications = specifications(project)?;
+    let mut names: Vec<String> = specifications.iter().map(|one| kind_words(&one.requirement)).collect();
+    let mut frequencies: Vec<f64> =
+        specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied()).collect();
+    frequencies.retain(|frequency| *frequency <= highest_frequency_rad_per_s);
+    frequencies.sort_by(f64::total_cmp);
+    frequencies.dedup();
+    for (specification, name) in of_rounding(project, &frequencies)? {
+        specifications.push(specification);
+        names.push(name.to_string());
+    }
+    Ok((specifications, names))
+}
+
 impl RobustProblem {
+    /// What a specification is called.
+    pub(crate) fn name_of(&self, index: usize) -> &str {
+        self.specification_names.get(index).map_or("", String::as_str)
+    }
+
     /// Every frequency at which a bound is drawn, rad/s, increasing.
     pub fn design_frequencies(&self) -> Vec<f64> {
         let all = self.specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied());

@@ -2,6 +2,7 @@
 
 mod answer;
 mod limit;
+mod rounding;
 
 use phea_dynamics::linear::LinearError;
 use phea_qft::specification::{
@@ -10,6 +11,7 @@ use phea_qft::specification::{
 
 pub(crate) use self::answer::{WishRow, text};
 use self::limit::{MarginOf, Side};
+pub(crate) use self::rounding::of_rounding;
 use crate::project::{self, FormulaError, Project, SpecificationKind};
 
 /// Why a declared specification cannot be judged by.

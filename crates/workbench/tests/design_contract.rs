@@ -6,7 +6,7 @@
 #[path = "truth/ask.rs"]
 mod ask;
 
-use ask::{HOSE, json, load, try_answer};
+use ask::{HOSE, answer, json, load, try_answer};
 use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
 use phea_qft::loop_shaping::{Part, Structure};
 use phea_workbench::audit::AuditError;
@@ -105,4 +105,71 @@ fn nothing_is_designed_for_no_specification() {
     let bare = include_str!("project_valid/design_growing.toml");
     let refused = try_answer(bare, &[], &[], &DESIGN).unwrap_err();
     assert!(matches!(refused, CommandError::Design(DesignError::NoSpecification)), "{refused}");
+}
+
+/// An integrator of unknown gain at 100 Hz, with converters.
+const CONVERTED: &str = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \"s + 1\"\n\
+    [uncertainty]\nk = { nominal = 1, minimum = 1, maximum = 2, points = 3 }\n\
+    [[specification]]\nkind = \"robust_stability\"\nlimit = 1.3\nfrequencies = [0.1, 1, 10, 100, 1000]\nband = [0, inf]\n\
+    [[specification]]\nkind = \"sensitivity\"\nlimit = \"2*s/(s + 3)\"\nfrequencies = [0.1, 1]\n\
+    [controller]\nsample_time = \"10 ms\"\nnumerator = \"12*s + 60\"\ndenominator = \"s\"\n\
+    [controller.quantization]\nmeasurement_bits = 9\nmeasurement_range = [-4, 4]\ncommand_bits = 9\ncommand_range = [-4, 4]\n\
+    [design]\nobjective = \"best_worst_margin\"\nprefilter_maximum_order = 0\ngain = [1, 300]\n\
+    structure = [{ kind = \"integrator\" }, { kind = \"zero\", frequency = [0.1, 100] }]\n";
+
+/// What the converters may do are two specifications more: for `verify` and for `design`, with words of their own. The less they may do, the
+/// less gain the controller has.
+#[test]
+fn allowed_errors_of_the_converters_are_specifications() {
+    let verified = |settings: &[&str]| json(CONVERTED, settings, &[], &Request::Verify);
+    assert_eq!(verified(&[])["specifications"].as_array().unwrap().len(), 2);
+    let force = "controller.quantization.allowed_force_error=\"1 mN\"";
+    let command = "controller.quantization.allowed_command_error=0.25";
+    let both = verified(&[force, command]);
+    let rows = both["specifications"].as_array().unwrap();
+    let told = |row: &serde_json::Value| (row["kind"].clone(), row["name"].clone(), row["verdict"].clone());
+    assert!(rows[0]["name"].is_null());
+    // |P/(1+L)| of up to 1/14 makes at most 0.56 mN of half a step of 1/64
+    let names = ["force error of the rounded command", "command error of the rounded measurement"];
+    assert_eq!(told(&rows[2]), ("plant_input_disturbance".into(), names[0].into(), "met".into()));
+    assert_eq!(told(&rows[3]), ("control_effort".into(), names[1].into(), "met".into()));
+    // ORIGIN: analytic, the limits are the allowed errors over half of 8/512; towards infinite frequency, pi/T, |G S| is a little above 12
+    assert_eq!(rows[2]["reached"]["limit"], 0.128);
+    assert_eq!(rows[3]["reached"]["limit"], 32.0);
+    // those frequencies at which bounds are drawn that lie below pi/T
+    assert_eq!(rows[2]["at_design_frequencies"].as_array().unwrap().len(), 4);
+    let tight = verified(&[force, "controller.quantization.allowed_command_error=0.05"]);
+    assert_eq!(tight["specifications"][3]["verdict"], "violated");
+    assert_eq!(tight["verdict"], "violated");
+    let mut last = f64::INFINITY;
+    for allowed in ["0.5", "0.055"] {
+        let setting = format!("controller.quantization.allowed_command_error={allowed}");
+        let design = json(CONVERTED, &[&setting], &[], &DESIGN);
+        assert_eq!(design["status"], "met");
+        let gain = design["figures"]["high_frequency_gain_db"].as_f64().unwrap();
+        assert!(gain < last - 1.0, "{gain} dB after {last} dB");
+        last = gain;
+        if allowed == "0.055" {
+            let binds =
+                |row: &serde_json::Value| row["specification"] == 2 && row["kind"] == "control_effort";
+            assert!(design["binding"].as_array().unwrap().iter().any(binds), "{}", design["binding"]);
+            assert!(design["rounding"]["effects"][2]["rms"].as_f64().unwrap() < 0.055);
+        }
+    }
+    let text = answer(CONVERTED, &[command], &[], &Request::Verify).text;
+    assert!(text.contains("3 command error of the rounded measurement"), "{text}");
+}
+
+/// The law of an answer is the one whose coefficients the computer keeps, and its verification is that law's.
+#[test]
+fn the_answer_is_what_is_deployed() {
+    let single = json(CONVERTED, &["controller.quantization.coefficients=\"f32\""], &[], &DESIGN);
+    assert_eq!(single["status"], "met");
+    assert_eq!(single["controller"]["domain"], "z");
+    assert_eq!(single["continuous_law"]["controller"]["domain"], "s");
+    // k (s/z + 1)/s by Tustin's rule: of one section, whose first coefficient is the gain
+    let gain = single["controller"]["gain"].as_f64().unwrap();
+    assert_eq!(gain, f64::from(gain as f32));
+    let exact = json(CONVERTED, &[], &[], &DESIGN)["controller"]["gain"].as_f64().unwrap();
+    assert_ne!(exact, f64::from(exact as f32));
 }

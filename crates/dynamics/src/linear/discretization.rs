@@ -213,10 +213,12 @@ fn held_with_fraction(
     }
     // the previous input acts until the fraction has passed, the present one for the rest
     let early = ExactStep::new(system.a(), system.b(), fraction_s);
-    let late = ExactStep::new(system.a(), system.b(), sample_time_s - fraction_s);
+    let rest_s = sample_time_s - fraction_s;
+    let other = (rest_s != fraction_s).then(|| ExactStep::new(system.a(), system.b(), rest_s));
+    let late = other.as_ref().unwrap_or(&early);
     let mut a = DMatrix::zeros(order + inputs, order + inputs);
     a.view_mut((0, 0), (order, order)).copy_from(&whole.transition());
-    a.view_mut((0, order), (order, inputs)).copy_from(&(late.transition() * early.constant));
+    a.view_mut((0, order), (order, inputs)).copy_from(&(late.transition() * &early.constant));
     let mut b = DMatrix::zeros(order + inputs, inputs);
     b.view_mut((0, 0), (order, inputs)).copy_from(&late.constant);
     b.view_mut((order, 0), (inputs, inputs)).fill_with_identity();

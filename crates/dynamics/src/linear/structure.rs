@@ -111,9 +111,7 @@ impl<'a> Resolvent<'a> {
         let start = right[row] + diagonal * solution[row];
         let others = columns.iter().filter(|&&column| column != row && self.matrix[(row, column)] != 0.0);
         others
-            .fold(start, |sum, &column| {
-                sum + ComplexDoubleDouble::from(self.matrix[(row, column)]) * solution[column]
-            })
+            .fold(start, |sum, &column| sum + solution[column].times_real(self.matrix[(row, column)]))
             .value()
     }
 }
@@ -129,7 +127,5 @@ pub(crate) fn product<'a>(
     column: &[ComplexDoubleDouble],
     start: f64,
 ) -> Complex64 {
-    row.zip(column)
-        .fold(ComplexDoubleDouble::from(start), |sum, (&c, &x)| sum + ComplexDoubleDouble::from(c) * x)
-        .value()
+    row.zip(column).fold(ComplexDoubleDouble::from(start), |sum, (&c, &x)| sum + x.times_real(c)).value()
 }

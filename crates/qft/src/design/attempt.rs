@@ -1,12 +1,15 @@
 //! One structure on its way to a design: a search, the fit of a prefilter, a descent with both, an audit, and the descent again with what
 //! the audit found.
 
+mod deployment;
+
 use phea_dynamics::linear::{LinearError, TransferFunction};
 
 use super::counterexample::{
     Counterexample, counterexamples, too_little_delay, unstable_plant, worst_margin_db, worst_over_rate_db,
 };
 use super::problem::{DesignOptions, DesignProblem, Objective, PrefilterChoice};
+use super::quantisation::QuantisationError;
 use super::result::DesignRound;
 use crate::audit::AuditRun;
 use crate::closed_loop::Compensation;
@@ -17,6 +20,7 @@ use crate::loop_shaping::{
 use crate::prefilter::{
     FittedPrefilter, PrefilterBand, PrefilterError, PrefilterOptions, PrefilterOutcome, PrefilterRun,
 };
+use crate::sampled::SampledPlants;
 use crate::specification::Requirement;
 use crate::verification::{Audit, SpecificationAudit, TrackingJudgement, Verdict};
 
@@ -47,6 +51,9 @@ pub enum DesignError {
     /// There is no band for a prefilter.
     #[error("{0}")]
     Prefilter(#[from] PrefilterError),
+    /// The coefficients of the controller cannot be kept in their format.
+    #[error("{0}")]
+    Quantisation(#[from] QuantisationError),
 }
 
 /// What an attempt ended with.
@@ -84,6 +91,10 @@ pub(super) struct Attempt {
     aim: Aim,
     /// Whether the worst margin is wanted even where it is negative.
     relaxes: bool,
+    /// How far inside its limits the search stays, dB.
+    reserve_db: f64,
+    /// How often it was drawn in for what rounding takes.
+    draws: usize,
     /// Order of the prefilter that is fitted next.
     prefilter_order: usize,
     restarts: u64,
@@ -94,18 +105,23 @@ pub(super) struct Attempt {
     x: Vec<f64>,
     stage: Stage,
     rounds: Vec<DesignRound>,
+    /// The plants that its audits sampled.
+    sampled: SampledPlants,
 }
 
 impl Attempt {
-    /// An attempt that has not begun, with points to begin with. With `relaxes` it looks for the smallest common relaxation.
+    /// An attempt that has not begun, with points to begin with, and plants that were sampled in the same loop. With `relaxes` it looks for
+    /// the smallest common relaxation.
     pub(super) fn new(
         structure: Structure,
         mut samples: Samples,
         options: &DesignOptions,
         relaxes: bool,
         beginning: Vec<Vec<f64>>,
+        sampled: SampledPlants,
     ) -> Result<Attempt, DesignError> {
-        samples.keep_in_reserve(if relaxes { 0.0 } else { RESERVE_DB });
+        let reserve_db = if relaxes { 0.0 } else { RESERVE_DB };
+        samples.keep_in_reserve(reserve_db);
         let aim = match options.objective {
             _ if relaxes => Aim::WorstMargin,
             Objective::BestWorstMargin => Aim::WorstMargin,
@@ -124,6 +140,8 @@ impl Attempt {
             options: options.clone(),
             aim,
             relaxes,
+            reserve_db,
+            draws: 0,
             prefilter_order: 2,
             restarts: 0,
             sound: vec![],
@@ -131,6 +149,7 @@ impl Attempt {
             x: vec![],
             stage: Stage::Searching(Box::new(search)),
             rounds: vec![],
+            sampled,
         })
     }
 
@@ -201,6 +220,11 @@ impl Attempt {
         self.shaping.samples().clone()
     }
 
+    /// Hands over the plants that were sampled, once it has ended.
+    pub(super) fn take_sampled(&mut self) -> SampledPlants {
+        std::mem::take(&mut self.sampled)
+    }
+
     fn after_search(&mut self) -> Result<Stage, DesignError> {
         let Stage::Searching(search) = &self.stage else { return Ok(Stage::Ended(Ending::NotStabilised)) };
         let Some(result) = search.result() else { return Ok(Stage::Ended(Ending::NotStabilised)) };
@@ -219,7 +243,7 @@ impl Attempt {
     }
 
     /// Fits a prefilter to the loop as it is, or goes on where none is looked for.
-    fn fit_or(&mut self, go_on: fn(&Self) -> Result<Stage, DesignError>) -> Result<Stage, DesignError> {
+    fn fit_or(&mut self, go_on: fn(&mut Self) -> Result<Stage, DesignError>) -> Result<Stage, DesignError> {
         let missing_db = if self.relaxes { -self.shaping.judge(&self.x).worst_margin_db } else { 0.0 };
         let room_db = BAND_ROOM_DB + missing_db.max(0.0);
         let problem = self.shaping.samples().problem();
@@ -230,8 +254,9 @@ impl Attempt {
         };
         let specification = &problem.specifications[tracking];
         let samples = self.shaping.samples();
+        let around = Compensation::new(&self.shaping.controller(&self.x), problem.sensor.clone())?;
         let band = PrefilterBand::of_family(
-            &self.compensation()?,
+            &around,
             samples.members(),
             &samples.grid_frequencies_rad_per_s(),
             specification,
@@ -295,29 +320,29 @@ impl Attempt {
         }
     }
 
-    fn compensation(&self) -> Result<Compensation, DesignError> {
-        let problem = self.shaping.samples().problem();
-        Ok(Compensation::new(&self.shaping.controller(&self.x), problem.sensor.clone())?)
-    }
-
     /// Looks between the samples: over the whole box, but beginning from the plants of the samples.
-    fn check(&self) -> Result<Stage, DesignError> {
+    fn check(&mut self) -> Result<Stage, DesignError> {
+        if let Some(next) = self.drawn_in() {
+            return Ok(next);
+        }
         let samples = self.shaping.samples();
         let problem = samples.problem();
-        let audit = SpecificationAudit::new(
+        let mut audit = SpecificationAudit::new(
             &samples.family(),
             &self.compensation()?,
             &problem.specifications,
             self.shaping.tracking(),
             self.options.tolerance_db,
         );
+        audit.take_over(std::mem::take(&mut self.sampled));
         Ok(Stage::Checking(Box::new(audit)))
     }
 
     fn after_check(&mut self) -> Result<Stage, DesignError> {
-        let Stage::Checking(audit) = &self.stage else { return self.check() };
+        let Stage::Checking(audit) = &mut self.stage else { return self.check() };
+        self.sampled = audit.take_sampled();
         let findings = audit.findings().to_vec();
-        let judgement = self.shaping.judge(&self.x);
+        let judgement = self.judgement();
         let tolerance_db = self.new_below_db(&judgement);
         let audited_margin_db = worst_margin_db(&findings);
         let examples = counterexamples(&findings, tolerance_db, self.shaping.tracking());
@@ -331,15 +356,16 @@ impl Attempt {
         }
     }
 
-    fn audit(&self) -> Result<Stage, DesignError> {
+    fn audit(&mut self) -> Result<Stage, DesignError> {
         let problem = self.shaping.samples().problem();
-        let run = AuditRun::new(
+        let mut run = AuditRun::new(
             &problem.family,
             &self.compensation()?,
             &problem.specifications,
             self.shaping.tracking(),
             self.options.tolerance_db,
         );
+        run.take_over(std::mem::take(&mut self.sampled));
         Ok(Stage::Auditing(Box::new(run)))
     }
 
@@ -351,12 +377,13 @@ impl Attempt {
     }
 
     fn after_audit(&mut self) -> Result<Stage, DesignError> {
-        let Stage::Auditing(run) = &self.stage else { return self.audit() };
+        let Stage::Auditing(run) = &mut self.stage else { return self.audit() };
+        self.sampled = run.take_sampled();
         let audit = Box::new(run.audit());
         if self.audits_only {
             return Ok(Stage::Ended(Ending::Hopeless(audit)));
         }
-        let judgement = self.shaping.judge(&self.x);
+        let judgement = self.judgement();
         let stable = audit.stability.verdict == Verdict::Met;
         self.note(stable.then(|| worst_margin_db(&audit.specifications)), &judgement);
         let delayed = too_little_delay(&audit, self.shaping.samples().problem());
@@ -367,7 +394,7 @@ impl Attempt {
         examples.extend(delayed);
         let tolerance_db = self.new_below_db(&judgement);
         examples.extend(counterexamples(&audit.specifications, tolerance_db, self.shaping.tracking()));
-        Ok(self.with(&examples)?.unwrap_or(Stage::Ended(if self.relaxes {
+        Ok(self.with(&examples)?.unwrap_or(Stage::Ended(if self.relaxes && stable {
             let audited_db = worst_over_rate_db(&audit.specifications, self.shaping.tracking());
             Ending::Missed { worst_margin_db: judgement.worst_margin_db.min(audited_db), audit: Some(audit) }
         } else {

@@ -3,6 +3,7 @@
 use phea_dynamics::controller::Timing;
 use phea_dynamics::linear::TransferFunction;
 
+use super::quantisation::CoefficientFormat;
 use crate::family::Family;
 use crate::loop_shaping::Structure;
 use crate::specification::Specification;
@@ -84,4 +85,6 @@ pub struct DesignOptions {
     pub seed: u64,
     /// A margin of minus this much still counts as met, dB.
     pub tolerance_db: f64,
+    /// How the coefficients of a sampled controller are kept: it is judged with those. A continuous one has none.
+    pub coefficients: CoefficientFormat,
 }

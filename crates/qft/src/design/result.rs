@@ -78,8 +78,10 @@ pub struct DesignRound {
 pub struct Design {
     /// Why it ended.
     pub status: DesignStatus,
-    /// Controller, prefilter and timing.
+    /// Controller, prefilter and timing, as they are deployed and were audited: where coefficients are rounded, in z and with those.
     pub controller: Controller,
+    /// The same before it was sampled and rounded.
+    pub law: Controller,
     /// What was shaped.
     pub structure: Structure,
     /// Its objective, dB.

@@ -12,6 +12,7 @@ use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
 use crate::family::{Extent, Family, random};
 use crate::loop_shaping::{Samples, Structure, search_frequencies};
+use crate::sampled::SampledPlants;
 use crate::verification::{Audit, PlantPoint, corners};
 
 /// Points of the frequency grid of a search in a decade.
@@ -56,6 +57,8 @@ pub struct DesignRun {
     /// What is begun anew, from this controller.
     again: Option<(Structure, Option<TransferFunction>)>,
     rounds: Vec<DesignRound>,
+    /// The plants that the audits sampled so far.
+    sampled: SampledPlants,
     design: Option<Design>,
     done: bool,
 }
@@ -89,6 +92,7 @@ impl DesignRun {
             unstable: None,
             again: None,
             rounds: vec![],
+            sampled: SampledPlants::default(),
             design: None,
             done: false,
         }
@@ -121,7 +125,7 @@ impl DesignRun {
             None => self.begin()?,
             Some(attempt) => {
                 if !attempt.step()? {
-                    self.end_attempt();
+                    self.end_attempt()?;
                 }
             }
         }
@@ -140,7 +144,7 @@ impl DesignRun {
             if let Some(Ending::Hopeless(audit)) = attempt.ending() {
                 let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
                 self.rounds.extend_from_slice(attempt.rounds());
-                self.take(&attempt, status, audit);
+                self.take(&attempt, status, audit)?;
             }
         }
         self.done = true;
@@ -190,7 +194,9 @@ impl DesignRun {
             None => self.first_samples()?,
         };
         self.samples = Some(samples.clone());
-        self.attempt = Some(Attempt::new(structure, samples, &self.options, self.relaxing, beginning)?);
+        let sampled = std::mem::take(&mut self.sampled);
+        let attempt = Attempt::new(structure, samples, &self.options, self.relaxing, beginning, sampled)?;
+        self.attempt = Some(attempt);
         Ok(())
     }
 
@@ -200,14 +206,15 @@ impl DesignRun {
         Ok(Samples::new(&self.problem, &plants, &frequencies)?)
     }
 
-    fn end_attempt(&mut self) {
-        let Some(attempt) = self.attempt.take() else { return };
+    fn end_attempt(&mut self) -> Result<(), DesignError> {
+        let Some(mut attempt) = self.attempt.take() else { return Ok(()) };
+        self.sampled = attempt.take_sampled();
         self.samples = Some(attempt.samples());
         self.rounds.extend_from_slice(attempt.rounds());
         self.before = attempt.feedback().or(self.before.take());
         match attempt.ending() {
             Some(Ending::Met(audit)) => {
-                self.take(&attempt, DesignStatus::Met, audit);
+                self.take(&attempt, DesignStatus::Met, audit)?;
                 self.plan.found = true;
                 self.plan.waiting = fewer_zeros(&self.options.controller, attempt.structure());
                 self.done = self.relaxing || self.plan.waiting.is_empty();
@@ -230,7 +237,7 @@ impl DesignRun {
                 if is_less {
                     let conflicts = conflicts(audit, 0.8 * relaxation_db);
                     let status = DesignStatus::Infeasible(Relaxation { relaxation_db, conflicts });
-                    self.take(&attempt, status, audit);
+                    self.take(&attempt, status, audit)?;
                 }
                 self.done = self.plan.waiting.is_empty();
             }
@@ -243,7 +250,7 @@ impl DesignRun {
             Some(Ending::NotConverged(audit)) => {
                 let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
                 if self.design.is_none() {
-                    self.take(&attempt, status, audit);
+                    self.take(&attempt, status, audit)?;
                 }
                 self.done = self.plan.found || self.relaxing;
             }
@@ -252,10 +259,11 @@ impl DesignRun {
                 self.done = self.plan.found;
             }
             Some(Ending::Hopeless(audit)) => {
-                self.take(&attempt, DesignStatus::NotStabilised, audit);
+                self.take(&attempt, DesignStatus::NotStabilised, audit)?;
                 self.done = true;
             }
         }
+        Ok(())
     }
 
     /// What is left when no structure is waiting: a relaxation, or nothing.
@@ -275,16 +283,18 @@ impl DesignRun {
         }
     }
 
-    fn take(&mut self, attempt: &Attempt, status: DesignStatus, audit: &Audit) {
+    fn take(&mut self, attempt: &Attempt, status: DesignStatus, audit: &Audit) -> Result<(), DesignError> {
         self.design = Some(Design {
             status,
-            controller: attempt.shaping().controller(attempt.x()),
+            controller: attempt.deployed()?,
+            law: attempt.shaping().controller(attempt.x()),
             structure: attempt.structure().clone(),
             objective_db: self.rounds.last().map_or(f64::NAN, |round| round.objective_db),
             audit: audit.clone(),
             binding: binding_limits(audit),
             rounds: self.rounds.clone(),
         });
+        Ok(())
     }
 }
 

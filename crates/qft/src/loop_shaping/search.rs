@@ -22,6 +22,16 @@ pub struct Judgement {
     pub instability: f64,
 }
 
+impl Judgement {
+    /// Of a controller that has no response.
+    pub const UNUSABLE: Judgement = Judgement {
+        objective_db: f64::INFINITY,
+        worst_margin_db: f64::NEG_INFINITY,
+        stable: false,
+        instability: f64::INFINITY,
+    };
+}
+
 /// One margin with its slopes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarginRow {

@@ -2,14 +2,15 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller};
-use phea_dynamics::linear::LinearError;
+use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 
 use super::margins::{Candidate, ColumnLoop, DelayMargins, Demand, bandwidth, candidates, delay_margins};
 use super::sample_stability::SampleStability;
-use super::samples::{Samples, SamplesError};
+use super::samples::{Column, Samples, SamplesError};
 use super::structure::{DECIBELS_PER_NEPER, Structure, StructureResponse};
 use super::{Judgement, MarginRow, SearchProblem, Slopes};
+use crate::closed_loop::Compensation;
 use crate::design::Objective;
 use crate::verification::{PlantPoint, TrackingJudgement};
 
@@ -197,6 +198,25 @@ impl Shaping {
         self.samples.count_shares_of_room(true);
     }
 
+    /// Draws every limit in by this much from now on; see [`Samples::keep_in_reserve`].
+    pub fn keep_in_reserve(&mut self, reserve_db: f64) {
+        self.samples.keep_in_reserve(reserve_db);
+    }
+
+    /// Judges the law of this loop in place of the one at x, whose objective it keeps: what rounded coefficients make of a controller.
+    pub fn judge_deployed(&mut self, x: &[f64], law: &Compensation) -> Judgement {
+        let response = |column: &Column| {
+            let found = law.response(column.frequency);
+            [found.feedback, found.prefilter]
+        };
+        let forward: Vec<[Complex64; 2]> = self.samples.columns().iter().map(response).collect();
+        if !forward.iter().flatten().all(|one| one.is_finite()) {
+            return Judgement::UNUSABLE;
+        }
+        let (stable, instability) = self.stability_of(law.feedback());
+        self.judgement(x, &forward, stable, instability)
+    }
+
     /// Controller and prefilter at x; without a prefilter, the gain 1.
     pub fn controller(&self, x: &[f64]) -> Controller {
         let (own, behind) = self.split(x);
@@ -306,6 +326,18 @@ impl Shaping {
         }
     }
 
+    fn judgement(
+        &mut self,
+        x: &[f64],
+        forward: &[[Complex64; 2]],
+        stable: bool,
+        instability: f64,
+    ) -> Judgement {
+        let worst_margin_db = self.look(forward).worst_db + self.relaxation_db;
+        let (objective_db, _) = self.objective(x, forward, &[]);
+        Judgement { objective_db, worst_margin_db, stable, instability }
+    }
+
     /// Whether every plant is stable, and how far from it the worst one is.
     fn stability(&mut self, x: &[f64]) -> (bool, f64) {
         let timing = &self.samples.problem().timing;
@@ -314,14 +346,18 @@ impl Shaping {
             None => Ok(continuous),
             Some(sample_time_s) => continuous.discretized(sample_time_s, timing.discretization),
         });
-        let Ok(feedback) = feedback else { return (false, f64::INFINITY) };
-        if self.stability.is_stable(&feedback) == Ok(true) {
+        feedback.map_or((false, f64::INFINITY), |feedback| self.stability_of(&feedback))
+    }
+
+    /// The same with this G.
+    fn stability_of(&mut self, feedback: &TransferFunction) -> (bool, f64) {
+        if self.stability.is_stable(feedback) == Ok(true) {
             return (true, 0.0);
         }
         if !self.stability.is_rational() {
             return (false, UNSTABLE);
         }
-        let judgement = self.stability.judge(&feedback);
+        let judgement = self.stability.judge(feedback);
         (false, judgement.map_or(f64::INFINITY, |judgement| judgement.largest_real_part))
     }
 
@@ -395,18 +431,9 @@ impl SearchProblem for Shaping {
     }
 
     fn judge(&mut self, x: &[f64]) -> Judgement {
-        let Some(forward) = self.forward(x) else {
-            return Judgement {
-                objective_db: f64::INFINITY,
-                worst_margin_db: f64::NEG_INFINITY,
-                stable: false,
-                instability: f64::INFINITY,
-            };
-        };
-        let worst_margin_db = self.look(&forward).worst_db + self.relaxation_db;
-        let (objective_db, _) = self.objective(x, &forward, &[]);
+        let Some(forward) = self.forward(x) else { return Judgement::UNUSABLE };
         let (stable, instability) = self.stability(x);
-        Judgement { objective_db, worst_margin_db, stable, instability }
+        self.judgement(x, &forward, stable, instability)
     }
 
     fn slopes(&mut self, x: &[f64]) -> Slopes {

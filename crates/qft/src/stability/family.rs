@@ -153,6 +153,11 @@ impl StabilityAudit {
         true
     }
 
+    /// Takes over plants of the same family within the same loop, whatever its controller, so that none is sampled twice.
+    pub(crate) fn take_over(&mut self, sampled: SampledPlants) {
+        self.sampled = sampled;
+    }
+
     /// Hands over the plants that were judged, as they are within a sampled loop.
     pub(crate) fn take_sampled(&mut self) -> SampledPlants {
         std::mem::take(&mut self.sampled)
@@ -265,8 +270,9 @@ impl StabilityAudit {
     fn badness_at(&self, badness: Badness, values: Vec<f64>) -> f64 {
         let Ok(path) = &self.path else { return f64::NAN };
         let Family::Uncertain(family) = &self.family else { return f64::NAN };
-        let plant = family.plant().coefficients(&values);
-        let Ok(member) = self.compensation.member(plant) else { return f64::NAN };
+        let Ok(member) = self.sampled.member(&self.compensation, family.plant(), &values) else {
+            return f64::NAN;
+        };
         match characteristic(&member, path) {
             Some(Ok(characteristic)) => badness.of(&characteristic).unwrap_or(f64::NAN),
             _ => f64::NAN,

@@ -163,9 +163,14 @@ impl SpecificationAudit {
         }
     }
 
-    /// Takes over plants of the same family within the same loop, so that none is sampled twice.
+    /// Takes over plants of the same family within the same loop, whatever its controller, so that none is sampled twice.
     pub(crate) fn take_over(&mut self, sampled: SampledPlants) {
         self.evaluator.sampled = sampled;
+    }
+
+    /// Hands over the plants that were sampled.
+    pub(crate) fn take_sampled(&mut self) -> SampledPlants {
+        std::mem::take(&mut self.evaluator.sampled)
     }
 
     /// Does a small part of the work; false when there is none left.

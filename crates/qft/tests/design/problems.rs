@@ -8,6 +8,7 @@ use phea_dynamics::uncertain_plant::{
 };
 use phea_qft::audit::AuditRun;
 use phea_qft::closed_loop::Compensation;
+use phea_qft::design::quantisation::CoefficientFormat;
 use phea_qft::design::{
     ControllerChoice, Design, DesignOptions, DesignProblem, DesignRun, DesignStatus, Objective,
     PrefilterChoice,
@@ -130,6 +131,7 @@ pub(crate) fn least_gain(structure: Structure, seed: u64) -> DesignOptions {
         prefilter: PrefilterChoice::None,
         seed,
         tolerance_db: TOLERANCE_DB,
+        coefficients: CoefficientFormat::Double,
     }
 }
 

@@ -2,7 +2,7 @@ use phea_qft::verification::{SpecificationFinding, Verdict, ViolatedBand, WorstC
 use serde::Serialize;
 
 use super::plant::{NamedPlant, PlantNames};
-use super::words::{evidence_key, kind_key, verdict_key};
+use super::words::{evidence_key, kind_key, kind_words, verdict_key};
 use super::{ProjectAudit, Reached};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
@@ -53,6 +53,9 @@ struct DelayMarginRow {
 #[derive(Serialize)]
 struct SpecificationRow<'a> {
     kind: &'static str,
+    /// What it limits, where the kind does not say that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<&'a str>,
     verdict: &'static str,
     evidence: &'static str,
     worst_margin_db: Number,
@@ -104,6 +107,7 @@ fn case(names: &PlantNames, worst: &WorstCase) -> CaseRow {
 
 fn specification<'a>(
     names: &PlantNames,
+    name: &'a str,
     finding: &'a SpecificationFinding,
     reached: Option<Reached>,
 ) -> SpecificationRow<'a> {
@@ -114,6 +118,7 @@ fn specification<'a>(
     };
     SpecificationRow {
         kind: kind_key(&finding.requirement),
+        name: Some(name).filter(|name| *name != kind_words(&finding.requirement)),
         verdict: verdict_key(finding.verdict),
         evidence: evidence_key(finding.evidence),
         worst_margin_db: Number(worst.map_or(f64::NAN, |worst| worst.margin_db)),
@@ -176,7 +181,8 @@ pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
             .specifications
             .iter()
             .zip(&view.reached)
-            .map(|(finding, reached)| specification(names, finding, *reached))
+            .zip(&view.specification_names)
+            .map(|((finding, reached), name)| specification(names, name, finding, *reached))
             .collect(),
     }
 }

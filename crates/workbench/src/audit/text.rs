@@ -1,8 +1,8 @@
 use phea_qft::verification::{SpecificationFinding, StabilityFinding, Verdict, WorstCase};
 
 use super::words::{
-    closed_loop_symbol, evidence_sentence, finding_sentence, frequency_number, kind_words, margin_words,
-    numbered, place_words, verdict_words, worst_at_design,
+    closed_loop_symbol, evidence_sentence, finding_sentence, frequency_number, margin_words, place_words,
+    verdict_words, worst_at_design,
 };
 use super::{PlantNames, ProjectAudit};
 use crate::answer::{significant, table};
@@ -37,7 +37,7 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     let findings = view.audit.specifications.iter().enumerate();
     sentences.extend(findings.map(|(index, finding)| {
         let reached = view.reached.get(index).and_then(Option::as_ref);
-        finding_sentence(index, finding, reached, stable)
+        finding_sentence(&view.numbered(index), finding, reached, stable)
     }));
     sentences
 }
@@ -95,7 +95,7 @@ fn specifications(view: &ProjectAudit) -> String {
         let [design, design_frequency] = margin_at(worst_at_design(finding));
         rows.add_row([
             (index + 1).to_string(),
-            kind_words(&finding.requirement),
+            view.name_of(index).to_string(),
             closed_loop_symbol(&finding.requirement).to_string(),
             verdict_words(finding.verdict).to_string(),
             margin,
@@ -150,7 +150,7 @@ pub(crate) fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
     findings
         .filter_map(|(index, finding)| {
             let worst = finding.worst.as_ref()?;
-            let name = numbered(index, &finding.requirement);
+            let name = view.numbered(index);
             let own = view.names.cells(&worst.plant);
             Some(match &worst.other {
                 None => vec![(name, own)],
@@ -171,7 +171,7 @@ fn violations(view: &ProjectAudit) -> Option<String> {
         for band in &finding.violations {
             let [from, to] = band.band_rad_per_s.map(frequency_number);
             let [margin, frequency] = margin_at(Some(&band.worst));
-            rows.add_row([numbered(index, &finding.requirement), from, to, margin, frequency]);
+            rows.add_row([view.numbered(index), from, to, margin, frequency]);
             any = true;
         }
     }
@@ -196,7 +196,7 @@ fn remarks(view: &ProjectAudit) -> Vec<String> {
     let mut found: Vec<(&str, Vec<String>)> = Vec::new();
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         for remark in &finding.remarks {
-            let name = numbered(index, &finding.requirement);
+            let name = view.numbered(index);
             match found.iter_mut().find(|(text, _)| text == remark) {
                 Some((_, names)) => names.push(name),
                 None => found.push((remark, vec![name])),

@@ -109,19 +109,13 @@ pub(crate) fn worst_at_design(finding: &SpecificationFinding) -> Option<&WorstCa
     finding.at_design_frequencies.iter().min_by(|a, b| a.margin_db.total_cmp(&b.margin_db))
 }
 
-/// A specification by its number, from 1, and kind.
-pub(crate) fn numbered(index: usize, requirement: &Requirement) -> String {
-    format!("{} {}", index + 1, kind_words(requirement))
-}
-
 /// One sentence on a specification: what it says, whether it holds, and where it is worst.
 pub(crate) fn finding_sentence(
-    index: usize,
+    name: &str,
     finding: &SpecificationFinding,
     reached: Option<&Reached>,
     stable: bool,
 ) -> String {
-    let name = numbered(index, &finding.requirement);
     let Some(worst) = &finding.worst else {
         return match finding.verdict {
             Verdict::Violated => format!("{name} is violated: an unstable loop keeps to no specification"),

@@ -4,7 +4,7 @@ use phea_qft::verification::Verdict;
 
 use super::side::Side;
 use crate::answer::significant;
-use crate::audit::{margin_words, numbered, verdict_words};
+use crate::audit::{margin_words, verdict_words};
 use crate::quantity::DisplayUnit;
 
 /// Name and value of everything that a controller is compared by: verdicts first, then size, then margins. The same names for
@@ -13,7 +13,7 @@ pub(crate) fn compared(side: &Side) -> Vec<(String, String)> {
     let mut rows = vec![("verdict".to_string(), verdict_words(side.view.audit.verdict).to_string())];
     rows.extend(side.view.audit.specifications.iter().enumerate().map(|(index, finding)| {
         let margin = finding.worst.as_ref().map_or("-".to_string(), |worst| margin_words(worst.margin_db));
-        (format!("margin of {}", numbered(index, &finding.requirement)), margin)
+        (format!("margin of {}", side.view.numbered(index)), margin)
     }));
     let figures = &side.figures;
     let nominal = figures.nominal.as_ref();

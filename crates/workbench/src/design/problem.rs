@@ -9,7 +9,7 @@ use phea_qft::specification::Requirement;
 use phea_qft::verification::TOLERANCE_DB;
 
 use crate::command::CommandError;
-use crate::control::{ControlError, element, prefilter, sensor, timing};
+use crate::control::{ControlError, element, prefilter, quantisation, sensor, timing};
 use crate::project::{DesignObjective, PartKind, Project, StructurePart};
 use crate::robust::RobustProblem;
 
@@ -59,6 +59,7 @@ pub fn design_options(
         prefilter: prefilter_choice(project, given, design.prefilter_maximum_order)?,
         seed: u64::from(seed.unwrap_or(design.seed)),
         tolerance_db: TOLERANCE_DB,
+        coefficients: quantisation(project)?.coefficients,
     })
 }
 

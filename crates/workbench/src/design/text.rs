@@ -1,5 +1,5 @@
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
-use phea_qft::design::DesignStatus;
+use phea_qft::design::{DesignStatus, Objective};
 use phea_qft::verification::PlantPoint;
 
 use super::comparison::compared;
@@ -7,7 +7,7 @@ use super::factors::factored;
 use super::words::{status_sentence, structure_words};
 use super::{Explanation, ProjectDesign, Rounding};
 use crate::answer::{significant, table};
-use crate::audit::{self, frequency_number, margin_words, numbered, summary};
+use crate::audit::{self, frequency_number, margin_words, summary};
 use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 
@@ -45,7 +45,7 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
             "\nWhat the specifications cost: the limits that the loop touches\n{binding}\n"
         ));
     }
-    out.push_str(&format!("\nRounds of search and audit\n{}\n", rounds(view)));
+    out.push_str(&format!("\nRounds of search and audit\n{}\n  {}\n", rounds(view), seed_sentence(view)));
     out.push_str(&format!("\nAudit of the designed controller\n{}", audit::text(&view.designed.view)));
     out.push_str(&settings_sentence(loaded));
     Ok(out)
@@ -86,12 +86,12 @@ fn laws(view: &ProjectDesign) -> Result<String, LinearError> {
     Ok(lines.concat())
 }
 
-/// What is compared, a row each: the published controller, the designed one, and in a sampled loop the one that was designed without samples.
+/// What is compared, a row each: the given controller, the designed one, and in a sampled loop the one that was designed without samples.
 fn side_by_side(view: &ProjectDesign) -> String {
     let designed = compared(&view.designed);
     let published = view.published.as_ref().map(compared);
     let mut headings = vec![""];
-    headings.extend(published.iter().map(|_| "published"));
+    headings.extend(published.iter().map(|_| "given"));
     headings.push("designed");
     let continuous = view.continuous.as_ref().map(compared);
     headings.extend(continuous.iter().map(|_| "made without samples"));
@@ -127,9 +127,8 @@ fn limits<'a>(
     let mut found = table(&headings);
     let mut any = false;
     for (specification, frequency, margin, plant) in rows {
-        let Some(one) = view.designed.problem.specifications.get(specification) else { continue };
         let mut row = vec![
-            numbered(specification, &one.requirement),
+            view.designed.view.numbered(specification),
             frequency_number(frequency),
             margin_words(margin),
         ];
@@ -156,6 +155,17 @@ fn rounds(view: &ProjectDesign) -> String {
         ]);
     }
     rows.trim_fmt()
+}
+
+/// What another seed may do.
+fn seed_sentence(view: &ProjectDesign) -> String {
+    let better = match (&view.design.status, view.options.objective) {
+        (DesignStatus::Infeasible(_), _) => "may need less relaxation",
+        (DesignStatus::NotConverged { .. } | DesignStatus::NotStabilised, _) => "may find one",
+        (DesignStatus::Met, Objective::BestWorstMargin) => "may end with more margin",
+        (DesignStatus::Met, _) => "may end lower",
+    };
+    format!("begun at random points of seed {}; a local optimum: other seeds {better}", view.options.seed)
 }
 
 /// What was set on the command line is not in the file that a design writes.

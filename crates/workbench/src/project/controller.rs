@@ -125,6 +125,10 @@ pub struct Quantization {
     pub measurement_range: Option<[f64; 2]>,
     /// How the coefficients are kept.
     pub coefficients: Coefficients,
+    /// N (or the plant's output unit), rms: what the rounded command may do to the force.
+    pub allowed_force_error: Option<f64>,
+    /// V (or the plant's input unit), rms: what the rounded measurement may do to the command.
+    pub allowed_command_error: Option<f64>,
 }
 
 /// How coefficients are kept.
@@ -149,6 +153,10 @@ impl Quantization {
         let words = &[("f64", Coefficients::Double), ("f32", Coefficients::Single)];
         let k = plain("coefficients", "How the coefficients are kept.");
         v.choice(k, words, &mut self.coefficients, false);
+        let doc = "What the rounded command may do to the force, rms: a specification.";
+        v.optional(key("allowed_force_error", &FORCE, doc).positive(), &mut self.allowed_force_error);
+        let doc = "What the rounded measurement may do to the command, rms: a specification.";
+        v.optional(key("allowed_command_error", &VOLTAGE, doc).positive(), &mut self.allowed_command_error);
     }
 }
 

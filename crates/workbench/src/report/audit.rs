@@ -8,7 +8,7 @@ use super::typeset::prose;
 use super::{closed_loops, family_steps};
 use crate::audit::{
     ProjectAudit, basis, closed_loop_symbol, frequency_number, frequency_words, margin_words, meaning,
-    numbered, summary, verdict_words, worst_at_design, worst_plants,
+    summary, verdict_words, worst_at_design, worst_plants,
 };
 use crate::command::CommandError;
 use crate::robust::RobustProblem;
@@ -78,7 +78,7 @@ fn margin_cell(worst: Option<&WorstCase>) -> Markup {
 fn specifications(view: &ProjectAudit) -> Markup {
     let row = |(index, finding): (usize, &SpecificationFinding)| {
         vec![
-            html! { (numbered(index, &finding.requirement)) ", " (prose(closed_loop_symbol(&finding.requirement))) },
+            html! { (view.numbered(index)) ", " (prose(closed_loop_symbol(&finding.requirement))) },
             cell(meaning(&finding.requirement)),
             verdict_cell(finding.verdict),
             margin_cell(finding.worst.as_ref()),
@@ -101,7 +101,7 @@ fn violations(view: &ProjectAudit) -> Markup {
         for band in &finding.violations {
             let [from, to] = band.band_rad_per_s.map(frequency_number);
             rows.push(vec![
-                cell(numbered(index, &finding.requirement)),
+                cell(view.numbered(index)),
                 cell(format!("{from} to {to} rad/s")),
                 margin_cell(Some(&band.worst)),
                 cell(view.names.text(&band.worst.plant)),

@@ -9,7 +9,7 @@ use phea_qft::verification::Verdict;
 
 use super::chapter::{Chapter, cell, place, table};
 use crate::answer::{OutputFile, significant};
-use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number, kind_key, kind_words};
+use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number, kind_key};
 use crate::command::CommandError;
 use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, Words, nichols,
@@ -78,13 +78,13 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
             .collect();
         let requirement = &specification.requirement;
         let name = format!("bounds_{}_{}", index + 1, kind_key(requirement));
-        let title = format!("Bounds of specification {}, {}", index + 1, kind_words(requirement));
+        let title = format!("Bounds of specification {}, {}", index + 1, problem.name_of(index));
         let caption = format!(
             "Where the nominal loop may not be, so that every plant keeps {} to its limit; ticks point to the forbidden side.",
             closed_loop_symbol(requirement)
         );
         let input = NicholsInput {
-            bounds: vec![BoundGroup { name: kind_words(requirement), bounds: &bounds }],
+            bounds: vec![BoundGroup { name: problem.name_of(index).to_string(), bounds: &bounds }],
             contours_db: USUAL_CONTOURS_DB.to_vec(),
             ..NicholsInput::default()
         };
@@ -194,8 +194,7 @@ fn placement(problem: &RobustProblem, placement: &Placement) -> Markup {
 }
 
 fn named(problem: &RobustProblem, index: usize) -> String {
-    let kind = problem.specifications.get(index).map_or(String::new(), |one| kind_words(&one.requirement));
-    format!("{} ({kind})", index + 1)
+    format!("{} ({})", index + 1, problem.name_of(index))
 }
 
 /// Frequencies at which no loop at all can keep to the specifications, and which of them collide.

@@ -8,7 +8,7 @@ use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use crate::answer::significant;
-use crate::audit::{closed_loop_symbol, frequency_words, kind_key, kind_words};
+use crate::audit::{closed_loop_symbol, frequency_words, kind_key};
 use crate::figure::{FamilyMagnitudeInput, Figure, MagnitudeCurve, MagnitudeMark, Words, family_magnitude};
 use crate::robust::RobustProblem;
 
@@ -100,7 +100,7 @@ fn figure(
         marks: finding.worst.iter().filter_map(|worst| mark(problem, requirement, finding, worst)).collect(),
         ..FamilyMagnitudeInput::default()
     };
-    let title = format!("Specification {number}, {}", kind_words(requirement));
+    let title = format!("Specification {number}, {}", problem.name_of(number - 1));
     Ok(family_magnitude(Words::new(name, title, caption), &input))
 }
 

@@ -12,13 +12,16 @@ use phea_qft::specification::{
 use super::chapter::{Chapter, cell, table};
 use super::typeset::{prose, typeset};
 use crate::answer::significant;
-use crate::audit::{closed_loop_symbol, frequency_number, frequency_words, kind_words, meaning};
+use crate::audit::{closed_loop_symbol, frequency_number, frequency_words, meaning};
 use crate::command::CommandError;
 use crate::project::Project;
 use crate::quantity::{RATIO, display};
+use crate::robust::RobustProblem;
 use crate::specification::{CheckedWish, SpecificationError, wishes};
 
-pub(super) fn chapter(project: &Project, specifications: &[Specification]) -> Result<Chapter, CommandError> {
+pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
+    let specifications = &problem.specifications;
+    let row = |(index, one)| row(index, problem.name_of(index), one);
     let rows: Vec<Vec<Markup>> = specifications.iter().enumerate().map(row).collect();
     let wishes = wishes(project)?;
     let margins = margins(specifications)?;
@@ -32,7 +35,7 @@ pub(super) fn chapter(project: &Project, specifications: &[Specification]) -> Re
     Ok(Chapter { anchor: "specifications", title: "Specifications", body, figures: vec![] })
 }
 
-fn row((index, specification): (usize, &Specification)) -> Vec<Markup> {
+fn row(index: usize, name: &str, specification: &Specification) -> Vec<Markup> {
     let requirement = &specification.requirement;
     let band = match specification.band_rad_per_s {
         [0.0, f64::INFINITY] => "every frequency".to_string(),
@@ -42,7 +45,7 @@ fn row((index, specification): (usize, &Specification)) -> Vec<Markup> {
         specification.frequencies_rad_per_s.iter().map(|frequency| frequency_number(*frequency)).collect();
     vec![
         cell((index + 1).to_string()),
-        cell(format!("{}: {}", kind_words(requirement), meaning(requirement))),
+        cell(format!("{name}: {}", meaning(requirement))),
         typeset(&demand(requirement)),
         cell(band),
         cell(frequencies.join(", ")),

@@ -5,7 +5,7 @@ use phea_qft::bound::Placement;
 
 use super::{Shaped, Shaping};
 use crate::answer::{significant, table};
-use crate::audit::{frequency_number, margin_words, numbered, stability_sentence};
+use crate::audit::{frequency_number, margin_words, stability_sentence};
 use phea_qft::verification::Verdict;
 
 /// The tables and sentences of `shape`.
@@ -50,8 +50,7 @@ pub fn text(view: &Shaping) -> String {
 fn margins(view: &Shaping) -> String {
     let mut rows = table(&["rad/s", "specification", "margin", "the nominal loop", "worst plant"]);
     for margin in &view.margins {
-        let requirement = view.problem.specifications.get(margin.specification);
-        let name = requirement.map_or(String::new(), |one| numbered(margin.specification, &one.requirement));
+        let name = format!("{} {}", margin.specification + 1, view.problem.name_of(margin.specification));
         let plant = match &margin.other {
             None => view.names.text(&margin.plant),
             Some(other) => format!("{}; {}", view.names.text(&margin.plant), view.names.text(other)),

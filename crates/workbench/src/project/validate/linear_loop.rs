@@ -50,6 +50,16 @@ fn quantization(declared: &Quantization, sample_time: Option<f64>, check: &mut C
             );
         }
     }
+    for (name, allowed, converter, bits) in [
+        ("allowed_force_error", declared.allowed_force_error, "command", declared.command_bits),
+        ("allowed_command_error", declared.allowed_command_error, "measurement", declared.measurement_bits),
+    ] {
+        if allowed.is_some() && bits == 0 {
+            let message =
+                format!("`{name}` limits what the converter of the {converter} does, and there is none");
+            check.error(&format!("{path}.{name}"), message);
+        }
+    }
 }
 
 pub(super) fn sensor(project: &Project, check: &mut Check<'_, '_>) {

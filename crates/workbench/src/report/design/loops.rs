@@ -14,7 +14,7 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
     let alone = view.published.is_none();
     let mut loops = Vec::new();
     let mut violations = Vec::new();
-    for (name, side) in [("designed", Some(&view.designed)), ("published", view.published.as_ref())] {
+    for (name, side) in [("designed", Some(&view.designed)), ("given", view.published.as_ref())] {
         let Some(side) = side else { continue };
         let Some(series) = nominal_loop(&side.problem)? else { continue };
         loops.push(FrequencySeries { name: format!("{name}, nominal plant"), ..series });

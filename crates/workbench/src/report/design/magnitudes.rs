@@ -5,7 +5,7 @@ use phea_qft::closed_loop::Member;
 use phea_qft::specification::{Requirement, Specification};
 
 use super::super::closed_loops::{curve, extreme, limit_curve, mark, quotient, span, spread_mark};
-use crate::audit::{closed_loop_symbol, kind_key, kind_words};
+use crate::audit::{closed_loop_symbol, kind_key};
 use crate::design::{ProjectDesign, Side};
 use crate::figure::{
     FamilyEnvelope, FamilyMagnitudeInput, Figure, MagnitudeCurve, MagnitudeMark, Words, family_magnitude,
@@ -20,7 +20,7 @@ struct Drawn<'a> {
 
 /// One figure for each specification that the designed loop has a margin to.
 pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
-    let sides = [("designed", Some(&view.designed)), ("published", view.published.as_ref())];
+    let sides = [("designed", Some(&view.designed)), ("given", view.published.as_ref())];
     let mut drawn = Vec::new();
     for (name, side) in sides {
         let Some(side) = side else { continue };
@@ -36,6 +36,7 @@ fn figure(drawn: &[Drawn<'_>], index: usize, specification: &Specification) -> O
     let seen: Vec<&Drawn<'_>> = drawn.iter().filter(judged).collect();
     let (first, others) = seen.split_first()?;
     let requirement = &specification.requirement;
+    let title = first.side.view.name_of(index);
     let frequencies = frequencies(&seen, index, specification);
     let by_spread =
         requirement.limits().0.is_some() && seen.iter().any(|one| !one.side.problem.has_prefilter);
@@ -69,10 +70,16 @@ fn figure(drawn: &[Drawn<'_>], index: usize, specification: &Specification) -> O
         tolerance_db: first.side.view.audit.tolerance_db,
         ..FamilyMagnitudeInput::default()
     };
-    Some(family_magnitude(words(index, requirement, quantity, others.is_empty(), by_spread), &input))
+    Some(family_magnitude(words((index, title), requirement, quantity, others.is_empty(), by_spread), &input))
 }
 
-fn words(index: usize, requirement: &Requirement, quantity: &str, alone: bool, by_spread: bool) -> Words {
+fn words(
+    (index, name): (usize, &str),
+    requirement: &Requirement,
+    quantity: &str,
+    alone: bool,
+    by_spread: bool,
+) -> Words {
     let number = index + 1;
     let whose = if alone { "the designed loop" } else { "both loops" };
     let extremes = match requirement.limits().0 {
@@ -80,7 +87,7 @@ fn words(index: usize, requirement: &Requirement, quantity: &str, alone: bool, b
         _ => "The greatest",
     };
     let caption = format!("{extremes} {quantity} of the family in {whose}, against what is allowed.");
-    let title = format!("Specification {number}, {}, of {whose}", kind_words(requirement));
+    let title = format!("Specification {number}, {name}, of {whose}");
     Words::new(format!("design_{number}_{}", kind_key(requirement)), title, caption)
 }
 

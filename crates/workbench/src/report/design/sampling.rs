@@ -2,7 +2,7 @@
 
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
-use crate::audit::{margin_words, numbered};
+use crate::audit::margin_words;
 use crate::design::Side;
 
 /// Where the design that was made without samples fares worst beside the one that was made with them.
@@ -10,7 +10,7 @@ pub(super) fn sentence(sampled: &Side, continuous: &Side) -> String {
     let margin = |finding: &SpecificationFinding| finding.worst.as_ref().map(|worst| worst.margin_db);
     let pairs = sampled.view.audit.specifications.iter().zip(&continuous.view.audit.specifications);
     let changes = pairs.enumerate().filter_map(|(index, (here, there))| {
-        Some((numbered(index, &here.requirement), margin(here)?, margin(there)?))
+        Some((sampled.view.numbered(index), margin(here)?, margin(there)?))
     });
     let most = changes.min_by(|one, other| (one.2 - one.1).total_cmp(&(other.2 - other.1)));
     let all = "The last column is the design for the continuous loop without delay, sampled and delayed as this loop is.";

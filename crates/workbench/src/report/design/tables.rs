@@ -9,14 +9,14 @@ use super::super::chapter::{cell, table};
 use super::super::specifications::function_text;
 use super::super::typeset::{prose, typeset};
 use crate::answer::significant;
-use crate::audit::{PlantNames, frequency_number, margin_words, numbered};
+use crate::audit::{PlantNames, frequency_number, margin_words};
 use crate::design::{ProjectDesign, Side, compared, structure_words};
 
 /// The laws in factored form; those of a sampled loop as they are deployed too.
 pub(super) fn laws(view: &ProjectDesign) -> Result<Markup, LinearError> {
     let mut rows = side_laws("designed", &view.designed)?;
     if let Some(published) = &view.published {
-        rows.extend(side_laws("published", published)?);
+        rows.extend(side_laws("given", published)?);
     }
     Ok(table(&["", "", "law"], 9, &rows))
 }
@@ -48,7 +48,7 @@ pub(super) fn comparison(view: &ProjectDesign) -> Markup {
     let mut headings = vec![""];
     let mut columns = Vec::new();
     if let Some(published) = &view.published {
-        headings.push("published");
+        headings.push("given");
         columns.push(compared(published));
     }
     headings.push("designed");
@@ -116,9 +116,8 @@ fn limits<'a>(view: &ProjectDesign, rows: impl Iterator<Item = LimitRow<'a>>) ->
         if number == plants.len() {
             plants.push(plant);
         }
-        let one = view.designed.problem.specifications.get(specification);
         cells.push(vec![
-            cell(one.map_or(String::new(), |one| numbered(specification, &one.requirement))),
+            cell(view.designed.view.numbered(specification)),
             cell(frequency_number(frequency)),
             cell(margin_words(margin_db)),
             cell(if lettered { plant_letter(number) } else { names.text(plant) }),

@@ -1,0 +1,209 @@
+//! Designs for a computer that keeps few bits of each coefficient.
+
+use phea_dynamics::controller::{Controller, Element, Section, Timing};
+use phea_qft::design::quantisation::{
+    CoefficientFormat, Converter, Quantisation, QuantisationError, rounded,
+};
+use phea_qft::design::{
+    Design, DesignError, DesignOptions, DesignProblem, DesignRun, DesignStatus, Objective,
+};
+use phea_qft::family::{Family, Spacing};
+use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::specification::Requirement;
+use phea_qft::verification::{TrackingJudgement, Verdict};
+
+use crate::problems::{
+    EVERYWHERE, assert_met, audited, boxed, demand, designed, least_gain, problem, rational, stability,
+    uncertain,
+};
+
+const SAMPLE: f64 = 0.01;
+
+/// k/(s + 1), k from 1 to 2.
+fn lag() -> Family {
+    let plant = uncertain(&[("k", 1.0, 1.0, 2.0)], |p| (vec![p[0]], vec![1.0.into(), 1.0.into()]));
+    boxed(plant, Spacing::Linear, 3)
+}
+
+/// |T| <= 1.3 and |S| <= 2 |s/(s + 3)| at 100 Hz.
+fn regulation() -> DesignProblem {
+    let frequencies = [0.1, 1.0, 10.0];
+    let sensitivity = Requirement::Sensitivity(rational(&[2.0, 0.0], &[1.0, 3.0]));
+    let specifications = vec![stability(1.3, &frequencies), demand(sensitivity, &frequencies, EVERYWHERE)];
+    let timing = Timing { sample_time_s: Some(SAMPLE), ..Timing::default() };
+    DesignProblem { timing, ..problem(lag(), specifications) }
+}
+
+fn proportional_integral() -> Structure {
+    let parts = vec![Part::Fixed(Element::Integrator), Part::RealZero { frequency: [0.1, 100.0] }];
+    Structure { sign: 1.0, gain: [0.1, 100.0], parts }
+}
+
+fn fixed(integer_bits: u8, fraction_bits: u8) -> CoefficientFormat {
+    CoefficientFormat::Fixed { integer_bits, fraction_bits }
+}
+
+fn coefficients(controller: &Controller) -> Vec<f64> {
+    let function = controller.feedback.transfer_function().unwrap();
+    let sections = Section::in_series(&function).unwrap();
+    sections.iter().flat_map(|one| [&one.numerator[..], &one.denominator[..]].concat()).collect()
+}
+
+/// A proportional-integral law in z is b0 + b1/z over 1 - 1/z, its integral gain (b0 + b1)/T: steps of 2^-6 in b0 and b1 are steps of 1.6/s in
+/// that gain. Rounding the least that keeps to the sensitivity breaks it; the design for those steps keeps to it.
+#[test]
+fn coarse_coefficients_are_designed_for() {
+    let problem = regulation();
+    let exact = designed(&problem, least_gain(proportional_integral(), 1));
+    assert_met(&problem, &exact, TrackingJudgement::Spread);
+    assert_eq!(exact.controller, exact.law);
+    for fraction_bits in [6, 7] {
+        let format = fixed(4, fraction_bits);
+        let mut afterwards = exact.clone();
+        afterwards.controller = rounded(&exact.law, format).unwrap().controller;
+        let broken = audited(&problem, &afterwards, TrackingJudgement::Spread);
+        assert_eq!(broken.verdict, Verdict::Violated);
+        let options = least_gain(proportional_integral(), 1);
+        let design = designed(&problem, DesignOptions { coefficients: format, ..options });
+        // its audit is that of the controller which it hands out, and that one has the bits
+        assert_met(&problem, &design, TrackingJudgement::Spread);
+        assert_eq!(design.controller, rounded(&design.law, format).unwrap().controller);
+        let step = 2.0_f64.powi(-i32::from(fraction_bits));
+        for coefficient in coefficients(&design.controller) {
+            let steps = coefficient / step;
+            assert!((steps - steps.round()).abs() < 1e-9, "{coefficient}");
+        }
+        assert!(design.objective_db > exact.objective_db, "{} {}", design.objective_db, exact.objective_db);
+        assert!(design.objective_db < exact.objective_db + 6.0, "{:?}", design.rounds);
+    }
+}
+
+/// Of 24 bits nothing is lost that would be seen.
+#[test]
+fn fine_coefficients_cost_nothing() {
+    let problem = regulation();
+    let options = least_gain(proportional_integral(), 1);
+    let exact = designed(&problem, options.clone());
+    let single = designed(&problem, DesignOptions { coefficients: CoefficientFormat::Single, ..options });
+    assert_met(&problem, &single, TrackingJudgement::Spread);
+    assert_ne!(single.controller, single.law);
+    assert!((single.objective_db - exact.objective_db).abs() < 0.01, "{}", single.objective_db);
+}
+
+/// Nothing that needs a proportional gain above one can be kept in numbers below one.
+#[test]
+fn a_format_that_holds_no_controller_is_told() {
+    let options = least_gain(proportional_integral(), 1);
+    let mut run = DesignRun::new(regulation(), DesignOptions { coefficients: fixed(0, 12), ..options });
+    let error = loop {
+        match run.step() {
+            Ok(true) => {}
+            Ok(false) => panic!("{:?}", run.design().map(|design| &design.status)),
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, DesignError::Quantisation(QuantisationError::TooLarge { .. })), "{error}");
+}
+
+/// A continuous controller has no coefficients that could be rounded.
+#[test]
+fn a_continuous_controller_is_not_rounded() {
+    let problem = DesignProblem { timing: Timing::default(), ..regulation() };
+    let options = DesignOptions { coefficients: fixed(0, 1), ..least_gain(proportional_integral(), 1) };
+    let design = designed(&problem, options);
+    assert_eq!((design.status, design.controller), (DesignStatus::Met, design.law));
+}
+
+/// Whatever a converter rounds: 9 bits over 8 units, for a command or a measurement.
+fn converter() -> Converter {
+    Converter::new(9, [-4.0, 4.0]).unwrap()
+}
+
+/// Output and command of k/(s + 1) sample by sample under a reference that wanders, with and without the roundings of this computer: the rms of
+/// the differences.
+fn rms_of_rounding(controller: &Controller, k: f64, quantisation: &Quantisation) -> [f64; 2] {
+    let sampled = controller.sampled(SAMPLE).unwrap();
+    let decay = (-SAMPLE).exp();
+    let mut seed = 7_u64;
+    let mut state = [sampled.at_rest(), sampled.at_rest()];
+    let (mut output, mut squares, mut reference) = ([0.0; 2], [0.0; 2], 0.0);
+    let samples = 100_000;
+    for _ in 0..samples {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let uniform = (seed >> 11) as f64 / (1_u64 << 53) as f64;
+        reference += 0.02 * (uniform - 0.5) - 0.001 * reference;
+        let mut command = [0.0; 2];
+        for (rounds, state) in state.iter_mut().enumerate() {
+            let round = |converter: Option<Converter>, value: f64| match converter {
+                Some(converter) if rounds == 1 => converter.rounded(value),
+                _ => value,
+            };
+            let measured = round(quantisation.measurement, output[rounds]);
+            let command_of = sampled.step(state, reference, measured).command;
+            command[rounds] = round(quantisation.command, command_of);
+            output[rounds] = decay * output[rounds] + (1.0 - decay) * k * command[rounds];
+        }
+        squares[0] += (output[1] - output[0]) * (output[1] - output[0]);
+        squares[1] += (command[1] - command[0]) * (command[1] - command[0]);
+    }
+    squares.map(|sum| (sum / f64::from(samples)).sqrt())
+}
+
+/// The design with the greatest worst margin among those whose rounding does no more than this, rms.
+fn allowed(quantisation: &Quantisation, of_output: f64, of_command: f64) -> (DesignProblem, Design) {
+    let mut problem = regulation();
+    let frequencies = vec![0.1, 1.0, 10.0, 100.0];
+    problem.specifications.extend(quantisation.force_specification(of_output, frequencies.clone()));
+    problem.specifications.extend(quantisation.command_specification(of_command, frequencies));
+    let objective = Objective::BestWorstMargin;
+    let options = DesignOptions { objective, ..least_gain(proportional_integral(), 1) };
+    let design = designed(&problem, options);
+    assert_met(&problem, &design, TrackingJudgement::Spread);
+    (problem, design)
+}
+
+fn binds(design: &Design, specification: usize) -> bool {
+    let worst = |index: usize| design.audit.specifications[index].worst.as_ref().unwrap().margin_db;
+    let least = (0..design.audit.specifications.len()).map(worst).fold(f64::INFINITY, f64::min);
+    worst(specification) < least + 0.01 && design.binding.iter().any(|one| one.specification == specification)
+}
+
+/// What the rounded measurement may do to the command limits |G/(1+L)|: the less it may do, the less gain the controller has at pi/T, and the
+/// command of the loop that rounds keeps to it.
+#[test]
+fn an_allowed_error_of_the_command_binds_the_gain() {
+    let quantisation = Quantisation { measurement: Some(converter()), ..Quantisation::default() };
+    let step = converter().step();
+    let mut last = f64::INFINITY;
+    for allowed_rms in [20.0 * step, 8.0 * step, 3.5 * step] {
+        let (_, design) = allowed(&quantisation, 1.0, allowed_rms);
+        let function = design.law.feedback.transfer_function().unwrap();
+        let gain = function.gain().abs();
+        assert!(gain < 0.9 * last, "{gain} after {last}");
+        last = gain;
+        assert!(allowed_rms > 10.0 * step || binds(&design, 2), "{allowed_rms}: {:?}", design.binding);
+        for k in [1.0, 1.5, 2.0] {
+            let [_, rms] = rms_of_rounding(&design.controller, k, &quantisation);
+            assert!(rms < allowed_rms && rms > 0.02 * allowed_rms, "{rms} of {allowed_rms}");
+        }
+    }
+}
+
+/// What the rounded command may do to the output limits |P/(1+L)|, which is 1/|G| where the loop is strong: here the less it may do, the
+/// more gain it takes.
+#[test]
+fn an_allowed_error_of_the_output_binds_the_loop() {
+    let quantisation = Quantisation { command: Some(converter()), ..Quantisation::default() };
+    let step = converter().step();
+    let mut last = 0.0;
+    for allowed_rms in [0.1 * step, 0.016 * step] {
+        let (_, design) = allowed(&quantisation, allowed_rms, 1.0);
+        let gain = design.law.feedback.transfer_function().unwrap().gain().abs();
+        assert!(gain > 1.1 * last, "{gain} after {last}");
+        last = gain;
+        for k in [1.0, 1.5, 2.0] {
+            let [rms, _] = rms_of_rounding(&design.controller, k, &quantisation);
+            assert!(rms < allowed_rms && rms > 0.02 * allowed_rms, "{rms} of {allowed_rms}");
+        }
+    }
+}
