@@ -57,7 +57,11 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     /// f(u), given f(u) and f'(u) as numbers.
     #[inline(always)]
     fn chain(self, value: S, slope: S) -> Self {
-        Dual { value, gradient: self.gradient.map(|g| slope * g) }
+        let mut gradient = self.gradient;
+        for g in &mut gradient {
+            *g = slope * *g;
+        }
+        Dual { value, gradient }
     }
 
     /// f(u, v), given its value and its two partial derivatives.
@@ -138,7 +142,11 @@ impl<const N: usize, S: Scalar> Neg for Dual<N, S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Dual { value: -self.value, gradient: self.gradient.map(|g| -g) }
+        let mut gradient = self.gradient;
+        for g in &mut gradient {
+            *g = -*g;
+        }
+        Dual { value: -self.value, gradient }
     }
 }
 
@@ -150,7 +158,11 @@ where
 
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
-        Dual { value: self.value.times(factor), gradient: self.gradient.map(|g| g.times(factor)) }
+        let mut gradient = self.gradient;
+        for g in &mut gradient {
+            *g = g.times(factor);
+        }
+        Dual { value: self.value.times(factor), gradient }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

@@ -31,7 +31,11 @@ impl<const L: usize> From<f64> for Lanes<L> {
 impl<const L: usize> Lanes<L> {
     #[inline(always)]
     fn each(self, function: impl Fn(f64) -> f64) -> Self {
-        Lanes(self.0.map(function))
+        let mut lanes = self.0;
+        for lane in &mut lanes {
+            *lane = function(*lane);
+        }
+        Lanes(lanes)
     }
 
     #[inline(always)]

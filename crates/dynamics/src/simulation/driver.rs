@@ -5,7 +5,7 @@ use super::history::NODES;
 use super::passage::Passage;
 use super::propagator::Propagator;
 use super::rosenbrock::{DIRECTIONS, Extension, Rosenbrock, STAGE_TIMES, StepInputs};
-use super::slot::{Slot, observe, observe_end};
+use super::slot::Slot;
 use super::{Course, Lane, System};
 use crate::scalar::{Dependence, Dual};
 
@@ -60,7 +60,12 @@ struct Drive<'a, S, O> {
 }
 
 struct Between<S> {
-    extensions: Vec<Extension<S>>,
+    /// States over the step, those that were asked for.
+    extensions: Vec<Option<Extension<S>>>,
+    /// Whether the step was taken with known matrices.
+    propagated: bool,
+    /// Those an observer wants, in its lane.
+    wanted: Vec<Extension<f64>>,
     /// State at the end of the step.
     end: Vec<S>,
     state: Vec<S>,
@@ -137,7 +142,9 @@ where
             inputs: StepInputs { stages, slopes: none.clone(), moving: false },
             indicators: vec![zero; system.indicators()],
             between: Between {
-                extensions: Vec::new(),
+                extensions: vec![None; states],
+                propagated: false,
+                wanted: Vec::new(),
                 end: vec![zero; states],
                 state: vec![zero; states],
                 inputs: none,
@@ -205,7 +212,8 @@ where
         let error =
             self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
         self.learn(error);
-        self.between.extensions.clear();
+        self.between.extensions.fill(None);
+        self.between.propagated = false;
         self.between.end.copy_from_slice(&self.method.end);
         self.indicate_ends(system);
         for lane in 0..S::COUNT {
@@ -215,7 +223,6 @@ where
             }
             slot.passage.work.evaluations += 7;
             if slot.passage.judge(error.lane(lane)) {
-                self.extend(|drive, index, start| drive.method.extension(index, start));
                 self.take(system, lane);
             } else if slot.passage.work.steps + slot.passage.work.rejected >= self.settings.maximum_steps {
                 slot.passage.status = Some(Status::TooManySteps { time_s: slot.passage.time_s });
@@ -265,7 +272,8 @@ where
         }
         let (inputs, tolerance) = (&self.inputs.stages[0], self.settings.tolerance);
         let error = self.propagator.attempt(system, &self.state, inputs, &self.method, tolerance);
-        self.between.extensions.clear();
+        self.between.extensions.fill(None);
+        self.between.propagated = true;
         self.between.end.copy_from_slice(&self.propagator.end);
         let mut all = true;
         for lane in 0..S::COUNT {
@@ -282,10 +290,6 @@ where
         self.indicate_ends(system);
         for lane in 0..S::COUNT {
             if self.slots[lane].as_ref().is_some_and(|slot| slot.propagated) {
-                self.extend(|drive, index, start| {
-                    let slopes = drive.propagator.rates.each_ref().map(|rates| rates[index] * drive.step);
-                    Extension::cubic([start, drive.between.end[index]], slopes)
-                });
                 self.take(system, lane);
             }
         }
@@ -305,12 +309,20 @@ where
         }
     }
 
-    /// Coefficients of every state over the step, once for all lanes.
-    fn extend(&mut self, extension: impl Fn(&Self, usize, S) -> Extension<S>) {
-        if self.between.extensions.is_empty() {
-            let all = self.state.iter().enumerate().map(|(index, &start)| extension(self, index, start));
-            self.between.extensions = all.collect();
+    /// A state over the step, found once for all lanes.
+    fn extension(&mut self, index: usize) -> Extension<S> {
+        if let Some(known) = self.between.extensions[index] {
+            return known;
         }
+        let start = self.state[index];
+        let extension = if self.between.propagated {
+            let slopes = self.propagator.rates.each_ref().map(|rates| rates[index] * self.step);
+            Extension::cubic([start, self.between.end[index]], slopes)
+        } else {
+            self.method.extension(index, start)
+        };
+        self.between.extensions[index] = Some(extension);
+        extension
     }
 
     /// Moves one lane to the end of the step it took.
@@ -318,23 +330,42 @@ where
         self.fresh = true;
         self.send_waves(system, lane);
         self.find_events(system, lane);
+        self.observe(lane);
         let Some(slot) = &mut self.slots[lane] else { return };
-        observe(slot, &self.between.extensions, lane, slot.passage.end_s());
         for (state, end) in self.state.iter_mut().zip(&self.between.end) {
             *state = state.with_lane(lane, end.lane(lane));
         }
         slot.passage.arrive();
         if slot.passage.status == Some(Status::Completed) {
-            observe_end(slot, &self.state, lane);
+            slot.observe_end(&self.state, lane);
+        }
+    }
+
+    /// Shows the observer of a lane every row before the end of the step.
+    fn observe(&mut self, lane: usize) {
+        let Some(slot) = &self.slots[lane] else { return };
+        if slot.passage.next_row_s() >= slot.passage.end_s() {
+            return;
+        }
+        self.between.wanted.clear();
+        for place in 0.. {
+            let wanted =
+                self.slots[lane].as_ref().and_then(|slot| slot.observer.wanted().get(place).copied());
+            let Some(index) = wanted else { break };
+            let extension = self.extension(index).lane(lane);
+            self.between.wanted.push(extension);
+        }
+        if let Some(slot) = &mut self.slots[lane] {
+            slot.observe(&self.between.wanted);
         }
     }
 
     /// State and inputs of one lane at a part of the step it took.
     fn look(&mut self, lane: usize, part: f64) {
-        let Some(slot) = &mut self.slots[lane] else { return };
-        for (state, extension) in self.between.state.iter_mut().zip(&self.between.extensions) {
-            *state = extension.at(S::from(part));
+        for index in 0..self.state.len() {
+            self.between.state[index] = self.extension(index).at(S::from(part));
         }
+        let Some(slot) = &mut self.slots[lane] else { return };
         slot.passage.inputs_within(part, &mut slot.inputs);
         set_lane(&mut self.between.inputs, lane, &slot.inputs);
     }

@@ -132,6 +132,11 @@ impl<'a> Passage<'a> {
         };
     }
 
+    /// Time of the next row.
+    pub(super) fn next_row_s(&self) -> f64 {
+        self.row as f64 * self.course.output_step_s
+    }
+
     /// Length of the step to the next break, if no input moves and no row is looked at on the way.
     pub(super) fn whole_step(&self) -> Option<f64> {
         let step_s = self.goal_s - self.time_s;

@@ -17,51 +17,45 @@ pub(super) struct Slot<'a, O> {
     pub(super) inputs: Vec<f64>,
 }
 
-/// Shows the observer every row before this time.
-pub(super) fn observe<S: Lane, O: Observer>(
-    slot: &mut Slot<'_, O>,
-    extensions: &[Extension<S>],
-    lane: usize,
-    before_s: f64,
-) {
-    let Slot { passage, observer, states, inputs, .. } = slot;
-    let (start_s, step_s) = (passage.time_s, passage.step_s);
-    loop {
-        let time_s = passage.row as f64 * passage.course.output_step_s;
-        if time_s >= before_s {
+impl<O: Observer> Slot<'_, O> {
+    /// Shows the observer every row before the end of the step, from the states it wants over the step.
+    pub(super) fn observe(&mut self, wanted: &[Extension<f64>]) {
+        let Slot { passage, observer, states, inputs, .. } = self;
+        let (start_s, step_s, before_s) = (passage.time_s, passage.step_s, passage.end_s());
+        let seen = if observer.wants_inputs() { inputs.len() } else { 0 };
+        loop {
+            let time_s = passage.next_row_s();
+            if time_s >= before_s {
+                return;
+            }
+            let part = ((time_s - start_s) / step_s).max(0.0);
+            for (place, extension) in states.iter_mut().zip(wanted) {
+                *place = extension.at(part);
+            }
+            if seen > 0 {
+                passage.inputs_at(time_s, inputs);
+            }
+            observer.observe(time_s, &states[..wanted.len()], &inputs[..seen]);
+            passage.row += 1;
+        }
+    }
+
+    /// Shows the observer the last row, at the end of the course.
+    pub(super) fn observe_end<S: Lane>(&mut self, state: &[S], lane: usize) {
+        let Slot { passage, observer, states, inputs, .. } = self;
+        let duration_s = passage.course.duration_s;
+        if passage.next_row_s() > duration_s * (1.0 + 4.0 * f64::EPSILON) {
             return;
         }
-        let part = ((time_s - start_s) / step_s).max(0.0);
         let mut count = 0;
         for (place, &index) in states.iter_mut().zip(observer.wanted()) {
-            *place = extensions.get(index).map_or(f64::NAN, |extension| extension.lane(lane).at(part));
+            *place = state.get(index).map_or(f64::NAN, |state| state.lane(lane));
             count += 1;
         }
-        let wanted = if observer.wants_inputs() { inputs.len() } else { 0 };
-        if wanted > 0 {
-            passage.inputs_at(time_s, inputs);
+        let seen = if observer.wants_inputs() { inputs.len() } else { 0 };
+        if seen > 0 {
+            passage.inputs_at(duration_s, inputs);
         }
-        observer.observe(time_s, &states[..count], &inputs[..wanted]);
-        passage.row += 1;
+        observer.observe(duration_s, &states[..count], &inputs[..seen]);
     }
-}
-
-/// Shows the observer the last row, at the end of the course.
-pub(super) fn observe_end<S: Lane, O: Observer>(slot: &mut Slot<'_, O>, state: &[S], lane: usize) {
-    let Slot { passage, observer, states, inputs, .. } = slot;
-    let time_s = passage.row as f64 * passage.course.output_step_s;
-    let duration_s = passage.course.duration_s;
-    if time_s > duration_s * (1.0 + 4.0 * f64::EPSILON) {
-        return;
-    }
-    let mut count = 0;
-    for (place, &index) in states.iter_mut().zip(observer.wanted()) {
-        *place = state.get(index).map_or(f64::NAN, |state| state.lane(lane));
-        count += 1;
-    }
-    let wanted = if observer.wants_inputs() { inputs.len() } else { 0 };
-    if wanted > 0 {
-        passage.inputs_at(duration_s, inputs);
-    }
-    observer.observe(duration_s, &states[..count], &inputs[..wanted]);
 }
