@@ -52,9 +52,6 @@ use equations::constant;
 use signals::ground_of;
 use state::Layout;
 
-/// Typical pressure in Pa and flow in m3/s of the states of lines.
-const LINE_SCALES: [f64; 2] = [1e5, 1e-5];
-
 /// An actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of them.
 ///
 /// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]), and then the waves that arrive
@@ -237,20 +234,15 @@ impl<S: Scalar> Plant<S> for Machine<S> {
     }
 
     fn scales(&self) -> Vec<S> {
-        let mut scales = vec![0.0; self.layout.count()];
-        self.layout.write(&state::scales(), &mut scales);
-        for (places, line) in self.layout.lines_mut(&mut scales).into_iter().zip(&self.lines) {
-            places.copy_from_slice(&line.scales(LINE_SCALES[0], LINE_SCALES[1]));
-        }
-        scales.into_iter().map(S::from).collect()
+        self.typical_vector()
     }
 
     fn command_scale(&self) -> S {
-        S::from(1.0)
+        self.typical_command()
     }
 
     fn measurement_scale(&self) -> S {
-        S::from(1e3)
+        self.typical_force()
     }
 
     #[inline]

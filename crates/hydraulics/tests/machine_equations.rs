@@ -128,7 +128,7 @@ fn some_state(machine: &Machine, noise: &mut Noise) -> Instant {
     state[2] = 35e5 + 25e5 * noise.next();
     state[3] = 35e5 + 25e5 * noise.next();
     for (value, scale) in state.iter_mut().zip(machine.scales()).skip(6) {
-        if scale == 1e5 {
+        if scale == machine.scales()[2] {
             *value = 60e5 + 15e5 * noise.next();
         }
     }

@@ -189,16 +189,58 @@ fn two_parts<T>(vector: &[T], behind: usize, [first, second]: [usize; 2]) -> [&[
     }
 }
 
-/// Typical magnitudes of the states, by which errors are measured.
-pub(super) fn scales() -> MachineState {
-    MachineState {
-        spool: SpoolState { spool: 1.0, spool_rate: 1e3, spool_friction: 1e-2, magnetic_lag: 1e-2 },
-        pressure_a: 1e5,
-        pressure_b: 1e5,
-        deflection: 1e-4,
-        velocity: 1e-2,
-        bristle: 1e-5,
-        load: LoadMotion { position: 1e-4, velocity: 1e-2 },
-        supply_pressure: 1e5,
+impl<S: Scalar> Machine<S> {
+    /// A tenth of what the supply can push with, in N: the magnitude from which those of the states follow.
+    pub(super) fn typical_force(&self) -> S {
+        self.typical_pressure() * (self.cylinder.area_a + self.cylinder.area_b) / S::from(2.0)
+    }
+
+    fn typical_pressure(&self) -> S {
+        (self.supply.pressure - self.supply.tank_pressure) / S::from(10.0)
+    }
+
+    /// A tenth of the valve's nominal voltage, in V.
+    pub(super) fn typical_command(&self) -> S {
+        self.valve.nominal_voltage / S::from(10.0)
+    }
+
+    /// Typical magnitudes of the states, by which errors are measured: what the typical force and command make of each.
+    fn typical_state(&self) -> MachineState<S> {
+        let (command, pressure, force) =
+            (self.typical_command(), self.typical_pressure(), self.typical_force());
+        let deflection = force / self.sensor_stiffness;
+        let swing = |mass: S| force / (self.sensor_stiffness * mass).sqrt();
+        let velocity = swing(self.cylinder.moving_mass);
+        let memory = command / S::from(100.0);
+        MachineState {
+            spool: SpoolState {
+                spool: command,
+                spool_rate: command * self.valve.natural_frequency,
+                spool_friction: memory,
+                magnetic_lag: memory,
+            },
+            pressure_a: pressure,
+            pressure_b: pressure,
+            deflection,
+            velocity,
+            bristle: self.friction.bristle_stiffness().map_or(deflection, |stiffness| force / stiffness),
+            load: LoadMotion { position: deflection, velocity: self.load.mass().map_or(velocity, swing) },
+            supply_pressure: pressure,
+        }
+    }
+
+    /// The same in the order of the vector, the states of lines included.
+    pub(super) fn typical_vector(&self) -> Vec<S> {
+        let typical = self.typical_state();
+        let flow = typical.velocity * self.cylinder.area_a;
+        let mut vector = vec![S::from(0.0); self.layout.count()];
+        self.layout.write(&typical, &mut vector);
+        for (places, line) in self.layout.lines_mut(&mut vector).into_iter().zip(&self.lines) {
+            let (pressures, flows) = (line.scales(1.0, 0.0), line.scales(0.0, 1.0));
+            for (place, (of_pressure, of_flow)) in places.iter_mut().zip(pressures.into_iter().zip(flows)) {
+                *place = S::from(of_pressure) * typical.pressure_a + S::from(of_flow) * flow;
+            }
+        }
+        vector
     }
 }
