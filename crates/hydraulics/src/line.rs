@@ -1,10 +1,34 @@
-//! The line between a valve port and a cylinder chamber: hose, pipe or plain volume.
+//! The line between a valve port and a cylinder chamber: hose, pipe or plain volume, and what it does in motion.
+//!
+//! [`Line`] says what it is, [`DynamicLine`] what a machine calculates: capacities with or without inertances
+//! ([`Segments`]), a wall that creeps ([`StandardLinearSolid`]), one wave ([`TransmissionLine`]) or two ([`TwoWaveHose`]).
 
+mod attenuation;
+mod braided_wall;
+mod conduit;
+mod dynamic_line;
 mod hose;
+mod laminar_friction;
+mod line_response;
 mod pipe;
+mod segments;
+mod standard_linear_solid;
+mod transmission_line;
+mod travelling_waves;
+mod two_wave;
 
+pub use braided_wall::BraidedWall;
+pub use conduit::{Conduit, LineError};
+pub use dynamic_line::DynamicLine;
 pub use hose::{Hose, Stiffening, static_hose_modulus};
+pub use laminar_friction::friction_factor;
+pub use line_response::LineResponse;
 pub use pipe::{Anchoring, Pipe, PipeWall, pipe_wall_compliance};
+pub use segments::{LaminarFriction, Segments};
+pub use standard_linear_solid::StandardLinearSolid;
+pub use transmission_line::{END_SHARE, TransmissionLine};
+pub use travelling_waves::TravellingWaves;
+pub use two_wave::{HoseWave, TwoWaveHose, TwoWaveLine};
 
 use std::f64::consts::FRAC_PI_4;
 

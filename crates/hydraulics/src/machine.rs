@@ -10,11 +10,13 @@
 //! bristles       dz/dt                                          thesis (4.30), corrected: LuGre
 //! load           prescribed, or dx_L/dt, dv_L/dt                LoadModel
 //! supply         constant, or dp_S/dt                           PowerUnit
+//! lines          lumped, or states and waves of their own       DynamicLine
 //! ```
 //!
-//! q_A and q_B are the flows of the four edges into the chambers. Nothing is clamped: a chamber below vapour pressure, a
+//! q_A and q_B are the flows of the four edges into the chambers, through the lines if these have dynamics of their own. Nothing is clamped: a chamber below vapour pressure, a
 //! piston beyond its stroke or in its stop, a load at its wall are indicators whose change of sign an integrator reports.
 
+mod balance;
 mod chambers;
 mod contact;
 mod equations;
@@ -30,7 +32,7 @@ pub use chambers::{AeratedChambers, Chambers};
 pub use contact::Contact;
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, LoadMotion};
-pub use options::{LineDynamics, MachineError, MachineOptions, VAPOUR_PRESSURE_ABSOLUTE};
+pub use options::{MachineError, MachineOptions, VAPOUR_PRESSURE_ABSOLUTE};
 pub use power_unit::{Accumulator, PowerUnit, PumpLimited};
 pub use signals::{INDICATORS, SIGNALS};
 pub use start::{Beginning, Start};
@@ -44,6 +46,7 @@ use crate::cylinder::Cylinder;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::force_sensor;
 use crate::friction::MovingFriction;
+use crate::line::{DynamicLine, Segments};
 use crate::servovalve::{Servovalve, SpoolImperfection, Supply};
 use equations::constant;
 use signals::ground_of;
@@ -51,8 +54,8 @@ use state::Layout;
 
 /// An actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of them.
 ///
-/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]); its states are named by
-/// [`MachineState`].
+/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]), and then the waves that arrive
+/// from line A and line B; its states are named by [`MachineState`].
 ///
 /// # Example
 /// A machine at rest stays at rest.
@@ -82,6 +85,7 @@ pub struct Machine<S = f64> {
     power_unit: PowerUnit<S>,
     cylinder: Cylinder<S>,
     chambers: Chambers<S>,
+    lines: [DynamicLine<S>; 2],
     internal_leakage: Option<S>,
     end_stops: Option<Contact<S>>,
     friction: MovingFriction<S>,
@@ -106,7 +110,7 @@ impl Machine {
         let friction = MovingFriction::new(&components.friction, options.friction_regular_velocity)
             .ok_or(MachineError::StaticFriction)?;
         let Supply { pressure, tank_pressure } = components.supply;
-        let LineDynamics::Lumped = options.line_dynamics;
+        let none = DynamicLine::Segments(Segments::lumped(0.0));
         let mut machine = Machine {
             valve: components.valve,
             spool: options.spool,
@@ -114,7 +118,14 @@ impl Machine {
             supply: components.supply,
             power_unit: options.power_unit,
             cylinder: components.cylinder,
-            chambers: Chambers::new(actuator, options.member),
+            chambers: match options.lines {
+                None => Chambers::new(actuator, options.member),
+                Some(lines) => {
+                    let added = lines.map(|line| line.chamber_compliance());
+                    Chambers::behind_lines(actuator, options.member, added)
+                }
+            },
+            lines: options.lines.unwrap_or([none; 2]),
             internal_leakage: options.internal_leakage,
             end_stops: options.end_stops,
             friction,
@@ -124,27 +135,25 @@ impl Machine {
             layout: Layout::default(),
         };
         machine.layout = Layout::of(&machine);
-        let volumes = [
-            components.cylinder.dead_volume_a + components.line_a.volume(),
-            components.cylinder.dead_volume_b + components.line_b.volume(),
-        ];
-        machine.check_ends(volumes)?;
+        machine.check_ends()?;
         Ok(machine)
     }
 
-    /// Refuses end stops into which the supply pressure presses the piston further than these volumes in m3 reach.
-    fn check_ends(&self, [volume_a, volume_b]: [f64; 2]) -> Result<(), MachineError> {
+    /// Refuses end stops into which the supply pressure presses the piston further than its chambers reach.
+    fn check_ends(&self) -> Result<(), MachineError> {
         let Some(contact) = self.end_stops else {
             return Ok(());
         };
-        let Cylinder { area_a, area_b, .. } = self.cylinder;
-        let pressure = self.supply.pressure;
+        let pressure = self.supply.pressure.max(0.0);
+        let Cylinder { area_a, area_b, stroke, .. } = self.cylinder;
+        let state = MachineState { pressure_a: pressure, pressure_b: pressure, ..MachineState::zero() };
         // At the A end chamber B presses, and the other way round.
-        for (volume, area, pressing) in [(volume_a, area_a, area_b), (volume_b, area_b, area_a)] {
-            let penetration = pressure.max(0.0) * pressing / contact.stiffness;
-            let left = volume - area * penetration;
-            if left <= 0.0 {
-                return Err(MachineError::ChamberVanishes { penetration, volume: left });
+        for (end, away, pressing) in [(0.0, -1.0, area_b), (stroke, 1.0, area_a)] {
+            let penetration = pressure * pressing / contact.stiffness;
+            let [compliance_a, compliance_b] = self.compliance(&state, end + away * penetration);
+            let compliance = compliance_a.min(compliance_b);
+            if compliance <= 0.0 {
+                return Err(MachineError::ChamberVanishes { penetration, compliance });
             }
         }
         Ok(())
@@ -162,6 +171,7 @@ impl<S: Copy> Machine<S> {
             power_unit: self.power_unit.convert(of),
             cylinder: self.cylinder.convert(of),
             chambers: self.chambers.convert(of),
+            lines: self.lines.map(|line| line.convert(of)),
             internal_leakage: self.internal_leakage.map(&mut *of),
             end_stops: self.end_stops.map(|contact| contact.convert(of)),
             friction: self.friction.convert(of),
@@ -220,27 +230,24 @@ impl<S: Scalar> Plant<S> for Machine<S> {
     }
 
     fn inputs(&self) -> usize {
-        2
+        self.layout.inputs()
     }
 
     fn scales(&self) -> Vec<S> {
-        let mut scales = vec![0.0; self.layout.count()];
-        self.layout.write(&state::scales(), &mut scales);
-        scales.into_iter().map(S::from).collect()
+        self.typical_vector()
     }
 
     fn command_scale(&self) -> S {
-        S::from(1.0)
+        self.typical_command()
     }
 
     fn measurement_scale(&self) -> S {
-        S::from(1e3)
+        self.typical_force()
     }
 
     #[inline]
     fn rates<T: Scalar + From<S>>(&self, state: &[T], command: T, inputs: &[T], rates: &mut [T]) {
-        let state = self.layout.read(state);
-        self.layout.write(&self.state_rates(&state, command, &ground_of(inputs)), rates);
+        self.write_rates(state, command, inputs, rates);
     }
 
     #[inline]
@@ -250,6 +257,14 @@ impl<S: Scalar> Plant<S> for Machine<S> {
 
     fn disturbance<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T {
         self.load_of(&self.layout.read(state), &ground_of(inputs)).velocity
+    }
+
+    fn delays(&self) -> Vec<S> {
+        self.lines.iter().flat_map(|line| line.delays()).collect()
+    }
+
+    fn outgoing<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
+        self.write_outgoing(state, inputs, waves);
     }
 
     fn indicators(&self) -> usize {

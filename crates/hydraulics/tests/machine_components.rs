@@ -15,7 +15,7 @@ use phea_hydraulics::machine::{
 };
 use phea_hydraulics::operating_point::{Condition, Load, operating_point};
 use phea_hydraulics::reference_rig::{
-    benchmark_components, components, cylinder, hose_line, pipe_line, valve,
+    benchmark_components, components, cylinder, hose_line, measured_spool, pipe_line, valve,
 };
 use phea_hydraulics::servovalve::{SpoolImperfection, SpoolState};
 use phea_hydraulics::stiffness::{StiffnessModel, compliance_at};
@@ -138,12 +138,7 @@ fn triangle(phase: f64) -> f64 {
 #[test]
 fn a_slow_cycle_finds_null_at_bias_and_half_width() {
     for threshold in [None, Some(0.05)] {
-        let spool = SpoolImperfection {
-            null_bias: 0.014,
-            hysteresis_width: Some(0.128),
-            threshold,
-            rate_limit: None,
-        };
+        let spool = SpoolImperfection { threshold, ..measured_spool() };
         let track = spool_run(&spool, 16.0, |time| 0.6 * triangle(time / 8.0));
         let crossings: Vec<f64> = track[70_000..]
             .windows(2)

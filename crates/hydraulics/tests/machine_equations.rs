@@ -10,13 +10,17 @@ use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, Stribeck};
-use phea_hydraulics::line::Member;
+use phea_hydraulics::line::{
+    Conduit, DynamicLine, END_SHARE, LaminarFriction, Member, Segments, TransmissionLine,
+};
 use phea_hydraulics::machine::{
     Accumulator, Contact, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, PowerUnit,
     PumpLimited,
 };
 use phea_hydraulics::operating_point::{Condition, Load, operating_point};
-use phea_hydraulics::reference_rig::{benchmark_components, components, cylinder, hose_line, pipe_line};
+use phea_hydraulics::reference_rig::{
+    benchmark_components, components, cylinder, hose_line, measured_spool, pipe_line,
+};
 use phea_hydraulics::servovalve::{Direction, Servovalve, SpoolImperfection};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{TwoPressureModel, linearize, two_pressure_linear_parameters};
@@ -41,37 +45,37 @@ fn rates_of(machine: &Machine, state: &[f64], command: f64, inputs: &[f64]) -> V
     rates
 }
 
-/// Everything a machine can have, on two very different actuators.
-fn machines() -> Vec<Machine> {
-    let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
+fn pump() -> PumpLimited {
     let accumulator = Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_index: 1.3 };
-    let pump = PumpLimited {
+    PumpLimited {
         pump_flow: 1.633e-4,
         relief_override: 5e5,
         volume: 5e-4,
         effective_bulk_modulus: 1e9,
         accumulator: Some(accumulator),
-    };
-    let spool = SpoolImperfection {
-        null_bias: 0.014,
-        hysteresis_width: Some(0.128),
-        threshold: Some(0.04),
-        rate_limit: Some(4000.0),
-    };
-    let full = MachineOptions {
-        spool,
+    }
+}
+
+/// Everything at once.
+fn full() -> MachineOptions {
+    let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
+    MachineOptions {
+        spool: SpoolImperfection { threshold: Some(0.04), rate_limit: Some(4000.0), ..measured_spool() },
         internal_leakage: Some(3e-13),
         end_stops: Some(contact),
-        power_unit: PowerUnit::PumpLimited(pump),
+        friction_regular_velocity: Some(1e-3),
+        power_unit: PowerUnit::PumpLimited(pump()),
         load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 2e-3, contact },
         ..MachineOptions::default()
-    };
-    let sprung = MachineOptions {
-        friction_regular_velocity: Some(1e-4),
-        load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e6, damping: 200.0 },
-        power_unit: PowerUnit::PumpLimited(PumpLimited { accumulator: None, ..pump }),
-        ..MachineOptions::default()
-    };
+    }
+}
+
+fn hose() -> Components {
+    components(hose_line(), StiffnessModel::ByVolume)
+}
+
+/// Unequal areas and lines, air, and a static friction curve.
+fn asymmetric() -> Components {
     let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
     let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_index: 1.4 });
     let curve = Stribeck {
@@ -81,28 +85,42 @@ fn machines() -> Vec<Machine> {
         stribeck_exponent: 1.4,
         viscous: 100.0,
     };
-    let hose = components(hose_line(), StiffnessModel::ByVolume);
-    let asymmetric = Components {
-        fluid: Fluid { entrained_air: air, ..hose.fluid },
+    Components {
+        fluid: Fluid { entrained_air: air, ..hose().fluid },
         cylinder: Cylinder { area_a, area_b, dead_volume_a: 2e-5, dead_volume_b: 1e-5, ..cylinder() },
         line_b: pipe_line(),
         friction: Friction::Stribeck(curve),
-        ..hose
+        ..hose()
+    }
+}
+
+/// What a machine can have, on very different actuators.
+fn machines() -> Vec<Machine> {
+    let plain = MachineOptions::default();
+    let sprung = MachineOptions {
+        friction_regular_velocity: Some(1e-4),
+        load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e6, damping: 200.0 },
+        power_unit: PowerUnit::PumpLimited(PumpLimited { accumulator: None, ..pump() }),
+        ..plain
     };
-    let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
-    let rough = Components { friction: Friction::LuGre(lugre), ..hose };
-    let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric };
+    let rough = Components { friction: benchmark_components().friction, ..hose() };
+    let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric() };
+    let conduit = Conduit::of_line(&hose_line(), &hose().fluid, 35e5, Member::Nominal).unwrap();
+    let waves = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit, END_SHARE).unwrap());
+    let segments = DynamicLine::Segments(Segments::new(&conduit, 2, LaminarFriction::Steady).unwrap());
     vec![
-        machine_of(benchmark_components(), &MachineOptions::default()),
-        machine_of(hose, &MachineOptions::default()),
-        machine_of(rough, &full),
-        machine_of(asymmetric, &sprung),
-        machine_of(uniform, &MachineOptions { friction_regular_velocity: Some(1e-3), ..full }),
+        machine_of(benchmark_components(), &plain),
+        machine_of(hose(), &plain),
+        machine_of(rough, &full()),
+        machine_of(asymmetric(), &sprung),
+        machine_of(uniform, &full()),
+        machine_of(hose(), &MachineOptions { lines: Some([waves, segments]), ..plain }),
+        machine_of(rough, &MachineOptions { lines: Some([segments, waves]), ..full() }),
     ]
 }
 
 /// State, command and inputs.
-type Instant = (Vec<f64>, f64, [f64; 2]);
+type Instant = (Vec<f64>, f64, Vec<f64>);
 
 /// A state within some hundred scales of a working point, and the command and inputs that go with it.
 fn some_state(machine: &Machine, noise: &mut Noise) -> Instant {
@@ -110,11 +128,13 @@ fn some_state(machine: &Machine, noise: &mut Noise) -> Instant {
     state[2] = 35e5 + 25e5 * noise.next();
     state[3] = 35e5 + 25e5 * noise.next();
     for (value, scale) in state.iter_mut().zip(machine.scales()).skip(6) {
-        if scale == 1e5 {
+        if scale == machine.scales()[2] {
             *value = 60e5 + 15e5 * noise.next();
         }
     }
-    (state, 8.0 * noise.next(), [0.25 + 0.2 * noise.next(), 0.05 * noise.next()])
+    let mut inputs = vec![0.25 + 0.2 * noise.next(), 0.05 * noise.next()];
+    inputs.extend((2..machine.inputs()).map(|_| 35e5 + 25e5 * noise.next()));
+    (state, 8.0 * noise.next(), inputs)
 }
 
 /// The benchmark's equations in another form: pressures by moduli and volumes, flows by signed roots, hyperbolic cosine.
@@ -238,13 +258,19 @@ fn jacobians_are_slopes_and_keep_to_their_pattern() {
         let count = machine.states();
         let variables: Vec<Dependence> = (0..count).map(Dependence::on).collect();
         let mut pattern = vec![Dependence::from(0.0); count];
-        machine.rates(&variables, Dependence::on(count), &[Dependence::from(0.0); 2], &mut pattern);
+        machine.rates(
+            &variables,
+            Dependence::on(count),
+            &vec![Dependence::from(0.0); machine.inputs()],
+            &mut pattern,
+        );
         for _ in 0..40 {
             let (state, command, inputs) = some_state(&machine, &mut noise);
-            let duals: Vec<Dual<13>> =
+            let duals: Vec<Dual<40>> =
                 state.iter().enumerate().map(|(index, &value)| Dual::variable(value, index)).collect();
             let mut rates = vec![Dual::constant(0.0); count];
-            machine.rates(&duals, Dual::variable(command, count), &inputs.map(Dual::constant), &mut rates);
+            let held: Vec<Dual<40>> = inputs.iter().map(|&value| Dual::constant(value)).collect();
+            machine.rates(&duals, Dual::variable(command, count), &held, &mut rates);
             let plain = rates_of(&machine, &state, command, &inputs);
             for (row, rate) in rates.iter().enumerate() {
                 assert!((rate.value() - plain[row]).abs() <= 1e-12 * plain[row].abs());
@@ -322,13 +348,24 @@ fn rests_do_not_move() {
         for (position, command) in [(0.1, 0.02), (0.25, 0.05), (0.4, 0.4)] {
             let point = operating_point(&actuator, position, Condition::Command(command)).unwrap();
             let rest = machine.rest(&point).unwrap();
-            let rates = rates_of(&machine, &rest.state, rest.command, &rest.inputs);
+            let inputs = rest.all_inputs();
+            let rates = rates_of(&machine, &rest.state, rest.command, &inputs);
             for (rate, scale) in rates.iter().zip(machine.scales()) {
                 assert!((rate / scale).abs() < 1e-5, "{rates:?}");
             }
-            let outputs = machine.outputs(&rest.state, &rest.inputs);
+            let mut sent = vec![f64::NAN; rest.waves.len()];
+            machine.outgoing(&rest.state, &inputs, &mut sent);
+            assert!(sent.iter().zip(&rest.waves).all(|(sent, wave)| (sent / wave - 1.0).abs() < 1e-9));
+            let outputs = machine.outputs(&rest.state, &inputs);
             assert!((outputs[5] - position).abs() < 1e-15 && (outputs[1] - command).abs() < 1e-15);
         }
+    }
+    for machine in machines() {
+        let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume)).unwrap();
+        let point = operating_point(&actuator, 0.25, Condition::Load(Load::Force(0.0))).unwrap();
+        let idle = machine.rest_under_load(&point).unwrap();
+        let force = machine.measurement(&idle.state, &idle.all_inputs());
+        assert!(force.abs() < 1e-6 && idle.command.abs() < 0.5, "{force} {}", idle.command);
     }
     let sliding = machine_of(benchmark_components(), &MachineOptions::default());
     let actuator = Actuator::new(benchmark_components()).unwrap();
@@ -381,7 +418,8 @@ fn lanes_are_machines_side_by_side() {
         let side_by_side = |of: &dyn Fn(&Instant) -> f64| Lanes([of(&starts[0]), of(&starts[1])]);
         let count = machine.states();
         let state: Vec<Lanes<2>> = (0..count).map(|index| side_by_side(&|start| start.0[index])).collect();
-        let inputs = [side_by_side(&|start| start.2[0]), side_by_side(&|start| start.2[1])];
+        let inputs: Vec<Lanes<2>> =
+            (0..machine.inputs()).map(|index| side_by_side(&|start| start.2[index])).collect();
         let mut rates = vec![Lanes([f64::NAN; 2]); count];
         both.rates(&state, side_by_side(&|start| start.1), &inputs, &mut rates);
         for (lane, alone) in [machine, stronger].iter().enumerate() {

@@ -56,7 +56,15 @@ impl MovingFriction {
 impl<S: Copy> MovingFriction<S> {
     /// Whether its bristles are a state.
     pub fn has_bristles(&self) -> bool {
-        matches!(self, MovingFriction::LuGre { .. })
+        self.bristle_stiffness().is_some()
+    }
+
+    /// Stiffness sigma_0 of its bristles in N/m, if it has any.
+    pub fn bristle_stiffness(&self) -> Option<S> {
+        match self {
+            MovingFriction::LuGre { lugre, .. } => Some(lugre.bristle_stiffness),
+            _ => None,
+        }
     }
 
     /// Every parameter replaced, in a fixed order.

@@ -1,9 +1,9 @@
 use phea_dynamics::scalar::Scalar;
 
-use crate::actuator::Actuator;
+use crate::actuator::{Actuator, Components};
 use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
 use crate::line::{Line, Member};
-use crate::stiffness::{ChamberCompliance, StiffnessModel, compliance_at};
+use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance, compliance_at};
 
 /// Absolute pressure in Pa below which the modulus of fluid with air is that at this pressure. Far below any vapour pressure
 /// that is reported, it only keeps a trial step of an integrator a number.
@@ -48,32 +48,54 @@ struct AeratedSide<S> {
 impl Chambers {
     /// The chambers of an actuator with lumped lines; `member` chooses the hose's stiffening.
     pub fn new(actuator: &Actuator, member: Member) -> Chambers {
-        let components = actuator.components();
-        let cylinder = &components.cylinder;
+        Chambers::of(actuator.components(), member)
+    }
+
+    /// The chambers with the compliance in m3/Pa that lines with dynamics of their own add to each; in the model `uniform` they
+    /// keep the modulus of their line.
+    pub fn behind_lines(actuator: &Actuator, member: Member, [added_a, added_b]: [f64; 2]) -> Chambers {
+        let components = *actuator.components();
+        let [line_a, line_b] = [components.line_a, components.line_b].map(without_volume);
+        let mut chambers = Chambers::of(&Components { line_a, line_b, ..components }, member);
+        match &mut chambers {
+            Chambers::Clean(compliance) => {
+                compliance.constant_a += added_a;
+                compliance.constant_b += added_b;
+            }
+            Chambers::Aerated(aerated) => {
+                aerated.side_a.wall_constant += added_a;
+                aerated.side_b.wall_constant += added_b;
+            }
+        }
+        chambers
+    }
+
+    fn of(components: &Components, member: Member) -> Chambers {
+        let Components { fluid, cylinder, line_a, line_b, .. } = components;
         let model = components.stiffness_model;
-        match components.fluid.entrained_air {
-            None => Chambers::Clean(actuator.chamber_compliance([actuator.mean_pressure(); 2], member)),
+        match fluid.entrained_air {
+            None => {
+                let moduli = [fluid.bulk_modulus; 2];
+                Chambers::Clean(chamber_compliance(model, moduli, cylinder, [line_a, line_b], member))
+            }
             Some(air) => Chambers::Aerated(AeratedChambers {
-                bulk_modulus: components.fluid.bulk_modulus,
+                bulk_modulus: fluid.bulk_modulus,
                 volume_fraction: air.volume_fraction,
                 polytropic_index: air.polytropic_index,
                 stroke: cylinder.stroke,
-                side_a: aerated_side(
-                    model,
-                    cylinder.area_a,
-                    cylinder.dead_volume_a,
-                    &components.line_a,
-                    member,
-                ),
-                side_b: aerated_side(
-                    model,
-                    cylinder.area_b,
-                    cylinder.dead_volume_b,
-                    &components.line_b,
-                    member,
-                ),
+                side_a: aerated_side(model, cylinder.area_a, cylinder.dead_volume_a, line_a, member),
+                side_b: aerated_side(model, cylinder.area_b, cylinder.dead_volume_b, line_b, member),
             }),
         }
+    }
+}
+
+/// The same line, holding nothing.
+fn without_volume(line: Line) -> Line {
+    match line {
+        Line::Hose { hose, .. } => Line::Hose { hose, length: 0.0 },
+        Line::Pipe { pipe, .. } => Line::Pipe { pipe, length: 0.0 },
+        Line::Volume { effective_bulk_modulus, .. } => Line::Volume { volume: 0.0, effective_bulk_modulus },
     }
 }
 

@@ -1,5 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
+use super::signals::ground_of;
 use super::{LoadMotion, Machine, MachineState, PowerUnit};
 use crate::force_sensor;
 use crate::friction::FrictionForce;
@@ -13,10 +14,8 @@ pub(super) struct Flows<T> {
     pub(super) edges: EdgeFlows<T>,
     /// Across the piston from A to B.
     pub(super) internal: T,
-    /// Into chamber A, the piston's own displacement left aside.
-    pub(super) into_a: T,
-    /// Into chamber B.
-    pub(super) into_b: T,
+    /// From the valve into line A and line B.
+    pub(super) from_valve: [T; 2],
 }
 
 /// Every force at one instant, in N.
@@ -59,22 +58,52 @@ impl<S: Scalar> Machine<S> {
         if self.load.moves() { state.load } else { *ground }
     }
 
+    /// Pressures at the valve's ports A and B: the chambers' own where lines are lumped.
     #[inline]
-    pub(super) fn flows<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> Flows<T> {
+    pub(super) fn ports<T: Scalar + From<S>>(&self, state: &MachineState<T>, lines: [&[T]; 2]) -> [T; 2] {
+        if self.layout.has_lines() {
+            self.ports_of_lines(state, lines)
+        } else {
+            [state.pressure_a, state.pressure_b]
+        }
+    }
+
+    /// Apart, so that machines without such lines do not carry their code along.
+    #[inline(never)]
+    fn ports_of_lines<T: Scalar + From<S>>(&self, state: &MachineState<T>, lines: [&[T]; 2]) -> [T; 2] {
+        let chambers = [state.pressure_a, state.pressure_b];
+        let ([line_a, line_b], [state_a, state_b]) = (&self.lines, lines);
+        [line_a.port_pressure(state_a, chambers[0]), line_b.port_pressure(state_b, chambers[1])]
+    }
+
+    /// Compliance of both chambers with what their lines add, in m3/Pa.
+    #[inline]
+    pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
+        let pressures = [state.pressure_a, state.pressure_b];
+        self.chambers.convert(&mut constant::<S, T>).compliance(position, pressures)
+    }
+
+    /// Flows at the pressures of the valve's ports A and B.
+    #[inline]
+    pub(super) fn flows<T: Scalar + From<S>>(
+        &self,
+        state: &MachineState<T>,
+        [port_a, port_b]: [T; 2],
+    ) -> Flows<T> {
         let valve = self.valve.convert(&mut constant::<S, T>);
         let opening = self.spool.convert(&mut constant::<S, T>).opening(&state.spool);
-        let (pressure_a, pressure_b) = (state.pressure_a, state.pressure_b);
         let supply = self.supply_of(state);
-        let edges = edge_flows(&valve, &supply, &Openings::at(&valve, opening), pressure_a, pressure_b);
-        let into_a = edges.supply_to_a - edges.a_to_tank;
-        let into_b = edges.supply_to_b - edges.b_to_tank;
-        match self.internal_leakage {
-            None => Flows { edges, internal: T::from(0.0), into_a, into_b },
-            Some(conductance) => {
-                let internal = constant::<S, T>(conductance) * (pressure_a - pressure_b);
-                Flows { edges, internal, into_a: into_a - internal, into_b: into_b + internal }
-            }
-        }
+        let edges = edge_flows(&valve, &supply, &Openings::at(&valve, opening), port_a, port_b);
+        let from_valve = [edges.supply_to_a - edges.a_to_tank, edges.supply_to_b - edges.b_to_tank];
+        Flows { edges, internal: self.leakage(state), from_valve }
+    }
+
+    /// Flow across the piston from A to B, in m3/s.
+    #[inline]
+    pub(super) fn leakage<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
+        self.internal_leakage.map_or(T::from(0.0), |conductance| {
+            constant::<S, T>(conductance) * (state.pressure_a - state.pressure_b)
+        })
     }
 
     /// Oil that the valve takes from the supply, tare flow included, in m3/s.
@@ -111,43 +140,85 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The equations of the machine: rates of all states at a command in V, the ground of the load moving so.
+    /// The equations of the machine: rates of all states at a command in V.
     #[inline]
-    pub(super) fn state_rates<T: Scalar + From<S>>(
+    pub(super) fn write_rates<T: Scalar + From<S>>(
         &self,
-        state: &MachineState<T>,
+        vector: &[T],
         command: T,
-        ground: &LoadMotion<T>,
-    ) -> MachineState<T> {
-        let load = self.load_of(state, ground);
+        inputs: &[T],
+        rates: &mut [T],
+    ) {
+        let state = self.layout.read(vector);
+        let ground = ground_of(inputs);
+        let load = self.load_of(&state, &ground);
         let position = load.position + state.deflection;
         let velocity = state.velocity;
-        let flows = self.flows(state);
-        let forces = self.forces(state, position);
-        let pressures = [state.pressure_a, state.pressure_b];
-        let [compliance_a, compliance_b] =
-            self.chambers.convert(&mut constant::<S, T>).compliance(position, pressures);
+        let lines = self.layout.lines(vector);
+        let flows = self.flows(&state, self.ports(&state, lines));
+        let forces = self.forces(&state, position);
+        let [compliance_a, compliance_b] = self.compliance(&state, position);
+        let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let pushing = forces.hydraulic + forces.end_stops - forces.friction.force - forces.sensed;
         let valve = self.valve.convert(&mut constant::<S, T>);
-        MachineState {
+        let [into_a, into_b] = if self.layout.has_lines() {
+            self.through_lines(&state, &flows, lines, inputs, rates)
+        } else {
+            flows.from_valve
+        };
+        let state_rates = MachineState {
             spool: self.spool.convert(&mut constant::<S, T>).rates(&valve, &state.spool, command),
-            pressure_a: (flows.into_a - constant::<S, T>(self.cylinder.area_a) * velocity) / compliance_a,
-            pressure_b: (flows.into_b + constant::<S, T>(self.cylinder.area_b) * velocity) / compliance_b,
+            pressure_a: (into_a - flows.internal - area_a * velocity) / compliance_a,
+            pressure_b: (into_b + flows.internal + area_b * velocity) / compliance_b,
             deflection: velocity - load.velocity,
             velocity: pushing / constant(self.cylinder.moving_mass),
             bristle: forces.friction.bristle_rate,
             load: LoadMotion {
                 position: load.velocity,
-                velocity: self.load.convert(&mut constant::<S, T>).acceleration(forces.sensed, &load, ground),
+                velocity: self.load.convert(&mut constant::<S, T>).acceleration(
+                    forces.sensed,
+                    &load,
+                    &ground,
+                ),
             },
-            supply_pressure: match &self.power_unit {
-                PowerUnit::Constant => T::from(0.0),
-                PowerUnit::PumpLimited(_) => self.supply_rate(state, &flows),
-            },
-        }
+            supply_pressure: self.supply_rate(&state, &flows),
+        };
+        self.layout.write(&state_rates, rates);
+    }
+
+    /// Flows that leave the lines into the chambers, in m3/s; writes the rates of the lines' states.
+    #[inline(never)]
+    fn through_lines<T: Scalar + From<S>>(
+        &self,
+        state: &MachineState<T>,
+        flows: &Flows<T>,
+        [state_a, state_b]: [&[T]; 2],
+        inputs: &[T],
+        rates: &mut [T],
+    ) -> [T; 2] {
+        let [from_a, from_b] = flows.from_valve;
+        let [arriving_a, arriving_b] = self.layout.arriving(inputs);
+        let [rates_a, rates_b] = self.layout.lines_mut(rates);
+        let [line_a, line_b] = &self.lines;
+        [
+            line_a.rates(from_a, state.pressure_a, state_a, arriving_a, rates_a),
+            line_b.rates(from_b, state.pressure_b, state_b, arriving_b, rates_b),
+        ]
+    }
+
+    /// What is sent into the lines' delays, in Pa.
+    pub(super) fn write_outgoing<T: Scalar + From<S>>(&self, vector: &[T], inputs: &[T], waves: &mut [T]) {
+        let state = self.layout.read(vector);
+        let [state_a, state_b] = self.layout.lines(vector);
+        let [arriving_a, arriving_b] = self.layout.arriving(inputs);
+        let [waves_a, waves_b] = self.layout.outgoing(waves);
+        let [line_a, line_b] = &self.lines;
+        line_a.outgoing(state.pressure_a, state_a, arriving_a, waves_a);
+        line_b.outgoing(state.pressure_b, state_b, arriving_b, waves_b);
     }
 
     /// Rate of the supply pressure in Pa/s.
+    #[inline]
     fn supply_rate<T: Scalar + From<S>>(&self, state: &MachineState<T>, flows: &Flows<T>) -> T {
         match self.power_unit.convert(&mut constant::<S, T>) {
             PowerUnit::Constant => T::from(0.0),

@@ -81,6 +81,14 @@ impl<T: Scalar> Volume<T> {
     }
 }
 
+impl<T: Scalar> Flows<T> {
+    /// Into chambers A and B through lumped lines, in m3/s.
+    fn chamber_flows(&self) -> [T; 2] {
+        let [from_a, from_b] = self.from_valve;
+        [from_a - self.internal, from_b + self.internal]
+    }
+}
+
 fn density<T: Scalar>(pressure: T, modulus: T) -> T {
     (pressure / modulus).exp()
 }
@@ -91,8 +99,8 @@ fn heat<T: Scalar>(power: T) -> Account<T> {
 }
 
 impl<S: Scalar> Machine<S> {
-    /// The accounts of oil and energy; `None` where the fluid carries air or the supply an accumulator, whose contents
-    /// have no such short form.
+    /// The accounts of oil and energy; `None` where the fluid carries air, the supply an accumulator or a line waves, whose
+    /// contents have no such short form.
     ///
     /// ```text
     /// oil      V exp(p/beta)                                  enters as q exp(p/beta)
@@ -103,12 +111,15 @@ impl<S: Scalar> Machine<S> {
     /// yield as much. An edge hands on volumes: what it takes at one density and gives at another is lost to the rig's
     /// account of oil, q times the difference of both densities, at most p_S/beta of the flow.
     pub fn ledger<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> Option<Ledger<T>> {
+        if self.layout.has_lines() {
+            return None;
+        }
         let state = self.layout.read(state);
         let ground = ground_of(inputs);
         let load = self.load_of(&state, &ground);
         let sides = self.sides(&state, load.position + state.deflection)?;
         let supply = self.supply_volume(&state, &sides)?;
-        let flows = self.flows(&state);
+        let flows = self.flows(&state, [state.pressure_a, state.pressure_b]);
         Some(Ledger {
             oil: self.oil(&state, &flows, &sides, &supply),
             energy: self.energy(&state, &flows, &sides, &supply, &ground),
@@ -117,17 +128,17 @@ impl<S: Scalar> Machine<S> {
 
     /// Both chambers with their lines as volumes.
     fn sides<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> Option<[Volume<T>; 2]> {
-        let Chambers::Clean(compliance) = self.chambers.convert(&mut constant::<S, T>) else {
+        let Chambers::Clean(clean) = self.chambers.convert(&mut constant::<S, T>) else {
             return None;
         };
-        let [compliance_a, compliance_b] = crate::stiffness::compliance_at(&compliance, position);
+        let [compliance_a, compliance_b] = self.compliance(state, position);
         let side = |area: T, slope: T, compliance: T, pressure: T| {
             let modulus = area / slope;
             Volume { modulus, volume: compliance * modulus, pressure }
         };
         Some([
-            side(compliance.area_a, compliance.slope_a, compliance_a, state.pressure_a),
-            side(compliance.area_b, compliance.slope_b, compliance_b, state.pressure_b),
+            side(clean.area_a, clean.slope_a, compliance_a, state.pressure_a),
+            side(clean.area_b, clean.slope_b, compliance_b, state.pressure_b),
         ])
     }
 
@@ -173,7 +184,8 @@ impl<S: Scalar> Machine<S> {
         let (dense_s, dense_a, dense_b) = (supply.density(), side_a.density(), side_b.density());
         let fed = self.fed(state, flows);
         let line = supply.oil(fed - (edges.supply_to_a + edges.supply_to_b));
-        let (into_a, into_b) = (side_a.oil(flows.into_a), side_b.oil(flows.into_b));
+        let [into_a, into_b] = flows.chamber_flows();
+        let (into_a, into_b) = (side_a.oil(into_a), side_b.oil(into_b));
         let rig = Account {
             stored: into_a.stored + into_b.stored + line.stored,
             inflow: dense_s * fed - tank[0] * edges.a_to_tank - tank[1] * edges.b_to_tank,
@@ -201,8 +213,9 @@ impl<S: Scalar> Machine<S> {
         let velocity = state.velocity;
         let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let taken = edges.supply_to_a + edges.supply_to_b;
-        let chamber_a = side_a.energy(flows.into_a, area_a * velocity);
-        let chamber_b = side_b.energy(flows.into_b, -area_b * velocity);
+        let [into_a, into_b] = flows.chamber_flows();
+        let chamber_a = side_a.energy(into_a, area_a * velocity);
+        let chamber_b = side_b.energy(into_b, -area_b * velocity);
         let line = supply.energy(self.fed(state, flows) - taken, zero);
         let tank: T = constant(self.supply.tank_pressure);
         let throttled = edges.supply_to_a * (supply.pressure - side_a.pressure)
@@ -236,8 +249,8 @@ impl<S: Scalar> Machine<S> {
         ];
         // Only what crosses the rig's border: flow work and compression energy of the oil, and the work on the ground.
         let fed = self.fed(state, flows);
-        let carried = side_a.compression() * flows.into_a
-            + side_b.compression() * flows.into_b
+        let carried = side_a.compression() * into_a
+            + side_b.compression() * into_b
             + supply.compression() * (fed - taken);
         let oil = supply.pressure * fed - tank * (edges.a_to_tank + edges.b_to_tank) + carried;
         let total = |of: fn(&Account<T>) -> T| accounts.iter().map(of).fold(zero, |sum, value| sum + value);

@@ -76,6 +76,14 @@ impl<S: Copy> LoadModel<S> {
         !matches!(self, LoadModel::Prescribed)
     }
 
+    /// Mass in kg that moves by itself.
+    pub fn mass(&self) -> Option<S> {
+        match *self {
+            LoadModel::Prescribed => None,
+            LoadModel::SpringMassDamper { mass, .. } | LoadModel::Wall { mass, .. } => Some(mass),
+        }
+    }
+
     /// Every parameter replaced, in a fixed order.
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> LoadModel<T> {
         match *self {

@@ -1,5 +1,5 @@
 use super::{Contact, LoadModel, PowerUnit};
-use crate::line::Member;
+use crate::line::{DynamicLine, Member};
 use crate::parameter::{ParameterError, Problems};
 use crate::servovalve::SpoolImperfection;
 
@@ -23,20 +23,13 @@ pub struct MachineOptions {
     pub power_unit: PowerUnit,
     /// What the force sensor pushes on.
     pub load: LoadModel,
-    /// Pressure in Pa absolute below which a chamber is reported to cavitate.
+    /// Pressure in Pa absolute below which a chamber is reported to cavitate. Fluid with entrained air expands before it boils
+    /// and comes to no vacuum: for it, state the pressure at which dissolved air comes out.
     pub vapour_pressure_absolute: f64,
     /// Which member of the hoses' stiffening interval.
     pub member: Member,
-    /// What the lines between valve and chambers do.
-    pub line_dynamics: LineDynamics,
-}
-
-/// How lines enter the machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LineDynamics {
-    /// One pressure for a chamber with its line.
-    #[default]
-    Lumped,
+    /// Lines between valve and chambers with dynamics of their own, A first; absent, one pressure for a chamber with its line.
+    pub lines: Option<[DynamicLine; 2]>,
 }
 
 impl Default for MachineOptions {
@@ -51,7 +44,7 @@ impl Default for MachineOptions {
             load: LoadModel::Prescribed,
             vapour_pressure_absolute: VAPOUR_PRESSURE_ABSOLUTE,
             member: Member::Nominal,
-            line_dynamics: LineDynamics::Lumped,
+            lines: None,
         }
     }
 }
@@ -95,12 +88,12 @@ pub enum MachineError {
     #[error("static Stribeck friction jumps at standstill: state a regular velocity, or use LuGre friction")]
     StaticFriction,
     /// Pressed into its end stop by the whole supply pressure, the piston would leave no fluid in the chamber.
-    #[error("pressed {penetration} m into its end stop, the piston leaves {volume} m3 in the chamber")]
+    #[error("pressed {penetration} m into its end stop, the piston leaves no fluid ({compliance} m3/Pa)")]
     ChamberVanishes {
         /// How far into the stop, in m.
         penetration: f64,
-        /// What is left of the smaller chamber with its line, in m3.
-        volume: f64,
+        /// What is left of the compliance of the smaller chamber with its line, in m3/Pa.
+        compliance: f64,
     },
     /// The start lies outside the stroke.
     #[error("a start at {position} m is outside the stroke of {stroke} m")]

@@ -4,7 +4,7 @@ use super::equations::constant;
 use super::{LoadMotion, Machine};
 
 /// Names of what a machine tells of itself, with units, in the order of [`Machine::outputs`].
-pub const SIGNALS: [&str; 15] = [
+pub const SIGNALS: [&str; 17] = [
     "force_n",
     "spool_v",
     "pressure_a_pa",
@@ -20,6 +20,8 @@ pub const SIGNALS: [&str; 15] = [
     "supply_flow_m3_per_s",
     "load_position_m",
     "load_velocity_m_per_s",
+    "port_pressure_a_pa",
+    "port_pressure_b_pa",
 ];
 
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is positive in ordinary operation and
@@ -40,7 +42,8 @@ pub const INDICATORS: [&str; 8] = [
 ];
 
 impl<S: Scalar> Machine<S> {
-    /// The [`SIGNALS`] at a state and inputs. `spool_v` is the position the edges have: the state less null bias and lag.
+    /// The [`SIGNALS`] at a state and inputs. `spool_v` is the position the edges have: the state less null bias and
+    /// lag; flows are those of the valve's ports A and B into the lines.
     ///
     /// # Example
     /// ```
@@ -56,10 +59,12 @@ impl<S: Scalar> Machine<S> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn outputs<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; SIGNALS.len()] {
+        let lines = self.layout.lines(state);
         let state = self.layout.read(state);
         let load = self.load_of(&state, &ground_of(inputs));
         let position = load.position + state.deflection;
-        let flows = self.flows(&state);
+        let ports = self.ports(&state, lines);
+        let flows = self.flows(&state, ports);
         let forces = self.forces(&state, position);
         [
             forces.sensed,
@@ -72,11 +77,13 @@ impl<S: Scalar> Machine<S> {
             state.deflection,
             forces.friction.force,
             forces.end_stops,
-            flows.into_a,
-            flows.into_b,
+            flows.from_valve[0],
+            flows.from_valve[1],
             self.supply_flow(&state, &flows.edges),
             load.position,
             load.velocity,
+            ports[0],
+            ports[1],
         ]
     }
 

@@ -1,8 +1,7 @@
-use nalgebra::{Matrix3, Vector3};
-use phea_dynamics::scalar::Dual;
 use phea_dynamics::simulation::Plant;
 
-use super::{LoadModel, LoadMotion, Machine, MachineError, MachineState, PowerUnit};
+use super::balance::Kept;
+use super::{LoadModel, LoadMotion, Machine, MachineError, MachineState};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
 use crate::operating_point::OperatingPoint;
@@ -33,12 +32,21 @@ pub struct Beginning {
     pub command: f64,
     /// Position in m and velocity in m/s of the load's ground: where a prescribed motion starts.
     pub inputs: [f64; 2],
+    /// The waves that arrive from the lines until then, in Pa, as the machine's last inputs.
+    pub waves: Vec<f64>,
 }
 
-/// Steps of Newton's method towards the pressures of a rest, and halvings of each.
-const REST_STEPS: usize = 60;
+impl Beginning {
+    /// All inputs of the machine: the ground's and the waves.
+    pub fn all_inputs(&self) -> Vec<f64> {
+        [&self.inputs, self.waves.as_slice()].concat()
+    }
+}
+
 /// What may remain of a rest, in scales per second.
 const REST_TOLERANCE: f64 = 1e-4;
+/// Force in N that is rounding: a load without spring or wall holds it.
+const ROUNDED_FORCE: f64 = 1e-6;
 
 impl Machine {
     /// The machine at stated values. Its load's ground lies where the stated force is held: at a spring's relaxed end, at a wall
@@ -62,31 +70,36 @@ impl Machine {
     /// ```
     pub fn start(&self, start: &Start) -> Result<Beginning, MachineError> {
         check(start, self.cylinder.stroke)?;
-        let deflection = start.force / self.sensor_stiffness;
-        let load = LoadMotion { position: start.position - deflection, velocity: start.velocity };
         let mut state = MachineState::zero();
         state.spool.spool = start.spool;
-        state.pressure_a = start.pressure_a;
-        state.pressure_b = start.pressure_b;
-        state.deflection = deflection;
+        (state.pressure_a, state.pressure_b) = (start.pressure_a, start.pressure_b);
+        state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
-        state.load = load;
-        state.supply_pressure = self.supply.pressure;
-        let relative = self.load.held_at(start.force);
-        let relative =
-            relative.ok_or(MachineError::ImpossibleStart { quantity: "force", value: start.force })?;
-        Ok(self.begin(&state, load.position - relative))
+        let (state, ground) = self.held(&state, start.position, start.force)?;
+        Ok(self.begin(&state, ground))
     }
 
-    /// The machine at rest, or in steady motion with its load, at an operating point of its actuator.
+    /// The machine at rest, or in steady motion with its load, at an operating point of its actuator: its command is kept.
     ///
-    /// The spool's position is kept; what the operating point leaves out (leakage across the piston, a pump that yields) moves the
-    /// pressures to where all flows balance, and the force is what they hold.
+    /// What the operating point leaves out (leakage across the piston, a pump that yields, lines that resist) moves the pressures
+    /// to where all flows balance, and the force is what they hold.
     ///
     /// # Errors
-    /// As [`Machine::start`]; no balance near the operating point, as at one that is not steady itself.
+    /// As [`Machine::start`]; no balance near the operating point.
     pub fn rest(&self, point: &OperatingPoint) -> Result<Beginning, MachineError> {
+        self.settled(point, Kept::Spool)
+    }
+
+    /// As [`Machine::rest`], but it is the force of the pressures that is kept, and the command that moves to where it is held.
+    ///
+    /// # Errors
+    /// As [`Machine::rest`].
+    pub fn rest_under_load(&self, point: &OperatingPoint) -> Result<Beginning, MachineError> {
+        self.settled(point, Kept::Force(point.hydraulic_force))
+    }
+
+    fn settled(&self, point: &OperatingPoint, kept: Kept) -> Result<Beginning, MachineError> {
         let start = Start {
             position: point.position,
             velocity: point.velocity,
@@ -98,26 +111,46 @@ impl Machine {
         check(&start, self.cylinder.stroke)?;
         let mut state = MachineState::zero();
         state.spool.spool = start.spool;
+        (state.pressure_a, state.pressure_b) = (start.pressure_a, start.pressure_b);
+        state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
-        let pressures = [point.pressure_a, point.pressure_b, self.supply.pressure];
-        [state.pressure_a, state.pressure_b, state.supply_pressure] = self.balance(&state, pressures);
-        let forces = self.forces(&state, start.position);
+        let balanced = self.balanced(&state, kept);
+        let forces = self.forces(&balanced, start.position);
         let force = forces.hydraulic + forces.end_stops - forces.friction.force;
-        let [pressure_a, pressure_b] = [state.pressure_a, state.pressure_b];
-        let beginning = self.start(&Start { pressure_a, pressure_b, force, ..start })?;
-        let mut full = self.layout.read(&beginning.state);
-        full.supply_pressure = state.supply_pressure;
-        let [ground, _] = beginning.inputs;
-        let beginning = self.begin(&full, ground);
+        let (state, ground) = self.held(&balanced, start.position, force)?;
+        let beginning = self.begin(&state, ground);
         let residual = self.residual(&beginning);
         if residual <= REST_TOLERANCE { Ok(beginning) } else { Err(MachineError::NoRest { residual }) }
+    }
+
+    /// The state with its load held by this force in N at this piston position in m, and where its ground is.
+    fn held(
+        &self,
+        state: &MachineState,
+        position: f64,
+        force: f64,
+    ) -> Result<(MachineState, f64), MachineError> {
+        let deflection = force / self.sensor_stiffness;
+        let load = LoadMotion { position: position - deflection, velocity: state.velocity };
+        let held = self.load.held_at(force);
+        let relative = held.ok_or(MachineError::ImpossibleStart { quantity: "force", value: force })?;
+        Ok((MachineState { deflection, load, ..*state }, load.position - relative))
     }
 
     fn begin(&self, state: &MachineState, ground: f64) -> Beginning {
         let mut vector = vec![0.0; self.layout.count()];
         self.layout.write(state, &mut vector);
-        Beginning { state: vector, command: state.spool.spool, inputs: [ground, state.velocity] }
+        let pressures = [state.pressure_a, state.pressure_b];
+        let flows = self.steady_flows(state);
+        let mut waves = Vec::new();
+        let places = self.layout.lines_mut(&mut vector).into_iter().zip(&self.lines);
+        for ((place, line), (pressure, flow)) in places.zip(pressures.into_iter().zip(flows)) {
+            let (line_state, arriving) = line.steady_state(pressure, flow);
+            place.copy_from_slice(&line_state);
+            waves.extend(arriving);
+        }
+        Beginning { state: vector, command: state.spool.spool, inputs: [ground, state.velocity], waves }
     }
 
     /// Deflection of the bristles in steady motion: z = sign(v) g(v)/sigma_0.
@@ -131,66 +164,15 @@ impl Machine {
         }
     }
 
-    /// p_A, p_B and p_S at which nothing flows that the piston does not take, by damped Newton steps from these.
-    fn balance(&self, state: &MachineState, pressures: [f64; 3]) -> [f64; 3] {
-        let mut best = Vector3::from(pressures);
-        let mut least = self.surplus(state, best);
-        for _ in 0..REST_STEPS {
-            let Some(step) = least.1.lu().solve(&least.0) else { break };
-            let mut share = 1.0;
-            let found = (0..REST_STEPS).find_map(|_| {
-                let next = best - step * share;
-                let surplus = self.surplus(state, next);
-                share *= 0.5;
-                (surplus.0.norm() < least.0.norm()).then_some((next, surplus))
-            });
-            match found {
-                Some((next, surplus)) => (best, least) = (next, surplus),
-                None => break,
-            }
-        }
-        best.into()
-    }
-
-    /// Flows into both chambers and the supply that nothing takes, in m3/s, and their derivatives by the three pressures. A
-    /// constant supply is its pressure's difference from what it states.
-    fn surplus(&self, state: &MachineState, pressures: Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
-        let variable = |index: usize| Dual::<3>::variable(pressures[index], index);
-        let mut dual = MachineState::<Dual<3>>::zero();
-        dual.spool.spool = Dual::constant(state.spool.spool);
-        (dual.pressure_a, dual.pressure_b, dual.supply_pressure) = (variable(0), variable(1), variable(2));
-        let flows = self.flows(&dual);
-        let surplus_a = flows.into_a - Dual::constant(self.cylinder.area_a * state.velocity);
-        let surplus_b = flows.into_b + Dual::constant(self.cylinder.area_b * state.velocity);
-        let stated = Dual::constant(self.supply.pressure);
-        let surplus_s = match &self.power_unit {
-            PowerUnit::Constant => dual.supply_pressure - stated,
-            PowerUnit::PumpLimited(_) => {
-                let unit = self.power_unit.convert(&mut Dual::<3>::constant);
-                let taken = self.supply_flow(&dual, &flows.edges);
-                match unit {
-                    PowerUnit::PumpLimited(unit) => {
-                        unit.pump_flow - unit.relief_flow(dual.supply_pressure, stated) - taken
-                    }
-                    PowerUnit::Constant => dual.supply_pressure - stated,
-                }
-            }
-        };
-        let rows = [surplus_a, surplus_b, surplus_s];
-        let values = Vector3::from(rows.map(|row| row.value()));
-        (values, Matrix3::from_fn(|row, column| rows[row].gradient()[column]))
-    }
-
     /// The greatest rate over the scale of its state, in 1/s, leaving aside those that a steady motion has.
     fn residual(&self, beginning: &Beginning) -> f64 {
         let mut rates = vec![0.0; self.layout.count()];
-        self.rates(&beginning.state, beginning.command, &beginning.inputs, &mut rates);
-        let mut rates = self.layout.read(&rates);
+        self.rates(&beginning.state, beginning.command, &beginning.all_inputs(), &mut rates);
+        let mut named = self.layout.read(&rates);
         let [_, velocity] = beginning.inputs;
-        rates.load.position -= velocity;
-        let mut values = vec![0.0; self.layout.count()];
-        self.layout.write(&rates, &mut values);
-        values.iter().zip(self.scales()).fold(0.0, |largest, (rate, scale)| {
+        named.load.position -= velocity;
+        self.layout.write(&named, &mut rates);
+        rates.iter().zip(self.scales()).fold(0.0, |largest, (rate, scale)| {
             let relative = (rate / scale).abs();
             if relative.is_nan() { f64::INFINITY } else { relative.max(largest) }
         })
@@ -203,8 +185,8 @@ impl LoadModel {
         match *self {
             LoadModel::Prescribed => Some(0.0),
             LoadModel::SpringMassDamper { stiffness, .. } if stiffness > 0.0 => Some(force / stiffness),
-            LoadModel::SpringMassDamper { .. } => (force == 0.0).then_some(0.0),
-            LoadModel::Wall { .. } if force == 0.0 => Some(0.0),
+            LoadModel::SpringMassDamper { .. } => (force.abs() <= ROUNDED_FORCE).then_some(0.0),
+            LoadModel::Wall { .. } if force.abs() <= ROUNDED_FORCE => Some(0.0),
             LoadModel::Wall { gap, contact, .. } => (force > 0.0).then_some(gap + force / contact.stiffness),
         }
     }

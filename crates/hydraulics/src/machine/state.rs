@@ -6,7 +6,7 @@ use crate::servovalve::SpoolState;
 /// States of a machine, or their rates, by name. What a machine does not have is zero and takes no place in its vector.
 ///
 /// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection, velocity, and then what there
-/// is of bristles, load, supply, spool friction, magnetic lag.
+/// is of bristles, load, supply, spool friction, magnetic lag. The states of lines, which have no names, follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineState<T = f64> {
     /// Position of the spool in V and what moves it; its two memories stand last in the vector.
@@ -35,7 +35,14 @@ pub(super) struct Layout {
     supply: bool,
     spool_friction: bool,
     magnetic_lag: bool,
+    /// States of both lines, which follow all others, A first.
+    lines: [usize; 2],
+    /// Waves that arrive from both lines, the last inputs, A first.
+    waves: [usize; 2],
 }
+
+/// Position and velocity of the ground come before the waves.
+const GROUND_INPUTS: usize = 2;
 
 impl<T: Scalar> MachineState<T> {
     /// Everything zero.
@@ -63,14 +70,64 @@ impl Layout {
             supply: machine.power_unit.yields(),
             spool_friction: machine.spool.threshold.is_some(),
             magnetic_lag: machine.spool.hysteresis_width.is_some(),
+            lines: machine.lines.map(|line| line.states()),
+            waves: machine.lines.map(|line| line.delays().len()),
         }
     }
 
     /// Number of states.
     pub(super) fn count(&self) -> usize {
-        let Layout { bristle, load, supply, spool_friction, magnetic_lag } = *self;
-        let single = [bristle, supply, spool_friction, magnetic_lag].into_iter().filter(|&there| there);
-        6 + single.count() + if load { 2 } else { 0 }
+        self.named() + self.lines.iter().sum::<usize>()
+    }
+
+    /// Number of states that have names: all but the lines'.
+    #[inline]
+    fn named(&self) -> usize {
+        let Layout { bristle, load, supply, spool_friction, magnetic_lag, .. } = *self;
+        let single = usize::from(bristle) + usize::from(supply);
+        6 + single + usize::from(spool_friction) + usize::from(magnetic_lag) + 2 * usize::from(load)
+    }
+
+    /// Number of inputs.
+    pub(super) fn inputs(&self) -> usize {
+        GROUND_INPUTS + self.waves.iter().sum::<usize>()
+    }
+
+    /// Whether lines have states of their own.
+    #[inline]
+    pub(super) fn has_lines(&self) -> bool {
+        self.lines != [0, 0]
+    }
+
+    /// States of both lines.
+    #[inline]
+    pub(super) fn lines<'a, T>(&self, vector: &'a [T]) -> [&'a [T]; 2] {
+        two_parts(vector, self.named(), self.lines)
+    }
+
+    /// States of both lines, to be written.
+    #[inline]
+    pub(super) fn lines_mut<'a, T>(&self, vector: &'a mut [T]) -> [&'a mut [T]; 2] {
+        let [count_a, count_b] = self.lines;
+        let after_named = vector.get_mut(self.named()..).unwrap_or_default();
+        match after_named.split_at_mut_checked(count_a) {
+            Some((line_a, rest)) => [line_a, rest.get_mut(..count_b).unwrap_or_default()],
+            None => [&mut [], &mut []],
+        }
+    }
+
+    /// Waves that arrive from both lines.
+    #[inline]
+    pub(super) fn arriving<'a, T>(&self, inputs: &'a [T]) -> [&'a [T]; 2] {
+        two_parts(inputs, GROUND_INPUTS, self.waves)
+    }
+
+    /// Places of what is sent into both lines.
+    pub(super) fn outgoing<'a, T>(&self, waves: &'a mut [T]) -> [&'a mut [T]; 2] {
+        match waves.split_at_mut_checked(self.waves[0]) {
+            Some(parts) => [parts.0, parts.1],
+            None => [&mut [], &mut []],
+        }
     }
 
     /// The states by name; what the vector lacks is not a number.
@@ -122,16 +179,68 @@ impl Layout {
     }
 }
 
-/// Typical magnitudes of the states, by which errors are measured.
-pub(super) fn scales() -> MachineState {
-    MachineState {
-        spool: SpoolState { spool: 1.0, spool_rate: 1e3, spool_friction: 1e-2, magnetic_lag: 1e-2 },
-        pressure_a: 1e5,
-        pressure_b: 1e5,
-        deflection: 1e-4,
-        velocity: 1e-2,
-        bristle: 1e-5,
-        load: LoadMotion { position: 1e-4, velocity: 1e-2 },
-        supply_pressure: 1e5,
+/// Two parts of these lengths behind the first entries; nothing where there is not so much.
+#[inline]
+fn two_parts<T>(vector: &[T], behind: usize, [first, second]: [usize; 2]) -> [&[T]; 2] {
+    let rest = vector.get(behind..).unwrap_or_default();
+    match rest.split_at_checked(first) {
+        Some((one, rest)) => [one, rest.get(..second).unwrap_or_default()],
+        None => [&[], &[]],
+    }
+}
+
+impl<S: Scalar> Machine<S> {
+    /// A tenth of what the supply can push with, in N: the magnitude from which those of the states follow.
+    pub(super) fn typical_force(&self) -> S {
+        self.typical_pressure() * (self.cylinder.area_a + self.cylinder.area_b) / S::from(2.0)
+    }
+
+    fn typical_pressure(&self) -> S {
+        (self.supply.pressure - self.supply.tank_pressure) / S::from(10.0)
+    }
+
+    /// A tenth of the valve's nominal voltage, in V.
+    pub(super) fn typical_command(&self) -> S {
+        self.valve.nominal_voltage / S::from(10.0)
+    }
+
+    /// Typical magnitudes of the states, by which errors are measured: what the typical force and command make of each.
+    fn typical_state(&self) -> MachineState<S> {
+        let (command, pressure, force) =
+            (self.typical_command(), self.typical_pressure(), self.typical_force());
+        let deflection = force / self.sensor_stiffness;
+        let swing = |mass: S| force / (self.sensor_stiffness * mass).sqrt();
+        let velocity = swing(self.cylinder.moving_mass);
+        let memory = command / S::from(100.0);
+        MachineState {
+            spool: SpoolState {
+                spool: command,
+                spool_rate: command * self.valve.natural_frequency,
+                spool_friction: memory,
+                magnetic_lag: memory,
+            },
+            pressure_a: pressure,
+            pressure_b: pressure,
+            deflection,
+            velocity,
+            bristle: self.friction.bristle_stiffness().map_or(deflection, |stiffness| force / stiffness),
+            load: LoadMotion { position: deflection, velocity: self.load.mass().map_or(velocity, swing) },
+            supply_pressure: pressure,
+        }
+    }
+
+    /// The same in the order of the vector, the states of lines included.
+    pub(super) fn typical_vector(&self) -> Vec<S> {
+        let typical = self.typical_state();
+        let flow = typical.velocity * self.cylinder.area_a;
+        let mut vector = vec![S::from(0.0); self.layout.count()];
+        self.layout.write(&typical, &mut vector);
+        for (places, line) in self.layout.lines_mut(&mut vector).into_iter().zip(&self.lines) {
+            let (pressures, flows) = (line.scales(1.0, 0.0), line.scales(0.0, 1.0));
+            for (place, (of_pressure, of_flow)) in places.iter_mut().zip(pressures.into_iter().zip(flows)) {
+                *place = S::from(of_pressure) * typical.pressure_a + S::from(of_flow) * flow;
+            }
+        }
+        vector
     }
 }

@@ -1,0 +1,92 @@
+use super::{Hose, Member};
+use crate::parameter::{ParameterError, Problems};
+
+/// The wall of a hose that moves along its axis: what it weighs and how it yields.
+///
+/// ```text
+/// area strain  = C_pp p + C_pF F         axial strain = A C_pF p + C_FF F         F the tension in the wall
+/// ```
+///
+/// One C_pF for both, since the wall stores energy. A braided wall gets thinner when it is pulled: C_pF < 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BraidedWall {
+    /// Mass of the wall per length m in kg/m.
+    pub mass_per_length: f64,
+    /// Area strain per pressure without tension C_pp in 1/Pa.
+    pub pressure_compliance: f64,
+    /// Area strain per tension C_pF in 1/N; times the area of the bore the axial strain per pressure.
+    pub coupling_compliance: f64,
+    /// Axial strain per tension C_FF in 1/N.
+    pub axial_compliance: f64,
+}
+
+/// Assumed outer diameter in m of the wall of a half-inch thermoplastic hose.
+const OUTER_DIAMETER: f64 = 20.3e-3;
+/// Assumed density in kg/m3 of its polyamide, polyester braid and polyurethane.
+const WALL_DENSITY: f64 = 1150.0;
+/// Assumed static Young's modulus in Pa of its tube and cover together, without the braid.
+const TUBE_MODULUS: f64 = 50e6;
+
+impl BraidedWall {
+    /// The wall of a hose braided at the neutral angle around an incompressible tube.
+    ///
+    /// ```text
+    /// C_FF = 1/K_axial        C_pF = -C_FF        C_pp = 1/beta_free + A C_FF
+    /// ```
+    ///
+    /// Inextensible in the direction of its threads, such a wall does not change its length when closed and free ends stretch
+    /// it with F = p A (tan^2 of the braid angle is 2). So a catalogue's volumetric expansion, which is measured in that
+    /// way, is that of the hose between fixed ends too: 1/beta_free = C_pp + 2 A C_pF + A C_FF = C_pp - A C_pF^2/C_FF. The
+    /// tension at constant pressure pulls on the tube alone: K_axial = E_tube A_wall. How stiff the threads are follows from
+    /// the catalogue.
+    ///
+    /// `axial_stiffness` K_axial in N per unit of strain, at the same rate of change as the member of the hose's stiffening.
+    ///
+    /// # Example
+    /// Free ends do not move, and take up what the catalogue says.
+    /// ```
+    /// use phea_hydraulics::line::{BraidedWall, Member};
+    /// let hose = phea_hydraulics::reference_rig::hose();
+    /// let wall = BraidedWall::neutral(&hose, Member::Nominal, 5e4, 0.2);
+    /// let area = std::f64::consts::FRAC_PI_4 * hose.bore * hose.bore;
+    /// assert_eq!(wall.coupling_compliance + wall.axial_compliance, 0.0);
+    /// let taken = wall.pressure_compliance + area * wall.coupling_compliance;
+    /// assert!((taken * hose.wall_modulus(Member::Nominal) - 1.0).abs() < 1e-12);
+    /// ```
+    pub fn neutral(hose: &Hose, member: Member, axial_stiffness: f64, mass_per_length: f64) -> BraidedWall {
+        let axial_compliance = 1.0 / axial_stiffness;
+        let area = std::f64::consts::FRAC_PI_4 * hose.bore * hose.bore;
+        BraidedWall {
+            mass_per_length,
+            pressure_compliance: 1.0 / hose.wall_modulus(member) + area * axial_compliance,
+            coupling_compliance: -axial_compliance,
+            axial_compliance,
+        }
+    }
+
+    /// An assumed wall for a half-inch thermoplastic hose, none of it from a data sheet: outer diameter 20.3 mm, 1150 kg/m3,
+    /// tube and cover of 50 MPa at rest, stiffening as the whole hose does, neutral braid.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::line::{BraidedWall, Member};
+    /// let wall = BraidedWall::assumed(&phea_hydraulics::reference_rig::hose(), Member::Nominal);
+    /// assert!((wall.mass_per_length - 0.2266).abs() < 5e-5); // ORIGIN: analytic
+    /// ```
+    pub fn assumed(hose: &Hose, member: Member) -> BraidedWall {
+        let bore = hose.bore;
+        let area = std::f64::consts::FRAC_PI_4 * (OUTER_DIAMETER * OUTER_DIAMETER - bore * bore);
+        let stiffness = hose.dynamic_stiffening.member(member) * TUBE_MODULUS * area;
+        BraidedWall::neutral(hose, member, stiffness, WALL_DENSITY * area)
+    }
+
+    /// What about this wall is impossible; empty if nothing is. Whether it stores positive energy depends on the fluid.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("mass_per_length", self.mass_per_length);
+        problems.not_negative("pressure_compliance", self.pressure_compliance);
+        problems.require("coupling_compliance", self.coupling_compliance, true, "a finite number");
+        problems.positive("axial_compliance", self.axial_compliance);
+        problems.into_vec()
+    }
+}

@@ -1,0 +1,161 @@
+use std::f64::consts::FRAC_PI_4;
+
+use phea_dynamics::scalar::Scalar;
+
+use super::{Line, Member};
+use crate::fluid::Fluid;
+use crate::parameter::{ParameterError, Problems};
+
+/// The fluid column of a line: round, straight, of constant bore and modulus. Units: m, kg/m3, m2/s, Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conduit<S = f64> {
+    /// Length L in m.
+    pub length: S,
+    /// Bore D = 2 R in m.
+    pub bore: S,
+    /// Density of the fluid rho in kg/m3.
+    pub density: S,
+    /// Kinematic viscosity of the fluid nu in m2/s.
+    pub kinematic_viscosity: S,
+    /// Bulk modulus of fluid and wall together beta_e in Pa.
+    pub effective_bulk_modulus: S,
+}
+
+/// Why a line has no such dynamic model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LineError {
+    /// Parameters outside physics.
+    #[error("{}", problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Impossible {
+        /// All of them.
+        problems: Vec<ParameterError>,
+    },
+    /// Only its volume is known: it has no length and no bore to calculate inertia, friction or delay from.
+    #[error("a plain volume has neither length nor bore: only the lumped model fits it")]
+    NoBore,
+    /// Nothing travels along a line without length.
+    #[error("a line without length carries no waves: use the lumped model")]
+    NoLength,
+    /// Friction damps all waves before they arrive; the attenuation was not fitted there.
+    #[error(
+        "the dissipation number nu L/(c R^2) is {dissipation}, above {limit}: use the lumped model in segments"
+    )]
+    Overdamped {
+        /// Dissipation number of the line.
+        dissipation: f64,
+        /// The greatest that was fitted.
+        limit: f64,
+    },
+}
+
+impl Conduit {
+    /// The fluid column of a hose or pipe, with the fluid's modulus at a mean gauge pressure in Pa.
+    ///
+    /// # Errors
+    /// [`LineError::NoBore`] for a plain volume, [`LineError::NoLength`], and parameters outside physics.
+    ///
+    /// # Example
+    /// Pressure takes 2.74 ms along 1.5 m of the thesis' hose, and the compliance is that of the lumped line.
+    /// ```
+    /// use phea_hydraulics::line::{Conduit, Member};
+    /// use phea_hydraulics::reference_rig::{components, hose_line};
+    /// use phea_hydraulics::stiffness::StiffnessModel;
+    /// let fluid = components(hose_line(), StiffnessModel::ByVolume).fluid;
+    /// let conduit = Conduit::of_line(&hose_line(), &fluid, 35e5, Member::Nominal)?;
+    /// assert!((conduit.speed() - 548.0_f64).abs() < 0.5 && (conduit.delay() - 2.74e-3).abs() < 5e-6);
+    /// let lumped = hose_line().compliance(1.45e9, Member::Nominal);
+    /// assert!((conduit.compliance() / lumped - 1.0).abs() < 1e-14);
+    /// # Ok::<(), phea_hydraulics::line::LineError>(())
+    /// ```
+    pub fn of_line(line: &Line, fluid: &Fluid, pressure: f64, member: Member) -> Result<Conduit, LineError> {
+        let mut problems = line.problems();
+        problems.extend(fluid.problems().into_iter().map(|problem| problem.within("fluid")));
+        if !problems.is_empty() {
+            return Err(LineError::Impossible { problems });
+        }
+        let (length, bore) = match *line {
+            Line::Hose { hose, length } => (length, hose.bore),
+            Line::Pipe { pipe, length } => (length, pipe.bore),
+            Line::Volume { .. } => return Err(LineError::NoBore),
+        };
+        let conduit = Conduit {
+            length,
+            bore,
+            density: fluid.density,
+            kinematic_viscosity: fluid.kinematic_viscosity,
+            effective_bulk_modulus: line.effective_modulus(fluid.modulus_at(pressure), member),
+        };
+        conduit.check().map(|()| conduit)
+    }
+
+    /// What about this conduit is impossible; empty if nothing is. A length of zero is possible here.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.not_negative("length", self.length);
+        problems.positive("bore", self.bore);
+        problems.positive("density", self.density);
+        problems.positive("kinematic_viscosity", self.kinematic_viscosity);
+        problems.positive("effective_bulk_modulus", self.effective_bulk_modulus);
+        problems.into_vec()
+    }
+
+    pub(super) fn check(&self) -> Result<(), LineError> {
+        let problems = self.problems();
+        match (problems.is_empty(), self.length > 0.0) {
+            (false, _) => Err(LineError::Impossible { problems }),
+            (true, false) => Err(LineError::NoLength),
+            (true, true) => Ok(()),
+        }
+    }
+}
+
+impl<S: Scalar> Conduit<S> {
+    /// Area of the bore in m2.
+    pub fn area(&self) -> S {
+        S::from(FRAC_PI_4) * self.bore.squared()
+    }
+
+    /// Compliance C = A L/beta_e in m3/Pa.
+    pub fn compliance(&self) -> S {
+        self.area() * self.length / self.effective_bulk_modulus
+    }
+
+    /// Inertance rho L/A in Pa s2/m3.
+    pub fn inertance(&self) -> S {
+        self.density * self.length / self.area()
+    }
+
+    /// Resistance of steady laminar flow in Pa s/m3: Hagen and Poiseuille.
+    ///
+    /// ```text
+    /// R_0 = 8 nu/R^2 rho L/A
+    /// ```
+    pub fn steady_resistance(&self) -> S {
+        S::from(8.0) * self.viscous_rate() * self.inertance()
+    }
+
+    /// nu/R^2 in 1/s: the rate at which friction spreads from the wall into the flow.
+    pub fn viscous_rate(&self) -> S {
+        S::from(4.0) * self.kinematic_viscosity / self.bore.squared()
+    }
+
+    /// Speed of a pressure wave c = sqrt(beta_e/rho) in m/s.
+    pub fn speed(&self) -> S {
+        (self.effective_bulk_modulus / self.density).sqrt()
+    }
+
+    /// Time T = L/c in s that a wave takes along the line.
+    pub fn delay(&self) -> S {
+        self.length / self.speed()
+    }
+
+    /// Characteristic impedance Z_c = rho c/A in Pa s/m3: thesis (4.38) over the area.
+    pub fn characteristic_impedance(&self) -> S {
+        self.density * self.speed() / self.area()
+    }
+
+    /// Dissipation number nu T/R^2, without unit: how much friction a wave meets on its way.
+    pub fn dissipation_number(&self) -> S {
+        self.viscous_rate() * self.delay()
+    }
+}

@@ -1,0 +1,82 @@
+use num_complex::Complex64;
+use phea_dynamics::scalar::Scalar;
+
+use super::{Hose, Member};
+use crate::parameter::{ParameterError, Problems};
+
+/// A wall that creeps: a spring beside a spring in series with a damper (Zener). Units: Pa, s.
+///
+/// ```text
+/// beta(s) = beta_static + (beta_dynamic - beta_static) tau s/(1 + tau s)
+/// ```
+///
+/// At rest it is as soft as the catalogue says, worked fast as stiff as was measured at high frequency, and between it
+/// dissipates. One relaxation time is the least that joins both ends; measured hoses spread theirs over decades.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandardLinearSolid<S = f64> {
+    /// Modulus at rest in Pa.
+    pub static_modulus: S,
+    /// Modulus at high frequency in Pa, not below the static one.
+    pub dynamic_modulus: S,
+    /// Time tau in s in which pressure relaxes while the volume is held.
+    pub relaxation_time: S,
+}
+
+impl StandardLinearSolid {
+    /// The wall of a hose: beta_hoSS at rest, r_beta times that at high frequency.
+    ///
+    /// # Example
+    /// ```
+    /// use num_complex::Complex64;
+    /// use phea_hydraulics::line::{Member, StandardLinearSolid};
+    /// let hose = phea_hydraulics::reference_rig::hose();
+    /// let wall = StandardLinearSolid::of_hose(&hose, Member::Nominal, 0.1);
+    /// let compliance = |frequency| wall.compliance(Complex64::new(0.0, frequency));
+    /// assert!((compliance(1e-6).re * hose.static_modulus() - 1.0).abs() < 1e-9);
+    /// assert!((compliance(1e6).re * hose.wall_modulus(Member::Nominal) - 1.0).abs() < 1e-9);
+    /// ```
+    pub fn of_hose(hose: &Hose, member: Member, relaxation_time: f64) -> StandardLinearSolid {
+        StandardLinearSolid {
+            static_modulus: hose.static_modulus(),
+            dynamic_modulus: hose.wall_modulus(member),
+            relaxation_time,
+        }
+    }
+
+    /// What about this wall is impossible; empty if nothing is.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("static_modulus", self.static_modulus);
+        let stiffens = self.dynamic_modulus >= self.static_modulus;
+        problems.require(
+            "dynamic_modulus",
+            self.dynamic_modulus,
+            stiffens,
+            "at least the static modulus: a wall is softest when it is slow",
+        );
+        problems.positive("relaxation_time", self.relaxation_time);
+        problems.into_vec()
+    }
+
+    /// Compliance 1/beta(s) per volume in 1/Pa: what yields at once and what follows.
+    ///
+    /// ```text
+    /// 1/beta(s) = 1/beta_dynamic + (1/beta_static - 1/beta_dynamic)/(1 + theta s)
+    /// ```
+    pub fn compliance(&self, s: Complex64) -> Complex64 {
+        1.0 / self.dynamic_modulus + self.retarded_compliance() / (1.0 + self.retardation_time() * s)
+    }
+}
+
+impl<S: Scalar> StandardLinearSolid<S> {
+    /// What follows per volume, 1/beta_static - 1/beta_dynamic, in 1/Pa.
+    pub fn retarded_compliance(&self) -> S {
+        let one = S::from(1.0);
+        one / self.static_modulus - one / self.dynamic_modulus
+    }
+
+    /// Time theta = tau beta_dynamic/beta_static in s in which the volume follows while the pressure is held.
+    pub fn retardation_time(&self) -> S {
+        self.relaxation_time * self.dynamic_modulus / self.static_modulus
+    }
+}

@@ -1,0 +1,55 @@
+use super::travelling_waves::WaveData;
+use super::{Conduit, LineError, TravellingWaves};
+use crate::parameter::Problems;
+
+/// Share of a line's compliance that each end volume takes unless said otherwise.
+pub const END_SHARE: f64 = 0.01;
+
+/// A line with one wave each way, exact delay and frequency-dependent laminar friction.
+pub type TransmissionLine<S = f64> = TravellingWaves<1, S>;
+
+impl TransmissionLine {
+    /// The transmission line of a conduit, `end_share` of whose compliance is a plain volume at each end.
+    ///
+    /// ```text
+    /// C_end = f C      Z = Z_c/sqrt(1 - 2 f)      delay = T sqrt(1 - 2 f)
+    /// ```
+    ///
+    /// The end volumes keep the line off the valve's edges, which would make an algebraic loop, and leave a chamber at its
+    /// end stop something to work on. What is between them keeps all of the inertia and the resistance: compliance, inertance
+    /// and steady resistance of the whole are exact for any share, and the waves tend to the exact ones as it tends to zero.
+    ///
+    /// # Errors
+    /// A conduit that is impossible, has no length or is overdamped; a share not between 0 and 1/2.
+    ///
+    /// # Example
+    /// 1.5 m of the thesis' hose.
+    /// ```
+    /// # use phea_hydraulics::line::{Conduit, END_SHARE, TransmissionLine};
+    /// let conduit = Conduit {
+    ///     length: 1.5, bore: 12.7e-3, density: 870.0, kinematic_viscosity: 46e-6, effective_bulk_modulus: 2.609e8,
+    /// };
+    /// let line = TransmissionLine::of_conduit(&conduit, END_SHARE)?;
+    /// assert!((line.delays()[0] / (0.98_f64.sqrt() * conduit.delay()) - 1.0).abs() < 1e-12);
+    /// # Ok::<(), phea_hydraulics::line::LineError>(())
+    /// ```
+    pub fn of_conduit(conduit: &Conduit, end_share: f64) -> Result<TransmissionLine, LineError> {
+        conduit.check()?;
+        check_end_share(end_share)?;
+        let root = (1.0 - 2.0 * end_share).sqrt();
+        let wave = WaveData {
+            impedance: conduit.characteristic_impedance() / root,
+            delay: conduit.delay() * root,
+            dissipation: conduit.dissipation_number() * root,
+        };
+        TravellingWaves::new([wave], end_share * conduit.compliance(), conduit.steady_resistance())
+    }
+}
+
+pub(super) fn check_end_share(end_share: f64) -> Result<(), LineError> {
+    let mut problems = Problems::default();
+    let is_share = end_share > 0.0 && end_share < 0.5;
+    problems.require("end_share", end_share, is_share, "between 0 and 1/2");
+    let problems = problems.into_vec();
+    if problems.is_empty() { Ok(()) } else { Err(LineError::Impossible { problems }) }
+}

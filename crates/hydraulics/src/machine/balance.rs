@@ -1,0 +1,113 @@
+use nalgebra::{Matrix4, Vector4};
+use phea_dynamics::scalar::{Dual, Scalar};
+
+use super::equations::constant;
+use super::{Machine, MachineState, PowerUnit};
+use crate::operating_point::hydraulic_force;
+
+/// What a rest keeps while the pressures find their balance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kept {
+    /// The position of the spool.
+    Spool,
+    /// The force of the pressures on the piston, in N.
+    Force(f64),
+}
+
+/// What surplus flows in m3/s, the supply pressure in Pa, the spool in V and the force in N are measured by.
+const FLOW_SCALE: f64 = 1e-6;
+const PRESSURE_SCALE: f64 = 1e5;
+const FORCE_SCALE: f64 = 10.0;
+
+/// Newton steps, and halvings of each.
+const STEPS: usize = 60;
+
+/// p_A, p_B, p_S and the spool's position.
+type Unknowns = Vector4<f64>;
+
+impl Machine {
+    /// The state with those pressures, and that spool position, at which nothing flows that the piston does not take: by damped
+    /// Newton steps from where it is.
+    ///
+    /// ```text
+    /// q_A(U, p_A + R_A Q_A, p_S) = Q_A = A_A v + q_i        q_B(...) = Q_B = -A_B v - q_i
+    /// p_S as stated, or q_pump - q_relief = q_supply        U as it is, or A_A p_A - A_B p_B = F
+    /// ```
+    ///
+    /// R is the steady resistance of a line.
+    pub(super) fn balanced(&self, state: &MachineState, kept: Kept) -> MachineState {
+        let mut best: Unknowns =
+            [state.pressure_a, state.pressure_b, state.supply_pressure, state.spool.spool].into();
+        let (mut surplus, mut slopes) = self.surplus(state, best, kept);
+        for _ in 0..STEPS {
+            let Some(step) = slopes.lu().solve(&surplus) else { break };
+            let mut share = 1.0;
+            let found = (0..STEPS).find_map(|_| {
+                let next = best - step * share;
+                share *= 0.5;
+                let (left, slopes) = self.surplus(state, next, kept);
+                (left.norm() < surplus.norm()).then_some((next, left, slopes))
+            });
+            match found {
+                Some(better) => (best, surplus, slopes) = better,
+                None => break,
+            }
+        }
+        let [pressure_a, pressure_b, supply_pressure, spool] = best.into();
+        let mut balanced = MachineState { pressure_a, pressure_b, supply_pressure, ..*state };
+        balanced.spool.spool = spool;
+        balanced
+    }
+
+    /// What is left of each of the four equations, and their derivatives by the unknowns.
+    fn surplus(&self, state: &MachineState, unknowns: Unknowns, kept: Kept) -> (Unknowns, Matrix4<f64>) {
+        let variable = |index: usize| Dual::<4>::variable(unknowns[index], index);
+        let mut dual = MachineState::<Dual<4>>::zero();
+        dual.velocity = Dual::constant(state.velocity);
+        (dual.pressure_a, dual.pressure_b) = (variable(0), variable(1));
+        (dual.supply_pressure, dual.spool.spool) = (variable(2), variable(3));
+        let [taken_a, taken_b] = self.steady_flows(&dual);
+        let [resistance_a, resistance_b] = self.line_resistances().map(Dual::constant);
+        let ports = [dual.pressure_a + resistance_a * taken_a, dual.pressure_b + resistance_b * taken_b];
+        let flows = self.flows(&dual, ports);
+        let [from_a, from_b] = flows.from_valve;
+        let stated = Dual::constant(self.supply.pressure);
+        let supply = match self.power_unit.convert(&mut constant::<f64, Dual<4>>) {
+            PowerUnit::Constant => (dual.supply_pressure - stated) / Dual::constant(PRESSURE_SCALE),
+            PowerUnit::PumpLimited(unit) => {
+                let taken = self.supply_flow(&dual, &flows.edges);
+                let spare = unit.pump_flow - unit.relief_flow(dual.supply_pressure, stated) - taken;
+                spare / Dual::constant(FLOW_SCALE)
+            }
+        };
+        let held = match kept {
+            Kept::Spool => dual.spool.spool - Dual::constant(state.spool.spool),
+            Kept::Force(force) => {
+                let areas = [self.cylinder.area_a, self.cylinder.area_b].map(Dual::constant);
+                let found = hydraulic_force(areas, [dual.pressure_a, dual.pressure_b]);
+                (found - Dual::constant(force)) / Dual::constant(FORCE_SCALE)
+            }
+        };
+        let flow_scale = Dual::constant(FLOW_SCALE);
+        let rows = [(from_a - taken_a) / flow_scale, (from_b - taken_b) / flow_scale, supply, held];
+        let slopes = Matrix4::from_fn(|row, column| rows[row].gradient()[column]);
+        (rows.map(|row| row.value()).into(), slopes)
+    }
+
+    /// What the chambers take in steady motion, in m3/s: the piston's displacement and the leakage across it.
+    pub(super) fn steady_flows<T: Scalar + From<f64>>(&self, state: &MachineState<T>) -> [T; 2] {
+        let leakage = self.leakage(state);
+        [
+            T::from(self.cylinder.area_a) * state.velocity + leakage,
+            -T::from(self.cylinder.area_b) * state.velocity - leakage,
+        ]
+    }
+
+    /// Drops of pressure over both lines per steady flow, in Pa s/m3.
+    fn line_resistances(&self) -> [f64; 2] {
+        self.lines.map(|line| {
+            let (state, _) = line.steady_state(0.0, 1.0);
+            line.port_pressure(&state, 0.0)
+        })
+    }
+}

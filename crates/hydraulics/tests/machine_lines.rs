@@ -1,0 +1,202 @@
+//! The machine behind lines with dynamics of their own: their limits, and each against the other, by the method that drives
+//! everything.
+
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+use phea_dynamics::scalar::Scalar;
+use phea_dynamics::simulation::{Course, Input, Plant, Profile, Settings, Status, System, simulate};
+use phea_hydraulics::actuator::Actuator;
+use phea_hydraulics::line::{
+    Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, Member, Segments, TransmissionLine, TwoWaveHose,
+};
+use phea_hydraulics::machine::{Machine, MachineOptions};
+use phea_hydraulics::operating_point::{Condition, Load, operating_point};
+use phea_hydraulics::reference_rig::{components, hose, hose_line};
+use phea_hydraulics::stiffness::StiffnessModel;
+
+/// A machine at a command that is held, the position of its load's ground counted from where it began.
+#[derive(Clone)]
+struct Held {
+    machine: Machine,
+    command: f64,
+    ground: f64,
+}
+
+impl Held {
+    fn inputs_of<T: Scalar>(&self, inputs: &[T]) -> Vec<T> {
+        let mut inputs = inputs.to_vec();
+        inputs[0] = inputs[0] + T::from(self.ground);
+        inputs
+    }
+}
+
+impl System<f64> for Held {
+    fn states(&self) -> usize {
+        self.machine.states()
+    }
+    fn inputs(&self) -> usize {
+        self.machine.inputs()
+    }
+    fn scales(&self) -> Vec<f64> {
+        self.machine.scales()
+    }
+    fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
+        self.machine.rates(state, <T as From<f64>>::from(self.command), &self.inputs_of(inputs), rates);
+    }
+    fn delays(&self) -> Vec<f64> {
+        self.machine.delays()
+    }
+    fn outgoing<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
+        self.machine.outgoing(state, &self.inputs_of(inputs), waves);
+    }
+}
+
+fn actuator() -> Actuator {
+    Actuator::new(components(hose_line(), StiffnessModel::ByVolume)).unwrap()
+}
+
+fn conduit() -> Conduit {
+    Conduit::of_line(&hose_line(), &actuator().components().fluid, 35e5, Member::Nominal).unwrap()
+}
+
+fn machine(line: Option<DynamicLine>) -> Machine {
+    let options = MachineOptions { lines: line.map(|line| [line; 2]), ..MachineOptions::default() };
+    Machine::new(&actuator(), &options).unwrap()
+}
+
+fn segments(count: usize) -> DynamicLine {
+    DynamicLine::Segments(Segments::new(&conduit(), count, LaminarFriction::FrequencyDependent).unwrap())
+}
+
+fn waves() -> DynamicLine {
+    DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit(), END_SHARE).unwrap())
+}
+
+fn two_waves() -> DynamicLine {
+    let fluid = actuator().components().fluid;
+    let hose = TwoWaveHose::assumed(&hose(), 1.5, &fluid, 35e5, Member::Nominal);
+    DynamicLine::TwoWave(hose.in_time(END_SHARE).unwrap())
+}
+
+/// Force in N every millisecond while the load moves smoothly by 2 mm, begun 20 ms after a rest at 2 kN.
+fn forces(line: Option<DynamicLine>, motion_s: f64, duration_s: f64) -> Vec<f64> {
+    let machine = machine(line);
+    let point = operating_point(&actuator(), 0.2, Condition::Load(Load::Force(2e3))).unwrap();
+    let rest = machine.rest(&point).unwrap();
+    let motion = Profile::smooth_step(0.02, motion_s, 2e-3).unwrap();
+    let inputs = vec![Input::Value(motion.clone()), Input::Rate(motion)];
+    let course = Course { duration_s, output_step_s: 1e-3, inputs };
+    let held = Held { machine, command: rest.command, ground: rest.inputs[0] };
+    let result = simulate(
+        &held,
+        &[rest.state.clone(), rest.waves.clone()].concat(),
+        &course,
+        None,
+        &Settings::default(),
+        &mut |_| true,
+    )
+    .unwrap();
+    assert_eq!(result.outcome.status, Status::Completed);
+    let states = result.trajectory.states.iter();
+    states.map(|state| machine.measurement(state, &rest.all_inputs())).collect()
+}
+
+fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// A capacity without segments behind the valve is the lumped line, whatever the stiffness model of the chamber.
+#[test]
+fn one_capacity_is_the_lumped_line() {
+    let compliance = hose_line().compliance(1.45e9, Member::Nominal);
+    let lumped = machine(None);
+    let capacity = machine(Some(DynamicLine::Segments(Segments::lumped(compliance))));
+    let state = [0.4, 3.0, 41e5, 22e5, 1e-4, 0.03];
+    let [mut one, mut other] = [[f64::NAN; 6]; 2];
+    lumped.rates(&state, 0.7, &[0.31, 0.01], &mut one);
+    capacity.rates(&state, 0.7, &[0.31, 0.01], &mut other);
+    assert!(one.iter().zip(other).all(|(a, b)| (a - b).abs() <= 1e-13 * a.abs()), "{one:?} {other:?}");
+    assert!(capacity.ledger(&state, &[0.31, 0.01]).is_some());
+    assert!(machine(Some(segments(2))).ledger(&[0.0; 40], &[0.31, 0.01]).is_none());
+}
+
+/// Behind a slow motion every line is its compliance; behind a fast one they part.
+#[test]
+fn slow_motions_see_the_lumped_line() {
+    let compare = |line: DynamicLine, motion_s: f64| {
+        let lumped = forces(None, motion_s, motion_s + 0.04);
+        let other = forces(Some(line), motion_s, motion_s + 0.04);
+        let peak = lumped.iter().map(|force| (force - lumped[0]).abs()).fold(0.0, f64::max);
+        assert!(peak > 500.0);
+        largest_difference(&lumped, &other) / peak
+    };
+    for line in [segments(4), waves(), two_waves()] {
+        let (slow, fast) = (compare(line, 0.4), compare(line, 0.02));
+        assert!(slow < 0.01 && fast > 3.0 * slow, "{slow} {fast}");
+    }
+}
+
+/// More segments come nearer to the wave that travels, the order of the error is that of their length squared.
+#[test]
+fn segments_become_a_transmission_line() {
+    let travelling = forces(Some(waves()), 0.02, 0.05);
+    let errors =
+        [2, 4, 8].map(|count| largest_difference(&forces(Some(segments(count)), 0.02, 0.05), &travelling));
+    assert!(errors[1] < 0.6 * errors[0] && errors[2] < 0.02 * 4e3, "{errors:?}");
+}
+
+/// A pulse at the valve is not felt before its wave has arrived.
+#[test]
+fn nothing_is_felt_before_the_wave_arrives() {
+    let machine = machine(Some(waves()));
+    let point = operating_point(&actuator(), 0.2, Condition::Load(Load::Force(0.0))).unwrap();
+    let rest = machine.rest(&point).unwrap();
+    let ground = Profile::constant(0.0);
+    let inputs = vec![Input::Value(ground.clone()), Input::Rate(ground)];
+    let course = Course { duration_s: 0.008, output_step_s: 1e-4, inputs };
+    let held = Held { machine, command: rest.command + 5.0, ground: rest.inputs[0] };
+    let settings = Settings { tolerance: 1e-8, ..Settings::default() };
+    let result = simulate(
+        &held,
+        &[rest.state.clone(), rest.waves.clone()].concat(),
+        &course,
+        None,
+        &settings,
+        &mut |_| true,
+    )
+    .unwrap();
+    let delay = machine.delays()[0];
+    assert!(delay > 2.5e-3 && delay < 2.74e-3);
+    for (time, state) in result.trajectory.times_s.iter().zip(&result.trajectory.states) {
+        let force = machine.measurement(state, &rest.all_inputs());
+        if *time < delay {
+            assert!((force - 2e7 * rest.state[4]).abs() < 1e-3, "{force} at {time}");
+        }
+    }
+    let last = result.trajectory.states.last().unwrap();
+    assert!(machine.measurement(last, &rest.all_inputs()) > 10.0);
+}
+
+/// Lines of any kind of hose keep a steady motion, the drop of pressure along them included.
+#[test]
+fn steady_motions_stay() {
+    let line = Line::Hose { hose: hose(), length: 3.0 };
+    let rig = components(line, StiffnessModel::Uniform);
+    let actuator = Actuator::new(rig).unwrap();
+    let conduit = Conduit::of_line(&line, &rig.fluid, 35e5, Member::Nominal).unwrap();
+    let waves = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit, END_SHARE).unwrap());
+    let creeping = DynamicLine::Segments(Segments::new(&conduit, 3, LaminarFriction::Steady).unwrap());
+    for lines in [[waves, creeping], [creeping, waves]] {
+        let options = MachineOptions { lines: Some(lines), ..MachineOptions::default() };
+        let machine = Machine::new(&actuator, &options).unwrap();
+        let point = operating_point(&actuator, 0.2, Condition::Motion(2.0, Load::Force(1e3))).unwrap();
+        let steady = machine.rest(&point).unwrap();
+        let outputs = machine.outputs(&steady.state, &steady.all_inputs());
+        let [chamber, port] = [outputs[2], outputs[15]];
+        let drop = conduit.steady_resistance() * rig.cylinder.area_a * point.velocity;
+        assert!(
+            point.velocity > 0.05 && (port - chamber - drop).abs() < 1e-3 * drop,
+            "{port} {chamber} {drop}"
+        );
+    }
+}
