@@ -5,6 +5,7 @@ use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::TransferFunction;
 use phea_qft::audit::AuditRun;
+use phea_qft::design::quantisation::{CoefficientFormat, rounded};
 use phea_qft::design::{
     BindingLimit, Conflict, ControllerChoice, Design, DesignRound, DesignStatus, PrefilterChoice, Relaxation,
 };
@@ -29,14 +30,22 @@ fn loaded(text: &str) -> (Memory, Loaded) {
     (source, loaded)
 }
 
-/// 5 (s/50 + 1)/(s/500 + 1) and a prefilter of first order, as if a search had found them.
-fn design(problem: &phea_qft::design::DesignProblem, status: DesignStatus) -> Design {
+/// 5 (s/50 + 1)/(s/500 + 1) and a prefilter of first order, as if a search had found them for coefficients that are kept so.
+fn design(
+    problem: &phea_qft::design::DesignProblem,
+    coefficients: CoefficientFormat,
+    status: DesignStatus,
+) -> Design {
     let lead = Element::LeadLag { zero_frequency: 50.0, pole_frequency: 500.0 };
-    let controller = Controller {
+    let law = Controller {
         feedback: Compensator::new(vec![Element::Gain(5.0), lead]),
         prefilter: Compensator::new(vec![Element::RealPole { frequency: 6.0 }]),
         timing: problem.timing,
         ..Controller::default()
+    };
+    let controller = match coefficients {
+        CoefficientFormat::Double => law.clone(),
+        format => rounded(&law, format).unwrap().controller,
     };
     let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
     let mut run = AuditRun::new(
@@ -55,7 +64,7 @@ fn design(problem: &phea_qft::design::DesignProblem, status: DesignStatus) -> De
     let plant = PlantPoint::Parameters(vec![20.0]);
     Design {
         status,
-        law: controller.clone(),
+        law,
         controller,
         structure: structure.clone(),
         objective_db: 34.0,
@@ -82,7 +91,9 @@ fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
     let options = design_options(&loaded.project, &given, Some(7)).unwrap();
     assert_eq!(options.controller, ControllerChoice::Grow { maximum_order: 4 });
     assert_eq!(options.prefilter, PrefilterChoice::Grow { maximum_order: 3 });
-    let view = told(&loaded.project, &given, &problem, design(&problem, status), options).unwrap();
+    let view =
+        told(&loaded.project, &given, &problem, design(&problem, options.coefficients, status), options)
+            .unwrap();
     (source, loaded, ProjectDesign { published: Some(published), ..view })
 }
 
