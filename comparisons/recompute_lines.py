@@ -102,6 +102,14 @@ def attenuation():
     for dissipation in np.geomspace(1e-7, 0.1, 40):
         even, odd = modal_impedances(interpolated(table, dissipation), dissipation, frequency)
         assert min(even.real.min(), odd.real.min()) > 0, f"not passive at dissipation {dissipation:g}"
+    # what the lags alone would give back is at most l^2/(1 + l) over 1 + (wT)^2: lines in series may share a resistance
+    frequency = np.geomspace(1e-2, 300, 20001)
+    for dissipation in np.geomspace(1e-7, 0.1, 40):
+        weights = interpolated(table, dissipation)
+        even, odd = modal_impedances(weights, 0.0, frequency)
+        lag = np.sum(weights[1:] / CORNERS)
+        needed = lag**2 / (1 + lag) / (1 + frequency**2)
+        assert np.all(even.real > -needed) and np.all(odd.real > 0), f"gives back too much at dissipation {dissipation:g}"
 
 
 def friction():

@@ -1,6 +1,6 @@
 //! The line between a valve port and a cylinder chamber: hose, pipe or plain volume, and what it does in motion.
 //!
-//! [`Line`] says what it is, [`DynamicLine`] what a machine calculates: capacities with or without inertances
+//! [`Line`] says what it is, [`LineModel`] and [`DynamicLine`] what a machine calculates: capacities with or without inertances
 //! ([`Segments`]), a wall that creeps ([`StandardLinearSolid`]), one wave ([`TransmissionLine`]) or two ([`TwoWaveHose`]).
 
 mod attenuation;
@@ -9,6 +9,7 @@ mod conduit;
 mod dynamic_line;
 mod hose;
 mod laminar_friction;
+mod line_model;
 mod line_response;
 mod pipe;
 mod segments;
@@ -22,6 +23,7 @@ pub use conduit::{Conduit, LineError};
 pub use dynamic_line::DynamicLine;
 pub use hose::{Hose, Stiffening, static_hose_modulus};
 pub use laminar_friction::friction_factor;
+pub use line_model::LineModel;
 pub use line_response::LineResponse;
 pub use pipe::{Anchoring, Pipe, PipeWall, pipe_wall_compliance};
 pub use segments::{LaminarFriction, Segments};

@@ -1,6 +1,9 @@
 //! Lines in motion: against the exact line, against each other, and against conservation.
 
 #[cfg(test)]
+#[path = "line_models/driven.rs"]
+mod driven;
+#[cfg(test)]
 #[path = "line_models/oracle.rs"]
 mod oracle;
 #[cfg(test)]

@@ -71,7 +71,7 @@ impl BraidedWall {
     /// ```
     /// use phea_hydraulics::line::{BraidedWall, Member};
     /// let wall = BraidedWall::assumed(&phea_hydraulics::reference_rig::hose(), Member::Nominal);
-    /// assert!((wall.mass_per_length - 0.2266).abs() < 5e-5); // ORIGIN: analytic
+    /// assert!((wall.mass_per_length - 0.2265).abs() < 5e-5); // ORIGIN: analytic
     /// ```
     pub fn assumed(hose: &Hose, member: Member) -> BraidedWall {
         let bore = hose.bore;

@@ -36,6 +36,23 @@ pub enum LineError {
     /// Nothing travels along a line without length.
     #[error("a line without length carries no waves: use the lumped model")]
     NoLength,
+    /// Friction between the fluid and a light wall mixes the waves so much that the model in time would give energy at low
+    /// frequency: the resistance that makes up for the lags of its waves exceeds that of steady flow.
+    #[error(
+        "friction mixes the waves: their lags take {needed} Pa s/m3 at each end, steady flow gives {half_resistance}"
+    )]
+    MixedByFriction {
+        /// What the lags of the waves take, in Pa s/m3.
+        needed: f64,
+        /// Half of the steady resistance, in Pa s/m3.
+        half_resistance: f64,
+    },
+    /// Walls that creep or move along their axis are those of hoses.
+    #[error("this model of the wall is for hoses")]
+    NotAHose,
+    /// A line cut into no segments.
+    #[error("a line in segments has at least one; without any it is lumped")]
+    NoSegments,
     /// Friction damps all waves before they arrive; the attenuation was not fitted there.
     #[error(
         "the dissipation number nu L/(c R^2) is {dissipation}, above {limit}: use the lumped model in segments"

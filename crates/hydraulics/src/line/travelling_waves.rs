@@ -21,7 +21,8 @@ use super::attenuation::{CORNERS, GREATEST_DISSIPATION, TERMS, attenuation_weigh
 ///
 /// the exact line where A_i = exp(sT_i - Gamma_i) and Z_i(s) = Z_i Gamma_i/(s T_i), of which the bracket is the first term
 /// of the logarithm: one set of weights gives attenuation and impedance. At rest it has the whole compliance of the line and
-/// its steady resistance. Structure after the transmission line method (Krus, Weddfelt and Palmberg 1994; Johnston 2012),
+/// its steady resistance. It is passive when R_0/2 is at least sum Z_i l_i^2/(1 + l_i), l_i = sum_k a_ik/b_k, and wave 1 has the
+/// shortest delay; a single wave always is. Structure after the transmission line method (Krus, Weddfelt and Palmberg 1994; Johnston 2012),
 /// weights and impedance our own.
 ///
 /// States: the pressure of the valve's end volume, then for the valve end and the chamber end, for each wave, Y and X. Waves,
@@ -62,7 +63,18 @@ impl<const M: usize> TravellingWaves<M> {
             };
             *wave = Wave { impedance: data.impedance, delay: data.delay, weights };
         }
-        Ok(TravellingWaves { waves: attenuated, end_compliance, half_resistance: resistance / 2.0 })
+        // In phase and slow, a wave gives energy as a resistance -Z l^2/(1 + l) would, l = sum a_k/b_k, and never more than
+        // that over 1 + (wT)^2 (comparisons/recompute_lines.py): a greater resistance with the shortest lag makes up for all.
+        let half_resistance = resistance / 2.0;
+        let needed = attenuated.iter().map(|wave| {
+            let lag = wave.lagging(&[1.0; TERMS]);
+            wave.impedance * lag * lag / (1.0 + lag)
+        });
+        let needed: f64 = needed.sum();
+        if needed > half_resistance {
+            return Err(LineError::MixedByFriction { needed, half_resistance });
+        }
+        Ok(TravellingWaves { waves: attenuated, end_compliance, half_resistance })
     }
 }
 
@@ -191,8 +203,9 @@ impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
             let leaving = wave.leaving(flow, *arriving, filters);
             let (flows, pressures) = filters.split_at(TERMS);
             let (flow_rates, pressure_rates) = rates.split_at_mut(TERMS);
+            let per_delay = <T as From<f64>>::from(1.0) / <T as From<S>>::from(wave.delay);
             for (k, corner) in CORNERS.into_iter().enumerate() {
-                let corner = <T as From<f64>>::from(corner) / <T as From<S>>::from(wave.delay);
+                let corner = <T as From<f64>>::from(corner) * per_delay;
                 flow_rates[k] = corner * (flow - flows[k]);
                 pressure_rates[k] = corner * (leaving - pressures[k]);
             }
@@ -223,7 +236,7 @@ impl<S: Scalar> Wave<S> {
     fn lagging<T: Scalar + From<S>>(&self, filters: &[T]) -> T {
         let mut sum = <T as From<f64>>::from(0.0);
         for (weight, (corner, lagging)) in self.weights.iter().zip(CORNERS.into_iter().zip(filters)) {
-            sum = sum + <T as From<S>>::from(*weight) / <T as From<f64>>::from(corner) * *lagging;
+            sum = sum + <T as From<S>>::from(*weight) * <T as From<f64>>::from(1.0 / corner) * *lagging;
         }
         sum
     }

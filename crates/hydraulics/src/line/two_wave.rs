@@ -196,7 +196,8 @@ impl TwoWaveHose {
     /// finds, comes out too sharp. The steady resistance is exact.
     ///
     /// # Errors
-    /// A hose that is impossible, has no length or is overdamped; a share not between 0 and 1/2.
+    /// A hose that is impossible, has no length, is overdamped, or whose wall is so light that friction mixes its waves
+    /// ([`LineError::MixedByFriction`]); a share not between 0 and 1/2.
     pub fn in_time(&self, end_share: f64) -> Result<TwoWaveLine, LineError> {
         let problems = self.problems();
         if !problems.is_empty() {
@@ -211,9 +212,9 @@ impl TwoWaveHose {
             let friction = conduit.viscous_rate() * wave.friction_share * wave.friction_share;
             WaveData { impedance: wave.impedance / root, delay, dissipation: friction * delay }
         };
-        // the steady resistance lags as the wave does that carries most of the pressure
+        // the steady resistance lags as the faster wave does
         let [slower, faster] = self.waves().map(of_wave);
-        let waves = if slower.impedance >= faster.impedance { [slower, faster] } else { [faster, slower] };
+        let waves = [faster, slower];
         TravellingWaves::new(waves, end_share * conduit.compliance(), conduit.steady_resistance())
     }
 }

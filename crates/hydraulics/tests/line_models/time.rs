@@ -128,7 +128,7 @@ fn a_step_of_flow_rises_and_arrives_as_joukowsky_says() {
 }
 
 /// A small generator of numbers between -1 and 1 (Park and Miller 1988).
-fn next(seed: &mut u64) -> f64 {
+pub(crate) fn next(seed: &mut u64) -> f64 {
     *seed = *seed * 48271 % 2_147_483_647;
     *seed as f64 / 1_073_741_823.5 - 1.0
 }

@@ -195,11 +195,73 @@ fn the_hose_is_passive_at_every_frequency() {
     }
 }
 
+/// Walls, fluids and lengths at random over decades.
+#[test]
+fn random_hoses_are_passive() {
+    let mut seed = 20_260_101;
+    let mut between = |low: f64, high: f64| {
+        let ratio = phea_dynamics::portable::ln(high / low);
+        low * phea_dynamics::portable::exp(ratio * (0.5 + 0.5 * crate::time::next(&mut seed)))
+    };
+    let mut calculated = 0;
+    for _ in 0..60 {
+        let (bore, axial_compliance) = (between(4e-3, 3e-2), between(1e-6, 1e-4));
+        let area = std::f64::consts::FRAC_PI_4 * bore * bore;
+        // a positive energy: C_pp C_FF > A C_pF^2
+        let free = between(1e-10, 2e-8);
+        let coupling = -axial_compliance * between(0.03, 3.0);
+        let hose = TwoWaveHose {
+            length: between(0.1, 10.0),
+            bore,
+            density: 870.0,
+            kinematic_viscosity: between(5e-6, 5e-4),
+            fluid_modulus: between(3e8, 1.6e9),
+            wall: BraidedWall {
+                mass_per_length: between(0.03, 2.0),
+                pressure_compliance: free + area * coupling * coupling / axial_compliance,
+                coupling_compliance: coupling,
+                axial_compliance,
+            },
+        };
+        let line = match hose.in_time(1e-4) {
+            Ok(line) => DynamicLine::TwoWave(line),
+            Err(LineError::Overdamped { .. } | LineError::MixedByFriction { .. }) => continue,
+            Err(error) => panic!("{error} for {hose:?}"),
+        };
+        calculated += 1;
+        let mut part = 3e-4;
+        while part < 300.0 {
+            let found = impedances(&line, at(part / line.delays()[0]));
+            for impedance in [found.in_phase, found.in_opposition] {
+                assert!(impedance.re > -1e-8 * size(impedance), "{hose:?} at wT = {part}: {impedance}");
+            }
+            part *= 1.06;
+        }
+    }
+    assert!(calculated > 30, "{calculated}");
+}
+
 #[test]
 fn walls_that_would_give_energy_are_refused() {
     let mut hose = round_hose();
     hose.wall.coupling_compliance = -2.5e-5;
     let Err(LineError::Impossible { problems }) = hose.in_time(END_SHARE) else { panic!("accepted") };
     assert_eq!(problems[0].quantity, "fixed_end_modulus");
+    // a wall much lighter than its fluid, dragged along by it
+    let light = TwoWaveHose {
+        bore: 30e-3,
+        wall: BraidedWall {
+            mass_per_length: 0.04,
+            pressure_compliance: 2.7e-8,
+            coupling_compliance: -3e-5,
+            axial_compliance: 2.5e-5,
+        },
+        ..round_hose()
+    };
+    let refused = light.in_time(END_SHARE);
+    assert!(
+        matches!(refused, Err(LineError::MixedByFriction { needed, half_resistance }) if needed > half_resistance),
+        "{refused:?}"
+    );
     assert_eq!(TwoWaveHose { length: 0.0, ..round_hose() }.in_time(END_SHARE), Err(LineError::NoLength));
 }
