@@ -77,7 +77,7 @@ fn scenario(run: &ScenarioRun, figures: &[Figure]) -> Markup {
         @for figure in figures { (place(figure)) }
         @if !rows.is_empty() {
             (table(&heads, 1, &rows))
-            p { "Settling is to " (significant(run.settling_band_percent, 2)) " % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less force, averaged over the last tenth of the window." }
+            p { "Settling is to " (run.settling_band_percent) " % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less force, averaged over the last tenth of the window." }
         }
         @for sentence in occurrence_sentences(&run.occurrences) { p { (sentence) "." } }
     }

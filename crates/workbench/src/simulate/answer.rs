@@ -31,7 +31,6 @@ struct WorkRow {
     steps: u64,
     rejected: u64,
     evaluations: u64,
-    jacobians: u64,
 }
 
 #[derive(Serialize)]
@@ -120,7 +119,6 @@ fn scenario(run: &ScenarioRun) -> ScenarioRow<'_> {
             steps: run.work.steps,
             rejected: run.work.rejected,
             evaluations: run.work.evaluations,
-            jacobians: run.work.jacobians,
         },
         events: run.windows.iter().map(event).collect(),
         occurrences: run.occurrences.iter().map(occurrence).collect(),

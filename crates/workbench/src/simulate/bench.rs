@@ -21,7 +21,6 @@ pub struct Bench {
     pub(super) rig: Rig,
     pub(super) machine: Machine,
     pub(super) control: Control,
-    /// F as a transfer function, for the table of what is shown.
     pub(super) settings: Settings,
 }
 
@@ -29,7 +28,7 @@ pub struct Bench {
 #[derive(Clone, Debug)]
 pub(super) enum Control {
     /// The controller acts continuously.
-    Continuous(ClosedLoop<Sensed<Machine>>),
+    Continuous(Box<ClosedLoop<Sensed<Machine>>>),
     /// It acts once a sample.
     Sampled(Box<Sampled>),
 }
@@ -61,7 +60,7 @@ impl Bench {
         let sensed = Sensed::new(machine, &sensor(project)?)?;
         let feed_forward = feed_forward(project, &rig);
         let control = match controller.timing.sample_time_s {
-            None => Control::Continuous(ClosedLoop::new(sensed, &controller, feed_forward)?),
+            None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &controller, feed_forward)?)),
             Some(sample_time_s) => {
                 Control::Sampled(Box::new(sampled(project, sensed, controller, sample_time_s, feed_forward)?))
             }

@@ -129,7 +129,8 @@ pub(super) fn run(
     let (outcome, record, occurrences) = match &bench.control {
         Control::Continuous(closed) => {
             let drive = inputs(vec![reference]);
-            let simulated = simulate(closed, &course.start, &drive, None, &bench.settings, &mut watch);
+            let simulated =
+                simulate(closed.as_ref(), &course.start, &drive, None, &bench.settings, &mut watch);
             continuous(bench, closed, course, simulated.map_err(named)?)
         }
         Control::Sampled(sampled) => {

@@ -4,7 +4,7 @@ use super::metrics::Measured;
 use super::{Cause, Comparison, Metrics, Occurrence, ScenarioRun, Window};
 use crate::answer::{significant, table};
 use crate::project::Loaded;
-use crate::quantity::{DisplayUnit, FORCE, print};
+use crate::quantity::{DisplayUnit, FORCE, TIME, display};
 
 /// Occurrences that are told one by one; more are counted.
 const TOLD: usize = 8;
@@ -52,7 +52,7 @@ pub(crate) fn headline(run: &ScenarioRun) -> String {
 }
 
 fn windows(run: &ScenarioRun) -> String {
-    let band = significant(run.settling_band_percent, 2);
+    let band = run.settling_band_percent;
     let settling = format!("settling ({band} %)");
     let mut rows = table(&[
         "event",
@@ -73,10 +73,10 @@ fn windows(run: &ScenarioRun) -> String {
 
 /// What began a window.
 pub(crate) fn cause_words(window: &Window) -> String {
-    let at = significant(window.start_s, 4);
+    let at = display(window.start_s, &TIME, 4);
     match window.cause {
-        Cause::ReferenceStep { to_n, .. } => format!("step to {} at {at} s", print(to_n, &FORCE)),
-        Cause::LoadMotion => format!("load motion at {at} s"),
+        Cause::ReferenceStep { to_n, .. } => format!("step to {} at {at}", display(to_n, &FORCE, 4)),
+        Cause::LoadMotion => format!("load motion at {at}"),
     }
 }
 
