@@ -78,6 +78,9 @@ pub(crate) struct Several {
     /// Print one JSON object on standard output and nothing else
     #[arg(long)]
     pub(crate) json: bool,
+    /// Write figures with all projects in them into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     /// Override a value of every project, e.g. --set "supply.pressure=80 bar"; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) settings: Vec<String>,

@@ -96,12 +96,12 @@ fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) ->
     }
 }
 
-/// Several projects in one answer; nothing is written.
+/// Several projects in one answer.
 fn on_projects(several: &Several) -> Result<u8, String> {
     match compared(several) {
-        Ok(answer) => {
-            let text = if several.json { format!("{}\n", answer.json) } else { answer.text.clone() };
-            say(&text).map(|()| status(&answer))
+        Ok((answer, _)) if several.json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
+        Ok((answer, written)) => {
+            say(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
         }
         Err(refused) => {
             if several.json {
@@ -112,22 +112,29 @@ fn on_projects(several: &Several) -> Result<u8, String> {
     }
 }
 
-fn compared(several: &Several) -> Result<Answer, Refused> {
+fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Refused> {
     let request = Request::Compare;
     let paths = several.projects.iter().map(|path| path.to_string_lossy());
     let loaded = paths.map(|path| load(&path, &several.settings, &several.catalogues, &request));
     let loaded = loaded.collect::<Result<Vec<_>, _>>()?;
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();
-    let answer = command::compare_watched(&FileSystem, &loaded, &mut |progress| {
+    let figures = several.out.is_some();
+    let answer = command::compare_watched(&FileSystem, &loaded, figures, &mut |progress| {
         line.show(progress);
         !interruption.is_asked()
     });
     line.clear();
-    answer.map_err(|error| match loaded.first() {
-        Some(first) => refused(first, &request, &error),
-        None => Refused { text: format!("error: {error}"), json: String::new() },
-    })
+    // the command line asks for one project at least
+    let Some(first) = loaded.first() else {
+        return Err(Refused { text: "error: no project".to_string(), json: String::new() });
+    };
+    let answer = answer.map_err(|error| refused(first, &request, &error))?;
+    let written = match &several.out {
+        Some(folder) => write(folder, &answer.files).map_err(|message| failed(&request, first, &message))?,
+        None => vec![],
+    };
+    Ok((answer, written))
 }
 
 fn status(answer: &Answer) -> u8 {

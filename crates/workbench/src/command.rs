@@ -220,7 +220,7 @@ pub fn answer_watched(
         }
         Request::Design { seed, stages } => design_answer(source, loaded, *seed, *stages, watch),
         Request::Simulate => simulate_answer(source, loaded, watch),
-        Request::Compare => compare_watched(source, std::slice::from_ref(loaded), watch),
+        Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
         Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
         Request::Page => {
             report_answer(source, loaded, catalogues, watch, |report| Ok(vec![report.page_file()]))
@@ -349,13 +349,14 @@ fn simulate_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Re
     })
 }
 
-/// The same scenarios of several projects side by side, telling its progress. The answer is yes if every one ran to its end.
+/// The same scenarios of several projects side by side, with `figures` as files, telling its progress. The answer is yes if every one ran to its end.
 ///
 /// # Errors
 /// [`CommandError`] if a project cannot be simulated.
 pub fn compare_watched(
     source: &dyn Source,
     projects: &[Loaded],
+    figures: bool,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     let comparison = compare_projects(source, projects, watch).map_err(|(index, error)| {
@@ -365,7 +366,7 @@ pub fn compare_watched(
     Ok(Answer {
         text: simulate::compare_text(&comparison),
         json: simulate::compare_json(&comparison),
-        files: vec![],
+        files: if figures { simulate::comparison_files(&comparison)? } else { vec![] },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     })
 }

@@ -5,6 +5,7 @@ mod bench;
 mod compare;
 mod course;
 mod digital;
+mod figures;
 mod files;
 mod metrics;
 mod motion_file;
@@ -17,6 +18,7 @@ pub use metrics::{Cause, Measured, Metrics, Window};
 pub use run::{Occurrence, Record, ScenarioRun, Stopped};
 
 pub(crate) use answer::{compare_json, json};
+pub(crate) use figures::{comparison_files, pictures};
 pub(crate) use files::files;
 pub(crate) use text::{METRICS, cause_words, cells_of, compare_text, headline, occurrence_sentences, text};
 

@@ -305,7 +305,7 @@ fn projects_stand_side_by_side() {
         let volume = format!("line.volume={volume}");
         load(BENCHMARK, &[volume.as_str(), "scenario.0.duration=3.4 s"])
     });
-    let answer = command::compare_watched(&Memory::default(), &[one, other], &mut |_| true).unwrap();
+    let answer = command::compare_watched(&Memory::default(), &[one, other], true, &mut |_| true).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
     let peak = |project: usize| {
         let events = &json["projects"][project]["scenarios"][0]["events"];
@@ -313,5 +313,8 @@ fn projects_stand_side_by_side() {
     };
     assert!(peak(0) < peak(1), "the softer line feels less: {} {}", peak(0), peak(1));
     assert_eq!(json["command"], "compare");
+    let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
+    assert_eq!(names.len(), 6, "{names:?}");
+    assert!(names.contains(&"compare-1.svg") && names.contains(&"compare-1-event-2.png"), "{names:?}");
     assert!(answer.text.contains("disturbance peak"), "{}", answer.text);
 }

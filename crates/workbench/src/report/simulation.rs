@@ -5,19 +5,13 @@ use maud::{Markup, html};
 use super::chapter::{Chapter, cell, place, table};
 use crate::answer::significant;
 use crate::command::{CommandError, Watch};
-use crate::figure::{
-    DisplayUnit, Figure, TimeEvent, TimePanel, TimePanelsInput, TimeSeries, Words, time_panels,
-};
+use crate::figure::{DisplayUnit, Figure};
 use crate::project::{FrictionModel, Project};
 use crate::simulate::{
-    Cause, METRICS, Record, ScenarioRun, SimulateError, Window, cause_words, cells_of, headline,
-    occurrence_sentences, simulate_project,
+    METRICS, Metrics, ScenarioRun, SimulateError, Window, cause_words, cells_of, headline,
+    occurrence_sentences, pictures, simulate_project,
 };
 use crate::source::Source;
-
-/// How much of a run is drawn before and after what begins a window, s.
-const BEFORE_S: f64 = 0.02;
-const AFTER_S: f64 = 0.5;
 
 /// Factors of the sensitivity.
 const STIFFNESS_FACTORS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
@@ -66,7 +60,7 @@ fn refused(error: &SimulateError) -> Markup {
 fn scenario(run: &ScenarioRun, figures: &[Figure]) -> Markup {
     let mut heads = vec!["event"];
     heads.extend(METRICS);
-    let row = |(window, metrics): &(Window, crate::simulate::Metrics)| -> Vec<Markup> {
+    let row = |(window, metrics): &(Window, Metrics)| -> Vec<Markup> {
         let cells = cells_of(metrics).into_iter().map(cell);
         std::iter::once(cell(cause_words(window))).chain(cells).collect()
     };
@@ -81,79 +75,6 @@ fn scenario(run: &ScenarioRun, figures: &[Figure]) -> Markup {
         }
         @for sentence in occurrence_sentences(&run.occurrences) { p { (sentence) "." } }
     }
-}
-
-/// The whole run, and each event enlarged.
-fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
-    let end = run.record.times_s.last().copied().unwrap_or(0.0);
-    let whole = Words::new(
-        format!("simulation-{number}"),
-        format!("Simulated: {}", run.name),
-        "Force, voltages, pressures and position over the whole scenario.",
-    );
-    let mut figures = vec![picture(whole, &run.record, &run.windows, [0.0, end])];
-    for (index, (window, _)) in run.windows.iter().enumerate().filter(|(_, (window, _))| window.start_s < end)
-    {
-        let words = Words::new(
-            format!("simulation-{number}-event-{}", index + 1),
-            format!("Enlarged: {}", cause_words(window)),
-            "The same around what begins it.",
-        );
-        let span = [(window.start_s - BEFORE_S).max(0.0), (window.start_s + AFTER_S).min(end)];
-        figures.push(picture(words, &run.record, &run.windows, span));
-    }
-    figures
-}
-
-fn picture(
-    words: Words,
-    record: &Record,
-    windows: &[(Window, crate::simulate::Metrics)],
-    span_s: [f64; 2],
-) -> Figure {
-    let series =
-        |values: Vec<f64>| TimeSeries { name: String::new(), times_s: record.times_s.clone(), values };
-    let signal = |name: &str| series(record.signal(name));
-    let panel = |quantity: &str, unit, height, series| TimePanel {
-        quantity: quantity.to_string(),
-        unit,
-        series,
-        reference: None,
-        height,
-    };
-    let force = vec![signal("force_n"), series(record.filtered_reference_n.clone())];
-    let voltage = vec![series(record.control_v.clone()), signal("spool_v")];
-    let pressure = vec![signal("pressure_a_pa"), signal("pressure_b_pa")];
-    let position = vec![signal("position_m"), signal("load_position_m")];
-    let input = TimePanelsInput {
-        panels: vec![
-            TimePanel {
-                reference: Some(series(record.reference_n.clone())),
-                ..panel("Force F_e", DisplayUnit::KILONEWTON, 190.0, force)
-            },
-            panel("Voltage", DisplayUnit::VOLT, 110.0, voltage),
-            panel("Pressure", DisplayUnit::BAR, 110.0, pressure),
-            panel("Position", DisplayUnit::MILLIMETRE, 90.0, position),
-        ],
-        legend: vec![
-            "force, command, p_A, piston".to_string(),
-            "prefiltered reference, spool, p_B, load".to_string(),
-        ],
-        reference: "reference".to_string(),
-        events: windows.iter().filter_map(|(window, _)| instant(window, span_s)).collect(),
-        span_s,
-    };
-    time_panels(words, &input)
-}
-
-/// What begins a window, where it is seen.
-fn instant(window: &Window, [start, end]: [f64; 2]) -> Option<TimeEvent> {
-    let label = match window.cause {
-        Cause::ReferenceStep { .. } => "step",
-        Cause::LoadMotion => "load moves",
-    };
-    let seen = window.start_s >= start && window.start_s < end;
-    seen.then(|| TimeEvent { time_s: window.start_s, label: label.to_string() })
 }
 
 /// A quantity multiplied by a factor, and what comes of the first scenario.
@@ -236,7 +157,7 @@ fn varied_rows(varied: &Varied) -> Vec<Vec<Markup>> {
     match &varied.run {
         Err(reason) => vec![head(reason.clone())],
         Ok(run) => {
-            let row = |(window, metrics): &(Window, crate::simulate::Metrics)| {
+            let row = |(window, metrics): &(Window, Metrics)| {
                 let mut row = head(cause_words(window));
                 row.extend(cells_of(metrics).into_iter().map(cell));
                 row
