@@ -111,6 +111,9 @@ struct Found {
     entry: usize,
 }
 
+/// States are combined in groups of four: whole vectors for the machine. The last group is filled up with zeros.
+type Group<S> = [S; 4];
+
 /// The method with its memory, for a system of one pattern.
 ///
 /// ```text
@@ -127,10 +130,11 @@ pub(super) struct Rosenbrock<S> {
     /// Typical magnitudes of the states; those of a lane change with its machine.
     pub(super) scales: Vec<S>,
     /// u_i, stage by stage.
-    increments: Vec<S>,
-    stage: Vec<S>,
-    rates: Vec<S>,
-    rates_of_stage: Vec<S>,
+    increments: Vec<Group<S>>,
+    start: Vec<Group<S>>,
+    stage: Vec<Group<S>>,
+    rates: Vec<Group<S>>,
+    rates_of_stage: Vec<Group<S>>,
     slopes: Vec<S>,
     seeded: Vec<Dual<DIRECTIONS, S>>,
     seeded_inputs: Vec<Dual<DIRECTIONS, S>>,
@@ -151,16 +155,17 @@ where
     pub(super) fn new<E: System<S>>(system: &E) -> Option<Self> {
         let pattern = Pattern::of(system)?;
         let (states, inputs) = (system.states(), system.inputs());
-        let zero = S::from(0.0);
+        let (groups, zero) = (states.div_ceil(4), S::from(0.0));
         let seeded = vec![Dual::constant(zero); states];
         let matrix = StepMatrix::new(&pattern.rows);
         let found = found(&pattern, &matrix);
         Some(Rosenbrock {
             scales: system.scales(),
-            increments: vec![zero; STAGES * states],
-            stage: vec![zero; states],
-            rates: vec![zero; states],
-            rates_of_stage: vec![zero; states],
+            increments: vec![[zero; 4]; STAGES * groups],
+            start: vec![[zero; 4]; groups],
+            stage: vec![[zero; 4]; groups],
+            rates: vec![[zero; 4]; groups],
+            rates_of_stage: vec![[zero; 4]; groups],
             slopes: vec![zero; states],
             seeded_inputs: vec![Dual::constant(zero); inputs],
             seeded_rates: seeded.clone(),
@@ -207,7 +212,7 @@ where
                 }
             }
         }
-        for (value, rate) in self.rates.iter_mut().zip(&self.seeded_rates) {
+        for (value, rate) in self.rates.as_flattened_mut().iter_mut().zip(&self.seeded_rates) {
             *value = rate.value();
         }
     }
@@ -228,15 +233,18 @@ where
             self.matrix.subtract(found.entry, value);
         }
         let kept = self.matrix.factor();
+        let states = state.len();
+        self.start.as_flattened_mut()[..states].copy_from_slice(state);
         self.finish_stage(0, step, per_step, inputs.moving);
         for stage in 1..STAGES {
-            self.begin_stage(stage, state);
+            self.begin_stage(stage);
             let at = stage.min(STAGE_TIMES.len() - 1);
-            system.rates(&self.stage, &inputs.stages[at], &mut self.rates_of_stage);
+            let rates = &mut self.rates_of_stage.as_flattened_mut()[..states];
+            system.rates(&self.stage.as_flattened()[..states], &inputs.stages[at], rates);
             self.finish_stage(stage, step, per_step, inputs.moving);
         }
-        let last = &self.increments[(STAGES - 1) * state.len()..];
-        for ((end, &stage), &increment) in self.end.iter_mut().zip(&self.stage).zip(last) {
+        let last = self.increments[(STAGES - 1) * self.stage.len()..].as_flattened();
+        for ((end, &stage), &increment) in self.end.iter_mut().zip(self.stage.as_flattened()).zip(last) {
             *end = stage + increment;
         }
         let error = self.error(state, tolerance);
@@ -244,18 +252,19 @@ where
     }
 
     /// y + sum a_ij u_j.
-    fn begin_stage(&mut self, stage: usize, state: &[S]) {
-        let states = state.len();
-        let (sums, increments) = (&mut self.stage[..], &self.increments[..]);
+    fn begin_stage(&mut self, stage: usize) {
+        let groups = self.stage.len();
+        let one = S::from(1.0);
+        let (sums, start, increments) = (&mut self.stage[..], &self.start[..], &self.increments[..]);
         match stage {
-            1 => combine(sums, state, &A2, S::from(1.0), increments),
-            2 => combine(sums, state, &A3, S::from(1.0), increments),
-            3 => combine(sums, state, &A4, S::from(1.0), increments),
-            4 => combine(sums, state, &A5, S::from(1.0), increments),
-            5 => combine(sums, state, &A6, S::from(1.0), increments),
+            1 => combine(sums, start, &A2, one, increments),
+            2 => combine(sums, start, &A3, one, increments),
+            3 => combine(sums, start, &A4, one, increments),
+            4 => combine(sums, start, &A5, one, increments),
+            5 => combine(sums, start, &A6, one, increments),
             _ => {
-                let before = &increments[(stage - 1) * states..stage * states];
-                for (value, &increment) in sums.iter_mut().zip(before) {
+                let before = increments[(stage - 1) * groups..stage * groups].as_flattened();
+                for (value, &increment) in sums.as_flattened_mut().iter_mut().zip(before) {
                     *value = *value + increment;
                 }
             }
@@ -264,9 +273,9 @@ where
 
     /// The increment of a stage from its rates.
     fn finish_stage(&mut self, stage: usize, step: S, per_step: S, moving: bool) {
-        let states = self.rates.len();
-        let (before, after) = self.increments.split_at_mut(stage * states);
-        let Some(right) = after.get_mut(..states) else { return };
+        let groups = self.stage.len();
+        let (before, after) = self.increments.split_at_mut(stage * groups);
+        let Some(right) = after.get_mut(..groups) else { return };
         match stage {
             1 => combine(right, &self.rates_of_stage, &C2, per_step, before),
             2 => combine(right, &self.rates_of_stage, &C3, per_step, before),
@@ -279,17 +288,17 @@ where
         }
         if let Some(&weight) = SLOPE_WEIGHTS.get(stage).filter(|_| moving) {
             let weighted = step.times(weight);
-            for (right, &slope) in right.iter_mut().zip(&self.slopes) {
+            for (right, &slope) in right.as_flattened_mut().iter_mut().zip(&self.slopes) {
                 *right = *right + weighted * slope;
             }
         }
-        self.matrix.solve(right);
+        self.matrix.solve(&mut right.as_flattened_mut()[..self.end.len()]);
     }
 
     /// Root mean square of the error over tolerance (scale + |y|).
     fn error(&self, state: &[S], tolerance: f64) -> S {
         let mut sum = S::from(0.0);
-        let last = &self.increments[(STAGES - 1) * state.len()..];
+        let last = self.increments[(STAGES - 1) * self.stage.len()..].as_flattened();
         for (((&error, &start), &end), &scale) in last.iter().zip(state).zip(&self.end).zip(&self.scales) {
             let magnitude = start.abs().maximum(end.abs());
             sum = sum + (error / (scale + magnitude)).squared();
@@ -312,9 +321,9 @@ where
     /// y(theta) = (1 - theta) y_0 + theta (y_1 + (1 - theta) (k_1 + theta (k_2 + theta k_3)))
     /// ```
     pub(super) fn extension(&self, index: usize, start: S) -> Extension<S> {
-        let states = self.end.len();
         let mut coefficients = [S::from(0.0); 3];
-        for (stage, increments) in self.increments.chunks_exact(states).enumerate() {
+        for (stage, increments) in self.increments.chunks_exact(self.stage.len()).enumerate() {
+            let increments = increments.as_flattened();
             for (coefficient, weights) in coefficients.iter_mut().zip(&EXTENSION) {
                 *coefficient = *coefficient + increments[index].times(weights[stage]);
             }
@@ -332,23 +341,27 @@ impl<S: Lane> Rosenbrock<S> {
     }
 }
 
-/// base + factor sum w_j u_j over the first K stages, state by state.
+/// base + factor sum w_j u_j over the first K stages.
 #[inline]
 fn combine<S: Lane, const K: usize>(
-    sums: &mut [S],
-    base: &[S],
+    sums: &mut [Group<S>],
+    base: &[Group<S>],
     weights: &[f64; K],
     factor: S,
-    increments: &[S],
+    increments: &[Group<S>],
 ) {
-    let states = sums.len();
-    let stages: [&[S]; K] = std::array::from_fn(|stage| &increments[stage * states..][..states]);
-    for (index, (sum, &base)) in sums.iter_mut().zip(base).enumerate() {
-        let mut total = stages[0][index].times(weights[0]);
-        for (stage, &weight) in stages.iter().zip(weights).skip(1) {
-            total = total + stage[index].times(weight);
+    let groups = sums.len();
+    let stages: [&[Group<S>]; K] = std::array::from_fn(|stage| &increments[stage * groups..][..groups]);
+    for (group, (sum, base)) in sums.iter_mut().zip(base).enumerate() {
+        let mut totals = [S::from(0.0); 4];
+        for (stage, &weight) in stages.iter().zip(weights) {
+            for (total, &increment) in totals.iter_mut().zip(&stage[group]) {
+                *total = *total + increment.times(weight);
+            }
         }
-        *sum = base + factor * total;
+        for ((sum, &base), &total) in sum.iter_mut().zip(base).zip(&totals) {
+            *sum = base + factor * total;
+        }
     }
 }
 

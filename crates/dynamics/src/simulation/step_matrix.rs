@@ -10,12 +10,48 @@ struct Update {
     source: u32,
 }
 
-/// One row of a triangle: `vector[state] -= sum of entry * vector[other]`.
+/// A triangle, row by row in the order of its substitution: `vector[state] -= sum of value * vector[other]`.
 #[derive(Clone, Debug)]
-struct Row {
-    state: usize,
-    /// (entry, other)
+struct Triangle<S> {
+    /// State of each row, and where its terms end.
+    rows: Vec<(u32, u32)>,
+    /// Where the value of each term is held, and the state it multiplies.
     terms: Vec<(u32, u32)>,
+    /// The values of the terms, in their order.
+    values: Vec<S>,
+}
+
+impl<S: Lane> Triangle<S> {
+    fn new(rows: impl Iterator<Item = (usize, Vec<(u32, u32)>)>) -> Triangle<S> {
+        let mut triangle = Triangle { rows: Vec::new(), terms: Vec::new(), values: Vec::new() };
+        for (state, terms) in rows.filter(|(_, terms)| !terms.is_empty()) {
+            triangle.terms.extend(terms);
+            triangle.rows.push((state as u32, triangle.terms.len() as u32));
+        }
+        triangle.values = vec![S::from(0.0); triangle.terms.len()];
+        triangle
+    }
+
+    /// Takes its values from the entries.
+    fn take(&mut self, entries: &[S]) {
+        for (value, &(entry, _)) in self.values.iter_mut().zip(&self.terms) {
+            *value = entries[entry as usize];
+        }
+    }
+
+    #[inline]
+    fn substitute(&self, vector: &mut [S]) {
+        let mut begin = 0;
+        for &(state, end) in &self.rows {
+            let (state, range) = (state as usize, begin as usize..end as usize);
+            let mut sum = vector[state];
+            for (&value, &(_, other)) in self.values[range.clone()].iter().zip(&self.terms[range]) {
+                sum = sum - value * vector[other as usize];
+            }
+            vector[state] = sum;
+            begin = end;
+        }
+    }
 }
 
 /// Elimination of one state: its place on the diagonal, the entries below and beside it, what they update.
@@ -41,13 +77,14 @@ pub(super) struct StepMatrix<S> {
     values: Vec<S>,
     pivots: Vec<Pivot>,
     /// Forward and backward substitution.
-    forward: Vec<Row>,
-    backward: Vec<Row>,
+    forward: Triangle<S>,
+    backward: Triangle<S>,
     /// Entry of each (row, column) of the pattern it was made with, row by row.
     entries: Vec<Vec<u32>>,
     diagonal: Vec<u32>,
-    /// The diagonal before elimination.
+    /// The diagonal before elimination, and one over the pivots after it.
     untouched: Vec<S>,
+    inverses: Vec<S>,
 }
 
 /// A pivot below this part of the diagonal it was made from has lost its digits.
@@ -83,7 +120,8 @@ impl<S: Lane> StepMatrix<S> {
         let diagonal = (0..count).map(|state| place[state][state]).collect();
         let values = vec![S::from(0.0); used as usize];
         let untouched = vec![S::from(0.0); count];
-        StepMatrix { values, pivots, forward, backward, entries, diagonal, untouched }
+        let inverses = untouched.clone();
+        StepMatrix { values, pivots, forward, backward, entries, diagonal, untouched, inverses }
     }
 
     /// All entries zero but those of `diagonal` times the identity.
@@ -128,28 +166,22 @@ impl<S: Lane> StepMatrix<S> {
                 values[entry as usize] = values[entry as usize] * inverse;
             }
         }
+        for (inverse, &entry) in self.inverses.iter_mut().zip(&self.diagonal) {
+            *inverse = values[entry as usize];
+        }
+        self.forward.take(values);
+        self.backward.take(values);
         least
     }
 
     /// Solves W x = b in the place of b.
     #[inline]
     pub(super) fn solve(&self, vector: &mut [S]) {
-        self.substitute(&self.forward, vector);
-        for (value, &entry) in vector.iter_mut().zip(&self.diagonal) {
-            *value = *value * self.values[entry as usize];
+        self.forward.substitute(vector);
+        for (value, &inverse) in vector.iter_mut().zip(&self.inverses) {
+            *value = *value * inverse;
         }
-        self.substitute(&self.backward, vector);
-    }
-
-    #[inline]
-    fn substitute(&self, rows: &[Row], vector: &mut [S]) {
-        for Row { state, terms } in rows {
-            let mut sum = vector[*state];
-            for &(entry, other) in terms {
-                sum = sum - self.values[entry as usize] * vector[other as usize];
-            }
-            vector[*state] = sum;
-        }
+        self.backward.substitute(vector);
     }
 }
 
@@ -202,16 +234,15 @@ fn pivots(order: &[usize], filled: &[Vec<bool>], place: &[Vec<u32>]) -> Vec<Pivo
 }
 
 /// Forward substitution through L, backward through U.
-fn substitutions(order: &[usize], filled: &[Vec<bool>], place: &[Vec<u32>]) -> [Vec<Row>; 2] {
+fn substitutions<S: Lane>(order: &[usize], filled: &[Vec<bool>], place: &[Vec<u32>]) -> [Triangle<S>; 2] {
     let row = |state: usize, known: &[usize]| {
         let known = known.iter().filter(|&&other| filled[state][other]);
-        Row { state, terms: known.map(|&other| (place[state][other], other as u32)).collect() }
+        (state, known.map(|&other| (place[state][other], other as u32)).collect::<Vec<_>>())
     };
     let positions = order.iter().enumerate();
     let forward = positions.clone().map(|(position, &state)| row(state, &order[..position]));
     let backward = positions.rev().map(|(position, &state)| row(state, &order[position + 1..]));
-    let [forward, backward] = [forward.collect::<Vec<_>>(), backward.collect()];
-    [forward, backward].map(|rows| rows.into_iter().filter(|row| !row.terms.is_empty()).collect())
+    [Triangle::new(forward), Triangle::new(backward)]
 }
 
 #[cfg(test)]
