@@ -191,6 +191,7 @@ fn told(
         PrefilterChoice::Grow { .. } => Some(project::Prefilter {
             transfer: factors::declared(&law.prefilter.transfer_function()?),
             sample_time: None,
+            continuous: false,
         }),
         PrefilterChoice::None | PrefilterChoice::Given(_) => None,
     };

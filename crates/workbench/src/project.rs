@@ -25,6 +25,7 @@ mod rewrite;
 mod scenario;
 mod sensor;
 mod setting;
+mod simulation;
 mod sizing;
 mod specification;
 mod text;
@@ -54,6 +55,7 @@ pub(crate) use read::sha256;
 pub use read::{keys, print, read};
 pub use scenario::*;
 pub use sensor::*;
+pub use simulation::*;
 pub use sizing::*;
 pub use specification::*;
 pub use uncertainty::*;
@@ -101,6 +103,8 @@ pub struct Project {
     pub design: Option<Design>,
     /// What is simulated.
     pub scenarios: Vec<Scenario>,
+    /// How scenarios are simulated.
+    pub simulation: Simulation,
     /// What a Monte Carlo campaign varies.
     pub campaign: Option<Campaign>,
 }
@@ -216,6 +220,8 @@ impl Project {
         v.table(k, &mut self.prefilter, Prefilter::visit);
         v.table(plain("design", "How a controller is looked for."), &mut self.design, Design::visit);
         v.tables(plain("scenario", "What is simulated."), &mut self.scenarios, Scenario::visit);
+        let k = plain("simulation", "How exactly scenarios are simulated.");
+        table_or_default(k, &mut self.simulation, Simulation::visit, v);
         v.table(plain("campaign", "What a campaign varies."), &mut self.campaign, Campaign::visit);
     }
 }

@@ -220,6 +220,21 @@ impl Profile {
         Ok(interpolation::through(times_s, values))
     }
 
+    /// The function with a number added to its values: a motion from somewhere else than zero.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::simulation::Profile;
+    /// let motion = Profile::smooth_step(3.0, 0.1, 5e-3)?.shifted(0.25);
+    /// assert_eq!((motion.value(0.0), motion.value(4.0), motion.rate(4.0)), (0.25, 0.255, 0.0));
+    /// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
+    /// ```
+    #[must_use]
+    pub fn shifted(self, by: f64) -> Profile {
+        let later = self.later.into_iter().map(|(start_s, piece)| (start_s, piece.shifted(by))).collect();
+        Profile { first: self.first.shifted(by), later }
+    }
+
     /// The function at a time.
     pub fn value(&self, time_s: f64) -> f64 {
         self.piece(time_s).at(time_s).value

@@ -11,7 +11,7 @@ use super::text::Findings;
 use super::tree::Node;
 use super::visitor::{Shape, Visitor};
 use crate::catalogue::Catalogue;
-use crate::quantity::{FORCE, RATIO, TIME, VOLTAGE};
+use crate::quantity::{FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};
 
 /// A transfer function in one of three forms: polynomials, factors, or elements in series.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -110,6 +110,26 @@ pub struct Controller {
     pub discretization: Discretization,
     /// What its computer rounds; absent: nothing.
     pub quantization: Option<Quantization>,
+    /// What it adds for a load that moves; absent: nothing.
+    pub load_velocity_feed_forward: Option<FeedForward>,
+}
+
+/// What the controller adds to its command for a measured velocity of the load.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FeedForward {
+    /// V·s/m; absent: the piston area over the flow gain of the linear model, which holds the flow the motion takes.
+    pub gain: Option<f64>,
+}
+
+impl FeedForward {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key(
+            "gain",
+            &VOLTAGE_PER_VELOCITY,
+            "Command per velocity of the load; absent: area over flow gain.",
+        );
+        v.optional(k, &mut self.gain);
+    }
 }
 
 /// What the computer of a sampled controller rounds.
@@ -214,6 +234,8 @@ impl Controller {
         v.choice(k, words, &mut self.discretization, false);
         let k = plain("quantization", "What the computer of a sampled controller rounds.");
         v.table(k, &mut self.quantization, Quantization::visit);
+        let k = plain("load_velocity_feed_forward", "What is added to the command for a load that moves.");
+        v.table(k, &mut self.load_velocity_feed_forward, FeedForward::visit);
     }
 }
 
@@ -224,6 +246,8 @@ pub struct Prefilter {
     pub transfer: Transfer,
     /// s; absent: continuous.
     pub sample_time: Option<f64>,
+    /// Whether it acts in continuous time although the controller is sampled.
+    pub continuous: bool,
 }
 
 impl Prefilter {
@@ -231,5 +255,10 @@ impl Prefilter {
         self.transfer.visit(v);
         let k = key("sample_time", &TIME, "Sample time; absent: continuous.").positive();
         v.optional(k, &mut self.sample_time);
+        let k = plain(
+            "continuous",
+            "Whether a simulation lets it act in continuous time beside a sampled controller.",
+        );
+        v.flag(k, &mut self.continuous);
     }
 }

@@ -4,7 +4,10 @@ use std::f64::consts::FRAC_PI_4;
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
-use crate::quantity::{AREA, DAMPING, FORCE, LENGTH, MASS, RATIO, STIFFNESS, VELOCITY, VOLUME};
+use crate::quantity::{
+    AREA, DAMPING, FLOW_PRESSURE_COEFFICIENT, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS,
+    VELOCITY, VOLUME,
+};
 
 /// The cylinder; `a` is the end x = 0, and x grows from A to B.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,8 +30,29 @@ pub struct Cylinder {
     pub dead_volume: Option<f64>,
     /// m³, in chamber A and in chamber B.
     pub dead_volumes: Option<[f64; 2]>,
+    /// m³/(s·Pa), laminar leakage across the piston.
+    pub internal_leakage: Option<f64>,
+    /// What the piston meets at both ends; absent: the ends are reported, and nothing stops it.
+    pub end_stops: Option<EndStops>,
     /// Friction of seals and bearings.
     pub friction: Option<Friction>,
+}
+
+/// What the piston meets at both ends of its stroke.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EndStops {
+    /// N/m.
+    pub stiffness: f64,
+    /// s/m, damping relative to the elastic force.
+    pub relative_damping: f64,
+}
+
+impl EndStops {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.quantity(key("stiffness", &STIFFNESS, "Of each stop.").positive(), &mut self.stiffness);
+        let k = key("relative_damping", &INVERSE_VELOCITY, "Damping relative to the elastic force.");
+        v.quantity(k.not_negative().or(0.0), &mut self.relative_damping);
+    }
 }
 
 impl Cylinder {
@@ -80,6 +104,10 @@ impl Cylinder {
         v.optional(k.not_negative(), &mut self.dead_volume);
         let k = key("dead_volumes", &VOLUME, "Dead volumes of chamber A and of chamber B.").not_negative();
         v.pair(k, &mut self.dead_volumes);
+        let k = key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage across the piston.");
+        v.optional(k.positive(), &mut self.internal_leakage);
+        let k = plain("end_stops", "What the piston meets at both ends; absent: nothing stops it there.");
+        v.table(k, &mut self.end_stops, EndStops::visit);
         let k = plain("friction", "Friction of seals and bearings; absent: none.");
         v.table(k, &mut self.friction, Friction::visit);
     }
@@ -100,6 +128,8 @@ pub struct Friction {
     pub stribeck_velocity: Option<f64>,
     /// Exponent of the Stribeck curve.
     pub stribeck_exponent: f64,
+    /// m/s, smooths the jump of a Stribeck curve at standstill.
+    pub regular_velocity: Option<f64>,
     /// N/m, σ₀.
     pub bristle_stiffness: Option<f64>,
     /// N·s/m, σ₁.
@@ -135,6 +165,8 @@ impl Friction {
         v.optional(k.positive(), &mut self.stribeck_velocity);
         let k = key("stribeck_exponent", &RATIO, "Exponent of the Stribeck curve.").positive().or(2.0);
         v.quantity(k.at_most(10.0).above(0.0), &mut self.stribeck_exponent);
+        let k = key("regular_velocity", &VELOCITY, "Smooths the jump of a Stribeck curve, to simulate it.");
+        v.optional(k.positive(), &mut self.regular_velocity);
         let k = key("bristle_stiffness", &STIFFNESS, "σ₀ of LuGre.").positive();
         v.optional(k, &mut self.bristle_stiffness);
         let k = key("bristle_damping", &DAMPING, "σ₁ of LuGre.").not_negative();

@@ -2,7 +2,7 @@
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
-use crate::quantity::{DENSITY, FLOW, KINEMATIC_VISCOSITY, PRESSURE, RATIO};
+use crate::quantity::{DENSITY, FLOW, KINEMATIC_VISCOSITY, PRESSURE, RATIO, VOLUME};
 
 /// The oil.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,6 +17,8 @@ pub struct Fluid {
     pub entrained_air: Option<f64>,
     /// Polytropic exponent of the entrained air.
     pub polytropic_exponent: f64,
+    /// Pa, absolute, below which a chamber is reported to cavitate.
+    pub vapour_pressure: f64,
 }
 
 impl Fluid {
@@ -31,6 +33,8 @@ impl Fluid {
         v.optional(k.not_negative().below(1.0), &mut self.entrained_air);
         let k = key("polytropic_exponent", &RATIO, "Of the entrained air: 1 is isothermal, 1.4 adiabatic.");
         v.quantity(k.at_least(1.0).at_most(1.7).or(1.4), &mut self.polytropic_exponent);
+        let k = key("vapour_pressure", &PRESSURE, "Absolute; below it a chamber is reported to cavitate.");
+        v.quantity(k.not_negative().or(0.0), &mut self.vapour_pressure);
     }
 }
 
@@ -45,6 +49,36 @@ pub struct Supply {
     pub tank_pressure: f64,
     /// m³/s, what the pump can give.
     pub flow: Option<f64>,
+    /// Pa, rise over which the relief valve opens for the pump's whole flow.
+    pub relief_override: f64,
+    /// m³, of the supply line.
+    pub volume: f64,
+    /// Pa, of the supply line; absent: the fluid's.
+    pub effective_bulk_modulus: Option<f64>,
+    /// On the supply line.
+    pub accumulator: Option<Accumulator>,
+}
+
+/// A gas-charged accumulator.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Accumulator {
+    /// m³, of the gas at its precharge.
+    pub gas_volume: f64,
+    /// Pa, gauge.
+    pub precharge_pressure: f64,
+    /// Polytropic exponent of the gas.
+    pub polytropic_exponent: f64,
+}
+
+impl Accumulator {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("gas_volume", &VOLUME, "Volume of the gas at its precharge.").positive();
+        v.quantity(k, &mut self.gas_volume);
+        let k = key("precharge_pressure", &PRESSURE, "Pressure of the gas without oil, gauge.").positive();
+        v.quantity(k, &mut self.precharge_pressure);
+        let k = key("polytropic_exponent", &RATIO, "Of the gas: 1 is slow, 1.4 fast.");
+        v.quantity(k.at_least(1.0).at_most(5.0 / 3.0).or(1.4), &mut self.polytropic_exponent);
+    }
 }
 
 /// How the supply pressure behaves under load.
@@ -68,5 +102,14 @@ impl Supply {
         v.quantity(k, &mut self.tank_pressure);
         let k = key("flow", &FLOW, "Flow the pump can give.").positive();
         v.optional(k, &mut self.flow);
+        let k =
+            key("relief_override", &PRESSURE, "Rise over which the relief valve opens for all of `flow`.");
+        v.quantity(k.positive().or(5e5), &mut self.relief_override);
+        let k = key("volume", &VOLUME, "Volume of the line from a limited pump to the valve.").positive();
+        v.quantity(k.or(1e-3), &mut self.volume);
+        let k = key("effective_bulk_modulus", &PRESSURE, "Of that line; absent: the fluid's.").positive();
+        v.optional(k, &mut self.effective_bulk_modulus);
+        let k = plain("accumulator", "A gas-charged accumulator on that line.");
+        v.table(k, &mut self.accumulator, Accumulator::visit);
     }
 }

@@ -3,7 +3,9 @@
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use crate::catalogue::Kind;
-use crate::quantity::{ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE};
+use crate::quantity::{
+    ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,
+};
 
 /// The servovalve, by coefficients of its four edges or by its data sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,6 +22,16 @@ pub struct Valve {
     pub leakage_shape: f64,
     /// m³/s, pilot stage flow from supply to tank.
     pub tare_flow: f64,
+    /// Pa, drop from supply to tank at which the tare flow is stated; absent: the supply's.
+    pub tare_pressure: Option<f64>,
+    /// V, spool position at which the valve is at null.
+    pub null_bias: f64,
+    /// V, width of the loop over a slow full cycle, threshold included.
+    pub hysteresis: Option<f64>,
+    /// V, change of command that a reversal takes.
+    pub threshold: Option<f64>,
+    /// V/s, greatest rate of the spool.
+    pub rate_limit: Option<f64>,
     /// Pa, pressure drop below which the square root is made regular.
     pub transition_pressure: f64,
     /// K_v3 to K_v6, m³/(s·√Pa).
@@ -90,7 +102,21 @@ impl Valve {
         v.record(k, &mut self.flow_coefficients, EdgeCoefficients::visit);
         let k = plain("leakage_coefficients", "K_vin3 to K_vin6: a table, or an array in this order.");
         v.record(k, &mut self.leakage_coefficients, EdgeCoefficients::visit);
+        self.visit_imperfections(v);
         self.visit_data_sheet(v);
+    }
+
+    fn visit_imperfections<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("tare_pressure", &PRESSURE, "Drop at which `tare_flow` is stated; absent: the supply's.");
+        v.optional(k.positive(), &mut self.tare_pressure);
+        let k = key("null_bias", &VOLTAGE, "Spool position at which the valve is at null.").or(0.0);
+        v.quantity(k, &mut self.null_bias);
+        let k = key("hysteresis", &VOLTAGE, "Width of the loop over a slow full cycle, threshold included.");
+        v.optional(k.positive(), &mut self.hysteresis);
+        let k = key("threshold", &VOLTAGE, "Change of command that a reversal takes.").positive();
+        v.optional(k, &mut self.threshold);
+        let k = key("rate_limit", &VOLTAGE_RATE, "Greatest rate of the spool, as equivalent command.");
+        v.optional(k.positive(), &mut self.rate_limit);
     }
 
     fn visit_data_sheet<V: Visitor>(&mut self, v: &mut V) {

@@ -124,6 +124,12 @@ dimensions! {
     TIME = "a time", whole(0, 0, 1, 0, 0), ["us", "ms", "s"], "s", r#""50 ms", "5 s""#;
     /// V/N, the gain of a force controller.
     VOLTAGE_PER_FORCE = "a gain in V/N", whole(-1, -1, 2, 1, 0), [], "V/N", r#"0.001, "1e-3 V/N", "1 V/kN""#;
+    /// V/s, of a spool.
+    VOLTAGE_RATE = "a voltage rate", whole(0, 0, -1, 1, 0), [], "V/s", r#"2000, "2000 V/s", "2 V/ms""#;
+    /// V·s/m, from a velocity to a command.
+    VOLTAGE_PER_VELOCITY = "a gain in V.s/m", whole(0, -1, 1, 1, 0), [], "V.s/m", r#"28, "28 V.s/m", "28 V/(m/s)""#;
+    /// s/m, damping of a contact relative to its elastic force.
+    INVERSE_VELOCITY = "an inverse velocity", whole(0, -1, 1, 0, 0), [], "s/m", r#"0.5, "0.5 s/m""#;
     /// rad.
     ANGLE = "an angle", whole(0, 0, 0, 0, 1), ["deg"], "rad", r#""30 deg", "0.5 rad""#;
 }

@@ -2,7 +2,10 @@ use crate::portable;
 
 /// One smooth piece of a [`super::Profile`]: an analytic function, defined beyond its ends as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece(Shape);
+pub struct Piece {
+    shape: Shape,
+    offset: f64,
+}
 
 /// A function of time at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,13 +32,26 @@ pub(super) enum Shape {
 
 impl Piece {
     pub(super) fn new(shape: Shape) -> Piece {
-        Piece(shape)
+        Piece { shape, offset: 0.0 }
+    }
+
+    /// The piece with a number added to its values.
+    pub(super) fn shifted(self, by: f64) -> Piece {
+        Piece { offset: self.offset + by, ..self }
     }
 
     /// The function, its rate and its acceleration at a time.
     #[inline]
     pub fn at(&self, time_s: f64) -> Moment {
-        match self.0 {
+        let moment = self.shape.at(time_s);
+        Moment { value: moment.value + self.offset, ..moment }
+    }
+}
+
+impl Shape {
+    #[inline]
+    fn at(&self, time_s: f64) -> Moment {
+        match *self {
             Shape::Constant { value } => Moment { value, rate: 0.0, acceleration: 0.0 },
             Shape::Polynomial { origin_s, span_s, coefficients } => {
                 polynomial(coefficients, (time_s - origin_s) / span_s, span_s)
@@ -58,18 +74,22 @@ impl Piece {
             }
         }
     }
+}
 
+impl Piece {
     /// The value of a piece that does not change.
     pub(in crate::simulation) fn constant(&self) -> Option<f64> {
-        match self.0 {
-            Shape::Constant { value } => Some(value),
+        match self.shape {
+            Shape::Constant { value } => Some(value + self.offset),
             _ => None,
         }
     }
 
     /// A quarter of the shortest period within the piece, in s; none without a swing.
     pub(super) fn quarter_period_s(&self) -> Option<f64> {
-        let Shape::Sine { frequency_rad_per_s, sweep_rad_per_s2, span_s, .. } = self.0 else { return None };
+        let Shape::Sine { frequency_rad_per_s, sweep_rad_per_s2, span_s, .. } = self.shape else {
+            return None;
+        };
         let highest = frequency_rad_per_s.max(frequency_rad_per_s + sweep_rad_per_s2 * span_s);
         Some(0.5 * std::f64::consts::PI / highest)
     }

@@ -2,7 +2,8 @@
 
 use super::Check;
 use crate::project::{
-    AntiWindup, Discretization, Element, ElementKind, Formula, Project, Quantization, Transfer, Variable,
+    AntiWindup, Discretization, Element, ElementKind, Formula, Prefilter, Project, Quantization, Transfer,
+    Variable,
 };
 
 /// Most zeros, poles or elements of a transfer function.
@@ -28,6 +29,23 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
     }
     if let Some(prefilter) = &project.prefilter {
         transfer(&prefilter.transfer, "prefilter", prefilter.sample_time, false, check);
+        continuous_prefilter(project, prefilter, check);
+    }
+    let sample_time = project.controller.as_ref().and_then(|controller| controller.sample_time);
+    let noise = project.actuator.as_ref().map_or(0.0, |actuator| actuator.force_sensor.noise);
+    if noise > 0.0 && project.controller.is_some() && sample_time.is_none() {
+        check.warning("force_sensor.noise", "`noise` has no effect on a continuous controller");
+    }
+}
+
+fn continuous_prefilter(project: &Project, prefilter: &Prefilter, check: &mut Check<'_, '_>) {
+    if !prefilter.continuous {
+        return;
+    }
+    if is_discrete(&prefilter.transfer) {
+        check.error("prefilter.continuous", "a prefilter in `z` cannot be continuous");
+    } else if project.controller.as_ref().is_none_or(|controller| controller.sample_time.is_none()) {
+        check.warning("prefilter.continuous", "`continuous` has no effect beside a continuous controller");
     }
 }
 

@@ -23,9 +23,30 @@ fn supply(actuator: &Actuator, check: &mut Check<'_, '_>) {
     if supply.model == SupplyModel::PumpLimited && supply.flow.is_none() {
         check.missing("supply", "flow", "a pump-limited supply needs `flow`");
     }
+    for name in PUMP_KEYS {
+        let path = format!("supply.{name}");
+        if supply.model == SupplyModel::Constant && check.declared(&path) {
+            check.warning(&path, format!("`{name}` has no effect with model \"constant\""));
+        }
+    }
+}
+
+/// What only a limited pump has.
+const PUMP_KEYS: [&str; 4] = ["relief_override", "volume", "effective_bulk_modulus", "accumulator"];
+
+fn imperfections(valve: &Valve, check: &mut Check<'_, '_>) {
+    if let (Some(width), Some(threshold)) = (valve.hysteresis, valve.threshold)
+        && width <= threshold
+    {
+        check.error("valve.hysteresis", "`hysteresis` includes `threshold`, so it must be above it");
+    }
+    if valve.null_bias.abs() >= valve.nominal_voltage && valve.nominal_voltage > 0.0 {
+        check.error("valve.null_bias", "`null_bias` must be within the `nominal_voltage`");
+    }
 }
 
 fn valve(valve: &Valve, check: &mut Check<'_, '_>) {
+    imperfections(valve, check);
     if valve.flow_coefficients.is_none()
         && valve.nominal_flow.is_none()
         && !check.declared("valve.nominal_flow")
@@ -117,6 +138,10 @@ fn friction(friction: &Friction, check: &mut Check<'_, '_>) {
             check
                 .warning(&format!("{path}.{name}"), format!("`{name}` has no effect with model \"{model}\""));
         }
+    }
+    if friction.regular_velocity.is_some() && friction.model != FrictionModel::Stribeck {
+        let message = format!("`regular_velocity` has no effect with model \"{model}\"");
+        check.warning(&format!("{path}.regular_velocity"), message);
     }
     let (Some(coulomb), Some(breakaway)) = (friction.coulomb, friction.static_friction) else { return };
     if breakaway < coulomb {
@@ -257,10 +282,16 @@ fn load(load: &Load, check: &mut Check<'_, '_>) {
     let (model, uses): (&str, &[&str]) = match load.model {
         LoadModel::Prescribed => ("prescribed", &[]),
         LoadModel::SpringMassDamper => ("spring_mass_damper", &["mass", "stiffness", "damping"]),
-        LoadModel::Wall => ("wall", &["stiffness", "damping", "gap"]),
+        LoadModel::Wall => ("wall", &["mass", "stiffness", "damping", "gap", "relative_damping"]),
     };
-    let values =
-        [("mass", load.mass), ("stiffness", load.stiffness), ("damping", load.damping), ("gap", load.gap)];
+    let relative_damping = Some(load.relative_damping).filter(|_| check.declared("load.relative_damping"));
+    let values = [
+        ("mass", load.mass),
+        ("stiffness", load.stiffness),
+        ("damping", load.damping),
+        ("gap", load.gap),
+        ("relative_damping", relative_damping),
+    ];
     for (name, value) in values {
         if value.is_some() && !uses.contains(&name) {
             check.warning(&format!("load.{name}"), format!("`{name}` has no effect with model \"{model}\""));
