@@ -4,7 +4,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::changes::Changes;
 
-/// Hydraulic force control through added compliance: size the hose, see the models, audit, shape or design the controller, get the report.
+/// Hydraulic force control through added compliance: size the hose, see the models, audit, shape or design the controller, simulate the machine, get the report.
 #[derive(Debug, Parser)]
 #[command(name = "phea", version, arg_required_else_help = true)]
 #[command(after_help = "Exit status: 0 done, 1 the answer is no or not proven, 2 the input is wrong.")]
@@ -61,8 +61,32 @@ pub(crate) enum Command {
         #[arg(long, value_name = "FILE")]
         save: Option<PathBuf>,
     },
+    /// The nonlinear machine under its controller, through every scenario; Ctrl-C ends it with what there is
+    Simulate(Common),
+    /// The same scenarios of several projects side by side
+    Compare(Several),
     /// Everything above as one self-contained HTML page; a controller is designed where the project has a design section or gives no law
     Report(Common),
+}
+
+/// What a command on several projects takes.
+#[derive(Args, Debug)]
+pub(crate) struct Several {
+    /// The project files
+    #[arg(required = true, num_args = 1..)]
+    pub(crate) projects: Vec<PathBuf>,
+    /// Print one JSON object on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write figures with all projects in them into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Override a value of every project, e.g. --set "supply.pressure=80 bar"; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) settings: Vec<String>,
+    /// A catalogue file or folder of your own, searched before the built-in one; may be repeated
+    #[arg(long = "catalogue", value_name = "PATH")]
+    pub(crate) catalogues: Vec<String>,
 }
 
 /// What every command on a project takes.

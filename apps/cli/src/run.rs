@@ -3,12 +3,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use phea_workbench::answer::Answer;
-use phea_workbench::command::{self, Request};
+use phea_workbench::command::{self, CommandError, Request};
 use phea_workbench::design::DESIGNED_PROJECT;
 use phea_workbench::project::{self, Loaded, STARTER};
 use phea_workbench::shaping::{SHAPED_PROJECT, Shaped};
 
-use crate::arguments::{Arguments, Command, Common};
+use crate::arguments::{Arguments, Command, Common, Several};
 use crate::file_system::{FileSystem, write, write_as, write_starter};
 use crate::interruption::Interruption;
 use crate::voice::{ProgressLine, complain, say};
@@ -39,6 +39,8 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             let request = Request::Design { seed, stages: common.out.is_some() };
             on_project_saving(&common, &request, save.as_deref())
         }
+        Command::Simulate(common) => on_project(&common, &Request::Simulate),
+        Command::Compare(several) => on_projects(&several),
         Command::Report(common) => {
             let request = if common.out.is_some() { Request::Report } else { Request::Page };
             on_project(&common, &request)
@@ -94,6 +96,47 @@ fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) ->
     }
 }
 
+/// Several projects in one answer.
+fn on_projects(several: &Several) -> Result<u8, String> {
+    match compared(several) {
+        Ok((answer, _)) if several.json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
+        Ok((answer, written)) => {
+            say(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
+        }
+        Err(refused) => {
+            if several.json {
+                say(&format!("{}\n", refused.json))?;
+            }
+            Err(refused.text)
+        }
+    }
+}
+
+fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Refused> {
+    let request = Request::Compare;
+    let paths = several.projects.iter().map(|path| path.to_string_lossy());
+    let loaded = paths.map(|path| load(&path, &several.settings, &several.catalogues, &request));
+    let loaded = loaded.collect::<Result<Vec<_>, _>>()?;
+    let mut line = ProgressLine::default();
+    let interruption = Interruption::listen();
+    let figures = several.out.is_some();
+    let answer = command::compare_watched(&FileSystem, &loaded, figures, &mut |progress| {
+        line.show(progress);
+        !interruption.is_asked()
+    });
+    line.clear();
+    // the command line asks for one project at least
+    let Some(first) = loaded.first() else {
+        return Err(Refused { text: "error: no project".to_string(), json: String::new() });
+    };
+    let answer = answer.map_err(|error| refused(first, &request, &error))?;
+    let written = match &several.out {
+        Some(folder) => write(folder, &answer.files).map_err(|message| failed(&request, first, &message))?,
+        None => vec![],
+    };
+    Ok((answer, written))
+}
+
 fn status(answer: &Answer) -> u8 {
     if answer.affirmative { DONE } else { NO }
 }
@@ -105,32 +148,18 @@ fn answered(
     save: Option<&Path>,
 ) -> Result<(Answer, Vec<PathBuf>), Refused> {
     let path = common.project.to_string_lossy();
-    let loaded =
-        project::read(&FileSystem, &path, &common.settings, &common.catalogues).map_err(|report| {
-            Refused {
-                json: command::refusal_json(&FileSystem, &path, request, &report),
-                text: report.render(styled()),
-            }
-        })?;
-    if !loaded.warnings.is_empty() {
-        complain(&project::render(&loaded.warnings, &loaded.texts, styled()));
-    }
+    let loaded = load(&path, &common.settings, &common.catalogues, request)?;
     let mut line = ProgressLine::default();
     // what ends in a best result so far is asked to stop; everything else has nothing to save
-    let interruption = matches!(request, Request::Design { .. }).then(Interruption::listen);
+    let interruption =
+        matches!(request, Request::Design { .. } | Request::Simulate).then(Interruption::listen);
     let answer =
         command::answer_watched(&FileSystem, &loaded, &common.catalogues, request, &mut |progress| {
             line.show(progress);
             !interruption.as_ref().is_some_and(Interruption::is_asked)
         });
     line.clear();
-    let answer = answer.map_err(|error| Refused {
-        json: command::error_json(&loaded, request, &error),
-        text: match error.refusal() {
-            Some(report) => report.render(styled()),
-            None => format!("error: {error}"),
-        },
-    })?;
+    let answer = answer.map_err(|error| refused(&loaded, request, &error))?;
     let explain = |message: String| failed(request, &loaded, &message);
     let mut written = write_files(common, request, &answer).map_err(explain)?;
     let project =
@@ -139,6 +168,33 @@ fn answered(
         written.insert(0, write_as(path, project).map_err(explain)?);
     }
     Ok((answer, written))
+}
+
+/// Reads a project and says what is doubtful in it.
+fn load(
+    path: &str,
+    settings: &[String],
+    catalogues: &[String],
+    request: &Request,
+) -> Result<Loaded, Refused> {
+    let loaded = project::read(&FileSystem, path, settings, catalogues).map_err(|report| Refused {
+        json: command::refusal_json(&FileSystem, path, request, &report),
+        text: report.render(styled()),
+    })?;
+    if !loaded.warnings.is_empty() {
+        complain(&project::render(&loaded.warnings, &loaded.texts, styled()));
+    }
+    Ok(loaded)
+}
+
+fn refused(loaded: &Loaded, request: &Request, error: &CommandError) -> Refused {
+    Refused {
+        json: command::error_json(loaded, request, error),
+        text: match error.refusal() {
+            Some(report) => report.render(styled()),
+            None => format!("error: {error}"),
+        },
+    }
 }
 
 fn failed(request: &Request, loaded: &Loaded, message: &str) -> Refused {

@@ -8,6 +8,7 @@ pub mod expression;
 pub mod frequency;
 pub mod linear;
 pub mod portable;
+pub mod random;
 pub mod scalar;
 pub mod simulation;
 pub mod time_response;

@@ -12,7 +12,9 @@ mod passage;
 mod pattern;
 mod profile;
 mod propagator;
+mod realization;
 mod rosenbrock;
+mod sensed;
 mod slot;
 mod step_matrix;
 mod trajectory;
@@ -21,6 +23,7 @@ pub use closed_loop::{ClosedLoop, HeldPlant, LoopSignals};
 pub use course::{Course, Event, Input, Observer, Outcome, Sampler, Settings, SimulationError, Status, Work};
 pub use driver::{Queue, Task, drive};
 pub use profile::{Moment, Piece, Profile, ProfileError};
+pub use sensed::Sensed;
 pub use trajectory::{Simulated, Trajectory, simulate};
 
 use crate::scalar::{Lanes, Scalar};

@@ -11,7 +11,6 @@ pub mod family;
 pub mod loop_shaping;
 pub mod manual_shaping;
 pub mod prefilter;
-mod random;
 mod sampled;
 pub mod specification;
 pub mod stability;

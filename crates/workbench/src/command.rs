@@ -17,6 +17,7 @@ use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
 use crate::shaping::{self, RequestedChange, Shaped, ShapingError, shape};
+use crate::simulate::{self, ScenarioRun, SimulateError, compare_projects, simulate_project};
 use crate::sizing::{self, Question, size};
 use crate::source::Source;
 use crate::specification::{self, specifications, wishes};
@@ -51,6 +52,10 @@ pub enum Request {
         /// Whether every stage is wanted as files, and not the designed project alone.
         stages: bool,
     },
+    /// The nonlinear machine through every scenario.
+    Simulate,
+    /// The same scenarios of this project and others side by side, by [`compare`].
+    Compare,
     /// The page with every figure as a file.
     Report,
     /// The page alone.
@@ -67,6 +72,8 @@ impl Request {
             Request::Verify => "verify",
             Request::Shape { .. } => "shape",
             Request::Design { .. } => "design",
+            Request::Simulate => "simulate",
+            Request::Compare => "compare",
             Request::Report | Request::Page => "report",
         }
     }
@@ -132,6 +139,17 @@ pub enum CommandError {
         "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
     )]
     NothingToReport,
+    /// The machine cannot be simulated.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// The same, of one project among several.
+    #[error("{path}: {error}")]
+    Compare {
+        /// Of the project.
+        path: String,
+        /// Why not.
+        error: SimulateError,
+    },
     /// Whoever watched a long command stopped it.
     #[error("stopped")]
     Stopped,
@@ -144,6 +162,8 @@ impl CommandError {
             CommandError::Catalogue(report) => Some(report),
             CommandError::Family(FamilyError::Measurement(report)) => Some(report),
             CommandError::Shaping(ShapingError::Refused(report)) => Some(report),
+            CommandError::Simulate(SimulateError::Motion(report))
+            | CommandError::Compare { error: SimulateError::Motion(report), .. } => Some(report),
             _ => None,
         }
     }
@@ -199,6 +219,8 @@ pub fn answer_watched(
             Ok(Answer { text, json, files: shaping::files(&shaping), affirmative: true })
         }
         Request::Design { seed, stages } => design_answer(source, loaded, *seed, *stages, watch),
+        Request::Simulate => simulate_answer(source, loaded, watch),
+        Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
         Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
         Request::Page => {
             report_answer(source, loaded, catalogues, watch, |report| Ok(vec![report.page_file()]))
@@ -313,6 +335,39 @@ fn design_answer(
         json: design::json(loaded, &view)?,
         files: if stages { design::stage_files(loaded, &view, watch)? } else { design::files(loaded, &view) },
         affirmative: view.is_met(),
+    })
+}
+
+fn simulate_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
+    let runs = simulate_project(source, &loaded.project, watch)?;
+    let all = runs.len() == loaded.project.scenarios.len();
+    Ok(Answer {
+        text: simulate::text(loaded, &runs),
+        json: simulate::json(loaded, &runs),
+        files: simulate::files(&runs),
+        affirmative: all && runs.iter().all(|run: &ScenarioRun| run.stopped().is_none()),
+    })
+}
+
+/// The same scenarios of several projects side by side, with `figures` as files, telling its progress. The answer is yes if every one ran to its end.
+///
+/// # Errors
+/// [`CommandError`] if a project cannot be simulated.
+pub fn compare_watched(
+    source: &dyn Source,
+    projects: &[Loaded],
+    figures: bool,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
+    let comparison = compare_projects(source, projects, watch).map_err(|(index, error)| {
+        let path = projects.get(index).map(|loaded| loaded.path.clone()).unwrap_or_default();
+        CommandError::Compare { path, error }
+    })?;
+    Ok(Answer {
+        text: simulate::compare_text(&comparison),
+        json: simulate::compare_json(&comparison),
+        files: if figures { simulate::comparison_files(&comparison)? } else { vec![] },
+        affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     })
 }
 

@@ -3,7 +3,7 @@
 mod formula;
 mod hydraulic;
 mod machine;
-mod measured;
+pub(crate) mod measured;
 mod uncertain;
 
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant, UncertainPlantError};

@@ -19,6 +19,7 @@ pub mod report;
 pub mod rig;
 pub mod robust;
 pub mod shaping;
+pub mod simulate;
 pub mod sizing;
 pub mod source;
 pub mod specification;

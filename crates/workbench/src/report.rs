@@ -14,6 +14,7 @@ mod page;
 mod provenance;
 mod response;
 mod rig;
+mod simulation;
 mod sizing;
 mod specifications;
 mod stiffness;
@@ -61,8 +62,8 @@ const SETTLING_BAND: f64 = 1.0;
 /// Scale of the figures as PNG: 1120 pixels of width.
 const PNG_SCALE: f64 = 2.0;
 
-/// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, specifications, templates and
-/// bounds, the audit of the given controller, provenance; of a plant given as a transfer function, the robust part of it. Where the
+/// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, simulation, specifications, templates
+/// and bounds, the audit of the given controller, provenance; of a plant given as a transfer function, the robust part of it. Where the
 /// project has `[design]`, or gives no controller, one is designed and shown beside the given one.
 ///
 /// # Errors
@@ -79,6 +80,7 @@ pub fn report(
         None if project.specifications.is_empty() => return Err(CommandError::NothingToReport),
         None => (vec![], vec![]),
     };
+    chapters.extend(simulation::chapter(source, project, watch)?);
     let mut tables = Vec::new();
     if !project.specifications.is_empty() {
         tables = robust_chapters(source, loaded, watch, (&mut chapters, &mut facts))?;

@@ -69,6 +69,30 @@ impl SampledController {
         }
     }
 
+    /// The state in which it holds a command while reference and measurement stand still: an integral part carries the command,
+    /// and a controller without one gives what its error makes of it.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::controller::{Compensator, Controller, Element};
+    /// let feedback = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
+    /// let prefilter = Compensator::new(vec![Element::RealPole { frequency: 5.0 }]);
+    /// let controller = Controller { feedback, prefilter, ..Controller::default() };
+    /// let sampled = controller.sampled(0.1)?;
+    /// let mut state = sampled.holding(3.0, 3.0, 0.5);
+    /// for _ in 0..10 {
+    ///     assert!((sampled.step(&mut state, 3.0, 3.0).command - 0.5).abs() < 1e-12);
+    /// }
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn holding(&self, reference: f64, measurement: f64, command: f64) -> ControllerState {
+        let mut signal = reference;
+        let prefilter = self.prefilter.iter().map(|section| section.settled(&mut signal, 0.0)).collect();
+        signal -= measurement;
+        let feedback = self.feedback.iter().map(|section| section.settled(&mut signal, command)).collect();
+        ControllerState { feedback, prefilter }
+    }
+
     /// One sample: the command for this reference and measurement, and the next state.
     ///
     /// # Example

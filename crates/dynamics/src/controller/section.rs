@@ -2,6 +2,9 @@ use num_complex::Complex64;
 
 use crate::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
 
+/// Denominators at z = 1 up to this are of integrators: 1e-12 rad of pole angle, beyond any sampled plant.
+const INTEGRATING: f64 = 1e-12;
+
 /// A second-order difference equation, in the transposed direct form that rounds least.
 ///
 /// ```text
@@ -70,6 +73,17 @@ impl Section {
     /// The output for this input and state.
     pub fn output(&self, state: [f64; 2], input: f64) -> f64 {
         self.numerator[0] * input + state[0]
+    }
+
+    /// The state in which a constant input gives a constant output, which takes the input's place; a section that
+    /// integrates gives what is wanted of it.
+    pub(super) fn settled(&self, signal: &mut f64, wanted: f64) -> [f64; 2] {
+        let input = *signal;
+        let under = 1.0 + self.denominator.iter().sum::<f64>();
+        let integrates = under.abs() <= INTEGRATING;
+        *signal = if integrates { wanted } else { self.numerator.iter().sum::<f64>() / under * input };
+        let second = self.numerator[2] * input - self.denominator[1] * *signal;
+        [self.numerator[1] * input - self.denominator[0] * *signal + second, second]
     }
 
     /// The next state, once the output is known (limited or not).

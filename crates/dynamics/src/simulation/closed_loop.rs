@@ -1,91 +1,10 @@
 //! A plant under a controller: one that acts continuously, or one that holds its command between samples.
 
+use super::realization::Realization;
 use super::{Plant, System};
 use crate::controller::{AntiWindup, Controller};
-use crate::linear::{LinearError, StateSpace, TimeDomain, TransferFunction};
+use crate::linear::{LinearError, TransferFunction};
 use crate::scalar::Scalar;
-
-/// A compensator as states, its zeros left out.
-///
-/// ```text
-/// dx/dt = A x + B e,        y = C x + D e
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-struct Realization {
-    states: usize,
-    /// (row, column, value) of A.
-    dynamics: Vec<(usize, usize, f64)>,
-    /// (row, value) of B.
-    drive: Vec<(usize, f64)>,
-    /// (column, value) of C.
-    taps: Vec<(usize, f64)>,
-    feedthrough: f64,
-}
-
-impl Realization {
-    fn new(function: &TransferFunction) -> Result<Realization, LinearError> {
-        if function.domain() != TimeDomain::Continuous {
-            return Err(LinearError::WrongDomain {
-                operation: "acting between samples",
-                needed: "continuous",
-            });
-        }
-        let system = StateSpace::from_transfer_function(function)?;
-        let states = system.order();
-        let entries = (0..states).flat_map(|row| (0..states).map(move |column| (row, column)));
-        let dynamics = entries.map(|(row, column)| (row, column, system.a()[(row, column)]));
-        let drive = (0..states).map(|row| (row, system.b()[(row, 0)]));
-        let taps = (0..states).map(|column| (column, system.c()[(0, column)]));
-        Ok(Realization {
-            states,
-            dynamics: dynamics.filter(|entry| entry.2 != 0.0).collect(),
-            drive: drive.filter(|entry| entry.1 != 0.0).collect(),
-            taps: taps.filter(|entry| entry.1 != 0.0).collect(),
-            feedthrough: system.d()[(0, 0)],
-        })
-    }
-
-    /// Magnitudes of the states that make an output of this magnitude, directly or through the states they drive.
-    fn scales<S: Scalar>(&self, output: S) -> Vec<S> {
-        let mut parts = vec![f64::INFINITY; self.states];
-        for &(column, value) in &self.taps {
-            parts[column] = 1.0 / value.abs();
-        }
-        let rate = |state: usize| {
-            let own = self.dynamics.iter().find(|&&(row, column, _)| row == state && column == state);
-            own.map_or(1.0, |entry| entry.2.abs())
-        };
-        // A chain of sections lists the last one first: what a state drives stands before it.
-        for state in 0..self.states {
-            for &(row, column, value) in self.dynamics.iter().filter(|entry| entry.0 < state) {
-                if column == state && parts[row].is_finite() {
-                    parts[state] = parts[state].min(parts[row] * rate(row) / value.abs());
-                }
-            }
-        }
-        parts.iter().map(|&part| output.times(if part.is_finite() { part } else { 1.0 })).collect()
-    }
-
-    /// C x.
-    fn tapped<T: Scalar>(&self, state: &[T]) -> T {
-        let products = self.taps.iter().map(|&(column, value)| state[column].times(value));
-        products.fold(T::from(0.0), |sum, product| sum + product)
-    }
-
-    fn output<T: Scalar>(&self, state: &[T], input: T) -> T {
-        self.tapped(state) + input.times(self.feedthrough)
-    }
-
-    fn rates<T: Scalar>(&self, state: &[T], input: T, rates: &mut [T]) {
-        rates.fill(T::from(0.0));
-        for &(row, column, value) in &self.dynamics {
-            rates[row] = rates[row] + state[column].times(value);
-        }
-        for &(row, value) in &self.drive {
-            rates[row] = rates[row] + input.times(value);
-        }
-    }
-}
 
 /// A plant under a continuous controller.
 ///
@@ -139,6 +58,30 @@ impl<P> ClosedLoop<P> {
     /// How many states controller and prefilter have.
     pub fn controller_states(&self) -> usize {
         self.feedback.states + self.prefilter.states
+    }
+
+    /// States of G and F, in this order, that hold a command while reference and measurement stand still: where none do, those
+    /// that come nearest.
+    ///
+    /// # Example
+    /// An integrator holds any command while there is no error.
+    /// ```
+    /// use phea_dynamics::controller::{Compensator, Controller, Element};
+    /// use phea_dynamics::simulation::ClosedLoop;
+    /// let feedback = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
+    /// let prefilter = Compensator::new(vec![Element::RealPole { frequency: 5.0 }]);
+    /// let closed = ClosedLoop::new((), &Controller { feedback, prefilter, ..Controller::default() }, 0.0)?;
+    /// assert_eq!(closed.controller_states(), 2);
+    /// let states = closed.controller_at_rest(3.0, 3.0, 0.5);
+    /// assert!((2.0 * states[0] - 0.5).abs() < 1e-12 || (states[0] - 0.5).abs() < 1e-12);
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn controller_at_rest(&self, reference: f64, measurement: f64, command: f64) -> Vec<f64> {
+        let of_prefilter = self.prefilter.at_rest(reference, None);
+        let error = self.prefilter.output(&of_prefilter, reference) - measurement;
+        let mut states = self.feedback.at_rest(error, Some(command));
+        states.extend(of_prefilter);
+        states
     }
 
     fn is_delayed(&self) -> bool {
@@ -280,6 +223,11 @@ impl<P> HeldPlant<P> {
     /// The plant.
     pub fn plant(&self) -> &P {
         &self.plant
+    }
+
+    /// States of F while the reference stands still.
+    pub fn prefilter_at_rest(&self, reference: f64) -> Vec<f64> {
+        self.prefilter.at_rest(reference, None)
     }
 
     /// What the controller samples: reference behind the prefilter, and measurement.

@@ -1,9 +1,9 @@
 //! Members of a family over a box.
 
+use phea_dynamics::random::share;
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
 use super::{Coordinate, FamilyError, MEMBERS_MAXIMUM, coordinate};
-use crate::random::share;
 
 /// All combinations of the coordinates' points, the last coordinate running fastest.
 ///

@@ -8,7 +8,7 @@
 //! A row for each frequency, columns separated by commas and named in the first row that is no comment; the unit belongs to the name.
 
 mod column;
-mod table;
+pub(crate) mod table;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;

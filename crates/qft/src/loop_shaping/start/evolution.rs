@@ -1,8 +1,9 @@
 //! Differential evolution: a population that finds its way where no slopes are to be had.
 
+use phea_dynamics::random::share;
+
 use super::Candidate;
 use crate::loop_shaping::search::{Aim, SearchProblem};
-use crate::random::share;
 
 /// Weight of the difference that is added, and probability that a coordinate takes part.
 const WEIGHT: f64 = 0.7;

@@ -1,8 +1,7 @@
 //! Points spread evenly over a box.
 
 use phea_dynamics::portable;
-
-use crate::random::share;
+use phea_dynamics::random::share;
 
 /// Steps of the fixed-point iteration, which gains a digit in two or three.
 const ITERATIONS: usize = 64;

@@ -4,19 +4,19 @@ use crate::project::{Findings, Found, Place};
 
 /// A value as written.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cell<'a> {
-    pub(super) text: &'a str,
-    pub(super) place: Place,
+pub(crate) struct Cell<'a> {
+    pub(crate) text: &'a str,
+    pub(crate) place: Place,
 }
 
 /// The first row, and all others.
-pub(super) struct Table<'a> {
-    pub(super) header: Vec<Cell<'a>>,
-    pub(super) rows: Vec<Vec<Cell<'a>>>,
+pub(crate) struct Table<'a> {
+    pub(crate) header: Vec<Cell<'a>>,
+    pub(crate) rows: Vec<Vec<Cell<'a>>>,
 }
 
 /// Takes a file in; `None` if it is no text or has no rows.
-pub(super) fn read<'a>(path: &str, bytes: &'a [u8], findings: &mut Findings) -> Option<Table<'a>> {
+pub(crate) fn read<'a>(path: &str, bytes: &'a [u8], findings: &mut Findings) -> Option<Table<'a>> {
     let skipped = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let Ok(content) = std::str::from_utf8(&bytes[skipped..]) else {
         findings.unreadable(path, "the file is no UTF-8 text");
@@ -67,7 +67,7 @@ fn unquoted(part: &str) -> &str {
 
 impl Table<'_> {
     /// Whether a row has a value for every column and no more.
-    pub(super) fn is_complete(&self, row: &[Cell<'_>], findings: &mut Findings) -> bool {
+    pub(crate) fn is_complete(&self, row: &[Cell<'_>], findings: &mut Findings) -> bool {
         let (Some(first), Some(last)) = (row.first(), row.last()) else { return false };
         let columns = self.header.len();
         if row.len() == columns {

@@ -1,0 +1,125 @@
+//! A compensator or a sensor as states.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::linear::{LinearError, StateSpace, TimeDomain, TransferFunction};
+use crate::scalar::Scalar;
+
+/// Singular values below this are zero: an equation that says nothing.
+const SINGULAR: f64 = 1e-12;
+
+/// A compensator as states, its zeros left out.
+///
+/// ```text
+/// dx/dt = A x + B e,        y = C x + D e
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Realization {
+    pub(super) states: usize,
+    /// (row, column, value) of A.
+    dynamics: Vec<(usize, usize, f64)>,
+    /// (row, value) of B.
+    drive: Vec<(usize, f64)>,
+    /// (column, value) of C.
+    taps: Vec<(usize, f64)>,
+    pub(super) feedthrough: f64,
+}
+
+impl Realization {
+    pub(super) fn new(function: &TransferFunction) -> Result<Realization, LinearError> {
+        if function.domain() != TimeDomain::Continuous {
+            return Err(LinearError::WrongDomain {
+                operation: "acting between samples",
+                needed: "continuous",
+            });
+        }
+        let system = StateSpace::from_transfer_function(function)?;
+        let states = system.order();
+        let entries = (0..states).flat_map(|row| (0..states).map(move |column| (row, column)));
+        let dynamics = entries.map(|(row, column)| (row, column, system.a()[(row, column)]));
+        let drive = (0..states).map(|row| (row, system.b()[(row, 0)]));
+        let taps = (0..states).map(|column| (column, system.c()[(0, column)]));
+        Ok(Realization {
+            states,
+            dynamics: dynamics.filter(|entry| entry.2 != 0.0).collect(),
+            drive: drive.filter(|entry| entry.1 != 0.0).collect(),
+            taps: taps.filter(|entry| entry.1 != 0.0).collect(),
+            feedthrough: system.d()[(0, 0)],
+        })
+    }
+
+    /// Magnitudes of the states that make an output of this magnitude, directly or through the states they drive.
+    pub(super) fn scales<S: Scalar>(&self, output: S) -> Vec<S> {
+        let mut parts = vec![f64::INFINITY; self.states];
+        for &(column, value) in &self.taps {
+            parts[column] = 1.0 / value.abs();
+        }
+        let rate = |state: usize| {
+            let own = self.dynamics.iter().find(|&&(row, column, _)| row == state && column == state);
+            own.map_or(1.0, |entry| entry.2.abs())
+        };
+        // A chain of sections lists the last one first: what a state drives stands before it.
+        for state in 0..self.states {
+            for &(row, column, value) in self.dynamics.iter().filter(|entry| entry.0 < state) {
+                if column == state && parts[row].is_finite() {
+                    parts[state] = parts[state].min(parts[row] * rate(row) / value.abs());
+                }
+            }
+        }
+        parts.iter().map(|&part| output.times(if part.is_finite() { part } else { 1.0 })).collect()
+    }
+
+    /// C x.
+    fn tapped<T: Scalar>(&self, state: &[T]) -> T {
+        let products = self.taps.iter().map(|&(column, value)| state[column].times(value));
+        products.fold(T::from(0.0), |sum, product| sum + product)
+    }
+
+    pub(super) fn output<T: Scalar>(&self, state: &[T], input: T) -> T {
+        self.tapped(state) + input.times(self.feedthrough)
+    }
+
+    pub(super) fn rates<T: Scalar>(&self, state: &[T], input: T, rates: &mut [T]) {
+        rates.fill(T::from(0.0));
+        for &(row, column, value) in &self.dynamics {
+            rates[row] = rates[row] + state[column].times(value);
+        }
+        for &(row, value) in &self.drive {
+            rates[row] = rates[row] + input.times(value);
+        }
+    }
+
+    /// States that stand still under an input and, where it is stated, give an output; the nearest to that where none do.
+    ///
+    /// ```text
+    /// A x = -B e,    C x = y - D e        each equation over the largest number of its row, least squares
+    /// ```
+    pub(super) fn at_rest(&self, input: f64, output: Option<f64>) -> Vec<f64> {
+        if self.states == 0 {
+            return Vec::new();
+        }
+        let rows = self.states + usize::from(output.is_some());
+        let (mut left, mut right) = (DMatrix::zeros(rows, self.states), DVector::zeros(rows));
+        for &(row, column, value) in &self.dynamics {
+            left[(row, column)] = value;
+        }
+        for &(row, value) in &self.drive {
+            right[row] = -value * input;
+        }
+        if let Some(output) = output {
+            for &(column, value) in &self.taps {
+                left[(self.states, column)] = value;
+            }
+            right[self.states] = output - self.feedthrough * input;
+        }
+        for row in 0..rows {
+            let size: f64 = left.row(row).amax();
+            if size > 0.0 {
+                left.row_mut(row).scale_mut(1.0 / size);
+                right[row] /= size;
+            }
+        }
+        let solution = left.svd(true, true).solve(&right, SINGULAR);
+        solution.map_or_else(|_| vec![0.0; self.states], |states| states.iter().copied().collect())
+    }
+}

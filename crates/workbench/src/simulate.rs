@@ -1,0 +1,128 @@
+//! The nonlinear machine under its controller, driven through the scenarios of a project.
+
+mod answer;
+mod bench;
+mod compare;
+mod course;
+mod digital;
+mod figures;
+mod files;
+mod metrics;
+mod motion_file;
+mod run;
+mod text;
+
+pub use bench::Bench;
+pub use compare::{Comparison, compare_projects};
+pub use metrics::{Cause, Measured, Metrics, Window};
+pub use run::{Occurrence, Record, ScenarioRun, Stopped};
+
+pub(crate) use answer::{compare_json, json};
+pub(crate) use figures::{comparison_files, pictures};
+pub(crate) use files::files;
+pub(crate) use text::{METRICS, cause_words, cells_of, compare_text, headline, occurrence_sentences, text};
+
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::simulation::{ProfileError, SimulationError};
+use phea_hydraulics::machine::MachineError;
+use phea_hydraulics::operating_point::OperatingPointError;
+
+use crate::command::{Progress, Watch};
+use crate::control::ControlError;
+use crate::project::{Project, Report};
+use crate::rig::RigError;
+use crate::source::Source;
+
+/// Why a sound project is not simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimulateError {
+    /// The rig cannot be computed with.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// The controller is no transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// There is nothing to simulate.
+    #[error("there is nothing to simulate: the project has no [[scenario]]")]
+    NoScenario,
+    /// Nobody commands the valve.
+    #[error("nobody commands the valve: [controller] gives no law")]
+    NoController,
+    /// Controller, prefilter or sensor cannot be run in time.
+    #[error("[controller], [prefilter] or [sensor]: {0}")]
+    Loop(#[from] LinearError),
+    /// A line whose waves the machine does not model.
+    #[error("[line] model \"{0}\" is not simulated; \"lumped\" is")]
+    LineModel(&'static str),
+    /// The machine is impossible.
+    #[error("{0}")]
+    Machine(MachineError),
+    /// A scenario does not begin.
+    #[error("scenario \"{name}\": {error}")]
+    Start {
+        /// Of the scenario.
+        name: String,
+        /// What is wrong with its start.
+        error: MachineError,
+    },
+    /// There is no equilibrium to begin with.
+    #[error("scenario \"{name}\": no equilibrium without force at mid stroke: {error}")]
+    Equilibrium {
+        /// Of the scenario.
+        name: String,
+        /// Why not.
+        error: OperatingPointError,
+    },
+    /// A reference or motion that is no function of time.
+    #[error("scenario \"{name}\": {error}")]
+    Profile {
+        /// Of the scenario.
+        name: String,
+        /// What is wrong with it.
+        error: ProfileError,
+    },
+    /// A file with a motion was refused.
+    #[error("{0}")]
+    Motion(Box<Report>),
+    /// Start, course or settings do not fit the machine.
+    #[error("scenario \"{name}\": {error}")]
+    Simulation {
+        /// Of the scenario.
+        name: String,
+        /// What does not fit.
+        error: SimulationError,
+    },
+}
+
+/// Drives the machine of a project through each of its scenarios, in file order. Where the watch answers `false` the scenario
+/// under way ends there, with what it has, and no later one begins.
+///
+/// # Errors
+/// [`SimulateError`] if the project does not describe a machine with a controller and a scenario. What goes wrong on the way is
+/// in the status of its scenario.
+pub fn simulate_project(
+    source: &dyn Source,
+    project: &Project,
+    watch: Watch<'_>,
+) -> Result<Vec<ScenarioRun>, SimulateError> {
+    if project.scenarios.is_empty() {
+        return Err(SimulateError::NoScenario);
+    }
+    let bench = Bench::new(project)?;
+    let courses = project.scenarios.iter().map(|scenario| course::course(source, project, &bench, scenario));
+    let courses = courses.collect::<Result<Vec<_>, _>>()?;
+    let whole: f64 = project.scenarios.iter().map(|scenario| scenario.duration).sum();
+    let (mut before, mut runs) = (0.0, Vec::new());
+    for (scenario, course) in project.scenarios.iter().zip(&courses) {
+        let mut told =
+            |time_s: f64| watch(Progress { stage: "simulating", share: (before + time_s) / whole });
+        let run = run::run(&bench, scenario, course, &mut told)?;
+        let stopped = run.was_cancelled();
+        runs.push(run);
+        before += scenario.duration;
+        if stopped {
+            break;
+        }
+    }
+    Ok(runs)
+}

@@ -1,0 +1,170 @@
+//! The JSON objects of `simulate` and `compare`.
+
+use serde::Serialize;
+
+use super::metrics::Measured;
+use super::{Cause, Comparison, Metrics, Occurrence, ScenarioRun, Window};
+use crate::answer;
+use crate::project::Loaded;
+
+#[derive(Serialize)]
+struct Body<'a> {
+    scenarios: Vec<ScenarioRow<'a>>,
+    /// Scenarios that were not begun, because the run was stopped.
+    not_run: Vec<&'a str>,
+}
+
+#[derive(Serialize)]
+struct ScenarioRow<'a> {
+    name: &'a str,
+    status: &'static str,
+    /// When it ended before its time.
+    ended_s: Option<f64>,
+    ended_s_reason: Option<&'static str>,
+    work: WorkRow,
+    events: Vec<EventRow>,
+    occurrences: Vec<OccurrenceRow>,
+}
+
+#[derive(Serialize)]
+struct WorkRow {
+    steps: u64,
+    rejected: u64,
+    evaluations: u64,
+}
+
+#[derive(Serialize)]
+struct EventRow {
+    kind: &'static str,
+    time_s: f64,
+    until_s: f64,
+    /// Before and after; of a step.
+    reference_n: Option<[f64; 2]>,
+    reference_n_reason: Option<&'static str>,
+    metrics: MetricsRow,
+}
+
+#[derive(Serialize)]
+struct MetricsRow {
+    overshoot_percent: Option<f64>,
+    overshoot_percent_reason: Option<&'static str>,
+    settling_time_s: Option<f64>,
+    settling_time_s_reason: Option<&'static str>,
+    settling_band_percent: f64,
+    disturbance_peak_n: Option<f64>,
+    disturbance_peak_n_reason: Option<&'static str>,
+    steady_state_error_n: Option<f64>,
+    steady_state_error_n_reason: Option<&'static str>,
+    control_peak_v: Option<f64>,
+    control_peak_v_reason: Option<&'static str>,
+    control_rms_v: Option<f64>,
+    control_rms_v_reason: Option<&'static str>,
+}
+
+#[derive(Serialize)]
+struct OccurrenceRow {
+    time_s: f64,
+    kind: &'static str,
+    begins: bool,
+}
+
+#[derive(Serialize)]
+struct CompareBody<'a> {
+    projects: Vec<ProjectRow<'a>>,
+}
+
+#[derive(Serialize)]
+struct ProjectRow<'a> {
+    path: &'a str,
+    title: &'a str,
+    project_sha256: &'a str,
+    settings: &'a [String],
+    catalogue_files: &'a [String],
+    #[serde(flatten)]
+    body: Body<'a>,
+}
+
+/// The JSON object of `simulate`.
+pub(crate) fn json(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
+    answer::json("simulate", loaded, body(loaded, runs))
+}
+
+/// The JSON object of `compare`, in the envelope of the first project.
+pub(crate) fn compare_json(comparison: &Comparison<'_>) -> String {
+    let Some((first, _)) = comparison.projects.first() else { return String::new() };
+    let rows = comparison.projects.iter().map(|(loaded, runs)| ProjectRow {
+        path: &loaded.path,
+        title: &loaded.project.title,
+        project_sha256: &loaded.sha256,
+        settings: &loaded.settings,
+        catalogue_files: &loaded.catalogue_files,
+        body: body(loaded, runs),
+    });
+    answer::json("compare", first, CompareBody { projects: rows.collect() })
+}
+
+fn body<'a>(loaded: &'a Loaded, runs: &'a [ScenarioRun]) -> Body<'a> {
+    let declared = loaded.project.scenarios.iter().map(|scenario| scenario.name.as_str());
+    Body { scenarios: runs.iter().map(scenario).collect(), not_run: declared.skip(runs.len()).collect() }
+}
+
+fn scenario(run: &ScenarioRun) -> ScenarioRow<'_> {
+    let stopped = run.stopped();
+    ScenarioRow {
+        name: &run.name,
+        status: stopped.map_or("completed", |stopped| stopped.word),
+        ended_s: stopped.map(|stopped| stopped.time_s),
+        ended_s_reason: stopped.is_none().then_some("it ran to its end"),
+        work: WorkRow {
+            steps: run.work.steps,
+            rejected: run.work.rejected,
+            evaluations: run.work.evaluations,
+        },
+        events: run.windows.iter().map(event).collect(),
+        occurrences: run.occurrences.iter().map(occurrence).collect(),
+    }
+}
+
+fn event((window, metrics): &(Window, Metrics)) -> EventRow {
+    let (kind, reference_n) = match window.cause {
+        Cause::ReferenceStep { from_n, to_n } => ("reference_step", Some([from_n, to_n])),
+        Cause::LoadMotion => ("load_motion", None),
+    };
+    EventRow {
+        kind,
+        time_s: window.start_s,
+        until_s: window.end_s,
+        reference_n,
+        reference_n_reason: reference_n.is_none().then_some("the reference does not step"),
+        metrics: metrics_row(metrics),
+    }
+}
+
+fn metrics_row(metrics: &Metrics) -> MetricsRow {
+    let split = |measured: Measured| (measured.ok(), measured.err());
+    let (overshoot_percent, overshoot_percent_reason) = split(metrics.overshoot_percent);
+    let (settling_time_s, settling_time_s_reason) = split(metrics.settling_time_s);
+    let (disturbance_peak_n, disturbance_peak_n_reason) = split(metrics.disturbance_peak_n);
+    let (steady_state_error_n, steady_state_error_n_reason) = split(metrics.steady_state_error_n);
+    let (control_peak_v, control_peak_v_reason) = split(metrics.control_peak_v);
+    let (control_rms_v, control_rms_v_reason) = split(metrics.control_rms_v);
+    MetricsRow {
+        overshoot_percent,
+        overshoot_percent_reason,
+        settling_time_s,
+        settling_time_s_reason,
+        settling_band_percent: metrics.settling_band_percent,
+        disturbance_peak_n,
+        disturbance_peak_n_reason,
+        steady_state_error_n,
+        steady_state_error_n_reason,
+        control_peak_v,
+        control_peak_v_reason,
+        control_rms_v,
+        control_rms_v_reason,
+    }
+}
+
+fn occurrence(occurrence: &Occurrence) -> OccurrenceRow {
+    OccurrenceRow { time_s: occurrence.time_s, kind: occurrence.kind, begins: occurrence.begins }
+}

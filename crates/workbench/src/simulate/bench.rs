@@ -1,0 +1,186 @@
+//! What all scenarios of a project share: the machine as its controller sees it, and the controller as it is deployed.
+
+use phea_dynamics::controller::{Controller, SampledController};
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Sensed, Settings};
+use phea_hydraulics::machine::{
+    Accumulator, Contact, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited,
+};
+use phea_hydraulics::servovalve::SpoolImperfection;
+use phea_qft::design::quantisation::Quantisation;
+
+use super::SimulateError;
+use crate::control::{controller, deployed, quantisation, sensor};
+use crate::project::{self, LineModel, Project, SupplyModel};
+use crate::rig::Rig;
+
+/// A machine with its controller.
+#[derive(Clone, Debug)]
+pub struct Bench {
+    /// The rig it was made of.
+    pub(super) rig: Rig,
+    pub(super) machine: Machine,
+    pub(super) control: Control,
+    pub(super) settings: Settings,
+}
+
+/// A machine under its controller.
+#[derive(Clone, Debug)]
+pub(super) enum Control {
+    /// The controller acts continuously.
+    Continuous(Box<ClosedLoop<Sensed<Machine>>>),
+    /// It acts once a sample.
+    Sampled(Box<Sampled>),
+}
+
+/// A machine behind a hold, and what commands it.
+#[derive(Clone, Debug)]
+pub(super) struct Sampled {
+    pub(super) held: HeldPlant<Sensed<Machine>>,
+    pub(super) controller: SampledController,
+    pub(super) delay_s: f64,
+    pub(super) command_limit: f64,
+    pub(super) feed_forward: f64,
+    pub(super) converters: Quantisation,
+    /// Root mean square of the noise in N, and where its random numbers begin.
+    pub(super) noise: f64,
+    pub(super) seed: u64,
+}
+
+impl Bench {
+    /// The machine and the controller of a project.
+    ///
+    /// # Errors
+    /// [`SimulateError`] where one of them is missing or impossible.
+    pub fn new(project: &Project) -> Result<Bench, SimulateError> {
+        let rig = Rig::new(project)?;
+        let options = options(project)?;
+        let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
+        let controller = controller(project)?.ok_or(SimulateError::NoController)?;
+        let sensed = Sensed::new(machine, &sensor(project)?)?;
+        let feed_forward = feed_forward(project, &rig);
+        let control = match controller.timing.sample_time_s {
+            None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &controller, feed_forward)?)),
+            Some(sample_time_s) => {
+                Control::Sampled(Box::new(sampled(project, sensed, controller, sample_time_s, feed_forward)?))
+            }
+        };
+        let declared = &project.simulation;
+        let settings =
+            Settings { tolerance: declared.tolerance, maximum_steps: u64::from(declared.maximum_steps) };
+        Ok(Bench { rig, machine, control, settings })
+    }
+
+    /// The plant as the controller sees it.
+    pub(super) fn sensed(&self) -> &Sensed<Machine> {
+        match &self.control {
+            Control::Continuous(closed) => closed.plant(),
+            Control::Sampled(sampled) => sampled.held.plant(),
+        }
+    }
+}
+
+fn sampled(
+    project: &Project,
+    sensed: Sensed<Machine>,
+    mut controller: Controller,
+    sample_time_s: f64,
+    feed_forward: f64,
+) -> Result<Sampled, SimulateError> {
+    let mut between = TransferFunction::gain_only(1.0);
+    if project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous) {
+        between = std::mem::take(&mut controller.prefilter).transfer_function()?;
+    }
+    let controller = deployed(project, &controller)?;
+    let noise = project.actuator.as_ref().map_or(0.0, |actuator| actuator.force_sensor.noise);
+    Ok(Sampled {
+        held: HeldPlant::new(sensed, &between)?,
+        delay_s: controller.timing.delay_s,
+        command_limit: controller.command_limit.unwrap_or(f64::INFINITY),
+        controller: controller.sampled(sample_time_s)?,
+        feed_forward,
+        converters: quantisation(project)?,
+        noise,
+        seed: u64::from(project.simulation.seed),
+    })
+}
+
+/// V s/m; the area over the flow gain holds the flow that the motion takes.
+fn feed_forward(project: &Project, rig: &Rig) -> f64 {
+    let declared = project.controller.as_ref().and_then(|controller| controller.load_velocity_feed_forward);
+    declared.map_or(0.0, |declared| declared.gain.unwrap_or(rig.linear.useful_area / rig.linear.flow_gain))
+}
+
+/// What the machine has beyond its actuator.
+fn options(project: &Project) -> Result<MachineOptions, SimulateError> {
+    let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
+    for line in [&declared.line.a, &declared.line.b] {
+        match line.model {
+            LineModel::Lumped => {}
+            LineModel::TransmissionLine => return Err(SimulateError::LineModel("transmission_line")),
+            LineModel::TwoWave => return Err(SimulateError::LineModel("two_wave")),
+        }
+    }
+    let friction = declared.cylinder.friction.as_ref();
+    Ok(MachineOptions {
+        spool: SpoolImperfection {
+            null_bias: declared.valve.null_bias,
+            hysteresis_width: declared.valve.hysteresis,
+            threshold: declared.valve.threshold,
+            rate_limit: declared.valve.rate_limit,
+        },
+        tare_reference_drop: declared.valve.tare_pressure,
+        internal_leakage: declared.cylinder.internal_leakage,
+        end_stops: declared
+            .cylinder
+            .end_stops
+            .map(|stops| Contact { stiffness: stops.stiffness, relative_damping: stops.relative_damping }),
+        friction_regular_velocity: friction.and_then(|friction| friction.regular_velocity),
+        power_unit: power_unit(declared),
+        load: load(&declared.load),
+        vapour_pressure_absolute: declared.fluid.vapour_pressure,
+        ..MachineOptions::default()
+    })
+}
+
+fn power_unit(declared: &project::Actuator) -> PowerUnit {
+    let supply = &declared.supply;
+    if supply.model == SupplyModel::Constant {
+        return PowerUnit::Constant;
+    }
+    PowerUnit::PumpLimited(PumpLimited {
+        // a validated project states the flow of a limited pump
+        pump_flow: supply.flow.unwrap_or(f64::NAN),
+        relief_override: supply.relief_override,
+        volume: supply.volume,
+        effective_bulk_modulus: supply.effective_bulk_modulus.unwrap_or(declared.fluid.bulk_modulus),
+        accumulator: supply.accumulator.map(|accumulator| Accumulator {
+            gas_volume: accumulator.gas_volume,
+            precharge_pressure: accumulator.precharge_pressure,
+            polytropic_index: accumulator.polytropic_exponent,
+        }),
+    })
+}
+
+/// A validated load has every number its model needs; a missing one is refused as not finite further on.
+fn load(declared: &project::Load) -> LoadModel {
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let damping = declared.damping.unwrap_or(0.0);
+    match declared.model {
+        project::LoadModel::Prescribed => LoadModel::Prescribed,
+        project::LoadModel::SpringMassDamper => LoadModel::SpringMassDamper {
+            mass: number(declared.mass),
+            stiffness: number(declared.stiffness),
+            damping,
+        },
+        project::LoadModel::Wall => LoadModel::Wall {
+            mass: number(declared.mass),
+            damping,
+            gap: declared.gap.unwrap_or(0.0),
+            contact: Contact {
+                stiffness: number(declared.stiffness),
+                relative_damping: declared.relative_damping,
+            },
+        },
+    }
+}

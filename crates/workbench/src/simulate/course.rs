@@ -1,0 +1,145 @@
+//! Where a scenario begins, and what drives it.
+
+use phea_dynamics::simulation::{Plant, Profile, ProfileError};
+use phea_hydraulics::machine::{Beginning, Start};
+use phea_hydraulics::operating_point::{Condition, Load, operating_point};
+
+use super::bench::{Bench, Control};
+use super::motion_file;
+use super::{Cause, SimulateError, Window};
+use crate::project::{self, LoadMotion, LoadMotionKind, Project, Scenario};
+use crate::source::Source;
+
+/// A scenario ready to be run.
+pub(super) struct Course {
+    /// In N.
+    pub(super) reference: Profile,
+    /// Position of the load or of its ground in m.
+    pub(super) ground: Profile,
+    /// States of the machine, its sensor and all that is continuous in its controller.
+    pub(super) start: Vec<f64>,
+    /// What a sampled controller holds at the start, if it begins in equilibrium: reference, measurement and command.
+    pub(super) holding: Option<[f64; 3]>,
+    /// What is looked at by itself.
+    pub(super) windows: Vec<Window>,
+}
+
+pub(super) fn course(
+    source: &dyn Source,
+    project: &Project,
+    bench: &Bench,
+    scenario: &Scenario,
+) -> Result<Course, SimulateError> {
+    let named = |error: ProfileError| SimulateError::Profile { name: scenario.name.clone(), error };
+    let steps: Vec<(f64, f64)> = scenario.reference.iter().map(|step| (step.at, step.force)).collect();
+    let reference = Profile::steps(0.0, &steps).map_err(named)?;
+    let motion = match &scenario.load_motion {
+        None => Profile::constant(0.0),
+        Some(declared) if declared.kind == LoadMotionKind::File => {
+            motion_file::motion(source, project, declared).map_err(SimulateError::Motion)?.map_err(named)?
+        }
+        Some(declared) => motion(declared).map_err(named)?,
+    };
+    let beginning = beginning(bench, scenario)?;
+    let ([ground, _], holds) = (beginning.inputs, scenario.start.is_none());
+    let measured = bench.machine.measurement(&beginning.state, &beginning.inputs);
+    Ok(Course {
+        reference,
+        ground: motion.shifted(ground),
+        start: start(bench, &beginning, measured, holds),
+        holding: holds.then_some([0.0, measured, beginning.command]),
+        windows: windows(scenario),
+    })
+}
+
+/// A validated motion has every number its kind needs; a missing one is refused as not finite.
+fn motion(declared: &LoadMotion) -> Result<Profile, ProfileError> {
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let start_s = declared.start;
+    match declared.kind {
+        LoadMotionKind::SmoothStep => {
+            Profile::smooth_step(start_s, number(declared.duration), number(declared.distance))
+        }
+        LoadMotionKind::FirstOrder => {
+            Profile::first_order(start_s, number(declared.time_constant), number(declared.distance))
+        }
+        LoadMotionKind::Sine => {
+            Profile::sine(start_s, number(declared.amplitude), number(declared.frequency))
+        }
+        // a file has been read elsewhere
+        LoadMotionKind::File => Ok(Profile::constant(0.0)),
+        LoadMotionKind::Chirp => Profile::chirp(
+            start_s,
+            number(declared.duration),
+            number(declared.amplitude),
+            [number(declared.frequency), number(declared.final_frequency)],
+        ),
+    }
+}
+
+/// The machine at the stated values, or at rest without force at mid stroke.
+fn beginning(bench: &Bench, scenario: &Scenario) -> Result<Beginning, SimulateError> {
+    let named = |error| SimulateError::Start { name: scenario.name.clone(), error };
+    match &scenario.start {
+        Some(stated) => bench.machine.start(&stated_start(stated)).map_err(named),
+        None => {
+            let stroke = bench.rig.actuator.components().cylinder.stroke;
+            let condition = Condition::Load(Load::Force(0.0));
+            let point = operating_point(&bench.rig.actuator, stroke / 2.0, condition)
+                .map_err(|error| SimulateError::Equilibrium { name: scenario.name.clone(), error })?;
+            bench.machine.rest(&point).map_err(named)
+        }
+    }
+}
+
+fn stated_start(stated: &project::Start) -> Start {
+    let number = |value: Option<f64>| value.unwrap_or(0.0);
+    Start {
+        position: number(stated.position),
+        velocity: number(stated.velocity),
+        pressure_a: number(stated.pressure_a),
+        pressure_b: number(stated.pressure_b),
+        force: number(stated.force),
+        spool: number(stated.spool),
+    }
+}
+
+/// Controller and sensor hold an equilibrium; after a stated start they begin at zero, as all that is not stated.
+fn start(bench: &Bench, beginning: &Beginning, measured: f64, holds: bool) -> Vec<f64> {
+    let mut start = beginning.state.clone();
+    let mut sensor = bench.sensed().sensor_at_rest(measured);
+    let mut control = match &bench.control {
+        Control::Continuous(closed) => closed.controller_at_rest(0.0, measured, beginning.command),
+        Control::Sampled(sampled) => sampled.held.prefilter_at_rest(0.0),
+    };
+    if !holds {
+        sensor.fill(0.0);
+        control.fill(0.0);
+    }
+    start.extend(sensor);
+    start.extend(control);
+    start
+}
+
+/// One for each step of the reference and for the motion of the load, each until the next.
+fn windows(scenario: &Scenario) -> Vec<Window> {
+    let mut windows = Vec::new();
+    let mut from_n = 0.0;
+    for step in scenario.reference.iter().filter(|step| step.at < scenario.duration) {
+        if step.force != from_n {
+            let cause = Cause::ReferenceStep { from_n, to_n: step.force };
+            windows.push(Window { cause, start_s: step.at, end_s: scenario.duration });
+        }
+        from_n = step.force;
+    }
+    if let Some(motion) = scenario.load_motion.as_ref().filter(|motion| motion.start < scenario.duration) {
+        windows.push(Window { cause: Cause::LoadMotion, start_s: motion.start, end_s: scenario.duration });
+    }
+    windows.sort_by(|one, other| one.start_s.total_cmp(&other.start_s));
+    let starts: Vec<f64> = windows.iter().map(|window| window.start_s).collect();
+    for window in &mut windows {
+        let next = starts.iter().copied().find(|start| *start > window.start_s);
+        window.end_s = next.unwrap_or(scenario.duration);
+    }
+    windows
+}

@@ -1,0 +1,152 @@
+//! Figures of runs over time.
+
+use super::{Cause, Comparison, Metrics, Record, ScenarioRun, Window, cause_words};
+use crate::answer::OutputFile;
+use crate::figure::{
+    DisplayUnit, Figure, FigureError, TimeEvent, TimePanel, TimePanelsInput, TimeSeries, Words, time_panels,
+};
+
+/// How much of a run is drawn before and after what begins a window, s.
+const BEFORE_S: f64 = 0.02;
+const AFTER_S: f64 = 0.5;
+
+/// Scale of figures as PNG: 1120 pixels of width.
+const PNG_SCALE: f64 = 2.0;
+
+/// The whole run, and each event enlarged.
+pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
+    let end = run.record.times_s.last().copied().unwrap_or(0.0);
+    let whole = Words::new(
+        format!("simulation-{number}"),
+        format!("Simulated: {}", run.name),
+        "Force, voltages, pressures and position over the whole scenario.",
+    );
+    let mut figures = vec![picture(whole, &run.record, &run.windows, [0.0, end])];
+    for (index, (window, _)) in run.windows.iter().enumerate().filter(|(_, (window, _))| window.start_s < end)
+    {
+        let words = Words::new(
+            format!("simulation-{number}-event-{}", index + 1),
+            format!("Enlarged: {}", cause_words(window)),
+            "The same around what begins it.",
+        );
+        figures.push(picture(words, &run.record, &run.windows, around(window, end)));
+    }
+    figures
+}
+
+fn picture(words: Words, record: &Record, windows: &[(Window, Metrics)], span_s: [f64; 2]) -> Figure {
+    let series = |values: Vec<f64>| over_time(record, values);
+    let signal = |name: &str| series(record.signal(name));
+    let force = vec![signal("force_n"), series(record.filtered_reference_n.clone())];
+    let voltage = vec![series(record.control_v.clone()), signal("spool_v")];
+    let pressure = vec![signal("pressure_a_pa"), signal("pressure_b_pa")];
+    let position = vec![signal("position_m"), signal("load_position_m")];
+    let input = TimePanelsInput {
+        panels: vec![
+            TimePanel {
+                reference: Some(series(record.reference_n.clone())),
+                ..panel("Force F_e", DisplayUnit::KILONEWTON, 190.0, force)
+            },
+            panel("Voltage", DisplayUnit::VOLT, 110.0, voltage),
+            panel("Pressure", DisplayUnit::BAR, 110.0, pressure),
+            panel("Position", DisplayUnit::MILLIMETRE, 90.0, position),
+        ],
+        legend: vec![
+            "force, command, p_A, piston".to_string(),
+            "prefiltered reference, spool, p_B, load".to_string(),
+        ],
+        reference: "reference".to_string(),
+        events: windows.iter().filter_map(|(window, _)| instant(window, span_s)).collect(),
+        span_s,
+    };
+    time_panels(words, &input)
+}
+
+/// What begins a window, where it is seen.
+fn instant(window: &Window, [start, end]: [f64; 2]) -> Option<TimeEvent> {
+    let label = match window.cause {
+        Cause::ReferenceStep { .. } => "step",
+        Cause::LoadMotion => "load moves",
+    };
+    let seen = window.start_s >= start && window.start_s < end;
+    seen.then(|| TimeEvent { time_s: window.start_s, label: label.to_string() })
+}
+
+/// From a little before what begins a window to half a second later, within the run.
+fn around(window: &Window, end_s: f64) -> [f64; 2] {
+    [(window.start_s - BEFORE_S).max(0.0), (window.start_s + AFTER_S).min(end_s)]
+}
+
+fn panel(quantity: &str, unit: DisplayUnit, height: f64, series: Vec<TimeSeries>) -> TimePanel {
+    TimePanel { quantity: quantity.to_string(), unit, series, reference: None, height }
+}
+
+fn over_time(record: &Record, values: Vec<f64>) -> TimeSeries {
+    TimeSeries { name: String::new(), times_s: record.times_s.clone(), values }
+}
+
+/// Each scenario of a comparison and each of its events, all projects in one figure, as SVG and PNG.
+///
+/// # Errors
+/// A figure that the rasteriser refuses.
+pub(crate) fn comparison_files(comparison: &Comparison<'_>) -> Result<Vec<OutputFile>, FigureError> {
+    let mut files = Vec::new();
+    for (number, name) in comparison.scenarios().into_iter().enumerate() {
+        for figure in compared(comparison, name, number + 1) {
+            let svg = figure.to_svg_standalone().into_bytes();
+            files.push(OutputFile { name: format!("{}.svg", figure.name), bytes: svg });
+            files.push(OutputFile { name: format!("{}.png", figure.name), bytes: figure.to_png(PNG_SCALE)? });
+        }
+    }
+    Ok(files)
+}
+
+/// One scenario of all projects that have it: the whole, and each event of the first.
+fn compared(comparison: &Comparison<'_>, name: &str, number: usize) -> Vec<Figure> {
+    let titles = comparison.projects.iter().map(|(loaded, _)| loaded.project.title.clone());
+    let (titles, runs): (Vec<String>, Vec<&ScenarioRun>) =
+        titles.zip(comparison.runs_of(name)).filter_map(|(title, run)| Some((title, run?))).unzip();
+    let ends = runs.iter().filter_map(|run| run.record.times_s.last().copied());
+    let end = ends.fold(0.0, f64::max);
+    let words = |suffix: String, title: String| {
+        Words::new(
+            format!("compare-{number}{suffix}"),
+            title,
+            "Force, command and load pressure of each project.",
+        )
+    };
+    let mut figures = vec![side_by_side(words(String::new(), name.to_string()), &titles, &runs, [0.0, end])];
+    let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
+    for (index, (window, _)) in windows.iter().enumerate().filter(|(_, (window, _))| window.start_s < end) {
+        let words = words(format!("-event-{}", index + 1), format!("Enlarged: {}", cause_words(window)));
+        figures.push(side_by_side(words, &titles, &runs, around(window, end)));
+    }
+    figures
+}
+
+fn side_by_side(words: Words, titles: &[String], runs: &[&ScenarioRun], span_s: [f64; 2]) -> Figure {
+    let each = |values: fn(&Record) -> Vec<f64>| -> Vec<TimeSeries> {
+        runs.iter().map(|run| over_time(&run.record, values(&run.record))).collect()
+    };
+    let load_pressure = |record: &Record| -> Vec<f64> {
+        let (one, other) = (record.signal("pressure_a_pa"), record.signal("pressure_b_pa"));
+        one.iter().zip(&other).map(|(one, other)| one - other).collect()
+    };
+    let reference = runs.first().map(|run| over_time(&run.record, run.record.reference_n.clone()));
+    let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
+    let input = TimePanelsInput {
+        panels: vec![
+            TimePanel {
+                reference,
+                ..panel("Force F_e", DisplayUnit::KILONEWTON, 230.0, each(|record| record.signal("force_n")))
+            },
+            panel("Command U_C", DisplayUnit::VOLT, 130.0, each(|record| record.control_v.clone())),
+            panel("p_A - p_B", DisplayUnit::BAR, 130.0, each(load_pressure)),
+        ],
+        legend: titles.to_vec(),
+        reference: "reference".to_string(),
+        events: windows.iter().filter_map(|(window, _)| instant(window, span_s)).collect(),
+        span_s,
+    };
+    time_panels(words, &input)
+}

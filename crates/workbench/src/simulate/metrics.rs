@@ -1,0 +1,260 @@
+//! What is read off a run: one window for each step of the reference and for the motion of the load.
+
+use phea_dynamics::time_response::{Settling, StepBaseline, step_metrics};
+
+use super::Record;
+
+/// Share of a window, at its end, over which the steady-state error is averaged.
+const STEADY_SHARE: f64 = 0.1;
+
+/// Part of a run that is looked at by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// What begins it.
+    pub cause: Cause,
+    /// s.
+    pub start_s: f64,
+    /// s, where the next one begins or the scenario ends.
+    pub end_s: f64,
+}
+
+/// What begins a window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cause {
+    /// The reference changes.
+    ReferenceStep {
+        /// N.
+        from_n: f64,
+        /// N.
+        to_n: f64,
+    },
+    /// The load begins to move.
+    LoadMotion,
+}
+
+/// A number, or why there is none.
+pub type Measured = Result<f64, &'static str>;
+
+/// Numbers read off a window. A peak between two looks is that of the parabola through its three nearest, so that it does not depend
+/// on where they fall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metrics {
+    /// How far the force exceeds the new reference, percent of the step.
+    pub overshoot_percent: Measured,
+    /// From the start of the window until the force stays within the band around the reference, s.
+    pub settling_time_s: Measured,
+    /// The band of the settling time: percent of the step, or of the reference that a load motion disturbs.
+    pub settling_band_percent: f64,
+    /// Largest difference of force and reference while the load moves and after, N.
+    pub disturbance_peak_n: Measured,
+    /// Reference less force, mean over the last tenth of the window, N.
+    pub steady_state_error_n: Measured,
+    /// Largest magnitude of the command, V.
+    pub control_peak_v: Measured,
+    /// Root mean square of the command, V.
+    pub control_rms_v: Measured,
+}
+
+const UNREACHED: &str = "the run ended before";
+const NO_STEP: &str = "the reference does not step";
+const NO_MOTION: &str = "the load does not begin to move";
+const NOT_SETTLED: &str = "outside the band at the end of the window";
+const NO_REFERENCE: &str = "the reference is zero: a band around it has no width";
+
+/// The metrics of a window; `band` in percent.
+pub(super) fn metrics(record: &Record, window: Window, band: f64) -> Metrics {
+    let end = record.times_s.last().copied().unwrap_or(0.0);
+    let within =
+        |time: f64| time >= window.start_s && (time < window.end_s || (time == window.end_s && time == end));
+    let rows: Vec<usize> = (0..record.times_s.len()).filter(|row| within(record.times_s[*row])).collect();
+    let column = |values: &[f64]| rows.iter().filter_map(|row| values.get(*row).copied()).collect::<Vec<_>>();
+    let force = record.signal("force_n");
+    let seen = Seen {
+        times_s: column(&record.times_s),
+        force_n: column(&force),
+        reference_n: column(&record.reference_n),
+        control_v: column(&record.control_v),
+    };
+    let whole = end >= window.end_s;
+    match window.cause {
+        _ if seen.times_s.len() < 3 => Metrics::none(UNREACHED, band),
+        Cause::ReferenceStep { from_n, to_n } => seen.step(window.start_s, [from_n, to_n], band, whole),
+        Cause::LoadMotion => seen.motion(window.start_s, band, whole),
+    }
+}
+
+impl Metrics {
+    fn none(reason: &'static str, settling_band_percent: f64) -> Metrics {
+        Metrics {
+            overshoot_percent: Err(reason),
+            settling_time_s: Err(reason),
+            settling_band_percent,
+            disturbance_peak_n: Err(reason),
+            steady_state_error_n: Err(reason),
+            control_peak_v: Err(reason),
+            control_rms_v: Err(reason),
+        }
+    }
+}
+
+/// The part of a record in a window.
+struct Seen {
+    times_s: Vec<f64>,
+    force_n: Vec<f64>,
+    reference_n: Vec<f64>,
+    control_v: Vec<f64>,
+}
+
+impl Seen {
+    fn step(&self, start_s: f64, [from_n, to_n]: [f64; 2], band: f64, whole: bool) -> Metrics {
+        let beyond: Vec<f64> = self.force_n.iter().map(|force| (force - to_n) / (to_n - from_n)).collect();
+        let baseline = StepBaseline { step_time_s: start_s, initial_value: from_n, final_value: to_n };
+        let settling = match step_metrics(&self.times_s, &self.force_n, baseline, band) {
+            _ if !whole => Err(UNREACHED),
+            Ok(step) => match step.settling {
+                Settling::Settled { time_s } => Ok(time_s),
+                Settling::NotSettled { .. } => Err(NOT_SETTLED),
+            },
+            Err(_) => Err(NO_STEP),
+        };
+        Metrics {
+            overshoot_percent: Ok(100.0 * peak(&beyond).max(0.0)),
+            settling_time_s: settling,
+            disturbance_peak_n: Err(NO_MOTION),
+            ..self.common(band, whole)
+        }
+    }
+
+    fn motion(&self, start_s: f64, band: f64, whole: bool) -> Metrics {
+        let errors = self.errors();
+        let largest = peak(&errors).max(peak(&errors.iter().map(|error| -error).collect::<Vec<_>>()));
+        Metrics {
+            overshoot_percent: Err(NO_STEP),
+            settling_time_s: if whole { self.settled(start_s, band) } else { Err(UNREACHED) },
+            disturbance_peak_n: Ok(largest),
+            ..self.common(band, whole)
+        }
+    }
+
+    /// From the start until the last error beyond the band, between two looks on a straight line.
+    fn settled(&self, start_s: f64, band: f64) -> Measured {
+        let width = 0.01 * band * self.reference_n.last().copied().unwrap_or(0.0).abs();
+        if width == 0.0 {
+            return Err(NO_REFERENCE);
+        }
+        let errors = self.errors();
+        let Some(outside) = errors.iter().rposition(|error| error.abs() > width) else { return Ok(0.0) };
+        let (Some(&inner), Some(&inner_s)) = (errors.get(outside + 1), self.times_s.get(outside + 1)) else {
+            return Err(NOT_SETTLED);
+        };
+        let (outer, outer_s) = (errors[outside].abs(), self.times_s[outside]);
+        let share = (outer - width) / (outer - inner.abs());
+        Ok(outer_s + share.clamp(0.0, 1.0) * (inner_s - outer_s) - start_s)
+    }
+
+    fn common(&self, band: f64, whole: bool) -> Metrics {
+        let magnitudes: Vec<f64> = self.control_v.iter().map(|command| command.abs()).collect();
+        Metrics {
+            steady_state_error_n: if whole { Ok(self.steady_error()) } else { Err(UNREACHED) },
+            control_peak_v: Ok(magnitudes.iter().copied().fold(0.0, f64::max)),
+            control_rms_v: Ok(root_mean_square(&self.times_s, &self.control_v)),
+            ..Metrics::none(UNREACHED, band)
+        }
+    }
+
+    fn errors(&self) -> Vec<f64> {
+        self.reference_n.iter().zip(&self.force_n).map(|(reference, force)| reference - force).collect()
+    }
+
+    fn steady_error(&self) -> f64 {
+        let errors = self.errors();
+        let last = ((errors.len() as f64 * STEADY_SHARE) as usize).max(1);
+        errors.iter().rev().take(last).sum::<f64>() / last as f64
+    }
+}
+
+/// The largest value; between rows, that of the parabola through the three nearest.
+fn peak(values: &[f64]) -> f64 {
+    let largest = |best: (usize, f64), (row, value): (usize, &f64)| {
+        if *value > best.1 { (row, *value) } else { best }
+    };
+    let (row, top) = values.iter().enumerate().fold((0, f64::NEG_INFINITY), largest);
+    let neighbours = row.checked_sub(1).and_then(|before| values.get(before)).zip(values.get(row + 1));
+    let Some((before, after)) = neighbours else { return top };
+    let curvature = 2.0 * top - before - after;
+    if curvature > 0.0 { top + (after - before) * (after - before) / (8.0 * curvature) } else { top }
+}
+
+/// By the trapezoid rule.
+fn root_mean_square(times_s: &[f64], values: &[f64]) -> f64 {
+    let spans = times_s.windows(2).zip(values.windows(2));
+    let squares = spans.map(|(time, value)| match (time, value) {
+        ([start, end], [one, other]) => 0.5 * (end - start) * (one * one + other * other),
+        _ => 0.0,
+    });
+    let whole = times_s.last().zip(times_s.first()).map_or(0.0, |(last, first)| last - first);
+    if whole > 0.0 { (squares.sum::<f64>() / whole).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use phea_dynamics::portable;
+
+    use super::*;
+
+    /// A sine of amplitude 3 whose peak lies anywhere between two of 40 looks a period.
+    #[test]
+    fn a_peak_does_not_depend_on_where_the_looks_fall() {
+        for shift in 0..20 {
+            let phase = |row: i32| 0.157 * (f64::from(row) + 0.05 * f64::from(shift));
+            let values: Vec<f64> = (0..20).map(|row| 3.0 * portable::sin(phase(row))).collect();
+            assert!((peak(&values) - 3.0).abs() < 3e-4, "{}", peak(&values));
+        }
+        assert_eq!((peak(&[1.0, 2.0, 3.0]), peak(&[5.0])), (3.0, 5.0));
+    }
+
+    fn record(force: impl Fn(f64) -> f64, reference: impl Fn(f64) -> f64) -> Record {
+        let times_s: Vec<f64> = (0..=4000).map(|row| 1e-3 * f64::from(row)).collect();
+        let mut signals = vec![[0.0; phea_hydraulics::machine::SIGNALS.len()]; times_s.len()];
+        for (row, time) in signals.iter_mut().zip(&times_s) {
+            row[0] = force(*time);
+        }
+        let reference_n: Vec<f64> = times_s.iter().map(|time| reference(*time)).collect();
+        let control_v = times_s.iter().map(|time| 2.0 * portable::sin(10.0 * time)).collect();
+        Record { filtered_reference_n: reference_n.clone(), reference_n, control_v, signals, times_s }
+    }
+
+    #[test]
+    fn a_first_order_step_settles_after_the_logarithm_of_the_band() {
+        let force =
+            |time: f64| if time < 1.0 { 0.0 } else { -500.0 * (1.0 - portable::exp(-(time - 1.0) / 0.1)) };
+        let record = record(force, |time| if time < 1.0 { 0.0 } else { -500.0 });
+        let cause = Cause::ReferenceStep { from_n: 0.0, to_n: -500.0 };
+        let found = metrics(&record, Window { cause, start_s: 1.0, end_s: 4.0 }, 1.0);
+        assert_eq!((found.overshoot_percent, found.disturbance_peak_n), (Ok(0.0), Err(NO_MOTION)));
+        // ORIGIN: analytic, 0.1 ln 100
+        assert!((found.settling_time_s.unwrap() - 0.1 * portable::ln(100.0)).abs() < 1e-5);
+        assert!(found.steady_state_error_n.unwrap().abs() < 1e-9);
+        assert!((found.control_peak_v.unwrap() - 2.0).abs() < 1e-4);
+        // three seconds are 4.77 periods of the command: its mean square is 2 up to a twentieth
+        assert!((found.control_rms_v.unwrap() - 2.0_f64.sqrt()).abs() < 0.05);
+    }
+
+    #[test]
+    fn a_disturbance_is_measured_against_the_reference_and_a_run_that_ends_early_says_so() {
+        let bump = |time: f64| {
+            if time < 2.0 { 0.0 } else { 80.0 * (time - 2.0) * portable::exp(-(time - 2.0) / 0.2) }
+        };
+        let record = record(|time| 1000.0 + bump(time), |_| 1000.0);
+        let window = Window { cause: Cause::LoadMotion, start_s: 2.0, end_s: 4.0 };
+        let found = metrics(&record, window, 0.1);
+        // ORIGIN: analytic, 80 t exp(-t/0.2) is largest at t = 0.2: 16/e
+        assert!((found.disturbance_peak_n.unwrap() - 16.0 * portable::exp(-1.0)).abs() < 1e-6);
+        let settling = found.settling_time_s.unwrap();
+        assert!((bump(2.0 + settling) - 1.0).abs() < 1e-3 && settling > 0.2);
+        let late = metrics(&record, Window { end_s: 9.0, ..window }, 0.1);
+        assert_eq!((late.settling_time_s, late.disturbance_peak_n.is_ok()), (Err(UNREACHED), true));
+        let never = metrics(&record, Window { start_s: 5.0, end_s: 6.0, ..window }, 0.1);
+        assert_eq!(never, Metrics::none(UNREACHED, 0.1));
+    }
+}

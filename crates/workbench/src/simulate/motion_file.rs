@@ -1,0 +1,116 @@
+//! A measured motion of the load from a CSV file.
+//!
+//! ```text
+//! time_s, position_mm
+//! 0.000,  0.00
+//! 0.010,  0.02
+//! ```
+//! Rows in the order of time. The motion is counted from the first row, and starts where the load is.
+
+use phea_dynamics::simulation::{Profile, ProfileError};
+
+use crate::family::measured::table::{self, Cell};
+use crate::project::{Findings, Found, LoadMotion, Project, Report};
+use crate::quantity::{self, Dimension, LENGTH, TIME};
+use crate::source::Source;
+use crate::spelling::nearest;
+
+/// Columns of time, and of position, with the unit that belongs to each.
+const TIMES: [(&str, &str); 2] = [("time_s", "s"), ("time_ms", "ms")];
+const POSITIONS: [(&str, &str); 2] = [("position_m", "m"), ("position_mm", "mm")];
+
+/// The motion as a function of time, or what is wrong with the file.
+pub(super) fn motion(
+    source: &dyn Source,
+    project: &Project,
+    declared: &LoadMotion,
+) -> Result<Result<Profile, ProfileError>, Box<Report>> {
+    let mut findings = Findings::default();
+    let path = project.path_of(declared.file.as_deref().unwrap_or_default());
+    let rows = match source.read(&path) {
+        Ok(bytes) => rows(&path, &bytes, &mut findings),
+        Err(error) => {
+            findings.unreadable(&path, &error.to_string());
+            Vec::new()
+        }
+    };
+    if findings.error_count() > 0 {
+        return Err(Box::new(findings.report()));
+    }
+    let (first_s, first_m) = rows.first().copied().unwrap_or_default();
+    let times: Vec<f64> = rows.iter().map(|row| declared.start + row.0 - first_s).collect();
+    let positions: Vec<f64> = rows.iter().map(|row| row.1 - first_m).collect();
+    Ok(Profile::table(&times, &positions))
+}
+
+fn rows(path: &str, bytes: &[u8], findings: &mut Findings) -> Vec<(f64, f64)> {
+    let Some(table) = table::read(path, bytes, findings) else { return Vec::new() };
+    let columns = [column(&table.header, &TIMES, findings), column(&table.header, &POSITIONS, findings)];
+    unknown(&table.header, findings);
+    let [Some(time), Some(position)] = columns else { return Vec::new() };
+    let mut rows: Vec<(f64, f64)> = Vec::with_capacity(table.rows.len());
+    for row in table.rows.iter().filter(|row| table.is_complete(row, findings)).collect::<Vec<_>>() {
+        let values = [(time, &TIME), (position, &LENGTH)]
+            .map(|((index, unit), dimension)| value(row.get(index), unit, dimension));
+        match values {
+            [Ok(time_s), Ok(_)] if rows.last().is_some_and(|last| last.0 >= time_s) => {
+                let place = row.get(time.0).map(|cell| cell.place).unwrap_or_default();
+                let found = Found::error(place, "times must increase from row to row");
+                findings.push(found.expected("a later time"));
+                return rows;
+            }
+            [Ok(time_s), Ok(position_m)] => rows.push((time_s, position_m)),
+            [one, other] => {
+                [one.err(), other.err()].into_iter().flatten().for_each(|found| findings.push(found))
+            }
+        }
+    }
+    if rows.len() < 2 && findings.error_count() == 0 {
+        let place = table.header.first().map(|cell| cell.place).unwrap_or_default();
+        findings.push(Found::error(place, "a motion needs two rows at least"));
+    }
+    rows
+}
+
+/// Where a column is, and its unit.
+fn column(
+    header: &[Cell<'_>],
+    names: &'static [(&'static str, &'static str); 2],
+    findings: &mut Findings,
+) -> Option<(usize, &'static str)> {
+    let unit = |cell: &Cell<'_>| names.iter().find(|(name, _)| *name == cell.text).map(|(_, unit)| *unit);
+    let mut found =
+        header.iter().enumerate().filter_map(|(index, cell)| Some((index, unit(cell)?, cell.place)));
+    let (first, second) = (found.next(), found.next());
+    if let Some((_, _, place)) = second {
+        findings.push(Found::error(place, "this column is there twice, here in another unit or again"));
+    }
+    if first.is_none() {
+        let place = header.first().map(|cell| cell.place).unwrap_or_default();
+        let [(one, _), (other, _)] = *names;
+        findings.push(Found::error(place, format!("the columns lack `{one}` or `{other}`")));
+    }
+    first.map(|(index, unit, _)| (index, unit))
+}
+
+fn unknown(header: &[Cell<'_>], findings: &mut Findings) {
+    let names = || TIMES.iter().chain(&POSITIONS).map(|(name, _)| *name);
+    for cell in header.iter().filter(|cell| !names().any(|name| name == cell.text)) {
+        let found = Found::error(cell.place, format!("unknown column `{}`", cell.text));
+        findings.push(match nearest(cell.text, names()) {
+            Some(name) => found.help(format!("did you mean `{name}`?")),
+            None => found.help(format!("known here: {}", names().collect::<Vec<_>>().join(", "))),
+        });
+    }
+}
+
+/// SI.
+fn value(cell: Option<&Cell<'_>>, unit: &str, dimension: &'static Dimension) -> Result<f64, Found> {
+    let cell = cell.copied().unwrap_or(Cell { text: "", place: Default::default() });
+    let bare = cell.text.parse::<f64>().is_ok_and(f64::is_finite);
+    let value = bare.then(|| quantity::parse(&format!("{} {unit}", cell.text), dimension).ok()).flatten();
+    value.filter(|value| value.is_finite()).ok_or_else(|| {
+        Found::error(cell.place, format!("`{}` is no number", cell.text))
+            .expected(format!("a number in {unit}"))
+    })
+}

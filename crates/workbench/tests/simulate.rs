@@ -1,0 +1,348 @@
+//! Scenarios of whole projects on the nonlinear machine.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use std::fmt::Write as _;
+
+use phea_workbench::command::{self, Request};
+use phea_workbench::project::{self, Loaded, Project};
+use phea_workbench::simulate::{Cause, ScenarioRun, SimulateError, simulate_project};
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+/// Time in s and force in N.
+// ORIGIN: other tool, CVODE BDF at 1e-12 on the same equations in C
+const REFERENCE: [(f64, f64); 13] = [
+    (0.01, 5.6607),
+    (0.1, 10.8236),
+    (1.0, 0.0342),
+    (2.05, 1097.4226),
+    (2.1, 2556.3422),
+    (2.3, 3974.1914),
+    (3.02, 3558.6266),
+    (3.04, 2410.8010),
+    (3.06, 2017.6796),
+    (3.1, 4129.3740),
+    (3.15, 4669.4950),
+    (3.5, 4024.5844),
+    (5.0, 4000.0003),
+];
+// ORIGIN: other tool, CVODE BDF at 1e-12, restarted at each sample
+const REFERENCE_SAMPLED: [(f64, f64); 13] = [
+    (0.01, 5.7510),
+    (0.1, 10.8048),
+    (1.0, 0.0342),
+    (2.05, 1097.0817),
+    (2.1, 2559.0154),
+    (2.3, 3973.9799),
+    (3.02, 3548.8161),
+    (3.04, 2384.0655),
+    (3.06, 2004.6445),
+    (3.1, 4156.2337),
+    (3.15, 4671.8227),
+    (3.5, 4024.4565),
+    (5.0, 4000.0003),
+];
+
+const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
+
+fn load(text: &str, settings: &[&str]) -> Loaded {
+    let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
+    let source = Memory::default().with("rig.toml", text);
+    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn runs_of(text: &str, settings: &[&str]) -> Vec<ScenarioRun> {
+    simulate_project(&Memory::default(), &load(text, settings).project, &mut |_| true).unwrap()
+}
+
+fn run_of(text: &str, settings: &[&str]) -> ScenarioRun {
+    runs_of(text, settings).remove(0)
+}
+
+/// The value of a signal at a time of the record.
+fn at(run: &ScenarioRun, name: &str, time_s: f64) -> f64 {
+    let row = run.record.times_s.iter().position(|time| *time >= time_s - 1e-9).unwrap();
+    run.record.signal(name)[row]
+}
+
+#[test]
+fn the_benchmark_gives_the_force_of_its_reference_solution() {
+    let run = run_of(BENCHMARK, &["simulation.tolerance=1e-8"]);
+    // ORIGIN: other tool, CVODE BDF at 1e-12 on the same equations in C
+    for (time_s, force_n) in REFERENCE {
+        let found = at(&run, "force_n", time_s);
+        assert!((found - force_n).abs() < 0.02, "{time_s} s: {found} N, not {force_n}");
+    }
+    assert_eq!(run.stopped(), None);
+    assert_eq!(run.occurrences, []);
+}
+
+#[test]
+fn sampled_with_a_continuous_prefilter_it_gives_that_of_the_sampled_loop() {
+    let settings = ["simulation.tolerance=1e-8", "controller.sample_time=1 ms", "prefilter.continuous=true"];
+    let run = run_of(BENCHMARK, &settings);
+    // ORIGIN: other tool, CVODE BDF at 1e-12, restarted at each sample
+    for (time_s, force_n) in REFERENCE_SAMPLED {
+        let found = at(&run, "force_n", time_s);
+        assert!((found - force_n).abs() < 0.02, "{time_s} s: {found} N, not {force_n}");
+    }
+}
+
+#[test]
+fn metrics_do_not_depend_on_the_rows() {
+    let [fine, coarse] = ["1 ms", "50 ms"].map(|step| {
+        let setting = format!("scenario.0.output_step={step}");
+        run_of(BENCHMARK, &[setting.as_str()])
+    });
+    for ((window, one), (_, other)) in fine.windows.iter().zip(&coarse.windows) {
+        let pairs = [
+            (one.overshoot_percent, other.overshoot_percent, 1e-3),
+            (one.settling_time_s, other.settling_time_s, 1e-4),
+            (one.disturbance_peak_n, other.disturbance_peak_n, 0.05),
+            (one.control_peak_v, other.control_peak_v, 1e-3),
+        ];
+        for (one, other, tolerance) in pairs {
+            match (one, other) {
+                (Ok(one), Ok(other)) => assert!((one - other).abs() < tolerance, "{window:?}: {one} {other}"),
+                (one, other) => assert_eq!(one, other),
+            }
+        }
+    }
+}
+
+/// At rest the machine stays at rest, sampled or not, with all its imperfections.
+#[test]
+fn an_equilibrium_is_kept() {
+    let everything = include_str!("project_valid/simulation.toml");
+    let still = "[[scenario]]\nname = \"still\"\nduration = \"0.2 s\"\n";
+    let of = |text: &str| {
+        let start = text.find("[[scenario]]").unwrap();
+        format!("{}{still}", &text[..start])
+    };
+    let noiseless = "force_sensor.noise=0 N";
+    let cases = [(of(BENCHMARK), vec![]), (of(everything), vec![noiseless])];
+    for (text, settings) in cases {
+        let run = run_of(&text, &settings);
+        let force = run.record.signal("force_n");
+        let most = force.iter().map(|force| force.abs()).fold(0.0, f64::max);
+        assert!(most < 1.0, "{most} N");
+        assert_eq!(run.windows, []);
+    }
+}
+
+#[test]
+fn the_feed_forward_lets_the_force_feel_less_of_the_load() {
+    let peak = |settings: &[&str]| {
+        let run = run_of(BENCHMARK, settings);
+        let (window, metrics) = run.windows[1];
+        assert_eq!(window.cause, Cause::LoadMotion);
+        metrics.disturbance_peak_n.unwrap()
+    };
+    let (without, derived) = (peak(&[]), peak(&["controller.load_velocity_feed_forward={}"]));
+    assert!(derived < 0.5 * without, "{derived} {without}");
+    assert_eq!(peak(&["controller.load_velocity_feed_forward.gain=0"]), without);
+}
+
+#[test]
+fn noise_is_of_its_seed_alone() {
+    let noisy = |seed: &str, noise: &str| {
+        let settings = ["controller.sample_time=1 ms", "scenario.0.duration=0.3 s", seed, noise];
+        run_of(BENCHMARK, &settings).record.signal("force_n")
+    };
+    let quiet = noisy("simulation.seed=1", "force_sensor.noise=0 N");
+    let one = noisy("simulation.seed=1", "force_sensor.noise=5 N");
+    assert_eq!(one, noisy("simulation.seed=1", "force_sensor.noise=5 N"));
+    assert_ne!(one, noisy("simulation.seed=2", "force_sensor.noise=5 N"));
+    assert_ne!(one, quiet);
+}
+
+#[test]
+fn converters_round_the_command() {
+    let quantized = [
+        "controller.sample_time=1 ms",
+        "controller.quantization={ command_bits = 8, command_range = [-10, 10] }",
+    ];
+    let run = run_of(BENCHMARK, &quantized);
+    let step = 20.0 / 256.0;
+    for command in &run.record.control_v {
+        assert_eq!((command / step).round() * step, *command);
+    }
+    assert!(run.record.control_v.iter().any(|command| *command != 0.0));
+}
+
+#[test]
+fn a_limit_that_is_reached_is_told_with_its_time() {
+    for extra in [vec![], vec!["controller.sample_time=1 ms"]] {
+        let mut settings = vec!["controller.saturation=0.3 V", "controller.anti_windup=clamping"];
+        settings.extend(extra);
+        let run = run_of(BENCHMARK, &settings);
+        let first = run.occurrences.first().unwrap();
+        assert!(first.kind == "command_limit" && first.begins && first.time_s >= 2.0, "{first:?}");
+        assert!(run.record.control_v.iter().all(|command| command.abs() <= 0.3));
+    }
+}
+
+/// A load pulled away by 100 mm in 10 ms empties a chamber: told, not clamped.
+#[test]
+fn cavitation_is_told() {
+    let run = run_of(
+        BENCHMARK,
+        &["scenario.0.load_motion.duration=10 ms", "scenario.0.load_motion.distance=100 mm"],
+    );
+    let kinds: Vec<&str> = run.occurrences.iter().map(|occurrence| occurrence.kind).collect();
+    assert!(kinds.iter().any(|kind| kind.starts_with("cavitation")), "{kinds:?}");
+}
+
+fn with_motion(content: &str) -> (Memory, Project) {
+    let settings = [
+        "scenario.0.load_motion={ kind = \"file\", file = \"motion.csv\", start = 3 }",
+        "scenario.0.duration=3.5 s",
+    ];
+    (Memory::default().with("motion.csv", content), load(BENCHMARK, &settings).project)
+}
+
+/// The quintic step of the benchmark as a table of 101 points moves the load the same way.
+#[test]
+fn a_measured_motion_is_that_motion() {
+    let mut text = "# a quintic step\ntime_ms, position_mm\n".to_string();
+    for row in 0..=100 {
+        let u = f64::from(row) / 100.0;
+        writeln!(text, "{row}, {:e}", 7.0 + 5.0 * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)).unwrap();
+    }
+    let (source, project) = with_motion(&text);
+    let run = simulate_project(&source, &project, &mut |_| true).unwrap().remove(0);
+    let same = run_of(BENCHMARK, &["scenario.0.duration=3.5 s"]);
+    for time_s in [2.9, 3.03, 3.06, 3.11, 3.3] {
+        let (found, expected) = (at(&run, "force_n", time_s), at(&same, "force_n", time_s));
+        assert!((found - expected).abs() < 3.0, "{time_s}: {found} {expected}");
+    }
+}
+
+#[test]
+fn a_motion_file_is_refused_with_its_place() {
+    let cases = [
+        ("time_s, position_m\n0, 0\n0, 1\n", "3:1", "times must increase from row to row"),
+        ("time_s, position_m\n0, 0\n1, 1;2\n", "3:4", "`1;2` is no number"),
+        ("time_s, positon_mm\n0, 0\n1, 1\n", "1:9", "unknown column `positon_mm`"),
+        ("time_s\n0\n1\n", "1:1", "the columns lack `position_m` or `position_mm`"),
+        ("time_s, position_m\n0, 0\n", "1:1", "a motion needs two rows at least"),
+    ];
+    for (content, place, message) in cases {
+        let (source, project) = with_motion(content);
+        let error = simulate_project(&source, &project, &mut |_| true).unwrap_err();
+        let SimulateError::Motion(report) = error else { panic!("{error}") };
+        let found: Vec<String> =
+            report.diagnostics.iter().map(|d| format!("{}:{} {}", d.line, d.column, d.message)).collect();
+        assert!(found.contains(&format!("{place} {message}")), "{found:?}");
+    }
+}
+
+fn answer(text: &str, settings: &[&str], request: &Request) -> command::CommandError {
+    let loaded = load(text, settings);
+    command::answer(&Memory::default(), &loaded, &[], request).unwrap_err()
+}
+
+#[test]
+fn what_cannot_be_simulated_is_refused_in_words() {
+    let says = |settings: &[&str], words: &str| {
+        let error = answer(BENCHMARK, settings, &Request::Simulate).to_string();
+        assert!(error.contains(words), "{error}");
+    };
+    says(&["cylinder.friction.model=stribeck"], "regular velocity");
+    let wall = ["load={ model = \"wall\", mass = 10, stiffness = 1e6 }", "scenario.0.start.force=-5 N"];
+    says(&wall, "a start with force of -5 is impossible");
+}
+
+#[test]
+fn the_answer_has_the_keys_that_stay() {
+    let loaded = load(BENCHMARK, &["scenario.0.duration=2.6 s"]);
+    let answer = command::answer(&Memory::default(), &loaded, &[], &Request::Simulate).unwrap();
+    assert!(answer.affirmative);
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let scenario = &json["scenarios"][0];
+    assert_eq!(
+        (&scenario["name"], &scenario["status"]),
+        (&"step and load motion".into(), &"completed".into())
+    );
+    assert!(scenario["work"]["steps"].as_u64() > Some(20) && scenario["work"]["evaluations"].is_u64());
+    let metrics = &scenario["events"][0]["metrics"];
+    for key in ["overshoot_percent", "settling_time_s", "steady_state_error_n", "control_peak_v"] {
+        assert!(metrics[key].is_f64(), "{key}: {metrics}");
+    }
+    assert!(metrics["disturbance_peak_n"].is_null() && metrics["disturbance_peak_n_reason"].is_string());
+    assert_eq!(metrics["settling_band_percent"], 1.0);
+    let table = String::from_utf8(answer.files[0].bytes.clone()).unwrap();
+    assert_eq!(answer.files[0].name, "step and load motion.csv");
+    let head = "time_s,reference_n,force_n,control_v,spool_v,pressure_a_pa,pressure_b_pa,position_m,";
+    assert!(table.starts_with(head));
+    assert_eq!(table.lines().count(), 2602);
+    assert!(table.lines().nth(1).unwrap().starts_with("0,0,0,0,0,3500000,3500000,0.25,"));
+}
+
+/// Stopped after a while, what there is is told and the answer is no.
+#[test]
+fn a_run_that_is_stopped_keeps_what_it_has() {
+    let loaded = load(BENCHMARK, &[]);
+    let answer =
+        command::answer_watched(&Memory::default(), &loaded, &[], &Request::Simulate, &mut |progress| {
+            progress.share < 0.5
+        });
+    let answer = answer.unwrap();
+    assert!(!answer.affirmative);
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let scenario = &json["scenarios"][0];
+    assert_eq!(scenario["status"], "cancelled");
+    let ended = scenario["ended_s"].as_f64().unwrap();
+    assert!((2.5..5.0).contains(&ended), "{ended}");
+    assert_eq!(scenario["events"][0]["metrics"]["settling_time_s_reason"], "the run ended before");
+    assert!(!answer.files[0].bytes.is_empty());
+}
+
+#[test]
+fn projects_stand_side_by_side() {
+    let [one, other] = ["1.9e-4", "3.03e-5"].map(|volume| {
+        let volume = format!("line.volume={volume}");
+        load(BENCHMARK, &[volume.as_str(), "scenario.0.duration=3.4 s"])
+    });
+    let answer = command::compare_watched(&Memory::default(), &[one, other], true, &mut |_| true).unwrap();
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let peak = |project: usize| {
+        let events = &json["projects"][project]["scenarios"][0]["events"];
+        events[1]["metrics"]["disturbance_peak_n"].as_f64().unwrap()
+    };
+    assert!(peak(0) < peak(1), "the softer line feels less: {} {}", peak(0), peak(1));
+    assert_eq!(json["command"], "compare");
+    let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
+    assert_eq!(names.len(), 6, "{names:?}");
+    assert!(names.contains(&"compare-1.svg") && names.contains(&"compare-1-event-2.png"), "{names:?}");
+    assert!(answer.text.contains("disturbance peak"), "{}", answer.text);
+}
+
+/// Peaks of the force deviation for a load that moves by 5 mm as a first-order lag, hose and pipe with the controller of each.
+#[test]
+fn the_hose_lets_less_force_through_than_the_pipe() {
+    let hose = ["line.volume=1.9e-4", "line.effective_bulk_modulus=2.609e8"];
+    let pipe = [
+        "line.volume=3.03e-5",
+        "line.effective_bulk_modulus=1.45e9",
+        "controller.numerator=0.0005*s + 0.002",
+        "prefilter.numerator=484",
+        "prefilter.denominator=s^2 + 44*s + 484",
+    ];
+    // ORIGIN: other tool, independent runs of the same equations, which differ by up to 3 %
+    let cases = [("20 ms", 5810.0, 8900.0), ("50 ms", 2800.0, 4500.0), ("100 ms", 1600.0, 2550.0)];
+    for (time_constant, with_hose, with_pipe) in cases {
+        let motion = format!(
+            "scenario.0.load_motion={{ kind = \"first_order\", start = 3, distance = 5e-3, time_constant = \"{time_constant}\" }}"
+        );
+        let peak = |line: &[&str]| {
+            let mut settings = line.to_vec();
+            settings.push(&motion);
+            run_of(BENCHMARK, &settings).windows[1].1.disturbance_peak_n.unwrap()
+        };
+        for (found, expected) in [(peak(&hose), with_hose), (peak(&pipe), with_pipe)] {
+            assert!((found / expected - 1.0).abs() < 0.05, "{time_constant}: {found} N, not {expected}");
+        }
+    }
+}
