@@ -346,3 +346,26 @@ fn the_hose_lets_less_force_through_than_the_pipe() {
         }
     }
 }
+
+/// A measurement that comes late and a command that comes late are one delay in the loop: the load feels no difference.
+#[test]
+fn a_late_sensor_is_a_late_command() {
+    let motion_of = |settings: &[&str]| {
+        let run = run_of(BENCHMARK, settings);
+        let (force, row) =
+            (run.record.signal("force_n"), run.record.times_s.iter().position(|time| *time >= 3.0));
+        force[row.unwrap()..].to_vec()
+    };
+    let sensor = motion_of(&["sensor={ numerator = \"1\", denominator = \"1\", delay = \"0.5 ms\" }"]);
+    let command = motion_of(&["controller.delay=0.5 ms"]);
+    let none = motion_of(&[]);
+    let largest = |one: &[f64], other: &[f64]| {
+        one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
+    };
+    assert!(largest(&sensor, &command) < 0.1, "{}", largest(&sensor, &command));
+    assert!(largest(&sensor, &none) > 5.0);
+    // a filter of 1/20000 s is as late as its time constant, as far as the loop is concerned
+    let fast = motion_of(&["sensor={ numerator = \"20000\", denominator = \"s + 20000\" }"]);
+    let late = motion_of(&["controller.delay=50 us"]);
+    assert!(largest(&fast, &late) < 0.1 * largest(&fast, &none), "{}", largest(&fast, &late));
+}
