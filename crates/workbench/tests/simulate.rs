@@ -251,6 +251,7 @@ fn what_cannot_be_simulated_is_refused_in_words() {
     };
     says(&["cylinder.friction.model=stribeck"], "regular velocity");
     let wall = ["load={ model = \"wall\", mass = 10, stiffness = 1e6 }", "scenario.0.start.force=-5 N"];
+    says(&["line.model=two_wave"], "[line] model");
     says(&wall, "a start with force of -5 is impossible");
 }
 
@@ -368,4 +369,40 @@ fn a_late_sensor_is_a_late_command() {
     let fast = motion_of(&["sensor={ numerator = \"20000\", denominator = \"s + 20000\" }"]);
     let late = motion_of(&["controller.delay=50 us"]);
     assert!(largest(&fast, &late) < 0.1 * largest(&fast, &none), "{}", largest(&fast, &late));
+}
+
+const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+
+/// Waves in the hose are faster than the loop: it sees little more of them than a lumped line has.
+#[test]
+fn waves_in_the_lines_change_little_for_the_loop() {
+    let metrics_of = |model: &str| {
+        let model = format!("line.model={model}");
+        let run = run_of(HOSE, &["line.compliance=by_volume", &model]);
+        assert_eq!(run.stopped(), None, "{model}");
+        let [(_, step), (_, motion)] = run.windows[..] else { panic!() };
+        [step.settling_time_s.unwrap(), motion.disturbance_peak_n.unwrap()]
+    };
+    let lumped = metrics_of("lumped");
+    for model in ["transmission_line", "two_wave"] {
+        let found = metrics_of(model);
+        for (found, lumped) in found.iter().zip(lumped) {
+            assert!((found / lumped - 1.0).abs() < 0.15, "{model}: {found}, lumped {lumped}");
+            assert_ne!(*found, lumped);
+        }
+    }
+}
+
+#[test]
+fn lines_with_waves_rest_too() {
+    let still = "[[scenario]]\nname = \"still\"\nduration = \"0.2 s\"\n";
+    let start = HOSE.find("[[scenario]]").unwrap();
+    let text = format!("{}{still}", &HOSE[..start]);
+    for settings in
+        [vec!["line.model=two_wave"], vec!["line.model=transmission_line", "controller.delay=1 ms"]]
+    {
+        let force = run_of(&text, &settings).record.signal("force_n");
+        let most = force.iter().map(|force| force.abs()).fold(0.0, f64::max);
+        assert!(most < 1.0, "{settings:?}: {most} N");
+    }
 }
