@@ -24,6 +24,7 @@ pub(crate) use text::{METRICS, cause_words, cells_of, compare_text, headline, oc
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::simulation::{ProfileError, SimulationError};
+use phea_hydraulics::line::LineError;
 use phea_hydraulics::machine::MachineError;
 use phea_hydraulics::operating_point::OperatingPointError;
 
@@ -51,9 +52,9 @@ pub enum SimulateError {
     /// Controller, prefilter or sensor cannot be run in time.
     #[error("[controller], [prefilter] or [sensor]: {0}")]
     Loop(#[from] LinearError),
-    /// A line whose waves the machine does not model.
-    #[error("[line] model \"{0}\" is not simulated; \"lumped\" is")]
-    LineModel(&'static str),
+    /// A line that its model does not fit.
+    #[error("[line] model: {0}")]
+    Line(#[from] LineError),
     /// The machine is impossible.
     #[error("{0}")]
     Machine(MachineError),

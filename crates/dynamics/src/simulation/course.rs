@@ -20,7 +20,7 @@ pub enum Input {
     Value(Profile),
     /// Its first derivative.
     Rate(Profile),
-    /// What the sampler last commanded; zero before.
+    /// What the sampler last commanded; before, what it holds at first.
     Command,
 }
 
@@ -31,6 +31,11 @@ pub trait Sampler {
 
     /// Time from a sample until its command takes effect, in s; zero or positive.
     fn delay_s(&self) -> f64;
+
+    /// What is held before the first command takes effect.
+    fn held(&self) -> f64 {
+        0.0
+    }
 
     /// The command for the state and the inputs at a sample.
     fn command(&mut self, time_s: f64, state: &[f64], inputs: &[f64]) -> f64;

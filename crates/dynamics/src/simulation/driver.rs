@@ -168,7 +168,8 @@ where
             *state = state.with_lane(lane, value);
         }
         self.method.scales = system.scales();
-        let mut passage = Passage::new(task.course);
+        let held = task.sampler.as_ref().map_or(0.0, |sampler| sampler.held());
+        let mut passage = Passage::new(task.course, held);
         let mut inputs = vec![0.0; system.inputs()];
         passage.inputs_at(0.0, &mut inputs);
         if !delays.is_empty() {

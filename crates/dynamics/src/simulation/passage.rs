@@ -54,8 +54,8 @@ pub(super) struct Passage<'a> {
 }
 
 impl<'a> Passage<'a> {
-    /// At time zero.
-    pub(super) fn new(course: &'a Course) -> Passage<'a> {
+    /// At time zero, with a command that is held.
+    pub(super) fn new(course: &'a Course, command: f64) -> Passage<'a> {
         let mut times: Vec<f64> = Vec::new();
         let mut longest_s = course.duration_s;
         for input in &course.inputs {
@@ -82,7 +82,7 @@ impl<'a> Passage<'a> {
             histories: Vec::new(),
             sample: 0,
             pending: VecDeque::new(),
-            command: 0.0,
+            command,
             row: 0,
             rejected: false,
             before: 1.0,

@@ -3,6 +3,7 @@
 use phea_dynamics::controller::{Controller, SampledController};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Sensed, Settings};
+use phea_hydraulics::line::{DynamicLine, END_SHARE, Line, LineError, LineModel, Member};
 use phea_hydraulics::machine::{
     Accumulator, Contact, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited,
 };
@@ -11,7 +12,7 @@ use phea_qft::design::quantisation::Quantisation;
 
 use super::SimulateError;
 use crate::control::{controller, deployed, quantisation, sensor};
-use crate::project::{self, LineModel, Project, SupplyModel};
+use crate::project::{self, Project, SupplyModel};
 use crate::rig::Rig;
 
 /// A machine with its controller.
@@ -54,7 +55,7 @@ impl Bench {
     /// [`SimulateError`] where one of them is missing or impossible.
     pub fn new(project: &Project) -> Result<Bench, SimulateError> {
         let rig = Rig::new(project)?;
-        let options = options(project)?;
+        let options = options(project, &rig)?;
         let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
         let controller = controller(project)?.ok_or(SimulateError::NoController)?;
         let sensed = Sensed::new(machine, &sensor(project)?)?;
@@ -112,15 +113,8 @@ fn feed_forward(project: &Project, rig: &Rig) -> f64 {
 }
 
 /// What the machine has beyond its actuator.
-fn options(project: &Project) -> Result<MachineOptions, SimulateError> {
+fn options(project: &Project, rig: &Rig) -> Result<MachineOptions, SimulateError> {
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
-    for line in [&declared.line.a, &declared.line.b] {
-        match line.model {
-            LineModel::Lumped => {}
-            LineModel::TransmissionLine => return Err(SimulateError::LineModel("transmission_line")),
-            LineModel::TwoWave => return Err(SimulateError::LineModel("two_wave")),
-        }
-    }
     let friction = declared.cylinder.friction.as_ref();
     Ok(MachineOptions {
         spool: SpoolImperfection {
@@ -139,8 +133,28 @@ fn options(project: &Project) -> Result<MachineOptions, SimulateError> {
         power_unit: power_unit(declared),
         load: load(&declared.load),
         vapour_pressure_absolute: declared.fluid.vapour_pressure,
-        ..MachineOptions::default()
+        member: Member::Nominal,
+        lines: lines(&declared.line, rig)?,
     })
+}
+
+/// The lines as they move; `None` where both are lumped, and nothing of them moves.
+fn lines(declared: &project::Lines, rig: &Rig) -> Result<Option<[DynamicLine; 2]>, LineError> {
+    let models = [declared.a.model, declared.b.model];
+    if models == [project::LineModel::Lumped; 2] {
+        return Ok(None);
+    }
+    let components = rig.actuator.components();
+    let of = |line: &Line, model: project::LineModel| {
+        let model = match model {
+            project::LineModel::Lumped => LineModel::Lumped,
+            project::LineModel::TransmissionLine => LineModel::TransmissionLine { end_share: END_SHARE },
+            project::LineModel::TwoWave => LineModel::TwoWave { end_share: END_SHARE, wall: None },
+        };
+        DynamicLine::new(line, &components.fluid, rig.actuator.mean_pressure(), Member::Nominal, &model)
+    };
+    let [model_a, model_b] = models;
+    Ok(Some([of(&components.line_a, model_a)?, of(&components.line_b, model_b)?]))
 }
 
 fn power_unit(declared: &project::Actuator) -> PowerUnit {

@@ -1,6 +1,6 @@
 //! Where a scenario begins, and what drives it.
 
-use phea_dynamics::simulation::{Plant, Profile, ProfileError};
+use phea_dynamics::simulation::{Plant, Profile, ProfileError, System};
 use phea_hydraulics::machine::{Beginning, Start};
 use phea_hydraulics::operating_point::{Condition, Load, operating_point};
 
@@ -16,7 +16,7 @@ pub(super) struct Course {
     pub(super) reference: Profile,
     /// Position of the load or of its ground in m.
     pub(super) ground: Profile,
-    /// States of the machine, its sensor and all that is continuous in its controller.
+    /// States of the machine, its sensor and all that is continuous in its controller, and the waves under way.
     pub(super) start: Vec<f64>,
     /// What a sampled controller holds at the start, if it begins in equilibrium: reference, measurement and command.
     pub(super) holding: Option<[f64; 3]>,
@@ -42,7 +42,7 @@ pub(super) fn course(
     };
     let beginning = beginning(bench, scenario)?;
     let ([ground, _], holds) = (beginning.inputs, scenario.start.is_none());
-    let measured = bench.machine.measurement(&beginning.state, &beginning.inputs);
+    let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
     Ok(Course {
         reference,
         ground: motion.shifted(ground),
@@ -118,7 +118,28 @@ fn start(bench: &Bench, beginning: &Beginning, measured: f64, holds: bool) -> Ve
     }
     start.extend(sensor);
     start.extend(control);
+    let waves = match &bench.control {
+        Control::Continuous(closed) => under_way(closed.as_ref(), &start, &[0.0], beginning),
+        Control::Sampled(sampled) => under_way(&sampled.held, &start, &[0.0, 0.0], beginning),
+    };
+    start.extend(waves);
     start
+}
+
+/// What is under way in each delay: the waves of the lines, and then what sensor and controller sent until now, the one from
+/// the other. `first` stands before the inputs of the machine.
+fn under_way(system: &impl System<f64>, state: &[f64], first: &[f64], beginning: &Beginning) -> Vec<f64> {
+    let mut inputs = [first, &beginning.inputs, &beginning.waves].concat();
+    let (known, lines) = (inputs.len(), beginning.waves.len());
+    inputs.resize(system.inputs(), 0.0);
+    let mut sent = vec![0.0; system.delays().len()];
+    for _ in known..inputs.len() {
+        system.outgoing(state, &inputs, &mut sent);
+        for (input, wave) in inputs.iter_mut().skip(known).zip(sent.iter().skip(lines)) {
+            *input = *wave;
+        }
+    }
+    inputs.split_off(known - lines)
 }
 
 /// One for each step of the reference and for the motion of the load, each until the next.

@@ -29,6 +29,8 @@ pub(super) struct Digital<'a> {
     sampled: &'a Sampled,
     state: ControllerState,
     random: u64,
+    /// Before its first command takes effect, V.
+    held: f64,
     log: &'a RefCell<Vec<Sample>>,
 }
 
@@ -45,7 +47,8 @@ impl<'a> Digital<'a> {
             }
             None => sampled.controller.at_rest(),
         };
-        Digital { sampled, state, random: sampled.seed, log }
+        let held = holding.map_or(0.0, |[_, _, command]| command);
+        Digital { sampled, state, random: sampled.seed, held, log }
     }
 }
 
@@ -56,6 +59,10 @@ impl Sampler for Digital<'_> {
 
     fn delay_s(&self) -> f64 {
         self.sampled.delay_s
+    }
+
+    fn held(&self) -> f64 {
+        self.held
     }
 
     fn command(&mut self, time_s: f64, state: &[f64], inputs: &[f64]) -> f64 {

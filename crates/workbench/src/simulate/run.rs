@@ -221,10 +221,10 @@ fn sampled(
 /// The limit of the command, beside [`INDICATORS`].
 const COMMAND_LIMIT: &str = "command_limit";
 
-/// Inputs at time zero, delayed ones as nothing.
+/// Inputs at time zero: those before the machine's, its ground, and the waves under way.
 fn inputs_at_start(course: &Course, mut first: Vec<f64>, system: &impl System<f64>) -> Vec<f64> {
     first.extend([course.ground.value(0.0), course.ground.rate(0.0)]);
-    first.resize(system.inputs(), 0.0);
+    first.extend(course.start.iter().skip(system.states()));
     first
 }
 
@@ -239,7 +239,8 @@ fn occurrences(
     let kind = |index: usize| INDICATORS.get(index).copied().unwrap_or(COMMAND_LIMIT);
     let begins = |index: usize, positive: bool| positive != (index < INDICATORS.len());
     let mut indicators = vec![1.0; system.indicators()];
-    system.indicate(&course.start, first, &mut indicators);
+    let state: Vec<f64> = course.start.iter().copied().take(system.states()).collect();
+    system.indicate(&state, first, &mut indicators);
     let from_start = indicators.iter().enumerate().filter(|(index, value)| begins(*index, **value > 0.0));
     let mut found: Vec<Occurrence> =
         from_start.map(|(index, _)| Occurrence { time_s: 0.0, kind: kind(index), begins: true }).collect();
