@@ -7,7 +7,9 @@
 mod closed_loop;
 mod course;
 mod driver;
+mod explicit;
 mod history;
+mod method;
 mod passage;
 mod pattern;
 mod profile;
@@ -17,13 +19,16 @@ mod rosenbrock;
 mod sensed;
 mod slot;
 mod step_matrix;
+mod task;
 mod trajectory;
 
 pub use closed_loop::{ClosedLoop, HeldPlant, LoopSignals};
 pub use course::{Course, Event, Input, Observer, Outcome, Sampler, Settings, SimulationError, Status, Work};
-pub use driver::{Queue, Task, drive};
+pub use driver::drive;
+pub use method::Method;
 pub use profile::{Moment, Piece, Profile, ProfileError};
 pub use sensed::Sensed;
+pub use task::{Queue, Task};
 pub use trajectory::{Simulated, Trajectory, simulate};
 
 use crate::scalar::{Lanes, Scalar};

@@ -14,7 +14,8 @@ use crate::scalar::Scalar;
 ///
 /// The plant's disturbance d (a load's velocity) may be fed forward. A limited command stops the integral part as the
 /// controller's [`AntiWindup`] says: clamping holds the states of G while the error drives the command further out, back
-/// calculation drives them with the error that would have given the limited command.
+/// calculation drives them with the error that would have given the limited command. Clamping takes hold over the first
+/// ten-thousandth beyond the limit: a hold at once would let the command slide along its limit, held and let go without end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLoop<P> {
     plant: P,
@@ -118,6 +119,9 @@ impl<P> ClosedLoop<P> {
     }
 }
 
+/// Part of the limit over which clamping takes hold.
+const HOLDING: f64 = 1e-4;
+
 /// Signals of a control loop at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopSignals<T> {
@@ -159,11 +163,12 @@ impl<S: Scalar, P: Plant<S>> System<S> for ClosedLoop<P> {
         let command = if self.is_delayed() { inputs[1 + plant_inputs] } else { signals.command };
         self.plant.rates(of_plant, command, &inputs[1..1 + plant_inputs], plant_rates);
         self.feedback.rates(of_feedback, self.driving(&signals), feedback_rates);
-        if self.anti_windup == AntiWindup::Clamping {
-            let limited = T::from(self.limit).less_than(signals.wanted.abs());
+        if self.anti_windup == AntiWindup::Clamping && self.limit.is_finite() {
+            let beyond = (signals.wanted.abs() - T::from(self.limit)).times(1.0 / (HOLDING * self.limit));
+            let left = (T::from(1.0) - beyond).maximum(T::from(0.0)).minimum(T::from(1.0));
             let outwards = T::from(0.0).less_than(signals.wanted * signals.error);
             for rate in feedback_rates.iter_mut() {
-                *rate = T::select(limited, T::select(outwards, T::from(0.0), *rate), *rate);
+                *rate = T::select(outwards, *rate * left, *rate);
             }
         }
         self.prefilter.rates(of_prefilter, inputs[0], prefilter_rates);

@@ -1,6 +1,6 @@
 //! What a system is driven by, and what comes out.
 
-use super::Profile;
+use super::{Method, Profile};
 
 /// How long a system is driven, by what, and how often it is looked at.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,11 +63,13 @@ pub struct Settings {
     pub tolerance: f64,
     /// Steps, rejected ones included, after which it ends.
     pub maximum_steps: u64,
+    /// How steps are made.
+    pub method: Method,
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { tolerance: 1e-6, maximum_steps: 10_000_000 }
+        Settings { tolerance: 1e-6, maximum_steps: 10_000_000, method: Method::default() }
     }
 }
 

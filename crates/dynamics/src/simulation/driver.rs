@@ -1,50 +1,23 @@
 //! Drives systems through their courses, one in each lane.
 
-use super::course::{Event, Observer, Outcome, Sampler, Settings, SimulationError, Status};
+use super::course::{Event, Observer, Outcome, Settings, SimulationError, Status};
 use super::history::NODES;
+use super::method::{Extension, StepInputs, Stepper};
 use super::passage::Passage;
 use super::propagator::Propagator;
-use super::rosenbrock::{DIRECTIONS, Extension, Rosenbrock, STAGE_TIMES, StepInputs};
+use super::rosenbrock::DIRECTIONS;
 use super::slot::Slot;
-use super::{Course, Lane, System};
+use super::task::{Queue, Task, check};
+use super::{Lane, System};
 use crate::scalar::{Dependence, Dual};
 
 /// Largest error of a step with known matrices, in units of the tolerance: such errors have one sign for many samples and
 /// add up.
 const PROPAGATED: f64 = 0.1;
 
-/// One machine to be driven.
-pub struct Task<'a, O> {
-    /// State at time zero; behind it, if told, the wave that each delay was sent until then. Untold, it is what the start sends
-    /// while nothing arrives.
-    pub start: Vec<f64>,
-    /// What it is driven by.
-    pub course: &'a Course,
-    /// A digital controller, if one commands it.
-    pub sampler: Option<Box<dyn Sampler + 'a>>,
-    /// Who looks at it.
-    pub observer: O,
-}
-
-/// Where machines come from, and where their outcomes go.
-pub trait Queue<'a, E> {
-    /// Who looks at each machine.
-    type Observer: Observer;
-
-    /// The next machine: its parameters put into this lane of the system, and what is to be done with it. `None` when there
-    /// are no more.
-    fn next(&mut self, system: &mut E, lane: usize) -> Option<Task<'a, Self::Observer>>;
-
-    /// Takes back what came of the machine in this lane.
-    fn done(&mut self, lane: usize, outcome: Outcome, observer: Self::Observer);
-
-    /// Asked once a step with the simulated time of a lane: false ends everything.
-    fn goes_on(&mut self, lane: usize, time_s: f64) -> bool;
-}
-
 /// All lanes and the method they share.
 struct Drive<'a, S, O> {
-    method: Rosenbrock<S>,
+    method: Stepper<S>,
     /// For lanes that are sampled.
     propagator: Propagator<S>,
     settings: Settings,
@@ -109,11 +82,18 @@ where
             return Ok(());
         }
         drive.step(system);
-        for lane in 0..S::COUNT {
-            let Some(slot) = &mut drive.slots[lane] else { continue };
-            if slot.passage.status.is_none() && !queue.goes_on(lane, slot.passage.time_s) {
-                slot.passage.status = Some(Status::Cancelled { time_s: slot.passage.time_s });
+        drive.limit_work();
+        let mut running = drive.slots.iter().enumerate().filter_map(|(lane, slot)| {
+            let passage = &slot.as_ref()?.passage;
+            passage.status.is_none().then_some((lane, passage.time_s))
+        });
+        if !running.all(|(lane, time_s)| queue.goes_on(lane, time_s)) {
+            empty = true;
+            for Slot { passage, .. } in drive.slots.iter_mut().flatten() {
+                passage.status.get_or_insert(Status::Cancelled { time_s: passage.time_s });
             }
+        }
+        for lane in 0..S::COUNT {
             if let Some((outcome, observer)) = drive.leave(lane) {
                 queue.done(lane, outcome, observer);
             }
@@ -128,7 +108,8 @@ where
 {
     fn new<E: System<S>>(system: &E, settings: &Settings) -> Result<Self, SimulationError> {
         let (states, inputs, zero) = (system.states(), system.inputs(), S::from(0.0));
-        let method = Rosenbrock::new(system).ok_or(SimulationError::TooLarge { states, inputs })?;
+        let method =
+            Stepper::new(settings.method, system).ok_or(SimulationError::TooLarge { states, inputs })?;
         let none = vec![zero; inputs];
         let stages = [none.clone(), none.clone(), none.clone(), none.clone(), none.clone(), none.clone()];
         Ok(Drive {
@@ -163,7 +144,7 @@ where
         task: Task<'a, O>,
     ) -> Result<(), SimulationError> {
         let delays: Vec<f64> = system.delays().iter().map(|delay| delay.lane(lane)).collect();
-        check(system, &task, &delays)?;
+        check(system, &task, lane, &delays)?;
         for (state, &value) in self.state.iter_mut().zip(&task.start) {
             *state = state.with_lane(lane, value);
         }
@@ -215,18 +196,26 @@ where
         self.learn(error);
         self.between.extensions.fill(None);
         self.between.propagated = false;
-        self.between.end.copy_from_slice(&self.method.end);
+        self.between.end.copy_from_slice(self.method.end());
         self.indicate_ends(system);
         for lane in 0..S::COUNT {
             let Some(slot) = &mut self.slots[lane] else { continue };
             if slot.passage.status.is_some() || slot.propagated {
                 continue;
             }
-            slot.passage.work.evaluations += 7;
+            slot.passage.work.evaluations += self.method.evaluations();
             if slot.passage.judge(error.lane(lane)) {
                 self.take(system, lane);
-            } else if slot.passage.work.steps + slot.passage.work.rejected >= self.settings.maximum_steps {
-                slot.passage.status = Some(Status::TooManySteps { time_s: slot.passage.time_s });
+            }
+        }
+    }
+
+    /// Ends machines that took more steps than they are allowed.
+    fn limit_work(&mut self) {
+        for Slot { passage, .. } in self.slots.iter_mut().flatten() {
+            let tried = passage.work.steps + passage.work.rejected;
+            if tried >= self.settings.maximum_steps && passage.status.is_none() {
+                passage.status = Some(Status::TooManySteps { time_s: passage.time_s });
             }
         }
     }
@@ -251,7 +240,7 @@ where
         if passage.stands_still() {
             return;
         }
-        for (part, stage) in STAGE_TIMES.iter().zip(&mut self.inputs.stages) {
+        for (part, stage) in self.method.stage_times().iter().zip(&mut self.inputs.stages) {
             passage.inputs_within(*part, inputs);
             set_lane(stage, lane, inputs);
         }
@@ -272,7 +261,7 @@ where
             return false;
         }
         let (inputs, tolerance) = (&self.inputs.stages[0], self.settings.tolerance);
-        let error = self.propagator.attempt(system, &self.state, inputs, &self.method, tolerance);
+        let error = self.propagator.attempt(system, &self.state, inputs, &self.method.scales, tolerance);
         self.between.extensions.fill(None);
         self.between.propagated = true;
         self.between.end.copy_from_slice(&self.propagator.end);
@@ -299,13 +288,14 @@ where
 
     /// Finds the matrices of lanes that a step of the method brought from sample to sample.
     fn learn(&mut self, error: S) {
+        let Some(linearized) = self.method.linearized() else { return };
         for lane in 0..S::COUNT {
             let Some(slot) = &self.slots[lane] else { continue };
             let step_s = slot.passage.step_s;
             let whole = slot.passage.whole_step() == Some(step_s);
             let taken = slot.sampler.is_some() && !slot.propagated && error.lane(lane) <= 1.0;
             if whole && taken && self.propagator.may_learn(lane) {
-                self.propagator.learn(lane, step_s, &self.method);
+                self.propagator.learn(lane, step_s, linearized, &self.method.scales);
             }
         }
     }
@@ -413,11 +403,12 @@ where
             if (before > 0.0) == (after > 0.0) {
                 continue;
             }
-            let (mut low, mut high) = (0.0, 1.0);
-            for _ in 0..40 {
+            let mut same = |part| (self.indicator(system, lane, index, part) > 0.0) == (before > 0.0);
+            // A break may have changed the sign at once.
+            let (mut low, mut high) = if same(0.0) { (0.0, 1.0) } else { (0.0, 0.0) };
+            while high - low > 1e-12 {
                 let middle = 0.5 * (low + high);
-                let same = (self.indicator(system, lane, index, middle) > 0.0) == (before > 0.0);
-                (low, high) = if same { (middle, high) } else { (low, middle) };
+                (low, high) = if same(middle) { (middle, high) } else { (low, middle) };
             }
             if let Some(Slot { passage, .. }) = &mut self.slots[lane] {
                 let time_s = passage.time_s + high * passage.step_s;
@@ -446,43 +437,5 @@ where
 fn set_lane<S: Lane>(places: &mut [S], lane: usize, values: &[f64]) {
     for (place, &value) in places.iter_mut().zip(values) {
         *place = place.with_lane(lane, value);
-    }
-}
-
-fn check<S: Lane, E: System<S>, O: Observer>(
-    system: &E,
-    task: &Task<'_, O>,
-    delays: &[f64],
-) -> Result<(), SimulationError> {
-    let Course { duration_s, output_step_s, inputs } = task.course;
-    let with_waves = system.states() + delays.len();
-    let expected = if task.start.len() == with_waves { with_waves } else { system.states() };
-    let counts = [
-        ("states at the start", task.start.len(), expected),
-        ("inputs", inputs.len() + delays.len(), system.inputs()),
-        ("scales", system.scales().len(), system.states()),
-    ];
-    for (what, found, expected) in counts {
-        if found != expected {
-            return Err(SimulationError::Count { what, found, expected });
-        }
-    }
-    let sample_time = task.sampler.as_ref().map(|sampler| sampler.sample_time_s());
-    let delay = task.sampler.as_ref().map_or(0.0, |sampler| sampler.delay_s());
-    let positive = [("duration", *duration_s), ("output step", *output_step_s)];
-    let sample = sample_time.map(|value| ("sample time", value));
-    let travel = delays.iter().map(|&delay| ("delay of a wave", delay));
-    for (what, value) in positive.into_iter().chain(sample).chain(travel) {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(SimulationError::Setting { what, value, requirement: "positive" });
-        }
-    }
-    if !(delay >= 0.0 && delay.is_finite()) {
-        let requirement = "zero or positive";
-        return Err(SimulationError::Setting { what: "delay of the command", value: delay, requirement });
-    }
-    match task.start.iter().enumerate().find(|(_, value)| !value.is_finite()) {
-        Some((index, &value)) => Err(SimulationError::Start { index, value }),
-        None => Ok(()),
     }
 }

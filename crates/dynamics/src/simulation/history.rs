@@ -40,10 +40,13 @@ impl History {
         self.pieces.push_back(Piece { start_s, length_s, coefficients: coefficients(values) });
     }
 
-    /// What arrives at this time, and its slope.
-    pub(super) fn arriving(&self, time_s: f64) -> [f64; 2] {
+    /// What arrives at this time, and its slope. Where the wave jumps it is that of the side on which `beside_s` lies, within
+    /// what rounding does to a time and a delay.
+    pub(super) fn arriving(&self, time_s: f64, beside_s: f64) -> [f64; 2] {
         let sent = time_s - self.delay_s;
-        let after = self.pieces.partition_point(|piece| piece.start_s <= sent);
+        let rounding = 8.0 * f64::EPSILON * time_s;
+        let aside = sent + (beside_s - time_s).clamp(-rounding, rounding);
+        let after = self.pieces.partition_point(|piece| piece.start_s <= aside);
         let Some(piece) = after.checked_sub(1).and_then(|index| self.pieces.get(index)) else {
             return [self.initial, 0.0];
         };
@@ -81,9 +84,9 @@ mod tests {
         }
         assert!(history.pieces.len() < 10);
         for time in [1.96, 2.01, 2.1499, 2.2999] {
-            let [value, rate] = history.arriving(time);
+            let [value, rate] = history.arriving(time, time);
             assert!((value - wave(time - 0.3)).abs() < 1e-12 && (rate - slope(time - 0.3)).abs() < 1e-10);
         }
-        assert_eq!(History::new(0.3, 5.0).arriving(0.2), [5.0, 0.0]);
+        assert_eq!(History::new(0.3, 5.0).arriving(0.2, 0.2), [5.0, 0.0]);
     }
 }

@@ -10,8 +10,8 @@ use crate::portable;
 const GROWTH: [f64; 2] = [0.1, 6.0];
 /// What is kept of the step that the error would allow.
 const SAFETY: f64 = 0.9;
-/// A break's waves are met by restarts this many times; by then they are smooth.
-const ECHOES: u8 = 4;
+/// A break's waves are met by restarts this many times; by then they have faded.
+const ECHOES: u8 = 12;
 
 /// An input between two breaks.
 #[derive(Clone, Copy, Debug)]
@@ -123,7 +123,8 @@ impl<'a> Passage<'a> {
         self.goal_s = target;
         let left = target - self.time_s;
         let wanted = self.proposed_s.min(self.longest_s);
-        (self.step_s, self.target_s) = if wanted >= 0.99 * left {
+        let nearly = wanted >= 0.99 * left && left <= self.longest_s;
+        (self.step_s, self.target_s) = if wanted >= left || nearly {
             (left, Some(target))
         } else if wanted > 0.5 * left {
             (0.5 * left, None)
@@ -157,14 +158,15 @@ impl<'a> Passage<'a> {
         self.inputs_at(time_s, inputs);
     }
 
-    /// Inputs at a time up to the next break, waves included.
+    /// Inputs at a time up to the next break, waves included: at a break as they are within the step that is being tried.
     pub(super) fn inputs_at(&self, time_s: f64, inputs: &mut [f64]) {
         let known = self.segments.iter().map(|segment| match segment {
             Segment::Still(value) => *value,
             Segment::Value(piece) => piece.at(time_s).value,
             Segment::Rate(piece) => piece.at(time_s).rate,
         });
-        let waves = self.histories.iter().map(|history| history.arriving(time_s)[0]);
+        let middle_s = self.middle_s();
+        let waves = self.histories.iter().map(|history| history.arriving(time_s, middle_s)[0]);
         for (place, value) in inputs.iter_mut().zip(known.chain(waves)) {
             *place = value;
         }
@@ -177,7 +179,8 @@ impl<'a> Passage<'a> {
             Segment::Value(piece) => piece.at(self.time_s).rate,
             Segment::Rate(piece) => piece.at(self.time_s).acceleration,
         });
-        let waves = self.histories.iter().map(|history| history.arriving(self.time_s)[1]);
+        let (time_s, middle_s) = (self.time_s, self.middle_s());
+        let waves = self.histories.iter().map(|history| history.arriving(time_s, middle_s)[1]);
         for (place, value) in slopes.iter_mut().zip(known.chain(waves)) {
             *place = value;
         }
@@ -186,6 +189,10 @@ impl<'a> Passage<'a> {
     /// Where the step being tried ends.
     pub(super) fn end_s(&self) -> f64 {
         self.target_s.unwrap_or(self.time_s + self.step_s)
+    }
+
+    fn middle_s(&self) -> f64 {
+        self.time_s + 0.5 * self.step_s
     }
 
     /// Takes the step or shortens it, by its error in units of the tolerance; whether it was taken.
@@ -260,11 +267,12 @@ impl<'a> Passage<'a> {
             self.status = Some(Status::NotFinite { time_s: self.time_s });
         }
         self.sample += 1;
-        if sampler.delay_s() == 0.0 {
+        let arrival = self.time_s + sampler.delay_s();
+        if arrival > self.time_s {
+            self.pending.push_back((arrival, command));
+        } else {
             self.command = command;
             self.hold();
-        } else {
-            self.pending.push_back((self.time_s + sampler.delay_s(), command));
         }
     }
 
@@ -292,9 +300,14 @@ impl<'a> Passage<'a> {
         for history in &self.histories {
             let arrival = time_s + history.delay_s();
             if arrival < self.course.duration_s {
-                let place = self.breaks.partition_point(|&(time, _)| time < arrival);
-                if self.breaks.get(place).is_none_or(|&(time, _)| time > arrival) {
-                    self.breaks.insert(place, (arrival, generation + 1));
+                // Waves that travel the same way in another order arrive together, but for rounding.
+                let rounding = 4.0 * f64::EPSILON * arrival;
+                let place = self.breaks.partition_point(|&(time, _)| time < arrival - rounding);
+                match self.breaks.get_mut(place) {
+                    Some((time, other)) if *time <= arrival + rounding => {
+                        *other = (*other).min(generation + 1)
+                    }
+                    _ => self.breaks.insert(place, (arrival, generation + 1)),
                 }
             }
         }

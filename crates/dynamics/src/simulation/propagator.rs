@@ -73,9 +73,9 @@ impl<S: Lane> Propagator<S> {
     }
 
     /// Finds a lane's matrices for a step, from the Jacobian at its present state.
-    pub(super) fn learn(&mut self, lane: usize, step_s: f64, method: &Rosenbrock<S>) {
+    pub(super) fn learn(&mut self, lane: usize, step_s: f64, method: &Rosenbrock<S>, scales: &[S]) {
         let states = self.states;
-        let scales: Vec<f64> = method.scales.iter().map(|scale| scale.lane(lane)).collect();
+        let scales: Vec<f64> = scales.iter().map(|scale| scale.lane(lane)).collect();
         let mut scaled = vec![0.0; states * states];
         for entry in self.jacobian.iter_mut() {
             *entry = entry.with_lane(lane, 0.0);
@@ -104,7 +104,7 @@ impl<S: Lane> Propagator<S> {
         system: &E,
         state: &[S],
         inputs: &[S],
-        method: &Rosenbrock<S>,
+        scales: &[S],
         tolerance: f64,
     ) -> S {
         let [before, after] = &mut self.rates;
@@ -120,7 +120,7 @@ impl<S: Lane> Propagator<S> {
         }
         multiply(&self.third, &self.remainder, &mut self.difference);
         let mut sum = S::from(0.0);
-        let ends = self.end.iter_mut().zip(state).zip(&self.difference).zip(&method.scales);
+        let ends = self.end.iter_mut().zip(state).zip(&self.difference).zip(scales);
         for (((end, &start), &error), &scale) in ends {
             let magnitude = start.abs().maximum(end.abs());
             sum = sum + (error / (scale + magnitude)).squared();

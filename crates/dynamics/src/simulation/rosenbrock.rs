@@ -1,5 +1,6 @@
 //! One step of an L-stable Rosenbrock method of order five.
 
+use super::method::{Extension, StepInputs, relative_error};
 use super::pattern::Pattern;
 use super::step_matrix::StepMatrix;
 use super::{Lane, System};
@@ -89,17 +90,6 @@ const EXTENSION: [[f64; STAGES]; 3] = [
     ],
 ];
 
-/// Inputs of one step: at the time of every stage, and their slopes in time at its start.
-#[derive(Clone, Debug)]
-pub(super) struct StepInputs<S> {
-    /// At the times of [`STAGE_TIMES`].
-    pub(super) stages: [Vec<S>; 6],
-    /// Per second, at the start.
-    pub(super) slopes: Vec<S>,
-    /// Whether any slope differs from zero.
-    pub(super) moving: bool,
-}
-
 /// Where an entry of the Jacobian is found.
 #[derive(Clone, Copy, Debug)]
 struct Found {
@@ -127,8 +117,6 @@ type Group<S> = [S; 4];
 pub(super) struct Rosenbrock<S> {
     pattern: Pattern,
     matrix: StepMatrix<S>,
-    /// Typical magnitudes of the states; those of a lane change with its machine.
-    pub(super) scales: Vec<S>,
     /// u_i, stage by stage.
     increments: Vec<Group<S>>,
     start: Vec<Group<S>>,
@@ -160,7 +148,6 @@ where
         let matrix = StepMatrix::new(&pattern.rows);
         let found = found(&pattern, &matrix);
         Some(Rosenbrock {
-            scales: system.scales(),
             increments: vec![[zero; 4]; STAGES * groups],
             start: vec![[zero; 4]; groups],
             stage: vec![[zero; 4]; groups],
@@ -207,8 +194,11 @@ where
                 }
             }
             if time_here {
+                // Where nothing moves, nothing is asked: an infinite derivative there means no slope.
+                let zero = S::from(0.0);
+                let moving = inputs.slopes.iter().fold(zero, |sum, slope| sum + slope.abs());
                 for (slope, rate) in self.slopes.iter_mut().zip(&self.seeded_rates) {
-                    *slope = rate.gradient()[in_time - first];
+                    *slope = S::select(zero.less_than(moving), rate.gradient()[in_time - first], zero);
                 }
             }
         }
@@ -225,6 +215,7 @@ where
         state: &[S],
         step: S,
         inputs: &StepInputs<S>,
+        scales: &[S],
         tolerance: f64,
     ) -> S {
         let per_step = S::from(1.0) / step;
@@ -247,7 +238,7 @@ where
         for ((end, &stage), &increment) in self.end.iter_mut().zip(self.stage.as_flattened()).zip(last) {
             *end = stage + increment;
         }
-        let error = self.error(state, tolerance);
+        let error = relative_error(last, state, &self.end, scales, tolerance);
         S::select(S::from(0.0).less_than(kept), error, S::from(f64::INFINITY))
     }
 
@@ -295,31 +286,7 @@ where
         self.matrix.solve(&mut right.as_flattened_mut()[..self.end.len()]);
     }
 
-    /// Root mean square of the error over tolerance (scale + |y|).
-    fn error(&self, state: &[S], tolerance: f64) -> S {
-        let mut sum = S::from(0.0);
-        let last = self.increments[(STAGES - 1) * self.stage.len()..].as_flattened();
-        for (((&error, &start), &end), &scale) in last.iter().zip(state).zip(&self.end).zip(&self.scales) {
-            let magnitude = start.abs().maximum(end.abs());
-            sum = sum + (error / (scale + magnitude)).squared();
-        }
-        (sum * S::from(1.0 / self.scales.len().max(1) as f64)).sqrt() * S::from(1.0 / tolerance)
-    }
-
-    /// Root mean square of rates over (scale + |y|) in one lane, per second.
-    pub(super) fn magnitude(&self, rates: &[S], state: &[S], lane: usize) -> f64 {
-        let parts = rates.iter().zip(state).zip(&self.scales).map(|((rate, state), scale)| {
-            let part = rate.lane(lane) / (scale.lane(lane) + state.lane(lane).abs());
-            part * part
-        });
-        (parts.sum::<f64>() / rates.len().max(1) as f64).sqrt()
-    }
-
-    /// Coefficients of one state over the last step:
-    ///
-    /// ```text
-    /// y(theta) = (1 - theta) y_0 + theta (y_1 + (1 - theta) (k_1 + theta (k_2 + theta k_3)))
-    /// ```
+    /// One state over the last step.
     pub(super) fn extension(&self, index: usize, start: S) -> Extension<S> {
         let mut coefficients = [S::from(0.0); 3];
         for (stage, increments) in self.increments.chunks_exact(self.stage.len()).enumerate() {
@@ -376,35 +343,4 @@ fn found<S: Lane>(pattern: &Pattern, matrix: &StepMatrix<S>) -> Vec<Found> {
         }
     }
     all
-}
-
-/// A state over one step.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Extension<S> {
-    start: S,
-    end: S,
-    coefficients: [S; 3],
-}
-
-impl<S: Lane> Extension<S> {
-    /// The cubic with these ends and slopes, both times the step.
-    pub(super) fn cubic([start, end]: [S; 2], [first, last]: [S; 2]) -> Extension<S> {
-        let rise = end - start;
-        let coefficients = [first - rise, rise.times(2.0) - first - last, S::from(0.0)];
-        Extension { start, end, coefficients }
-    }
-
-    /// The same in one lane.
-    pub(super) fn lane(&self, index: usize) -> Extension<f64> {
-        let coefficients = self.coefficients.map(|coefficient| coefficient.lane(index));
-        Extension { start: self.start.lane(index), end: self.end.lane(index), coefficients }
-    }
-
-    /// At this part of the step, from 0 to 1.
-    #[inline]
-    pub(super) fn at(&self, part: S) -> S {
-        let left = S::from(1.0) - part;
-        let [first, second, third] = self.coefficients;
-        left * self.start + part * (self.end + left * (first + part * (second + part * third)))
-    }
 }

@@ -2,8 +2,8 @@
 
 use super::Lane;
 use super::course::{Observer, Sampler};
+use super::method::Extension;
 use super::passage::Passage;
-use super::rosenbrock::Extension;
 
 /// A machine in its lane.
 pub(super) struct Slot<'a, O> {

@@ -1,6 +1,7 @@
 //! One system driven through one course, every state recorded.
 
-use super::driver::{Queue, Task, drive};
+use super::driver::drive;
+use super::task::{Queue, Task};
 use super::{Course, Observer, Outcome, Sampler, Settings, SimulationError, System};
 
 /// States and inputs at the rows of a result.

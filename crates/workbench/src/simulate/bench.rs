@@ -67,8 +67,11 @@ impl Bench {
             }
         };
         let declared = &project.simulation;
-        let settings =
-            Settings { tolerance: declared.tolerance, maximum_steps: u64::from(declared.maximum_steps) };
+        let settings = Settings {
+            tolerance: declared.tolerance,
+            maximum_steps: u64::from(declared.maximum_steps),
+            ..Settings::default()
+        };
         Ok(Bench { rig, machine, control, settings })
     }
 

@@ -1,0 +1,182 @@
+//! The methods that a system can be driven by, behind one interface.
+
+use super::explicit::{self, DormandPrince};
+use super::rosenbrock::{self, DIRECTIONS, Rosenbrock};
+use super::{Lane, System};
+use crate::scalar::{Dependence, Dual};
+
+/// How steps are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// L-stable, linearly implicit, of order 5: for stiff systems. Rodas5P, Steinebach (2023).
+    #[default]
+    Rosenbrock,
+    /// Explicit, of order 5: an independent check where no mode is much faster than what is looked at. Dormand and Prince (1980).
+    DormandPrince,
+}
+
+/// Inputs of one step: at the time of every stage, and their slopes in time at its start.
+#[derive(Clone, Debug)]
+pub(super) struct StepInputs<S> {
+    /// At the times of [`Stepper::stage_times`].
+    pub(super) stages: [Vec<S>; 6],
+    /// Per second, at the start.
+    pub(super) slopes: Vec<S>,
+    /// Whether any slope differs from zero.
+    pub(super) moving: bool,
+}
+
+/// A method with its memory.
+#[derive(Clone, Debug)]
+enum Steps<S> {
+    Implicit(Box<Rosenbrock<S>>),
+    Explicit(DormandPrince<S>),
+}
+
+/// The method of all lanes, and what it measures errors by.
+#[derive(Clone, Debug)]
+pub(super) struct Stepper<S> {
+    steps: Steps<S>,
+    /// Typical magnitudes of the states; those of a lane change with its machine.
+    pub(super) scales: Vec<S>,
+}
+
+impl<S: Lane> Stepper<S>
+where
+    Dependence: From<S>,
+    Dual<DIRECTIONS, S>: From<f64> + From<S>,
+{
+    /// This method for this system; `None` when the system is too large to find its pattern.
+    pub(super) fn new<E: System<S>>(method: Method, system: &E) -> Option<Self> {
+        let steps = match method {
+            Method::Rosenbrock => Steps::Implicit(Box::new(Rosenbrock::new(system)?)),
+            Method::DormandPrince => Steps::Explicit(DormandPrince::new(system.states())),
+        };
+        Some(Stepper { steps, scales: system.scales() })
+    }
+
+    /// Where in the step the inputs of each stage are taken.
+    pub(super) fn stage_times(&self) -> [f64; 6] {
+        match self.steps {
+            Steps::Implicit(_) => rosenbrock::STAGE_TIMES,
+            Steps::Explicit(_) => explicit::STAGE_TIMES,
+        }
+    }
+
+    /// Evaluations of the rates in one attempt.
+    pub(super) fn evaluations(&self) -> u64 {
+        match self.steps {
+            Steps::Implicit(_) => 7,
+            Steps::Explicit(_) => 6,
+        }
+    }
+
+    /// Takes note of the start of a step: rates, and what derivatives the method needs.
+    pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>) {
+        match &mut self.steps {
+            Steps::Implicit(method) => method.linearize(system, state, inputs),
+            Steps::Explicit(method) => method.begin(system, state, inputs),
+        }
+    }
+
+    /// One step of length h from where [`Stepper::linearize`] was called; the error of each lane in units of the tolerance.
+    /// Above one, or not a number, the step is to be tried again with a shorter one.
+    pub(super) fn attempt<E: System<S>>(
+        &mut self,
+        system: &E,
+        state: &[S],
+        step: S,
+        inputs: &StepInputs<S>,
+        tolerance: f64,
+    ) -> S {
+        let scales = &self.scales;
+        match &mut self.steps {
+            Steps::Implicit(method) => method.attempt(system, state, step, inputs, scales, tolerance),
+            Steps::Explicit(method) => method.attempt(system, state, step, inputs, scales, tolerance),
+        }
+    }
+
+    /// The implicit method with the Jacobian that it last found.
+    pub(super) fn linearized(&self) -> Option<&Rosenbrock<S>> {
+        match &self.steps {
+            Steps::Implicit(method) => Some(method),
+            Steps::Explicit(_) => None,
+        }
+    }
+
+    /// One state over the last step.
+    pub(super) fn extension(&self, index: usize, start: S) -> Extension<S> {
+        match &self.steps {
+            Steps::Implicit(method) => method.extension(index, start),
+            Steps::Explicit(method) => method.extension(index, start),
+        }
+    }
+
+    /// State at the end of the last step.
+    pub(super) fn end(&self) -> &[S] {
+        match &self.steps {
+            Steps::Implicit(method) => &method.end,
+            Steps::Explicit(method) => &method.end,
+        }
+    }
+
+    /// Root mean square of rates over (scale + |y|) in one lane, per second.
+    pub(super) fn magnitude(&self, rates: &[S], state: &[S], lane: usize) -> f64 {
+        let parts = rates.iter().zip(state).zip(&self.scales).map(|((rate, state), scale)| {
+            let part = rate.lane(lane) / (scale.lane(lane) + state.lane(lane).abs());
+            part * part
+        });
+        (parts.sum::<f64>() / rates.len().max(1) as f64).sqrt()
+    }
+}
+
+/// Root mean square of the errors over tolerance (scale + |y|).
+pub(super) fn relative_error<S: Lane>(
+    errors: &[S],
+    state: &[S],
+    end: &[S],
+    scales: &[S],
+    tolerance: f64,
+) -> S {
+    let mut sum = S::from(0.0);
+    for (((&error, &start), &end), &scale) in errors.iter().zip(state).zip(end).zip(scales) {
+        let magnitude = start.abs().maximum(end.abs());
+        sum = sum + (error / (scale + magnitude)).squared();
+    }
+    (sum * S::from(1.0 / scales.len().max(1) as f64)).sqrt() * S::from(1.0 / tolerance)
+}
+
+/// A state over one step:
+///
+/// ```text
+/// y(theta) = (1 - theta) y_0 + theta (y_1 + (1 - theta) (k_1 + theta (k_2 + theta k_3)))
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extension<S> {
+    pub(super) start: S,
+    pub(super) end: S,
+    pub(super) coefficients: [S; 3],
+}
+
+impl<S: Lane> Extension<S> {
+    /// The cubic with these ends and slopes, both times the step.
+    pub(super) fn cubic([start, end]: [S; 2], [first, last]: [S; 2]) -> Extension<S> {
+        let rise = end - start;
+        let coefficients = [first - rise, rise.times(2.0) - first - last, S::from(0.0)];
+        Extension { start, end, coefficients }
+    }
+
+    /// The same in one lane.
+    pub(super) fn lane(&self, index: usize) -> Extension<f64> {
+        let coefficients = self.coefficients.map(|coefficient| coefficient.lane(index));
+        Extension { start: self.start.lane(index), end: self.end.lane(index), coefficients }
+    }
+
+    /// At this part of the step, from 0 to 1.
+    #[inline]
+    pub(super) fn at(&self, part: S) -> S {
+        let left = S::from(1.0) - part;
+        let [first, second, third] = self.coefficients;
+        left * self.start + part * (self.end + left * (first + part * (second + part * third)))
+    }
+}

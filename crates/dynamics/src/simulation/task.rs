@@ -1,0 +1,80 @@
+//! Machines to be driven: where they come from, and whether they fit.
+
+use super::course::{Observer, Outcome, Sampler, SimulationError};
+use super::{Course, Lane, System};
+
+/// One machine to be driven.
+pub struct Task<'a, O> {
+    /// State at time zero; behind it, if told, the wave that each delay was sent until then. Untold, it is what the start sends
+    /// while nothing arrives.
+    pub start: Vec<f64>,
+    /// What it is driven by.
+    pub course: &'a Course,
+    /// A digital controller, if one commands it.
+    pub sampler: Option<Box<dyn Sampler + 'a>>,
+    /// Who looks at it.
+    pub observer: O,
+}
+
+/// Where machines come from, and where their outcomes go.
+pub trait Queue<'a, E> {
+    /// Who looks at each machine.
+    type Observer: Observer;
+
+    /// The next machine: its parameters put into this lane of the system, and what is to be done with it. `None` when there
+    /// are no more.
+    fn next(&mut self, system: &mut E, lane: usize) -> Option<Task<'a, Self::Observer>>;
+
+    /// Takes back what came of the machine in this lane.
+    fn done(&mut self, lane: usize, outcome: Outcome, observer: Self::Observer);
+
+    /// Asked once a step with the simulated time of a lane: false ends everything.
+    fn goes_on(&mut self, lane: usize, time_s: f64) -> bool;
+}
+
+/// Whether a machine in its lane can be driven by its task.
+pub(super) fn check<S: Lane, E: System<S>, O: Observer>(
+    system: &E,
+    task: &Task<'_, O>,
+    lane: usize,
+    delays: &[f64],
+) -> Result<(), SimulationError> {
+    let Course { duration_s, output_step_s, inputs } = task.course;
+    let with_waves = system.states() + delays.len();
+    let expected = if task.start.len() == with_waves { with_waves } else { system.states() };
+    let scales = system.scales();
+    let counts = [
+        ("states at the start", task.start.len(), expected),
+        ("inputs", inputs.len() + delays.len(), system.inputs()),
+        ("scales", scales.len(), system.states()),
+    ];
+    for (what, found, expected) in counts {
+        if found != expected {
+            return Err(SimulationError::Count { what, found, expected });
+        }
+    }
+    let states = system.states();
+    if let Some(index) = task.observer.wanted().iter().find(|&&index| index >= states) {
+        let what = "states that are looked at";
+        return Err(SimulationError::Count { what, found: index + 1, expected: states });
+    }
+    let sample_time = task.sampler.as_ref().map(|sampler| sampler.sample_time_s());
+    let delay = task.sampler.as_ref().map_or(0.0, |sampler| sampler.delay_s());
+    let positive = [("duration", *duration_s), ("output step", *output_step_s)];
+    let sample = sample_time.map(|value| ("sample time", value));
+    let travel = delays.iter().map(|&delay| ("delay of a wave", delay));
+    let magnitudes = scales.iter().map(|scale| ("scale of a state", scale.lane(lane)));
+    for (what, value) in positive.into_iter().chain(sample).chain(travel).chain(magnitudes) {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(SimulationError::Setting { what, value, requirement: "positive" });
+        }
+    }
+    if !(delay >= 0.0 && delay.is_finite()) {
+        let requirement = "zero or positive";
+        return Err(SimulationError::Setting { what: "delay of the command", value: delay, requirement });
+    }
+    match task.start.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+        Some((index, &value)) => Err(SimulationError::Start { index, value }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,313 @@
+//! Machines side by side: each as if it were alone, to the last bit.
+
+use phea_dynamics::scalar::{Dependence, Dual, Lanes, Scalar};
+use phea_dynamics::simulation::{
+    Course, Event, Input, Lane, Method, Observer, Outcome, Profile, Queue, Sampler, Settings,
+    SimulationError, Status, System, Task, drive,
+};
+
+use crate::laws::settings;
+
+/// A stiff pair, a late wave, a limit and a command: states x, v, z; inputs w, the command and the wave of x.
+///
+/// ```text
+/// x' = v,   v' = -k x - |v| v + w + u,   z' = r (x - z) + sqrt(|w| + 1/10) - x(t - T)/2
+/// ```
+#[derive(Clone)]
+struct Machine<S> {
+    stiffness: S,
+    rate: S,
+    delay_s: S,
+}
+
+impl<S: Lane> System<S> for Machine<S> {
+    fn states(&self) -> usize {
+        3
+    }
+    fn inputs(&self) -> usize {
+        3
+    }
+    fn scales(&self) -> Vec<S> {
+        vec![S::from(1.0), self.stiffness.sqrt(), S::from(1.0)]
+    }
+    fn rates<T: Scalar + From<S>>(&self, y: &[T], w: &[T], rates: &mut [T]) {
+        rates[0] = y[1];
+        rates[1] = -T::from(self.stiffness) * y[0] - y[1].abs() * y[1] + w[0] + w[1];
+        rates[2] = T::from(self.rate) * (y[0] - y[2]) + (w[0].abs() + T::from(0.1)).sqrt() - w[2].times(0.5);
+    }
+    fn delays(&self) -> Vec<S> {
+        vec![self.delay_s]
+    }
+    fn outgoing<T: Scalar + From<S>>(&self, y: &[T], _: &[T], waves: &mut [T]) {
+        waves[0] = y[0];
+    }
+    fn indicators(&self) -> usize {
+        1
+    }
+    fn indicate<T: Scalar + From<S>>(&self, y: &[T], _: &[T], indicators: &mut [T]) {
+        indicators[0] = y[0] - T::from(0.05);
+    }
+}
+
+#[derive(Clone)]
+struct Case {
+    parameters: [f64; 3],
+    start: [f64; 3],
+    course: Course,
+    sample_time_s: Option<f64>,
+}
+
+struct Holding(f64);
+
+impl Sampler for Holding {
+    fn sample_time_s(&self) -> f64 {
+        self.0
+    }
+    fn delay_s(&self) -> f64 {
+        0.4 * self.0
+    }
+    fn command(&mut self, _: f64, state: &[f64], _: &[f64]) -> f64 {
+        -3.0 * state[0]
+    }
+}
+
+/// Status, events, work and the bits of the last state.
+type Ended = (Status, Vec<Event>, [u64; 3], Vec<u64>);
+
+/// Everything that was seen, to the bit.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Seen {
+    bits: Vec<u64>,
+    outcome: Option<Ended>,
+}
+
+struct Notes(Seen, &'static [usize]);
+
+impl Observer for Notes {
+    fn wanted(&self) -> &[usize] {
+        self.1
+    }
+    fn observe(&mut self, time_s: f64, states: &[f64], inputs: &[f64]) {
+        self.0.bits.extend([time_s].iter().chain(states).chain(inputs).map(|value| value.to_bits()));
+    }
+}
+
+/// Cases in some order; what came of each goes back to its place.
+struct Line<'a> {
+    cases: &'a [Case],
+    order: Vec<usize>,
+    in_lane: Vec<usize>,
+    results: Vec<Seen>,
+}
+
+impl<'a, S: Lane> Queue<'a, Machine<S>> for Line<'a> {
+    type Observer = Notes;
+
+    fn next(&mut self, machine: &mut Machine<S>, lane: usize) -> Option<Task<'a, Notes>> {
+        let index = self.order.pop()?;
+        let case = &self.cases[index];
+        let [stiffness, rate, delay_s] = case.parameters;
+        machine.stiffness = machine.stiffness.with_lane(lane, stiffness);
+        machine.rate = machine.rate.with_lane(lane, rate);
+        machine.delay_s = machine.delay_s.with_lane(lane, delay_s);
+        self.in_lane[lane] = index;
+        let sampler = case.sample_time_s.map(|time_s| Box::new(Holding(time_s)) as Box<dyn Sampler>);
+        let (start, course) = (case.start.to_vec(), &case.course);
+        Some(Task { start, course, sampler, observer: Notes(Seen::default(), &[0, 2, 1]) })
+    }
+
+    fn done(&mut self, lane: usize, outcome: Outcome, observer: Notes) {
+        let work = [outcome.work.steps, outcome.work.rejected, outcome.work.evaluations];
+        let end = outcome.end.iter().map(|value| value.to_bits()).collect();
+        let index = self.in_lane[lane];
+        assert!(self.results[index].outcome.is_none(), "done twice");
+        self.results[index] =
+            Seen { outcome: Some((outcome.status, outcome.events, work, end)), ..observer.0 };
+    }
+
+    fn goes_on(&mut self, _: usize, _: f64) -> bool {
+        true
+    }
+}
+
+fn cases() -> Vec<Case> {
+    let motions = [
+        Profile::constant(0.3),
+        Profile::sine(0.2, 1.0, 9.0).unwrap(),
+        Profile::smooth_step(0.5, 0.2, 2.0).unwrap(),
+        Profile::steps(0.0, &[(0.25, 1.0), (0.75, -1.0)]).unwrap(),
+        Profile::first_order(0.1, 0.05, 1.0).unwrap(),
+        Profile::constant(0.0),
+    ];
+    (0..11)
+        .map(|index: usize| {
+            let part = index as f64;
+            Case {
+                parameters: [4.0 + 7.0 * part, 10.0 * (1.0 + part * part * part), 0.03 + 0.01 * part],
+                start: [0.1 * (part - 5.0), 0.0, if index % 4 == 3 { 1e3 } else { 0.0 }],
+                course: Course {
+                    duration_s: 1.0 + 0.1 * part,
+                    output_step_s: 0.05,
+                    inputs: vec![Input::Value(motions[index % 6].clone()), Input::Command],
+                },
+                sample_time_s: (index % 3 == 1).then_some(0.02),
+            }
+        })
+        .collect()
+}
+
+fn driven<S>(cases: &[Case], order: Vec<usize>, settings: &Settings) -> Vec<Seen>
+where
+    S: Lane,
+    Dependence: From<S>,
+    Dual<6, S>: From<f64> + From<S>,
+{
+    let one = S::from(1.0);
+    let mut machine = Machine { stiffness: one, rate: one, delay_s: one };
+    let mut line =
+        Line { cases, order, in_lane: vec![0; S::COUNT], results: vec![Seen::default(); cases.len()] };
+    drive(&mut machine, &mut line, settings).unwrap();
+    line.results
+}
+
+#[test]
+fn neighbours_make_no_difference() {
+    let cases = cases();
+    let order: Vec<usize> = (0..cases.len()).collect();
+    let other: Vec<usize> = (0..cases.len()).map(|index| (4 * index + 3) % cases.len()).collect();
+    for method in [Method::Rosenbrock, Method::DormandPrince] {
+        let settings = settings(1e-6, method);
+        let mut alone = vec![Seen::default(); cases.len()];
+        for (index, place) in alone.iter_mut().enumerate() {
+            *place = driven::<f64>(&cases, vec![index], &settings)[index].clone();
+            let outcome = place.outcome.as_ref().unwrap();
+            assert_eq!(outcome.0, Status::Completed);
+            assert!(place.bits.len() >= 7 * 21 && !outcome.3.is_empty());
+        }
+        assert!(alone.iter().any(|seen| seen.outcome.as_ref().is_some_and(|outcome| !outcome.1.is_empty())));
+        for order in [order.clone(), other.clone()] {
+            let together = [
+                driven::<f64>(&cases, order.clone(), &settings),
+                driven::<Lanes<2>>(&cases, order.clone(), &settings),
+                driven::<Lanes<4>>(&cases, order.clone(), &settings),
+                driven::<Lanes<8>>(&cases, order, &settings),
+            ];
+            for (lanes, results) in together.iter().enumerate() {
+                for (index, (seen, alone)) in results.iter().zip(&alone).enumerate() {
+                    assert!(seen == alone, "{method:?}, lanes 2^{lanes}, case {index}");
+                }
+            }
+        }
+    }
+}
+
+/// A neighbour that comes to no end in numbers takes nobody with it.
+#[test]
+fn a_neighbour_that_fails_fails_alone() {
+    let mut cases = cases();
+    let good = cases.clone();
+    for index in [1, 4, 9] {
+        cases[index].parameters[1] = -2e3;
+    }
+    let order: Vec<usize> = (0..cases.len()).collect();
+    let settings = Settings { maximum_steps: 5_000, ..Settings::default() };
+    let mixed = driven::<Lanes<4>>(&cases, order.clone(), &settings);
+    let alone = driven::<f64>(&good, order, &settings);
+    for (index, (seen, alone)) in mixed.iter().zip(&alone).enumerate() {
+        let status = seen.outcome.as_ref().unwrap().0;
+        if [1, 4, 9].contains(&index) {
+            assert!(status != Status::Completed, "{index}: {status:?}");
+        } else {
+            assert!(seen == alone, "{index}");
+        }
+    }
+}
+
+/// y' = sqrt(w), whose derivative at w = 0 is infinite: no harm while w stands still, whoever moves beside it.
+#[derive(Clone)]
+struct Root;
+
+impl<S: Lane> System<S> for Root {
+    fn states(&self) -> usize {
+        1
+    }
+    fn inputs(&self) -> usize {
+        1
+    }
+    fn scales(&self) -> Vec<S> {
+        vec![S::from(1.0)]
+    }
+    fn rates<T: Scalar + From<S>>(&self, _: &[T], w: &[T], rates: &mut [T]) {
+        rates[0] = w[0].sqrt();
+    }
+}
+
+/// Courses in order, and how they ended.
+struct Ends<'a>(Vec<&'a Course>, Vec<Status>, &'static [usize]);
+
+impl<'a, E> Queue<'a, E> for Ends<'a> {
+    type Observer = Notes;
+
+    fn next(&mut self, _: &mut E, _: usize) -> Option<Task<'a, Notes>> {
+        let course = self.0.pop()?;
+        Some(Task { start: vec![0.0], course, sampler: None, observer: Notes(Seen::default(), self.2) })
+    }
+    fn done(&mut self, _: usize, outcome: Outcome, _: Notes) {
+        self.1.push(outcome.status);
+    }
+    fn goes_on(&mut self, _: usize, _: f64) -> bool {
+        true
+    }
+}
+
+#[test]
+fn who_stands_still_is_not_moved_by_a_neighbour() {
+    let course =
+        |profile| Course { duration_s: 1.0, output_step_s: 1.0, inputs: vec![Input::Value(profile)] };
+    let (still, moving) =
+        (course(Profile::constant(0.0)), course(Profile::table(&[0.0, 1.0], &[1.0, 4.0]).unwrap()));
+    let mut ends = Ends(vec![&still, &moving], Vec::new(), &[0]);
+    drive::<Lanes<2>, _, _>(&mut Root, &mut ends, &Settings::default()).unwrap();
+    assert_eq!(ends.1, [Status::Completed; 2]);
+}
+
+#[test]
+fn a_state_that_is_not_there_is_not_looked_at() {
+    let course =
+        Course { duration_s: 1.0, output_step_s: 1.0, inputs: vec![Input::Value(Profile::constant(1.0))] };
+    let mut ends = Ends(vec![&course], Vec::new(), &[0, 1]);
+    let result = drive::<f64, _, _>(&mut Root, &mut ends, &Settings::default());
+    assert!(matches!(result, Err(SimulationError::Count { found: 2, expected: 1, .. })), "{result:?}");
+}
+
+/// Whoever says stop stops everything: no machine is begun any more, each that was is handed back.
+#[test]
+fn stopping_stops_all() {
+    struct Stopped<'a>(Line<'a>, usize);
+    impl<'a> Queue<'a, Machine<Lanes<4>>> for Stopped<'a> {
+        type Observer = Notes;
+        fn next(&mut self, machine: &mut Machine<Lanes<4>>, lane: usize) -> Option<Task<'a, Notes>> {
+            self.0.next(machine, lane)
+        }
+        fn done(&mut self, lane: usize, outcome: Outcome, observer: Notes) {
+            Queue::<Machine<Lanes<4>>>::done(&mut self.0, lane, outcome, observer);
+        }
+        fn goes_on(&mut self, _: usize, _: f64) -> bool {
+            self.1 += 1;
+            self.1 < 30
+        }
+    }
+    let cases = cases();
+    let order = (0..cases.len()).collect();
+    let line =
+        Line { cases: &cases, order, in_lane: vec![0; 4], results: vec![Seen::default(); cases.len()] };
+    let one = Lanes([1.0; 4]);
+    let mut machine = Machine { stiffness: one, rate: one, delay_s: one };
+    let mut queue = Stopped(line, 0);
+    drive(&mut machine, &mut queue, &Settings::default()).unwrap();
+    let statuses: Vec<Status> =
+        queue.0.results.iter().filter_map(|seen| seen.outcome.as_ref()).map(|outcome| outcome.0).collect();
+    assert_eq!(statuses.len(), 4);
+    assert!(statuses.iter().all(|status| matches!(status, Status::Cancelled { time_s } if *time_s < 1.0)));
+    assert_eq!(queue.0.order.len(), 7);
+}

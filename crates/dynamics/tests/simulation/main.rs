@@ -1,0 +1,14 @@
+//! Systems driven in time, against closed forms, published solutions and independent methods.
+#![cfg(test)]
+
+mod closed_loop;
+mod delays;
+mod events;
+mod explicit;
+mod lanes;
+mod laws;
+mod order;
+mod restarts;
+mod samples;
+mod statuses;
+mod stiff;

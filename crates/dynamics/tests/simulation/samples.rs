@@ -1,0 +1,182 @@
+//! A held command: linear plants against their exact discretisation.
+
+use nalgebra::{DMatrix, DVector};
+use phea_dynamics::linear::{Discretization, StateSpace, TimeDomain, TransferFunction};
+use phea_dynamics::scalar::Scalar;
+use phea_dynamics::simulation::{HeldPlant, Input, Method, Plant, Profile, Sampler, Status, simulate};
+
+use crate::laws::{course, settings};
+
+/// A mass on a spring behind a lag, in units of `rate` rad/s: F = 3 x, times 1/rate.
+#[derive(Clone)]
+struct Spring {
+    rate: f64,
+}
+
+impl Spring {
+    fn system(&self) -> StateSpace {
+        let a = DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, -4.0, -0.3, 2.0, 0.0, 0.0, -5.0]);
+        let b = DMatrix::from_row_slice(3, 1, &[0.0, 0.0, 5.0]);
+        let c = DMatrix::from_row_slice(1, 3, &[3.0, 0.0, 0.0]);
+        let d = DMatrix::zeros(1, 1);
+        StateSpace::new(a * self.rate, b * self.rate, c, d, TimeDomain::Continuous).unwrap()
+    }
+}
+
+impl Plant<f64> for Spring {
+    fn states(&self) -> usize {
+        3
+    }
+    fn inputs(&self) -> usize {
+        0
+    }
+    fn scales(&self) -> Vec<f64> {
+        vec![1.0; 3]
+    }
+    fn command_scale(&self) -> f64 {
+        1.0
+    }
+    fn measurement_scale(&self) -> f64 {
+        3.0
+    }
+    fn rates<T: Scalar + From<f64>>(&self, y: &[T], u: T, _: &[T], rates: &mut [T]) {
+        rates[0] = y[1];
+        rates[1] = y[2].times(2.0) - y[0].times(4.0) - y[1].times(0.3);
+        rates[2] = (u - y[2]).times(5.0);
+        for rate in rates.iter_mut() {
+            *rate = rate.times(self.rate);
+        }
+    }
+    fn measurement<T: Scalar + From<f64>>(&self, y: &[T], _: &[T]) -> T {
+        y[0].times(3.0)
+    }
+}
+
+/// u_k = 0.2 e_k + 0.05 sum of e: what it saw and said is written down.
+struct Integrating<'a> {
+    sample_time_s: f64,
+    delay_s: f64,
+    sum: f64,
+    seen: &'a mut Vec<[f64; 3]>,
+}
+
+fn answer(sum: &mut f64, error: f64) -> f64 {
+    *sum += error;
+    0.2 * error + 0.05 * *sum
+}
+
+impl Sampler for Integrating<'_> {
+    fn sample_time_s(&self) -> f64 {
+        self.sample_time_s
+    }
+    fn delay_s(&self) -> f64 {
+        self.delay_s
+    }
+    fn command(&mut self, time_s: f64, state: &[f64], inputs: &[f64]) -> f64 {
+        let measured = 3.0 * state[0];
+        let command = answer(&mut self.sum, inputs[1] - measured);
+        self.seen.push([time_s, measured, command]);
+        command
+    }
+}
+
+/// The same by matrix exponentials: from each sample to where a command arrives, and on to the next sample.
+fn exactly(spring: &Spring, sample_time_s: f64, delay_s: f64, samples: usize) -> Vec<[f64; 3]> {
+    let system = spring.system();
+    let whole = (delay_s / sample_time_s + 1e-9).floor();
+    let fraction_s = (delay_s - whole * sample_time_s).max(0.0);
+    let whole = whole as usize;
+    let passed = |state: DVector<f64>, length_s: f64, command: f64| {
+        if length_s < 1e-9 * sample_time_s {
+            return state;
+        }
+        let step = system.discretized(length_s, Discretization::ZeroOrderHold).unwrap();
+        step.a() * state + step.b() * DVector::from_element(1, command)
+    };
+    let (mut state, mut sum) = (DVector::zeros(3), 0.0);
+    let (mut seen, mut held): (Vec<[f64; 3]>, f64) = (Vec::new(), 0.0);
+    for sample in 0..samples {
+        let measured = (system.c() * &state)[(0, 0)];
+        let command = answer(&mut sum, 1.0 - measured);
+        seen.push([sample as f64 * sample_time_s, measured, command]);
+        state = passed(state, fraction_s, held);
+        held = sample.checked_sub(whole).and_then(|sent| seen.get(sent)).map_or(0.0, |row| row[2]);
+        state = passed(state, sample_time_s - fraction_s, held);
+    }
+    seen
+}
+
+#[track_caller]
+fn check(sample_time_s: f64, delay_s: f64, samples: usize) {
+    let spring = Spring { rate: 0.2 / sample_time_s };
+    let plant = HeldPlant::new(spring.clone(), &TransferFunction::gain_only(1.0)).unwrap();
+    let mut seen = Vec::new();
+    let sampler = Box::new(Integrating { sample_time_s, delay_s, sum: 0.0, seen: &mut seen });
+    let duration_s = (samples as f64 - 0.5) * sample_time_s;
+    let inputs = vec![Input::Command, Input::Value(Profile::constant(1.0))];
+    let course = course(duration_s, 0.3 * sample_time_s, inputs);
+    let settings = settings(1e-11, Method::Rosenbrock);
+    let result = simulate(&plant, &[0.0; 3], &course, Some(sampler), &settings, &mut |_| true).unwrap();
+    assert_eq!(result.outcome.status, Status::Completed);
+    let exact = exactly(&spring, sample_time_s, delay_s, samples);
+    assert_eq!(seen.len(), exact.len());
+    for (one, other) in seen.iter().zip(&exact) {
+        assert!((one[0] - other[0]).abs() < 1e-12 * duration_s);
+        for (value, exact) in one.iter().zip(other) {
+            assert!((value - exact).abs() < 1e-9, "{one:?} {other:?}, delay {delay_s}");
+        }
+    }
+    assert!(seen.iter().any(|row| row[1] > 1.1), "the reference is overshot: {seen:?}");
+}
+
+#[test]
+fn without_delay() {
+    check(0.1, 0.0, 80);
+    check(1e-3, 0.0, 80);
+}
+
+#[test]
+fn within_a_sample() {
+    check(0.1, 0.03, 80);
+    check(1e-3, 0.97e-3, 80);
+}
+
+#[test]
+fn a_whole_sample_and_longer() {
+    check(0.1, 0.1, 80);
+    check(1e-3, 1e-3, 80);
+    check(0.1, 0.25, 80);
+    check(1e-3, 3.5e-3, 80);
+    check(1e-3, 4e-3, 80);
+}
+
+#[test]
+fn a_million_samples_a_second() {
+    check(1e-6, 0.0, 200);
+    check(1e-6, 0.3e-6, 200);
+    check(1e-6, 2.7e-6, 200);
+}
+
+/// A delay too short for any step to end after it.
+#[test]
+fn a_delay_below_rounding_is_none() {
+    check(0.1, 1e-19, 40);
+}
+
+/// Rows at the samples show the command that holds from then on.
+#[test]
+fn rows_show_the_command_that_is_held() {
+    let plant = HeldPlant::new(Spring { rate: 1.0 }, &TransferFunction::gain_only(1.0)).unwrap();
+    let mut seen = Vec::new();
+    let sampler = Box::new(Integrating { sample_time_s: 0.1, delay_s: 0.0, sum: 0.0, seen: &mut seen });
+    let course = course(2.0, 0.1, vec![Input::Command, Input::Value(Profile::constant(1.0))]);
+    let result =
+        simulate(&plant, &[0.0; 3], &course, Some(sampler), &settings(1e-6, Method::Rosenbrock), &mut |_| {
+            true
+        })
+        .unwrap();
+    assert_eq!((seen.len(), result.trajectory.times_s.len()), (20, 21));
+    for (row, seen) in result.trajectory.inputs.iter().zip(&seen) {
+        assert_eq!(row[0], seen[2]);
+    }
+}
