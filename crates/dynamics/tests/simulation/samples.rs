@@ -180,3 +180,63 @@ fn rows_show_the_command_that_is_held() {
         assert_eq!(row[0], seen[2]);
     }
 }
+
+/// A pendulum-like plant whose stiffness grows with its swing and which loses its way when the valve closes.
+///
+/// ```text
+/// x' = v,   v' = z - 9 x - 4 x^3 - |v| v,   z' = (u - z) sqrt(1 + z^2) 8
+/// ```
+#[derive(Clone)]
+struct Bent;
+
+impl Plant<f64> for Bent {
+    fn states(&self) -> usize {
+        3
+    }
+    fn inputs(&self) -> usize {
+        0
+    }
+    fn scales(&self) -> Vec<f64> {
+        vec![0.3, 1.0, 3.0]
+    }
+    fn command_scale(&self) -> f64 {
+        3.0
+    }
+    fn measurement_scale(&self) -> f64 {
+        1.0
+    }
+    fn rates<T: Scalar + From<f64>>(&self, y: &[T], u: T, _: &[T], rates: &mut [T]) {
+        rates[0] = y[1];
+        rates[1] = y[2] - y[0].times(9.0) - y[0].squared() * y[0].times(4.0) - y[1].abs() * y[1];
+        rates[2] = (u - y[2]) * (T::from(1.0) + y[2].squared()).sqrt().times(8.0);
+    }
+    fn measurement<T: Scalar + From<f64>>(&self, y: &[T], _: &[T]) -> T {
+        y[0].times(3.0)
+    }
+}
+
+/// From sample to sample by matrices found once, or by a method that knows of none: one answer, within the tolerance.
+#[test]
+fn a_bent_plant_gets_from_sample_to_sample() {
+    let plant = HeldPlant::new(Bent, &TransferFunction::gain_only(1.0)).unwrap();
+    for (sample_time_s, delay_s) in [(1e-3, 0.0), (1e-3, 0.4e-3), (0.02, 0.0), (0.02, 0.03)] {
+        let reference = Profile::steps(1.0, &[(2.0, -2.0), (4.0, 5.0), (4.5013, 0.0)]).unwrap();
+        let course = course(6.0, 0.5, vec![Input::Command, Input::Value(reference)]);
+        let ended = |method, tolerance| {
+            let mut seen = Vec::new();
+            let sampler = Box::new(Integrating { sample_time_s, delay_s, sum: 0.0, seen: &mut seen });
+            let settings = settings(tolerance, method);
+            let result =
+                simulate(&plant, &[0.0; 3], &course, Some(sampler), &settings, &mut |_| true).unwrap();
+            assert_eq!(result.outcome.status, Status::Completed);
+            (seen, result)
+        };
+        let (exact, _) = ended(Method::DormandPrince, 1e-11);
+        for tolerance in [1e-4, 1e-6, 1e-8] {
+            let (seen, result) = ended(Method::Rosenbrock, tolerance);
+            let pairs = seen.iter().zip(&exact);
+            let error = pairs.map(|(one, other)| (one[1] - other[1]).abs()).fold(0.0, f64::max);
+            assert!(error < 30.0 * tolerance, "{sample_time_s}, {delay_s}: {error} at {tolerance}");
+        }
+    }
+}
