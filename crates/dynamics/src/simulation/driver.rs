@@ -193,6 +193,7 @@ where
         self.fresh = false;
         let error =
             self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
+        let error = self.look_between(system, error);
         self.learn(error);
         self.between.extensions.fill(None);
         self.between.propagated = false;
@@ -208,6 +209,27 @@ where
                 self.take(system, lane);
             }
         }
+    }
+
+    /// The error of the step with that of what is shown or sent between its ends.
+    fn look_between<E: System<S>>(&mut self, system: &E, error: S) -> S {
+        let mut looked = S::from(0.0);
+        for lane in 0..S::COUNT {
+            let Some(Slot { passage, inputs, propagated, .. }) = &mut self.slots[lane] else { continue };
+            if !*propagated && error.lane(lane) <= 1.0 && passage.looked_into() {
+                passage.inputs_within(0.5, inputs);
+                passage.work.evaluations += 1;
+                set_lane(&mut self.between.inputs, lane, inputs);
+                looked = looked.with_lane(lane, 1.0);
+            }
+        }
+        let mask = S::from(0.0).less_than(looked);
+        if (0..S::COUNT).all(|lane| looked.lane(lane) == 0.0) {
+            return error;
+        }
+        let (inputs, tolerance) = (&self.between.inputs, self.settings.tolerance);
+        let between = self.method.error_between(system, &self.state, self.step, inputs, tolerance);
+        S::select(mask, (error.squared() + between.squared()).sqrt(), error)
     }
 
     /// Ends machines that took more steps than they are allowed.

@@ -96,6 +96,23 @@ where
         }
     }
 
+    /// How far what lies between the ends of the step just attempted is off, for the inputs in its middle, in units of the
+    /// tolerance; nothing for the explicit method, whose steps are too short for that.
+    pub(super) fn error_between<E: System<S>>(
+        &mut self,
+        system: &E,
+        state: &[S],
+        step: S,
+        inputs: &[S],
+        tolerance: f64,
+    ) -> S {
+        let scales = &self.scales;
+        match &mut self.steps {
+            Steps::Implicit(method) => method.error_between(system, state, step, inputs, scales, tolerance),
+            Steps::Explicit(_) => S::from(0.0),
+        }
+    }
+
     /// The implicit method with the Jacobian that it last found.
     pub(super) fn linearized(&self) -> Option<&Rosenbrock<S>> {
         match &self.steps {
@@ -164,6 +181,12 @@ impl<S: Lane> Extension<S> {
         let rise = end - start;
         let coefficients = [first - rise, rise.times(2.0) - first - last, S::from(0.0)];
         Extension { start, end, coefficients }
+    }
+
+    /// Slope in the middle, times the step.
+    pub(super) fn slope_in_the_middle(&self) -> S {
+        let [_, second, third] = self.coefficients;
+        self.end - self.start + (second + third).times(0.25)
     }
 
     /// The same in one lane.

@@ -10,7 +10,7 @@ use crate::portable;
 const GROWTH: [f64; 2] = [0.1, 6.0];
 /// What is kept of the step that the error would allow.
 const SAFETY: f64 = 0.9;
-/// A break's waves are met by restarts this many times; by then they have faded.
+/// A break's waves are met by restarts this many times; by then they have faded. What jumps still is smeared over a step.
 const ECHOES: u8 = 12;
 
 /// An input between two breaks.
@@ -136,6 +136,13 @@ impl<'a> Passage<'a> {
     /// Time of the next row.
     pub(super) fn next_row_s(&self) -> f64 {
         self.row as f64 * self.course.output_step_s
+    }
+
+    /// Whether a state between the ends of the step being tried is shown or sent.
+    pub(super) fn looked_into(&self) -> bool {
+        let past = self.next_row_s() <= self.time_s;
+        let next_row_s = (self.row + u64::from(past)) as f64 * self.course.output_step_s;
+        !self.histories.is_empty() || next_row_s < self.end_s()
     }
 
     /// Length of the step to the next break, if no input moves and no row is looked at on the way.

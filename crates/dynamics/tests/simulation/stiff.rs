@@ -7,7 +7,7 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Profile, System};
 use phea_dynamics::time_response::{Signal, forced_response_of_states};
 
-use crate::laws::{Following, Law, Lawful, course, last, run};
+use crate::laws::{Following, Law, Lawful, course, distance, last, run};
 
 /// y' = lambda y
 #[derive(Clone)]
@@ -51,6 +51,8 @@ fn what_is_bound_stiffly_follows() {
             let result = run(&Lawful(Following(rate), 1.0), &[0.0], &course, tolerance);
             let at_end = (last(&result, 0) - portable::sin(12.0)).abs();
             assert!(at_end < tolerance, "{rate}: {at_end} at {tolerance}");
+            let between = distance(&result, 0, |time_s| portable::sin(3.0 * time_s));
+            assert!(between < 20.0 * tolerance, "{rate}: {between} at {tolerance}");
             let work = result.outcome.work;
             assert!(work.steps < 3 * mild.steps, "{rate}: {work:?}, mild: {mild:?}");
         }
