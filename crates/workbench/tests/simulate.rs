@@ -252,6 +252,7 @@ fn what_cannot_be_simulated_is_refused_in_words() {
     says(&["cylinder.friction.model=stribeck"], "regular velocity");
     let wall = ["load={ model = \"wall\", mass = 10, stiffness = 1e6 }", "scenario.0.start.force=-5 N"];
     says(&["line.model=two_wave"], "[line] model");
+    says(&["load={ model = \"wall\", stiffness = 1e6 }"], "`mass`");
     says(&wall, "a start with force of -5 is impossible");
 }
 
