@@ -52,6 +52,11 @@ pub enum SimulateError {
     /// Controller, prefilter or sensor cannot be run in time.
     #[error("[controller], [prefilter] or [sensor]: {0}")]
     Loop(#[from] LinearError),
+    /// A load before a wall that has no mass to be stopped.
+    #[error(
+        "[load] model \"wall\" is simulated with the `mass` of what moves beyond the load cell: none is stated"
+    )]
+    LoadMass,
     /// A line that its model does not fit.
     #[error("[line] model: {0}")]
     Line(#[from] LineError),

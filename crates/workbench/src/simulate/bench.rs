@@ -118,6 +118,9 @@ fn feed_forward(project: &Project, rig: &Rig) -> f64 {
 /// What the machine has beyond its actuator.
 fn options(project: &Project, rig: &Rig) -> Result<MachineOptions, SimulateError> {
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
+    if declared.load.model == project::LoadModel::Wall && declared.load.mass.is_none() {
+        return Err(SimulateError::LoadMass);
+    }
     let friction = declared.cylinder.friction.as_ref();
     Ok(MachineOptions {
         spool: SpoolImperfection {

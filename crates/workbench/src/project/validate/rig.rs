@@ -296,7 +296,9 @@ fn load(load: &Load, check: &mut Check<'_, '_>) {
         if value.is_some() && !uses.contains(&name) {
             check.warning(&format!("load.{name}"), format!("`{name}` has no effect with model \"{model}\""));
         }
-        let needed = matches!(name, "mass" | "stiffness") && uses.contains(&name);
+        // only a simulation asks for the mass before a wall
+        let needed = name == "stiffness" || (name == "mass" && load.model == LoadModel::SpringMassDamper);
+        let needed = needed && uses.contains(&name);
         if value.is_none() && needed {
             check.missing("load", name, format!("missing `{name}` in [load]: model \"{model}\" needs it"));
         }
