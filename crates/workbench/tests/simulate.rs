@@ -375,24 +375,20 @@ fn a_late_sensor_is_a_late_command() {
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
 /// Waves in the hose are faster than a loop of half the published gain: it sees little more of them than a lumped line has. (The
-/// published one has no margin left for them.)
+/// published one rings for seconds, its margin used up.)
 #[test]
 fn waves_in_the_lines_change_little_for_the_loop() {
     let metrics_of = |model: &str| {
         let model = format!("line.model={model}");
         let gain = "controller.numerator=0.0005*s + 0.004";
-        let run = run_of(HOSE, &["line.compliance=by_volume", &model, gain]);
+        let run = run_of(HOSE, &["line.compliance=by_volume", "scenario.0.duration=3.5 s", &model, gain]);
         assert_eq!(run.stopped(), None, "{model}");
         let [(_, step), (_, motion)] = run.windows[..] else { panic!() };
         [step.settling_time_s.unwrap(), motion.disturbance_peak_n.unwrap()]
     };
-    let lumped = metrics_of("lumped");
-    for model in ["transmission_line", "two_wave"] {
-        let found = metrics_of(model);
-        for (found, lumped) in found.iter().zip(lumped) {
-            assert!((found / lumped - 1.0).abs() < 0.15, "{model}: {found}, lumped {lumped}");
-            assert_ne!(*found, lumped);
-        }
+    let (lumped, with_waves) = (metrics_of("lumped"), metrics_of("transmission_line"));
+    for (found, lumped) in with_waves.iter().zip(lumped) {
+        assert!((found / lumped - 1.0).abs() < 0.01 && *found != lumped, "{found}, lumped {lumped}");
     }
 }
 
