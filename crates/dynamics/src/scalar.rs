@@ -73,7 +73,7 @@ pub trait Scalar:
     }
 
     /// The product with a plain number.
-    #[inline]
+    #[inline(always)]
     fn times(self, factor: f64) -> Self {
         self * Self::from(factor)
     }
@@ -87,27 +87,27 @@ pub trait Scalar:
 impl Scalar for f64 {
     type Mask = bool;
 
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    #[inline]
+    #[inline(always)]
     fn exp(self) -> Self {
         exponential::exponential(self)
     }
-    #[inline]
+    #[inline(always)]
     fn ln(self) -> Self {
         portable::ln(self)
     }
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         f64::abs(self)
     }
-    #[inline]
+    #[inline(always)]
     fn less_than(self, other: Self) -> bool {
         self < other
     }
-    #[inline]
+    #[inline(always)]
     fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
         if mask { if_true } else { if_false }
     }

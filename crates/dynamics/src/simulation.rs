@@ -127,29 +127,31 @@ pub trait Plant<S: Scalar> {
 /// use phea_dynamics::scalar::Lanes;
 /// use phea_dynamics::simulation::Lane;
 /// assert_eq!(2.5_f64.lane(0), 2.5);
-/// assert_eq!(Lanes([1.0, 2.0]).with_lane(1, 5.0), Lanes([1.0, 5.0]));
+/// let mut lanes = Lanes([1.0, 2.0]);
+/// lanes.set_lane(1, 5.0);
+/// assert_eq!(lanes, Lanes([1.0, 5.0]));
 /// ```
 pub trait Lane: Scalar {
     /// How many numbers.
     const COUNT: usize;
 
     /// The number in one lane. A lane beyond the last is the last.
-    fn lane(self, index: usize) -> f64;
+    fn lane(&self, index: usize) -> f64;
 
-    /// With another number in one lane.
-    fn with_lane(self, index: usize, value: f64) -> Self;
+    /// Puts a number into one lane. A lane beyond the last is the last.
+    fn set_lane(&mut self, index: usize, value: f64);
 }
 
 impl Lane for f64 {
     const COUNT: usize = 1;
 
     #[inline]
-    fn lane(self, _index: usize) -> f64 {
-        self
+    fn lane(&self, _index: usize) -> f64 {
+        *self
     }
     #[inline]
-    fn with_lane(self, _index: usize, value: f64) -> f64 {
-        value
+    fn set_lane(&mut self, _index: usize, value: f64) {
+        *self = value;
     }
 }
 
@@ -157,13 +159,11 @@ impl<const L: usize> Lane for Lanes<L> {
     const COUNT: usize = L;
 
     #[inline]
-    fn lane(self, index: usize) -> f64 {
+    fn lane(&self, index: usize) -> f64 {
         self.0[index.min(L - 1)]
     }
     #[inline]
-    fn with_lane(self, index: usize, value: f64) -> Self {
-        let mut lanes = self.0;
-        lanes[index.min(L - 1)] = value;
-        Lanes(lanes)
+    fn set_lane(&mut self, index: usize, value: f64) {
+        self.0[index.min(L - 1)] = value;
     }
 }

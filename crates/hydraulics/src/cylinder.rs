@@ -56,6 +56,7 @@ impl Cylinder {
 
 impl<S: Copy> Cylinder<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Cylinder<T> {
         Cylinder {
             area_a: of(self.area_a),

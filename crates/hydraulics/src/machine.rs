@@ -162,6 +162,7 @@ impl Machine {
 
 impl<S: Copy> Machine<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> Machine<T> {
         Machine {
             valve: self.valve.convert(of),
@@ -245,12 +246,12 @@ impl<S: Scalar> Plant<S> for Machine<S> {
         self.typical_force()
     }
 
-    #[inline]
+    #[inline(always)]
     fn rates<T: Scalar + From<S>>(&self, state: &[T], command: T, inputs: &[T], rates: &mut [T]) {
         self.write_rates(state, command, inputs, rates);
     }
 
-    #[inline]
+    #[inline(always)]
     fn measurement<T: Scalar + From<S>>(&self, state: &[T], _inputs: &[T]) -> T {
         force_sensor::force(constant(self.sensor_stiffness), self.layout.read(state).deflection)
     }

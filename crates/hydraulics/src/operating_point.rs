@@ -271,6 +271,7 @@ fn wanted(load: Load) -> f64 {
 }
 
 /// Force of the chamber pressures on the piston, A_A p_A - A_B p_B, in N, positive towards B: thesis (4.29).
+#[inline(always)]
 pub fn hydraulic_force<S: Scalar>([area_a, area_b]: [S; 2], [pressure_a, pressure_b]: [S; 2]) -> S {
     area_a * pressure_a - area_b * pressure_b
 }

@@ -20,7 +20,7 @@ use phea_dynamics::scalar::Scalar;
 /// let at_zero = regular_root(Dual::<1>::variable(0.0, 0), Dual::constant(100.0));
 /// assert_eq!((at_zero.value(), at_zero.gradient()[0]), (0.0, 0.1));
 /// ```
-#[inline]
+#[inline(always)]
 pub fn regular_root<S: Scalar>(drop: S, transition_pressure: S) -> S {
     drop / (drop.squared() + transition_pressure.squared()).sqrt().sqrt()
 }
@@ -60,7 +60,7 @@ pub fn regular_root_slope<S: Scalar>(drop: S, transition_pressure: S) -> S {
 /// let ratio: f64 = flow(3e-7, 4e6, 1e3) / flow(3e-7, 1e6, 1e3);
 /// assert!((ratio - 2.0).abs() < 1e-6);
 /// ```
-#[inline]
+#[inline(always)]
 pub fn flow<S: Scalar>(coefficient: S, drop: S, transition_pressure: S) -> S {
     coefficient * regular_root(drop, transition_pressure)
 }

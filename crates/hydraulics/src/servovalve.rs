@@ -130,6 +130,7 @@ impl Servovalve {
 
 impl<S: Copy> Servovalve<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> Servovalve<T> {
         Servovalve {
             flow_coefficients: Edges::from_array(self.flow_coefficients.to_array().map(&mut *of)),
@@ -146,6 +147,7 @@ impl<S: Copy> Servovalve<S> {
 
 impl<S: Copy> Supply<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Supply<T> {
         Supply { pressure: of(self.pressure), tank_pressure: of(self.tank_pressure) }
     }

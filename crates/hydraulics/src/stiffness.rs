@@ -143,6 +143,7 @@ impl ChamberCompliance<f64> {
 
 impl<S: Copy> ChamberCompliance<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> ChamberCompliance<T> {
         ChamberCompliance {
             area_a: of(self.area_a),

@@ -85,11 +85,13 @@ impl<P> ClosedLoop<P> {
         states
     }
 
+    #[inline(always)]
     fn is_delayed(&self) -> bool {
         self.delay_s > 0.0
     }
 
     /// Command before and after its limit, error, and reference behind the prefilter, for states and inputs of the loop.
+    #[inline(always)]
     pub fn signals<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> LoopSignals<T>
     where
         P: Plant<S>,
@@ -109,6 +111,7 @@ impl<P> ClosedLoop<P> {
     }
 
     /// What drives the states of G.
+    #[inline(always)]
     fn driving<T: Scalar>(&self, signals: &LoopSignals<T>) -> T {
         match self.anti_windup {
             AntiWindup::BackCalculation => {
@@ -153,6 +156,7 @@ impl<S: Scalar, P: Plant<S>> System<S> for ClosedLoop<P> {
         scales
     }
 
+    #[inline(always)]
     fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
         let signals = self.signals::<S, T>(state, inputs);
         let (of_plant, of_controller) = state.split_at(self.plant.states());
@@ -260,6 +264,7 @@ impl<S: Scalar, P: Plant<S>> System<S> for HeldPlant<P> {
         scales
     }
 
+    #[inline(always)]
     fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
         let (of_plant, of_prefilter) = state.split_at(self.plant.states());
         let (plant_rates, prefilter_rates) = rates.split_at_mut(of_plant.len());

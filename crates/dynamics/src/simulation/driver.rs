@@ -146,7 +146,7 @@ where
         let delays: Vec<f64> = system.delays().iter().map(|delay| delay.lane(lane)).collect();
         check(system, &task, lane, &delays)?;
         for (state, &value) in self.state.iter_mut().zip(&task.start) {
-            *state = state.with_lane(lane, value);
+            state.set_lane(lane, value);
         }
         self.method.scales = system.scales();
         let held = task.sampler.as_ref().map_or(0.0, |sampler| sampler.held());
@@ -167,7 +167,7 @@ where
         if !self.indicators.is_empty() {
             system.indicate(&self.state, &self.between.inputs, &mut self.between.indicators);
             for (kept, new) in self.indicators.iter_mut().zip(&self.between.indicators) {
-                *kept = kept.with_lane(lane, new.lane(lane));
+                kept.set_lane(lane, new.lane(lane));
             }
         }
         self.fresh = true;
@@ -216,11 +216,12 @@ where
         let mut looked = S::from(0.0);
         for lane in 0..S::COUNT {
             let Some(Slot { passage, inputs, propagated, .. }) = &mut self.slots[lane] else { continue };
-            if !*propagated && error.lane(lane) <= 1.0 && passage.looked_into() {
+            let looked_into = passage.looked_into() && self.method.binds_stiffly(lane, passage.step_s);
+            if !*propagated && error.lane(lane) <= 1.0 && looked_into {
                 passage.inputs_within(0.5, inputs);
                 passage.work.evaluations += 1;
                 set_lane(&mut self.between.inputs, lane, inputs);
-                looked = looked.with_lane(lane, 1.0);
+                looked.set_lane(lane, 1.0);
             }
         }
         let mask = S::from(0.0).less_than(looked);
@@ -258,7 +259,7 @@ where
             }
         }
         passage.choose(sample_time_s);
-        self.step = self.step.with_lane(lane, passage.step_s);
+        self.step.set_lane(lane, passage.step_s);
         if passage.stands_still() {
             return;
         }
@@ -294,7 +295,7 @@ where
             all &= slot.propagated;
             if slot.propagated {
                 slot.passage.go_whole();
-                self.step = self.step.with_lane(lane, slot.passage.step_s);
+                self.step.set_lane(lane, slot.passage.step_s);
                 slot.passage.work.steps += 1;
                 slot.passage.work.evaluations += 2;
             }
@@ -323,19 +324,17 @@ where
     }
 
     /// A state over the step, found once for all lanes.
-    fn extension(&mut self, index: usize) -> Extension<S> {
-        if let Some(known) = self.between.extensions[index] {
-            return known;
-        }
-        let start = self.state[index];
-        let extension = if self.between.propagated {
-            let slopes = self.propagator.rates.each_ref().map(|rates| rates[index] * self.step);
-            Extension::cubic([start, self.between.end[index]], slopes)
-        } else {
-            self.method.extension(index, start)
-        };
-        self.between.extensions[index] = Some(extension);
-        extension
+    fn extension(&mut self, index: usize) -> &Extension<S> {
+        let (method, propagator, state) = (&self.method, &self.propagator, &self.state);
+        let (end, step, propagated) = (&self.between.end, self.step, self.between.propagated);
+        self.between.extensions[index].get_or_insert_with(|| {
+            if propagated {
+                let slopes = propagator.rates.each_ref().map(|rates| rates[index] * step);
+                Extension::cubic([state[index], end[index]], slopes)
+            } else {
+                method.extension(index, state[index])
+            }
+        })
     }
 
     /// Moves one lane to the end of the step it took.
@@ -346,7 +345,7 @@ where
         self.observe(lane);
         let Some(slot) = &mut self.slots[lane] else { return };
         for (state, end) in self.state.iter_mut().zip(&self.between.end) {
-            *state = state.with_lane(lane, end.lane(lane));
+            state.set_lane(lane, end.lane(lane));
         }
         slot.passage.arrive();
         if slot.passage.status == Some(Status::Completed) {
@@ -421,7 +420,7 @@ where
         for index in 0..self.indicators.len() {
             let before = self.indicators[index].lane(lane);
             let after = self.between.ends[index].lane(lane);
-            self.indicators[index] = self.indicators[index].with_lane(lane, after);
+            self.indicators[index].set_lane(lane, after);
             if (before > 0.0) == (after > 0.0) {
                 continue;
             }
@@ -458,6 +457,6 @@ where
 
 fn set_lane<S: Lane>(places: &mut [S], lane: usize, values: &[f64]) {
     for (place, &value) in places.iter_mut().zip(values) {
-        *place = place.with_lane(lane, value);
+        place.set_lane(lane, value);
     }
 }

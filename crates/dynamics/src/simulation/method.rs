@@ -1,5 +1,7 @@
 //! The methods that a system can be driven by, behind one interface.
 
+use pulp::Arch;
+
 use super::explicit::{self, DormandPrince};
 use super::rosenbrock::{self, DIRECTIONS, Rosenbrock};
 use super::{Lane, System};
@@ -74,7 +76,10 @@ where
     /// Takes note of the start of a step: rates, and what derivatives the method needs.
     pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>) {
         match &mut self.steps {
-            Steps::Implicit(method) => method.linearize(system, state, inputs),
+            Steps::Implicit(method) => Arch::new().dispatch(
+                #[inline(always)]
+                || method.linearize(system, state, inputs),
+            ),
             Steps::Explicit(method) => method.begin(system, state, inputs),
         }
     }
@@ -91,13 +96,22 @@ where
     ) -> S {
         let scales = &self.scales;
         match &mut self.steps {
-            Steps::Implicit(method) => method.attempt(system, state, step, inputs, scales, tolerance),
+            Steps::Implicit(method) => Arch::new().dispatch(
+                #[inline(always)]
+                || method.attempt(system, state, step, inputs, scales, tolerance),
+            ),
             Steps::Explicit(method) => method.attempt(system, state, step, inputs, scales, tolerance),
         }
     }
 
+    /// Whether what lies between the ends of a step may be further off than what stands at its end: never for the explicit
+    /// method, whose steps are too short for that.
+    pub(super) fn binds_stiffly(&self, lane: usize, step_s: f64) -> bool {
+        self.linearized().is_some_and(|method| method.binds_stiffly(lane, step_s))
+    }
+
     /// How far what lies between the ends of the step just attempted is off, for the inputs in its middle, in units of the
-    /// tolerance; nothing for the explicit method, whose steps are too short for that.
+    /// tolerance.
     pub(super) fn error_between<E: System<S>>(
         &mut self,
         system: &E,
@@ -148,6 +162,7 @@ where
 }
 
 /// Root mean square of the errors over tolerance (scale + |y|).
+#[inline(always)]
 pub(super) fn relative_error<S: Lane>(
     errors: &[S],
     state: &[S],

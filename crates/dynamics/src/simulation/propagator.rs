@@ -78,19 +78,19 @@ impl<S: Lane> Propagator<S> {
         let scales: Vec<f64> = scales.iter().map(|scale| scale.lane(lane)).collect();
         let mut scaled = vec![0.0; states * states];
         for entry in self.jacobian.iter_mut() {
-            *entry = entry.with_lane(lane, 0.0);
+            entry.set_lane(lane, 0.0);
         }
         for (row, column, value) in method.jacobian_entries() {
             let (place, value) = (row * states + column, value.lane(lane));
-            self.jacobian[place] = self.jacobian[place].with_lane(lane, value);
+            self.jacobian[place].set_lane(lane, value);
             scaled[place] = step_s * value * scales[column] / scales[row];
         }
         let [first, third] = first_and_third(&scaled, states);
         for row in 0..states {
             for column in 0..states {
                 let (place, unit) = (row * states + column, step_s * scales[row] / scales[column]);
-                self.first[place] = self.first[place].with_lane(lane, unit * first[place]);
-                self.third[place] = self.third[place].with_lane(lane, 2.0 * unit * third[place]);
+                self.first[place].set_lane(lane, unit * first[place]);
+                self.third[place].set_lane(lane, 2.0 * unit * third[place]);
             }
         }
         self.step_s[lane] =

@@ -70,15 +70,18 @@ impl Realization {
     }
 
     /// C x.
+    #[inline(always)]
     fn tapped<T: Scalar>(&self, state: &[T]) -> T {
         let products = self.taps.iter().map(|&(column, value)| state[column].times(value));
         products.fold(T::from(0.0), |sum, product| sum + product)
     }
 
+    #[inline(always)]
     pub(super) fn output<T: Scalar>(&self, state: &[T], input: T) -> T {
         self.tapped(state) + input.times(self.feedthrough)
     }
 
+    #[inline(always)]
     pub(super) fn rates<T: Scalar>(&self, state: &[T], input: T, rates: &mut [T]) {
         rates.fill(T::from(0.0));
         for &(row, column, value) in &self.dynamics {

@@ -12,6 +12,9 @@ const STAGES: usize = 8;
 /// Derivatives found in one evaluation.
 pub(super) const DIRECTIONS: usize = 6;
 
+/// Times the step: a rate beyond which what lies between the ends of a step is looked after.
+const STIFF: f64 = 1e3;
+
 /// gamma, on the diagonal of every stage.
 const GAMMA: f64 = 0.21193756319429014;
 
@@ -99,6 +102,8 @@ struct Found {
     direction: usize,
     /// Its place in the step's matrix.
     entry: usize,
+    /// Whether it is what a state's rate makes of the state itself.
+    own: bool,
 }
 
 /// States are combined in groups of four: whole vectors for the machine. The last group is filled up with zeros.
@@ -168,6 +173,7 @@ where
     }
 
     /// Rates, Jacobian and slopes in time at the start of a step.
+    #[inline(always)]
     pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>) {
         // The slope in time is one more direction.
         let in_time = self.pattern.colour_count;
@@ -211,6 +217,7 @@ where
 
     /// One step of length h from here, [`Rosenbrock::linearize`] having been called here; the error of each lane in
     /// units of the tolerance. Above one, or not a number, the step is to be tried again with a shorter one.
+    #[inline(always)]
     pub(super) fn attempt<E: System<S>>(
         &mut self,
         system: &E,
@@ -244,6 +251,12 @@ where
         S::select(S::from(0.0).less_than(kept), error, S::from(f64::INFINITY))
     }
 
+    /// Whether a state of this lane would come to rest within a small part of the step, if the others stood still.
+    pub(super) fn binds_stiffly(&self, lane: usize, step_s: f64) -> bool {
+        let own = self.jacobian.iter().zip(&self.found).filter(|(_, found)| found.own);
+        own.map(|(rate, _)| rate.lane(lane)).any(|rate| rate * step_s < -STIFF)
+    }
+
     /// How far the continuous extension is off in the middle of the step just attempted, in units of the tolerance, for the
     /// inputs there: the remainder of the equations, brought to the state as a stage's increment is.
     ///
@@ -252,7 +265,6 @@ where
     /// ```
     ///
     /// Where a state is bound stiffly to others or to an input the error at the end says nothing of what lies between.
-    /// Source: Steinebach (2024), Rosenbrock methods within OrdinaryDiffEq.jl.
     pub(super) fn error_between<E: System<S>>(
         &mut self,
         system: &E,
@@ -278,6 +290,7 @@ where
     }
 
     /// y + sum a_ij u_j.
+    #[inline(always)]
     fn begin_stage(&mut self, stage: usize) {
         let groups = self.stage.len();
         let one = S::from(1.0);
@@ -298,6 +311,7 @@ where
     }
 
     /// The increment of a stage from its rates.
+    #[inline(always)]
     fn finish_stage(&mut self, stage: usize, step: S, per_step: S, moving: bool) {
         let groups = self.stage.len();
         let (before, after) = self.increments.split_at_mut(stage * groups);
@@ -344,7 +358,7 @@ impl<S: Lane> Rosenbrock<S> {
 }
 
 /// base + factor sum w_j u_j over the first K stages.
-#[inline]
+#[inline(always)]
 fn combine<S: Lane, const K: usize>(
     sums: &mut [Group<S>],
     base: &[Group<S>],
@@ -374,7 +388,8 @@ fn found<S: Lane>(pattern: &Pattern, matrix: &StepMatrix<S>) -> Vec<Found> {
         for (place, &column) in columns.iter().enumerate() {
             let colour = pattern.colours[column];
             let (pass, direction) = (colour / DIRECTIONS, colour % DIRECTIONS);
-            all.push(Found { row, pass, direction, entry: matrix.entry(row, place) });
+            let (entry, own) = (matrix.entry(row, place), row == column);
+            all.push(Found { row, pass, direction, entry, own });
         }
     }
     all

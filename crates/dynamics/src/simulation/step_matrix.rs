@@ -33,13 +33,14 @@ impl<S: Lane> Triangle<S> {
     }
 
     /// Takes its values from the entries.
+    #[inline(always)]
     fn take(&mut self, entries: &[S]) {
         for (value, &(entry, _)) in self.values.iter_mut().zip(&self.terms) {
             *value = entries[entry as usize];
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn substitute(&self, vector: &mut [S]) {
         let mut begin = 0;
         for &(state, end) in &self.rows {
@@ -125,6 +126,7 @@ impl<S: Lane> StepMatrix<S> {
     }
 
     /// All entries zero but those of `diagonal` times the identity.
+    #[inline(always)]
     pub(super) fn reset(&mut self, diagonal: S) {
         self.values.fill(S::from(0.0));
         for &entry in &self.diagonal {
@@ -138,12 +140,13 @@ impl<S: Lane> StepMatrix<S> {
     }
 
     /// Subtracts a number from an entry.
-    #[inline]
+    #[inline(always)]
     pub(super) fn subtract(&mut self, entry: usize, value: S) {
         self.values[entry] = self.values[entry] - value;
     }
 
     /// Factors the matrix where it stands; positive in each lane where every pivot kept its digits.
+    #[inline(always)]
     pub(super) fn factor(&mut self) -> S {
         let mut least = S::from(f64::INFINITY);
         let values = &mut self.values;
@@ -175,7 +178,7 @@ impl<S: Lane> StepMatrix<S> {
     }
 
     /// Solves W x = b in the place of b.
-    #[inline]
+    #[inline(always)]
     pub(super) fn solve(&self, vector: &mut [S]) {
         self.forward.substitute(vector);
         for (value, &inverse) in vector.iter_mut().zip(&self.inverses) {

@@ -111,9 +111,9 @@ impl<'a, S: Lane> Queue<'a, Machine<S>> for Line<'a> {
         let index = self.order.pop()?;
         let case = &self.cases[index];
         let [stiffness, rate, delay_s] = case.parameters;
-        machine.stiffness = machine.stiffness.with_lane(lane, stiffness);
-        machine.rate = machine.rate.with_lane(lane, rate);
-        machine.delay_s = machine.delay_s.with_lane(lane, delay_s);
+        machine.stiffness.set_lane(lane, stiffness);
+        machine.rate.set_lane(lane, rate);
+        machine.delay_s.set_lane(lane, delay_s);
         self.in_lane[lane] = index;
         let sampler = case.sample_time_s.map(|time_s| Box::new(Holding(time_s)) as Box<dyn Sampler>);
         let (start, course) = (case.start.to_vec(), &case.course);

@@ -52,12 +52,13 @@ impl<S: Scalar> LuGre<S> {
     /// let force: f64 = lugre.force(-0.004, settled);
     /// assert!((force - curve.steady_force(-0.004)).abs() < 1e-12 * force.abs());
     /// ```
+    #[inline(always)]
     pub fn bristle_rate(&self, velocity: S, deflection: S) -> S {
         velocity - self.bristle_stiffness * velocity.abs() * deflection / self.curve.sliding_force(velocity)
     }
 
     /// Friction force in N and dz/dt in m/s together: the exponential is taken once.
-    #[inline]
+    #[inline(always)]
     pub fn force_and_rate(&self, shape: StribeckShape, velocity: S, deflection: S) -> (S, S) {
         let spring = self.bristle_stiffness * deflection;
         let rate = velocity - velocity.abs() * spring / self.curve.sliding_force_of(shape, velocity);
@@ -65,6 +66,7 @@ impl<S: Scalar> LuGre<S> {
     }
 
     /// Friction force in N at sliding velocity v in m/s and bristle deflection z in m.
+    #[inline(always)]
     pub fn force(&self, velocity: S, deflection: S) -> S {
         self.bristle_stiffness * deflection
             + self.bristle_damping * self.bristle_rate(velocity, deflection)
@@ -121,6 +123,7 @@ impl LuGre {
 
 impl<S: Copy> LuGre<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> LuGre<T> {
         LuGre {
             curve: self.curve.convert(of),

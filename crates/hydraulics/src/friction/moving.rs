@@ -68,6 +68,7 @@ impl<S: Copy> MovingFriction<S> {
     }
 
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> MovingFriction<T> {
         match *self {
             MovingFriction::Viscous { viscous } => MovingFriction::Viscous { viscous: of(viscous) },
@@ -92,7 +93,7 @@ impl<S: Scalar> MovingFriction<S> {
     /// let friction = MovingFriction::new(&Friction::Viscous { viscous: 100.0 }, None).unwrap();
     /// assert_eq!(friction.at(0.25, 0.0).force, 25.0);
     /// ```
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, velocity: S, bristle: S) -> FrictionForce<S> {
         let none = S::from(0.0);
         match self {

@@ -33,7 +33,7 @@ pub enum StribeckShape {
 
 impl<S: Scalar> Stribeck<S> {
     /// g(v) in N as [`Stribeck::sliding_force`], the shape known beforehand.
-    #[inline]
+    #[inline(always)]
     pub fn sliding_force_of(&self, shape: StribeckShape, velocity: S) -> S {
         match shape {
             StribeckShape::Squared => {
@@ -63,7 +63,7 @@ impl<S: Scalar> Stribeck<S> {
     /// assert!((smooth - curve.steady_force(0.1)).abs() < 1e-5);
     /// assert_eq!(curve.regular_force(StribeckShape::Power, 0.0, 1e-5), 0.0);
     /// ```
-    #[inline]
+    #[inline(always)]
     pub fn regular_force(&self, shape: StribeckShape, velocity: S, regular_velocity: S) -> S {
         let speed = (velocity.squared() + regular_velocity.squared()).sqrt();
         self.sliding_force_of(shape, velocity) * velocity / speed + self.viscous * velocity
@@ -126,6 +126,7 @@ impl Stribeck {
 
 impl Stribeck {
     /// How its exponent is best evaluated.
+    #[inline(always)]
     pub fn shape(&self) -> StribeckShape {
         if self.stribeck_exponent == 2.0 { StribeckShape::Squared } else { StribeckShape::Power }
     }
@@ -133,6 +134,7 @@ impl Stribeck {
 
 impl<S: Copy> Stribeck<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Stribeck<T> {
         Stribeck {
             coulomb: of(self.coulomb),

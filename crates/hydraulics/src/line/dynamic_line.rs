@@ -40,6 +40,7 @@ pub enum DynamicLine<S = f64> {
 
 impl<S: Copy> DynamicLine<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> DynamicLine<T> {
         match self {
             DynamicLine::Segments(line) => DynamicLine::Segments(line.convert(of)),

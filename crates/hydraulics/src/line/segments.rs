@@ -106,6 +106,7 @@ impl Segments {
 
 impl<S: Copy> Segments<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Segments<T> {
         Segments {
             count: self.count,

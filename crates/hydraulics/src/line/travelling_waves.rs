@@ -80,6 +80,7 @@ impl<const M: usize> TravellingWaves<M> {
 
 impl<const M: usize, S: Copy> TravellingWaves<M, S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> TravellingWaves<M, T> {
         TravellingWaves {
             waves: self.waves.map(|wave| Wave {

@@ -127,6 +127,7 @@ fn aerated_side(
 
 impl<S: Copy> Chambers<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Chambers<T> {
         match self {
             Chambers::Clean(compliance) => Chambers::Clean(compliance.convert(of)),
@@ -143,6 +144,7 @@ impl<S: Copy> Chambers<S> {
 }
 
 impl<S: Copy> AeratedSide<S> {
+    #[inline(always)]
     fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> AeratedSide<T> {
         AeratedSide {
             fluid_constant: of(self.fluid_constant),
@@ -155,7 +157,7 @@ impl<S: Copy> AeratedSide<S> {
 
 impl<S: Scalar> Chambers<S> {
     /// C_A and C_B in m3/Pa at piston position `x` in m and chamber pressures in Pa gauge.
-    #[inline]
+    #[inline(always)]
     pub fn compliance(&self, x: S, pressures: [S; 2]) -> [S; 2] {
         match self {
             Chambers::Clean(compliance) => compliance_at(compliance, x),

@@ -31,6 +31,7 @@ impl Contact {
 
 impl<S: Copy> Contact<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Contact<T> {
         Contact { stiffness: of(self.stiffness), relative_damping: of(self.relative_damping) }
     }
@@ -48,7 +49,7 @@ impl<S: Scalar> Contact<S> {
     /// assert!(stop.force(1e-5, 0.1) > 1e3 && stop.force(1e-5, -0.1) < 1e3);
     /// assert_eq!(stop.force(1e-5, -10.0), 0.0);
     /// ```
-    #[inline]
+    #[inline(always)]
     pub fn force(&self, penetration: S, rate: S) -> S {
         let zero = S::from(0.0);
         let damping = (S::from(1.0) + self.relative_damping * rate).maximum(zero);

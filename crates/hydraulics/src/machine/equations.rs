@@ -32,14 +32,14 @@ pub(super) struct Forces<T> {
 }
 
 /// A parameter as a constant of the equations.
-#[inline]
+#[inline(always)]
 pub(super) fn constant<S, T: From<S>>(parameter: S) -> T {
     T::from(parameter)
 }
 
 impl<S: Scalar> Machine<S> {
     /// Pressures at the valve's ports: the supply's own where it does not yield.
-    #[inline]
+    #[inline(always)]
     pub(super) fn supply_of<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> Supply<T> {
         let stated = self.supply.convert(&mut constant::<S, T>);
         match self.power_unit {
@@ -49,7 +49,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Motion of the load: a state, or that of its ground.
-    #[inline]
+    #[inline(always)]
     pub(super) fn load_of<T: Scalar>(
         &self,
         state: &MachineState<T>,
@@ -59,7 +59,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Pressures at the valve's ports A and B: the chambers' own where lines are lumped.
-    #[inline]
+    #[inline(always)]
     pub(super) fn ports<T: Scalar + From<S>>(&self, state: &MachineState<T>, lines: [&[T]; 2]) -> [T; 2] {
         if self.layout.has_lines() {
             self.ports_of_lines(state, lines)
@@ -77,14 +77,14 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Compliance of both chambers with what their lines add, in m3/Pa.
-    #[inline]
+    #[inline(always)]
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         let pressures = [state.pressure_a, state.pressure_b];
         self.chambers.convert(&mut constant::<S, T>).compliance(position, pressures)
     }
 
     /// Flows at the pressures of the valve's ports A and B.
-    #[inline]
+    #[inline(always)]
     pub(super) fn flows<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,
@@ -99,7 +99,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Flow across the piston from A to B, in m3/s.
-    #[inline]
+    #[inline(always)]
     pub(super) fn leakage<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
         self.internal_leakage.map_or(T::from(0.0), |conductance| {
             constant::<S, T>(conductance) * (state.pressure_a - state.pressure_b)
@@ -107,7 +107,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Oil that the valve takes from the supply, tare flow included, in m3/s.
-    #[inline]
+    #[inline(always)]
     pub(super) fn supply_flow<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,
@@ -121,7 +121,7 @@ impl<S: Scalar> Machine<S> {
         tare_flow(&valve, &self.supply_of(state), constant(self.tare_reference_drop))
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn forces<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> Forces<T> {
         let areas = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let end_stops = match self.end_stops {
@@ -141,7 +141,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// The equations of the machine: rates of all states at a command in V.
-    #[inline]
+    #[inline(always)]
     pub(super) fn write_rates<T: Scalar + From<S>>(
         &self,
         vector: &[T],
@@ -218,7 +218,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Rate of the supply pressure in Pa/s.
-    #[inline]
+    #[inline(always)]
     fn supply_rate<T: Scalar + From<S>>(&self, state: &MachineState<T>, flows: &Flows<T>) -> T {
         match self.power_unit.convert(&mut constant::<S, T>) {
             PowerUnit::Constant => T::from(0.0),

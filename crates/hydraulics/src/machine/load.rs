@@ -85,6 +85,7 @@ impl<S: Copy> LoadModel<S> {
     }
 
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> LoadModel<T> {
         match *self {
             LoadModel::Prescribed => LoadModel::Prescribed,
@@ -103,7 +104,7 @@ impl<S: Copy> LoadModel<S> {
 
 impl<S: Scalar> LoadModel<S> {
     /// The load's acceleration in m/s2 under the sensor's force in N; zero for a prescribed motion, which yields to none.
-    #[inline]
+    #[inline(always)]
     pub fn acceleration(&self, sensed: S, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> S {
         let relative = relative(load, ground);
         match self {
@@ -152,7 +153,7 @@ impl<S: Scalar> LoadModel<S> {
 }
 
 /// Motion of the load seen from its ground.
-#[inline]
+#[inline(always)]
 fn relative<S: Scalar>(load: &LoadMotion<S>, ground: &LoadMotion<S>) -> LoadMotion<S> {
     LoadMotion { position: load.position - ground.position, velocity: load.velocity - ground.velocity }
 }

@@ -74,6 +74,7 @@ impl<S: Copy> PowerUnit<S> {
     }
 
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> PowerUnit<T> {
         match self {
             PowerUnit::Constant => PowerUnit::Constant,
@@ -104,7 +105,7 @@ impl<S: Scalar> PumpLimited<S> {
     /// assert_eq!(unit.relief_flow(70e5, 70e5), 1.6e-4);
     /// assert_eq!(unit.relief_flow(64e5, 70e5), 0.0);
     /// ```
-    #[inline]
+    #[inline(always)]
     pub fn relief_flow(&self, pressure: S, stated: S) -> S {
         let above = pressure - (stated - self.relief_override);
         self.pump_flow * above.maximum(S::from(0.0)) / self.relief_override
@@ -120,7 +121,7 @@ impl<S: Scalar> PumpLimited<S> {
     }
 
     /// Rate of the supply pressure in Pa/s while `taken` in m3/s goes to the valve.
-    #[inline]
+    #[inline(always)]
     pub fn pressure_rate(&self, pressure: S, stated: S, taken: S) -> S {
         (self.pump_flow - self.relief_flow(pressure, stated) - taken) / self.compliance(pressure)
     }

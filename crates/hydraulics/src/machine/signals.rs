@@ -112,7 +112,7 @@ impl<S: Scalar> Machine<S> {
 }
 
 /// The machine's inputs by name; what is missing is not a number.
-#[inline]
+#[inline(always)]
 pub(super) fn ground_of<T: Scalar>(inputs: &[T]) -> LoadMotion<T> {
     let mut entries = inputs.iter().copied();
     let mut next = || entries.next().unwrap_or(T::from(f64::NAN));

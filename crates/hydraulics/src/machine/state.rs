@@ -81,7 +81,7 @@ impl Layout {
     }
 
     /// Number of states that have names: all but the lines'.
-    #[inline]
+    #[inline(always)]
     fn named(&self) -> usize {
         let Layout { bristle, load, supply, spool_friction, magnetic_lag, .. } = *self;
         let single = usize::from(bristle) + usize::from(supply);
@@ -94,19 +94,19 @@ impl Layout {
     }
 
     /// Whether lines have states of their own.
-    #[inline]
+    #[inline(always)]
     pub(super) fn has_lines(&self) -> bool {
         self.lines != [0, 0]
     }
 
     /// States of both lines.
-    #[inline]
+    #[inline(always)]
     pub(super) fn lines<'a, T>(&self, vector: &'a [T]) -> [&'a [T]; 2] {
         two_parts(vector, self.named(), self.lines)
     }
 
     /// States of both lines, to be written.
-    #[inline]
+    #[inline(always)]
     pub(super) fn lines_mut<'a, T>(&self, vector: &'a mut [T]) -> [&'a mut [T]; 2] {
         let [count_a, count_b] = self.lines;
         let after_named = vector.get_mut(self.named()..).unwrap_or_default();
@@ -117,7 +117,7 @@ impl Layout {
     }
 
     /// Waves that arrive from both lines.
-    #[inline]
+    #[inline(always)]
     pub(super) fn arriving<'a, T>(&self, inputs: &'a [T]) -> [&'a [T]; 2] {
         two_parts(inputs, GROUND_INPUTS, self.waves)
     }
@@ -131,7 +131,7 @@ impl Layout {
     }
 
     /// The states by name; what the vector lacks is not a number.
-    #[inline]
+    #[inline(always)]
     pub(super) fn read<T: Scalar>(&self, vector: &[T]) -> MachineState<T> {
         let mut state = MachineState::zero();
         let mut entries = vector.iter();
@@ -140,7 +140,7 @@ impl Layout {
     }
 
     /// The states in the order of the vector.
-    #[inline]
+    #[inline(always)]
     pub(super) fn write<T: Scalar>(&self, state: &MachineState<T>, vector: &mut [T]) {
         let mut state = *state;
         let mut entries = vector.iter_mut();
@@ -152,7 +152,7 @@ impl Layout {
     }
 
     /// Visits the places of all states in the order of the vector.
-    #[inline]
+    #[inline(always)]
     fn visit<T>(&self, state: &mut MachineState<T>, mut visit: impl FnMut(&mut T)) {
         visit(&mut state.spool.spool);
         visit(&mut state.spool.spool_rate);
@@ -180,7 +180,7 @@ impl Layout {
 }
 
 /// Two parts of these lengths behind the first entries; nothing where there is not so much.
-#[inline]
+#[inline(always)]
 fn two_parts<T>(vector: &[T], behind: usize, [first, second]: [usize; 2]) -> [&[T]; 2] {
     let rest = vector.get(behind..).unwrap_or_default();
     match rest.split_at_checked(first) {

@@ -19,7 +19,7 @@ impl<S: Scalar> Openings<S> {
     ///
     /// The positive part is (U + |U|)/2 and the negative (|U| - U)/2, so that a derivative taken exactly at U = 0 is the
     /// mean of the two one-sided ones.
-    #[inline]
+    #[inline(always)]
     pub fn at(valve: &Servovalve<S>, spool: S) -> Openings<S> {
         let relative = spool / valve.nominal_voltage;
         let half = S::from(0.5);
@@ -52,7 +52,7 @@ pub struct ChamberFlows<S> {
 /// assert_eq!(hyperbolic_secant(-1e4), 0.0);
 /// assert!((hyperbolic_secant(1.0_f64) - 0.6480542736638855).abs() < 1e-15);
 /// ```
-#[inline]
+#[inline(always)]
 pub fn hyperbolic_secant<S: Scalar>(argument: S) -> S {
     let decay = (-argument.abs()).exp();
     S::from(2.0) * decay / (S::from(1.0) + decay.squared())
@@ -69,7 +69,7 @@ pub fn hyperbolic_secant<S: Scalar>(argument: S) -> S {
 ///
 /// with u = U_Csp/U_Cn, its positive and negative parts u+ and u-, and the regular root of [`crate::orifice`]. The
 /// leakage's shape is that of thesis (4.14), here on each edge. `spool` in V, pressures in Pa.
-#[inline]
+#[inline(always)]
 pub fn edge_flows<S: Scalar>(
     valve: &Servovalve<S>,
     supply: &Supply<S>,
@@ -77,16 +77,32 @@ pub fn edge_flows<S: Scalar>(
     pressure_a: S,
     pressure_b: S,
 ) -> EdgeFlows<S> {
-    let (flow, leakage) = (&valve.flow_coefficients, &valve.leakage_coefficients);
+    let (flow, leakage, transition) =
+        (&valve.flow_coefficients, &valve.leakage_coefficients, valve.transition_pressure);
+    let (out_of_supply_a, into_tank_a) = (supply.pressure - pressure_a, pressure_a - supply.tank_pressure);
+    let (out_of_supply_b, into_tank_b) = (supply.pressure - pressure_b, pressure_b - supply.tank_pressure);
     let Openings { forward, backward, leakage: shape } = *openings;
-    let edge = |flow: S, opening: S, leakage: S, drop: S| {
-        orifice::flow(flow * opening + leakage * shape, drop, valve.transition_pressure)
-    };
     Edges {
-        supply_to_a: edge(flow.supply_to_a, forward, leakage.supply_to_a, supply.pressure - pressure_a),
-        a_to_tank: edge(flow.a_to_tank, backward, leakage.a_to_tank, pressure_a - supply.tank_pressure),
-        supply_to_b: edge(flow.supply_to_b, backward, leakage.supply_to_b, supply.pressure - pressure_b),
-        b_to_tank: edge(flow.b_to_tank, forward, leakage.b_to_tank, pressure_b - supply.tank_pressure),
+        supply_to_a: orifice::flow(
+            flow.supply_to_a * forward + leakage.supply_to_a * shape,
+            out_of_supply_a,
+            transition,
+        ),
+        a_to_tank: orifice::flow(
+            flow.a_to_tank * backward + leakage.a_to_tank * shape,
+            into_tank_a,
+            transition,
+        ),
+        supply_to_b: orifice::flow(
+            flow.supply_to_b * backward + leakage.supply_to_b * shape,
+            out_of_supply_b,
+            transition,
+        ),
+        b_to_tank: orifice::flow(
+            flow.b_to_tank * forward + leakage.b_to_tank * shape,
+            into_tank_b,
+            transition,
+        ),
     }
 }
 

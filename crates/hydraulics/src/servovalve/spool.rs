@@ -69,6 +69,7 @@ impl SpoolImperfection {
 
 impl<S: Copy> SpoolImperfection<S> {
     /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> SpoolImperfection<T> {
         SpoolImperfection {
             null_bias: of(self.null_bias),
@@ -81,7 +82,7 @@ impl<S: Copy> SpoolImperfection<S> {
 
 impl<S: Scalar> SpoolImperfection<S> {
     /// Position in V that the edges have: the spool's, less null bias and lag.
-    #[inline]
+    #[inline(always)]
     pub fn opening(&self, state: &SpoolState<S>) -> S {
         let unbiased = state.spool - self.null_bias;
         if self.hysteresis_width.is_some() { unbiased - state.magnetic_lag } else { unbiased }
@@ -99,7 +100,7 @@ impl<S: Scalar> SpoolImperfection<S> {
     /// assert_eq!(at(1e3), at(10.0));
     /// assert_eq!(at(-3.0), -3.0 * 1099.0 * 1099.0);
     /// ```
-    #[inline]
+    #[inline(always)]
     pub fn rates(&self, valve: &Servovalve<S>, state: &SpoolState<S>, command: S) -> SpoolState<S> {
         let SpoolState { spool, spool_rate, spool_friction, magnetic_lag } = *state;
         let half = S::from(0.5);

@@ -20,7 +20,7 @@ use crate::orifice::regular_root;
 /// assert_eq!(at(70e5), 7.55e-6);
 /// assert!((at(280e5) / at(70e5) - 2.0_f64).abs() < 1e-6);
 /// ```
-#[inline]
+#[inline(always)]
 pub fn tare_flow<S: Scalar>(valve: &Servovalve<S>, supply: &Supply<S>, reference_drop: S) -> S {
     let transition = valve.transition_pressure;
     valve.tare_flow * regular_root(supply.pressure - supply.tank_pressure, transition)
