@@ -65,6 +65,26 @@ pub(crate) enum Command {
     Simulate(Common),
     /// The same scenarios of several projects side by side
     Compare(Several),
+    /// Monte Carlo: the nonlinear machine with drawn numbers, many times; Ctrl-C keeps what is done, and the same command goes on
+    Campaign {
+        #[command(flatten)]
+        common: Common,
+        /// How many runs
+        #[arg(long, value_name = "N", required_unless_present = "run", value_parser = clap::value_parser!(u64).range(1..))]
+        runs: Option<u64>,
+        /// Seed of all random numbers: with a run's index it gives its numbers
+        #[arg(long, value_name = "S", default_value_t = 1)]
+        seed: u32,
+        /// A part of the runs, such as 2/4; the tables of all parts, one after the other, are the table of the whole
+        #[arg(long, value_name = "I/N")]
+        shard: Option<String>,
+        /// One run again, by its index: its numbers as --set, and all that happened
+        #[arg(long, value_name = "INDEX", conflicts_with_all = ["runs", "shard"])]
+        run: Option<u64>,
+        /// Threads; the rows do not depend on it
+        #[arg(long, value_name = "N")]
+        threads: Option<usize>,
+    },
     /// Everything above as one self-contained HTML page; a controller is designed where the project has a design section or gives no law
     Report(Common),
 }

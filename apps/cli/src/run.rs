@@ -1,9 +1,11 @@
+mod campaign;
+
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use phea_workbench::answer::Answer;
-use phea_workbench::command::{self, CommandError, Request};
+use phea_workbench::command::{self, CampaignRequest, CommandError, Request};
 use phea_workbench::design::DESIGNED_PROJECT;
 use phea_workbench::project::{self, Loaded, STARTER};
 use phea_workbench::shaping::{SHAPED_PROJECT, Shaped};
@@ -41,6 +43,12 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         }
         Command::Simulate(common) => on_project(&common, &Request::Simulate),
         Command::Compare(several) => on_projects(&several),
+        Command::Campaign { common, runs, seed, shard, run, threads } => {
+            match campaign::request(runs, seed, shard.as_deref(), run, (threads, common.out.is_some())) {
+                Ok(request) => on_campaign(&common, &request),
+                Err(message) => Err(format!("error: {message}")),
+            }
+        }
         Command::Report(common) => {
             let request = if common.out.is_some() { Request::Report } else { Request::Page };
             on_project(&common, &request)
@@ -82,13 +90,18 @@ fn on_project(common: &Common, request: &Request) -> Result<u8, String> {
 
 /// The same, the designed or shaped project written to a file of its own.
 fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, String> {
-    match answered(common, request, save) {
-        Ok((answer, _)) if common.json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
+    told(common.json, answered(common, request, save))
+}
+
+/// Says an answer with what was written, or why there is none.
+fn told(json: bool, outcome: Result<(Answer, Vec<PathBuf>), Refused>) -> Result<u8, String> {
+    match outcome {
+        Ok((answer, _)) if json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
         Ok((answer, written)) => {
             say(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
         }
         Err(refused) => {
-            if common.json {
+            if json {
                 say(&format!("{}\n", refused.json))?;
             }
             Err(refused.text)
@@ -96,20 +109,14 @@ fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) ->
     }
 }
 
+/// A campaign, its table kept in the folder for files.
+fn on_campaign(common: &Common, asked: &CampaignRequest) -> Result<u8, String> {
+    told(common.json, campaign::answered(common, asked))
+}
+
 /// Several projects in one answer.
 fn on_projects(several: &Several) -> Result<u8, String> {
-    match compared(several) {
-        Ok((answer, _)) if several.json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
-        Ok((answer, written)) => {
-            say(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
-        }
-        Err(refused) => {
-            if several.json {
-                say(&format!("{}\n", refused.json))?;
-            }
-            Err(refused.text)
-        }
-    }
+    told(several.json, compared(several))
 }
 
 fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Refused> {

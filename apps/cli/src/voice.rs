@@ -24,28 +24,52 @@ pub(crate) fn complain(text: &str) {
 /// Time after which a person wants to know that something happens, and between two lines about it.
 const PATIENCE: Duration = Duration::from_millis(500);
 
+/// Longest time that is told, s.
+const LONGEST_S: f64 = 1e9;
+
 /// One line on standard error that follows a long command; nothing where nobody looks.
 pub(crate) struct ProgressLine {
     next: Option<Instant>,
     shown: bool,
+    /// When it was first told how far it is, and how far that was: of work that goes on evenly.
+    even: Option<(Instant, f64)>,
 }
 
 impl Default for ProgressLine {
     fn default() -> Self {
         let next = io::stderr().is_terminal().then(|| Instant::now() + PATIENCE);
-        ProgressLine { next, shown: false }
+        ProgressLine { next, shown: false, even: None }
     }
 }
 
 impl ProgressLine {
+    /// The same for work that goes on evenly, with the time that remains.
+    pub(crate) fn show_evenly(&mut self, progress: Progress) {
+        let now = Instant::now();
+        let (start, share) = *self.even.get_or_insert((now, progress.share));
+        let gained = progress.share - share;
+        let took = now.duration_since(start);
+        if gained <= 0.0 || took < PATIENCE {
+            return self.show(progress);
+        }
+        let left = took.as_secs_f64() * (1.0 - progress.share) / gained;
+        let left = Duration::from_secs_f64(left.clamp(0.0, LONGEST_S)).as_secs();
+        let (hours, minutes, seconds) = (left / 3600, left / 60 % 60, left % 60);
+        self.write(progress, &format!(", {hours}:{minutes:02}:{seconds:02} left"));
+    }
+
     /// Shows how far it is, not too often.
     pub(crate) fn show(&mut self, progress: Progress) {
+        self.write(progress, "");
+    }
+
+    fn write(&mut self, progress: Progress, more: &str) {
         let now = Instant::now();
         if self.next.is_some_and(|next| now >= next) {
             self.next = Some(now + PATIENCE);
             self.shown = true;
             let percent = (100.0 * progress.share).clamp(0.0, 100.0);
-            let _ = write!(io::stderr().lock(), "\r{}: {percent:.0} %\x1b[K", progress.stage);
+            let _ = write!(io::stderr().lock(), "\r{}: {percent:.0} %{more}\x1b[K", progress.stage);
         }
     }
 

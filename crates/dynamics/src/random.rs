@@ -13,12 +13,32 @@ use crate::portable;
 /// assert!((0.0..1.0).contains(&first) && phea_dynamics::random::share(&mut state) != first);
 /// ```
 pub fn share(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
+    *state = state.wrapping_add(INCREMENT);
+    (mixed(*state) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Where the random numbers of the experiment with this index begin: they follow from seed and index alone, whatever other
+/// experiments there are.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::random::{share, stream};
+/// let first = |seed, index| share(&mut stream(seed, index));
+/// assert_eq!(first(1, 7), first(1, 7));
+/// assert!(first(1, 7) != first(1, 8) && first(1, 7) != first(2, 7));
+/// ```
+pub fn stream(seed: u64, index: u64) -> u64 {
+    mixed(mixed(seed.wrapping_add(INCREMENT)) ^ mixed(index.wrapping_add(INCREMENT)).wrapping_add(INCREMENT))
+}
+
+const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// Every bit of the result depends on every bit of the number, and no two numbers give one result.
+fn mixed(number: u64) -> u64 {
+    let mut z = number;
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^= z >> 31;
-    (z >> 11) as f64 / (1_u64 << 53) as f64
+    z ^ (z >> 31)
 }
 
 /// The next number of a normal distribution with mean zero and standard deviation one.

@@ -39,7 +39,7 @@ pub use start::{Beginning, Start};
 pub use state::MachineState;
 
 use phea_dynamics::scalar::{Lanes, Scalar};
-use phea_dynamics::simulation::Plant;
+use phea_dynamics::simulation::{Lane, Plant};
 
 use crate::actuator::Actuator;
 use crate::cylinder::Cylinder;
@@ -222,6 +222,43 @@ impl<const L: usize> Machine<Lanes<L>> {
             }
             (index, _) => Err(MachineError::DifferentStructure { index: index.unwrap_or_default() }),
         }
+    }
+}
+
+impl<S: Lane> Machine<S> {
+    /// Puts another machine into one lane.
+    ///
+    /// # Errors
+    /// A machine with other components than these; nothing is changed then.
+    ///
+    /// # Example
+    /// ```
+    /// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
+    /// # use phea_hydraulics::reference_rig::{components, hose_line, pipe_line};
+    /// # use phea_hydraulics::machine::{Machine, MachineError, MachineOptions};
+    /// let of = |line| Actuator::new(components(line, StiffnessModel::ByVolume));
+    /// let [hose, pipe] = [of(hose_line())?, of(pipe_line())?].map(|a| Machine::new(&a, &MachineOptions::default()));
+    /// let (hose, pipe) = (hose?, pipe?);
+    /// let mut lanes = Machine::gather(&[hose, hose])?;
+    /// lanes.put(1, &pipe)?;
+    /// assert_eq!(lanes, Machine::gather(&[hose, pipe])?);
+    /// let leaking = MachineOptions { internal_leakage: Some(1e-13), ..MachineOptions::default() };
+    /// let other = Machine::new(&of(hose_line())?, &leaking)?;
+    /// assert_eq!(lanes.put(0, &other), Err(MachineError::DifferentStructure { index: 0 }));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn put(&mut self, lane: usize, machine: &Machine) -> Result<(), MachineError> {
+        if machine.convert(&mut |_| 0.0) != self.convert(&mut |_| 0.0) {
+            return Err(MachineError::DifferentStructure { index: lane });
+        }
+        let mut values = Vec::new();
+        machine.convert(&mut |value| values.push(value));
+        let mut values = values.into_iter();
+        *self = self.convert(&mut |mut kept| {
+            kept.set_lane(lane, values.next().unwrap_or(f64::NAN));
+            kept
+        });
+        Ok(())
     }
 }
 

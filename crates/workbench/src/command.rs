@@ -1,11 +1,16 @@
 //! The commands on a project: what is asked, and the answer that a shell prints and writes.
 
+mod campaign;
+
+pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
+
 use phea_qft::family::Family;
 use phea_qft::verification::Verdict;
 use serde::Serialize;
 
 use crate::answer::{self, Answer, OutputFile};
 use crate::audit::{self, AuditError, audit_project};
+use crate::campaign::{CampaignError, Nowhere};
 use crate::control::{ControlError, controller, sensor};
 use crate::derived::{self, derive};
 use crate::design::{self, DesignError, design_project};
@@ -56,6 +61,8 @@ pub enum Request {
     Simulate,
     /// The same scenarios of this project and others side by side, by [`compare`].
     Compare,
+    /// The nonlinear machine with drawn numbers, many times.
+    Campaign(CampaignRequest),
     /// The page with every figure as a file.
     Report,
     /// The page alone.
@@ -74,6 +81,7 @@ impl Request {
             Request::Design { .. } => "design",
             Request::Simulate => "simulate",
             Request::Compare => "compare",
+            Request::Campaign(_) => "campaign",
             Request::Report | Request::Page => "report",
         }
     }
@@ -142,6 +150,9 @@ pub enum CommandError {
     /// The machine cannot be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
+    /// There is no campaign.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
     /// The same, of one project among several.
     #[error("{path}: {error}")]
     Compare {
@@ -163,6 +174,9 @@ impl CommandError {
             CommandError::Family(FamilyError::Measurement(report)) => Some(report),
             CommandError::Shaping(ShapingError::Refused(report)) => Some(report),
             CommandError::Simulate(SimulateError::Motion(report))
+            | CommandError::Campaign(
+                CampaignError::Settings(report) | CampaignError::Simulate(SimulateError::Motion(report)),
+            )
             | CommandError::Compare { error: SimulateError::Motion(report), .. } => Some(report),
             _ => None,
         }
@@ -221,6 +235,7 @@ pub fn answer_watched(
         Request::Design { seed, stages } => design_answer(source, loaded, *seed, *stages, watch),
         Request::Simulate => simulate_answer(source, loaded, watch),
         Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
+        Request::Campaign(asked) => campaign_watched(source, loaded, catalogues, asked, &mut Nowhere, watch),
         Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
         Request::Page => {
             report_answer(source, loaded, catalogues, watch, |report| Ok(vec![report.page_file()]))

@@ -38,6 +38,7 @@ pub mod stiffness_over_stroke;
 pub mod svg;
 pub mod templates;
 pub mod ticks;
+pub mod time_bands;
 pub mod time_panels;
 pub mod tornado;
 pub mod typeset;
@@ -61,6 +62,7 @@ pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_ch
 pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};
 pub use stiffness_over_stroke::{StiffnessCurve, StiffnessInput, stiffness_over_stroke};
 pub use templates::templates;
+pub use time_bands::{TimeBands, TimeBandsInput, time_bands};
 pub use time_panels::{TimePanel, TimePanelsInput, time_panels};
 pub use tornado::{TornadoBar, TornadoInput, tornado};
 

@@ -4,6 +4,7 @@
 
 pub mod answer;
 pub mod audit;
+pub mod campaign;
 pub mod catalogue;
 pub mod command;
 pub mod control;

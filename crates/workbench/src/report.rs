@@ -2,6 +2,7 @@
 
 mod audit;
 mod bounds;
+mod campaign;
 mod chapter;
 mod closed_loops;
 mod derived;
@@ -62,7 +63,7 @@ const SETTLING_BAND: f64 = 1.0;
 /// Scale of the figures as PNG: 1120 pixels of width.
 const PNG_SCALE: f64 = 2.0;
 
-/// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, simulation, specifications, templates
+/// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, simulation, campaign, specifications, templates
 /// and bounds, the audit of the given controller, provenance; of a plant given as a transfer function, the robust part of it. Where the
 /// project has `[design]`, or gives no controller, one is designed and shown beside the given one.
 ///
@@ -81,6 +82,7 @@ pub fn report(
         None => (vec![], vec![]),
     };
     chapters.extend(simulation::chapter(source, project, watch)?);
+    chapters.extend(campaign::chapter(source, loaded, watch)?);
     let mut tables = Vec::new();
     if !project.specifications.is_empty() {
         tables = robust_chapters(source, loaded, watch, (&mut chapters, &mut facts))?;

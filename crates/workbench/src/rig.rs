@@ -19,6 +19,7 @@ use phea_hydraulics::two_pressure::{
 
 use crate::project::{self, Project};
 
+pub(crate) use assembly::actuator;
 pub(crate) use parameters::parameter_field;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub use sizing::{SizingError, sizing_problem};

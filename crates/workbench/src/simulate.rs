@@ -17,9 +17,14 @@ pub use compare::{Comparison, compare_projects};
 pub use metrics::{Cause, Measured, Metrics, Window};
 pub use run::{Occurrence, Record, ScenarioRun, Stopped};
 
-pub(crate) use answer::{compare_json, json};
+pub(crate) use answer::{Body, body, compare_json, json};
+pub(crate) use bench::{Control, between_samples, options};
+pub(crate) use course::{Driven, course_of, driven, windows};
+pub(crate) use digital::{Digital, Sample};
 pub(crate) use figures::{comparison_files, pictures};
 pub(crate) use files::files;
+pub(crate) use metrics::{Seen, metrics_seen};
+pub(crate) use run::{COMMAND_LIMIT, occurrences};
 pub(crate) use text::{METRICS, cause_words, cells_of, compare_text, headline, occurrence_sentences, text};
 
 use phea_dynamics::linear::LinearError;

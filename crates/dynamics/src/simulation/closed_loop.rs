@@ -234,6 +234,11 @@ impl<P> HeldPlant<P> {
         &self.plant
     }
 
+    /// The plant, to be changed.
+    pub fn plant_mut(&mut self) -> &mut P {
+        &mut self.plant
+    }
+
     /// States of F while the reference stands still.
     pub fn prefilter_at_rest(&self, reference: f64) -> Vec<f64> {
         self.prefilter.at_rest(reference, None)

@@ -11,6 +11,8 @@ pub struct Campaign {
     pub parameters: Vec<Varied>,
     /// How it is distributed where a parameter does not say.
     pub distribution: Distribution,
+    /// Name of the scenario that is driven; absent: the first.
+    pub scenario: Option<String>,
 }
 
 /// One varied number: around its declared value, or between two.
@@ -60,6 +62,7 @@ impl Campaign {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("distribution", "How everything is distributed that does not say otherwise.");
         v.choice(k, &DISTRIBUTIONS, &mut self.distribution, false);
+        v.text(plain("scenario", "Which scenario is driven; absent, the first."), &mut self.scenario, false);
         let k = plain("parameters", "What is varied, by its path.");
         v.dictionary(
             k,

@@ -7,20 +7,20 @@ use super::key::Key;
 use super::visitor::{Form, Kinds, Named, Shape, Visitor};
 use crate::catalogue::Kind;
 
-/// Walks a project without changing it, but for one number if asked to.
+/// Walks a project without changing it, but for the numbers it is asked to set.
 #[derive(Default)]
 pub(crate) struct Listing {
     /// Tables that are absent are listed too.
     everything: bool,
-    path: Vec<String>,
+    path: String,
     /// Every key with a value of its own, by its path.
     pub(crate) keys: Vec<KeyEntry>,
     /// Every number that exists, by its path.
     pub(crate) numbers: BTreeMap<String, (Key, f64)>,
-    /// A number to set.
-    assign: Option<(String, f64)>,
-    /// Whether it was found.
-    pub(crate) assigned: bool,
+    /// Numbers to set.
+    assign: BTreeMap<String, f64>,
+    /// How many of them were found.
+    pub(crate) assigned: usize,
 }
 
 /// A key as the documentation lists it.
@@ -42,15 +42,13 @@ impl Listing {
         Listing { everything: true, ..Listing::default() }
     }
 
-    /// Sets one number.
-    pub(crate) fn assigning(path: &str, value: f64) -> Self {
-        Listing { assign: Some((path.to_string(), value)), ..Listing::default() }
+    /// Sets numbers, and lists none.
+    pub(crate) fn assigning(assign: BTreeMap<String, f64>) -> Self {
+        Listing { assign, ..Listing::default() }
     }
 
     fn path_of(&self, name: &str) -> String {
-        let mut parts = self.path.clone();
-        parts.push(name.to_string());
-        parts.join(".")
+        if self.path.is_empty() { name.to_string() } else { [&self.path, ".", name].concat() }
     }
 
     fn list(&mut self, key: Key, takes: impl Into<String>, required: bool) {
@@ -62,19 +60,19 @@ impl Listing {
 
     fn number(&mut self, key: Key, field: &mut f64) {
         let path = self.path_of(key.name);
-        if let Some((wanted, value)) = &self.assign
-            && *wanted == path
-        {
+        if self.assign.is_empty() {
+            self.numbers.insert(path, (key, *field));
+        } else if let Some(value) = self.assign.get(&path) {
             *field = *value;
-            self.assigned = true;
+            self.assigned += 1;
         }
-        self.numbers.insert(path, (key, *field));
     }
 
-    fn within(&mut self, name: String, walk: impl FnOnce(&mut Self)) {
-        self.path.push(name);
+    fn within(&mut self, name: &str, walk: impl FnOnce(&mut Self)) {
+        let outside = self.path.len();
+        self.path = self.path_of(name);
         walk(self);
-        self.path.pop();
+        self.path.truncate(outside);
     }
 }
 
@@ -151,7 +149,7 @@ impl Visitor for Listing {
     fn table<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
         let mut absent = if self.everything { Some(T::default()) } else { None };
         if let Some(value) = field.as_mut().or(absent.as_mut()) {
-            self.within(key.name.to_string(), |listing| visit(value, listing));
+            self.within(key.name, |listing| visit(value, listing));
         }
     }
 
@@ -168,10 +166,10 @@ impl Visitor for Listing {
 
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
         if self.everything {
-            self.within(format!("{}[]", key.name), |listing| visit(&mut T::default(), listing));
+            self.within(&format!("{}[]", key.name), |listing| visit(&mut T::default(), listing));
         }
         for (index, value) in field.iter_mut().enumerate() {
-            self.within(format!("{}[{index}]", key.name), |listing| visit(value, listing));
+            self.within(&format!("{}[{index}]", key.name), |listing| visit(value, listing));
         }
     }
 
@@ -183,7 +181,7 @@ impl Visitor for Listing {
         visit: impl Fn(&mut T, Named<'_>, &mut Self),
     ) {
         if self.everything {
-            self.within(format!("{}.NAME", key.name), |listing| {
+            self.within(&format!("{}.NAME", key.name), |listing| {
                 visit(&mut T::default(), Named { name: "NAME", key }, listing);
             });
         }
@@ -208,7 +206,7 @@ impl Visitor for Listing {
             return;
         }
         for (key, field) in keys.into_iter().zip(fields) {
-            self.within(key.name.to_string(), |listing| visit(field, listing));
+            self.within(key.name, |listing| visit(field, listing));
         }
     }
 

@@ -1,9 +1,11 @@
 //! From the bytes of a file to a project: settings, tables, then what must hold between them.
 
+use std::collections::BTreeMap;
+
 use sha2::{Digest, Sha256};
 
 use super::diagnostic::{Report, Severity};
-use super::key::key;
+use super::key::{Key, key};
 use super::linear::LINEAR_PARAMETERS;
 use super::listing::{KeyEntry, Listing};
 use super::printer::Printer;
@@ -155,10 +157,10 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &Node, is_plant: bool, is_measu
 }
 
 /// Every number of the project that can be named, and the parameters of its linear model.
-fn numbers(project: &mut Project) -> std::collections::BTreeMap<String, super::Key> {
+fn numbers(project: &mut Project) -> BTreeMap<String, Key> {
     let mut listing = Listing::default();
     project.visit_system(&mut listing);
-    let mut named: std::collections::BTreeMap<String, super::Key> =
+    let mut named: BTreeMap<String, Key> =
         listing.numbers.into_iter().map(|(path, (key, _))| (path, key)).collect();
     named.remove("schema");
     if project.actuator.is_some() {
@@ -221,10 +223,41 @@ impl Project {
     /// The same project with another number at a path; `None` if there is no number.
     #[must_use]
     pub fn with_number(&self, path: &str, value: f64) -> Option<Project> {
-        let mut listing = Listing::assigning(path, value);
+        self.with_numbers(&[(path, value)])
+    }
+
+    /// The same project with other numbers at several paths; `None` if one of them leads to no number.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_workbench::project::{STARTER, read};
+    /// use phea_workbench::source::Memory;
+    /// let project = read(&Memory::default().with("p.toml", STARTER), "p.toml", &[], &[])?.project;
+    /// let other = project.with_numbers(&[("supply.pressure", 6e6), ("cylinder.moving_mass", 20.0)]);
+    /// assert_eq!(other.and_then(|other| other.number("supply.pressure")), Some(6e6));
+    /// assert_eq!(project.with_numbers(&[("supply.pressure", 6e6), ("supply.colour", 1.0)]), None);
+    /// # Ok::<(), phea_workbench::project::Report>(())
+    /// ```
+    #[must_use]
+    pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Option<Project> {
+        let assign: BTreeMap<String, f64> =
+            numbers.iter().map(|(path, value)| ((*path).to_string(), *value)).collect();
+        let wanted = assign.len();
+        let mut listing = Listing::assigning(assign);
         let mut project = self.clone();
-        project.visit_system(&mut listing);
-        listing.assigned.then_some(project)
+        if wanted > 0 {
+            project.visit_system(&mut listing);
+        }
+        (listing.assigned == wanted).then_some(project)
+    }
+
+    /// What is known of every number a campaign may vary, and its value where one is stated; those of the start have none here.
+    pub(crate) fn listed_numbers(&self) -> BTreeMap<String, (Key, Option<f64>)> {
+        let mut listing = Listing::default();
+        self.clone().visit_system(&mut listing);
+        let numbers = listing.numbers.into_iter().map(|(path, (key, value))| (path, (key, Some(value))));
+        let start = super::scenario::start_numbers().into_iter().map(|(path, key)| (path, (key, None)));
+        numbers.chain(start).collect()
     }
 }
 

@@ -108,6 +108,28 @@ impl Scenario {
 }
 
 impl Start {
+    /// A number of it by its key.
+    pub(crate) fn number(&self, key: &str) -> Option<f64> {
+        *self.clone().place(key)?
+    }
+
+    /// Another number for a key; nothing for a key it does not have.
+    pub(crate) fn set_number(&mut self, key: &str, value: f64) {
+        if let Some(place) = self.place(key) {
+            *place = Some(value);
+        }
+    }
+
+    fn place(&mut self, key: &str) -> Option<&mut Option<f64>> {
+        match key {
+            "position" => Some(&mut self.position),
+            "velocity" => Some(&mut self.velocity),
+            "pressure_a" => Some(&mut self.pressure_a),
+            "pressure_b" => Some(&mut self.pressure_b),
+            _ => None,
+        }
+    }
+
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("position", &LENGTH, "Position of the piston.").not_negative();
         v.optional(k, &mut self.position);

@@ -18,7 +18,7 @@ pub(super) const KINEMATIC_VISCOSITY: f64 = 46e-6;
 ///
 /// # Errors
 /// Every parameter that is impossible as physics.
-pub(super) fn actuator(declared: &project::Actuator) -> Result<Actuator, ActuatorError> {
+pub(crate) fn actuator(declared: &project::Actuator) -> Result<Actuator, ActuatorError> {
     let pressure = declared.supply.pressure;
     Actuator::new(Components {
         fluid: fluid(&declared.fluid),

@@ -8,7 +8,7 @@ use crate::answer;
 use crate::project::Loaded;
 
 #[derive(Serialize)]
-struct Body<'a> {
+pub(crate) struct Body<'a> {
     scenarios: Vec<ScenarioRow<'a>>,
     /// Scenarios that were not begun, because the run was stopped.
     not_run: Vec<&'a str>,
@@ -103,7 +103,8 @@ pub(crate) fn compare_json(comparison: &Comparison<'_>) -> String {
     answer::json("compare", first, CompareBody { projects: rows.collect() })
 }
 
-fn body<'a>(loaded: &'a Loaded, runs: &'a [ScenarioRun]) -> Body<'a> {
+/// What `simulate` says of a project.
+pub(crate) fn body<'a>(loaded: &'a Loaded, runs: &'a [ScenarioRun]) -> Body<'a> {
     let declared = loaded.project.scenarios.iter().map(|scenario| scenario.name.as_str());
     Body { scenarios: runs.iter().map(scenario).collect(), not_run: declared.skip(runs.len()).collect() }
 }

@@ -3,6 +3,7 @@
 use phea_dynamics::controller::{Controller, SampledController};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Sensed, Settings};
+use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::line::{DynamicLine, END_SHARE, Line, LineError, LineModel, Member};
 use phea_hydraulics::machine::{
     Accumulator, Contact, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited,
@@ -19,15 +20,17 @@ use crate::rig::Rig;
 #[derive(Clone, Debug)]
 pub struct Bench {
     /// The rig it was made of.
-    pub(super) rig: Rig,
-    pub(super) machine: Machine,
-    pub(super) control: Control,
-    pub(super) settings: Settings,
+    pub(crate) rig: Rig,
+    pub(crate) machine: Machine,
+    pub(crate) control: Control,
+    pub(crate) settings: Settings,
+    /// From the load's velocity to the command, V s/m; zero where nothing is fed forward.
+    pub(crate) feed_forward: f64,
 }
 
 /// A machine under its controller.
 #[derive(Clone, Debug)]
-pub(super) enum Control {
+pub(crate) enum Control {
     /// The controller acts continuously.
     Continuous(Box<ClosedLoop<Sensed<Machine>>>),
     /// It acts once a sample.
@@ -36,16 +39,16 @@ pub(super) enum Control {
 
 /// A machine behind a hold, and what commands it.
 #[derive(Clone, Debug)]
-pub(super) struct Sampled {
-    pub(super) held: HeldPlant<Sensed<Machine>>,
-    pub(super) controller: SampledController,
-    pub(super) delay_s: f64,
-    pub(super) command_limit: f64,
-    pub(super) feed_forward: f64,
-    pub(super) converters: Quantisation,
+pub(crate) struct Sampled {
+    pub(crate) held: HeldPlant<Sensed<Machine>>,
+    pub(crate) controller: SampledController,
+    pub(crate) delay_s: f64,
+    pub(crate) command_limit: f64,
+    pub(crate) feed_forward: f64,
+    pub(crate) converters: Quantisation,
     /// Root mean square of the noise in N, and where its random numbers begin.
-    pub(super) noise: f64,
-    pub(super) seed: u64,
+    pub(crate) noise: f64,
+    pub(crate) seed: u64,
 }
 
 impl Bench {
@@ -55,7 +58,7 @@ impl Bench {
     /// [`SimulateError`] where one of them is missing or impossible.
     pub fn new(project: &Project) -> Result<Bench, SimulateError> {
         let rig = Rig::new(project)?;
-        let options = options(project, &rig)?;
+        let options = options(project, &rig.actuator)?;
         let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
         let controller = controller(project)?.ok_or(SimulateError::NoController)?;
         let sensed = Sensed::new(machine, &sensor(project)?)?;
@@ -72,11 +75,23 @@ impl Bench {
             maximum_steps: u64::from(declared.maximum_steps),
             ..Settings::default()
         };
-        Ok(Bench { rig, machine, control, settings })
+        Ok(Bench { rig, machine, control, settings, feed_forward })
+    }
+
+    /// The same controller around another machine, made of this actuator.
+    pub(crate) fn around(&self, machine: Machine, actuator: Actuator) -> Bench {
+        let mut bench = self.clone();
+        bench.machine = machine;
+        bench.rig.actuator = actuator;
+        match &mut bench.control {
+            Control::Continuous(closed) => *closed.plant_mut().plant_mut() = machine,
+            Control::Sampled(sampled) => *sampled.held.plant_mut().plant_mut() = machine,
+        }
+        bench
     }
 
     /// The plant as the controller sees it.
-    pub(super) fn sensed(&self) -> &Sensed<Machine> {
+    pub(crate) fn sensed(&self) -> &Sensed<Machine> {
         match &self.control {
             Control::Continuous(closed) => closed.plant(),
             Control::Sampled(sampled) => sampled.held.plant(),
@@ -91,10 +106,7 @@ fn sampled(
     sample_time_s: f64,
     feed_forward: f64,
 ) -> Result<Sampled, SimulateError> {
-    let mut between = TransferFunction::gain_only(1.0);
-    if project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous) {
-        between = std::mem::take(&mut controller.prefilter).transfer_function()?;
-    }
+    let between = between_samples(project, &mut controller)?;
     let controller = deployed(project, &controller)?;
     let noise = project.actuator.as_ref().map_or(0.0, |actuator| actuator.force_sensor.noise);
     Ok(Sampled {
@@ -109,6 +121,17 @@ fn sampled(
     })
 }
 
+/// The prefilter, taken out of a sampled controller where the project lets it act between samples too.
+pub(crate) fn between_samples(
+    project: &Project,
+    controller: &mut Controller,
+) -> Result<TransferFunction, SimulateError> {
+    if project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous) {
+        return Ok(std::mem::take(&mut controller.prefilter).transfer_function()?);
+    }
+    Ok(TransferFunction::gain_only(1.0))
+}
+
 /// V s/m; the area over the flow gain holds the flow that the motion takes.
 fn feed_forward(project: &Project, rig: &Rig) -> f64 {
     let declared = project.controller.as_ref().and_then(|controller| controller.load_velocity_feed_forward);
@@ -116,7 +139,7 @@ fn feed_forward(project: &Project, rig: &Rig) -> f64 {
 }
 
 /// What the machine has beyond its actuator.
-fn options(project: &Project, rig: &Rig) -> Result<MachineOptions, SimulateError> {
+pub(crate) fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions, SimulateError> {
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
     if declared.load.model == project::LoadModel::Wall && declared.load.mass.is_none() {
         return Err(SimulateError::LoadMass);
@@ -140,24 +163,24 @@ fn options(project: &Project, rig: &Rig) -> Result<MachineOptions, SimulateError
         load: load(&declared.load),
         vapour_pressure_absolute: declared.fluid.vapour_pressure,
         member: Member::Nominal,
-        lines: lines(&declared.line, rig)?,
+        lines: lines(&declared.line, actuator)?,
     })
 }
 
 /// The lines as they move; `None` where both are lumped, and nothing of them moves.
-fn lines(declared: &project::Lines, rig: &Rig) -> Result<Option<[DynamicLine; 2]>, LineError> {
+fn lines(declared: &project::Lines, actuator: &Actuator) -> Result<Option<[DynamicLine; 2]>, LineError> {
     let models = [declared.a.model, declared.b.model];
     if models == [project::LineModel::Lumped; 2] {
         return Ok(None);
     }
-    let components = rig.actuator.components();
+    let components = actuator.components();
     let of = |line: &Line, model: project::LineModel| {
         let model = match model {
             project::LineModel::Lumped => LineModel::Lumped,
             project::LineModel::TransmissionLine => LineModel::TransmissionLine { end_share: END_SHARE },
             project::LineModel::TwoWave => LineModel::TwoWave { end_share: END_SHARE, wall: None },
         };
-        DynamicLine::new(line, &components.fluid, rig.actuator.mean_pressure(), Member::Nominal, &model)
+        DynamicLine::new(line, &components.fluid, actuator.mean_pressure(), Member::Nominal, &model)
     };
     let [model_a, model_b] = models;
     Ok(Some([of(&components.line_a, model_a)?, of(&components.line_b, model_b)?]))

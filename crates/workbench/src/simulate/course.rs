@@ -11,17 +11,25 @@ use crate::project::{self, LoadMotion, LoadMotionKind, Project, Scenario};
 use crate::source::Source;
 
 /// A scenario ready to be run.
-pub(super) struct Course {
+pub(crate) struct Course {
     /// In N.
-    pub(super) reference: Profile,
+    pub(crate) reference: Profile,
     /// Position of the load or of its ground in m.
-    pub(super) ground: Profile,
+    pub(crate) ground: Profile,
     /// States of the machine, its sensor and all that is continuous in its controller, and the waves under way.
-    pub(super) start: Vec<f64>,
+    pub(crate) start: Vec<f64>,
     /// What a sampled controller holds at the start, if it begins in equilibrium: reference, measurement and command.
-    pub(super) holding: Option<[f64; 3]>,
+    pub(crate) holding: Option<[f64; 3]>,
     /// What is looked at by itself.
-    pub(super) windows: Vec<Window>,
+    pub(crate) windows: Vec<Window>,
+}
+
+/// What drives a scenario, whatever machine it drives.
+pub(crate) struct Driven {
+    /// In N.
+    pub(crate) reference: Profile,
+    /// Of the load or of its ground in m, from where it starts.
+    pub(crate) motion: Profile,
 }
 
 pub(super) fn course(
@@ -30,6 +38,16 @@ pub(super) fn course(
     bench: &Bench,
     scenario: &Scenario,
 ) -> Result<Course, SimulateError> {
+    let driven = driven(source, project, scenario)?;
+    course_of(&driven, bench, scenario)
+}
+
+/// Reference and motion of a scenario.
+pub(crate) fn driven(
+    source: &dyn Source,
+    project: &Project,
+    scenario: &Scenario,
+) -> Result<Driven, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.name.clone(), error };
     let steps: Vec<(f64, f64)> = scenario.reference.iter().map(|step| (step.at, step.force)).collect();
     let reference = Profile::steps(0.0, &steps).map_err(named)?;
@@ -40,12 +58,21 @@ pub(super) fn course(
         }
         Some(declared) => motion(declared).map_err(named)?,
     };
+    Ok(Driven { reference, motion })
+}
+
+/// The scenario for the machine of a bench.
+pub(crate) fn course_of(
+    driven: &Driven,
+    bench: &Bench,
+    scenario: &Scenario,
+) -> Result<Course, SimulateError> {
     let beginning = beginning(bench, scenario)?;
     let ([ground, _], holds) = (beginning.inputs, scenario.start.is_none());
     let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
     Ok(Course {
-        reference,
-        ground: motion.shifted(ground),
+        reference: driven.reference.clone(),
+        ground: driven.motion.clone().shifted(ground),
         start: start(bench, &beginning, measured, holds),
         holding: holds.then_some([0.0, measured, beginning.command]),
         windows: windows(scenario),
@@ -143,7 +170,7 @@ fn under_way(system: &impl System<f64>, state: &[f64], first: &[f64], beginning:
 }
 
 /// One for each step of the reference and for the motion of the load, each until the next.
-fn windows(scenario: &Scenario) -> Vec<Window> {
+pub(crate) fn windows(scenario: &Scenario) -> Vec<Window> {
     let mut windows = Vec::new();
     let mut from_n = 0.0;
     for step in scenario.reference.iter().filter(|step| step.at < scenario.duration) {

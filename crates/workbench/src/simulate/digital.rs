@@ -10,13 +10,13 @@ use super::bench::Sampled;
 
 /// What happened at one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Sample {
-    pub(super) time_s: f64,
+pub(crate) struct Sample {
+    pub(crate) time_s: f64,
     /// Behind the prefilter, N.
-    pub(super) filtered_reference_n: f64,
+    pub(crate) filtered_reference_n: f64,
     /// What the computer gives out, V.
-    pub(super) command_v: f64,
-    pub(super) limited: bool,
+    pub(crate) command_v: f64,
+    pub(crate) limited: bool,
 }
 
 /// A sampled controller at work.
@@ -25,7 +25,7 @@ pub(super) struct Sample {
 /// m = AD(y + n)                                    y the sensor's, n white noise, AD rounds and ends at its range
 /// u = DA(limit(G (F r - m) + k v_L))               k v_L the feed-forward, DA rounds
 /// ```
-pub(super) struct Digital<'a> {
+pub(crate) struct Digital<'a> {
     sampled: &'a Sampled,
     state: ControllerState,
     random: u64,
@@ -36,7 +36,7 @@ pub(super) struct Digital<'a> {
 
 impl<'a> Digital<'a> {
     /// At rest, or holding a command while reference and measurement stand still.
-    pub(super) fn new(
+    pub(crate) fn new(
         sampled: &'a Sampled,
         holding: Option<[f64; 3]>,
         log: &'a RefCell<Vec<Sample>>,

@@ -63,18 +63,19 @@ const NO_REFERENCE: &str = "the reference is zero: a band around it has no width
 
 /// The metrics of a window; `band` in percent.
 pub(super) fn metrics(record: &Record, window: Window, band: f64) -> Metrics {
-    let end = record.times_s.last().copied().unwrap_or(0.0);
-    let within =
-        |time: f64| time >= window.start_s && (time < window.end_s || (time == window.end_s && time == end));
-    let rows: Vec<usize> = (0..record.times_s.len()).filter(|row| within(record.times_s[*row])).collect();
-    let column = |values: &[f64]| rows.iter().filter_map(|row| values.get(*row).copied()).collect::<Vec<_>>();
-    let force = record.signal("force_n");
-    let seen = Seen {
-        times_s: column(&record.times_s),
-        force_n: column(&force),
-        reference_n: column(&record.reference_n),
-        control_v: column(&record.control_v),
+    let whole = Seen {
+        times_s: &record.times_s,
+        force_n: &record.signal("force_n"),
+        reference_n: &record.reference_n,
+        control_v: &record.control_v,
     };
+    metrics_seen(&whole, window, band)
+}
+
+/// The metrics of a window of what was seen; `band` in percent.
+pub(crate) fn metrics_seen(all: &Seen<'_>, window: Window, band: f64) -> Metrics {
+    let end = all.times_s.last().copied().unwrap_or(0.0);
+    let seen = all.within(window);
     let whole = end >= window.end_s;
     match window.cause {
         _ if seen.times_s.len() < 3 => Metrics::none(UNREACHED, band),
@@ -97,19 +98,36 @@ impl Metrics {
     }
 }
 
-/// The part of a record in a window.
-struct Seen {
-    times_s: Vec<f64>,
-    force_n: Vec<f64>,
-    reference_n: Vec<f64>,
-    control_v: Vec<f64>,
+/// Looks at a run, or those in a window: as many values of each as there are times.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen<'a> {
+    /// Rising.
+    pub(crate) times_s: &'a [f64],
+    pub(crate) force_n: &'a [f64],
+    pub(crate) reference_n: &'a [f64],
+    pub(crate) control_v: &'a [f64],
 }
 
-impl Seen {
+impl<'a> Seen<'a> {
+    /// Those in a window; its last instant belongs to it where the run ends there.
+    fn within(&self, window: Window) -> Self {
+        let start = self.times_s.partition_point(|time| *time < window.start_s);
+        let last = self.times_s.last() == Some(&window.end_s);
+        let end =
+            self.times_s.partition_point(|time| *time < window.end_s || (last && *time == window.end_s));
+        let part = |values: &'a [f64]| values.get(start..end).unwrap_or_default();
+        Seen {
+            times_s: part(self.times_s),
+            force_n: part(self.force_n),
+            reference_n: part(self.reference_n),
+            control_v: part(self.control_v),
+        }
+    }
+
     fn step(&self, start_s: f64, [from_n, to_n]: [f64; 2], band: f64, whole: bool) -> Metrics {
         let beyond: Vec<f64> = self.force_n.iter().map(|force| (force - to_n) / (to_n - from_n)).collect();
         let baseline = StepBaseline { step_time_s: start_s, initial_value: from_n, final_value: to_n };
-        let settling = match step_metrics(&self.times_s, &self.force_n, baseline, band) {
+        let settling = match step_metrics(self.times_s, self.force_n, baseline, band) {
             _ if !whole => Err(UNREACHED),
             Ok(step) => match step.settling {
                 Settling::Settled { time_s } => Ok(time_s),
@@ -157,13 +175,13 @@ impl Seen {
         Metrics {
             steady_state_error_n: if whole { Ok(self.steady_error()) } else { Err(UNREACHED) },
             control_peak_v: Ok(magnitudes.iter().copied().fold(0.0, f64::max)),
-            control_rms_v: Ok(root_mean_square(&self.times_s, &self.control_v)),
+            control_rms_v: Ok(root_mean_square(self.times_s, self.control_v)),
             ..Metrics::none(UNREACHED, band)
         }
     }
 
     fn errors(&self) -> Vec<f64> {
-        self.reference_n.iter().zip(&self.force_n).map(|(reference, force)| reference - force).collect()
+        self.reference_n.iter().zip(self.force_n).map(|(reference, force)| reference - force).collect()
     }
 
     fn steady_error(&self) -> f64 {

@@ -94,7 +94,14 @@ impl ScenarioRun {
 
     /// Why and when it ended before its time; `None` if it did not.
     pub fn stopped(&self) -> Option<Stopped> {
-        let (time_s, word) = match self.status {
+        Stopped::of(self.status)
+    }
+}
+
+impl Stopped {
+    /// What a status says; `None` of a run that came to its end.
+    pub(crate) fn of(status: Status) -> Option<Stopped> {
+        let (time_s, word) = match status {
             Status::Completed => return None,
             Status::Cancelled { time_s } => (time_s, "cancelled"),
             Status::StepTooSmall { time_s } => (time_s, "step_too_small"),
@@ -179,7 +186,7 @@ fn continuous(
         record.signals.push(bench.machine.outputs(state, &inputs[1..]));
     }
     let first = inputs_at_start(course, vec![course.reference.value(0.0)], closed);
-    let occurrences = occurrences(closed, course, &first, &simulated.outcome.events);
+    let occurrences = occurrences(closed, &course.start, &first, &simulated.outcome.events);
     (simulated.outcome, record, occurrences)
 }
 
@@ -206,7 +213,7 @@ fn sampled(
         record.signals.push(bench.machine.outputs(state, &inputs[2..]));
     }
     let first = inputs_at_start(course, vec![0.0, course.reference.value(0.0)], held);
-    let mut occurrences = occurrences(held, course, &first, &simulated.outcome.events);
+    let mut occurrences = occurrences(held, &course.start, &first, &simulated.outcome.events);
     let mut limited = false;
     for sample in
         log.iter().filter(|sample| std::mem::replace(&mut limited, sample.limited) != sample.limited)
@@ -219,7 +226,7 @@ fn sampled(
 }
 
 /// The limit of the command, beside [`INDICATORS`].
-const COMMAND_LIMIT: &str = "command_limit";
+pub(crate) const COMMAND_LIMIT: &str = "command_limit";
 
 /// Inputs at time zero: those before the machine's, its ground, and the waves under way.
 fn inputs_at_start(course: &Course, mut first: Vec<f64>, system: &impl System<f64>) -> Vec<f64> {
@@ -230,16 +237,16 @@ fn inputs_at_start(course: &Course, mut first: Vec<f64>, system: &impl System<f6
 
 /// What there is from the start, and every change of an indicator. Those of the machine are positive while all is well, that of
 /// the command's limit while it is reached.
-fn occurrences(
+pub(crate) fn occurrences(
     system: &impl System<f64>,
-    course: &Course,
+    start: &[f64],
     first: &[f64],
     events: &[Event],
 ) -> Vec<Occurrence> {
     let kind = |index: usize| INDICATORS.get(index).copied().unwrap_or(COMMAND_LIMIT);
     let begins = |index: usize, positive: bool| positive != (index < INDICATORS.len());
     let mut indicators = vec![1.0; system.indicators()];
-    let state: Vec<f64> = course.start.iter().copied().take(system.states()).collect();
+    let state: Vec<f64> = start.iter().copied().take(system.states()).collect();
     system.indicate(&state, first, &mut indicators);
     let from_start = indicators.iter().enumerate().filter(|(index, value)| begins(*index, **value > 0.0));
     let mut found: Vec<Occurrence> =

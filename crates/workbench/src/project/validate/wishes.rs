@@ -27,7 +27,7 @@ pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut 
         }
     }
     if let Some(varied) = &project.campaign {
-        campaign(varied, check);
+        campaign(project, varied, check);
     }
 }
 
@@ -112,7 +112,16 @@ fn load_motion(motion: &LoadMotion, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-fn campaign(campaign: &Campaign, check: &mut Check<'_, '_>) {
+fn campaign(project: &Project, campaign: &Campaign, check: &mut Check<'_, '_>) {
+    if let Some(name) = &campaign.scenario
+        && !project.scenarios.iter().any(|scenario| scenario.name == *name)
+    {
+        check.error("campaign.scenario", format!("there is no scenario called \"{name}\""));
+    }
+    let varied: Vec<&str> = campaign.parameters.iter().map(|varied| varied.path.as_str()).collect();
+    for varied_path in &varied {
+        both_sides("campaign.parameters", "varied", varied_path, &varied, check);
+    }
     for varied in &campaign.parameters {
         let path = format!("campaign.parameters.{}", varied.path);
         match (varied.spread, varied.minimum, varied.maximum) {
@@ -211,23 +220,20 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
             check.error(&path, format!("`{}` is the variable of transfer functions", uncertain.name));
         }
         depends(uncertain, project, check);
-        both_sides(uncertain, project, check);
+        let names: Vec<&str> = project.uncertainty.iter().map(|other| other.name.as_str()).collect();
+        both_sides("uncertainty", "uncertain", &uncertain.name, &names, check);
         stated_elsewhere(uncertain, project, check);
     }
 }
 
 /// A number of both lines beside the same of one line would be set twice.
-fn both_sides(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) {
-    let Some(key) = uncertain.name.strip_prefix("line.") else { return };
+fn both_sides(table: &str, how: &str, name: &str, all: &[&str], check: &mut Check<'_, '_>) {
+    let Some(key) = name.strip_prefix("line.") else { return };
     for side in ["line.a", "line.b"] {
         let one = format!("{side}.{key}");
-        if project.uncertainty.iter().any(|other| other.name == one) {
-            let message = format!("`{one}` is part of `{}`: both cannot be uncertain", uncertain.name);
-            check.error_with_help(
-                &format!("uncertainty.{one}"),
-                message,
-                "list one of the two, or both sides",
-            );
+        if all.contains(&one.as_str()) {
+            let message = format!("`{one}` is part of `{name}`: both cannot be {how}");
+            check.error_with_help(&format!("{table}.{one}"), message, "list one of the two, or both sides");
         }
     }
 }

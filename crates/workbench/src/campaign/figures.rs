@@ -1,0 +1,138 @@
+//! Figures of a campaign: the bands of the force over time, with the worst run in them.
+
+use super::plan::Plan;
+use super::row::{METRIC_NAMES, Row};
+use super::statistics::{QUANTILES, Summary};
+use super::{CampaignError, Effort};
+use crate::answer::OutputFile;
+use crate::figure::{
+    DisplayUnit, Figure, TimeBands, TimeBandsInput, TimeEvent, TimeSeries, Words, time_bands,
+};
+use crate::simulate::{Cause, Window, cause_words};
+
+/// How much is drawn before and after what begins a window, s.
+const BEFORE_S: f64 = 0.02;
+const AFTER_S: f64 = 0.5;
+
+/// Scale of figures as PNG: 1120 pixels of width.
+const PNG_SCALE: f64 = 2.0;
+
+/// The bands over the whole scenario, and around each event; none where no run got anywhere.
+///
+/// # Errors
+/// As [`Plan::forces`].
+pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, CampaignError> {
+    let end = summary.bands.times_s.last().copied().unwrap_or(0.0);
+    let words = Words::new(
+        "campaign-bands",
+        format!("Campaign: {}", plan.scenario()),
+        "Half of all runs are in the darker band, nine in ten in the lighter one, at each time.",
+    );
+    if summary.bands.times_s.len() < 2 {
+        return Ok(vec![]);
+    }
+    let mut figures = vec![picture(words, plan, summary, [0.0, end], None)];
+    let windows = plan.windows().iter().enumerate();
+    for (index, window) in windows.filter(|(_, window)| window.start_s < end) {
+        let words = Words::new(
+            format!("campaign-bands-event-{}", index + 1),
+            format!("Enlarged: {}", cause_words(window)),
+            format!("The bands around what begins it, and the run with the worst {}.", worst_words(window)),
+        );
+        let span = [(window.start_s - BEFORE_S).max(0.0), (window.start_s + AFTER_S).min(end)];
+        figures.push(picture(words, plan, summary, span, worst_series(plan, summary, index)?));
+    }
+    Ok(figures)
+}
+
+/// What a window's worst run is chosen by.
+fn worst_metric(window: &Window) -> &'static str {
+    match window.cause {
+        Cause::ReferenceStep { .. } => "overshoot_percent",
+        Cause::LoadMotion => "disturbance_peak_n",
+    }
+}
+
+fn worst_words(window: &Window) -> &'static str {
+    match window.cause {
+        Cause::ReferenceStep { .. } => "overshoot",
+        Cause::LoadMotion => "disturbance",
+    }
+}
+
+/// The whole course of a window's worst run.
+fn worst_series(plan: &Plan, summary: &Summary, index: usize) -> Result<Option<TimeSeries>, CampaignError> {
+    let metric = plan.windows().get(index).map(worst_metric);
+    let place = METRIC_NAMES.iter().position(|name| Some(*name) == metric);
+    let spread = place.and_then(|place| summary.metrics.get(index).and_then(|spreads| spreads[place]));
+    let Some((_, run)) = spread.map(|spread| spread.worst) else { return Ok(None) };
+    let forces = plan.forces(run..run + 1, Effort { lanes: false, threads: 1 })?;
+    let values = forces.into_iter().next().unwrap_or_default();
+    Ok(Some(TimeSeries { name: format!("run {run}"), times_s: plan.times_s.clone(), values }))
+}
+
+fn picture(
+    words: Words,
+    plan: &Plan,
+    summary: &Summary,
+    span_s: [f64; 2],
+    worst: Option<TimeSeries>,
+) -> Figure {
+    let bands = &summary.bands;
+    let series = |quantile: usize| TimeSeries {
+        name: format!("{} %", QUANTILES[quantile]),
+        times_s: bands.times_s.clone(),
+        values: bands.force_n.iter().map(|forces| forces[quantile]).collect(),
+    };
+    let reference = TimeSeries {
+        name: "reference".to_string(),
+        times_s: plan.times_s.clone(),
+        values: plan.reference_n.clone(),
+    };
+    let inside = |window: &&Window| window.start_s >= span_s[0] && window.start_s <= span_s[1];
+    let event = |window: &Window| TimeEvent {
+        time_s: window.start_s,
+        label: match window.cause {
+            Cause::ReferenceStep { .. } => "step".to_string(),
+            Cause::LoadMotion => "load moves".to_string(),
+        },
+    };
+    time_bands(
+        words,
+        &TimeBandsInput {
+            quantity: "Force F_e".to_string(),
+            unit: DisplayUnit::KILONEWTON,
+            bands: vec![
+                TimeBands { name: "90 % of the runs".to_string(), lower: series(0), upper: series(4) },
+                TimeBands { name: "50 % of the runs".to_string(), lower: series(1), upper: series(3) },
+            ],
+            middle: TimeSeries { name: "median".to_string(), ..series(2) },
+            single: worst,
+            reference,
+            events: plan.windows().iter().filter(inside).map(event).collect(),
+            span_s,
+        },
+    )
+}
+
+/// The table for other programs and the figures.
+///
+/// # Errors
+/// A figure that cannot be drawn, and [`CampaignError`].
+pub(crate) fn files(
+    plan: &Plan,
+    (name, rows): (&str, &[Row]),
+    summary: &Summary,
+) -> Result<Vec<OutputFile>, crate::command::CommandError> {
+    let mut files = vec![OutputFile {
+        name: format!("{name}.parquet"),
+        bytes: super::parquet::table(&plan.columns, rows).map_err(CampaignError::Ledger)?,
+    }];
+    for figure in pictures(plan, summary)? {
+        let png = figure.to_png(PNG_SCALE).map_err(crate::command::CommandError::from)?;
+        let svg = figure.to_svg_standalone().into_bytes();
+        files.push(OutputFile { name: format!("{}.svg", figure.name), bytes: svg });
+        files.push(OutputFile { name: format!("{}.png", figure.name), bytes: png });
+    }
+    Ok(files)
+}

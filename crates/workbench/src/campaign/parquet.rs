@@ -1,0 +1,103 @@
+//! The rows of a campaign as an Apache Parquet table: the columns of its text, absent numbers null.
+
+use std::sync::Arc;
+
+use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::types::{Type, TypePtr};
+
+use super::row::{Columns, Row, RowOutcome, meaningful};
+
+/// The table of these rows.
+///
+/// # Errors
+/// In the words of the format's library.
+pub(super) fn table(columns: &Columns, rows: &[Row]) -> Result<Vec<u8>, String> {
+    written(columns, rows).map_err(|error| error.to_string())
+}
+
+/// A column with its values.
+enum Column {
+    Whole(Vec<Option<i64>>),
+    Text(Vec<Option<ByteArray>>),
+    Double(Vec<Option<f64>>),
+    Single(Vec<Option<f32>>),
+}
+
+fn written(columns: &Columns, rows: &[Row]) -> Result<Vec<u8>, ParquetError> {
+    let header = columns.header();
+    let names = header.trim_end().split(',');
+    let all = contents(columns, rows);
+    let fields = names.zip(&all).map(|(name, column)| field(name, column)).collect::<Result<_, _>>()?;
+    let schema = Arc::new(Type::group_type_builder("campaign").with_fields(fields).build()?);
+    let properties = Arc::new(WriterProperties::builder().build());
+    let mut file = SerializedFileWriter::new(Vec::new(), schema, properties)?;
+    let mut group = file.next_row_group()?;
+    for column in &all {
+        match column {
+            Column::Whole(values) => write::<Int64Type>(&mut group, values)?,
+            Column::Text(values) => write::<ByteArrayType>(&mut group, values)?,
+            Column::Double(values) => write::<DoubleType>(&mut group, values)?,
+            Column::Single(values) => write::<FloatType>(&mut group, values)?,
+        }
+    }
+    group.close()?;
+    file.into_inner()
+}
+
+fn field(name: &str, column: &Column) -> Result<TypePtr, ParquetError> {
+    let (physical, logical) = match column {
+        Column::Whole(_) => (Physical::INT64, None),
+        Column::Text(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+        Column::Double(_) => (Physical::DOUBLE, None),
+        Column::Single(_) => (Physical::FLOAT, None),
+    };
+    let field = Type::primitive_type_builder(name, physical);
+    Ok(Arc::new(field.with_repetition(Repetition::OPTIONAL).with_logical_type(logical).build()?))
+}
+
+fn write<T: DataType>(
+    group: &mut SerializedRowGroupWriter<'_, Vec<u8>>,
+    values: &[Option<T::T>],
+) -> Result<(), ParquetError> {
+    let Some(mut column) = group.next_column()? else {
+        return Err(ParquetError::General("more columns than names".to_string()));
+    };
+    let present: Vec<T::T> = values.iter().flatten().cloned().collect();
+    let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
+    column.typed::<T>().write_batch(&present, Some(&levels), None)?;
+    column.close()
+}
+
+/// In the order of the header.
+fn contents(columns: &Columns, rows: &[Row]) -> Vec<Column> {
+    let text = |of: &dyn Fn(&Row) -> Option<String>| {
+        Column::Text(rows.iter().map(|row| of(row).map(|text| ByteArray::from(text.as_str()))).collect())
+    };
+    let double = |of: &dyn Fn(&Row) -> Option<f64>| Column::Double(rows.iter().map(of).collect());
+    let whole = |of: &dyn Fn(&Row) -> Option<i64>| Column::Whole(rows.iter().map(of).collect());
+    let reason = |row: &Row| match &row.outcome {
+        RowOutcome::Refused(reason) => Some(reason.clone()),
+        RowOutcome::Driven(_) => None,
+    };
+    let mut all = vec![
+        whole(&|row| i64::try_from(row.run).ok()),
+        text(&|_| Some(columns.mark.clone())),
+        text(&|row| Some(row.status().to_string())),
+        text(&reason),
+        double(&|row| row.ran()?.ended_s),
+        whole(&|row| i64::try_from(row.ran()?.steps).ok()),
+        text(&|row| Some(row.ran()?.occurrences.join(";"))),
+    ];
+    all.extend((0..columns.paths.len()).map(|place| double(&|row| row.values.get(place).copied())));
+    all.extend((0..3).map(|lump| double(&|row| row.lumps.map(|lumps| lumps[lump]))));
+    for (number, window) in columns.windows.iter().enumerate() {
+        all.extend(meaningful(window).map(|metric| double(&|row| row.ran()?.metrics.get(number)?[metric])));
+    }
+    let force = |index: usize| rows.iter().map(|row| row.ran()?.force_n.get(index).copied()).collect();
+    all.extend((0..columns.times_s.len()).map(|index| Column::Single(force(index))));
+    all
+}

@@ -1,0 +1,152 @@
+//! Where the varied numbers lie, and what is drawn from there.
+
+use phea_dynamics::{portable, random};
+
+use super::CampaignError;
+use crate::project::{Campaign, Distribution, Key, Project, Scenario, Varied};
+
+/// A varied number: between two ends, as distributed.
+///
+/// ```text
+/// uniform         a + s (b - a)                                            s a share in [0, 1)
+/// normal          (a + b)/2 + n (b - a)/4                                  n standard normal: a and b two deviations away
+/// log-uniform     exp(ln a + s (ln b - ln a))
+/// triangular      a + (b - a) sqrt(s/2) below the middle, b - (b - a) sqrt((1 - s)/2) above
+/// ```
+#[derive(Clone, Debug)]
+pub struct VariedRange {
+    /// Of the project, or `start.` and a state.
+    pub path: String,
+    /// How it is distributed.
+    pub distribution: Distribution,
+    /// In SI.
+    pub minimum: f64,
+    /// In SI.
+    pub maximum: f64,
+    /// What the project says of such a number.
+    pub(super) key: Key,
+}
+
+impl VariedRange {
+    /// The next number from a stream of random ones.
+    pub(super) fn draw(&self, stream: &mut u64) -> f64 {
+        let (low, high) = (self.minimum, self.maximum);
+        let width = high - low;
+        match self.distribution {
+            Distribution::Uniform => low + width * random::share(stream),
+            Distribution::Normal => 0.5 * (low + high) + 0.25 * width * random::normal(stream),
+            Distribution::LogUniform => {
+                let (from, to) = (portable::ln(low), portable::ln(high));
+                portable::exp(from + random::share(stream) * (to - from))
+            }
+            Distribution::Triangular => match random::share(stream) {
+                share if share < 0.5 => low + width * (0.5 * share).sqrt(),
+                share => high - width * (0.5 * (1.0 - share)).sqrt(),
+            },
+        }
+    }
+
+    /// Why the project would not accept this number.
+    pub(super) fn problem(&self, value: f64) -> Option<String> {
+        (!self.key.range.contains(value)).then(|| format!("{} = {value} is outside its range", self.path))
+    }
+
+    /// In words, as in a project file.
+    pub fn distribution_word(&self) -> &'static str {
+        match self.distribution {
+            Distribution::Uniform => "uniform",
+            Distribution::Normal => "normal",
+            Distribution::LogUniform => "log_uniform",
+            Distribution::Triangular => "triangular",
+        }
+    }
+}
+
+/// The ranges of everything a campaign varies, in file order.
+///
+/// # Errors
+/// [`CampaignError`] where a spread has no declared number to spread around, or a logarithm would be of none.
+pub(super) fn ranges(
+    project: &Project,
+    campaign: &Campaign,
+    scenario: &Scenario,
+) -> Result<Vec<VariedRange>, CampaignError> {
+    if campaign.parameters.is_empty() {
+        return Err(CampaignError::Nothing);
+    }
+    let known = project.listed_numbers();
+    let range = |varied: &Varied| {
+        let path = varied.path.clone();
+        let Some((key, stated)) = known.get(&path).copied() else {
+            return Err(CampaignError::Unknown { path });
+        };
+        let stated = match path.strip_prefix("start.") {
+            Some(_) if scenario.start.is_none() => return Err(CampaignError::NoStart { path }),
+            Some(state) => scenario.start.as_ref().and_then(|start| start.number(state)).or(Some(0.0)),
+            None => stated,
+        };
+        let (minimum, maximum) = match (varied.spread, varied.minimum, varied.maximum, stated) {
+            (None, Some(minimum), Some(maximum), _) => (minimum, maximum),
+            (Some(spread), _, _, Some(value)) if value != 0.0 => {
+                (value - spread * value.abs(), value + spread * value.abs())
+            }
+            _ => return Err(CampaignError::NotStated { path }),
+        };
+        let distribution = varied.distribution.unwrap_or(campaign.distribution);
+        if distribution == Distribution::LogUniform && minimum <= 0.0 {
+            return Err(CampaignError::NoLogarithm { path, minimum });
+        }
+        Ok(VariedRange { path, distribution, minimum, maximum, key })
+    };
+    campaign.parameters.iter().map(range).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::project::{key, plain};
+    use crate::quantity::RATIO;
+
+    fn range(distribution: Distribution, minimum: f64, maximum: f64) -> VariedRange {
+        VariedRange { path: "a".to_string(), distribution, minimum, maximum, key: plain("a", "") }
+    }
+
+    /// Mean and variance of each distribution over a hundred thousand draws, within five standard errors.
+    #[test]
+    fn draws_have_the_moments_of_their_distribution() {
+        // ORIGIN: analytic, width 2: 2^2/12, (2/4)^2, 2^2/24; of ln a in [0, ln 100]: (ln 100)^2/12
+        let logarithm = portable::ln(100.0);
+        let cases = [
+            (Distribution::Uniform, [3.0, 5.0], 4.0, 4.0 / 12.0),
+            (Distribution::Normal, [3.0, 5.0], 4.0, 0.25),
+            (Distribution::Triangular, [3.0, 5.0], 4.0, 4.0 / 24.0),
+            (Distribution::LogUniform, [1.0, 100.0], 0.5 * logarithm, logarithm * logarithm / 12.0),
+        ];
+        for (distribution, [low, high], mean, variance) in cases {
+            let range = range(distribution, low, high);
+            let count = 100_000_u32;
+            let values: Vec<f64> = (0..count)
+                .map(|index| range.draw(&mut random::stream(3, u64::from(index))))
+                .map(
+                    |value| {
+                        if distribution == Distribution::LogUniform { portable::ln(value) } else { value }
+                    },
+                )
+                .collect();
+            let found = values.iter().sum::<f64>() / f64::from(count);
+            let spread =
+                values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / f64::from(count);
+            let error = 5.0 / f64::from(count).sqrt();
+            assert!((found - mean).abs() < error * variance.sqrt(), "{distribution:?}: mean {found}");
+            assert!((spread / variance - 1.0).abs() < error * 2.0_f64.sqrt(), "{distribution:?}: {spread}");
+        }
+    }
+
+    #[test]
+    fn what_the_project_would_not_accept_is_a_problem() {
+        let mass =
+            VariedRange { key: key("a", &RATIO, "").positive(), ..range(Distribution::Normal, -1.0, 3.0) };
+        assert_eq!(mass.problem(0.5), None);
+        assert_eq!(mass.problem(-0.5), Some("a = -0.5 is outside its range".to_string()));
+    }
+}

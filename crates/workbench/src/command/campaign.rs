@@ -1,0 +1,86 @@
+//! Campaigns as a command: all runs with their rows kept somewhere, or one run again.
+
+use super::{CommandError, Watch};
+use crate::answer::Answer;
+use crate::campaign::{self, CampaignError, Ledger, Plan, Summary, Wanted};
+use crate::project::{self, Loaded};
+use crate::simulate::{self, simulate_project};
+use crate::source::Source;
+
+/// What is asked of the campaign that a project declares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CampaignRequest {
+    /// Of all random numbers.
+    pub seed: u32,
+    /// All runs or one.
+    pub asked: CampaignRuns,
+    /// Whether the table for other programs and the figures are wanted as files.
+    pub files: bool,
+}
+
+/// Which runs of a campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CampaignRuns {
+    /// All, or a part of them.
+    All(Wanted),
+    /// The one with this index, told in full.
+    One(u64),
+}
+
+/// Answers a campaign, its rows kept in a ledger, from which an interrupted one goes on. The answer is yes if every run has its
+/// row, however it ended.
+///
+/// # Errors
+/// [`CommandError`] if the project declares no campaign, or the ledger fails.
+pub fn campaign_watched(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    request: &CampaignRequest,
+    ledger: &mut dyn Ledger,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
+    let plan = Plan::new(source, loaded, request.seed)?;
+    let wanted = match request.asked {
+        CampaignRuns::All(wanted) => wanted,
+        CampaignRuns::One(run) => return one(source, loaded, catalogues, &plan, run, watch),
+    };
+    let rows = campaign::campaign(&plan, wanted, ledger, watch)?;
+    let summary = Summary::of(&plan, &rows);
+    let runs = wanted.shard.runs_of(wanted.runs);
+    let complete = rows.len() as u64 == runs.end - runs.start;
+    let files = match request.files && complete {
+        true => campaign::files(&plan, (&wanted.shard.name(), &rows), &summary)?,
+        false => vec![],
+    };
+    Ok(Answer {
+        text: campaign::text(&plan, wanted, rows.len(), &summary),
+        json: campaign::json(loaded, &plan, wanted, rows.len(), &summary),
+        files,
+        affirmative: complete,
+    })
+}
+
+/// One run: its numbers as settings of the project, and all that `simulate` says with them.
+fn one(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    plan: &Plan,
+    run: u64,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
+    let draw = plan.draw(run);
+    let settings = plan.settings(&draw);
+    let all: Vec<String> = loaded.settings.iter().chain(&settings).cloned().collect();
+    let mut drawn = project::read(source, &loaded.path, &all, catalogues)
+        .map_err(|report| CampaignError::Settings(Box::new(report)))?;
+    drawn.project.scenarios.retain(|scenario| scenario.name == plan.scenario());
+    let runs = simulate_project(source, &drawn.project, watch)?;
+    Ok(Answer {
+        text: campaign::run_text(&draw, &settings, &drawn, &runs),
+        json: campaign::run_json(loaded, (plan, &draw), &settings, (&drawn, &runs)),
+        files: simulate::files(&runs),
+        affirmative: runs.iter().all(|run| run.stopped().is_none()),
+    })
+}

@@ -1,0 +1,340 @@
+//! Campaigns: the same rows however they are computed, wherever they are interrupted, and each run as `simulate` has it.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use std::fs;
+use std::path::Path;
+
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+use phea_workbench::campaign::{
+    CampaignError, Effort, Ledger, Plan, Row, RowOutcome, STATUS_WORDS, Shard, Summary, Wanted,
+};
+use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
+use phea_workbench::project::{self, Loaded};
+use phea_workbench::simulate::simulate_project;
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+const CAMPAIGN: &str = include_str!("../../../examples/benchmark/campaign.toml");
+
+/// Short enough for many runs: one step of the force, and a load that moves.
+const SHORT: [&str; 4] = [
+    "scenario.0.duration=0.4 s",
+    "scenario.0.reference.0.at=0.05 s",
+    "scenario.0.load_motion.start=0.2 s",
+    "scenario.0.load_motion.duration=50 ms",
+];
+
+fn source() -> Memory {
+    Memory::default().with("campaign.toml", CAMPAIGN)
+}
+
+fn load(settings: &[&str]) -> Loaded {
+    let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
+    project::read(&source(), "campaign.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn plan(more: &[&str]) -> Plan {
+    let settings = [&SHORT, more].concat();
+    Plan::new(&source(), &load(&settings), 1).unwrap()
+}
+
+const SCALAR: Effort = Effort { threads: 1, lanes: false };
+
+fn lanes(threads: usize) -> Effort {
+    Effort { threads, lanes: true }
+}
+
+/// Every machine has its bits alone, in lanes, and whatever the threads; so do those that end early.
+#[test]
+fn rows_are_the_same_in_lanes_one_by_one_and_on_any_number_of_threads() {
+    let sampled = ["controller.sample_time=1 ms", "force_sensor.noise=2 N"];
+    for more in [&[] as &[&str], &sampled, &["simulation.maximum_steps=120"]] {
+        let plan = plan(more);
+        let expected = plan.rows(0..45, SCALAR).unwrap();
+        assert_eq!(expected.len(), 45);
+        let text = plan.table(&expected);
+        for threads in [1, 2, 3] {
+            assert_eq!(plan.table(&plan.rows(0..45, lanes(threads)).unwrap()), text, "{threads} threads");
+        }
+        // other neighbours in other lanes
+        assert_eq!(plan.rows(7..30, lanes(1)).unwrap(), expected[7..30]);
+        let one_by_one = plan.forces(0..45, SCALAR).unwrap();
+        let side_by_side = plan.forces(0..45, lanes(1)).unwrap();
+        for (one, other) in one_by_one.iter().zip(&side_by_side) {
+            assert!(one.len() == other.len() && !one.is_empty());
+            assert!(one.iter().zip(other).all(|(one, other)| one.to_bits() == other.to_bits()));
+        }
+    }
+}
+
+/// A run, written as settings, is the same machine for `simulate`: where both look as often, the same bits of the force.
+#[test]
+fn a_run_is_what_simulate_makes_of_its_settings() {
+    let often = "scenario.0.output_step=0.25 ms";
+    for more in [&[often] as &[&str], &[often, "controller.sample_time=1 ms", "force_sensor.noise=2 N"]] {
+        let settings = [&SHORT, more].concat();
+        let plan = plan(more);
+        let forces = plan.forces(0..3, lanes(1)).unwrap();
+        for (run, force_n) in forces.iter().enumerate() {
+            let drawn = plan.settings(&plan.draw(run as u64));
+            let all: Vec<&str> = settings.iter().copied().chain(drawn.iter().map(String::as_str)).collect();
+            let simulated =
+                simulate_project(&source(), &load(&all).project, &mut |_| true).unwrap().remove(0);
+            let seen = simulated.record.signal("force_n");
+            assert_eq!((simulated.looks_per_row, seen.len()), (1, force_n.len()));
+            assert!(
+                seen.iter().zip(force_n).all(|(one, other)| one.to_bits() == other.to_bits()),
+                "run {run}"
+            );
+            let row = plan.rows(run as u64..run as u64 + 1, lanes(1)).unwrap().remove(0);
+            for ((_, metrics), numbers) in simulated.windows.iter().zip(&row.ran().unwrap().metrics) {
+                assert_eq!(metrics.disturbance_peak_n.ok(), numbers[2]);
+                // the command is the same sum in another order
+                let peaks = metrics.control_peak_v.ok().zip(numbers[4]);
+                assert!(peaks.is_some_and(|(one, other)| (one - other).abs() < 1e-9 * one), "{peaks:?}");
+            }
+        }
+    }
+}
+
+/// A table in memory.
+#[derive(Default)]
+struct Page {
+    text: String,
+}
+
+impl Ledger for Page {
+    fn kept(&mut self) -> Result<String, String> {
+        Ok(self.text.clone())
+    }
+
+    fn cut(&mut self, bytes: usize) -> Result<(), String> {
+        self.text.truncate(bytes);
+        Ok(())
+    }
+
+    fn append(&mut self, text: &str) -> Result<(), String> {
+        self.text.push_str(text);
+        Ok(())
+    }
+}
+
+fn request(runs: u64, shard: Shard) -> CampaignRequest {
+    let wanted = Wanted { runs, shard, effort: lanes(2) };
+    CampaignRequest { seed: 1, asked: CampaignRuns::All(wanted), files: false }
+}
+
+fn kept(loaded: &Loaded, request: &CampaignRequest, page: &mut Page) -> Result<String, CommandError> {
+    command::campaign_watched(&source(), loaded, &[], request, page, &mut |_| true).map(|answer| answer.json)
+}
+
+#[test]
+fn parts_in_a_row_are_the_whole() {
+    let loaded = load(&SHORT);
+    let mut whole = Page::default();
+    kept(&loaded, &request(30, Shard::default()), &mut whole).unwrap();
+    assert_eq!(whole.text.lines().count(), 31);
+    let parts = ["1/3", "2/3", "3/3"].map(|text| {
+        let mut page = Page::default();
+        kept(&loaded, &request(30, Shard::read(text).unwrap()), &mut page).unwrap();
+        page.text
+    });
+    assert_eq!(parts.concat(), whole.text);
+}
+
+#[test]
+fn an_interrupted_campaign_goes_on_to_the_same_bytes() {
+    let loaded = load(&SHORT);
+    let asked = request(30, Shard::default());
+    let mut whole = Page::default();
+    let answer = kept(&loaded, &asked, &mut whole).unwrap();
+    // torn anywhere: within the header, between two rows, within a row
+    let bytes = whole.text.len();
+    for torn in [0, 100, whole.text.find('\n').unwrap() + 1, bytes / 2, bytes - 1, bytes] {
+        let mut page = Page { text: whole.text[..torn].to_string() };
+        let again = kept(&loaded, &asked, &mut page).unwrap();
+        assert!(page.text == whole.text, "torn at {torn} of {bytes}");
+        assert_eq!(again, answer);
+    }
+    // more of the same
+    let mut page = Page { text: whole.text.clone() };
+    kept(&loaded, &request(33, Shard::default()), &mut page).unwrap();
+    assert!(page.text.starts_with(&whole.text) && page.text.lines().count() == 34);
+}
+
+/// Stopped at once, it has no row that is not whole, and goes on.
+#[test]
+fn stopping_leaves_whole_rows() {
+    let loaded = load(&SHORT);
+    let asked = request(600, Shard::default());
+    let (mut page, mut asks) = (Page::default(), 0);
+    let answer = command::campaign_watched(&source(), &loaded, &[], &asked, &mut page, &mut |_| {
+        asks += 1;
+        asks < 2
+    })
+    .unwrap();
+    let rows = page.text.lines().count() - 1;
+    assert!(!answer.affirmative && rows < 600 && page.text.ends_with('\n'));
+    let told: Value = serde_json::from_str(&answer.json).unwrap();
+    assert_eq!((&told["complete"], &told["runs"]["rows"]), (&Value::from(false), &Value::from(rows)));
+}
+
+#[test]
+fn a_table_of_another_campaign_is_left_alone() {
+    let loaded = load(&SHORT);
+    let asked = request(4, Shard::default());
+    let mut page = Page::default();
+    kept(&loaded, &asked, &mut page).unwrap();
+    let before = page.text.clone();
+    let other = CampaignRequest { seed: 2, ..asked };
+    let refused = |result: Result<String, CommandError>| match result {
+        Err(CommandError::Campaign(error)) => error,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(refused(kept(&loaded, &other, &mut page)), CampaignError::OtherCampaign { line: 2 });
+    let fewer = request(3, Shard::default());
+    assert_eq!(refused(kept(&loaded, &fewer, &mut page)), CampaignError::MoreKept { kept: 4, asked: 3 });
+    let changed = load(&[&SHORT as &[&str], &["controller.saturation=9 V"]].concat());
+    assert_eq!(refused(kept(&changed, &asked, &mut page)), CampaignError::OtherCampaign { line: 2 });
+    assert_eq!(page.text, before);
+    let mut letter = Page { text: "Dear reader".to_string() };
+    assert_eq!(refused(kept(&loaded, &asked, &mut letter)), CampaignError::OtherCampaign { line: 1 });
+    assert_eq!(letter.text, "Dear reader");
+}
+
+/// A mass drawn below zero, and static friction drawn below Coulomb's, are rows that say so.
+#[test]
+fn impossible_draws_are_told_by_their_index() {
+    let mass = "campaign.parameters.\"cylinder.moving_mass\"={ minimum = 1, maximum = 9, distribution = \"normal\" }";
+    let stiction = "campaign.parameters.\"cylinder.friction.static\"={ minimum = 70, maximum = 150 }";
+    let plan = plan(&[mass, stiction]);
+    let rows = plan.rows(0..200, lanes(1)).unwrap();
+    let place = |path: &str| plan.ranges().iter().position(|range| range.path == path).unwrap();
+    let [mass, stiction, coulomb] =
+        ["cylinder.moving_mass", "cylinder.friction.static", "cylinder.friction.coulomb"].map(place);
+    let impossible = |row: &Row| row.values[mass] <= 0.0 || row.values[stiction] < row.values[coulomb];
+    let mut refused = 0;
+    for (index, row) in rows.iter().enumerate() {
+        assert_eq!((row.run, &row.values), (index as u64, &plan.draw(index as u64).values));
+        match &row.outcome {
+            RowOutcome::Refused(reason) => {
+                refused += 1;
+                assert!(
+                    impossible(row) && (reason.contains("moving_mass") || reason.contains("friction")),
+                    "{reason}"
+                );
+            }
+            RowOutcome::Driven(_) => assert!(!impossible(row)),
+        }
+    }
+    let summary = Summary::of(&plan, &rows);
+    assert!(refused > 3 && summary.refused.len() == refused);
+    assert_eq!(summary.statuses.iter().sum::<usize>(), 200);
+    assert_eq!(summary.statuses[STATUS_WORDS.iter().position(|word| *word == "refused").unwrap()], refused);
+}
+
+/// The lumps of a draw are those that `linearize` finds with its settings.
+#[test]
+fn lumps_are_those_of_the_drawn_linear_model() {
+    let plan = plan(&[]);
+    for row in plan.rows(0..3, lanes(1)).unwrap() {
+        let drawn = plan.settings(&plan.draw(row.run));
+        let all: Vec<&str> = SHORT.iter().copied().chain(drawn.iter().map(String::as_str)).collect();
+        let linear = phea_workbench::rig::Rig::new(&load(&all).project).unwrap().derived;
+        let expected = [linear.hydraulic_stiffness, linear.flow_gain, linear.flow_pressure_coefficient];
+        assert_eq!(row.lumps, Some(expected));
+    }
+}
+
+#[test]
+fn the_start_varies_too_and_what_cannot_vary_is_refused() {
+    let plan = plan(&["campaign.parameters.\"start.position\"={ spread = \"50 %\" }"]);
+    let place = plan.ranges().iter().position(|range| range.path == "start.position").unwrap();
+    assert_eq!((plan.ranges()[place].minimum, plan.ranges()[place].maximum), (0.125, 0.375));
+    let rows = plan.rows(0..20, lanes(1)).unwrap();
+    assert!(rows.iter().all(|row| row.status() == "completed"));
+    let refused = |settings: &[&str]| {
+        let loaded = load(&[&SHORT, settings].concat());
+        Plan::new(&source(), &loaded, 1).map(|_| ()).unwrap_err()
+    };
+    let velocity = "start.velocity".to_string();
+    assert_eq!(
+        refused(&["campaign.parameters.\"start.velocity\"={ spread = \"50 %\" }"]),
+        CampaignError::NotStated { path: velocity }
+    );
+    let bare = CAMPAIGN.split("[campaign]").next().unwrap();
+    let source = Memory::default().with("bare.toml", bare);
+    let loaded = project::read(&source, "bare.toml", &[], &[]).unwrap();
+    assert_eq!(Plan::new(&source, &loaded, 1).map(|_| ()).unwrap_err(), CampaignError::Absent);
+    let request = Request::Campaign(request(3, Shard::default()));
+    let error = command::answer(&source, &loaded, &[], &request).unwrap_err();
+    assert!(command::error_json(&loaded, &request, &error).contains("the project has no [campaign]"));
+}
+
+#[test]
+fn the_answer_keeps_its_keys() {
+    let loaded = load(&SHORT);
+    let request = Request::Campaign(CampaignRequest { files: true, ..request(12, Shard::default()) });
+    let answer = command::answer(&source(), &loaded, &[], &request).unwrap();
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    assert_eq!((&json["command"], &json["seed"]), (&Value::from("campaign"), &Value::from(1)));
+    assert_eq!(json["statuses"]["completed"], 12);
+    let metrics = json["metrics"].as_array().unwrap();
+    assert_eq!(metrics.len(), 2);
+    for metric in metrics.iter().flat_map(|event| event["metrics"].as_array().unwrap()) {
+        let numbers: Vec<f64> = metric["quantiles"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .map(|value| value.as_f64().unwrap())
+            .collect();
+        assert!(numbers.windows(2).all(|pair| pair[0] <= pair[1]), "{metric}");
+        assert_eq!(metric["count"].as_u64().unwrap() + metric["missing"].as_u64().unwrap(), 12);
+    }
+    let times = json["bands"]["time_s"].as_array().unwrap().len();
+    let bands = json["bands"]["force_n"].as_array().unwrap();
+    assert!(bands.len() == 5 && bands.iter().all(|band| band.as_array().unwrap().len() == times));
+    assert!(json["worst_runs"][0]["settings"][0].as_str().unwrap().starts_with("supply.pressure="));
+    let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
+    assert!(names.contains(&"runs.parquet") && names.contains(&"campaign-bands.svg"), "{names:?}");
+}
+
+/// Cell by cell, refused draws included.
+#[test]
+fn the_parquet_table_says_what_the_text_says() {
+    let mass = "campaign.parameters.\"cylinder.moving_mass\"={ minimum = 0.001, maximum = 3, distribution = \"normal\" }";
+    let loaded = load(&[&SHORT as &[&str], &[mass]].concat());
+    let asked = CampaignRequest { files: true, ..request(300, Shard::default()) };
+    let mut page = Page::default();
+    let mut go_on = |_| true;
+    let answer = command::campaign_watched(&source(), &loaded, &[], &asked, &mut page, &mut go_on).unwrap();
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("campaign.parquet");
+    fs::write(&path, &answer.files.iter().find(|file| file.name == "runs.parquet").unwrap().bytes).unwrap();
+    let reader = SerializedFileReader::new(fs::File::open(&path).unwrap()).unwrap();
+    let mut lines = page.text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let mut rows = 0;
+    for (line, row) in lines.zip(reader.get_row_iter(None).unwrap()) {
+        let row = row.unwrap();
+        let fields: Vec<(&String, &Field)> = row.get_column_iter().collect();
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!((fields.len(), cells.len()), (names.len(), names.len()));
+        for ((name, cell), (field_name, field)) in names.iter().zip(cells).zip(fields) {
+            assert_eq!(name, field_name);
+            let same = match field {
+                Field::Null => cell.is_empty(),
+                Field::Long(value) => cell.parse() == Ok(*value),
+                Field::Double(value) => cell.parse() == Ok(*value),
+                Field::Float(value) => cell.parse() == Ok(*value),
+                Field::Str(text) => cell.trim_matches('"') == text,
+                _ => false,
+            };
+            assert!(same, "{name}: {cell} {field}");
+        }
+        rows += 1;
+    }
+    assert_eq!(rows, 300);
+    assert!(page.text.contains(",refused,"));
+}
