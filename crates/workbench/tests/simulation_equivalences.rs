@@ -2,6 +2,7 @@
 //! beside pipe as they were computed independently.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 
 use std::f64::consts::TAU;
 
