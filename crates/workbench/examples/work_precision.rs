@@ -1,5 +1,5 @@
 //! Draws work against precision from what `benches/peers/closed_loop_times.py` measured:
-//! `cargo run -p phea-workbench --example work_precision -- book/images`.
+//! `cargo run -p phea-workbench --example work_precision -- book/src/images`.
 //!
 //! Reads the committed measurement, writes `work_precision.svg` into the folder, and a PNG with the second word `png`.
 
@@ -24,7 +24,7 @@ const METHODS: [(&str, &str); 6] = [
 ];
 
 fn main() -> io::Result<()> {
-    let folder = PathBuf::from(env::args().nth(1).unwrap_or_else(|| "book/images".to_string()));
+    let folder = PathBuf::from(env::args().nth(1).unwrap_or_else(|| "book/src/images".to_string()));
     fs::create_dir_all(&folder)?;
     let figure = figure();
     fs::write(folder.join("work_precision.svg"), figure.to_svg_standalone())?;
@@ -56,14 +56,14 @@ fn figure() -> Figure {
             let points = points.into_iter().map(|(error, time)| (error, time, String::new())).collect();
             marks.push(Mark::Markers { points, style: series_marker(index) });
         }
-        Panel { y: Axis::logarithmic(title, 0.1, 2e3), height: 250.0, marks }
+        Panel { y: Axis::logarithmic(title, 0.2, 500.0), height: 250.0, marks }
     };
     let legend = METHODS.iter().enumerate().map(|(index, (_, name))| LegendEntry {
         marker: Some(series_marker(index)),
         ..LegendEntry::line(*name, Stroke::solid(series_role(index), 1.6))
     });
     let plot = Plot {
-        x: Axis::logarithmic("Largest error of the force (N)", 1e-5, 1e3),
+        x: Axis::logarithmic("Largest error of the force (N)", 1e-6, 100.0),
         panels: vec![
             panel("continuous", "Time per run (ms), continuous"),
             panel("sampled", "Time per run (ms), sampled at 1 kHz"),

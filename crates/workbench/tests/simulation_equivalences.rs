@@ -161,7 +161,7 @@ fn swings(run: &ScenarioRun) -> usize {
 
 #[test]
 fn a_hose_feels_load_steps_less_than_a_pipe() {
-    // ORIGIN: Runge-Kutta in fixed steps on the same equations, written independently in C: peaks in N
+    // ORIGIN: other tool, Runge-Kutta in fixed steps on the same equations, written independently: peaks in N
     let expected = [(0.02, 5813.0, 8901.0), (0.05, 2803.0, 4527.0), (0.1, 1604.0, 2546.0)];
     for (time_constant_s, of_hose, of_pipe) in expected {
         let (hose_run, hose) = disturbed(&HOSE, time_constant_s);

@@ -11,18 +11,21 @@ use phea_dynamics::simulation::{
     ClosedLoop, Course, HeldPlant, Input, Plant, Sampler, Settings, Status, System, Work, simulate,
 };
 use phea_hydraulics::machine::Machine;
-use sundials::{Method, follow};
+use sundials::{CvodeError, Method, follow};
 
 use crate::rig::{Control, DURATION_S, OUTPUT_STEP_S, Rig};
 
 /// Of both references.
 const EXACT: f64 = 1e-11;
+/// Of phea's first run.
+const FIRST_TOLERANCE: f64 = 1e-6;
 /// Part of the peak by which the two references may differ before they count as separated.
 const SEPARATED: f64 = 1e-5;
 /// Evaluations after which CVODE is told that a rate is not a number.
 const PATIENCE: u64 = 20_000_000;
 
 /// What became of a rig.
+#[derive(Default)]
 pub(crate) struct Compared {
     /// Why CVODE has no reference, if it has none.
     pub(crate) without_reference: Option<String>,
@@ -101,6 +104,27 @@ impl<E: System<f64>> System<f64> for Patient<'_, E> {
         if self.left.get() == 0 {
             rates.fill(T::from(f64::NAN));
         }
+    }
+}
+
+impl Compared {
+    /// How far the references are one, and what the force does there.
+    fn look_at(&mut self, reference: &[f64], other: &[f64]) {
+        let peak = |force: &[f64]| force.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+        let whole = peak(reference);
+        let apart_at = reference.iter().zip(other).position(|(a, b)| (a - b).abs() > SEPARATED * whole);
+        self.rows = apart_at.unwrap_or(reference.len());
+        self.separates = apart_at.is_some();
+        self.peak = peak(&reference[..self.rows]);
+        self.hunts = hunts(reference, whole);
+    }
+
+    /// Largest error over the rows that are compared as a part of the peak; infinite if some are missing.
+    fn part_of_peak(&self, reference: &[f64], found: &[f64]) -> f64 {
+        if found.len() < self.rows {
+            return f64::INFINITY;
+        }
+        apart(reference, found, self.rows) / self.peak
     }
 }
 
@@ -185,63 +209,61 @@ fn judge<'a, E: System<f64> + Clone>(
         follow(&patient, &start, course, sampler, tolerance, method).map(|states| force(&states))
     };
     let references = [Method::BackwardDifferentiation, Method::Adams].map(|method| by_cvode(EXACT, method));
-    let mut compared = Compared {
-        without_reference: None,
-        rows: 0,
-        separates: false,
-        peak: 0.0,
-        hunts: false,
-        ours: Vec::new(),
-        twin: None,
-        error_of_cvode: None,
-        seconds_of_cvode: None,
-    };
+    let mut compared = Compared::default();
     let ours = |compared: &mut Compared, reference: &[f64], tolerance: f64| {
         let settings = Settings { tolerance, maximum_steps: 2_000_000, ..Settings::default() };
         let begun = Instant::now();
-        let run = simulate(system, &start, course, sampler(), &settings, &mut |_| true)
-            .expect("a course that fits");
+        let run = simulate(system, &start, course, sampler(), &settings, &mut |_| true);
         let seconds = begun.elapsed().as_secs_f64();
-        let rows = run.trajectory.states.len();
+        let run = run.expect("a course that fits");
         let found = force(&run.trajectory.states);
-        let whole = rows >= compared.rows;
-        let error =
-            if whole { apart(reference, &found, compared.rows) / compared.peak } else { f64::INFINITY };
-        let (status, work) = (run.outcome.status, run.outcome.work);
-        compared.ours.push(Ours { tolerance, status, error, work, seconds });
+        let error = compared.part_of_peak(reference, &found);
+        compared.ours.push(Ours {
+            tolerance,
+            status: run.outcome.status,
+            error,
+            work: run.outcome.work,
+            seconds,
+        });
         error
     };
     let [reference, other] = match references {
         [Ok(first), Ok(second)] => [first, second],
         [Err(problem), _] | [_, Err(problem)] => {
             compared.without_reference = Some(problem.to_string());
-            ours(&mut compared, &[], 1e-6);
+            ours(&mut compared, &[], FIRST_TOLERANCE);
             return (compared, Vec::new());
         }
     };
-    let whole_peak = reference.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-    let apart_at = reference.iter().zip(&other).position(|(a, b)| (a - b).abs() > SEPARATED * whole_peak);
-    compared.rows = apart_at.unwrap_or(reference.len());
-    compared.separates = apart_at.is_some();
-    compared.peak = reference[..compared.rows].iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-    compared.hunts = hunts(&reference, whole_peak);
-    for tolerance in [1e-6, 1e-8, 1e-10] {
+    compared.look_at(&reference, &other);
+    for tolerance in [FIRST_TOLERANCE, 1e-8, 1e-10] {
         if ours(&mut compared, &reference, tolerance) < crate::LARGEST_ERROR {
             break;
         }
     }
+    beside_cvode(&mut compared, &reference, timed, &by_cvode);
+    (compared, reference)
+}
+
+/// CVODE at phea's first tolerance where that was not enough, and its time at phea's error.
+fn beside_cvode(
+    compared: &mut Compared,
+    reference: &[f64],
+    timed: bool,
+    by_cvode: &dyn Fn(f64, Method) -> Result<Vec<f64>, CvodeError>,
+) {
     if compared.ours.len() > 1 {
-        let found = by_cvode(1e-6, Method::StabilityLimit).ok();
-        compared.error_of_cvode = found.map(|found| apart(&reference, &found, compared.rows) / compared.peak);
+        let found = by_cvode(FIRST_TOLERANCE, Method::StabilityLimit).ok();
+        compared.error_of_cvode = found.map(|found| compared.part_of_peak(reference, &found));
     }
     if let (true, Some(first)) = (timed, compared.ours.first()) {
         compared.seconds_of_cvode = seconds_at(first.error, &mut |tolerance| {
             let begun = Instant::now();
             let found = by_cvode(tolerance, Method::StabilityLimit).ok()?;
-            Some((apart(&reference, &found, compared.rows) / compared.peak, begun.elapsed().as_secs_f64()))
+            let seconds = begun.elapsed().as_secs_f64();
+            Some((compared.part_of_peak(reference, &found), seconds))
         });
     }
-    (compared, reference)
 }
 
 /// Over the last fifth of its rows the force crosses the middle of its range at least four times, and the range is a twentieth of the
