@@ -1,0 +1,288 @@
+//! The closed loop of the examples simulated and timed on one core: `cargo bench -p phea-workbench --bench simulation`.
+//!
+//! The machine and its controller as the project files of `examples/benchmark` state them; the force alone is looked at, as a
+//! campaign looks at its runs. Prints time per run, the best and the mean of many, the largest error of the force
+//! against the golden reference, and the work; fails where that error is above 0.02 N at the file's own tolerance. Times are
+//! printed and never asserted.
+//!
+//! As a program it takes the words of the drivers in `benches/peers`, which `closed_loop_times.py` runs in turn with it:
+//! `closed_loop|closed_loop_sampled TOLERANCE|file [repeats=N] [output=FILE]`.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
+#![allow(missing_docs, reason = "a program of its own")]
+
+use std::fmt::Write as _;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use phea_dynamics::controller::{ControllerState, SampledController};
+use phea_dynamics::simulation::{
+    ClosedLoop, Course, HeldPlant, Input, Observer, Outcome, Profile, Queue, Sampler, Sensed, Settings,
+    Status, System, Task, drive,
+};
+use phea_hydraulics::machine::{Machine, MachineOptions, Start};
+use phea_workbench::control::{controller, sensor};
+use phea_workbench::project::{self, Project};
+use phea_workbench::rig::Rig;
+use phea_workbench::source::Memory;
+
+/// Name, project file and golden reference.
+type Case = (&'static str, &'static str, &'static str);
+
+const CASES: [Case; 2] = [
+    (
+        "closed_loop",
+        include_str!("../../../examples/benchmark/closed_loop.toml"),
+        include_str!("../tests/golden/closed_loop.csv"),
+    ),
+    (
+        "closed_loop_sampled",
+        include_str!("../../../examples/benchmark/closed_loop_sampled.toml"),
+        include_str!("../tests/golden/closed_loop_sampled.csv"),
+    ),
+];
+/// Deflection of the load cell among the machine's states.
+const DEFLECTION: usize = 4;
+const LARGEST_ERROR_N: f64 = 0.02;
+
+type Fault = Box<dyn std::error::Error>;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    match asked(&words) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(problem) => {
+            eprintln!("{problem}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn asked(words: &[String]) -> Result<(), Fault> {
+    if let [name, tolerance, options @ ..] = words {
+        let case = CASES.iter().find(|case| case.0 == name).ok_or("no such case")?;
+        let option = |name: &str| options.iter().find_map(|word| word.strip_prefix(name)?.strip_prefix('='));
+        let repeats = option("repeats").map_or(Ok(1), str::parse)?;
+        let tolerance = if tolerance == "file" { None } else { Some(tolerance.parse()?) };
+        let timed = time(case, tolerance, repeats)?;
+        if let Some(file) = option("output") {
+            std::fs::write(file, table(&timed.forces))?;
+        }
+        return Ok(());
+    }
+    for case in &CASES {
+        let timed = time(case, None, 200)?;
+        let error = error_n(&timed.forces, case.2)?;
+        println!("largest error of the force {error:.4} N");
+        if error > LARGEST_ERROR_N {
+            return Err(format!("{}: an error of {error} N", case.0).into());
+        }
+    }
+    Ok(())
+}
+
+/// The rows of one run, time in s and force in N.
+struct Timed {
+    forces: Vec<[f64; 2]>,
+}
+
+/// Runs a case again and again, and prints the best and the mean time of a run.
+fn time(case: &Case, tolerance: Option<f64>, repeats: u32) -> Result<Timed, Fault> {
+    let project = read(case.1)?;
+    let tolerance = tolerance.unwrap_or(project.simulation.tolerance);
+    let bench = Bench::new(&project)?;
+    let (mut best, mut total, mut last) = (f64::INFINITY, 0.0, None);
+    for _ in 0..repeats.max(1) {
+        let begun = Instant::now();
+        let run = bench.run(tolerance)?;
+        let seconds = begun.elapsed().as_secs_f64();
+        (best, total, last) = (best.min(seconds), total + seconds, Some(run));
+    }
+    let (outcome, forces) = last.ok_or("no run")?;
+    if outcome.status != Status::Completed {
+        return Err(format!("{:?}", outcome.status).into());
+    }
+    println!(
+        "{} {tolerance:e} best_ms {:.4} mean_ms {:.4} steps {} rejected {} evaluations {}",
+        case.0,
+        1e3 * best,
+        1e3 * total / f64::from(repeats.max(1)),
+        outcome.work.steps,
+        outcome.work.rejected,
+        outcome.work.evaluations
+    );
+    Ok(Timed { forces })
+}
+
+fn read(text: &str) -> Result<Project, Fault> {
+    let source = Memory::default().with("rig.toml", text);
+    let loaded = project::read(&source, "rig.toml", &[], &[]).map_err(|report| report.to_string())?;
+    Ok(loaded.project)
+}
+
+/// What runs of one project share.
+struct Bench {
+    control: Control,
+    start: Vec<f64>,
+    course: Course,
+    stiffness: f64,
+}
+
+enum Control {
+    Continuous(Box<ClosedLoop<Sensed<Machine>>>),
+    Sampled { held: Box<HeldPlant<Sensed<Machine>>>, digital: SampledController },
+}
+
+impl Bench {
+    fn new(project: &Project) -> Result<Bench, Fault> {
+        let rig = Rig::new(project)?;
+        let machine = Machine::new(&rig.actuator, &MachineOptions::default())?;
+        let scenario = project.scenarios.first().ok_or("no scenario")?;
+        let stated = scenario.start.as_ref().ok_or("no start")?;
+        let beginning = machine.start(&Start {
+            position: stated.position.unwrap_or(0.0),
+            pressure_a: stated.pressure_a.unwrap_or(0.0),
+            pressure_b: stated.pressure_b.unwrap_or(0.0),
+            ..Start::default()
+        })?;
+        let steps: Vec<(f64, f64)> = scenario.reference.iter().map(|step| (step.at, step.force)).collect();
+        let reference = Input::Value(Profile::steps(0.0, &steps)?);
+        let declared = scenario.load_motion.as_ref().ok_or("no motion")?;
+        let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        let motion =
+            Profile::smooth_step(declared.start, number(declared.duration), number(declared.distance))?;
+        let ground = motion.shifted(beginning.inputs[0]);
+        let mut inputs = vec![reference, Input::Value(ground.clone()), Input::Rate(ground)];
+
+        let mut law = controller(project)?.ok_or("no controller")?;
+        let sensed = Sensed::new(machine, &sensor(project)?)?;
+        let control = match law.timing.sample_time_s {
+            None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &law, 0.0)?)),
+            Some(sample_time_s) => {
+                let between = std::mem::take(&mut law.prefilter);
+                inputs.insert(0, Input::Command);
+                let held = Box::new(HeldPlant::new(sensed, &between.transfer_function()?)?);
+                Control::Sampled { held, digital: law.sampled(sample_time_s)? }
+            }
+        };
+        let states = match &control {
+            Control::Continuous(closed) => closed.states(),
+            Control::Sampled { held, .. } => held.states(),
+        };
+        let mut start = beginning.state;
+        start.resize(states, 0.0);
+        let course = Course { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs };
+        Ok(Bench { control, start, course, stiffness: rig.actuator.components().force_sensor.stiffness })
+    }
+
+    fn run(&self, tolerance: f64) -> Result<(Outcome, Vec<[f64; 2]>), Fault> {
+        let settings = Settings { tolerance, ..Settings::default() };
+        match &self.control {
+            Control::Continuous(closed) => self.drive(&mut closed.as_ref().clone(), None, &settings),
+            Control::Sampled { held, digital } => {
+                let state = digital.at_rest();
+                let sampler = Digital { held: held.as_ref(), controller: digital, state };
+                self.drive(&mut held.as_ref().clone(), Some(Box::new(sampler)), &settings)
+            }
+        }
+    }
+
+    fn drive<'a, E: System<f64>>(
+        &'a self,
+        system: &mut E,
+        sampler: Option<Box<dyn Sampler + 'a>>,
+        settings: &Settings,
+    ) -> Result<(Outcome, Vec<[f64; 2]>), Fault> {
+        let force = Force { stiffness: self.stiffness, rows: Vec::new() };
+        let task = Task { start: self.start.clone(), course: &self.course, sampler, observer: force };
+        let mut queue = Single { task: Some(task), result: None };
+        drive(system, &mut queue, settings)?;
+        queue.result.ok_or_else(|| "no result".into())
+    }
+}
+
+/// The controller in its computer.
+struct Digital<'a> {
+    held: &'a HeldPlant<Sensed<Machine>>,
+    controller: &'a SampledController,
+    state: ControllerState,
+}
+
+impl Sampler for Digital<'_> {
+    fn sample_time_s(&self) -> f64 {
+        self.controller.sample_time_s()
+    }
+
+    fn delay_s(&self) -> f64 {
+        0.0
+    }
+
+    fn command(&mut self, _time_s: f64, state: &[f64], inputs: &[f64]) -> f64 {
+        let [reference, measurement] = self.held.sampled(state, inputs);
+        self.controller.step(&mut self.state, reference, measurement).command
+    }
+}
+
+/// Looks at the force alone.
+struct Force {
+    stiffness: f64,
+    rows: Vec<[f64; 2]>,
+}
+
+impl Observer for Force {
+    fn wanted(&self) -> &[usize] {
+        &[DEFLECTION]
+    }
+
+    fn observe(&mut self, time_s: f64, states: &[f64], _inputs: &[f64]) {
+        self.rows.extend(states.first().map(|deflection| [time_s, self.stiffness * deflection]));
+    }
+
+    fn wants_inputs(&self) -> bool {
+        false
+    }
+}
+
+struct Single<'a> {
+    task: Option<Task<'a, Force>>,
+    result: Option<(Outcome, Vec<[f64; 2]>)>,
+}
+
+impl<'a, E> Queue<'a, E> for Single<'a> {
+    type Observer = Force;
+
+    fn next(&mut self, _system: &mut E, _lane: usize) -> Option<Task<'a, Force>> {
+        self.task.take()
+    }
+
+    fn done(&mut self, _lane: usize, outcome: Outcome, observer: Force) {
+        self.result = Some((outcome, observer.rows));
+    }
+
+    fn goes_on(&mut self, _lane: usize, _time_s: f64) -> bool {
+        true
+    }
+}
+
+/// Largest difference of the force in N at the times of a reference.
+fn error_n(forces: &[[f64; 2]], reference: &str) -> Result<f64, Fault> {
+    let mut rows = forces.iter();
+    let mut worst = 0.0_f64;
+    for line in reference.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit())) {
+        let mut numbers = line.split(',').map(str::parse::<f64>);
+        let [time_s, force_n] = [numbers.next().ok_or("no time")??, numbers.next().ok_or("no force")??];
+        let row =
+            rows.find(|row| (row[0] - time_s).abs() < 1e-9).ok_or("a row of the reference is missing")?;
+        worst = worst.max((row[1] - force_n).abs());
+    }
+    Ok(worst)
+}
+
+/// The rows as the drivers in C write them.
+fn table(forces: &[[f64; 2]]) -> String {
+    let mut text = "time_s,force_n\n".to_string();
+    for [time_s, force_n] in forces {
+        // writing to a string does not fail
+        let _ = writeln!(text, "{time_s:.15e},{force_n:.15e}");
+    }
+    text
+}
