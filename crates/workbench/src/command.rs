@@ -59,7 +59,7 @@ pub enum Request {
     },
     /// The nonlinear machine through every scenario.
     Simulate,
-    /// The same scenarios of this project and others side by side, by [`compare`].
+    /// The same scenarios of this project and others side by side.
     Compare,
     /// The nonlinear machine with drawn numbers, many times.
     Campaign(CampaignRequest),

@@ -18,7 +18,7 @@ pub use metrics::{Cause, Measured, Metrics, Window};
 pub use run::{Occurrence, Record, ScenarioRun, Stopped};
 
 pub(crate) use answer::{Body, body, compare_json, json};
-pub(crate) use bench::{Control, between_samples, options};
+pub(crate) use bench::{Control, options};
 pub(crate) use course::{Driven, course_of, driven, windows};
 pub(crate) use digital::{Digital, Sample};
 pub(crate) use figures::{comparison_files, pictures};

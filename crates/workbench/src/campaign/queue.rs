@@ -17,7 +17,7 @@ use crate::simulate::{Control, SimulateError};
 use super::CampaignError;
 
 /// Lanes of a vector: two registers of the widest kind that is common, which hide the time that divisions and roots take.
-pub(super) const LANES: usize = 8;
+pub(super) const LANES: usize = 4;
 
 /// What the runs of a batch share with all others.
 pub(super) struct Shared<'p> {
@@ -56,7 +56,8 @@ pub(super) fn batch_one_by_one(
     })
 }
 
-/// Drives runs in lanes; those that were stopped are absent.
+/// Drives runs in lanes; those that were stopped are absent. Under a sampled controller they are driven one by one: from sample to
+/// sample a machine goes by its own matrices.
 ///
 /// # Errors
 /// A start or course that does not fit the machine.
@@ -65,33 +66,26 @@ pub(super) fn batch_in_lanes<const L: usize>(
     runs: std::ops::Range<u64>,
 ) -> Result<Vec<Option<Finished>>, CampaignError> {
     let plan = shared.plan;
+    if matches!(plan.bench.control, Control::Sampled(_)) {
+        return batch_one_by_one(shared, runs);
+    }
     let settings = &plan.bench.settings;
     let machine = plan.bench.machine.convert(&mut |value| Lanes([value; L]));
     let sensed = Sensed::new(machine, &sensor(&plan.project).map_err(SimulateError::from)?)
         .map_err(SimulateError::from)?;
     let control = controller(&plan.project).map_err(SimulateError::from)?;
-    let mut control = control.ok_or(SimulateError::NoController)?;
-    match &plan.bench.control {
-        Control::Continuous(_) => {
-            let gain = plan.bench.feed_forward;
-            let mut closed = ClosedLoop::new(sensed, &control, gain).map_err(SimulateError::from)?;
-            let machine: fn(&mut ClosedLoop<Sensed<Machine<Lanes<L>>>>) -> &mut Machine<Lanes<L>> = in_loop;
-            driven(shared, runs, |batch| drive(&mut closed, &mut Lanewise { batch, machine }, settings))
-        }
-        Control::Sampled(_) => {
-            let between = crate::simulate::between_samples(&plan.project, &mut control)?;
-            let mut held = HeldPlant::new(sensed, &between).map_err(SimulateError::from)?;
-            let machine: fn(&mut HeldPlant<Sensed<Machine<Lanes<L>>>>) -> &mut Machine<Lanes<L>> = in_hold;
-            driven(shared, runs, |batch| drive(&mut held, &mut Lanewise { batch, machine }, settings))
-        }
-    }
+    let control = control.ok_or(SimulateError::NoController)?;
+    let gain = plan.bench.feed_forward;
+    let mut closed = ClosedLoop::new(sensed, &control, gain).map_err(SimulateError::from)?;
+    let machine: fn(&mut ClosedLoop<Sensed<Machine<Lanes<L>>>>) -> &mut Machine<Lanes<L>> = in_loop;
+    driven(shared, runs, |batch| drive(&mut closed, &mut Lanewise { batch, machine }, settings))
 }
 
 fn in_loop<S>(system: &mut ClosedLoop<Sensed<Machine<S>>>) -> &mut Machine<S> {
     system.plant_mut().plant_mut()
 }
 
-fn in_hold<S>(system: &mut HeldPlant<Sensed<Machine<S>>>) -> &mut Machine<S> {
+fn in_hold(system: &mut HeldPlant<Sensed<Machine>>) -> &mut Machine {
     system.plant_mut().plant_mut()
 }
 

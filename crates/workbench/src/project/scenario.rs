@@ -47,6 +47,21 @@ pub struct ReferenceStep {
     pub at: f64,
     /// N.
     pub force: f64,
+    /// What somebody published of it, to stand beside the simulation's own.
+    pub published: Option<Published>,
+}
+
+/// Published metrics of a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Published {
+    /// Overshoot in percent of the step.
+    pub overshoot_percent: Option<f64>,
+    /// Settling time in s.
+    pub settling_time: Option<f64>,
+    /// Where it is published.
+    pub source: Option<String>,
+    /// What a reader should know of it.
+    pub remark: Option<String>,
 }
 
 /// What the load does.
@@ -147,6 +162,19 @@ impl ReferenceStep {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.quantity(key("at", &TIME, "When.").not_negative(), &mut self.at);
         v.quantity(key("force", &FORCE, "The reference from then on."), &mut self.force);
+        let k = plain("published", "Metrics somebody published of this step, for the report to set beside.");
+        v.table(k, &mut self.published, Published::visit);
+    }
+}
+
+impl Published {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("overshoot_percent", &RATIO, "Overshoot, in percent of the step.").not_negative();
+        v.optional(k, &mut self.overshoot_percent);
+        let k = key("settling_time", &TIME, "Settling time.").positive();
+        v.optional(k, &mut self.settling_time);
+        v.text(plain("source", "Where it is published."), &mut self.source, true);
+        v.text(plain("remark", "What a reader should know of it."), &mut self.remark, false);
     }
 }
 

@@ -6,9 +6,9 @@ use super::chapter::{Chapter, cell, place, table};
 use crate::answer::significant;
 use crate::command::{CommandError, Watch};
 use crate::figure::{DisplayUnit, Figure};
-use crate::project::{FrictionModel, Project};
+use crate::project::{FrictionModel, Project, Scenario};
 use crate::simulate::{
-    METRICS, Metrics, ScenarioRun, SimulateError, Window, cause_words, cells_of, headline,
+    Cause, METRICS, Metrics, ScenarioRun, SimulateError, Window, cause_words, cells_of, headline,
     occurrence_sentences, pictures, simulate_project,
 };
 use crate::source::Source;
@@ -40,9 +40,9 @@ pub(super) fn chapter(
     let sensitivity = sensitivity(source, project, watch)?;
     let mut figures = Vec::new();
     let mut parts = Vec::new();
-    for (number, run) in runs.iter().enumerate() {
+    for (number, (run, declared)) in runs.iter().zip(&project.scenarios).enumerate() {
         let drawn = pictures(run, number + 1);
-        parts.push(scenario(run, &drawn));
+        parts.push(scenario(run, declared, &drawn));
         figures.extend(drawn);
     }
     let body = html! {
@@ -57,14 +57,16 @@ fn refused(error: &SimulateError) -> Markup {
     html! { div.callout.bad-edge { p { "Not simulated: " (error) "." } } }
 }
 
-fn scenario(run: &ScenarioRun, figures: &[Figure]) -> Markup {
+fn scenario(run: &ScenarioRun, declared: &Scenario, figures: &[Figure]) -> Markup {
     let mut heads = vec!["event"];
     heads.extend(METRICS);
-    let row = |(window, metrics): &(Window, Metrics)| -> Vec<Markup> {
+    let mut rows: Vec<Vec<Markup>> = Vec::new();
+    for (window, metrics) in &run.windows {
         let cells = cells_of(metrics).into_iter().map(cell);
-        std::iter::once(cell(cause_words(window))).chain(cells).collect()
-    };
-    let rows: Vec<Vec<Markup>> = run.windows.iter().map(row).collect();
+        rows.push(std::iter::once(cell(cause_words(window))).chain(cells).collect());
+        rows.extend(published_row(declared, window));
+    }
+    let remarks = declared.reference.iter().filter_map(|step| step.published.as_ref()?.remark.as_ref());
     html! {
         h3 { (run.name) }
         p { (headline(run)) "." }
@@ -73,8 +75,21 @@ fn scenario(run: &ScenarioRun, figures: &[Figure]) -> Markup {
             (table(&heads, 1, &rows))
             p { "Settling is to " (run.settling_band_percent) " % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less force, averaged over the last tenth of the window." }
         }
+        @for remark in remarks { p { (remark) } }
         @for sentence in occurrence_sentences(&run.occurrences) { p { (sentence) "." } }
     }
+}
+
+/// What was published of the step that begins this window.
+fn published_row(declared: &Scenario, window: &Window) -> Option<Vec<Markup>> {
+    let step = declared.reference.iter().find(|step| step.at == window.start_s)?;
+    let published = step.published.as_ref().filter(|_| window.cause != Cause::LoadMotion)?;
+    let source = published.source.as_deref().unwrap_or("published");
+    let overshoot = published.overshoot_percent.map(|percent| format!("{} %", significant(percent, 3)));
+    let settling = published.settling_time.map(|time| format!("{} s", significant(time, 3)));
+    let known = [overshoot, settling].map(|text| text.unwrap_or_else(|| "-".to_string()));
+    let unknown = METRICS.iter().skip(known.len()).map(|_| cell("-"));
+    Some(std::iter::once(cell(source)).chain(known.iter().map(cell)).chain(unknown).collect())
 }
 
 /// A quantity multiplied by a factor, and what comes of the first scenario.

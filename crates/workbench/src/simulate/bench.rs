@@ -122,7 +122,7 @@ fn sampled(
 }
 
 /// The prefilter, taken out of a sampled controller where the project lets it act between samples too.
-pub(crate) fn between_samples(
+fn between_samples(
     project: &Project,
     controller: &mut Controller,
 ) -> Result<TransferFunction, SimulateError> {
