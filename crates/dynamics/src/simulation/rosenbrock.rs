@@ -2,7 +2,7 @@
 
 use super::method::{Extension, StepInputs, relative_error};
 use super::pattern::Pattern;
-use super::step_matrix::StepMatrix;
+use super::step_matrix::{COLUMN, Column, StepMatrix};
 use super::{Lane, System};
 use crate::scalar::{Dependence, Dual};
 
@@ -122,12 +122,14 @@ type Group<S> = [S; 4];
 pub(super) struct Rosenbrock<S> {
     pattern: Pattern,
     matrix: StepMatrix<S>,
-    /// u_i, stage by stage.
-    increments: Vec<Group<S>>,
+    /// u_i of all stages, group by group.
+    increments: Vec<[Group<S>; STAGES]>,
     start: Vec<Group<S>>,
     stage: Vec<Group<S>>,
     rates: Vec<Group<S>>,
     rates_of_stage: Vec<Group<S>>,
+    /// The right-hand side of a stage, and then its increment.
+    column: Box<Column<S>>,
     slopes: Vec<S>,
     slopes_between: Vec<S>,
     seeded: Vec<Dual<DIRECTIONS, S>>,
@@ -154,11 +156,12 @@ where
         let matrix = StepMatrix::new(&pattern.rows);
         let found = found(&pattern, &matrix);
         Some(Rosenbrock {
-            increments: vec![[zero; 4]; STAGES * groups],
+            increments: vec![[[zero; 4]; STAGES]; groups],
             start: vec![[zero; 4]; groups],
             stage: vec![[zero; 4]; groups],
             rates: vec![[zero; 4]; groups],
             rates_of_stage: vec![[zero; 4]; groups],
+            column: Box::new([zero; COLUMN]),
             slopes: vec![zero; states],
             slopes_between: vec![zero; states],
             seeded_inputs: vec![Dual::constant(zero); inputs],
@@ -243,11 +246,11 @@ where
             system.rates(&self.stage.as_flattened()[..states], &inputs.stages[at], rates);
             self.finish_stage(stage, step, per_step, inputs.moving);
         }
-        let last = self.increments[(STAGES - 1) * self.stage.len()..].as_flattened();
-        for ((end, &stage), &increment) in self.end.iter_mut().zip(self.stage.as_flattened()).zip(last) {
+        // The column holds the last increment.
+        for ((end, &stage), &increment) in self.end.iter_mut().zip(self.stage.as_flattened()).zip(&*self.column) {
             *end = stage + increment;
         }
-        let error = relative_error(last, state, &self.end, scales, tolerance);
+        let error = relative_error(&*self.column, state, &self.end, scales, tolerance);
         S::select(S::from(0.0).less_than(kept), error, S::from(f64::INFINITY))
     }
 
@@ -280,8 +283,8 @@ where
             self.stage.as_flattened_mut()[index] = extension.at(S::from(0.5));
             self.slopes_between[index] = extension.slope_in_the_middle() * per_step;
         }
-        let remainders = &mut self.rates_of_stage.as_flattened_mut()[..states];
-        system.rates(&self.stage.as_flattened()[..states], inputs, remainders);
+        let remainders = &mut *self.column;
+        system.rates(&self.stage.as_flattened()[..states], inputs, &mut remainders[..states]);
         for (remainder, &slope) in remainders.iter_mut().zip(&self.slopes_between) {
             *remainder = *remainder - slope;
         }
@@ -292,7 +295,6 @@ where
     /// y + sum a_ij u_j.
     #[inline(always)]
     fn begin_stage(&mut self, stage: usize) {
-        let groups = self.stage.len();
         let one = S::from(1.0);
         let (sums, start, increments) = (&mut self.stage[..], &self.start[..], &self.increments[..]);
         match stage {
@@ -301,9 +303,9 @@ where
             3 => combine(sums, start, &A4, one, increments),
             4 => combine(sums, start, &A5, one, increments),
             5 => combine(sums, start, &A6, one, increments),
+            // The column holds the increment before.
             _ => {
-                let before = increments[(stage - 1) * groups..stage * groups].as_flattened();
-                for (value, &increment) in sums.as_flattened_mut().iter_mut().zip(before) {
+                for (value, &increment) in sums.as_flattened_mut().iter_mut().zip(&*self.column) {
                     *value = *value + increment;
                 }
             }
@@ -313,35 +315,37 @@ where
     /// The increment of a stage from its rates.
     #[inline(always)]
     fn finish_stage(&mut self, stage: usize, step: S, per_step: S, moving: bool) {
-        let groups = self.stage.len();
-        let (before, after) = self.increments.split_at_mut(stage * groups);
-        let Some(right) = after.get_mut(..groups) else { return };
+        let (column, _) = self.column.as_chunks_mut();
+        let (rates, before) = (&self.rates_of_stage[..], &self.increments[..]);
         match stage {
-            1 => combine(right, &self.rates_of_stage, &C2, per_step, before),
-            2 => combine(right, &self.rates_of_stage, &C3, per_step, before),
-            3 => combine(right, &self.rates_of_stage, &C4, per_step, before),
-            4 => combine(right, &self.rates_of_stage, &C5, per_step, before),
-            5 => combine(right, &self.rates_of_stage, &C6, per_step, before),
-            6 => combine(right, &self.rates_of_stage, &C7, per_step, before),
-            7 => combine(right, &self.rates_of_stage, &C8, per_step, before),
-            _ => right.copy_from_slice(&self.rates),
+            1 => combine(column, rates, &C2, per_step, before),
+            2 => combine(column, rates, &C3, per_step, before),
+            3 => combine(column, rates, &C4, per_step, before),
+            4 => combine(column, rates, &C5, per_step, before),
+            5 => combine(column, rates, &C6, per_step, before),
+            6 => combine(column, rates, &C7, per_step, before),
+            7 => combine(column, rates, &C8, per_step, before),
+            _ => column[..self.rates.len()].copy_from_slice(&self.rates),
         }
         if let Some(&weight) = SLOPE_WEIGHTS.get(stage).filter(|_| moving) {
             let weighted = step.times(weight);
-            for (right, &slope) in right.as_flattened_mut().iter_mut().zip(&self.slopes) {
+            for (right, &slope) in self.column.iter_mut().zip(&self.slopes) {
                 *right = *right + weighted * slope;
             }
         }
-        self.matrix.solve(&mut right.as_flattened_mut()[..self.end.len()]);
+        self.matrix.solve(&mut self.column);
+        let (column, _) = self.column.as_chunks();
+        for (increments, column) in self.increments.iter_mut().zip(column) {
+            increments[stage] = *column;
+        }
     }
 
     /// One state over the last step.
     pub(super) fn extension(&self, index: usize, start: S) -> Extension<S> {
         let mut coefficients = [S::from(0.0); 3];
-        for (stage, increments) in self.increments.chunks_exact(self.stage.len()).enumerate() {
-            let increments = increments.as_flattened();
+        for (stage, increments) in self.increments[index / 4].iter().enumerate() {
             for (coefficient, weights) in coefficients.iter_mut().zip(&EXTENSION) {
-                *coefficient = *coefficient + increments[index].times(weights[stage]);
+                *coefficient = *coefficient + increments[index % 4].times(weights[stage]);
             }
         }
         Extension { start, end: self.end[index], coefficients }
@@ -364,18 +368,16 @@ fn combine<S: Lane, const K: usize>(
     base: &[Group<S>],
     weights: &[f64; K],
     factor: S,
-    increments: &[Group<S>],
+    increments: &[[Group<S>; STAGES]],
 ) {
-    let groups = sums.len();
-    let stages: [&[Group<S>]; K] = std::array::from_fn(|stage| &increments[stage * groups..][..groups]);
-    for (group, (sum, base)) in sums.iter_mut().zip(base).enumerate() {
+    for ((sums, base), increments) in sums.iter_mut().zip(base).zip(increments) {
         let mut totals = [S::from(0.0); 4];
-        for (stage, &weight) in stages.iter().zip(weights) {
-            for (total, &increment) in totals.iter_mut().zip(&stage[group]) {
+        for (stage, &weight) in increments.iter().zip(weights) {
+            for (total, &increment) in totals.iter_mut().zip(stage) {
                 *total = *total + increment.times(weight);
             }
         }
-        for ((sum, &base), &total) in sum.iter_mut().zip(base).zip(&totals) {
+        for ((sum, &base), &total) in sums.iter_mut().zip(base).zip(&totals) {
             *sum = base + factor * total;
         }
     }

@@ -10,47 +10,62 @@ struct Update {
     source: u32,
 }
 
-/// A triangle, row by row in the order of its substitution: `vector[state] -= sum of value * vector[other]`.
-#[derive(Clone, Debug)]
-struct Triangle<S> {
-    /// State of each row, and where its terms end.
-    rows: Vec<(u32, u32)>,
-    /// Where the value of each term is held, and the state it multiplies.
-    terms: Vec<(u32, u32)>,
-    /// The values of the terms, in their order.
-    values: Vec<S>,
+/// Two terms of a substitution: `vector[state] -= value * vector[other]` for both; rows of more terms take several.
+#[derive(Clone, Copy, Debug)]
+struct Terms<S> {
+    values: [S; 2],
+    others: [u8; 2],
+    state: u8,
 }
 
+/// A triangle in the order of its substitution.
+#[derive(Clone, Debug)]
+struct Triangle<S> {
+    terms: Vec<Terms<S>>,
+    /// Where the values of the terms are held, one after another; none for what fills a pair up.
+    held: Vec<[Option<u32>; 2]>,
+}
+
+/// What a substitution works on: an index of eight bits is always inside.
+pub(super) type Column<S> = [S; COLUMN];
+
+/// As many states as a [`Dependence`](crate::scalar::Dependence) tells apart.
+pub(super) const COLUMN: usize = 256;
+
 impl<S: Lane> Triangle<S> {
-    fn new(rows: impl Iterator<Item = (usize, Vec<(u32, u32)>)>) -> Triangle<S> {
-        let mut triangle = Triangle { rows: Vec::new(), terms: Vec::new(), values: Vec::new() };
-        for (state, terms) in rows.filter(|(_, terms)| !terms.is_empty()) {
-            triangle.terms.extend(terms);
-            triangle.rows.push((state as u32, triangle.terms.len() as u32));
+    fn new(rows: impl Iterator<Item = (u8, Vec<(u32, u8)>)>) -> Triangle<S> {
+        let mut triangle = Triangle { terms: Vec::new(), held: Vec::new() };
+        for (state, row) in rows {
+            for pair in row.chunks(2) {
+                let mut terms = Terms { values: [S::from(0.0); 2], others: [state; 2], state };
+                let mut held = [None; 2];
+                for (place, &(entry, other)) in pair.iter().enumerate() {
+                    (held[place], terms.others[place]) = (Some(entry), other);
+                }
+                triangle.terms.push(terms);
+                triangle.held.push(held);
+            }
         }
-        triangle.values = vec![S::from(0.0); triangle.terms.len()];
         triangle
     }
 
     /// Takes its values from the entries.
     #[inline(always)]
     fn take(&mut self, entries: &[S]) {
-        for (value, &(entry, _)) in self.values.iter_mut().zip(&self.terms) {
-            *value = entries[entry as usize];
+        for (terms, held) in self.terms.iter_mut().zip(&self.held) {
+            for (value, entry) in terms.values.iter_mut().zip(held) {
+                if let Some(entry) = entry {
+                    *value = entries[*entry as usize];
+                }
+            }
         }
     }
 
     #[inline(always)]
-    fn substitute(&self, vector: &mut [S]) {
-        let mut begin = 0;
-        for &(state, end) in &self.rows {
-            let (state, range) = (state as usize, begin as usize..end as usize);
-            let mut sum = vector[state];
-            for (&value, &(_, other)) in self.values[range.clone()].iter().zip(&self.terms[range]) {
-                sum = sum - value * vector[other as usize];
-            }
-            vector[state] = sum;
-            begin = end;
+    fn substitute(&self, vector: &mut Column<S>) {
+        for Terms { values, others, state } in &self.terms {
+            let sum = vector[usize::from(*state)] - values[0] * vector[usize::from(others[0])];
+            vector[usize::from(*state)] = sum - values[1] * vector[usize::from(others[1])];
         }
     }
 }
@@ -92,7 +107,7 @@ pub(super) struct StepMatrix<S> {
 const LOST_DIGITS: f64 = 1e-10;
 
 impl<S: Lane> StepMatrix<S> {
-    /// For matrices with these columns in each row, the diagonal besides.
+    /// For matrices with these columns in each row, the diagonal besides; of no more rows than a [`Column`] has.
     pub(super) fn new(rows: &[Vec<usize>]) -> StepMatrix<S> {
         let count = rows.len();
         let mut filled: Vec<Vec<bool>> = vec![vec![false; count]; count];
@@ -179,7 +194,7 @@ impl<S: Lane> StepMatrix<S> {
 
     /// Solves W x = b in the place of b.
     #[inline(always)]
-    pub(super) fn solve(&self, vector: &mut [S]) {
+    pub(super) fn solve(&self, vector: &mut Column<S>) {
         self.forward.substitute(vector);
         for (value, &inverse) in vector.iter_mut().zip(&self.inverses) {
             *value = *value * inverse;
@@ -240,7 +255,7 @@ fn pivots(order: &[usize], filled: &[Vec<bool>], place: &[Vec<u32>]) -> Vec<Pivo
 fn substitutions<S: Lane>(order: &[usize], filled: &[Vec<bool>], place: &[Vec<u32>]) -> [Triangle<S>; 2] {
     let row = |state: usize, known: &[usize]| {
         let known = known.iter().filter(|&&other| filled[state][other]);
-        (state, known.map(|&other| (place[state][other], other as u32)).collect::<Vec<_>>())
+        (state as u8, known.map(|&other| (place[state][other], other as u8)).collect::<Vec<_>>())
     };
     let positions = order.iter().enumerate();
     let forward = positions.clone().map(|(position, &state)| row(state, &order[..position]));
@@ -280,7 +295,10 @@ mod tests {
         }
         assert!(matrix.factor().0.iter().all(|&kept| kept > 0.0));
         let right = DVector::from_fn(count, |row, _| row as f64 - 3.5);
-        let mut solution: Vec<Lanes<2>> = right.iter().map(|&value| Lanes([value; 2])).collect();
+        let mut solution = [Lanes([0.0; 2]); COLUMN];
+        for (place, &value) in solution.iter_mut().zip(right.iter()) {
+            *place = Lanes([value; 2]);
+        }
         matrix.solve(&mut solution);
         for (lane, dense) in dense.into_iter().enumerate() {
             let expected = dense.lu().solve(&right).unwrap();
