@@ -1,6 +1,6 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Lanes, Scalar};
+use super::{Lanes, LocalFunction, Scalar};
 
 /// A number and its gradient with respect to N variables: exact first derivatives of a model equation.
 ///
@@ -75,17 +75,10 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     }
 }
 
-impl<const N: usize> From<f64> for Dual<N> {
+impl<const N: usize, S: Scalar> From<f64> for Dual<N, S> {
     #[inline(always)]
     fn from(value: f64) -> Self {
-        Dual::constant(value)
-    }
-}
-
-impl<const N: usize, const L: usize> From<f64> for Dual<N, Lanes<L>> {
-    #[inline(always)]
-    fn from(value: f64) -> Self {
-        Dual::constant(Lanes::from(value))
+        Dual::constant(S::from(value))
     }
 }
 
@@ -150,10 +143,7 @@ impl<const N: usize, S: Scalar> Neg for Dual<N, S> {
     }
 }
 
-impl<const N: usize, S: Scalar> Scalar for Dual<N, S>
-where
-    Dual<N, S>: From<f64>,
-{
+impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
     type Mask = S::Mask;
 
     #[inline(always)]
@@ -197,11 +187,52 @@ where
         }
         Dual { value: S::select(mask, if_true.value, if_false.value), gradient }
     }
+    #[inline(always)]
+    fn local<P: Copy, const K: usize, const M: usize>(
+        function: &impl LocalFunction<P, K, M>,
+        variables: [Self; K],
+    ) -> [Self; M]
+    where
+        Self: From<P>,
+    {
+        let own = std::array::from_fn(|index| Dual::<K, S>::variable(variables[index].value, index));
+        let results = function.at(own, |parameter| Dual::constant(Self::from(parameter).value));
+        results.map(|result| {
+            let mut gradient = [S::from(0.0); N];
+            for (variable, &slope) in variables.iter().zip(&result.gradient) {
+                for (sum, &part) in gradient.iter_mut().zip(&variable.gradient) {
+                    *sum = *sum + slope * part;
+                }
+            }
+            Dual { value: result.value, gradient }
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A function that is taken apart from its variables has the derivatives of the same text over all of them.
+    #[test]
+    fn a_local_function_has_the_derivatives_of_its_text() {
+        struct Text(f64);
+        impl LocalFunction<f64, 2, 2> for Text {
+            fn at<T: Scalar>(&self, [u, v]: [T; 2], constant: impl Fn(f64) -> T + Copy) -> [T; 2] {
+                [constant(self.0) * (u * v).sqrt(), (u - v).abs() / u.exp()]
+            }
+        }
+        let [x, y, z] = [1.7, 0.4, 2.2].map(|value| value);
+        let variables = [Dual::<3>::variable(x, 0), Dual::variable(y, 1), Dual::variable(z, 2)];
+        let [u, v] = [variables[0] * variables[1], variables[2] - variables[0]];
+        let (local, text) = (Dual::local(&Text(3.0), [u, v]), Text(3.0).at([u, v], Dual::from));
+        for (local, text) in local.iter().zip(&text) {
+            assert_eq!(local.value(), text.value());
+            for (one, other) in local.gradient().iter().zip(text.gradient()) {
+                assert!((one - other).abs() < 1e-14 && *other != 0.0, "{one} {other}");
+            }
+        }
+    }
 
     /// Every operation against a central difference of the same text evaluated with plain numbers.
     #[test]

@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use super::{Friction, LuGre, Stribeck, StribeckShape};
 
@@ -81,6 +81,16 @@ impl<S: Copy> MovingFriction<S> {
                 MovingFriction::LuGre { lugre: lugre.convert(of), shape }
             }
         }
+    }
+}
+
+/// Force in N and rate of the bristles in m/s, of velocity and deflection.
+impl<S: Copy> LocalFunction<S, 2, 2> for MovingFriction<S> {
+    #[inline(always)]
+    fn at<T: Scalar>(&self, [velocity, bristle]: [T; 2], constant: impl Fn(S) -> T + Copy) -> [T; 2] {
+        let FrictionForce { force, bristle_rate } =
+            MovingFriction::at(&self.convert(&mut |parameter| constant(parameter)), velocity, bristle);
+        [force, bristle_rate]
     }
 }
 

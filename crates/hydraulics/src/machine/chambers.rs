@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use crate::actuator::{Actuator, Components};
 use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
@@ -131,14 +131,21 @@ impl<S: Copy> Chambers<S> {
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Chambers<T> {
         match self {
             Chambers::Clean(compliance) => Chambers::Clean(compliance.convert(of)),
-            Chambers::Aerated(aerated) => Chambers::Aerated(AeratedChambers {
-                bulk_modulus: of(aerated.bulk_modulus),
-                volume_fraction: of(aerated.volume_fraction),
-                polytropic_index: of(aerated.polytropic_index),
-                stroke: of(aerated.stroke),
-                side_a: aerated.side_a.convert(of),
-                side_b: aerated.side_b.convert(of),
-            }),
+            Chambers::Aerated(aerated) => Chambers::Aerated(aerated.convert(of)),
+        }
+    }
+}
+
+impl<S: Copy> AeratedChambers<S> {
+    #[inline(always)]
+    fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> AeratedChambers<T> {
+        AeratedChambers {
+            bulk_modulus: of(self.bulk_modulus),
+            volume_fraction: of(self.volume_fraction),
+            polytropic_index: of(self.polytropic_index),
+            stroke: of(self.stroke),
+            side_a: self.side_a.convert(of),
+            side_b: self.side_b.convert(of),
         }
     }
 }
@@ -155,14 +162,27 @@ impl<S: Copy> AeratedSide<S> {
     }
 }
 
-impl<S: Scalar> Chambers<S> {
+impl<S: Copy> Chambers<S> {
     /// C_A and C_B in m3/Pa at piston position `x` in m and chamber pressures in Pa gauge.
     #[inline(always)]
-    pub fn compliance(&self, x: S, pressures: [S; 2]) -> [S; 2] {
+    pub fn compliance<T: Scalar + From<S>>(&self, x: T, [pressure_a, pressure_b]: [T; 2]) -> [T; 2] {
         match self {
-            Chambers::Clean(compliance) => compliance_at(compliance, x),
-            Chambers::Aerated(aerated) => aerated.compliance(x, pressures),
+            Chambers::Clean(compliance) => T::local(compliance, [x]),
+            Chambers::Aerated(aerated) => T::local(aerated, [x, pressure_a, pressure_b]),
         }
+    }
+}
+
+impl<S: Copy> LocalFunction<S, 1, 2> for ChamberCompliance<S> {
+    #[inline(always)]
+    fn at<T: Scalar>(&self, [x]: [T; 1], constant: impl Fn(S) -> T + Copy) -> [T; 2] {
+        compliance_at(&self.convert(&mut |parameter| constant(parameter)), x)
+    }
+}
+
+impl<S: Copy> LocalFunction<S, 3, 2> for AeratedChambers<S> {
+    fn at<T: Scalar>(&self, [x, p_a, p_b]: [T; 3], constant: impl Fn(S) -> T + Copy) -> [T; 2] {
+        self.convert(&mut |parameter| constant(parameter)).compliance(x, [p_a, p_b])
     }
 }
 

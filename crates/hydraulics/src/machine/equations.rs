@@ -1,11 +1,11 @@
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use super::signals::ground_of;
 use super::{LoadMotion, Machine, MachineState, PowerUnit};
 use crate::force_sensor;
 use crate::friction::FrictionForce;
 use crate::operating_point::hydraulic_force;
-use crate::servovalve::{EdgeFlows, Openings, Supply, edge_flows, tare_flow};
+use crate::servovalve::{EdgeFlows, Edges, Openings, Servovalve, Supply, edge_flows, tare_flow};
 
 /// Every flow at one instant, in m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +35,30 @@ pub(super) struct Forces<T> {
 #[inline(always)]
 pub(super) fn constant<S, T: From<S>>(parameter: S) -> T {
     T::from(parameter)
+}
+
+/// The flows through the four edges as a function of few states.
+struct ValveEdges<'m, S> {
+    valve: &'m Servovalve<S>,
+    supply: &'m Supply<S>,
+}
+
+/// Of opening and both ports' pressures.
+impl<S: Copy> LocalFunction<S, 3, 4> for ValveEdges<'_, S> {
+    #[inline(always)]
+    fn at<T: Scalar>(&self, [opening, a, b]: [T; 3], constant: impl Fn(S) -> T + Copy) -> [T; 4] {
+        self.at([opening, a, b, constant(self.supply.pressure)], constant)
+    }
+}
+
+/// Of opening, both ports' pressures, and that of the supply.
+impl<S: Copy> LocalFunction<S, 4, 4> for ValveEdges<'_, S> {
+    #[inline(always)]
+    fn at<T: Scalar>(&self, [opening, a, b, pressure]: [T; 4], constant: impl Fn(S) -> T + Copy) -> [T; 4] {
+        let valve = self.valve.convert(&mut |parameter| constant(parameter));
+        let supply = Supply { pressure, tank_pressure: constant(self.supply.tank_pressure) };
+        edge_flows(&valve, &supply, &Openings::at(&valve, opening), a, b).to_array()
+    }
 }
 
 impl<S: Scalar> Machine<S> {
@@ -79,8 +103,7 @@ impl<S: Scalar> Machine<S> {
     /// Compliance of both chambers with what their lines add, in m3/Pa.
     #[inline(always)]
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
-        let pressures = [state.pressure_a, state.pressure_b];
-        self.chambers.convert(&mut constant::<S, T>).compliance(position, pressures)
+        self.chambers.compliance(position, [state.pressure_a, state.pressure_b])
     }
 
     /// Flows at the pressures of the valve's ports A and B.
@@ -90,10 +113,12 @@ impl<S: Scalar> Machine<S> {
         state: &MachineState<T>,
         [port_a, port_b]: [T; 2],
     ) -> Flows<T> {
-        let valve = self.valve.convert(&mut constant::<S, T>);
         let opening = self.spool.convert(&mut constant::<S, T>).opening(&state.spool);
-        let supply = self.supply_of(state);
-        let edges = edge_flows(&valve, &supply, &Openings::at(&valve, opening), port_a, port_b);
+        let valve = ValveEdges { valve: &self.valve, supply: &self.supply };
+        let edges = Edges::from_array(match self.power_unit {
+            PowerUnit::Constant => T::local(&valve, [opening, port_a, port_b]),
+            PowerUnit::PumpLimited(_) => T::local(&valve, [opening, port_a, port_b, state.supply_pressure]),
+        });
         let from_valve = [edges.supply_to_a - edges.a_to_tank, edges.supply_to_b - edges.b_to_tank];
         Flows { edges, internal: self.leakage(state), from_valve }
     }
@@ -124,6 +149,7 @@ impl<S: Scalar> Machine<S> {
     #[inline(always)]
     pub(super) fn forces<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> Forces<T> {
         let areas = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
+        let [force, bristle_rate] = T::local(&self.friction, [state.velocity, state.bristle]);
         let end_stops = match self.end_stops {
             None => T::from(0.0),
             Some(contact) => {
@@ -134,7 +160,7 @@ impl<S: Scalar> Machine<S> {
         };
         Forces {
             hydraulic: hydraulic_force(areas, [state.pressure_a, state.pressure_b]),
-            friction: self.friction.convert(&mut constant::<S, T>).at(state.velocity, state.bristle),
+            friction: FrictionForce { force, bristle_rate },
             end_stops,
             sensed: force_sensor::force(constant(self.sensor_stiffness), state.deflection),
         }

@@ -94,9 +94,7 @@ impl<S: Scalar> Machine<S> {
         let load = self.load_of(&state, &ground);
         let position = load.position + state.deflection;
         let vapour: T = constant(self.vapour_pressure);
-        let chambers = self.chambers.convert(&mut constant::<S, T>);
-        let [compliance_a, compliance_b] =
-            chambers.compliance(position, [state.pressure_a, state.pressure_b]);
+        let [compliance_a, compliance_b] = self.compliance(&state, position);
         let supply = self.supply_of(&state);
         [
             state.pressure_a - vapour,
