@@ -263,10 +263,12 @@ impl<S: Lane> Machine<S> {
 }
 
 impl<S: Scalar> Plant<S> for Machine<S> {
+    #[inline(always)]
     fn states(&self) -> usize {
         self.layout.count()
     }
 
+    #[inline(always)]
     fn inputs(&self) -> usize {
         self.layout.inputs()
     }

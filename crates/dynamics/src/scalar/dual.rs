@@ -197,15 +197,16 @@ impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
     {
         let own = std::array::from_fn(|index| Dual::<K, S>::variable(variables[index].value, index));
         let results = function.at(own, |parameter| Dual::constant(Self::from(parameter).value));
-        results.map(|result| {
-            let mut gradient = [S::from(0.0); N];
+        let mut local = [Dual::constant(S::from(0.0)); M];
+        for (local, result) in local.iter_mut().zip(&results) {
+            local.value = result.value;
             for (variable, &slope) in variables.iter().zip(&result.gradient) {
-                for (sum, &part) in gradient.iter_mut().zip(&variable.gradient) {
+                for (sum, &part) in local.gradient.iter_mut().zip(&variable.gradient) {
                     *sum = *sum + slope * part;
                 }
             }
-            Dual { value: result.value, gradient }
-        })
+        }
+        local
     }
 }
 

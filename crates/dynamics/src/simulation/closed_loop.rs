@@ -141,10 +141,12 @@ pub struct LoopSignals<T> {
 }
 
 impl<S: Scalar, P: Plant<S>> System<S> for ClosedLoop<P> {
+    #[inline(always)]
     fn states(&self) -> usize {
         self.plant.states() + self.feedback.states + self.prefilter.states
     }
 
+    #[inline(always)]
     fn inputs(&self) -> usize {
         1 + self.plant.inputs() + usize::from(self.is_delayed())
     }
@@ -255,10 +257,12 @@ impl<P> HeldPlant<P> {
 }
 
 impl<S: Scalar, P: Plant<S>> System<S> for HeldPlant<P> {
+    #[inline(always)]
     fn states(&self) -> usize {
         self.plant.states() + self.prefilter.states
     }
 
+    #[inline(always)]
     fn inputs(&self) -> usize {
         2 + self.plant.inputs()
     }

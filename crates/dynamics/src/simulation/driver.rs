@@ -402,39 +402,45 @@ where
         }
     }
 
-    /// Indicators at the end of the step, in every lane.
+    /// Indicators at the end of the step, in every lane: where the last stage has its inputs.
     fn indicate_ends<E: System<S>>(&mut self, system: &E) {
-        if self.indicators.is_empty() {
-            return;
+        let [.., inputs] = &self.inputs.stages;
+        if !self.indicators.is_empty() {
+            system.indicate(&self.between.end, inputs, &mut self.between.ends);
         }
-        for lane in 0..S::COUNT {
-            if let Some(slot) = &mut self.slots[lane] {
-                slot.passage.inputs_within(1.0, &mut slot.inputs);
-                set_lane(&mut self.between.inputs, lane, &slot.inputs);
-            }
-        }
-        system.indicate(&self.between.end, &self.between.inputs, &mut self.between.ends);
     }
 
     fn find_events<E: System<S>>(&mut self, system: &E, lane: usize) {
-        for index in 0..self.indicators.len() {
-            let before = self.indicators[index].lane(lane);
-            let after = self.between.ends[index].lane(lane);
-            self.indicators[index].set_lane(lane, after);
-            if (before > 0.0) == (after > 0.0) {
-                continue;
+        let mut any = false;
+        for (before, after) in self.indicators.iter().zip(&self.between.ends) {
+            any |= (before.lane(lane) > 0.0) != (after.lane(lane) > 0.0);
+        }
+        if any {
+            for index in 0..self.indicators.len() {
+                self.find_event(system, lane, index);
             }
-            let mut same = |part| (self.indicator(system, lane, index, part) > 0.0) == (before > 0.0);
-            // A break may have changed the sign at once.
-            let (mut low, mut high) = if same(0.0) { (0.0, 1.0) } else { (0.0, 0.0) };
-            while high - low > 1e-12 {
-                let middle = 0.5 * (low + high);
-                (low, high) = if same(middle) { (middle, high) } else { (low, middle) };
-            }
-            if let Some(Slot { passage, .. }) = &mut self.slots[lane] {
-                let time_s = passage.time_s + high * passage.step_s;
-                passage.events.push(Event { time_s, indicator: index, rising: after > 0.0 });
-            }
+        }
+        for (before, after) in self.indicators.iter_mut().zip(&self.between.ends) {
+            before.set_lane(lane, after.lane(lane));
+        }
+    }
+
+    /// Finds when an indicator changed its sign within the step, if it did.
+    fn find_event<E: System<S>>(&mut self, system: &E, lane: usize, index: usize) {
+        let (before, after) = (self.indicators[index].lane(lane), self.between.ends[index].lane(lane));
+        if (before > 0.0) == (after > 0.0) {
+            return;
+        }
+        let mut same = |part| (self.indicator(system, lane, index, part) > 0.0) == (before > 0.0);
+        // A break may have changed the sign at once.
+        let (mut low, mut high) = if same(0.0) { (0.0, 1.0) } else { (0.0, 0.0) };
+        while high - low > 1e-12 {
+            let middle = 0.5 * (low + high);
+            (low, high) = if same(middle) { (middle, high) } else { (low, middle) };
+        }
+        if let Some(Slot { passage, .. }) = &mut self.slots[lane] {
+            let time_s = passage.time_s + high * passage.step_s;
+            passage.events.push(Event { time_s, indicator: index, rising: after > 0.0 });
         }
     }
 

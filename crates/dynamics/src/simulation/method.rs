@@ -1,6 +1,6 @@
 //! The methods that a system can be driven by, behind one interface.
 
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::explicit::{self, DormandPrince};
 use super::rosenbrock::{self, DIRECTIONS, Rosenbrock};
@@ -76,10 +76,7 @@ where
     /// Takes note of the start of a step: rates, and what derivatives the method needs.
     pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>) {
         match &mut self.steps {
-            Steps::Implicit(method) => Arch::new().dispatch(
-                #[inline(always)]
-                || method.linearize(system, state, inputs),
-            ),
+            Steps::Implicit(method) => Arch::new().dispatch(Linearization { method, system, state, inputs }),
             Steps::Explicit(method) => method.begin(system, state, inputs),
         }
     }
@@ -96,10 +93,9 @@ where
     ) -> S {
         let scales = &self.scales;
         match &mut self.steps {
-            Steps::Implicit(method) => Arch::new().dispatch(
-                #[inline(always)]
-                || method.attempt(system, state, step, inputs, scales, tolerance),
-            ),
+            Steps::Implicit(method) => {
+                Arch::new().dispatch(Attempt { method, system, state, step, inputs, scales, tolerance })
+            }
             Steps::Explicit(method) => method.attempt(system, state, step, inputs, scales, tolerance),
         }
     }
@@ -158,6 +154,53 @@ where
             part * part
         });
         (parts.sum::<f64>() / rates.len().max(1) as f64).sqrt()
+    }
+}
+
+/// [`Rosenbrock::linearize`] with the vector instructions that there are. A closure would not do: the call of a closure is a
+/// function of its own, and compiled without them.
+struct Linearization<'m, S, E> {
+    method: &'m mut Rosenbrock<S>,
+    system: &'m E,
+    state: &'m [S],
+    inputs: &'m StepInputs<S>,
+}
+
+impl<S: Lane, E: System<S>> WithSimd for Linearization<'_, S, E>
+where
+    Dependence: From<S>,
+    Dual<DIRECTIONS, S>: From<f64> + From<S>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) {
+        self.method.linearize(self.system, self.state, self.inputs);
+    }
+}
+
+/// [`Rosenbrock::attempt`] with the vector instructions that there are.
+struct Attempt<'m, S, E> {
+    method: &'m mut Rosenbrock<S>,
+    system: &'m E,
+    state: &'m [S],
+    step: S,
+    inputs: &'m StepInputs<S>,
+    scales: &'m [S],
+    tolerance: f64,
+}
+
+impl<S: Lane, E: System<S>> WithSimd for Attempt<'_, S, E>
+where
+    Dependence: From<S>,
+    Dual<DIRECTIONS, S>: From<f64> + From<S>,
+{
+    type Output = S;
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) -> S {
+        let Attempt { method, system, state, step, inputs, scales, tolerance } = self;
+        method.attempt(system, state, step, inputs, scales, tolerance)
     }
 }
 

@@ -166,16 +166,20 @@ impl<'a> Passage<'a> {
     }
 
     /// Inputs at a time up to the next break, waves included: at a break as they are within the step that is being tried.
+    #[inline]
     pub(super) fn inputs_at(&self, time_s: f64, inputs: &mut [f64]) {
-        let known = self.segments.iter().map(|segment| match segment {
-            Segment::Still(value) => *value,
-            Segment::Value(piece) => piece.at(time_s).value,
-            Segment::Rate(piece) => piece.at(time_s).rate,
-        });
-        let middle_s = self.middle_s();
-        let waves = self.histories.iter().map(|history| history.arriving(time_s, middle_s)[0]);
-        for (place, value) in inputs.iter_mut().zip(known.chain(waves)) {
-            *place = value;
+        for (place, segment) in inputs.iter_mut().zip(&self.segments) {
+            *place = match segment {
+                Segment::Still(value) => *value,
+                Segment::Value(piece) => piece.at(time_s).value,
+                Segment::Rate(piece) => piece.at(time_s).rate,
+            };
+        }
+        if let Some(waves) = inputs.get_mut(self.segments.len()..) {
+            let middle_s = self.middle_s();
+            for (place, history) in waves.iter_mut().zip(&self.histories) {
+                *place = history.arriving(time_s, middle_s)[0];
+            }
         }
     }
 

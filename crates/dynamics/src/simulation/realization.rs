@@ -16,10 +16,10 @@ const SINGULAR: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Realization {
     pub(super) states: usize,
-    /// (row, column, value) of A.
-    dynamics: Vec<(usize, usize, f64)>,
-    /// (row, value) of B.
-    drive: Vec<(usize, f64)>,
+    /// (column, value) of each row of A.
+    dynamics: Vec<Vec<(usize, f64)>>,
+    /// B.
+    drive: Vec<f64>,
     /// (column, value) of C.
     taps: Vec<(usize, f64)>,
     pub(super) feedthrough: f64,
@@ -35,15 +35,15 @@ impl Realization {
         }
         let system = StateSpace::from_transfer_function(function)?;
         let states = system.order();
-        let entries = (0..states).flat_map(|row| (0..states).map(move |column| (row, column)));
-        let dynamics = entries.map(|(row, column)| (row, column, system.a()[(row, column)]));
-        let drive = (0..states).map(|row| (row, system.b()[(row, 0)]));
-        let taps = (0..states).map(|column| (column, system.c()[(0, column)]));
+        let entries = |matrix: &DMatrix<f64>, row: usize| -> Vec<(usize, f64)> {
+            let all = matrix.row(row).iter().copied().enumerate().collect::<Vec<_>>();
+            all.into_iter().filter(|entry| entry.1 != 0.0).collect()
+        };
         Ok(Realization {
             states,
-            dynamics: dynamics.filter(|entry| entry.2 != 0.0).collect(),
-            drive: drive.filter(|entry| entry.1 != 0.0).collect(),
-            taps: taps.filter(|entry| entry.1 != 0.0).collect(),
+            dynamics: (0..states).map(|state| entries(system.a(), state)).collect(),
+            drive: (0..states).map(|row| system.b()[(row, 0)]).collect(),
+            taps: entries(system.c(), 0),
             feedthrough: system.d()[(0, 0)],
         })
     }
@@ -55,13 +55,13 @@ impl Realization {
             parts[column] = 1.0 / value.abs();
         }
         let rate = |state: usize| {
-            let own = self.dynamics.iter().find(|&&(row, column, _)| row == state && column == state);
-            own.map_or(1.0, |entry| entry.2.abs())
+            let own = self.dynamics[state].iter().find(|entry| entry.0 == state);
+            own.map_or(1.0, |entry| entry.1.abs())
         };
         // A chain of sections lists the last one first: what a state drives stands before it.
         for state in 0..self.states {
-            for &(row, column, value) in self.dynamics.iter().filter(|entry| entry.0 < state) {
-                if column == state && parts[row].is_finite() {
+            for row in (0..state).filter(|&row| parts[row].is_finite()).collect::<Vec<_>>() {
+                for (_, value) in self.dynamics[row].iter().filter(|entry| entry.0 == state) {
                     parts[state] = parts[state].min(parts[row] * rate(row) / value.abs());
                 }
             }
@@ -83,12 +83,12 @@ impl Realization {
 
     #[inline(always)]
     pub(super) fn rates<T: Scalar>(&self, state: &[T], input: T, rates: &mut [T]) {
-        rates.fill(T::from(0.0));
-        for &(row, column, value) in &self.dynamics {
-            rates[row] = rates[row] + state[column].times(value);
-        }
-        for &(row, value) in &self.drive {
-            rates[row] = rates[row] + input.times(value);
+        for ((rate, terms), &drive) in rates.iter_mut().zip(&self.dynamics).zip(&self.drive) {
+            let mut sum = if drive == 0.0 { T::from(0.0) } else { input.times(drive) };
+            for &(column, value) in terms {
+                sum = sum + state[column].times(value);
+            }
+            *rate = sum;
         }
     }
 
@@ -103,11 +103,11 @@ impl Realization {
         }
         let rows = self.states + usize::from(output.is_some());
         let (mut left, mut right) = (DMatrix::zeros(rows, self.states), DVector::zeros(rows));
-        for &(row, column, value) in &self.dynamics {
-            left[(row, column)] = value;
-        }
-        for &(row, value) in &self.drive {
-            right[row] = -value * input;
+        for (row, (terms, drive)) in self.dynamics.iter().zip(&self.drive).enumerate() {
+            for &(column, value) in terms {
+                left[(row, column)] = value;
+            }
+            right[row] = -drive * input;
         }
         if let Some(output) = output {
             for &(column, value) in &self.taps {

@@ -102,8 +102,6 @@ struct Found {
     direction: usize,
     /// Its place in the step's matrix.
     entry: usize,
-    /// Whether it is what a state's rate makes of the state itself.
-    own: bool,
 }
 
 /// States are combined in groups of four: whole vectors for the machine. The last group is filled up with zeros.
@@ -138,6 +136,9 @@ pub(super) struct Rosenbrock<S> {
     /// J, in the order in which it is found.
     jacobian: Vec<S>,
     found: Vec<Found>,
+    /// Which of them are what a state's rate makes of the state itself, and the least of these.
+    own: Vec<usize>,
+    fastest: S,
     /// State at the end of the last step.
     pub(super) end: Vec<S>,
 }
@@ -168,6 +169,8 @@ where
             seeded_rates: seeded.clone(),
             seeded,
             jacobian: vec![zero; found.len()],
+            own: own(&pattern),
+            fastest: zero,
             found,
             end: vec![zero; states],
             matrix,
@@ -216,6 +219,10 @@ where
         for (value, rate) in self.rates.as_flattened_mut().iter_mut().zip(&self.seeded_rates) {
             *value = rate.value();
         }
+        self.fastest = S::from(0.0);
+        for &place in &self.own {
+            self.fastest = self.fastest.minimum(self.jacobian[place]);
+        }
     }
 
     /// One step of length h from here, [`Rosenbrock::linearize`] having been called here; the error of each lane in
@@ -256,8 +263,7 @@ where
 
     /// Whether a state of this lane would come to rest within a small part of the step, if the others stood still.
     pub(super) fn binds_stiffly(&self, lane: usize, step_s: f64) -> bool {
-        let own = self.jacobian.iter().zip(&self.found).filter(|(_, found)| found.own);
-        own.map(|(rate, _)| rate.lane(lane)).any(|rate| rate * step_s < -STIFF)
+        self.fastest.lane(lane) * step_s < -STIFF
     }
 
     /// How far the continuous extension is off in the middle of the step just attempted, in units of the tolerance, for the
@@ -390,9 +396,15 @@ fn found<S: Lane>(pattern: &Pattern, matrix: &StepMatrix<S>) -> Vec<Found> {
         for (place, &column) in columns.iter().enumerate() {
             let colour = pattern.colours[column];
             let (pass, direction) = (colour / DIRECTIONS, colour % DIRECTIONS);
-            let (entry, own) = (matrix.entry(row, place), row == column);
-            all.push(Found { row, pass, direction, entry, own });
+            all.push(Found { row, pass, direction, entry: matrix.entry(row, place) });
         }
     }
     all
+}
+
+/// Places of the diagonal among the entries of the pattern.
+fn own(pattern: &Pattern) -> Vec<usize> {
+    let rows = pattern.rows.iter().enumerate();
+    let places = rows.flat_map(|(row, columns)| columns.iter().map(move |&column| row == column));
+    places.enumerate().filter_map(|(place, own)| own.then_some(place)).collect()
 }

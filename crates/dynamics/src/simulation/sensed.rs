@@ -88,6 +88,7 @@ impl<P> Sensed<P> {
     }
 
     /// States of the plant, and inputs of the plant.
+    #[inline(always)]
     fn of_plant<'t, S: Scalar, T: Scalar + From<S>>(
         &self,
         state: &'t [T],
@@ -99,6 +100,7 @@ impl<P> Sensed<P> {
         (&state[..self.plant.states()], &inputs[..self.plant.inputs()])
     }
 
+    #[inline(always)]
     fn shown<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T
     where
         P: Plant<S>,
@@ -109,10 +111,12 @@ impl<P> Sensed<P> {
 }
 
 impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
+    #[inline(always)]
     fn states(&self) -> usize {
         self.plant.states() + self.sensor.states
     }
 
+    #[inline(always)]
     fn inputs(&self) -> usize {
         self.plant.inputs() + usize::from(self.delay_s > 0.0)
     }
@@ -131,6 +135,7 @@ impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
         self.plant.measurement_scale()
     }
 
+    #[inline(always)]
     fn rates<T: Scalar + From<S>>(&self, state: &[T], command: T, inputs: &[T], rates: &mut [T]) {
         let (own_state, own_inputs) = self.of_plant::<S, T>(state, inputs);
         let (plant_rates, sensor_rates) = rates.split_at_mut(own_state.len());
@@ -139,6 +144,7 @@ impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
         self.sensor.rates(&state[own_state.len()..], given, sensor_rates);
     }
 
+    #[inline(always)]
     fn measurement<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T {
         if self.delay_s > 0.0 { inputs[self.plant.inputs()] } else { self.shown::<S, T>(state, inputs) }
     }

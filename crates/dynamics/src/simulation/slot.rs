@@ -19,9 +19,11 @@ pub(super) struct Slot<'a, O> {
 
 impl<O: Observer> Slot<'_, O> {
     /// Shows the observer every row before the end of the step, from the states it wants over the step.
+    #[inline]
     pub(super) fn observe(&mut self, wanted: &[Extension<f64>]) {
         let Slot { passage, observer, states, inputs, .. } = self;
         let (start_s, step_s, before_s) = (passage.time_s, passage.step_s, passage.end_s());
+        let states = states.get_mut(..wanted.len()).unwrap_or_default();
         let seen = if observer.wants_inputs() { inputs.len() } else { 0 };
         loop {
             let time_s = passage.next_row_s();
@@ -35,7 +37,7 @@ impl<O: Observer> Slot<'_, O> {
             if seen > 0 {
                 passage.inputs_at(time_s, inputs);
             }
-            observer.observe(time_s, &states[..wanted.len()], &inputs[..seen]);
+            observer.observe(time_s, states, &inputs[..seen]);
             passage.row += 1;
         }
     }

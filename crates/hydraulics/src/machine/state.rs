@@ -39,6 +39,8 @@ pub(super) struct Layout {
     lines: [usize; 2],
     /// Waves that arrive from both lines, the last inputs, A first.
     waves: [usize; 2],
+    /// States that have names: all but the lines'.
+    named: usize,
 }
 
 /// Position and velocity of the ground come before the waves.
@@ -64,7 +66,7 @@ impl<T: Scalar> MachineState<T> {
 
 impl Layout {
     pub(super) fn of<S: Copy>(machine: &Machine<S>) -> Layout {
-        Layout {
+        let mut layout = Layout {
             bristle: machine.friction.has_bristles(),
             load: machine.load.moves(),
             supply: machine.power_unit.yields(),
@@ -72,25 +74,26 @@ impl Layout {
             magnetic_lag: machine.spool.hysteresis_width.is_some(),
             lines: machine.lines.map(|line| line.states()),
             waves: machine.lines.map(|line| line.delays().len()),
-        }
+            named: 0,
+        };
+        let mut named = 0;
+        layout.visit(&mut MachineState::<f64>::zero(), |_| named += 1);
+        layout.named = named;
+        layout
     }
 
     /// Number of states.
-    pub(super) fn count(&self) -> usize {
-        self.named() + self.lines.iter().sum::<usize>()
-    }
-
-    /// Number of states that have names: all but the lines'.
     #[inline(always)]
-    fn named(&self) -> usize {
-        let Layout { bristle, load, supply, spool_friction, magnetic_lag, .. } = *self;
-        let single = usize::from(bristle) + usize::from(supply);
-        6 + single + usize::from(spool_friction) + usize::from(magnetic_lag) + 2 * usize::from(load)
+    pub(super) fn count(&self) -> usize {
+        let [a, b] = self.lines;
+        self.named + a + b
     }
 
     /// Number of inputs.
+    #[inline(always)]
     pub(super) fn inputs(&self) -> usize {
-        GROUND_INPUTS + self.waves.iter().sum::<usize>()
+        let [a, b] = self.waves;
+        GROUND_INPUTS + a + b
     }
 
     /// Whether lines have states of their own.
@@ -102,14 +105,14 @@ impl Layout {
     /// States of both lines.
     #[inline(always)]
     pub(super) fn lines<'a, T>(&self, vector: &'a [T]) -> [&'a [T]; 2] {
-        two_parts(vector, self.named(), self.lines)
+        two_parts(vector, self.named, self.lines)
     }
 
     /// States of both lines, to be written.
     #[inline(always)]
     pub(super) fn lines_mut<'a, T>(&self, vector: &'a mut [T]) -> [&'a mut [T]; 2] {
         let [count_a, count_b] = self.lines;
-        let after_named = vector.get_mut(self.named()..).unwrap_or_default();
+        let after_named = vector.get_mut(self.named..).unwrap_or_default();
         match after_named.split_at_mut_checked(count_a) {
             Some((line_a, rest)) => [line_a, rest.get_mut(..count_b).unwrap_or_default()],
             None => [&mut [], &mut []],
