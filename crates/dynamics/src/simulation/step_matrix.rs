@@ -35,9 +35,6 @@ pub(super) const COLUMN: usize = 256;
 /// Systems of so many states or fewer are solved by their inverse.
 const SMALL: usize = 16;
 
-/// A small matrix by rows, each in groups of four.
-type Rows<S> = [[[S; 4]; SMALL / 4]; SMALL];
-
 /// The inverse of a small matrix.
 ///
 /// ```text
@@ -49,28 +46,30 @@ type Rows<S> = [[[S; 4]; SMALL / 4]; SMALL];
 struct Inverse<S> {
     /// Through U^T, then through L^T.
     triangles: [Triangle<S>; 2],
-    rows: Box<Rows<S>>,
-    groups: usize,
+    /// Four columns of W^-T, row by row: four states of the solution.
+    blocks: Vec<[[S; 4]; SMALL]>,
 }
 
 impl<S: Lane> Inverse<S> {
     #[inline(always)]
     fn find(&mut self, entries: &[S], inverses: &[S]) {
-        let (zero, groups) = (S::from(0.0), self.groups);
+        let (zero, one) = (S::from(0.0), S::from(1.0));
         let [first, last] = &mut self.triangles;
         first.take(entries);
         last.take(entries);
-        for (place, row) in self.rows.iter_mut().enumerate().take(inverses.len()) {
-            *row = [[zero; 4]; SMALL / 4];
-            row[place / 4][place % 4] = S::from(1.0);
-        }
-        first.substitute_rows(&mut self.rows, groups);
-        for (row, &inverse) in self.rows.iter_mut().zip(inverses) {
-            for value in row[..groups].as_flattened_mut() {
-                *value = *value * inverse;
+        for (group, block) in self.blocks.iter_mut().enumerate() {
+            *block = [[zero; 4]; SMALL];
+            for place in 0..4 {
+                block[(4 * group + place) % SMALL][place] = one;
             }
+            first.substitute_four(block);
+            for (row, &inverse) in block.iter_mut().zip(inverses) {
+                for value in row {
+                    *value = *value * inverse;
+                }
+            }
+            last.substitute_four(block);
         }
-        last.substitute_rows(&mut self.rows, groups);
     }
 
     #[inline(always)]
@@ -78,19 +77,14 @@ impl<S: Lane> Inverse<S> {
         let mut right = [S::from(0.0); SMALL];
         right.copy_from_slice(&vector[..SMALL]);
         let (solution, _) = vector.as_chunks_mut::<4>();
-        let ((pairs, _), (rights, _)) = (self.rows.as_chunks::<2>(), right.as_chunks::<2>());
-        for (group, sums) in solution.iter_mut().enumerate().take(self.groups) {
-            let mut totals = [[S::from(0.0); 4]; 2];
-            for (pair, rights) in pairs.iter().zip(rights).take(states.div_ceil(2)) {
-                for ((totals, row), &right) in totals.iter_mut().zip(pair).zip(rights) {
-                    for (total, &value) in totals.iter_mut().zip(&row[group]) {
-                        *total = *total + value * right;
-                    }
+        for (solution, block) in solution.iter_mut().zip(&self.blocks) {
+            let mut sums = [S::from(0.0); 4];
+            for (row, &right) in block.iter().zip(&right).take(states) {
+                for (sum, &value) in sums.iter_mut().zip(row) {
+                    *sum = *sum + value * right;
                 }
             }
-            for ((sum, &one), &other) in sums.iter_mut().zip(&totals[0]).zip(&totals[1]) {
-                *sum = one + other;
-            }
+            *solution = sums;
         }
     }
 }
@@ -124,19 +118,17 @@ impl<S: Lane> Triangle<S> {
         }
     }
 
-    /// The same substitution in every column of a matrix whose rows are given.
+    /// The same in four columns at once.
     #[inline(always)]
-    fn substitute_rows(&self, rows: &mut Rows<S>, groups: usize) {
+    fn substitute_four(&self, columns: &mut [[S; 4]; SMALL]) {
         for Terms { values, others, state } in &self.terms {
-            let mut row = rows[usize::from(*state) % SMALL];
+            let mut sums = columns[usize::from(*state) % SMALL];
             for (&value, &other) in values.iter().zip(others) {
-                for (sums, others) in row.iter_mut().zip(&rows[usize::from(other) % SMALL]).take(groups) {
-                    for (sum, &other) in sums.iter_mut().zip(others) {
-                        *sum = *sum - value * other;
-                    }
+                for (sum, &other) in sums.iter_mut().zip(&columns[usize::from(other) % SMALL]) {
+                    *sum = *sum - value * other;
                 }
             }
-            rows[usize::from(*state) % SMALL] = row;
+            columns[usize::from(*state) % SMALL] = sums;
         }
     }
 
@@ -210,8 +202,7 @@ impl<S: Lane> StepMatrix<S> {
         let substitutions = substitutions(&order, &filled, |row, column| place[row][column]);
         let inverse = (count <= SMALL).then(|| Inverse {
             triangles: self::substitutions(&order, &transposed(&filled), |row, column| place[column][row]),
-            rows: Box::new([[[S::from(0.0); 4]; SMALL / 4]; SMALL]),
-            groups: count.div_ceil(4),
+            blocks: vec![[[S::from(0.0); 4]; SMALL]; count.div_ceil(4)],
         });
         let entries = rows
             .iter()

@@ -84,9 +84,9 @@ impl<S: Scalar> Machine<S> {
 
     /// Pressures at the valve's ports A and B: the chambers' own where lines are lumped.
     #[inline(always)]
-    pub(super) fn ports<T: Scalar + From<S>>(&self, state: &MachineState<T>, lines: [&[T]; 2]) -> [T; 2] {
+    pub(super) fn ports<T: Scalar + From<S>>(&self, state: &MachineState<T>, vector: &[T]) -> [T; 2] {
         if self.layout.has_lines() {
-            self.ports_of_lines(state, lines)
+            self.ports_of_lines(state, self.layout.lines(vector))
         } else {
             [state.pressure_a, state.pressure_b]
         }
@@ -180,15 +180,14 @@ impl<S: Scalar> Machine<S> {
         let load = self.load_of(&state, &ground);
         let position = load.position + state.deflection;
         let velocity = state.velocity;
-        let lines = self.layout.lines(vector);
-        let flows = self.flows(&state, self.ports(&state, lines));
+        let flows = self.flows(&state, self.ports(&state, vector));
         let forces = self.forces(&state, position);
         let [compliance_a, compliance_b] = self.compliance(&state, position);
         let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let pushing = forces.hydraulic + forces.end_stops - forces.friction.force - forces.sensed;
         let valve = self.valve.convert(&mut constant::<S, T>);
         let [into_a, into_b] = if self.layout.has_lines() {
-            self.through_lines(&state, &flows, lines, inputs, rates)
+            self.through_lines(&state, &flows, self.layout.lines(vector), inputs, rates)
         } else {
             flows.from_valve
         };

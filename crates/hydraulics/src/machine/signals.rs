@@ -59,11 +59,11 @@ impl<S: Scalar> Machine<S> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn outputs<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; SIGNALS.len()] {
-        let lines = self.layout.lines(state);
-        let state = self.layout.read(state);
+        let vector = state;
+        let state = self.layout.read(vector);
         let load = self.load_of(&state, &ground_of(inputs));
         let position = load.position + state.deflection;
-        let ports = self.ports(&state, lines);
+        let ports = self.ports(&state, vector);
         let flows = self.flows(&state, ports);
         let forces = self.forces(&state, position);
         [
