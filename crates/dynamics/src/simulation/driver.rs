@@ -23,7 +23,7 @@ struct Drive<'a, S, O> {
     settings: Settings,
     slots: Vec<Option<Slot<'a, O>>>,
     state: Vec<S>,
-    /// Whether a state is not the one last linearised at.
+    /// Whether a state, or what drives it, is not the one last linearised at.
     fresh: bool,
     step: S,
     inputs: StepInputs<S>,
@@ -183,14 +183,16 @@ where
         for lane in 0..S::COUNT {
             self.prepare(lane);
         }
+        // A lane that goes by its matrices now stands, after this step, where the method has not linearised it.
+        let fresh = std::mem::take(&mut self.fresh);
         if self.propagate(system) {
             return;
         }
-        self.inputs.moving = self.slots.iter().flatten().any(|slot| !slot.passage.still);
-        if self.fresh {
+        if fresh {
+            let mut left = self.slots.iter().flatten().filter(|slot| !slot.propagated);
+            self.inputs.moving = left.any(|slot| !slot.passage.still);
             self.method.linearize(system, &self.state, &self.inputs);
         }
-        self.fresh = false;
         let error =
             self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
         let error = self.look_between(system, error);
