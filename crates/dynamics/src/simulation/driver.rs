@@ -2,7 +2,7 @@
 
 use super::course::{Event, Observer, Outcome, Settings, SimulationError, Status};
 use super::history::NODES;
-use super::method::{Extension, StepInputs, Stepper};
+use super::method::{Extension, LOOKED_AT, StepInputs, Stepper};
 use super::passage::Passage;
 use super::propagator::Propagator;
 use super::rosenbrock::DIRECTIONS;
@@ -213,14 +213,13 @@ where
         }
     }
 
-    /// The error of the step with that of what is shown or sent between its ends.
+    /// The error of the step with that between its ends, in lanes where the first may not be all.
     fn look_between<E: System<S>>(&mut self, system: &E, error: S) -> S {
         let mut looked = S::from(0.0);
         for lane in 0..S::COUNT {
             let Some(Slot { passage, inputs, propagated, .. }) = &mut self.slots[lane] else { continue };
-            let looked_into = passage.looked_into() && self.method.binds_stiffly(lane, passage.step_s);
-            if !*propagated && error.lane(lane) <= 1.0 && looked_into {
-                passage.inputs_within(0.5, inputs);
+            if !*propagated && error.lane(lane) <= 1.0 && self.method.doubts(lane, passage) {
+                passage.inputs_within(LOOKED_AT, inputs);
                 passage.work.evaluations += 1;
                 set_lane(&mut self.between.inputs, lane, inputs);
                 looked.set_lane(lane, 1.0);
