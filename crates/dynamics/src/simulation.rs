@@ -55,6 +55,9 @@ pub trait System<S: Scalar> {
     fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]);
 
     /// How long each delayed wave travels, in s. The last inputs are these waves as they arrive, in this order.
+    ///
+    /// What leaves at a break of the course arrives as a break, at which a step ends, through twelve delays. What jumps still
+    /// after so many is smeared over the step in which it arrives.
     fn delays(&self) -> Vec<S> {
         Vec::new()
     }
@@ -68,6 +71,8 @@ pub trait System<S: Scalar> {
     }
 
     /// Quantities whose change of sign is an event (contact, cavitation): reported with its time, never acted on.
+    ///
+    /// They are compared at the ends of each step: one that changes its sign twice within a step is not seen.
     fn indicate<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _indicators: &mut [T]) {}
 }
 

@@ -59,7 +59,10 @@ pub trait Observer {
 /// How exactly, and how much work at most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Largest error of a step, relative to the state plus its scale.
+    /// Largest error of a step as it is estimated, relative to the state plus its scale. Above 0 and below 1.
+    ///
+    /// Where a rate has a kink within the step, as friction has at a standstill, one step in a hundred is off by ten times as
+    /// much and more.
     pub tolerance: f64,
     /// Steps, rejected ones included, after which it ends.
     pub maximum_steps: u64,

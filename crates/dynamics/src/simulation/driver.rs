@@ -2,7 +2,7 @@
 
 use super::course::{Event, Observer, Outcome, Settings, SimulationError, Status};
 use super::history::NODES;
-use super::method::{Extension, StepInputs, Stepper};
+use super::method::{Extension, LOOKED_AT, StepInputs, Stepper};
 use super::passage::Passage;
 use super::propagator::Propagator;
 use super::rosenbrock::DIRECTIONS;
@@ -23,7 +23,7 @@ struct Drive<'a, S, O> {
     settings: Settings,
     slots: Vec<Option<Slot<'a, O>>>,
     state: Vec<S>,
-    /// Whether a state is not the one last linearised at.
+    /// Whether a state, or what drives it, is not the one last linearised at.
     fresh: bool,
     step: S,
     inputs: StepInputs<S>,
@@ -183,14 +183,16 @@ where
         for lane in 0..S::COUNT {
             self.prepare(lane);
         }
+        // A lane that goes by its matrices now stands, after this step, where the method has not linearised it.
+        let fresh = std::mem::take(&mut self.fresh);
         if self.propagate(system) {
             return;
         }
-        self.inputs.moving = self.slots.iter().flatten().any(|slot| !slot.passage.still);
-        if self.fresh {
+        if fresh {
+            let mut left = self.slots.iter().flatten().filter(|slot| !slot.propagated);
+            self.inputs.moving = left.any(|slot| !slot.passage.still);
             self.method.linearize(system, &self.state, &self.inputs);
         }
-        self.fresh = false;
         let error =
             self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
         let error = self.look_between(system, error);
@@ -211,14 +213,13 @@ where
         }
     }
 
-    /// The error of the step with that of what is shown or sent between its ends.
+    /// The error of the step with that between its ends, in lanes where the first may not be all.
     fn look_between<E: System<S>>(&mut self, system: &E, error: S) -> S {
         let mut looked = S::from(0.0);
         for lane in 0..S::COUNT {
             let Some(Slot { passage, inputs, propagated, .. }) = &mut self.slots[lane] else { continue };
-            let looked_into = passage.looked_into() && self.method.binds_stiffly(lane, passage.step_s);
-            if !*propagated && error.lane(lane) <= 1.0 && looked_into {
-                passage.inputs_within(0.5, inputs);
+            if !*propagated && error.lane(lane) <= 1.0 && self.method.doubts(lane, passage) {
+                passage.inputs_within(LOOKED_AT, inputs);
                 passage.work.evaluations += 1;
                 set_lane(&mut self.between.inputs, lane, inputs);
                 looked.set_lane(lane, 1.0);

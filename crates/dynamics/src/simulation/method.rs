@@ -3,9 +3,14 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use super::explicit::{self, DormandPrince};
+use super::passage::Passage;
 use super::rosenbrock::{self, DIRECTIONS, Rosenbrock};
 use super::{Lane, System};
 use crate::scalar::{Dependence, Dual};
+
+/// Where in a step the equations are asked how far its course is off: late, since a step that is shortened for a kink comes to
+/// end shortly behind it.
+pub(super) const LOOKED_AT: f64 = 0.75;
 
 /// How steps are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -100,14 +105,19 @@ where
         }
     }
 
-    /// Whether what lies between the ends of a step may be further off than what stands at its end: never for the explicit
-    /// method, whose steps are too short for that.
-    pub(super) fn binds_stiffly(&self, lane: usize, step_s: f64) -> bool {
-        self.linearized().is_some_and(|method| method.binds_stiffly(lane, step_s))
+    /// Whether a step may be further off than the error at its end tells. Never for the explicit method, whose steps are too
+    /// short for that.
+    ///
+    /// Where a state is bound stiffly, what lies between the ends is. And a step that was shortened until its error let it
+    /// pass may end where the error is blind: where a rate has a kink, as friction has at a standstill, that is so for
+    /// some places of the kink within the step, which steps made shorter one after the other find.
+    pub(super) fn doubts(&self, lane: usize, passage: &Passage<'_>) -> bool {
+        let Some(method) = self.linearized() else { return false };
+        passage.rejected || (passage.looked_into() && method.binds_stiffly(lane, passage.step_s))
     }
 
-    /// How far what lies between the ends of the step just attempted is off, for the inputs in its middle, in units of the
-    /// tolerance.
+    /// How far what lies between the ends of the step just attempted is off, for the inputs at [`LOOKED_AT`], in units of
+    /// the tolerance.
     pub(super) fn error_between<E: System<S>>(
         &mut self,
         system: &E,
@@ -241,10 +251,11 @@ impl<S: Lane> Extension<S> {
         Extension { start, end, coefficients }
     }
 
-    /// Slope in the middle, times the step.
-    pub(super) fn slope_in_the_middle(&self) -> S {
-        let [_, second, third] = self.coefficients;
-        self.end - self.start + (second + third).times(0.25)
+    /// Slope at this part of the step, times the step.
+    pub(super) fn slope(&self, part: f64) -> S {
+        let [first, second, third] = self.coefficients;
+        let rise = self.end - self.start + first.times(1.0 - 2.0 * part);
+        rise + (second.times(2.0 - 3.0 * part) + third.times(part * (3.0 - 4.0 * part))).times(part)
     }
 
     /// The same in one lane.

@@ -45,7 +45,8 @@ pub(super) struct Passage<'a> {
     pending: VecDeque<(f64, f64)>,
     command: f64,
     pub(super) row: u64,
-    rejected: bool,
+    /// Whether the last step was refused.
+    pub(super) rejected: bool,
     /// Error of the last step.
     before: f64,
     pub(super) work: Work,

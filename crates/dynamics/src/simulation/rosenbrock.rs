@@ -1,6 +1,6 @@
 //! One step of an L-stable Rosenbrock method of order five.
 
-use super::method::{Extension, StepInputs, relative_error};
+use super::method::{Extension, LOOKED_AT, StepInputs, relative_error};
 use super::pattern::Pattern;
 use super::step_matrix::{COLUMN, Column, StepMatrix};
 use super::{Lane, System};
@@ -266,11 +266,11 @@ where
         self.fastest.lane(lane) * step_s < -STIFF
     }
 
-    /// How far the continuous extension is off in the middle of the step just attempted, in units of the tolerance, for the
-    /// inputs there: the remainder of the equations, brought to the state as a stage's increment is.
+    /// How far the continuous extension is off at theta = [`LOOKED_AT`] of the step just attempted, in units of the tolerance,
+    /// for the inputs there: the remainder of the equations, brought to the state as a stage's increment is.
     ///
     /// ```text
-    /// (1/(h gamma) - J) e = f(y(1/2), w(1/2)) - y'(1/2)
+    /// (1/(h gamma) - J) e = f(y(theta), w(theta)) - y'(theta)
     /// ```
     ///
     /// Where a state is bound stiffly to others or to an input the error at the end says nothing of what lies between.
@@ -286,8 +286,8 @@ where
         let (states, per_step) = (state.len(), S::from(1.0) / step);
         for (index, &start) in state.iter().enumerate() {
             let extension = self.extension(index, start);
-            self.stage.as_flattened_mut()[index] = extension.at(S::from(0.5));
-            self.slopes_between[index] = extension.slope_in_the_middle() * per_step;
+            self.stage.as_flattened_mut()[index] = extension.at(S::from(LOOKED_AT));
+            self.slopes_between[index] = extension.slope(LOOKED_AT) * per_step;
         }
         let remainders = &mut *self.column;
         system.rates(&self.stage.as_flattened()[..states], inputs, &mut remainders[..states]);

@@ -59,19 +59,27 @@ struct Case {
     start: [f64; 3],
     course: Course,
     sample_time_s: Option<f64>,
+    /// Largest of what is added to each command.
+    noise: f64,
 }
 
-struct Holding(f64);
+/// What it commands, disturbed by a sequence that looks random.
+struct Holding {
+    sample_time_s: f64,
+    noise: f64,
+    number: f64,
+}
 
 impl Sampler for Holding {
     fn sample_time_s(&self) -> f64 {
-        self.0
+        self.sample_time_s
     }
     fn delay_s(&self) -> f64 {
-        0.4 * self.0
+        0.4 * self.sample_time_s
     }
     fn command(&mut self, _: f64, state: &[f64], _: &[f64]) -> f64 {
-        -3.0 * state[0]
+        self.number = 3.9 * self.number * (1.0 - self.number);
+        self.noise * (2.0 * self.number - 1.0) - 3.0 * state[0]
     }
 }
 
@@ -115,7 +123,9 @@ impl<'a, S: Lane> Queue<'a, Machine<S>> for Line<'a> {
         machine.rate.set_lane(lane, rate);
         machine.delay_s.set_lane(lane, delay_s);
         self.in_lane[lane] = index;
-        let sampler = case.sample_time_s.map(|time_s| Box::new(Holding(time_s)) as Box<dyn Sampler>);
+        let sampler = case.sample_time_s.map(|sample_time_s| {
+            Box::new(Holding { sample_time_s, noise: case.noise, number: 0.4 }) as Box<dyn Sampler>
+        });
         let (start, course) = (case.start.to_vec(), &case.course);
         Some(Task { start, course, sampler, observer: Notes(Seen::default(), &[0, 2, 1]) })
     }
@@ -155,6 +165,7 @@ fn cases() -> Vec<Case> {
                     inputs: vec![Input::Value(motions[index % 6].clone()), Input::Command],
                 },
                 sample_time_s: (index % 3 == 1).then_some(0.02),
+                noise: 0.0,
             }
         })
         .collect()
@@ -185,6 +196,19 @@ fn neighbours_make_no_difference_from_sample_to_sample() {
     let mut cases = cases();
     for case in &mut cases {
         case.sample_time_s = Some(0.002);
+        case.course.output_step_s = 0.5;
+        case.course.duration_s += 1.0;
+    }
+    neighbours(&cases, 0);
+}
+
+/// With commands that jump at every sample known matrices are refused now and then, while neighbours repeat steps.
+#[test]
+fn neighbours_make_no_difference_where_commands_jump() {
+    let mut cases = cases();
+    for (index, case) in cases.iter_mut().enumerate() {
+        case.sample_time_s = Some([0.02, 0.015, 0.03][index % 3]);
+        case.noise = [30.0, 3.0, 300.0, 0.3][index % 4];
         case.course.output_step_s = 0.5;
         case.course.duration_s += 1.0;
     }
