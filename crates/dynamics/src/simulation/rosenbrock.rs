@@ -254,7 +254,9 @@ where
             self.finish_stage(stage, step, per_step, inputs.moving);
         }
         // The column holds the last increment.
-        for ((end, &stage), &increment) in self.end.iter_mut().zip(self.stage.as_flattened()).zip(&*self.column) {
+        for ((end, &stage), &increment) in
+            self.end.iter_mut().zip(self.stage.as_flattened()).zip(&*self.column)
+        {
             *end = stage + increment;
         }
         let error = relative_error(&*self.column, state, &self.end, scales, tolerance);
