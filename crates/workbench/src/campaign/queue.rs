@@ -57,7 +57,8 @@ pub(super) fn batch_one_by_one(
 }
 
 /// Drives runs in lanes; those that were stopped are absent. Under a sampled controller they are driven one by one: from sample to
-/// sample a machine goes by its own matrices.
+/// sample a machine goes by its own matrices, and where one has to leave them its neighbours wait. Lanes have the same bits there,
+/// and take as long.
 ///
 /// # Errors
 /// A start or course that does not fit the machine.
