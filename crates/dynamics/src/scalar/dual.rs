@@ -49,6 +49,20 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
         self.value
     }
 
+    /// Replaces the value, and keeps the derivatives.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::scalar::Dual;
+    /// let mut x = Dual::<1>::variable(3.0, 0);
+    /// x.set_value(4.0);
+    /// assert_eq!((x * x).gradient(), &[8.0]);
+    /// ```
+    #[inline(always)]
+    pub fn set_value(&mut self, value: S) {
+        self.value = value;
+    }
+
     /// The partial derivatives, one a variable.
     pub fn gradient(&self) -> &[S; N] {
         &self.gradient

@@ -130,7 +130,8 @@ pub(super) struct Rosenbrock<S> {
     column: Box<Column<S>>,
     slopes: Vec<S>,
     slopes_between: Vec<S>,
-    seeded: Vec<Dual<DIRECTIONS, S>>,
+    /// The states as variables, for one evaluation after another.
+    seeded: Vec<Vec<Dual<DIRECTIONS, S>>>,
     seeded_inputs: Vec<Dual<DIRECTIONS, S>>,
     seeded_rates: Vec<Dual<DIRECTIONS, S>>,
     /// J, in the order in which it is found.
@@ -153,7 +154,11 @@ where
         let pattern = Pattern::of(system)?;
         let (states, inputs) = (system.states(), system.inputs());
         let (groups, zero) = (states.div_ceil(4), S::from(0.0));
-        let seeded = vec![Dual::constant(zero); states];
+        let seeded = |pass: usize| {
+            let direction = |&colour: &usize| colour.wrapping_sub(pass * DIRECTIONS);
+            pattern.colours.iter().map(|colour| Dual::variable(zero, direction(colour))).collect()
+        };
+        let seeded = (0..=pattern.colour_count / DIRECTIONS).map(seeded).collect();
         let matrix = StepMatrix::new(&pattern.rows);
         let found = found(&pattern, &matrix);
         Some(Rosenbrock {
@@ -166,7 +171,7 @@ where
             slopes: vec![zero; states],
             slopes_between: vec![zero; states],
             seeded_inputs: vec![Dual::constant(zero); inputs],
-            seeded_rates: seeded.clone(),
+            seeded_rates: vec![Dual::constant(zero); states],
             seeded,
             jacobian: vec![zero; found.len()],
             own: own(&pattern),
@@ -187,10 +192,10 @@ where
         for (seeded, &value) in self.seeded_inputs.iter_mut().zip(&inputs.stages[0]) {
             *seeded = Dual::constant(value);
         }
-        for pass in 0..directions.div_ceil(DIRECTIONS) {
+        for (pass, seeded) in self.seeded.iter_mut().enumerate().take(directions.div_ceil(DIRECTIONS)) {
             let first = pass * DIRECTIONS;
-            for ((seeded, &value), &colour) in self.seeded.iter_mut().zip(state).zip(&self.pattern.colours) {
-                *seeded = Dual::variable(value, colour.wrapping_sub(first));
+            for (seeded, &value) in seeded.iter_mut().zip(state) {
+                seeded.set_value(value);
             }
             let time_here = inputs.moving && (first..first + DIRECTIONS).contains(&in_time);
             if time_here {
@@ -201,7 +206,7 @@ where
                     *seeded = Dual::new(seeded.value(), gradient);
                 }
             }
-            system.rates(&self.seeded, &self.seeded_inputs, &mut self.seeded_rates);
+            system.rates(seeded, &self.seeded_inputs, &mut self.seeded_rates);
             for (value, found) in self.jacobian.iter_mut().zip(&self.found) {
                 if found.pass == pass {
                     *value = self.seeded_rates[found.row].gradient()[found.direction];

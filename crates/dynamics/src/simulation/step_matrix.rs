@@ -35,6 +35,9 @@ pub(super) const COLUMN: usize = 256;
 /// Systems of so many states or fewer are solved by their inverse.
 const SMALL: usize = 16;
 
+/// A small matrix by rows, each in groups of four.
+type Rows<S> = [[[S; 4]; SMALL / 4]; SMALL];
+
 /// The inverse of a small matrix.
 ///
 /// ```text
@@ -46,8 +49,10 @@ const SMALL: usize = 16;
 struct Inverse<S> {
     /// Through U^T, then through L^T.
     triangles: [Triangle<S>; 2],
-    /// Four columns of W^-T, row by row: four states of the solution.
-    blocks: Vec<[[S; 4]; SMALL]>,
+    /// W^-T, row by row, in groups of four columns.
+    rows: Box<Rows<S>>,
+    /// How many groups are used.
+    groups: usize,
 }
 
 impl<S: Lane> Inverse<S> {
@@ -57,19 +62,17 @@ impl<S: Lane> Inverse<S> {
         let [first, last] = &mut self.triangles;
         first.take(entries);
         last.take(entries);
-        for (group, block) in self.blocks.iter_mut().enumerate() {
-            *block = [[zero; 4]; SMALL];
-            for place in 0..4 {
-                block[(4 * group + place) % SMALL][place] = one;
-            }
-            first.substitute_four(block);
-            for (row, &inverse) in block.iter_mut().zip(inverses) {
-                for value in row {
-                    *value = *value * inverse;
-                }
-            }
-            last.substitute_four(block);
+        for (place, row) in self.rows.iter_mut().enumerate().take(inverses.len()) {
+            *row = [[zero; 4]; SMALL / 4];
+            row[place / 4][place % 4] = one;
         }
+        first.substitute_rows(&mut self.rows, self.groups);
+        for (row, &inverse) in self.rows.iter_mut().zip(inverses) {
+            for value in row[..self.groups].as_flattened_mut() {
+                *value = *value * inverse;
+            }
+        }
+        last.substitute_rows(&mut self.rows, self.groups);
     }
 
     #[inline(always)]
@@ -77,10 +80,10 @@ impl<S: Lane> Inverse<S> {
         let mut right = [S::from(0.0); SMALL];
         right.copy_from_slice(&vector[..SMALL]);
         let (solution, _) = vector.as_chunks_mut::<4>();
-        for (solution, block) in solution.iter_mut().zip(&self.blocks) {
+        for (group, solution) in solution.iter_mut().enumerate().take(self.groups) {
             let mut sums = [S::from(0.0); 4];
-            for (row, &right) in block.iter().zip(&right).take(states) {
-                for (sum, &value) in sums.iter_mut().zip(row) {
+            for (row, &right) in self.rows.iter().zip(&right).take(states) {
+                for (sum, &value) in sums.iter_mut().zip(&row[group % (SMALL / 4)]) {
                     *sum = *sum + value * right;
                 }
             }
@@ -118,17 +121,22 @@ impl<S: Lane> Triangle<S> {
         }
     }
 
-    /// The same in four columns at once.
+    /// The same in every column of a matrix, given by rows of so many groups.
     #[inline(always)]
-    fn substitute_four(&self, columns: &mut [[S; 4]; SMALL]) {
+    fn substitute_rows(&self, rows: &mut Rows<S>, groups: usize) {
         for Terms { values, others, state } in &self.terms {
-            let mut sums = columns[usize::from(*state) % SMALL];
-            for (&value, &other) in values.iter().zip(others) {
-                for (sum, &other) in sums.iter_mut().zip(&columns[usize::from(other) % SMALL]) {
-                    *sum = *sum - value * other;
+            let [one, other] = others.map(|other| usize::from(other) % SMALL);
+            let state = usize::from(*state) % SMALL;
+            for group in 0..groups.min(SMALL / 4) {
+                let mut sums = rows[state][group];
+                for (sum, &other) in sums.iter_mut().zip(&rows[one][group]) {
+                    *sum = *sum - values[0] * other;
                 }
+                for (sum, &other) in sums.iter_mut().zip(&rows[other][group]) {
+                    *sum = *sum - values[1] * other;
+                }
+                rows[state][group] = sums;
             }
-            columns[usize::from(*state) % SMALL] = sums;
         }
     }
 
@@ -202,7 +210,8 @@ impl<S: Lane> StepMatrix<S> {
         let substitutions = substitutions(&order, &filled, |row, column| place[row][column]);
         let inverse = (count <= SMALL).then(|| Inverse {
             triangles: self::substitutions(&order, &transposed(&filled), |row, column| place[column][row]),
-            blocks: vec![[[S::from(0.0); 4]; SMALL]; count.div_ceil(4)],
+            rows: Box::new([[[S::from(0.0); 4]; SMALL / 4]; SMALL]),
+            groups: count.div_ceil(4),
         });
         let entries = rows
             .iter()
