@@ -48,6 +48,8 @@ struct EventRow {
 struct MetricsRow {
     overshoot_percent: Option<f64>,
     overshoot_percent_reason: Option<&'static str>,
+    rise_time_s: Option<f64>,
+    rise_time_s_reason: Option<&'static str>,
     settling_time_s: Option<f64>,
     settling_time_s_reason: Option<&'static str>,
     settling_band_percent: f64,
@@ -144,6 +146,7 @@ fn event((window, metrics): &(Window, Metrics)) -> EventRow {
 fn metrics_row(metrics: &Metrics) -> MetricsRow {
     let split = |measured: Measured| (measured.ok(), measured.err());
     let (overshoot_percent, overshoot_percent_reason) = split(metrics.overshoot_percent);
+    let (rise_time_s, rise_time_s_reason) = split(metrics.rise_time_s);
     let (settling_time_s, settling_time_s_reason) = split(metrics.settling_time_s);
     let (disturbance_peak_n, disturbance_peak_n_reason) = split(metrics.disturbance_peak_n);
     let (steady_state_error_n, steady_state_error_n_reason) = split(metrics.steady_state_error_n);
@@ -152,6 +155,8 @@ fn metrics_row(metrics: &Metrics) -> MetricsRow {
     MetricsRow {
         overshoot_percent,
         overshoot_percent_reason,
+        rise_time_s,
+        rise_time_s_reason,
         settling_time_s,
         settling_time_s_reason,
         settling_band_percent: metrics.settling_band_percent,
