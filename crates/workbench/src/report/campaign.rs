@@ -126,16 +126,21 @@ fn lumps(plan: &Plan, summary: &Summary) -> Markup {
     }
 }
 
+/// The runs that are worst in most.
+fn told(summary: &Summary) -> Vec<&Worst> {
+    let mut told: Vec<&Worst> = summary.worst.iter().collect();
+    told.sort_by_key(|worst| std::cmp::Reverse(worst.of.len()));
+    told.truncate(WORST);
+    told
+}
+
 fn worst(plan: &Plan, summary: &Summary) -> Markup {
-    let rows: Vec<Vec<Markup>> = summary
-        .worst
-        .iter()
-        .take(WORST)
-        .map(|worst| vec![cell(worst.run.to_string()), cell(worst_in(plan, worst))])
-        .collect();
+    let told = told(summary);
+    let rows: Vec<Vec<Markup>> =
+        told.iter().map(|worst| vec![cell(worst.run.to_string()), cell(worst_in(plan, worst))]).collect();
     html! {
         h3 { "Worst runs" }
-        @if let Some(first) = summary.worst.first() {
+        @if let Some(first) = told.first() {
             p { "A run follows from seed and index: " code { "phea campaign PROJECT.toml --seed " (plan.seed()) " --run " (first.run) } " drives it again and tells all that happens in it, with its numbers to their last digit." }
         }
         (table(&["run", "worst in"], 2, &rows))
@@ -155,7 +160,7 @@ fn worst_in(plan: &Plan, worst: &Worst) -> String {
 
 /// Every drawn number: where from, and what the worst runs drew.
 fn drawn(plan: &Plan, summary: &Summary) -> Markup {
-    let draws: Vec<_> = summary.worst.iter().take(WORST).map(|worst| plan.draw(worst.run)).collect();
+    let draws: Vec<_> = told(summary).iter().map(|worst| plan.draw(worst.run)).collect();
     let runs: Vec<String> = draws.iter().map(|draw| format!("run {}", draw.run)).collect();
     let mut heads = vec!["number", "unit", "from", "to"];
     heads.extend(runs.iter().map(String::as_str));

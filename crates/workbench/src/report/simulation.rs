@@ -9,8 +9,8 @@ use crate::command::{CommandError, Watch};
 use crate::figure::{DisplayUnit, Figure};
 use crate::project::{FrictionModel, Project, Scenario};
 use crate::simulate::{
-    ABSENT, Cause, METRICS, Metrics, ScenarioRun, SimulateError, Window, cause_words, cells_of, headline,
-    occurrence_sentences, pictures, simulate_project,
+    ABSENT, Cause, METRICS, Metrics, ScenarioRun, SimulateError, Window, cause_words, cells_of,
+    coarse_sentence, headline, occurrence_sentences, pictures, simulate_project,
 };
 use crate::source::Source;
 
@@ -81,6 +81,7 @@ fn scenario(run: &ScenarioRun, declared: &Scenario, figures: &[Figure]) -> Marku
             p { "Settling is to " (run.settling_band_percent) " % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less force, averaged over the last tenth of the window; the rise is from 10 to 90 % of the step." }
         }
         @for remark in remarks { p { (remark) } }
+        @if let Some(sentence) = coarse_sentence(run) { p { (sentence) "." } }
         @for sentence in occurrence_sentences(&run.occurrences) { p { (sentence) "." } }
     }
 }

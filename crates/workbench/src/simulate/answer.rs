@@ -22,6 +22,7 @@ struct ScenarioRow<'a> {
     ended_s: Option<f64>,
     ended_s_reason: Option<&'static str>,
     work: WorkRow,
+    look_s: f64,
     events: Vec<EventRow>,
     occurrences: Vec<OccurrenceRow>,
 }
@@ -123,6 +124,7 @@ fn scenario(run: &ScenarioRun) -> ScenarioRow<'_> {
             rejected: run.work.rejected,
             evaluations: run.work.evaluations,
         },
+        look_s: run.look_s,
         events: run.windows.iter().map(event).collect(),
         occurrences: run.occurrences.iter().map(occurrence).collect(),
     }

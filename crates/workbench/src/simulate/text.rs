@@ -17,7 +17,7 @@ pub(crate) fn text(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
         if !run.windows.is_empty() {
             out.push_str(&format!("{}\n", windows(run)));
         }
-        for sentence in occurrence_sentences(&run.occurrences) {
+        for sentence in coarse_sentence(run).into_iter().chain(occurrence_sentences(&run.occurrences)) {
             out.push_str(&format!("  {sentence}\n"));
         }
         out.push('\n');
@@ -119,6 +119,14 @@ pub(crate) fn cells_of(metrics: &Metrics) -> [String; 7] {
 /// A steady error below a millinewton is what the method leaves, not what the loop does.
 pub(crate) fn small_as_zero(error_n: f64) -> f64 {
     if error_n.abs() < 1e-3 { 0.0 } else { error_n }
+}
+
+/// What the numbers of a long scenario are not.
+pub(crate) fn coarse_sentence(run: &ScenarioRun) -> Option<String> {
+    run.is_coarse().then(|| {
+        let look = DisplayUnit::MILLISECOND.number(run.look_s, 3);
+        format!("so long a scenario is looked at every {look} ms only: what is shorter is not seen, and peaks may be larger")
+    })
 }
 
 /// What happened on the way, a sentence each.
