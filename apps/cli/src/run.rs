@@ -215,6 +215,7 @@ fn written_sentence(written: &[PathBuf]) -> String {
     match written {
         [] => String::new(),
         [only] => format!("Wrote {}\n", only.display()),
+        [first, _] => format!("Wrote {} and one more file beside it\n", first.display()),
         [first, more @ ..] => {
             format!("Wrote {} and {} more files beside it\n", first.display(), more.len())
         }

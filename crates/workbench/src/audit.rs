@@ -112,6 +112,8 @@ pub struct ProjectAudit {
     pub sample_time_s: Option<f64>,
     /// Delay of the loop, s.
     pub delay_s: f64,
+    /// What the controller does that the audit does not include.
+    pub left_out: Option<&'static str>,
     /// What the worst plant of each specification reaches, where that is a magnitude against a limit.
     pub reached: Vec<Option<Reached>>,
 }
@@ -185,6 +187,7 @@ impl ProjectAudit {
             whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
+            left_out: problem.left_out,
         }
     }
 

@@ -30,7 +30,7 @@ pub use workers::Effort;
 pub(crate) use answer::{json, run_json};
 pub(crate) use figures::{files, pictures};
 pub(crate) use ledger::campaign;
-pub(crate) use text::{metric_words, run_text, spread_cells, text};
+pub(crate) use text::{lump_words, metric_words, run_text, text};
 
 use crate::project::Report;
 use crate::simulate::SimulateError;

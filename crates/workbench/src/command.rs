@@ -320,7 +320,7 @@ fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
     let given = controller(&loaded.project)?;
     let linearization = linearize(&rig, given.as_ref(), &sensor(&loaded.project)?)?;
     Ok(Answer {
-        text: linearize::text(&linearization),
+        text: linearize::text(loaded, &linearization),
         json: linearize::json(loaded, &linearization),
         files: linearize::files(&linearization),
         affirmative: true,

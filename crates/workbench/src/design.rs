@@ -191,7 +191,7 @@ fn told(
         PrefilterChoice::Grow { .. } => Some(project::Prefilter {
             transfer: factors::declared(&law.prefilter.transfer_function()?),
             sample_time: None,
-            continuous: false,
+            continuous: project.prefilter.as_ref().is_some_and(|given| given.continuous),
         }),
         PrefilterChoice::None | PrefilterChoice::Given(_) => None,
     };

@@ -155,7 +155,7 @@ fn rig_chapters(
     }
     chapters.push(models::chapter(&linearization)?);
     chapters.push(impedance::chapter(project, &linearization)?);
-    chapters.push(response::chapter(given.as_ref(), reference(project)));
+    chapters.push(response::chapter(project, given.as_ref(), reference(project)));
     let facts = summary(&linearization, sizing.as_ref(), problem, given.as_ref());
     Ok((chapters, facts))
 }

@@ -15,7 +15,7 @@ use phea_qft::verification::PlantPoint;
 
 use crate::audit::kind_words;
 use crate::command::{CommandError, Progress, Watch};
-use crate::control::{compensation, prefilter, sensor, timing};
+use crate::control::{compensation, left_out, prefilter, sensor, timing};
 use crate::family::family;
 use crate::project::Project;
 use crate::source::Source;
@@ -36,6 +36,8 @@ pub struct RobustProblem {
     pub specifications: Vec<Specification>,
     /// What each of them is called: by its kind, or by what is rounded.
     pub specification_names: Vec<String>,
+    /// What the controller does that none of this includes.
+    pub left_out: Option<&'static str>,
 }
 
 /// Template and bounds at one design frequency.
@@ -100,6 +102,7 @@ pub fn robust_problem(source: &dyn Source, project: &Project) -> Result<RobustPr
         has_prefilter: project.prefilter.is_some(),
         specifications,
         specification_names,
+        left_out: left_out(project),
     })
 }
 

@@ -25,7 +25,10 @@ pub(crate) use figures::{comparison_files, pictures};
 pub(crate) use files::files;
 pub(crate) use metrics::{Seen, metrics_seen};
 pub(crate) use run::{COMMAND_LIMIT, occurrences};
-pub(crate) use text::{METRICS, cause_words, cells_of, compare_text, headline, occurrence_sentences, text};
+pub(crate) use text::{
+    ABSENT, METRICS, cause_words, cells_of, coarse_sentence, compare_text, headline, occurrence_sentences,
+    small_as_zero, text,
+};
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::simulation::{ProfileError, SimulationError};

@@ -8,7 +8,7 @@ use std::path::Path;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use phea_workbench::campaign::{
-    CampaignError, Effort, Ledger, Plan, Row, RowOutcome, STATUS_WORDS, Shard, Summary, Wanted,
+    CampaignError, Effort, Ledger, METRIC_NAMES, Plan, Row, RowOutcome, STATUS_WORDS, Shard, Summary, Wanted,
 };
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
 use phea_workbench::project::{self, Loaded};
@@ -90,9 +90,11 @@ fn a_run_is_what_simulate_makes_of_its_settings() {
             );
             let row = plan.rows(run as u64..run as u64 + 1, lanes(1)).unwrap().remove(0);
             for ((_, metrics), numbers) in simulated.windows.iter().zip(&row.ran().unwrap().metrics) {
-                assert_eq!(metrics.disturbance_peak_n.ok(), numbers[2]);
+                let of = |name: &str| numbers[METRIC_NAMES.iter().position(|known| *known == name).unwrap()];
+                assert_eq!(metrics.disturbance_peak_n.ok(), of("disturbance_peak_n"));
+                assert_eq!(metrics.rise_time_s.ok(), of("rise_time_s"));
                 // the command is the same sum in another order
-                let peaks = metrics.control_peak_v.ok().zip(numbers[4]);
+                let peaks = metrics.control_peak_v.ok().zip(of("control_peak_v"));
                 assert!(peaks.is_some_and(|(one, other)| (one - other).abs() < 1e-9 * one), "{peaks:?}");
             }
         }

@@ -301,6 +301,20 @@ fn a_run_that_is_stopped_keeps_what_it_has() {
     assert!(!answer.files[0].bytes.is_empty());
 }
 
+/// Of a scenario of hours not every quarter of a millisecond is held: it says so.
+#[test]
+fn a_long_scenario_says_how_often_it_was_looked_at() {
+    for (duration, look_s, told) in [("5 s", 0.25e-3, false), ("2000 s", 5e-3, true)] {
+        let (duration, rows) = (format!("scenario.0.duration={duration}"), "scenario.0.output_step=5 s");
+        let loaded = load(BENCHMARK, &[&duration, rows]);
+        let answer = command::answer(&Memory::default(), &loaded, &[], &Request::Simulate).unwrap();
+        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        let found = json["scenarios"][0]["look_s"].as_f64().unwrap();
+        assert!((found / look_s - 1.0).abs() < 1e-9, "{found}");
+        assert_eq!(answer.text.contains("is looked at every 5.00 ms only"), told, "{}", answer.text);
+    }
+}
+
 #[test]
 fn projects_stand_side_by_side() {
     let [one, other] = ["1.9e-4", "3.03e-5"].map(|volume| {

@@ -8,6 +8,7 @@ mod ask;
 
 use ask::{HOSE, answer, json, try_answer};
 use phea_workbench::command::{CommandError, Progress, Request, answer_watched};
+use phea_workbench::shaping::Shaped;
 use serde_json::Value;
 
 fn verify(project: &str, settings: &[&str]) -> Value {
@@ -89,6 +90,31 @@ fn the_text_says_the_verdict_first_and_what_it_rests_on() {
     assert!(text.starts_with("Verdict: violated\n"));
     for words in ["11.89", "at the design frequencies alone it would have passed", "a search is no proof"] {
         assert!(text.contains(words), "{words} is missing in\n{text}");
+    }
+}
+
+/// What a simulation adds to the command and no linear model knows of is said by every command on the linear loop.
+#[test]
+fn a_feed_forward_is_told_to_be_left_out() {
+    let words = "feeds forward is in no linear model";
+    let shape = Request::Shape { shaped: Shaped::Controller, changes: vec![] };
+    for (text, request) in [(HOSE, Request::Linearize), (INTEGRATOR, Request::Verify), (INTEGRATOR, shape)] {
+        for (settings, told) in [
+            (vec![], false),
+            (vec!["controller.load_velocity_feed_forward={ gain = 0 }"], false),
+            (vec!["controller.load_velocity_feed_forward={ gain = 20 }"], true),
+        ] {
+            let said = answer(text, &settings, &[], &request);
+            let object: Value = serde_json::from_str(&said.json).unwrap();
+            let warnings = object["warnings"].as_array().unwrap();
+            assert_eq!(
+                (said.text.contains(words), warnings.len()),
+                (told, usize::from(told)),
+                "{}",
+                request.name()
+            );
+            assert!(warnings.iter().all(|warning| warning.as_str().unwrap().contains(words)));
+        }
     }
 }
 

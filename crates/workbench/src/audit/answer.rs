@@ -25,6 +25,7 @@ pub(crate) struct Body<'a> {
     parameters: Vec<&'a str>,
     timing: TimingRow,
     specifications: Vec<SpecificationRow<'a>>,
+    warnings: Vec<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -184,6 +185,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
             .zip(&view.specification_names)
             .map(|((finding, reached), name)| specification(names, name, finding, *reached))
             .collect(),
+        warnings: view.left_out.into_iter().collect(),
     }
 }
 

@@ -29,7 +29,7 @@ pub fn text(view: &ProjectAudit) -> String {
     out
 }
 
-/// Stability, delay margin and each specification, a sentence each.
+/// Stability, delay margin and each specification, a sentence each; then what none of them includes.
 pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     let mut sentences = vec![stability_sentence(&view.audit.stability, &view.names)];
     sentences.extend(delay_sentence(view));
@@ -39,6 +39,7 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
         let reached = view.reached.get(index).and_then(Option::as_ref);
         finding_sentence(&view.numbered(index), finding, reached, stable)
     }));
+    sentences.extend(view.left_out.map(str::to_string));
     sentences
 }
 

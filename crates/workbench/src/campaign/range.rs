@@ -51,6 +51,11 @@ impl VariedRange {
         (!self.key.range.contains(value)).then(|| format!("{} = {value} is outside its range", self.path))
     }
 
+    /// The SI unit, empty for a pure number.
+    pub(crate) fn si(&self) -> &'static str {
+        if self.key.dimension.si == "1" { "" } else { self.key.dimension.si }
+    }
+
     /// In words, as in a project file.
     pub fn distribution_word(&self) -> &'static str {
         match self.distribution {

@@ -7,8 +7,9 @@ use phea_hydraulics::machine::INDICATORS;
 use crate::simulate::{COMMAND_LIMIT, Cause, Metrics, Window};
 
 /// Names of the metrics, in the order of a row.
-pub const METRIC_NAMES: [&str; 6] = [
+pub const METRIC_NAMES: [&str; 7] = [
     "overshoot_percent",
+    "rise_time_s",
     "settling_time_s",
     "disturbance_peak_n",
     "steady_state_error_n",
@@ -62,7 +63,7 @@ pub struct Ran {
     /// What began on the way, each kind once: `cavitation_a`, `command_limit` and so on.
     pub occurrences: Vec<&'static str>,
     /// [`METRIC_NAMES`] of each window; absent where there is no such number.
-    pub metrics: Vec<[Option<f64>; 6]>,
+    pub metrics: Vec<[Option<f64>; METRIC_NAMES.len()]>,
     /// Force at the times of the bands, N; as far as it went.
     pub force_n: Vec<f32>,
 }
@@ -86,9 +87,10 @@ impl Row {
 }
 
 /// The metrics of a window, absent where there is none.
-pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; 6] {
+pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; METRIC_NAMES.len()] {
     [
         metrics.overshoot_percent.ok(),
+        metrics.rise_time_s.ok(),
         metrics.settling_time_s.ok(),
         metrics.disturbance_peak_n.ok(),
         metrics.steady_state_error_n.ok(),
@@ -99,11 +101,11 @@ pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; 6] {
 
 /// Which of [`METRIC_NAMES`] a window can have.
 pub(super) fn meaningful(window: &Window) -> impl Iterator<Item = usize> + use<> {
-    let left_out = match window.cause {
-        Cause::ReferenceStep { .. } => 2,
-        Cause::LoadMotion => 0,
+    let left_out: &[&str] = match window.cause {
+        Cause::ReferenceStep { .. } => &["disturbance_peak_n"],
+        Cause::LoadMotion => &["overshoot_percent", "rise_time_s"],
     };
-    (0..METRIC_NAMES.len()).filter(move |metric| *metric != left_out)
+    (0..METRIC_NAMES.len()).filter(move |metric| !left_out.contains(&METRIC_NAMES[*metric]))
 }
 
 /// The columns of a campaign's table.
@@ -196,7 +198,7 @@ impl Columns {
             [Some(one), Some(other), Some(third)] => Some([one, other, third]),
             _ => None,
         };
-        let mut metrics = vec![[None; 6]; self.windows.len()];
+        let mut metrics = vec![[None; METRIC_NAMES.len()]; self.windows.len()];
         for (window, numbers) in self.windows.iter().zip(&mut metrics) {
             for metric in meaningful(window) {
                 numbers[metric] = number(cells.next()?)?;
@@ -292,8 +294,8 @@ mod tests {
             steps: 17,
             occurrences: vec![INDICATORS[0], COMMAND_LIMIT],
             metrics: vec![
-                [Some(1.0 / 3.0), None, None, Some(-2e-7), Some(3.0), Some(0.0)],
-                [None, Some(0.25), Some(2015.0), None, Some(-0.0), Some(6e22)],
+                [Some(1.0 / 3.0), Some(0.15), None, None, Some(-2e-7), Some(3.0), Some(0.0)],
+                [None, None, Some(0.25), Some(2015.0), None, Some(-0.0), Some(6e22)],
             ],
             force_n: vec![0.1, -4e-9],
         };

@@ -66,7 +66,7 @@ impl Summary {
     /// The summary of rows.
     pub fn of(plan: &Plan, rows: &[Row]) -> Summary {
         let driven: Vec<(u64, &Ran)> = rows.iter().filter_map(|row| Some((row.run, row.ran()?))).collect();
-        let metrics: Vec<[Option<Spread>; 6]> = (0..plan.windows().len())
+        let metrics: Vec<[Option<Spread>; METRIC_NAMES.len()]> = (0..plan.windows().len())
             .map(|window| {
                 let mut spreads = [None; METRIC_NAMES.len()];
                 for metric in plan.windows().get(window).into_iter().flat_map(meaningful) {

@@ -12,8 +12,9 @@ use crate::simulate::{self, ScenarioRun, cause_words};
 const TOLD: usize = 6;
 
 /// Words and units of [`METRIC_NAMES`].
-const METRIC_WORDS: [&str; 6] = [
+const METRIC_WORDS: [&str; 7] = [
     "overshoot (%)",
+    "rise (s)",
     "settling (s)",
     "disturbance peak (N)",
     "steady-state error (N)",
@@ -26,6 +27,11 @@ const LUMP_WORDS: [&str; 3] = ["K_H (N/m)", "K_qU (m3/(s.V))", "K_c (m3/(s.Pa))"
 /// A metric in words, with its unit.
 pub(crate) fn metric_words(metric: usize) -> &'static str {
     METRIC_WORDS.get(metric).copied().unwrap_or_default()
+}
+
+/// One of [`LUMP_NAMES`] as it is written in equations, with its unit.
+pub(crate) fn lump_words(lump: usize) -> &'static str {
+    LUMP_WORDS.get(lump).copied().unwrap_or_default()
 }
 
 /// Tables and sentences of a campaign.
@@ -83,7 +89,7 @@ fn metrics(plan: &Plan, summary: &Summary) -> String {
 }
 
 /// Quantiles, and the worst with its run; dashes where no run has such a number. Runs without one are counted.
-pub(crate) fn spread_cells(spread: Option<Spread>) -> Vec<String> {
+fn spread_cells(spread: Option<Spread>) -> Vec<String> {
     let Some(spread) = spread else { return vec!["-".to_string(); QUANTILES.len() + 1] };
     let without = if spread.missing > 0 { format!(", {} without", spread.missing) } else { String::new() };
     let (value, run) = spread.worst;
@@ -98,7 +104,7 @@ fn lumps(plan: &Plan, summary: &Summary) -> String {
         let number = |value: f64| significant(value, 4);
         let bounds = plan.bounds(LUMP_NAMES[index]);
         rows.add_row([
-            LUMP_WORDS[index].to_string(),
+            lump_words(index).to_string(),
             number(spread.extremes[0]),
             number(spread.quantiles[2]),
             number(spread.extremes[1]),

@@ -186,6 +186,19 @@ fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
     assert_eq!(written, expected);
 }
 
+/// What the project says of its prefilter beside the law holds for the designed one too, in the file and in what is pasted.
+#[test]
+fn a_prefilter_that_acts_between_samples_goes_on_doing_so() {
+    let sampled = PROJECT.replace("TIMING\n", "sample_time = \"2 ms\"\n");
+    for (beside, says) in [("continuous = true\n", true), ("", false)] {
+        let (_, loaded, view) = view(&format!("{sampled}{beside}"), DesignStatus::Met);
+        let law = format!("[prefilter]\ngain = 6\npoles = [-6]\n{beside}");
+        let written = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
+        assert!(written.ends_with(&law) && text(&loaded, &view).unwrap().contains(&law), "{written}");
+        assert_eq!(self::loaded(&written).1.project.prefilter.unwrap().continuous, says);
+    }
+}
+
 #[test]
 fn every_stage_is_a_file() {
     let (_, loaded, mut view) = view(&PROJECT.replace("TIMING\n", ""), DesignStatus::Met);

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::{Comparison, Linearization, PortView, stiffness_sentence};
 use crate::answer::{self, Number, OutputFile, significant, table};
+use crate::control::left_out;
 use crate::project::Loaded;
 
 #[derive(Serialize)]
@@ -21,6 +22,7 @@ struct Body<'a> {
     passivity: Ports<'a, PassivityRow>,
     compliance_hidden_above_rad_per_s: f64,
     load_step_final_force_n: FinalForce<'a>,
+    warnings: Vec<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -175,6 +177,7 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
         passivity: ports(linearization, |view| passivity_row(&view.passivity)),
         compliance_hidden_above_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
         load_step_final_force_n: final_force(linearization),
+        warnings: left_out(&loaded.project).into_iter().collect(),
     };
     answer::json("linearize", loaded, body)
 }
@@ -238,7 +241,7 @@ fn passivity_row(report: &PassivityReport) -> PassivityRow {
 }
 
 /// The tables and sentences of `linearize` for people.
-pub fn text(linearization: &Linearization) -> String {
+pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
     let mut out = format!("Stiffness\n  {}\n", stiffness_sentence(&linearization.stiffness_models));
     let mut poles = table(&["model", "equation", "poles, rad/s"]);
     for (model, equation, function) in models(linearization) {
@@ -266,6 +269,9 @@ pub fn text(linearization: &Linearization) -> String {
     }
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     out.push_str(&format!("  above {hidden} rad/s the piston's mass hides the compliance\n"));
+    if let Some(warning) = left_out(&loaded.project) {
+        out.push_str(&format!("  {warning}\n"));
+    }
     out
 }
 

@@ -60,9 +60,15 @@ impl Printer {
         self.open.first().and_then(Section::inline)
     }
 
-    /// The lines of the outermost table alone: each key with its value.
+    /// The lines of the outermost table: each key with its value, a table in it in one line.
     pub(crate) fn lines(self) -> Vec<(String, String)> {
-        self.open.into_iter().next().unwrap_or_default().lines
+        let Section { mut lines, inner, .. } = self.open.into_iter().next().unwrap_or_default();
+        let tables = inner.iter().filter_map(|section| {
+            let key = section.header.strip_prefix('[')?.strip_suffix(']')?;
+            Some((key.to_string(), section.inline()?)).filter(|_| !key.starts_with('['))
+        });
+        lines.extend(tables);
+        lines
     }
 
     /// The whole text.

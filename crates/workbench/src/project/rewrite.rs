@@ -11,10 +11,18 @@ use super::{Controller, Prefilter, Transfer};
 /// Keys of [controller] and [prefilter] that make a law.
 const LAW: [&str; 7] = ["numerator", "denominator", "gain", "zeros", "poles", "domain", "elements"];
 /// Those of [controller] beside its law.
-const TIMING: [&str; 5] = ["saturation", "anti_windup", "sample_time", "delay", "discretization"];
+const BESIDE: [&str; 7] = [
+    "saturation",
+    "anti_windup",
+    "sample_time",
+    "delay",
+    "discretization",
+    "quantization",
+    "load_velocity_feed_forward",
+];
 
 /// The bytes of a project file with this controller, and with this prefilter if there is one, in place of what it said. Keys of [controller]
-/// beside its law stay as they are written, unless `settings` overrode them.
+/// and [prefilter] beside the law stay as they are written, unless `settings` overrode them.
 pub(crate) fn with_laws(
     bytes: &[u8],
     settings: &[String],
@@ -25,14 +33,18 @@ pub(crate) fn with_laws(
     let text = String::from_utf8_lossy(bytes);
     let (mark, content) =
         text.strip_prefix('\u{feff}').map_or(("", text.as_ref()), |rest| ("\u{feff}", rest));
-    let overridden = settings.iter().any(|setting| setting.trim_start().starts_with("controller"));
+    let overrides = |table: &str| settings.iter().any(|setting| setting.trim_start().starts_with(table));
+    let overridden = overrides("controller");
     let lines = if overridden { controller_lines(controller) } else { law_lines(&controller.transfer) };
-    let keys: Vec<&str> = LAW.into_iter().chain(TIMING.into_iter().filter(|_| overridden)).collect();
+    let keys: Vec<&str> = LAW.into_iter().chain(BESIDE.into_iter().filter(|_| overridden)).collect();
     let mut content = replaced(content, "controller", &keys, &lines);
     if let Some(prefilter) = prefilter {
         // samples of a law in z are those of the loop
-        let keys: Vec<&str> = LAW.into_iter().chain(["sample_time"]).collect();
-        content = replaced(&content, "prefilter", &keys, &law_lines(&prefilter.transfer));
+        let overridden = overrides("prefilter");
+        let lines = if overridden { prefilter_lines(prefilter) } else { law_lines(&prefilter.transfer) };
+        let keys: Vec<&str> =
+            LAW.into_iter().chain(["sample_time"]).chain(overridden.then_some("continuous")).collect();
+        content = replaced(&content, "prefilter", &keys, &lines);
     }
     format!("{mark}{content}").into_bytes()
 }
@@ -42,12 +54,19 @@ pub(crate) fn with_law(text: &str, table: &str, lines: &[(String, String)]) -> S
     replaced(text, table, &LAW, lines)
 }
 
+/// Those that say what their absence would say too are left out.
+fn prefilter_lines(prefilter: &Prefilter) -> Lines {
+    let mut printer = Printer::new(BTreeMap::new());
+    prefilter.clone().visit(&mut printer);
+    printer.lines().into_iter().filter(|(key, _)| key != "continuous" || prefilter.continuous).collect()
+}
+
 /// Controller and prefilter as tables of a project file, ready to be pasted into one.
 pub(crate) fn snippet(controller: &Controller, prefilter: Option<&Prefilter>) -> String {
     let table = |name: &str, lines: Lines| {
         lines.iter().fold(format!("[{name}]\n"), |text, (key, value)| format!("{text}{key} = {value}\n"))
     };
-    let prefilter = prefilter.map(|prefilter| table("prefilter", law_lines(&prefilter.transfer)));
+    let prefilter = prefilter.map(|prefilter| table("prefilter", prefilter_lines(prefilter)));
     [Some(table("controller", controller_lines(controller))), prefilter]
         .into_iter()
         .flatten()
@@ -223,5 +242,39 @@ mod tests {
             rewritten("[controller.q]\ngain = 1\n"),
             "[controller.q]\ngain = 1\n\n[controller]\ngain = 2\npoles = [0]\n"
         );
+    }
+
+    #[test]
+    fn what_a_setting_says_beside_the_law_is_written_with_it() {
+        use crate::project::{FeedForward, Quantization};
+        let text =
+            "[controller]\ngain = 1\n[controller.quantization]\ncommand_bits = 8\n[prefilter]\ngain = 1\n";
+        let transfer = Transfer { gain: Some(2.0), ..Transfer::default() };
+        let controller = Controller {
+            transfer: transfer.clone(),
+            sample_time: Some(1e-3),
+            quantization: Some(Quantization { command_bits: 12, ..Quantization::default() }),
+            load_velocity_feed_forward: Some(FeedForward { gain: Some(3.0) }),
+            ..Controller::default()
+        };
+        let prefilter = Prefilter { transfer, continuous: true, ..Prefilter::default() };
+        let written = |settings: &[&str]| {
+            let settings: Vec<String> = settings.iter().map(|setting| setting.to_string()).collect();
+            String::from_utf8(with_laws(text.as_bytes(), &settings, &controller, Some(&prefilter))).unwrap()
+        };
+        // without a setting the text says it already
+        assert_eq!(written(&[]), text.replace("gain = 1", "gain = 2"));
+        let set = written(&["controller.sample_time=1e-3", "prefilter.continuous=true"]);
+        for line in [
+            "sample_time = ",
+            "quantization = { command_bits = 12",
+            "load_velocity_feed_forward = { gain = 3 }",
+        ] {
+            assert_eq!(set.matches(line).count(), 1, "{line} in\n{set}");
+        }
+        assert!(set.ends_with("[prefilter]\ngain = 2\ncontinuous = true\n"), "{set}");
+        assert!(!set.contains("command_bits = 8") && !set.contains("[controller.quantization]"), "{set}");
+        let pasted = snippet(&controller, Some(&prefilter));
+        assert!(pasted.contains("load_velocity_feed_forward = {") && pasted.ends_with("continuous = true\n"));
     }
 }

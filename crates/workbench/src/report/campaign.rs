@@ -2,16 +2,18 @@
 
 use maud::{Markup, html};
 
-use super::chapter::{Chapter, cell, place, table};
+use super::chapter::{Chapter, cell, grouped, place, table, unbroken};
+use super::derived::unit;
+use super::typeset::{figures, prose};
 use crate::answer::significant;
 use crate::campaign::{
-    CampaignError, LUMP_NAMES, Nowhere, Plan, QUANTILES, Shard, Summary, Wanted, campaign, metric_words,
-    pictures, spread_cells,
+    CampaignError, LUMP_NAMES, METRIC_NAMES, Nowhere, Plan, QUANTILES, Shard, Spread, Summary, VariedRange,
+    Wanted, Worst, campaign, lump_words, metric_words, pictures,
 };
 use crate::command::{CommandError, Watch};
 use crate::figure::Figure;
-use crate::project::Loaded;
-use crate::simulate::cause_words;
+use crate::project::{Distribution, Loaded};
+use crate::simulate::{cause_words, small_as_zero};
 use crate::source::Source;
 
 /// Runs of the report's campaign, and where their numbers come from.
@@ -20,6 +22,9 @@ const SEED: u32 = 1;
 
 /// Runs whose numbers are told.
 const WORST: usize = 4;
+
+/// Significant digits of the numbers in the tables: an answer has all of them.
+const DIGITS: usize = 3;
 
 /// The chapter; `None` for a project without `[campaign]`.
 ///
@@ -65,82 +70,140 @@ fn body(plan: &Plan, summary: &Summary, figures: &[Figure]) -> Markup {
         (metrics(plan, summary))
         (lumps(plan, summary))
         (worst(plan, summary))
-        (ranges(plan))
+        (drawn(plan, summary))
     }
 }
 
 fn metrics(plan: &Plan, summary: &Summary) -> Markup {
     let quantiles = QUANTILES.map(|percent| format!("{percent} %"));
-    let mut heads = vec!["event", "metric"];
+    let mut heads = vec!["metric"];
     heads.extend(quantiles.iter().map(String::as_str));
     heads.push("worst (run)");
-    let mut rows = Vec::new();
-    for (window, spreads) in plan.windows().iter().zip(&summary.metrics) {
-        for (metric, spread) in spreads.iter().enumerate().filter(|(_, spread)| spread.is_some()) {
-            let words = [cause_words(window), metric_words(metric).to_string()];
-            rows.push(words.into_iter().chain(spread_cells(*spread)).map(cell).collect::<Vec<_>>());
-        }
-    }
+    let of_window = |spreads: &[Option<Spread>; METRIC_NAMES.len()]| -> Vec<Vec<Markup>> {
+        let known = spreads.iter().enumerate().filter_map(|(metric, spread)| Some((metric, (*spread)?)));
+        known.map(|(metric, spread)| spread_row(metric, &spread)).collect()
+    };
+    let windows = plan.windows().iter().zip(&summary.metrics);
+    let groups: Vec<(String, Vec<Vec<Markup>>)> =
+        windows.map(|(window, spreads)| (cause_words(window), of_window(spreads))).collect();
     html! {
         h3 { "Metrics over the runs" }
-        (table(&heads, 2, &rows))
+        p { "That share of the runs lies below each number; the worst is that of largest magnitude." }
+        (grouped(&heads, 1, &groups))
     }
 }
 
+fn spread_row(metric: usize, spread: &Spread) -> Vec<Markup> {
+    let number = |value: f64| match METRIC_NAMES.get(metric) {
+        Some(&"steady_state_error_n") => figures(small_as_zero(value), DIGITS),
+        _ => figures(value, DIGITS),
+    };
+    let (value, run) = spread.worst;
+    let without = if spread.missing > 0 { format!(", {} without", spread.missing) } else { String::new() };
+    let mut row = vec![unbroken(metric_words(metric))];
+    row.extend(spread.quantiles.map(number));
+    row.push(html! { (number(value)) " (" (run) (without) ")" });
+    row
+}
+
 fn lumps(plan: &Plan, summary: &Summary) -> Markup {
+    let text = |[low, high]: [f64; 2]| html! { (figures(low, DIGITS)) " to " (figures(high, DIGITS)) };
     let mut rows: Vec<Vec<Markup>> = Vec::new();
     for (index, spread) in summary.lumps.iter().enumerate() {
         let Some(spread) = spread else { continue };
-        let text = |[low, high]: [f64; 2]| format!("{} to {}", significant(low, 4), significant(high, 4));
-        let name = LUMP_NAMES[index];
+        let (symbol, si) = lump_words(index).split_once(' ').unwrap_or_default();
         rows.push(vec![
-            cell(name.replace('_', " ")),
-            cell(text(spread.extremes)),
-            cell(plan.bounds(name).map_or("not in [uncertainty]".to_string(), text)),
+            html! { (prose(symbol)) " " (unit(si)) },
+            text(spread.extremes),
+            plan.bounds(LUMP_NAMES[index]).map_or(cell("not in [uncertainty]"), text),
             cell(summary.outside[index].map_or("-".to_string(), |count| count.to_string())),
         ]);
     }
     html! {
         h3 { "Linear models that were visited" }
-        p { "Stiffness, flow gain and flow-pressure coefficient do not exist in the nonlinear machine: these are those of its linear model at the operating point, for each draw, beside the box for which the controller is judged. SI units." }
+        p { "Stiffness, flow gain and flow-pressure coefficient do not exist in the nonlinear machine: these are those of its linear model at the operating point, for each draw, beside the box for which the controller is judged." }
         (table(&["parameter", "visited", "box", "runs outside"], 1, &rows))
     }
 }
 
+/// The runs that are worst in most.
+fn told(summary: &Summary) -> Vec<&Worst> {
+    let mut told: Vec<&Worst> = summary.worst.iter().collect();
+    told.sort_by_key(|worst| std::cmp::Reverse(worst.of.len()));
+    told.truncate(WORST);
+    told
+}
+
 fn worst(plan: &Plan, summary: &Summary) -> Markup {
-    let row = |worst: &crate::campaign::Worst| {
-        let of = worst.of.iter().map(|(window, metric)| {
-            let event = plan.windows().get(*window).map(cause_words).unwrap_or_default();
-            format!("{} ({event})", metric_words(*metric))
-        });
-        vec![
-            cell(worst.run.to_string()),
-            cell(of.collect::<Vec<_>>().join(", ")),
-            html! { code { (plan.settings(&plan.draw(worst.run)).join(" ")) } },
-        ]
-    };
-    let rows: Vec<Vec<Markup>> = summary.worst.iter().take(WORST).map(row).collect();
+    let told = told(summary);
+    let rows: Vec<Vec<Markup>> =
+        told.iter().map(|worst| vec![cell(worst.run.to_string()), cell(worst_in(plan, worst))]).collect();
     html! {
         h3 { "Worst runs" }
-        p { "A run follows from seed and index: " code { "phea campaign --run INDEX" } " drives it again and tells all that happens in it." }
-        (table(&["run", "worst in", "its numbers, SI"], 3, &rows))
+        @if let Some(first) = told.first() {
+            p { "A run follows from seed and index: " code { "phea campaign PROJECT.toml --seed " (plan.seed()) " --run " (first.run) } " drives it again and tells all that happens in it, with its numbers to their last digit." }
+        }
+        (table(&["run", "worst in"], 2, &rows))
     }
 }
 
-fn ranges(plan: &Plan) -> Markup {
-    let row = |range: &crate::campaign::VariedRange| {
-        let [low, high] = [range.minimum, range.maximum].map(|value| significant(value, 4));
-        vec![
-            html! { code { (range.path) } },
-            cell(range.distribution_word().replace('_', " ")),
-            cell(low),
-            cell(high),
-        ]
+/// Event by event, the metrics in which a run is worst, without their units.
+fn worst_in(plan: &Plan, worst: &Worst) -> String {
+    let metric = |metric: usize| metric_words(metric).split(" (").next().unwrap_or_default();
+    let of_window = |(index, window)| {
+        let of = worst.of.iter().filter(|(place, _)| *place == index).map(|(_, name)| metric(*name));
+        let of: Vec<&str> = of.collect();
+        (!of.is_empty()).then(|| format!("{}: {}", cause_words(window), of.join(", ")))
     };
-    let rows: Vec<Vec<Markup>> = plan.ranges().iter().map(row).collect();
+    plan.windows().iter().enumerate().filter_map(of_window).collect::<Vec<_>>().join("; ")
+}
+
+/// Every drawn number: where from, and what the worst runs drew.
+fn drawn(plan: &Plan, summary: &Summary) -> Markup {
+    let draws: Vec<_> = told(summary).iter().map(|worst| plan.draw(worst.run)).collect();
+    let runs: Vec<String> = draws.iter().map(|draw| format!("run {}", draw.run)).collect();
+    let mut heads = vec!["number", "unit", "from", "to"];
+    heads.extend(runs.iter().map(String::as_str));
+    let row = |(place, range): (usize, &VariedRange)| {
+        let values = draws.iter().filter_map(|draw| draw.values.get(place).copied());
+        let mut row = vec![path(&range.path), html! { span.unit { (unit(range.si())) } }];
+        row.extend(
+            [range.minimum, range.maximum].into_iter().chain(values).map(|value| figures(value, DIGITS)),
+        );
+        row
+    };
+    let rows: Vec<Vec<Markup>> = plan.ranges().iter().enumerate().map(row).collect();
+    let normal = plan.ranges().iter().any(|range| range.distribution == Distribution::Normal);
     html! {
         h3 { "What was drawn" }
-        p { "SI units. The ends of a normal distribution are two standard deviations from its middle." }
-        (table(&["number", "distribution", "from", "to"], 2, &rows))
+        p { (distributions(plan)) @if normal { " The ends of a normal distribution are two standard deviations from its middle." } }
+        (table(&heads, 2, &rows))
     }
+}
+
+/// How the numbers are distributed, in sentences.
+fn distributions(plan: &Plan) -> String {
+    let mut known: Vec<(&str, Vec<&str>)> = Vec::new();
+    for range in plan.ranges() {
+        let word = range.distribution_word();
+        match known.iter_mut().find(|(other, _)| *other == word) {
+            Some((_, paths)) => paths.push(&range.path),
+            None => known.push((word, vec![&range.path])),
+        }
+    }
+    let plain = |word: &str| word.replace('_', "-");
+    match known.as_slice() {
+        [(word, _)] => format!("Every distribution is {}.", plain(word)),
+        several => {
+            let each = several.iter().map(|(word, paths)| format!("{} of {}", plain(word), paths.join(", ")));
+            format!("Distributions: {}.", each.collect::<Vec<_>>().join("; "))
+        }
+    }
+}
+
+/// A path that may be broken at its dots.
+fn path(path: &str) -> Markup {
+    let parts: Vec<&str> = path.split('.').collect();
+    let last = parts.len().saturating_sub(1);
+    html! { code { @for (place, part) in parts.iter().enumerate() { (part) @if place < last { "." wbr; } } } }
 }

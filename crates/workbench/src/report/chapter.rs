@@ -1,7 +1,9 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::typeset::prose;
+use crate::control::left_out;
 use crate::figure::Figure;
+use crate::project::Project;
 
 /// One chapter of the report.
 pub struct Chapter {
@@ -34,6 +36,36 @@ pub(super) fn table(headings: &[&str], numbers_from: usize, rows: &[Vec<Markup>]
             tbody { @for row in rows { tr { @for (column, cell) in row.iter().enumerate() { td class=(class(column)) { (cell) } } } } }
         } }
     }
+}
+
+/// The same in groups of rows, each below a line of its own.
+pub(super) fn grouped(
+    headings: &[&str],
+    numbers_from: usize,
+    groups: &[(String, Vec<Vec<Markup>>)],
+) -> Markup {
+    let class = |column: usize| if column >= numbers_from { "number" } else { "" };
+    html! {
+        div.table { table {
+            thead { tr { @for (column, heading) in headings.iter().enumerate() { th class=(class(column)) { (prose(heading)) } } } }
+            @for (name, rows) in groups {
+                tbody.group {
+                    tr { th colspan=(headings.len()) { (prose(name)) } }
+                    @for row in rows { tr { @for (column, cell) in row.iter().enumerate() { td class=(class(column)) { (cell) } } } }
+                }
+            }
+        } }
+    }
+}
+
+/// What a chapter on the linear loop leaves out of it, if there is such a thing.
+pub(super) fn without(project: &Project) -> Markup {
+    html! { @if let Some(warning) = left_out(project) { div.callout { p { (warning) "." } } } }
+}
+
+/// A text that is not broken into lines.
+pub(super) fn unbroken(text: &str) -> Markup {
+    html! { (text.replace(' ', "\u{a0}")) }
 }
 
 /// A plain text as a cell.

@@ -55,7 +55,7 @@ fn words(name: &str) -> String {
 }
 
 /// A unit as it is printed: m3/(s.V) as m³/(s·V).
-fn unit(text: &str) -> String {
+pub(super) fn unit(text: &str) -> String {
     if text == "1" {
         return "1".to_string();
     }

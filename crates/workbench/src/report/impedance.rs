@@ -5,7 +5,7 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::time_response::TimeResponseError;
 use phea_hydraulics::impedance::AsymptoteKind;
 
-use super::chapter::{Chapter, cell, place, table};
+use super::chapter::{Chapter, cell, place, table, without};
 use super::load_motion::{self, Moved};
 use super::typeset::{prose, typeset};
 use crate::answer::significant;
@@ -26,6 +26,7 @@ pub(super) fn chapter(
             (typeset("Z = -F_e/(s X_L)")) " is what a load feels that moves the rod: a damper, spring or mass, depending on frequency. Above " (hidden)
             " rad/s the piston's mass hides the hydraulic compliance, and the load meets the sensor's stiffness alone."
         }
+        (without(project))
         (place(&figures[0]))
         h3 { "Asymptotes" }
         (asymptotes(linearization))

@@ -3,17 +3,22 @@
 use maud::{Markup, html};
 use phea_dynamics::frequency::Margins;
 
-use super::chapter::{Chapter, cell, place, table};
+use super::chapter::{Chapter, cell, place, table, without};
 use crate::answer::significant;
 use crate::figure::{
     DisplayUnit, Figure, SettlingBand, StepResponseInput, TimeEvent, TimeSeries, Words, step_response,
 };
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, settling_words};
+use crate::project::Project;
 
 /// Height of the drawn step where the project's scenarios give none, N.
 const REFERENCE: f64 = 1000.0;
 
-pub(super) fn chapter(linear_loop: Option<&LinearLoop>, reference_n: Option<f64>) -> Chapter {
+pub(super) fn chapter(
+    project: &Project,
+    linear_loop: Option<&LinearLoop>,
+    reference_n: Option<f64>,
+) -> Chapter {
     let (anchor, title) = ("response", "Step response of the linear loop");
     let Some(linear_loop) = linear_loop else {
         let body = html! { p { "The project gives no controller, so that there is no loop to close." } };
@@ -23,6 +28,7 @@ pub(super) fn chapter(linear_loop: Option<&LinearLoop>, reference_n: Option<f64>
         linear_loop.step.iter().map(|view| figure(view, reference_n.unwrap_or(REFERENCE))).collect();
     let body = html! {
         p { "The fifth-order model with its nominal values in a loop with the given controller and prefilter. One plant, linear: no proof of anything for the others, nor for the nonlinear machine." }
+        (without(project))
         @match &linear_loop.step {
             Ok(view) => { (place(&figures[0])) (metrics(view)) }
             Err(reason) => { div.callout.bad-edge { p { "No step response: " (reason) "." } } }

@@ -2,20 +2,21 @@
 
 use maud::{Markup, html};
 
-use super::chapter::{Chapter, cell, place, table};
+use super::chapter::{Chapter, cell, grouped, place, table, unbroken};
+use super::typeset::prose;
 use crate::answer::significant;
 use crate::command::{CommandError, Watch};
 use crate::figure::{DisplayUnit, Figure};
 use crate::project::{FrictionModel, Project, Scenario};
 use crate::simulate::{
-    Cause, METRICS, Metrics, ScenarioRun, SimulateError, Window, cause_words, cells_of, headline,
-    occurrence_sentences, pictures, simulate_project,
+    ABSENT, Cause, METRICS, Metrics, ScenarioRun, SimulateError, Window, cause_words, cells_of,
+    coarse_sentence, headline, occurrence_sentences, pictures, simulate_project,
 };
 use crate::source::Source;
 
 /// Factors of the sensitivity.
 const STIFFNESS_FACTORS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
-const FRICTION_FACTORS: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
+const FRICTION_FACTORS: [(f64, &str); 4] = [(0.0, "none"), (0.5, "half"), (1.0, "all of it"), (2.0, "twice")];
 
 /// The chapter; `None` for a project without scenarios.
 ///
@@ -58,13 +59,17 @@ fn refused(error: &SimulateError) -> Markup {
 }
 
 fn scenario(run: &ScenarioRun, declared: &Scenario, figures: &[Figure]) -> Markup {
+    let told = told(run.windows.iter());
     let mut heads = vec!["event"];
-    heads.extend(METRICS);
+    heads.extend(told.iter().map(|metric| METRICS[*metric]));
     let mut rows: Vec<Vec<Markup>> = Vec::new();
     for (window, metrics) in &run.windows {
-        let cells = cells_of(metrics).into_iter().map(cell);
-        rows.push(std::iter::once(cell(cause_words(window))).chain(cells).collect());
-        rows.extend(published_row(declared, window));
+        let of = |cells: [String; METRICS.len()]| {
+            told.iter().map(|metric| cell(&cells[*metric])).collect::<Vec<_>>()
+        };
+        rows.push([vec![unbroken(&cause_words(window))], of(cells_of(metrics))].concat());
+        let published = published(declared, window);
+        rows.extend(published.map(|(source, cells)| [vec![unbroken(source)], of(cells)].concat()));
     }
     let remarks = declared.reference.iter().filter_map(|step| step.published.as_ref()?.remark.as_ref());
     html! {
@@ -73,23 +78,38 @@ fn scenario(run: &ScenarioRun, declared: &Scenario, figures: &[Figure]) -> Marku
         @for figure in figures { (place(figure)) }
         @if !rows.is_empty() {
             (table(&heads, 1, &rows))
-            p { "Settling is to " (run.settling_band_percent) " % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less force, averaged over the last tenth of the window." }
+            p { "Settling is to " (run.settling_band_percent) " % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less force, averaged over the last tenth of the window; the rise is from 10 to 90 % of the step." }
         }
         @for remark in remarks { p { (remark) } }
+        @if let Some(sentence) = coarse_sentence(run) { p { (sentence) "." } }
         @for sentence in occurrence_sentences(&run.occurrences) { p { (sentence) "." } }
     }
 }
 
-/// What was published of the step that begins this window.
-fn published_row(declared: &Scenario, window: &Window) -> Option<Vec<Markup>> {
+/// The metrics that some of these windows can have.
+fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> Vec<usize> {
+    let cells: Vec<[String; METRICS.len()]> = windows.map(|(_, metrics)| cells_of(metrics)).collect();
+    (0..METRICS.len()).filter(|metric| cells.iter().any(|cells| cells[*metric] != ABSENT)).collect()
+}
+
+/// What was published of the step that begins this window, and where; `None` where that are no numbers.
+fn published<'a>(declared: &'a Scenario, window: &Window) -> Option<(&'a str, [String; METRICS.len()])> {
     let step = declared.reference.iter().find(|step| step.at == window.start_s)?;
     let published = step.published.as_ref().filter(|_| window.cause != Cause::LoadMotion)?;
-    let source = published.source.as_deref().unwrap_or("published");
     let overshoot = published.overshoot_percent.map(|percent| format!("{} %", significant(percent, 3)));
     let settling = published.settling_time.map(|time| format!("{} s", significant(time, 3)));
-    let known = [overshoot, settling].map(|text| text.unwrap_or_else(|| "-".to_string()));
-    let unknown = METRICS.iter().skip(known.len()).map(|_| cell("-"));
-    Some(std::iter::once(cell(source)).chain(known.iter().map(cell)).chain(unknown).collect())
+    if overshoot.is_none() && settling.is_none() {
+        return None;
+    }
+    let cells = METRICS.map(|metric| {
+        let known = match metric {
+            "overshoot" => &overshoot,
+            "settling" => &settling,
+            _ => &None,
+        };
+        known.clone().unwrap_or_else(|| ABSENT.to_string())
+    });
+    Some((published.source.as_deref().unwrap_or("published"), cells))
 }
 
 /// A quantity multiplied by a factor, and what comes of the first scenario.
@@ -114,10 +134,10 @@ fn sensitivity(
         if let Some(actuator) = &mut project.actuator {
             actuator.force_sensor.stiffness *= factor;
             let shown = DisplayUnit::MEGANEWTON_PER_METRE.text(actuator.force_sensor.stiffness, 3);
-            varied.push(vary(source, &project, ("load stiffness K_S", factor, shown), watch)?);
+            varied.push(vary(source, &project, ("Load stiffness K_S", factor, shown), watch)?);
         }
     }
-    for factor in FRICTION_FACTORS {
+    for (factor, word) in FRICTION_FACTORS {
         let mut project = first.clone();
         let Some(friction) =
             project.actuator.as_mut().and_then(|actuator| actuator.cylinder.friction.as_mut())
@@ -130,9 +150,7 @@ fn sensitivity(
         if factor == 0.0 {
             friction.model = FrictionModel::Viscous;
         }
-        let shown =
-            if factor == 0.0 { "none".to_string() } else { format!("{} times", significant(factor, 2)) };
-        varied.push(vary(source, &project, ("friction", factor, shown), watch)?);
+        varied.push(vary(source, &project, ("Friction", factor, word.to_string()), watch)?);
     }
     Ok(varied)
 }
@@ -151,33 +169,41 @@ fn vary(
     Ok(Varied { quantity, factor, value, run })
 }
 
+/// One table for each event, in which a column is read downwards.
 fn sensitivity_table(varied: &[Varied]) -> Markup {
-    let rows: Vec<Vec<Markup>> = varied.iter().flat_map(varied_rows).collect();
-    let mut heads = vec!["quantity", "value", "event"];
-    heads.extend(METRICS);
+    let events =
+        varied.iter().filter_map(|varied| varied.run.as_ref().ok()).map(|run| run.windows.len()).max();
+    let refused = varied.iter().filter_map(|varied| Some((varied, varied.run.as_ref().err()?)));
+    let tables = (0..events.unwrap_or(0)).filter_map(|event| event_table(varied, event));
     html! {
-        @if !rows.is_empty() {
+        @if !varied.is_empty() {
             h3 { "Sensitivity" }
-            p { "The first scenario again with one quantity changed: the stiffness K_S of load cell and environment, and all friction. Neither is known well of a real rig, and the overshoot follows both." }
-            (table(&heads, 3, &rows))
+            p { (prose("The first scenario again with one quantity changed: the stiffness K_S of load cell and environment, and all friction. Neither is known well of a real rig, and the overshoot follows both.")) }
+            @for (varied, reason) in refused { p { (prose(varied.quantity)) ", " (varied.value) ": " (reason) "." } }
+            @for table in tables { (table) }
         }
     }
 }
 
-fn varied_rows(varied: &Varied) -> Vec<Vec<Markup>> {
-    let head = |event: String| {
-        let as_declared = if varied.factor == 1.0 { " (as declared)" } else { "" };
-        vec![cell(varied.quantity), cell(format!("{}{as_declared}", varied.value)), cell(event)]
-    };
-    match &varied.run {
-        Err(reason) => vec![head(reason.clone())],
-        Ok(run) => {
-            let row = |(window, metrics): &(Window, Metrics)| {
-                let mut row = head(cause_words(window));
-                row.extend(cells_of(metrics).into_iter().map(cell));
-                row
-            };
-            run.windows.iter().map(row).collect()
+/// What comes of one event, quantity by quantity.
+fn event_table(varied: &[Varied], event: usize) -> Option<Markup> {
+    let seen = |varied: &Varied| Some(*varied.run.as_ref().ok()?.windows.get(event)?);
+    let windows: Vec<(Window, Metrics)> = varied.iter().filter_map(seen).collect();
+    let told = told(windows.iter());
+    let event = cause_words(&windows.first()?.0);
+    let mut heads = vec![event.as_str()];
+    heads.extend(told.iter().map(|metric| METRICS[*metric]));
+    let mut groups: Vec<(String, Vec<Vec<Markup>>)> = Vec::new();
+    for varied in varied {
+        let Some((_, metrics)) = seen(varied) else { continue };
+        let as_declared = if varied.factor == 1.0 { ", as declared" } else { "" };
+        let cells = cells_of(&metrics);
+        let mut row = vec![unbroken(&format!("{}{as_declared}", varied.value))];
+        row.extend(told.iter().map(|metric| cell(&cells[*metric])));
+        match groups.last_mut().filter(|(quantity, _)| quantity == varied.quantity) {
+            Some((_, rows)) => rows.push(row),
+            None => groups.push((varied.quantity.to_string(), vec![row])),
         }
     }
+    Some(grouped(&heads, 1, &groups))
 }

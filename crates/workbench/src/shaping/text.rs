@@ -44,6 +44,9 @@ pub fn text(view: &Shaping) -> String {
     if !view.problem.specifications.is_empty() {
         out.push_str("  Nothing is said of what lies between these frequencies: `verify` looks there.\n");
     }
+    if let Some(warning) = view.problem.left_out {
+        out.push_str(&format!("  {warning}\n"));
+    }
     out
 }
 

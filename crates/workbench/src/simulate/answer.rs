@@ -22,6 +22,7 @@ struct ScenarioRow<'a> {
     ended_s: Option<f64>,
     ended_s_reason: Option<&'static str>,
     work: WorkRow,
+    look_s: f64,
     events: Vec<EventRow>,
     occurrences: Vec<OccurrenceRow>,
 }
@@ -48,6 +49,8 @@ struct EventRow {
 struct MetricsRow {
     overshoot_percent: Option<f64>,
     overshoot_percent_reason: Option<&'static str>,
+    rise_time_s: Option<f64>,
+    rise_time_s_reason: Option<&'static str>,
     settling_time_s: Option<f64>,
     settling_time_s_reason: Option<&'static str>,
     settling_band_percent: f64,
@@ -121,6 +124,7 @@ fn scenario(run: &ScenarioRun) -> ScenarioRow<'_> {
             rejected: run.work.rejected,
             evaluations: run.work.evaluations,
         },
+        look_s: run.look_s,
         events: run.windows.iter().map(event).collect(),
         occurrences: run.occurrences.iter().map(occurrence).collect(),
     }
@@ -144,6 +148,7 @@ fn event((window, metrics): &(Window, Metrics)) -> EventRow {
 fn metrics_row(metrics: &Metrics) -> MetricsRow {
     let split = |measured: Measured| (measured.ok(), measured.err());
     let (overshoot_percent, overshoot_percent_reason) = split(metrics.overshoot_percent);
+    let (rise_time_s, rise_time_s_reason) = split(metrics.rise_time_s);
     let (settling_time_s, settling_time_s_reason) = split(metrics.settling_time_s);
     let (disturbance_peak_n, disturbance_peak_n_reason) = split(metrics.disturbance_peak_n);
     let (steady_state_error_n, steady_state_error_n_reason) = split(metrics.steady_state_error_n);
@@ -152,6 +157,8 @@ fn metrics_row(metrics: &Metrics) -> MetricsRow {
     MetricsRow {
         overshoot_percent,
         overshoot_percent_reason,
+        rise_time_s,
+        rise_time_s_reason,
         settling_time_s,
         settling_time_s_reason,
         settling_band_percent: metrics.settling_band_percent,

@@ -10,6 +10,9 @@ use crate::figure::{
 const BEFORE_S: f64 = 0.02;
 const AFTER_S: f64 = 0.5;
 
+/// Most events that are enlarged each; of more, motions of the load and the greatest step.
+const ENLARGED: usize = 3;
+
 /// Scale of figures as PNG: 1120 pixels of width.
 const PNG_SCALE: f64 = 2.0;
 
@@ -22,8 +25,7 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
         "Force, voltages, pressures and position over the whole scenario.",
     );
     let mut figures = vec![picture(whole, &run.record, &run.windows, [0.0, end])];
-    for (index, (window, _)) in run.windows.iter().enumerate().filter(|(_, (window, _))| window.start_s < end)
-    {
+    for (index, window) in enlarged(&run.windows, end) {
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
             format!("Enlarged: {}", cause_words(window)),
@@ -60,6 +62,28 @@ fn picture(words: Words, record: &Record, windows: &[(Window, Metrics)], span_s:
         span_s,
     };
     time_panels(words, &input)
+}
+
+/// The events that are worth a figure of their own, with their places among all.
+fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize, &Window)> {
+    let begun = windows.iter().map(|(window, _)| window).enumerate();
+    let begun: Vec<(usize, &Window)> = begun.filter(|(_, window)| window.start_s < end_s).collect();
+    if begun.len() <= ENLARGED {
+        return begun;
+    }
+    let height = |window: &Window| match window.cause {
+        Cause::ReferenceStep { from_n, to_n } => (to_n - from_n).abs(),
+        Cause::LoadMotion => 0.0,
+    };
+    let greatest = begun.iter().map(|(_, window)| height(window)).fold(0.0, f64::max);
+    let first = begun.iter().position(|(_, window)| height(window) == greatest);
+    let chosen = |place: usize, window: &Window| window.cause == Cause::LoadMotion || Some(place) == first;
+    begun
+        .iter()
+        .enumerate()
+        .filter(|(place, (_, window))| chosen(*place, window))
+        .map(|(_, one)| *one)
+        .collect()
 }
 
 /// What begins a window, where it is seen.
@@ -117,7 +141,7 @@ fn compared(comparison: &Comparison<'_>, name: &str, number: usize) -> Vec<Figur
     };
     let mut figures = vec![side_by_side(words(String::new(), name.to_string()), &titles, &runs, [0.0, end])];
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
-    for (index, (window, _)) in windows.iter().enumerate().filter(|(_, (window, _))| window.start_s < end) {
+    for (index, window) in enlarged(windows, end) {
         let words = words(format!("-event-{}", index + 1), format!("Enlarged: {}", cause_words(window)));
         figures.push(side_by_side(words, &titles, &runs, around(window, end)));
     }

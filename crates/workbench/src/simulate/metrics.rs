@@ -41,6 +41,8 @@ pub type Measured = Result<f64, &'static str>;
 pub struct Metrics {
     /// How far the force exceeds the new reference, percent of the step.
     pub overshoot_percent: Measured,
+    /// From 10 % to 90 % of the step, each where the force first reaches it, s.
+    pub rise_time_s: Measured,
     /// From the start of the window until the force stays within the band around the reference, s.
     pub settling_time_s: Measured,
     /// The band of the settling time: percent of the step, or of the reference that a load motion disturbs.
@@ -58,6 +60,7 @@ pub struct Metrics {
 const UNREACHED: &str = "the run ended before";
 const NO_STEP: &str = "the reference does not step";
 const NO_MOTION: &str = "the load does not begin to move";
+const NOT_REACHED: &str = "the force does not come to 90 % of the step";
 const NOT_SETTLED: &str = "outside the band at the end of the window";
 const NO_REFERENCE: &str = "the reference is zero: a band around it has no width";
 
@@ -88,6 +91,7 @@ impl Metrics {
     fn none(reason: &'static str, settling_band_percent: f64) -> Metrics {
         Metrics {
             overshoot_percent: Err(reason),
+            rise_time_s: Err(reason),
             settling_time_s: Err(reason),
             settling_band_percent,
             disturbance_peak_n: Err(reason),
@@ -127,16 +131,17 @@ impl<'a> Seen<'a> {
     fn step(&self, start_s: f64, [from_n, to_n]: [f64; 2], band: f64, whole: bool) -> Metrics {
         let beyond: Vec<f64> = self.force_n.iter().map(|force| (force - to_n) / (to_n - from_n)).collect();
         let baseline = StepBaseline { step_time_s: start_s, initial_value: from_n, final_value: to_n };
-        let settling = match step_metrics(self.times_s, self.force_n, baseline, band) {
+        let step = step_metrics(self.times_s, self.force_n, baseline, band).map_err(|_| NO_STEP);
+        let settling = match step.map(|step| step.settling) {
             _ if !whole => Err(UNREACHED),
-            Ok(step) => match step.settling {
-                Settling::Settled { time_s } => Ok(time_s),
-                Settling::NotSettled { .. } => Err(NOT_SETTLED),
-            },
-            Err(_) => Err(NO_STEP),
+            Ok(Settling::Settled { time_s }) => Ok(time_s),
+            Ok(Settling::NotSettled { .. }) => Err(NOT_SETTLED),
+            Err(reason) => Err(reason),
         };
+        let late = if whole { NOT_REACHED } else { UNREACHED };
         Metrics {
             overshoot_percent: Ok(100.0 * peak(&beyond).max(0.0)),
+            rise_time_s: step.and_then(|step| step.rise_time_10_90_s.ok_or(late)),
             settling_time_s: settling,
             disturbance_peak_n: Err(NO_MOTION),
             ..self.common(band, whole)
@@ -148,6 +153,7 @@ impl<'a> Seen<'a> {
         let largest = peak(&errors).max(peak(&errors.iter().map(|error| -error).collect::<Vec<_>>()));
         Metrics {
             overshoot_percent: Err(NO_STEP),
+            rise_time_s: Err(NO_STEP),
             settling_time_s: if whole { self.settled(start_s, band) } else { Err(UNREACHED) },
             disturbance_peak_n: Ok(largest),
             ..self.common(band, whole)
@@ -252,8 +258,12 @@ mod tests {
         assert_eq!((found.overshoot_percent, found.disturbance_peak_n), (Ok(0.0), Err(NO_MOTION)));
         // ORIGIN: analytic, 0.1 ln 100
         assert!((found.settling_time_s.unwrap() - 0.1 * portable::ln(100.0)).abs() < 1e-5);
+        // ORIGIN: analytic, 0.1 (ln 10 - ln (10/9)) = 0.1 ln 9
+        assert!((found.rise_time_s.unwrap() - 0.1 * portable::ln(9.0)).abs() < 1e-5);
         assert!(found.steady_state_error_n.unwrap().abs() < 1e-9);
         assert!((found.control_peak_v.unwrap() - 2.0).abs() < 1e-4);
+        let short = metrics(&record, Window { cause, start_s: 1.0, end_s: 1.2 }, 1.0);
+        assert_eq!((short.rise_time_s, short.settling_time_s), (Err(NOT_REACHED), Err(NOT_SETTLED)));
         // three seconds are 4.77 periods of the command: its mean square is 2 up to a twentieth
         assert!((found.control_rms_v.unwrap() - 2.0_f64.sqrt()).abs() < 0.05);
     }

@@ -31,10 +31,12 @@ pub struct ScenarioRun {
     pub status: Status,
     /// What it cost.
     pub work: Work,
-    /// What was seen, at least every quarter of a millisecond.
+    /// What was seen, every [`ScenarioRun::look_s`].
     pub record: Record,
     /// Looks between two rows of the result.
     pub looks_per_row: usize,
+    /// Time between two looks, s: what is shorter is not seen.
+    pub look_s: f64,
     /// Each window with what is read off it.
     pub windows: Vec<(Window, Metrics)>,
     /// What happened on the way, in the order of time.
@@ -87,6 +89,11 @@ impl Record {
 }
 
 impl ScenarioRun {
+    /// Whether it is so long that it was looked at less often than peaks want.
+    pub(crate) fn is_coarse(&self) -> bool {
+        self.look_s > LONGEST_LOOK_S * (1.0 + 1e-9)
+    }
+
     /// Whether whoever watched ended it.
     pub fn was_cancelled(&self) -> bool {
         matches!(self.status, Status::Cancelled { .. })
@@ -120,6 +127,7 @@ pub(super) fn run(
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<ScenarioRun, SimulateError> {
     let looks_per_row = looks_per_row(scenario);
+    let look_s = scenario.output_step / looks_per_row as f64;
     let mut steps = 0;
     let mut watch = |time_s: f64| {
         steps += 1;
@@ -128,7 +136,7 @@ pub(super) fn run(
     let ground = [Input::Value(course.ground.clone()), Input::Rate(course.ground.clone())];
     let inputs = |first: Vec<Input>| Drive {
         duration_s: scenario.duration,
-        output_step_s: scenario.output_step / looks_per_row as f64,
+        output_step_s: look_s,
         inputs: first.into_iter().chain(ground.clone()).collect(),
     };
     let reference = Input::Value(course.reference.clone());
@@ -158,6 +166,7 @@ pub(super) fn run(
         work,
         record,
         looks_per_row,
+        look_s,
         windows,
         occurrences,
         settling_band_percent: band,

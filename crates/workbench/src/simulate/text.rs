@@ -17,7 +17,7 @@ pub(crate) fn text(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
         if !run.windows.is_empty() {
             out.push_str(&format!("{}\n", windows(run)));
         }
-        for sentence in occurrence_sentences(&run.occurrences) {
+        for sentence in coarse_sentence(run).into_iter().chain(occurrence_sentences(&run.occurrences)) {
             out.push_str(&format!("  {sentence}\n"));
         }
         out.push('\n');
@@ -57,6 +57,7 @@ fn windows(run: &ScenarioRun) -> String {
     let mut rows = table(&[
         "event",
         "overshoot",
+        "rise",
         settling.as_str(),
         "disturbance",
         "steady-state error",
@@ -81,13 +82,23 @@ pub(crate) fn cause_words(window: &Window) -> String {
 }
 
 /// Names and cells of the metrics, in one order.
-pub(crate) const METRICS: [&str; 6] =
-    ["overshoot", "settling", "disturbance peak", "steady-state error", "control peak", "control rms"];
+pub(crate) const METRICS: [&str; 7] = [
+    "overshoot",
+    "rise",
+    "settling",
+    "disturbance peak",
+    "steady-state error",
+    "control peak",
+    "control rms",
+];
 
-/// Each metric with its unit; a dash where there is none.
-pub(crate) fn cells_of(metrics: &Metrics) -> [String; 6] {
+/// In place of a metric that there is not.
+pub(crate) const ABSENT: &str = "-";
+
+/// Each metric with its unit; [`ABSENT`] where there is none.
+pub(crate) fn cells_of(metrics: &Metrics) -> [String; 7] {
     let cell = |measured: Measured, digits: usize, unit: &str| {
-        measured.map_or("-".to_string(), |value| format!("{} {unit}", significant(value, digits)))
+        measured.map_or(ABSENT.to_string(), |value| format!("{} {unit}", significant(value, digits)))
     };
     let settling = match metrics.settling_time_s {
         Ok(time_s) => format!("{} s", significant(time_s, 3)),
@@ -96,6 +107,7 @@ pub(crate) fn cells_of(metrics: &Metrics) -> [String; 6] {
     let error = metrics.steady_state_error_n.map(small_as_zero);
     [
         cell(metrics.overshoot_percent, 3, "%"),
+        cell(metrics.rise_time_s, 3, "s"),
         settling,
         cell(metrics.disturbance_peak_n, 4, "N"),
         cell(error, 2, "N"),
@@ -105,8 +117,16 @@ pub(crate) fn cells_of(metrics: &Metrics) -> [String; 6] {
 }
 
 /// A steady error below a millinewton is what the method leaves, not what the loop does.
-fn small_as_zero(error_n: f64) -> f64 {
+pub(crate) fn small_as_zero(error_n: f64) -> f64 {
     if error_n.abs() < 1e-3 { 0.0 } else { error_n }
+}
+
+/// What the numbers of a long scenario are not.
+pub(crate) fn coarse_sentence(run: &ScenarioRun) -> Option<String> {
+    run.is_coarse().then(|| {
+        let look = DisplayUnit::MILLISECOND.number(run.look_s, 3);
+        format!("so long a scenario is looked at every {look} ms only: what is shorter is not seen, and peaks may be larger")
+    })
 }
 
 /// What happened on the way, a sentence each.
@@ -164,20 +184,16 @@ fn side_by_side(columns: &[Option<&ScenarioRun>]) -> String {
         let windows: Vec<Option<&(Window, Metrics)>> =
             columns.iter().map(|run| run.and_then(|run| run.windows.get(index))).collect();
         let Some((first, _)) = windows.iter().flatten().next() else { continue };
-        let cells: Vec<Option<[String; 6]>> =
+        let mut name = cause_words(first);
+        let cells: Vec<Option<[String; 7]>> =
             windows.iter().map(|window| window.map(|(_, metrics)| cells_of(metrics))).collect();
         for (row, metric) in METRICS.iter().enumerate() {
-            let values = cells.iter().map(|cells| cells.as_ref().map_or("-", |cells| cells[row].as_str()));
+            let values = cells.iter().map(|cells| cells.as_ref().map_or(ABSENT, |cells| cells[row].as_str()));
             let values: Vec<String> = values.map(str::to_string).collect();
-            if values.iter().all(|value| value == "-") {
+            if values.iter().all(|value| value == ABSENT) {
                 continue;
             }
-            let name = if row == 0 || (row == 1 && first.cause == Cause::LoadMotion) {
-                cause_words(first)
-            } else {
-                String::new()
-            };
-            rows.add_row([vec![name, (*metric).to_string()], values].concat());
+            rows.add_row([vec![std::mem::take(&mut name), (*metric).to_string()], values].concat());
         }
     }
     rows.trim_fmt()

@@ -73,8 +73,9 @@ fn quantization(declared: &Quantization, sample_time: Option<f64>, check: &mut C
         ("allowed_command_error", declared.allowed_command_error, "measurement", declared.measurement_bits),
     ] {
         if allowed.is_some() && bits == 0 {
-            let message =
-                format!("`{name}` limits what the converter of the {converter} does, and there is none");
+            let message = format!(
+                "`{name}` limits what the converter of the {converter} does, and there is none: state `{converter}_bits` and `{converter}_range`"
+            );
             check.error(&format!("{path}.{name}"), message);
         }
     }

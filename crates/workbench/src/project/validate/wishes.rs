@@ -3,14 +3,17 @@
 use std::collections::BTreeSet;
 
 use super::{Check, linear_parameter};
+use crate::answer::significant;
 use crate::project::{
     Actuator, Campaign, DELAY_PATH, Distribution, Formula, LINEAR_PARAMETERS, LinearParameter, LoadMotion,
     LoadMotionKind, Plant, Project, Scenario, Sizing, Spacing, Uncertain,
 };
 use crate::quantity::{self, RATIO};
 
-/// Most rows a scenario may write.
-const MAXIMUM_ROWS: f64 = 1e7;
+/// Most rows of all scenarios together: a run holds a third of a kilobyte of each, and its table as much again.
+const MAXIMUM_ROWS: f64 = 2e6;
+/// Where a step is shorter, s, it is to blame for the rows, otherwise the duration.
+const ORDINARY_STEP: f64 = 1e-3;
 
 /// What only a project with an actuator has.
 pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut Check<'_, '_>) {
@@ -18,6 +21,7 @@ pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut 
         sizing(wanted, check);
     }
     operating_point(project, actuator, check);
+    rows(&project.scenarios, check);
     let mut names = BTreeSet::new();
     for (index, scenario) in project.scenarios.iter().enumerate() {
         let path = format!("scenario[{index}]");
@@ -63,10 +67,24 @@ fn operating_point(project: &Project, actuator: &Actuator, check: &mut Check<'_,
     }
 }
 
-fn one_scenario(scenario: &Scenario, stroke: f64, path: &str, check: &mut Check<'_, '_>) {
-    if scenario.duration / scenario.output_step > MAXIMUM_ROWS {
-        check.error(&format!("{path}.output_step"), "more than ten million rows: `output_step` is too short");
+/// Refused at the scenario that brings them above what is held.
+fn rows(scenarios: &[Scenario], check: &mut Check<'_, '_>) {
+    let mut before = 0.0;
+    for (index, scenario) in scenarios.iter().enumerate() {
+        let rows = scenario.duration / scenario.output_step;
+        if before <= MAXIMUM_ROWS && before + rows > MAXIMUM_ROWS {
+            let name = if scenario.output_step < ORDINARY_STEP { "output_step" } else { "duration" };
+            let message = format!(
+                "`duration` over `output_step` asks for {} rows; all scenarios together may have {MAXIMUM_ROWS}",
+                significant(rows, 3)
+            );
+            check.error(&format!("scenario[{index}].{name}"), message);
+        }
+        before += rows;
     }
+}
+
+fn one_scenario(scenario: &Scenario, stroke: f64, path: &str, check: &mut Check<'_, '_>) {
     if scenario.output_step > scenario.duration && scenario.duration > 0.0 {
         check.error(&format!("{path}.output_step"), "`output_step` is longer than `duration`");
     }

@@ -1,0 +1,117 @@
+//! The chapters of the report that the nonlinear machine is driven for: scenarios, sensitivity, campaign.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use phea_workbench::project;
+use phea_workbench::report::{Report, report};
+use phea_workbench::source::Memory;
+
+const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+const CAMPAIGN: &str = include_str!("../../../examples/benchmark/campaign.toml");
+
+/// A report without its specifications, which these chapters do not ask for.
+fn reported(text: &str, settings: &[&str]) -> Report {
+    let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
+    let source = Memory::default().with("rig.toml", text);
+    let loaded =
+        project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
+    report(&source, &loaded, None, &mut |_| true).unwrap()
+}
+
+fn without(text: &str, first: &str, until: &str) -> String {
+    let (before, rest) = text.split_once(first).unwrap();
+    format!("{before}{until}{}", rest.split_once(until).unwrap().1)
+}
+
+/// What stands between the anchor of a chapter and the end of it.
+fn chapter<'a>(report: &'a Report, anchor: &str) -> &'a str {
+    let start = report.html.find(&format!("<section id=\"{anchor}\">")).expect("the chapter is there");
+    let rest = &report.html[start..];
+    &rest[..rest.find("</section>").unwrap()]
+}
+
+/// The cells of the row that begins with this text.
+fn row(chapter: &str, first: &str) -> Vec<String> {
+    let start =
+        chapter.find(&format!("<tr><td class=\"\">{first}</td>")).unwrap_or_else(|| panic!("no {first}"));
+    let row = &chapter[start..start + chapter[start..].find("</tr>").unwrap()];
+    let cells = row.split("<td").skip(1).map(|cell| cell.split_once('>').unwrap().1);
+    cells.map(|cell| cell.trim_end_matches("</td>").to_string()).collect()
+}
+
+/// Every step of a reference has a row of its own, published numbers stand below theirs, and what was not published is said once.
+#[test]
+fn every_event_has_its_row_and_what_was_published() {
+    let text = without(HOSE, "[[specification]]", "[controller] ");
+    let text = without(&text, "[design] ", "[[scenario]]");
+    let report = reported(&text, &[]);
+    let chapter = chapter(&report, "simulation");
+    let step = row(chapter, "step\u{a0}to\u{a0}4\u{a0}kN\u{a0}at\u{a0}2\u{a0}s");
+    assert_eq!((step.len(), step[3].as_str()), (8, "0.287 s"));
+    let published = row(chapter, "Ledezma\u{a0}(2019),\u{a0}Figure\u{a0}6.18");
+    assert_eq!(published[1..4], ["2.15 %", "-", "0.200 s"]);
+    let heights = [
+        "1 kN at 1 s",
+        "3 kN at 2 s",
+        "4 kN at 3 s",
+        "2 kN at 4 s",
+        "-1 kN at 5 s",
+        "-4 kN at 6 s",
+        "0 N at 7 s",
+    ];
+    for height in heights {
+        // overshoot, rise, settling, error and command, but no load that moves
+        let cells = row(chapter, &format!("step to {height}").replace(' ', "\u{a0}"));
+        assert_eq!(cells.len(), 7, "{cells:?}");
+        let rise: f64 = cells[2].trim_end_matches(" s").parse().unwrap();
+        let settling: f64 = cells[3].trim_end_matches(" s").parse().unwrap();
+        assert!(0.1 < rise && rise < settling && settling < 0.5, "{cells:?}");
+    }
+    assert_eq!(chapter.matches("these steps were chosen").count(), 1);
+    // the whole and two events of the first scenario; of seven steps the greatest alone
+    let names: Vec<&str> = report.figures.iter().map(|figure| figure.name.as_str()).collect();
+    let drawn: Vec<&&str> = names.iter().filter(|name| name.starts_with("simulation-")).collect();
+    let expected = [
+        "simulation-1",
+        "simulation-1-event-1",
+        "simulation-1-event-2",
+        "simulation-2",
+        "simulation-2-event-7",
+    ];
+    assert_eq!(drawn, expected.iter().collect::<Vec<_>>());
+    // each quantity of the sensitivity is named once for each event of the first scenario
+    let symbol = "Load stiffness <span class=\"equation\"><i>K</i><sub>S</sub></span>";
+    assert_eq!(
+        (chapter.matches(symbol).count(), chapter.matches("20.0\u{a0}MN/m,\u{a0}as\u{a0}declared").count()),
+        (2, 2)
+    );
+    assert!(!chapter.contains("K_S"));
+}
+
+/// Bands, spreads and the worst runs with the command that drives one of them again.
+#[test]
+fn a_campaign_has_its_chapter() {
+    let report = reported(CAMPAIGN, &["scenario.0.duration=3.3 s"]);
+    let chapter = chapter(&report, "campaign");
+    let number = |text: &str| text.split(' ').next().unwrap().parse::<f64>().unwrap();
+    let overshoot = row(chapter, "overshoot\u{a0}(%)");
+    let quantiles: Vec<f64> = overshoot[1..6].iter().map(|cell| number(cell)).collect();
+    assert!(quantiles.is_sorted() && number(&overshoot[6]) >= quantiles[4], "{overshoot:?}");
+    // the run that is worst in most comes first
+    let peak = row(chapter, "disturbance\u{a0}peak\u{a0}(N)");
+    let worst = peak[6].split_once('(').unwrap().1.trim_end_matches(')').to_string();
+    let of = &row(chapter, &worst)[1];
+    assert!(of.contains("load motion at 3 s: disturbance peak") && of.contains("control rms"), "{of}");
+    assert!(chapter.contains(&format!("phea campaign PROJECT.toml --seed 1 --run {worst}")));
+    assert!(chapter.find(&format!("<td class=\"\">{worst}</td>")) < chapter.find(": overshoot</td>"));
+    // a drawn number lies where it is drawn from
+    let pressure = row(chapter, "<code>supply.<wbr>pressure</code>");
+    assert_eq!((pressure[1].as_str(), pressure.len()), ("<span class=\"unit\">Pa</span>", 8));
+    let pascal = |cell: &str| {
+        let (mantissa, exponent) = cell.trim_end_matches("</sup>").split_once("·10<sup>").unwrap();
+        format!("{mantissa}e{exponent}").parse::<f64>().unwrap()
+    };
+    let [from, to] = [pascal(&pressure[2]), pascal(&pressure[3])];
+    assert_eq!((from, to), (5.6e6, 8.4e6));
+    assert!(pressure[4..].iter().all(|cell| (from..=to).contains(&pascal(cell))), "{pressure:?}");
+}

@@ -1,0 +1,194 @@
+//! Whole projects driven to where they hardly hold: right, or refused by name, never without end and never without a number.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use phea_dynamics::simulation::Status;
+use phea_workbench::project::{self, Loaded, Report};
+use phea_workbench::simulate::{Record, ScenarioRun, simulate_project};
+use phea_workbench::source::Memory;
+
+const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
+const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+
+/// Steps that no case takes: several times what the worst of them does.
+const MOST_STEPS: u64 = 60_000;
+
+fn read(text: &str, settings: &[&str]) -> Result<Loaded, Report> {
+    let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
+    project::read(&Memory::default().with("rig.toml", text), "rig.toml", &settings, &[])
+}
+
+/// The first scenario, in which every number is one.
+#[track_caller]
+fn run(text: &str, settings: &[&str]) -> ScenarioRun {
+    let project = read(text, settings).unwrap_or_else(|report| panic!("{report}")).project;
+    let run = simulate_project(&Memory::default(), &project, &mut |_| true).unwrap().remove(0);
+    let Record { times_s, reference_n, filtered_reference_n, control_v, signals } = &run.record;
+    let all = [times_s, reference_n, filtered_reference_n, control_v].into_iter().flatten();
+    assert!(all.chain(signals.iter().flatten()).all(|value| value.is_finite()), "{settings:?}");
+    assert!(run.work.steps < MOST_STEPS, "{:?} with {settings:?}", run.work);
+    run
+}
+
+#[track_caller]
+fn completed(text: &str, settings: &[&str]) -> ScenarioRun {
+    let run = run(text, settings);
+    assert_eq!(run.status, Status::Completed, "{settings:?}");
+    run
+}
+
+/// The findings on a project that is refused.
+#[track_caller]
+fn refused(text: &str, settings: &[&str]) -> String {
+    read(text, settings).map(|_| ()).expect_err("refused").to_string()
+}
+
+fn happened(run: &ScenarioRun, kind: &str) -> bool {
+    run.occurrences.iter().any(|occurrence| occurrence.kind == kind && occurrence.begins)
+}
+
+fn last(run: &ScenarioRun, signal: &str) -> f64 {
+    *run.record.signal(signal).last().unwrap()
+}
+
+/// The load moves by that much in that time, and the reference stays zero.
+fn moved(distance: &str, duration: &str) -> String {
+    format!(
+        "scenario.0.load_motion={{ kind = \"smooth_step\", start = 0.5, distance = \"{distance}\", duration = \"{duration}\" }}"
+    )
+}
+
+const QUIET: [&str; 2] = ["scenario.0.reference=[]", "scenario.0.duration=1.5 s"];
+
+/// Ten seconds without a command: leakage decides the pressures, and then nothing moves any more.
+#[test]
+fn a_valve_that_is_shut_for_ten_seconds() {
+    let text = BENCHMARK.replace("load_motion =", "# load_motion =");
+    let shut = ["scenario.0.reference=[]", "controller.numerator=1e-12", "scenario.0.duration=10 s"];
+    let run = completed(&text, &shut);
+    let pressure = run.record.signal("pressure_a_pa");
+    let count = pressure.len();
+    // ORIGIN: analytic, thesis Table 5.1: p_A = p_S/(1 + (K_vin4/K_vin3)^2) where leakage in equals leakage out
+    assert!((pressure[count - 1] / (70e5 / (1.0 + (2.2_f64 / 2.35) * (2.2 / 2.35))) - 1.0).abs() < 0.01);
+    assert!((pressure[count - 1] / pressure[count * 9 / 10] - 1.0).abs() < 1e-3);
+    assert!(run.work.steps < 2000 && run.occurrences.is_empty());
+}
+
+/// A pump that gives next to nothing: the force that is asked for does not come, the command reaches its limit, and both are told.
+#[test]
+fn a_supply_that_is_lost() {
+    let lost = ["supply.model=pump_limited", "supply.flow=0.001 L/min", "supply.volume=0.1 L"];
+    let run = completed(BENCHMARK, &lost);
+    assert!(last(&run, "supply_pressure_pa") < 10e5, "{}", last(&run, "supply_pressure_pa"));
+    assert!(last(&run, "force_n") < 3e3 && happened(&run, "command_limit"), "{:?}", run.occurrences);
+    let refusal = refused(BENCHMARK, &["supply.model=pump_limited"]);
+    assert!(refusal.contains("a pump-limited supply needs `flow`"), "{refusal}");
+}
+
+/// Chambers above the supply give oil back to it; a tank above the supply is refused.
+#[test]
+fn pressures_that_are_reversed() {
+    let above = ["scenario.0.start.pressure_a=90 bar", "scenario.0.start.pressure_b=85 bar"];
+    let run = completed(BENCHMARK, &above);
+    let taken = run.record.signal("supply_flow_m3_per_s");
+    assert!(taken.iter().copied().fold(0.0, f64::min) < 0.0);
+    assert!((last(&run, "force_n") - 4000.0).abs() < 1.0);
+    let refusal = refused(BENCHMARK, &["supply.tank_pressure=80 bar"]);
+    assert!(refusal.contains("`tank_pressure` must be below `pressure`"), "{refusal}");
+}
+
+/// A load that takes the piston beyond its stroke: stopped where there are stops, told where there are none.
+#[test]
+fn a_load_beyond_the_end_of_the_stroke() {
+    for distance in ["252 mm", "-252 mm"] {
+        let beyond = moved(distance, "0.5 s");
+        let stop = if distance.starts_with('-') { "end_stop_a" } else { "end_stop_b" };
+        let stopped = [QUIET[0], QUIET[1], &beyond, "cylinder.end_stops={ stiffness = \"500 MN/m\" }"];
+        let run = completed(BENCHMARK, &stopped);
+        let outside =
+            run.record.signal("position_m").iter().map(|x| (x - 0.25).abs() - 0.25).fold(0.0, f64::max);
+        assert!(happened(&run, stop) && outside > 0.0 && outside < 1e-3, "{distance}: {outside}");
+        let free = self::run(BENCHMARK, &[QUIET[0], QUIET[1], &beyond]);
+        assert!(happened(&free, stop), "{distance}: {:?}", free.occurrences);
+    }
+}
+
+/// A hose of no length is refused at its key; next to nothing of one is a stiff machine.
+#[test]
+fn hoses_without_length() {
+    for (text, setting, words) in [
+        (HOSE, "line.length=0 m", "`length` must be above 0 m"),
+        (HOSE, "line.length=-1 m", "`length` must be above 0 m"),
+        (BENCHMARK, "line.volume=0 L", "`volume` must be above 0 mL"),
+    ] {
+        let refusal = refused(text, &[setting]);
+        assert!(refusal.contains(words), "{refusal}");
+        assert!(refusal.contains("--set"), "it says where that is written: {refusal}");
+    }
+    for (text, short) in [(HOSE, "line.length=1e-6 m"), (BENCHMARK, "line.volume=1e-12 m3")] {
+        let run = completed(text, &[short]);
+        assert!((last(&run, "force_n") - 4000.0).abs() < 20.0, "{short}: {}", last(&run, "force_n"));
+    }
+}
+
+/// A microsecond between samples is as good as none; a tenth of a second is far too long for this loop, and still ends.
+#[test]
+fn samples_of_a_microsecond_and_of_a_tenth_of_a_second() {
+    let early = ["scenario.0.reference=[{ at = 0.01, force = 4000 }]", "scenario.0.duration=0.05 s"];
+    let of = |sample: &[&str]| completed(BENCHMARK, &[&early[..], sample].concat());
+    let (continuous, sampled) = (of(&[]), of(&["controller.sample_time=1 us"]));
+    assert_eq!(continuous.record.times_s.len(), sampled.record.times_s.len());
+    let forces = [&continuous, &sampled].map(|run| run.record.signal("force_n"));
+    let difference =
+        forces[0].iter().zip(&forces[1]).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+    assert!(last(&continuous, "force_n") > 500.0 && difference < 0.5, "{difference} N");
+    let slow = completed(BENCHMARK, &["controller.sample_time=100 ms"]);
+    assert!(slow.record.control_v.iter().all(|command| command.abs() <= 10.0));
+}
+
+/// 20 mm in 10 ms, there with every load and line: as the load says, or told what it empties.
+#[test]
+fn twenty_millimetres_in_ten_milliseconds() {
+    let torn = moved("20 mm", "10 ms");
+    let quiet = [QUIET[0], QUIET[1], &torn];
+    let soft =
+        "load={ model = \"spring_mass_damper\", mass = \"10 kg\", stiffness = \"1 MN/m\", damping = 500 }";
+    let wall = "load={ model = \"wall\", mass = \"10 kg\", stiffness = \"10 MN/m\", damping = 500 }";
+    for (text, more) in [
+        (BENCHMARK, ""),
+        (BENCHMARK, soft),
+        (BENCHMARK, wall),
+        (BENCHMARK, "controller.sample_time=1 ms"),
+        (HOSE, ""),
+        (HOSE, "line.model=transmission_line"),
+        (HOSE, "line.compliance=by_volume"),
+    ] {
+        let settings: Vec<&str> = quiet.iter().copied().chain((!more.is_empty()).then_some(more)).collect();
+        let run = completed(text, &settings);
+        assert!(
+            (last(&run, "load_position_m") - 0.27).abs() < 0.02,
+            "{more}: {}",
+            last(&run, "load_position_m")
+        );
+        let peak = run.record.signal("force_n").iter().fold(0.0, |peak: f64, force| peak.max(force.abs()));
+        assert!(peak > 300.0, "{more}: {peak} N");
+    }
+}
+
+/// A scenario whose rows no memory holds is refused at its key, with what is asked for and what there may be.
+#[test]
+fn more_rows_than_are_held() {
+    for (setting, asked) in [
+        ("scenario.0.duration=1e6 s", "1.00e9"),
+        ("scenario.0.output_step=1e-12 s", "5.00e12"),
+        ("scenario.0.output_step=1e-320 s", "inf"),
+    ] {
+        let refusal = refused(BENCHMARK, &[setting]);
+        assert!(refusal.contains(&format!("asks for {asked} rows")), "{refusal}");
+        assert!(
+            refusal.contains("all scenarios together may have 2000000") && refusal.contains("--set"),
+            "{refusal}"
+        );
+    }
+    assert!(read(BENCHMARK, &["scenario.0.duration=2000 s"]).is_ok());
+}
