@@ -10,7 +10,7 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
     ClosedLoop, Course, HeldPlant, Input, Plant, Sampler, Settings, Status, System, Work, simulate,
 };
-use phea_hydraulics::machine::Machine;
+use phea_hydraulics::machine::{INDICATORS, Machine};
 use sundials::{Following, Kicks, Method, follow};
 
 use crate::rig::{Control, DURATION_S, OUTPUT_STEP_S, Rig};
@@ -22,7 +22,7 @@ pub(crate) const TOLERANCE: f64 = 1e-6;
 /// Errors put into the other reference, every hundredth of a second.
 const KICKS: Kicks = Kicks { period_s: 1e-2, size: 1e-8, seed: 1 };
 /// Errors as large as the tolerance that a solver is granted between two kicks.
-const ERRORS: f64 = 10.0;
+pub(crate) const ERRORS: f64 = 10.0;
 /// Growth of kicks from which on it cannot hold the largest error.
 const SEPARATED: f64 = crate::LARGEST_ERROR / (ERRORS * TOLERANCE);
 /// Evaluations after which CVODE is told that a rate is not a number.
@@ -37,10 +37,12 @@ pub(crate) struct Compared {
     pub(crate) growth: Vec<f64>,
     /// Rows before the trajectories separate.
     pub(crate) rows: usize,
-    /// Largest magnitude of the force, N.
+    /// Largest magnitude of the force or of what is asked for, N.
     pub(crate) peak: f64,
     /// Whether the force still swings to and fro at the end, long after the last thing that happened.
     pub(crate) hunts: bool,
+    /// When CVODE has left the model, a chamber having no fluid any more, in s.
+    emptied_s: Option<f64>,
     /// phea's run.
     pub(crate) ours: Option<Ours>,
     /// The same model in C: largest difference over those rows as a part of the peak.
@@ -123,9 +125,9 @@ impl<E: System<f64>> System<f64> for Patient<'_, E> {
 }
 
 impl Compared {
-    /// How far kicks leave the trajectory what it is, and what the force does.
-    fn look_at(&mut self, reference: &[f64], kicked: &[f64]) {
-        self.peak = reference.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+    /// How far kicks leave the trajectory what it is, and what the force does where this one is asked for.
+    fn look_at(&mut self, asked: f64, reference: &[f64], kicked: &[f64]) {
+        self.peak = reference.iter().fold(asked.abs(), |most: f64, force| most.max(force.abs()));
         let mut most = 0.0_f64;
         for (one, other) in reference.iter().zip(kicked) {
             most = most.max((one - other).abs() / self.peak / KICKS.size);
@@ -133,6 +135,16 @@ impl Compared {
         }
         self.rows = self.growth.partition_point(|growth| *growth <= SEPARATED);
         self.hunts = hunts(reference, self.peak);
+    }
+
+    /// Whether phea ended where there is no model any more: CVODE steps over the infinite pressure of a chamber that empties.
+    pub(crate) fn leaves_the_model(&self) -> bool {
+        let ended_s = self.ours.and_then(|ours| match ours.status {
+            Status::StepTooSmall { time_s } | Status::NotFinite { time_s } => Some(time_s),
+            _ => None,
+        });
+        let emptied = self.emptied_s.zip(ended_s);
+        emptied.is_some_and(|(emptied_s, ended_s)| (ended_s - emptied_s).abs() <= OUTPUT_STEP_S)
     }
 
     /// Whether kicks grow so much that not all rows can be compared.
@@ -234,7 +246,7 @@ fn judge<'a, E: System<f64> + Clone>(
         let patient = Patient { system, left: Cell::new(PATIENCE) };
         let mut sampler = sampler();
         let sampler = sampler.as_deref_mut().map(|sampler| -> &mut dyn Sampler { sampler });
-        follow(&patient, &start, course, sampler, following).map(|states| force(&states))
+        follow(&patient, &start, course, sampler, following)
     };
     let settings = Settings { tolerance: TOLERANCE, maximum_steps: 2_000_000, ..Settings::default() };
     let begun = Instant::now();
@@ -254,8 +266,10 @@ fn judge<'a, E: System<f64> + Clone>(
     let exact = Following::new(EXACT, Method::BackwardDifferentiation);
     let kicked = Following { kicks: Some(KICKS), ..Following::new(EXACT, Method::Adams) };
     let reference = match (by_cvode(&exact), by_cvode(&kicked)) {
-        (Ok(reference), Ok(kicked)) => {
-            compared.look_at(&reference, &kicked);
+        (Ok(states), Ok(kicked)) => {
+            let reference = force(&states);
+            compared.look_at(rig.reference.value(DURATION_S), &reference, &force(&kicked));
+            compared.emptied_s = emptied(rig, &states);
             reference
         }
         (Err(problem), _) | (_, Err(problem)) => {
@@ -271,12 +285,25 @@ fn judge<'a, E: System<f64> + Clone>(
     if timed {
         compared.seconds_of_cvode = seconds_at(ours.error, &mut |tolerance| {
             let begun = Instant::now();
-            let found = by_cvode(&Following::new(tolerance, Method::StabilityLimit)).ok()?;
+            let found = force(&by_cvode(&Following::new(tolerance, Method::StabilityLimit)).ok()?);
             let seconds = begun.elapsed().as_secs_f64();
             Some((compared.part_of_peak(&reference, &found, compared.rows), seconds))
         });
     }
     (compared, reference)
+}
+
+/// Time of the first row at which a chamber has no fluid.
+fn emptied(rig: &Rig, states: &[Vec<f64>]) -> Option<f64> {
+    let count = Plant::<f64>::states(&rig.machine);
+    let empty = |row: usize, state: &[f64]| {
+        let time_s = row as f64 * OUTPUT_STEP_S;
+        let mut indicators = [0.0; INDICATORS.len()];
+        rig.machine.indicate(state, &[rig.ground.value(time_s), rig.ground.rate(time_s)], &mut indicators);
+        INDICATORS.iter().zip(indicators).any(|(name, sign)| name.starts_with("empty") && sign < 0.0)
+    };
+    let row = states.iter().enumerate().position(|(row, state)| empty(row, &state[..count]))?;
+    Some(row as f64 * OUTPUT_STEP_S)
 }
 
 /// Over the last fifth of its rows the force crosses the middle of its range at least four times, and the range is a twentieth of the

@@ -13,9 +13,10 @@
 //! ```
 //!
 //! F by backward differentiation, F_kicked by Adams' method, so that rows on which the two do not agree to 1e-6 are not compared either.
-//! A solver that keeps its tolerance may err by as much as that in every step, and takes 26 steps between two kicks in the mean. Ten
+//! A solver that keeps its tolerance may err by as much as that in every step, and takes 32 steps between two kicks in the mean. Ten
 //! such errors grow to the thousandth of the peak that is allowed where A passes 100: there trajectories count as separated. Until
-//! then an error is held against that thousandth, from then on against what thirty such errors grow to, 30 x 1e-6 A(t).
+//! then an error is held against that thousandth, from then on against what ten such errors grow to, 10 x 1e-6 A(t). The peak is that
+//! of the force, or what is asked for where the loop never brings it.
 
 mod compare;
 mod rich;
@@ -24,16 +25,15 @@ mod rig;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use phea_dynamics::simulation::Status;
 
-use compare::{Compared, TOLERANCE, compare};
+use compare::{Compared, ERRORS, TOLERANCE, compare};
 use rig::{Control, Refusal, rig};
 
 /// Part of the peak.
 const LARGEST_ERROR: f64 = 1e-3;
-/// After the separation: over what kicks as large as the tolerance grow to.
-const LARGEST_BEYOND: f64 = 30.0;
 /// Between the machine and `closed_loop.h`, part of the peak.
 const LARGEST_DIFFERENCE: f64 = 1e-4;
 
@@ -43,6 +43,8 @@ struct Tally {
     run: usize,
     refused: BTreeMap<String, usize>,
     without_reference: usize,
+    /// Which phea ends where a chamber has emptied.
+    without_model: usize,
     features: BTreeMap<&'static str, usize>,
     hunting: usize,
     /// Parts of their rows that are compared.
@@ -73,12 +75,13 @@ fn main() -> ExitCode {
     // Times are taken one after the other.
     let at_once =
         if timed { 1 } else { std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64) };
+    let next = AtomicU64::new(numbers.start);
     let mut outcomes: Vec<(u64, Outcome)> = std::thread::scope(|scope| {
-        let share = |worker: u64| {
-            let (numbers, program) = (numbers.clone(), &program);
-            let mine = numbers.filter(move |number| number % at_once == worker);
-            scope.spawn(move || {
-                mine.map(|number| (number, outcome(number, program, timed))).collect::<Vec<_>>()
+        let share = |_| {
+            scope.spawn(|| {
+                let taken = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
+                let mine = taken.take_while(|number| numbers.contains(number));
+                mine.map(|number| (number, outcome(number, &program, timed))).collect::<Vec<_>>()
             })
         };
         let workers: Vec<_> = (0..at_once).map(share).collect();
@@ -167,11 +170,14 @@ impl Tally {
                 ours.error, ours.error_of_all, ours.beyond
             );
         }
-        if ours.status != Status::Completed {
+        if compared.leaves_the_model() {
+            println!("rig {number}: {:?}, where a chamber has no fluid any more", ours.status);
+            self.without_model += 1;
+        } else if ours.status != Status::Completed {
             self.failures.push(format!("rig {number}: {:?}, where CVODE goes on", ours.status));
         } else if ours.error >= LARGEST_ERROR {
             self.failures.push(format!("rig {number}: an error of {:.1e} of the peak", ours.error));
-        } else if ours.beyond >= LARGEST_BEYOND {
+        } else if ours.beyond >= ERRORS {
             self.failures
                 .push(format!("rig {number}: an error {:.1} times the tolerance's growth", ours.beyond));
         }
@@ -189,8 +195,8 @@ impl Tally {
     fn print(&mut self) {
         let refused: usize = self.refused.values().sum();
         println!(
-            "{} rigs: {refused} refused {:?}, {} without reference",
-            self.run, self.refused, self.without_reference
+            "{} rigs: {refused} refused {:?}, {} without reference, {} end where a chamber has emptied",
+            self.run, self.refused, self.without_reference, self.without_model
         );
         println!("of the others have: {:?}", self.features);
         println!("hunting at the end: {}", self.hunting);
