@@ -8,7 +8,7 @@
 //! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
 //! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
 //! bristles       dz/dt                                          thesis (4.30), corrected: LuGre
-//! load           prescribed, or dx_L/dt, dv_L/dt                LoadModel
+//! load           prescribed, or d(x_L - x_0)/dt, dv_L/dt         LoadModel
 //! supply         constant, or dp_S/dt                           PowerUnit
 //! lines          lumped, or states and waves of their own       DynamicLine
 //! ```

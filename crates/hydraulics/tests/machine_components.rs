@@ -358,7 +358,7 @@ fn indicators_turn_negative_with_their_events() {
     let options = MachineOptions { load, end_stops: Some(contact), ..MachineOptions::default() };
     let machine = machine_of(components(hose_line(), StiffnessModel::ByVolume), &options);
     let negative = |pressure_a: f64, position: f64, ground: f64| {
-        let state = [0.0, 0.0, pressure_a, 30e5, 0.0, 0.0, position, 0.0];
+        let state = [0.0, 0.0, pressure_a, 30e5, 0.0, 0.0, position - ground, 0.0];
         let mut indicators = [0.0; INDICATORS.len()];
         machine.indicate(&state, &[ground, 0.0], &mut indicators);
         (0..INDICATORS.len()).filter(|&index| indicators[index] < 0.0).collect::<Vec<_>>()

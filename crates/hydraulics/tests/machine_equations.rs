@@ -181,7 +181,7 @@ fn the_benchmark_is_the_text_of_its_equations() {
 
 /// A machine with everything, in another form: one side at a time, forces and flows case by case.
 fn full_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 12] {
-    let &[u, r, p_a, p_b, d, v, z, x_l, v_l, p_s, f, lag] = state else { unreachable!() };
+    let &[u, r, p_a, p_b, d, v, z, way, v_l, p_s, f, lag] = state else { unreachable!() };
     let spool_rate = r.clamp(-4000.0, 4000.0);
     let opening = u - 0.014 - lag;
     let root = |drop: f64| drop.signum() * (drop * drop / (drop * drop + 1e6).sqrt()).sqrt();
@@ -191,7 +191,7 @@ fn full_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 12] {
         [edge(3.2e-7, opening, 2.35e-9) * root(p_s - p_a), edge(2.0e-7, -opening, 1.7e-9) * root(p_s - p_b)];
     let to_t = [edge(2.5e-7, -opening, 2.2e-9) * root(p_a), edge(3.85e-7, opening, 2.35e-9) * root(p_b)];
     let across = 3e-13 * (p_a - p_b);
-    let x = x_l + d;
+    let x = inputs[0] + way + d;
     let bore = std::f64::consts::PI * 12.7e-3 * 12.7e-3;
     let wall = 5.0 * (bore + 4.0 * 1.56e-5) / (4.0 * 2.236e-12);
     let hose = bore / 4.0 * 1.5 * (1.0 / wall + 1.0 / 1.45e9);
@@ -204,7 +204,7 @@ fn full_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 12] {
     };
     let friction = 1e7 * z + 2e3 * z_rate + 100.0 * v;
     let pushing = area * p_a - area * p_b - friction - 2e7 * d + contact(-x, -v) - contact(x - 0.5, v);
-    let (way, closing) = (x_l - inputs[0], v_l - inputs[1]);
+    let closing = v_l - inputs[1];
     let tare = 7.55e-6 * root(p_s) / root(70e5);
     let relief = if p_s > 65e5 { 1.633e-4 * (p_s - 65e5) / 5e5 } else { 0.0 };
     let gas = 1e-3 * pow((40e5 + 101325.0) / (p_s + 101325.0), 1.0 / 1.3) / (1.3 * (p_s + 101325.0));
@@ -217,7 +217,7 @@ fn full_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 12] {
         v - v_l,
         pushing / 13.1,
         z_rate,
-        v_l,
+        closing,
         (2e7 * d - contact(way - 2e-3, closing) - 50.0 * closing) / 8.0,
         (1.633e-4 - relief - from_s[0] - from_s[1] - tare) / stored,
         20.0 * (spool_rate - spool_rate.abs() * f / 0.02),
@@ -233,9 +233,10 @@ fn a_machine_with_everything_is_the_text_of_its_equations() {
     for index in 0..600 {
         let (mut state, command, mut inputs) = some_state(&machine, &mut noise);
         // Everywhere, in the stops, and at the wall.
-        state[7] = [0.25 + 0.2 * noise.next(), 1e-4 * noise.next(), 0.5 + 1e-4 * noise.next()][index % 3];
+        let position = [0.25 + 0.2 * noise.next(), 1e-4 * noise.next(), 0.5 + 1e-4 * noise.next()][index % 3];
+        state[7] = 2e-3 + 1e-4 * noise.next();
         state[9] = 55e5 + 20e5 * noise.next();
-        inputs[0] = state[7] - 2e-3 + 1e-4 * noise.next();
+        inputs[0] = position - state[7];
         let rates = rates_of(&machine, &state, 1.5 * command, &inputs);
         let mut indicators = [0.0; INDICATORS.len()];
         machine.indicate(&state, &inputs, &mut indicators);

@@ -45,7 +45,7 @@ impl System<f64> for Commanded {
     }
 }
 
-/// The machine over a course that begins at rest of its load; the ground moves from zero, where the piston starts.
+/// The machine over a course; its ground is to start where the start says that it lies.
 fn drive(
     machine: Machine,
     start: &Start,
@@ -112,7 +112,7 @@ fn a_piston_meets_its_end_stops() {
     let options = MachineOptions { end_stops: end_stops(), load: free_load(), ..MachineOptions::default() };
     let rig = components(hose_line(), StiffnessModel::ByVolume);
     let course = [(0.0, 10.0), (1.0, -10.0), (3.5, 0.0)];
-    let (result, outputs) = drive(machine_of(rig, &options), &at(0.4), 4.0, &course, Profile::constant(0.0));
+    let (result, outputs) = drive(machine_of(rig, &options), &at(0.4), 4.0, &course, Profile::constant(0.4));
     assert_eq!(result.outcome.status, Status::Completed);
     assert!(happened(&result, "end_stop_b") && happened(&result, "end_stop_a"));
     let position = column(&outputs, "position_m");
@@ -166,7 +166,8 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
     };
     let rig = components(hose_line(), StiffnessModel::ByVolume);
     let course = [(0.5, 5.0), (1.0, -5.0), (1.5, 0.0)];
-    let (result, outputs) = drive(machine_of(rig, &options), &at(0.25), 3.0, &course, Profile::constant(0.0));
+    let (result, outputs) =
+        drive(machine_of(rig, &options), &at(0.25), 3.0, &course, Profile::constant(0.25));
     assert_eq!(result.outcome.status, Status::Completed);
     let supply = column(&outputs, "supply_pressure_pa");
     assert!(supply[0] > 60e5 && supply[supply.len() - 1] < 5e5);

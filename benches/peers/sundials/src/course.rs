@@ -1,24 +1,64 @@
 //! A system of phea driven through a course by CVODE: what its own method is held against.
 
+use std::cell::RefCell;
+
+use phea_dynamics::random;
 use phea_dynamics::simulation::{Course, Input, Sampler, System};
 
+use crate::waves::{Waves, integrate_delayed};
 use crate::{CvodeError, Method, integrate};
+
+/// Small errors put into a solution on purpose, to see what becomes of them.
+///
+/// ```text
+/// at 0, T, 2T, ...:    y_i -> y_i + e s_i scale_i,    s_i = +1 or -1 by chance
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kicks {
+    /// Time T between them in s; positive.
+    pub period_s: f64,
+    /// Size e over the scale of each state.
+    pub size: f64,
+    /// Where the signs come from.
+    pub seed: u64,
+}
+
+/// How a course is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Following {
+    /// Of one step of CVODE, relative to state plus scale.
+    pub tolerance: f64,
+    /// How CVODE steps.
+    pub method: Method,
+    /// Errors put in on purpose.
+    pub kicks: Option<Kicks>,
+}
+
+impl Following {
+    /// Without errors on purpose.
+    pub fn new(tolerance: f64, method: Method) -> Following {
+        Following { tolerance, method, kicks: None }
+    }
+}
 
 /// The states at each row of a course, from time zero.
 ///
 /// The same equations, inputs, samples and held commands as in [`phea_dynamics::simulation::simulate`], on another
 /// method. CVODE starts anew at each break of an input, at each sample and where a command takes effect; the error is
-/// measured by `tolerance` times state and scale, as there.
+/// measured by the tolerance times state and scale, as there. Delayed waves, told behind the states at the start, are kept as
+/// polynomials of degree eleven over an eighth of the shortest delay or less; CVODE never steps beyond what has been sent, and
+/// starts anew where a break comes back.
 ///
 /// # Errors
 ///
-/// As [`integrate`]; [`CvodeError::Argument`] for a system with delayed waves, whose history CVODE does not keep.
+/// As [`integrate`]; [`CvodeError::Argument`] for a start that does not tell every state and every wave.
 ///
 /// # Example
 ///
 /// ```
 /// use phea_dynamics::scalar::Scalar;
 /// use phea_dynamics::simulation::{Course, Input, Profile, System};
+/// use sundials::{Following, Method};
 /// struct Lag;
 /// impl System<f64> for Lag {
 ///     fn states(&self) -> usize {
@@ -36,7 +76,7 @@ use crate::{CvodeError, Method, integrate};
 /// }
 /// let inputs = vec![Input::Value(Profile::steps(0.0, &[(1.0, 5.0)]).unwrap())];
 /// let course = Course { duration_s: 3.0, output_step_s: 1.0, inputs };
-/// let rows = sundials::follow(&Lag, &[0.0], &course, None, 1e-10, sundials::Method::Adams)?;
+/// let rows = sundials::follow(&Lag, &[0.0], &course, None, &Following::new(1e-10, Method::Adams))?;
 /// assert!((rows[3][0] - 5.0 * (1.0 - (-2.0f64).exp())).abs() < 1e-8);
 /// # Ok::<(), sundials::CvodeError>(())
 /// ```
@@ -45,29 +85,44 @@ pub fn follow<E: System<f64>>(
     start: &[f64],
     course: &Course,
     mut sampler: Option<&mut dyn Sampler>,
-    tolerance: f64,
-    method: Method,
+    following: &Following,
 ) -> Result<Vec<Vec<f64>>, CvodeError> {
-    if !system.delays().is_empty() {
-        return Err(CvodeError::Argument("the system has delayed waves"));
+    let (delays, scales) = (system.delays(), system.scales());
+    if start.len() != system.states() + delays.len() {
+        return Err(CvodeError::Argument("the start tells each state and each wave"));
     }
-    let absolute: Vec<f64> = system.scales().iter().map(|scale| tolerance * scale).collect();
-    let breaks = breaks(course);
+    let (start, sent) = start.split_at(system.states());
+    let waves = RefCell::new(Waves::new(delays, sent.to_vec()));
+    let mut breaks = breaks(course);
+    if !waves.borrow().are_none() {
+        breaks = waves.borrow().echoes(&breaks, course.duration_s);
+    }
     let (mut rows, mut state, mut time) = (vec![start.to_vec()], start.to_vec(), 0.0);
     let mut held = Held { sample: 0, command: 0.0, pending: Vec::new() };
+    let mut kicked = following.kicks.map(|kicks| Kicked { kicks, count: 0, chance: kicks.seed });
+    let mut inputs = vec![0.0; system.inputs()];
     while time < course.duration_s {
-        let mut inputs = vec![0.0; course.inputs.len()];
         let mut until = course.duration_s;
+        if let Some(kicked) = &mut kicked {
+            until = until.min(kicked.act(time, &mut state, &scales));
+        }
         if let Some(sampler) = &mut sampler {
-            inputs_at(course, time, held.command, &mut inputs);
+            inputs_at(course, time, held.command, &waves.borrow(), &mut inputs);
             until = until.min(held.act(*sampler, time, &state, &inputs));
         }
-        let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
-            inputs_at(course, time, held.command, &mut inputs);
-            system.rates(state, &inputs, rates);
-        };
+        let command = held.command;
+        let inputs_at =
+            |time: f64, waves: &Waves, inputs: &mut [f64]| inputs_at(course, time, command, waves, inputs);
+        let delayed = !waves.borrow().are_none();
+        if delayed {
+            until = breaks.iter().copied().find(|stop| *stop > time).map_or(until, |stop| until.min(stop));
+        }
         let times = times(course, time, until, rows.len());
-        let states = integrate(&mut rates, &state, &times, tolerance, &absolute, method, &breaks)?;
+        let states = if delayed {
+            integrate_delayed(system, &inputs_at, &waves, &state, &times, following)?
+        } else {
+            continued(system, &inputs_at, &state, &times, following, &breaks)?
+        };
         for (reached, row) in times.iter().zip(&states).skip(1) {
             if *reached >= rows.len() as f64 * course.output_step_s {
                 rows.push(row.clone());
@@ -76,6 +131,25 @@ pub fn follow<E: System<f64>>(
         (state, time) = (states.last().unwrap_or(&state).clone(), until);
     }
     Ok(rows)
+}
+
+/// The states at `times` where nothing is delayed.
+fn continued<E: System<f64>>(
+    system: &E,
+    inputs_at: &dyn Fn(f64, &Waves, &mut [f64]),
+    state: &[f64],
+    times: &[f64],
+    following: &Following,
+    breaks: &[f64],
+) -> Result<Vec<Vec<f64>>, CvodeError> {
+    let Following { tolerance, method, .. } = *following;
+    let absolute: Vec<f64> = system.scales().iter().map(|scale| tolerance * scale).collect();
+    let (none, mut inputs) = (Waves::new(Vec::new(), Vec::new()), vec![0.0; system.inputs()]);
+    let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
+        inputs_at(time, &none, &mut inputs);
+        system.rates(state, &inputs, rates);
+    };
+    integrate(&mut rates, state, times, tolerance, &absolute, method, breaks)
 }
 
 /// Samples taken, the command in force, and commands on their way with the time that they take effect.
@@ -101,8 +175,32 @@ impl Held {
     }
 }
 
-fn inputs_at(course: &Course, time: f64, command: f64, inputs: &mut [f64]) {
-    for (place, input) in inputs.iter_mut().zip(&course.inputs) {
+/// How many kicks there were, and where the signs of the next come from.
+struct Kicked {
+    kicks: Kicks,
+    count: u64,
+    chance: u64,
+}
+
+impl Kicked {
+    /// Kicks the state if it is time to, and tells when the next is due.
+    fn act(&mut self, time: f64, state: &mut [f64], scales: &[f64]) -> f64 {
+        let Kicks { period_s, size, .. } = self.kicks;
+        if time >= self.count as f64 * period_s {
+            self.count += 1;
+            for (value, scale) in state.iter_mut().zip(scales) {
+                let sign = if random::share(&mut self.chance) < 0.5 { -1.0 } else { 1.0 };
+                *value += sign * size * scale;
+            }
+        }
+        self.count as f64 * period_s
+    }
+}
+
+fn inputs_at(course: &Course, time: f64, command: f64, waves: &Waves, inputs: &mut [f64]) {
+    let (told, arriving) = inputs.split_at_mut(course.inputs.len().min(inputs.len()));
+    waves.arriving(time, arriving);
+    for (place, input) in told.iter_mut().zip(&course.inputs) {
         *place = match input {
             Input::Value(profile) => profile.value(time),
             Input::Rate(profile) => profile.rate(time),

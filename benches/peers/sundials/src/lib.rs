@@ -1,13 +1,14 @@
 //! CVODE (Hindmarsh and others, 2005) for right-hand sides written in Rust.
 //!
-//! [`integrate`] for any right-hand side, [`follow`] for a system and a course of phea. Built against SUNDIALS 6 as Debian 12 packages it; another major version is refused when
-//! it is met, because its C interface differs.
+//! [`integrate`] for any right-hand side, [`follow`] for a system and a course of phea, delayed waves included. Built against
+//! SUNDIALS 6 as Debian 12 packages it; another major version is refused when it is met, because its C interface differs.
 
 mod course;
 mod interface;
 mod session;
+mod waves;
 
-pub use course::follow;
+pub use course::{Following, Kicks, follow};
 use session::Session;
 
 /// How CVODE steps; both solve their implicit equations by Newton's method with a dense Jacobian of difference quotients.

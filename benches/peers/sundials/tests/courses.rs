@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Course, Input, Profile, Sampler, Settings, Status, System, simulate};
-use sundials::{CvodeError, Method, follow};
+use sundials::{CvodeError, Following, Method, follow};
 
 /// y'' = mu (1 - y^2) y' - y + w1 + c w2, with a load's motion w1 and its velocity w2, and a command.
 #[derive(Clone)]
@@ -91,8 +91,14 @@ fn a_stiff_oscillator_moves_alike_under_both_methods() {
             let settings = Settings { tolerance: 1e-10, ..Settings::default() };
             let ours = simulate(&system, &[1.5, 0.0], &course, None, &settings, &mut |_| true).unwrap();
             assert_eq!(ours.outcome.status, Status::Completed);
-            let rows =
-                follow(&system, &[1.5, 0.0], &course, None, 1e-10, Method::BackwardDifferentiation).unwrap();
+            let rows = follow(
+                &system,
+                &[1.5, 0.0],
+                &course,
+                None,
+                &Following::new(1e-10, Method::BackwardDifferentiation),
+            )
+            .unwrap();
             assert_eq!(rows.len(), ours.trajectory.states.len());
             for (theirs, ours) in rows.iter().zip(&ours.trajectory.states) {
                 assert!((theirs[0] - ours[0]).abs() < 1e-5, "mu {mu}: {theirs:?} {ours:?}");
@@ -111,7 +117,9 @@ fn samples_and_late_commands_act_alike() {
         let settings = Settings { tolerance: 1e-10, ..Settings::default() };
         let sampler = Box::new(Feedback { ..feedback });
         let ours = simulate(&system, &[1.5, 0.0], &course, Some(sampler), &settings, &mut |_| true).unwrap();
-        let rows = follow(&system, &[1.5, 0.0], &course, Some(&mut feedback), 1e-10, Method::Adams).unwrap();
+        let rows =
+            follow(&system, &[1.5, 0.0], &course, Some(&mut feedback), &Following::new(1e-10, Method::Adams))
+                .unwrap();
         assert_eq!(rows.len(), ours.trajectory.states.len(), "{output_step_s}");
         for (theirs, ours) in rows.iter().zip(&ours.trajectory.states) {
             assert!((theirs[0] - ours[0]).abs() < 1e-6, "{delay_s}: {theirs:?} {ours:?}");
@@ -123,7 +131,9 @@ fn samples_and_late_commands_act_alike() {
 fn a_sampled_integrator_shrinks_by_the_same_factor_each_sample() {
     let course = Course { duration_s: 2.0, output_step_s: 0.1, inputs: vec![Input::Command] };
     let mut feedback = Feedback { gain: 2.0, sample_time_s: 0.1, delay_s: 0.0 };
-    let rows = follow(&Integrator, &[1.0], &course, Some(&mut feedback), 1e-9, Method::Adams).unwrap();
+    let rows =
+        follow(&Integrator, &[1.0], &course, Some(&mut feedback), &Following::new(1e-9, Method::Adams))
+            .unwrap();
     assert_eq!(rows.len(), 21);
     let mut expected = 1.0;
     for row in rows {
@@ -132,28 +142,59 @@ fn a_sampled_integrator_shrinks_by_the_same_factor_each_sample() {
     }
 }
 
-#[test]
-fn delayed_waves_are_refused() {
-    #[derive(Clone)]
-    struct Line;
-    impl System<f64> for Line {
-        fn states(&self) -> usize {
-            1
-        }
-        fn inputs(&self) -> usize {
-            1
-        }
-        fn scales(&self) -> Vec<f64> {
-            vec![1.0]
-        }
-        fn rates<T: Scalar + From<f64>>(&self, _state: &[T], inputs: &[T], rates: &mut [T]) {
-            rates[0] = inputs[0];
-        }
-        fn delays(&self) -> Vec<f64> {
-            vec![1e-3]
-        }
+/// y' = -w, w = y one second ago.
+#[derive(Clone)]
+struct Late;
+
+impl System<f64> for Late {
+    fn states(&self) -> usize {
+        1
     }
+
+    fn inputs(&self) -> usize {
+        1
+    }
+
+    fn scales(&self) -> Vec<f64> {
+        vec![1.0]
+    }
+
+    fn rates<T: Scalar + From<f64>>(&self, _state: &[T], inputs: &[T], rates: &mut [T]) {
+        rates[0] = -inputs[0];
+    }
+
+    fn delays(&self) -> Vec<f64> {
+        vec![1.0]
+    }
+
+    fn outgoing<T: Scalar + From<f64>>(&self, state: &[T], _inputs: &[T], waves: &mut [T]) {
+        waves[0] = state[0];
+    }
+}
+
+#[test]
+fn a_delayed_wave_arrives_as_it_was_sent() {
+    let course = Course { duration_s: 4.0, output_step_s: 0.3, inputs: vec![] };
+    let rows = follow(&Late, &[1.0, 1.0], &course, None, &Following::new(1e-11, Method::Adams)).unwrap();
+    // y = sum over k of (-1)^k (t - k + 1)^k/k! from t = k - 1 on
+    let exact = |t: f64| {
+        let (mut sum, mut factorial) = (1.0, 1.0);
+        for k in 1..=(t + 1.0) as i32 {
+            factorial *= f64::from(k);
+            sum += (-1.0_f64).powi(k) * (t - f64::from(k) + 1.0).max(0.0).powi(k) / factorial;
+        }
+        sum
+    };
+    assert_eq!(rows.len(), 14);
+    for (index, row) in rows.iter().enumerate() {
+        let expected = exact(0.3 * index as f64);
+        assert!((row[0] - expected).abs() < 1e-9, "{index}: {row:?} {expected}");
+    }
+}
+
+#[test]
+fn waves_that_the_start_does_not_tell_are_refused() {
     let course = Course { duration_s: 1.0, output_step_s: 0.1, inputs: vec![] };
-    let answer = follow(&Line, &[0.0], &course, None, 1e-6, Method::Adams);
+    let answer = follow(&Late, &[1.0], &course, None, &Following::new(1e-6, Method::Adams));
     assert!(matches!(answer, Err(CvodeError::Argument(_))));
 }

@@ -79,7 +79,11 @@ impl<S: Scalar> Machine<S> {
         state: &MachineState<T>,
         ground: &LoadMotion<T>,
     ) -> LoadMotion<T> {
-        if self.load.moves() { state.load } else { *ground }
+        if self.load.moves() {
+            LoadMotion { position: ground.position + state.load.position, velocity: state.load.velocity }
+        } else {
+            *ground
+        }
     }
 
     /// Pressures at the valve's ports A and B: the chambers' own where lines are lumped.
@@ -199,7 +203,7 @@ impl<S: Scalar> Machine<S> {
             velocity: pushing / constant(self.cylinder.moving_mass),
             bristle: forces.friction.bristle_rate,
             load: LoadMotion {
-                position: load.velocity,
+                position: load.velocity - ground.velocity,
                 velocity: self.load.convert(&mut constant::<S, T>).acceleration(
                     forces.sensed,
                     &load,

@@ -132,10 +132,10 @@ impl Machine {
         force: f64,
     ) -> Result<(MachineState, f64), MachineError> {
         let deflection = force / self.sensor_stiffness;
-        let load = LoadMotion { position: position - deflection, velocity: state.velocity };
         let held = self.load.held_at(force);
         let relative = held.ok_or(MachineError::ImpossibleStart { quantity: "force", value: force })?;
-        Ok((MachineState { deflection, load, ..*state }, load.position - relative))
+        let load = LoadMotion { position: relative, velocity: state.velocity };
+        Ok((MachineState { deflection, load, ..*state }, position - deflection - relative))
     }
 
     fn begin(&self, state: &MachineState, ground: f64) -> Beginning {
@@ -164,14 +164,10 @@ impl Machine {
         }
     }
 
-    /// The greatest rate over the scale of its state, in 1/s, leaving aside those that a steady motion has.
+    /// The greatest rate over the scale of its state, in 1/s: zero in a steady motion.
     fn residual(&self, beginning: &Beginning) -> f64 {
         let mut rates = vec![0.0; self.layout.count()];
         self.rates(&beginning.state, beginning.command, &beginning.all_inputs(), &mut rates);
-        let mut named = self.layout.read(&rates);
-        let [_, velocity] = beginning.inputs;
-        named.load.position -= velocity;
-        self.layout.write(&named, &mut rates);
         rates.iter().zip(self.scales()).fold(0.0, |largest, (rate, scale)| {
             let relative = (rate / scale).abs();
             if relative.is_nan() { f64::INFINITY } else { relative.max(largest) }

@@ -21,7 +21,8 @@ pub struct MachineState<T = f64> {
     pub velocity: T,
     /// Deflection z of the bristles in m.
     pub bristle: T,
-    /// Position and velocity of a load that moves by itself, in m and m/s.
+    /// A load that moves by itself: its position from its ground, x_L - x_0, in m, and its velocity v_L in m/s. Errors are measured by
+    /// what moves its spring or its wall, not by how far it stands from the cylinder's end.
     pub load: LoadMotion<T>,
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,

@@ -10,17 +10,21 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
     ClosedLoop, Course, HeldPlant, Input, Plant, Sampler, Settings, Status, System, Work, simulate,
 };
-use phea_hydraulics::machine::Machine;
-use sundials::{CvodeError, Method, follow};
+use phea_hydraulics::machine::{INDICATORS, Machine};
+use sundials::{Following, Kicks, Method, follow};
 
 use crate::rig::{Control, DURATION_S, OUTPUT_STEP_S, Rig};
 
-/// Of both references.
+/// Of CVODE's runs.
 const EXACT: f64 = 1e-11;
-/// Of phea's first run.
-const FIRST_TOLERANCE: f64 = 1e-6;
-/// Part of the peak by which the two references may differ before they count as separated.
-const SEPARATED: f64 = 1e-5;
+/// Of phea's run: what a project has that does not say otherwise.
+pub(crate) const TOLERANCE: f64 = 1e-6;
+/// Errors put into the other reference, every hundredth of a second.
+const KICKS: Kicks = Kicks { period_s: 1e-2, size: 1e-8, seed: 1 };
+/// Errors as large as the tolerance that a solver is granted between two kicks.
+pub(crate) const ERRORS: f64 = 10.0;
+/// Growth of kicks from which on it cannot hold the largest error.
+const SEPARATED: f64 = crate::LARGEST_ERROR / (ERRORS * TOLERANCE);
 /// Evaluations after which CVODE is told that a rate is not a number.
 const PATIENCE: u64 = 20_000_000;
 
@@ -29,29 +33,34 @@ const PATIENCE: u64 = 20_000_000;
 pub(crate) struct Compared {
     /// Why CVODE has no reference, if it has none.
     pub(crate) without_reference: Option<String>,
-    /// Rows that are compared, and whether that is not all because the references separate.
+    /// How much kicks have grown until each row, of the force's peak over the kicks' size.
+    pub(crate) growth: Vec<f64>,
+    /// Rows before the trajectories separate.
     pub(crate) rows: usize,
-    pub(crate) separates: bool,
-    /// Largest magnitude of the force over those rows, N.
+    /// Largest magnitude of the force or of what is asked for, N.
     pub(crate) peak: f64,
     /// Whether the force still swings to and fro at the end, long after the last thing that happened.
     pub(crate) hunts: bool,
-    /// How phea ended at each of its tolerances, with the largest error of the force as a part of the peak.
-    pub(crate) ours: Vec<Ours>,
-    /// The same model in C: largest difference as a part of the peak.
+    /// When CVODE has left the model, a chamber having no fluid any more, in s.
+    emptied_s: Option<f64>,
+    /// phea's run.
+    pub(crate) ours: Option<Ours>,
+    /// The same model in C: largest difference over those rows as a part of the peak.
     pub(crate) twin: Option<f64>,
-    /// Where phea was run again: error of CVODE at phea's first tolerance as a part of the peak.
-    pub(crate) error_of_cvode: Option<f64>,
-    /// Seconds of CVODE, with its stability limit, at the error of phea's first run.
+    /// Seconds of CVODE, with its stability limit, at phea's error.
     pub(crate) seconds_of_cvode: Option<f64>,
 }
 
 /// A run of phea.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Ours {
-    pub(crate) tolerance: f64,
     pub(crate) status: Status,
+    /// Largest error of the force over the rows before trajectories separate, as a part of the peak.
     pub(crate) error: f64,
+    /// The same over all rows.
+    pub(crate) error_of_all: f64,
+    /// Largest error over what kicks as large as the tolerance grow to, over all rows after they separate.
+    pub(crate) beyond: f64,
     pub(crate) work: Work,
     pub(crate) seconds: f64,
 }
@@ -98,6 +107,14 @@ impl<E: System<f64>> System<f64> for Patient<'_, E> {
         self.system.scales()
     }
 
+    fn delays(&self) -> Vec<f64> {
+        self.system.delays()
+    }
+
+    fn outgoing<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
+        self.system.outgoing(state, inputs, waves);
+    }
+
     fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
         self.system.rates(state, inputs, rates);
         self.left.set(self.left.get().saturating_sub(1));
@@ -108,23 +125,46 @@ impl<E: System<f64>> System<f64> for Patient<'_, E> {
 }
 
 impl Compared {
-    /// How far the references are one, and what the force does there.
-    fn look_at(&mut self, reference: &[f64], other: &[f64]) {
-        let peak = |force: &[f64]| force.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-        let whole = peak(reference);
-        let apart_at = reference.iter().zip(other).position(|(a, b)| (a - b).abs() > SEPARATED * whole);
-        self.rows = apart_at.unwrap_or(reference.len());
-        self.separates = apart_at.is_some();
-        self.peak = peak(&reference[..self.rows]);
-        self.hunts = hunts(reference, whole);
+    /// How far kicks leave the trajectory what it is, and what the force does where this one is asked for.
+    fn look_at(&mut self, asked: f64, reference: &[f64], kicked: &[f64]) {
+        self.peak = reference.iter().fold(asked.abs(), |most: f64, force| most.max(force.abs()));
+        let mut most = 0.0_f64;
+        for (one, other) in reference.iter().zip(kicked) {
+            most = most.max((one - other).abs() / self.peak / KICKS.size);
+            self.growth.push(most);
+        }
+        self.rows = self.growth.partition_point(|growth| *growth <= SEPARATED);
+        self.hunts = hunts(reference, self.peak);
     }
 
-    /// Largest error over the rows that are compared as a part of the peak; infinite if some are missing.
-    fn part_of_peak(&self, reference: &[f64], found: &[f64]) -> f64 {
-        if found.len() < self.rows {
+    /// Whether phea ended where there is no model any more: CVODE steps over the infinite pressure of a chamber that empties.
+    pub(crate) fn leaves_the_model(&self) -> bool {
+        let ended_s = self.ours.and_then(|ours| match ours.status {
+            Status::StepTooSmall { time_s } | Status::NotFinite { time_s } => Some(time_s),
+            _ => None,
+        });
+        let emptied = self.emptied_s.zip(ended_s);
+        emptied.is_some_and(|(emptied_s, ended_s)| (ended_s - emptied_s).abs() <= OUTPUT_STEP_S)
+    }
+
+    /// Whether kicks grow so much that not all rows can be compared.
+    pub(crate) fn separates(&self) -> bool {
+        self.rows < self.growth.len()
+    }
+
+    /// Largest error over the first rows as a part of the peak; infinite if some are missing.
+    fn part_of_peak(&self, reference: &[f64], found: &[f64], rows: usize) -> f64 {
+        if found.len() < rows {
             return f64::INFINITY;
         }
-        apart(reference, found, self.rows) / self.peak
+        apart(reference, found, rows) / self.peak
+    }
+
+    /// Largest error over what kicks of the tolerance grow to, over the rows after they separate.
+    fn beyond(&self, reference: &[f64], found: &[f64]) -> f64 {
+        let rows = reference.iter().zip(found).zip(&self.growth).skip(self.rows);
+        let parts = rows.map(|((one, other), growth)| (one - other).abs() / (self.peak * TOLERANCE * growth));
+        parts.fold(0.0, f64::max)
     }
 }
 
@@ -156,9 +196,8 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, timed: bool) -> Co
         }
     };
     if let (Some(parameters), None) = (&rig.twin, &compared.0.without_reference) {
-        let rows = compared.0.rows;
         compared.0.twin = Some(match twin(program, number, parameters) {
-            Ok(force) => apart(&compared.1, &force, rows) / compared.0.peak,
+            Ok(force) => compared.0.part_of_peak(&compared.1, &force, compared.0.rows),
             Err(problem) => {
                 eprintln!("closed_loop.h: {problem}");
                 f64::INFINITY
@@ -198,72 +237,73 @@ fn judge<'a, E: System<f64> + Clone>(
 ) -> (Compared, Vec<f64>) {
     let mut start = rig.start.clone();
     start.resize(system.states(), 0.0);
+    start.extend(&rig.waves);
     let force = |states: &[Vec<f64>]| -> Vec<f64> {
         let machine_states = Plant::<f64>::states(&rig.machine);
         states.iter().map(|state| rig.machine.measurement(&state[..machine_states], &[0.0; 2])).collect()
     };
-    let by_cvode = |tolerance: f64, method: Method| {
+    let by_cvode = |following: &Following| {
         let patient = Patient { system, left: Cell::new(PATIENCE) };
         let mut sampler = sampler();
         let sampler = sampler.as_deref_mut().map(|sampler| -> &mut dyn Sampler { sampler });
-        follow(&patient, &start, course, sampler, tolerance, method).map(|states| force(&states))
+        follow(&patient, &start, course, sampler, following)
     };
-    let references = [Method::BackwardDifferentiation, Method::Adams].map(|method| by_cvode(EXACT, method));
+    let settings = Settings { tolerance: TOLERANCE, maximum_steps: 2_000_000, ..Settings::default() };
+    let begun = Instant::now();
+    let run = simulate(system, &start, course, sampler(), &settings, &mut |_| true);
+    let seconds = begun.elapsed().as_secs_f64();
+    let run = run.expect("a course that fits");
+    let found = force(&run.trajectory.states);
+    let mut ours = Ours {
+        status: run.outcome.status,
+        error: 0.0,
+        error_of_all: 0.0,
+        beyond: 0.0,
+        work: run.outcome.work,
+        seconds,
+    };
     let mut compared = Compared::default();
-    let ours = |compared: &mut Compared, reference: &[f64], tolerance: f64| {
-        let settings = Settings { tolerance, maximum_steps: 2_000_000, ..Settings::default() };
-        let begun = Instant::now();
-        let run = simulate(system, &start, course, sampler(), &settings, &mut |_| true);
-        let seconds = begun.elapsed().as_secs_f64();
-        let run = run.expect("a course that fits");
-        let found = force(&run.trajectory.states);
-        let error = compared.part_of_peak(reference, &found);
-        compared.ours.push(Ours {
-            tolerance,
-            status: run.outcome.status,
-            error,
-            work: run.outcome.work,
-            seconds,
-        });
-        error
-    };
-    let [reference, other] = match references {
-        [Ok(first), Ok(second)] => [first, second],
-        [Err(problem), _] | [_, Err(problem)] => {
+    let exact = Following::new(EXACT, Method::BackwardDifferentiation);
+    let kicked = Following { kicks: Some(KICKS), ..Following::new(EXACT, Method::Adams) };
+    let reference = match (by_cvode(&exact), by_cvode(&kicked)) {
+        (Ok(states), Ok(kicked)) => {
+            let reference = force(&states);
+            compared.look_at(rig.reference.value(DURATION_S), &reference, &force(&kicked));
+            compared.emptied_s = emptied(rig, &states);
+            reference
+        }
+        (Err(problem), _) | (_, Err(problem)) => {
             compared.without_reference = Some(problem.to_string());
-            ours(&mut compared, &[], FIRST_TOLERANCE);
+            compared.ours = Some(ours);
             return (compared, Vec::new());
         }
     };
-    compared.look_at(&reference, &other);
-    for tolerance in [FIRST_TOLERANCE, 1e-8, 1e-10] {
-        if ours(&mut compared, &reference, tolerance) < crate::LARGEST_ERROR {
-            break;
-        }
+    ours.error = compared.part_of_peak(&reference, &found, compared.rows);
+    ours.error_of_all = compared.part_of_peak(&reference, &found, reference.len());
+    ours.beyond = compared.beyond(&reference, &found);
+    compared.ours = Some(ours);
+    if timed {
+        compared.seconds_of_cvode = seconds_at(ours.error, &mut |tolerance| {
+            let begun = Instant::now();
+            let found = force(&by_cvode(&Following::new(tolerance, Method::StabilityLimit)).ok()?);
+            let seconds = begun.elapsed().as_secs_f64();
+            Some((compared.part_of_peak(&reference, &found, compared.rows), seconds))
+        });
     }
-    beside_cvode(&mut compared, &reference, timed, &by_cvode);
     (compared, reference)
 }
 
-/// CVODE at phea's first tolerance where that was not enough, and its time at phea's error.
-fn beside_cvode(
-    compared: &mut Compared,
-    reference: &[f64],
-    timed: bool,
-    by_cvode: &dyn Fn(f64, Method) -> Result<Vec<f64>, CvodeError>,
-) {
-    if compared.ours.len() > 1 {
-        let found = by_cvode(FIRST_TOLERANCE, Method::StabilityLimit).ok();
-        compared.error_of_cvode = found.map(|found| compared.part_of_peak(reference, &found));
-    }
-    if let (true, Some(first)) = (timed, compared.ours.first()) {
-        compared.seconds_of_cvode = seconds_at(first.error, &mut |tolerance| {
-            let begun = Instant::now();
-            let found = by_cvode(tolerance, Method::StabilityLimit).ok()?;
-            let seconds = begun.elapsed().as_secs_f64();
-            Some((compared.part_of_peak(reference, &found), seconds))
-        });
-    }
+/// Time of the first row at which a chamber has no fluid.
+fn emptied(rig: &Rig, states: &[Vec<f64>]) -> Option<f64> {
+    let count = Plant::<f64>::states(&rig.machine);
+    let empty = |row: usize, state: &[f64]| {
+        let time_s = row as f64 * OUTPUT_STEP_S;
+        let mut indicators = [0.0; INDICATORS.len()];
+        rig.machine.indicate(state, &[rig.ground.value(time_s), rig.ground.rate(time_s)], &mut indicators);
+        INDICATORS.iter().zip(indicators).any(|(name, sign)| name.starts_with("empty") && sign < 0.0)
+    };
+    let row = states.iter().enumerate().position(|(row, state)| empty(row, &state[..count]))?;
+    Some(row as f64 * OUTPUT_STEP_S)
 }
 
 /// Over the last fifth of its rows the force crosses the middle of its range at least four times, and the range is a twentieth of the

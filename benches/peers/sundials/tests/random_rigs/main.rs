@@ -2,28 +2,40 @@
 //!
 //!     cargo test --release --manifest-path benches/peers/sundials/Cargo.toml --test random_rigs -- 1000 timed
 //!
-//! Valve, lines, cylinder, friction, load, controller and its samples vary over decades. The reference is CVODE at 1e-11, by two methods:
-//! a loop is compared up to where these two separate by 1e-5 of the largest force, which unstable and hunting loops do.
-//! A rig whose error at the tolerance 1e-6 is more than 1e-3 of its peak is run again at 1e-8 and 1e-10 and counted: what amplifies
-//! errors amplifies those of a looser tolerance too. Every fourth rig is compared with `closed_loop.h` as well. `timed` adds how long
-//! CVODE takes at the same error; `only=N` runs one rig.
+//! Valve, lines, cylinder, friction, load, controller and its samples vary over decades. The reference is CVODE at 1e-11, phea runs at
+//! the tolerance 1e-6 that a project has by default, and only there. Every fourth rig is compared with `closed_loop.h` as well; `timed`
+//! adds how long CVODE takes at the same error; `only=N` runs one rig.
+//!
+//! No solver keeps near a trajectory that leaves its neighbours. How fast they part CVODE finds alone, at 1e-11:
+//!
+//! ```text
+//! A(t) = largest until t of |F_kicked - F|/(e F_peak)       every 10 ms, y_i -> y_i +- e scale_i by chance, e = 1e-8
+//! ```
+//!
+//! F by backward differentiation, F_kicked by Adams' method, so that rows on which the two do not agree to 1e-6 are not compared either.
+//! A solver that keeps its tolerance may err by as much as that in every step, and takes 32 steps between two kicks in the mean. Ten
+//! such errors grow to the thousandth of the peak that is allowed where A passes 100: there trajectories count as separated. Until
+//! then an error is held against that thousandth, from then on against what ten such errors grow to, 10 x 1e-6 A(t). The peak is that
+//! of the force, or what is asked for where the loop never brings it.
 
 mod compare;
+mod rich;
 mod rig;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use phea_dynamics::simulation::Status;
 
-use compare::{Compared, compare};
+use compare::{Compared, ERRORS, TOLERANCE, compare};
 use rig::{Control, Refusal, rig};
 
 /// Part of the peak.
 const LARGEST_ERROR: f64 = 1e-3;
 /// Between the machine and `closed_loop.h`, part of the peak.
-const LARGEST_DIFFERENCE: f64 = 1e-3;
+const LARGEST_DIFFERENCE: f64 = 1e-4;
 
 /// What was found over all rigs.
 #[derive(Default)]
@@ -31,10 +43,16 @@ struct Tally {
     run: usize,
     refused: BTreeMap<String, usize>,
     without_reference: usize,
+    /// Which phea ends where a chamber has emptied.
+    without_model: usize,
+    features: BTreeMap<&'static str, usize>,
     hunting: usize,
-    separating: Vec<u64>,
-    tightened: BTreeMap<u64, f64>,
+    /// Parts of their rows that are compared.
+    separating: Vec<f64>,
     errors: Vec<f64>,
+    /// Whose error exceeds the largest in any row, separated or not.
+    exceeding: usize,
+    beyond: Vec<f64>,
     steps: u64,
     twins: Vec<f64>,
     ratios: Vec<f64>,
@@ -57,12 +75,13 @@ fn main() -> ExitCode {
     // Times are taken one after the other.
     let at_once =
         if timed { 1 } else { std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64) };
+    let next = AtomicU64::new(numbers.start);
     let mut outcomes: Vec<(u64, Outcome)> = std::thread::scope(|scope| {
-        let share = |worker: u64| {
-            let (numbers, program) = (numbers.clone(), &program);
-            let mine = numbers.filter(move |number| number % at_once == worker);
-            scope.spawn(move || {
-                mine.map(|number| (number, outcome(number, program, timed))).collect::<Vec<_>>()
+        let share = |_| {
+            scope.spawn(|| {
+                let taken = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
+                let mine = taken.take_while(|number| numbers.contains(number));
+                mine.map(|number| (number, outcome(number, &program, timed))).collect::<Vec<_>>()
             })
         };
         let workers: Vec<_> = (0..at_once).map(share).collect();
@@ -77,14 +96,23 @@ fn main() -> ExitCode {
     if tally.failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// The comparison of a rig with its controller, or why there is no such rig.
-type Outcome = Result<(Control, Compared), String>;
+/// A rig and its comparison, or why there is no such rig.
+type Outcome = Result<(Described, Compared), String>;
+
+struct Described {
+    control: Control,
+    features: Vec<&'static str>,
+}
 
 fn outcome(number: u64, program: &Path, timed: bool) -> Outcome {
     match rig(number) {
-        Ok(rig) => Ok((rig.control, compare(&rig, number, program, timed))),
+        Ok(rig) => {
+            let compared = compare(&rig, number, program, timed);
+            Ok((Described { control: rig.control, features: rig.features }, compared))
+        }
         Err(Refusal::Actuator(error)) => Err(error.to_string()),
         Err(Refusal::Machine(error)) => Err(error.to_string()),
+        Err(Refusal::Line(error)) => Err(error.to_string()),
     }
 }
 
@@ -105,9 +133,12 @@ impl Tally {
     fn take(&mut self, number: u64, outcome: &Outcome, told: bool) {
         self.run += 1;
         match outcome {
-            Ok((control, compared)) => {
+            Ok((described, compared)) => {
                 if told {
-                    tell(control, compared);
+                    tell(described, compared);
+                }
+                for feature in &described.features {
+                    *self.features.entry(feature).or_default() += 1;
                 }
                 self.judge(number, compared);
             }
@@ -120,31 +151,35 @@ impl Tally {
     }
 
     fn judge(&mut self, number: u64, compared: &Compared) {
-        let Some((first, last)) = compared.ours.first().zip(compared.ours.last()) else { return };
+        let Some(ours) = compared.ours else { return };
         if let Some(reason) = &compared.without_reference {
             self.without_reference += 1;
-            println!("rig {number}: {reason}; phea: {:?}", first.status);
+            println!("rig {number}: {reason}; phea: {:?}", ours.status);
             return;
         }
         self.hunting += usize::from(compared.hunts);
-        if compared.separates {
-            self.separating.push(number);
+        self.exceeding += usize::from(ours.error_of_all >= LARGEST_ERROR);
+        let (rows, of) = (compared.rows, compared.growth.len());
+        if compared.separates() {
+            self.separating.push(rows as f64 / of as f64);
+            self.beyond.push(ours.beyond);
+            let growth = compared.growth.last().copied().unwrap_or_default();
+            println!(
+                "rig {number}: separates after {rows} of {of} rows, growth {growth:.1e}; error {:.1e} until then, {:.1e} in all, \
+                 {:.1} times the growth of one tolerance",
+                ours.error, ours.error_of_all, ours.beyond
+            );
         }
-        if compared.ours.len() > 1 {
-            self.tightened.insert(number, last.tolerance);
-            let tried: Vec<String> = compared
-                .ours
-                .iter()
-                .map(|ours| format!("{:.1e} at {:e}", ours.error, ours.tolerance))
-                .collect();
-            let until = if compared.separates { format!(", {} rows", compared.rows) } else { String::new() };
-            let theirs = compared.error_of_cvode.map_or("none".to_string(), |error| format!("{error:.1e}"));
-            println!("rig {number}: error {}{until}; of CVODE {theirs} at 1e-6", tried.join(", "));
-        }
-        if last.status != Status::Completed && !(compared.separates && last.error < LARGEST_ERROR) {
-            self.failures.push(format!("rig {number}: {:?}, where CVODE goes on", last.status));
-        } else if last.error >= LARGEST_ERROR {
-            self.failures.push(format!("rig {number}: an error of {:.1e} of the peak", last.error));
+        if compared.leaves_the_model() {
+            println!("rig {number}: {:?}, where a chamber has no fluid any more", ours.status);
+            self.without_model += 1;
+        } else if ours.status != Status::Completed {
+            self.failures.push(format!("rig {number}: {:?}, where CVODE goes on", ours.status));
+        } else if ours.error >= LARGEST_ERROR {
+            self.failures.push(format!("rig {number}: an error of {:.1e} of the peak", ours.error));
+        } else if ours.beyond >= ERRORS {
+            self.failures
+                .push(format!("rig {number}: an error {:.1} times the tolerance's growth", ours.beyond));
         }
         if let Some(twin) = compared.twin {
             self.twins.push(twin);
@@ -152,52 +187,49 @@ impl Tally {
                 self.failures.push(format!("rig {number}: {twin:.1e} of the peak from closed_loop.h"));
             }
         }
-        self.errors.push(first.error);
-        self.steps += first.work.steps + first.work.rejected;
-        self.ratios.extend(compared.seconds_of_cvode.map(|seconds| seconds / first.seconds));
+        self.errors.push(ours.error);
+        self.steps += ours.work.steps + ours.work.rejected;
+        self.ratios.extend(compared.seconds_of_cvode.map(|seconds| seconds / ours.seconds));
     }
 
     fn print(&mut self) {
         let refused: usize = self.refused.values().sum();
         println!(
-            "{} rigs: {refused} refused {:?}, {} without reference",
-            self.run, self.refused, self.without_reference
+            "{} rigs: {refused} refused {:?}, {} without reference, {} end where a chamber has emptied",
+            self.run, self.refused, self.without_reference, self.without_model
         );
+        println!("of the others have: {:?}", self.features);
         println!("hunting at the end: {}", self.hunting);
-        println!("separate before the end: {} {:?}", self.separating.len(), self.separating);
-        println!("run again at a tighter tolerance: {:?}", self.tightened);
+        println!("separate before the end: {}", self.separating.len());
+        println!("error above {LARGEST_ERROR:e} in any row: {}", self.exceeding);
         for (name, values) in [
-            ("error at 1e-6, part of the peak", &mut self.errors),
+            ("part of the rows before those separate", &mut self.separating),
+            ("error, part of the peak", &mut self.errors),
+            ("error after separation over the growth of one tolerance", &mut self.beyond),
             ("difference to closed_loop.h, part of the peak", &mut self.twins),
             ("CVODE's time over phea's at equal error", &mut self.ratios),
         ] {
             values.sort_by(f64::total_cmp);
             let at = |share: f64| values.get((share * values.len().saturating_sub(1) as f64) as usize);
-            if let (Some(least), Some(middle), Some(ninetieth), Some(most)) =
+            if let (Some(tenth), Some(middle), Some(ninetieth), Some(most)) =
                 (at(0.1), at(0.5), at(0.9), at(1.0))
             {
                 let count = values.len();
                 println!(
-                    "{name}: tenth {least:.2e}, median {middle:.2e}, ninetieth {ninetieth:.2e}, most {most:.2e} ({count})"
+                    "{name}: tenth {tenth:.2e}, median {middle:.2e}, ninetieth {ninetieth:.2e}, most {most:.2e} ({count})"
                 );
             }
         }
-        println!("steps at 1e-6: {}", self.steps);
+        println!("steps at {TOLERANCE:e}: {}", self.steps);
         for failure in &self.failures {
             println!("FAILED {failure}");
         }
     }
 }
 
-fn tell(control: &Control, compared: &Compared) {
-    println!(
-        "{control:?}\npeak {} N over {} rows, separates: {}",
-        compared.peak, compared.rows, compared.separates
-    );
-    for ours in &compared.ours {
-        println!(
-            "{:e}: {:?} {:.2e} {:?} {:.4} s",
-            ours.tolerance, ours.status, ours.error, ours.work, ours.seconds
-        );
+fn tell(described: &Described, compared: &Compared) {
+    println!("{:?}\n{:?}\npeak {} N", described.features, described.control, compared.peak);
+    if let Some(ours) = compared.ours {
+        println!("{ours:?}");
     }
 }

@@ -8,12 +8,14 @@ use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
-use phea_hydraulics::line::Line;
+use phea_hydraulics::line::{DynamicLine, Line, LineError};
 use phea_hydraulics::machine::{
     Contact, LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, Start,
 };
 use phea_hydraulics::servovalve::{Edges, Servovalve, SpoolImperfection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
+
+use crate::rich;
 
 /// Of every run, in s.
 pub(crate) const DURATION_S: f64 = 1.0;
@@ -38,11 +40,15 @@ pub(crate) struct Control {
 pub(crate) struct Rig {
     pub(crate) machine: Machine,
     pub(crate) start: Vec<f64>,
+    /// What arrives from its lines at first.
+    pub(crate) waves: Vec<f64>,
     pub(crate) control: Control,
     pub(crate) reference: Profile,
     pub(crate) ground: Profile,
     /// Parameters of `closed_loop.h` that describe the same, if it can.
     pub(crate) twin: Option<Vec<String>>,
+    /// What it is made of, in words.
+    pub(crate) features: Vec<&'static str>,
 }
 
 /// Why there is no such rig.
@@ -50,21 +56,22 @@ pub(crate) struct Rig {
 pub(crate) enum Refusal {
     Actuator(ActuatorError),
     Machine(MachineError),
+    Line(LineError),
 }
 
 /// Where random numbers come from.
-struct Chance(u64);
+pub(crate) struct Chance(u64);
 
 impl Chance {
-    fn between(&mut self, least: f64, most: f64) -> f64 {
+    pub(crate) fn between(&mut self, least: f64, most: f64) -> f64 {
         least + (most - least) * random::share(&mut self.0)
     }
 
-    fn decades(&mut self, least: f64, most: f64) -> f64 {
+    pub(crate) fn decades(&mut self, least: f64, most: f64) -> f64 {
         self.between(least.ln(), most.ln()).exp()
     }
 
-    fn happens(&mut self, share: f64) -> bool {
+    pub(crate) fn happens(&mut self, share: f64) -> bool {
         random::share(&mut self.0) < share
     }
 
@@ -73,45 +80,84 @@ impl Chance {
     }
 }
 
-/// The rig of this number. Every fourth is one that `closed_loop.h` can describe too.
+/// The rig of this number. Every fourth is one that `closed_loop.h` can describe too, every fourth a richer one, one in five of
+/// those with lines that have dynamics of their own: CVODE takes long for their many states.
 pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance(number.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ 0x1405_7b7e_f767_814f);
     random::share(&mut chance.0);
-    let like_benchmark = number % 4 == 0;
-    let components = components(&mut chance, like_benchmark);
-    let options = if like_benchmark { MachineOptions::default() } else { options(&mut chance, &components) };
+    let (like_benchmark, rich) = (number.is_multiple_of(4), number % 4 == 2);
+    let mut components = components(&mut chance, like_benchmark);
+    let mut options =
+        if like_benchmark { MachineOptions::default() } else { options(&mut chance, &components) };
+    if rich {
+        if number % 20 == 10 {
+            options.lines = Some(rich::lines(&mut chance, &mut components).map_err(Refusal::Line)?);
+        }
+        rich::enrich(&mut chance, &components, &mut options);
+    }
     let control = control(&mut chance, &components, like_benchmark);
     let actuator = Actuator::new(components).map_err(Refusal::Actuator)?;
     let machine = Machine::new(&actuator, &options).map_err(Refusal::Machine)?;
 
     let pressure = 0.5 * components.supply.pressure;
-    let position = components.cylinder.stroke * chance.between(0.2, 0.8);
+    let inside = chance.between(0.2, 0.8);
+    let most = components.supply.pressure * components.cylinder.area_b;
+    let size = most * chance.decades(0.02, 0.7);
+    let pulls = chance.happens(0.5) && !matches!(options.load, LoadModel::Wall { .. });
+    let sign = if pulls { -1.0 } else { 1.0 };
+    let mut share = inside;
+    if rich && options.end_stops.is_some() && chance.happens(0.5) {
+        // Near the end that it is moved into.
+        let left = chance.decades(1e-4, 1e-2);
+        share = if pulls { left } else { 1.0 - left };
+    }
+    let position = components.cylinder.stroke * share;
     let start = Start { position, pressure_a: pressure, pressure_b: pressure, ..Start::default() };
     let beginning = machine.start(&start).map_err(Refusal::Machine)?;
-    let most = components.supply.pressure * components.cylinder.area_b;
-    let force = most * chance.decades(0.02, 0.7) * if chance.happens(0.5) { 1.0 } else { -1.0 };
-    let reference = Profile::steps(0.0, &[(REFERENCE_S, force)]).expect("times ascend");
-    let distance =
-        components.cylinder.stroke * chance.decades(1e-4, 0.05) * if force > 0.0 { 1.0 } else { -1.0 };
+    let reference = Profile::steps(0.0, &[(REFERENCE_S, sign * size)]).expect("times ascend");
+    let distance = sign * components.cylinder.stroke * chance.decades(1e-4, 0.05);
     let (duration, quintic) = (chance.decades(5e-3, 0.3), chance.happens(0.5));
     let motion = if quintic {
         Profile::smooth_step(MOTION_S, duration, distance)
     } else {
         Profile::first_order(MOTION_S, 0.3 * duration, distance)
     };
-    let mut rig = Rig {
+    let motion_of_twin = if quintic { [0.0, duration] } else { [0.3 * duration, 1.0] };
+    Ok(Rig {
         machine,
         start: beginning.state,
+        waves: beginning.waves,
         control,
         reference,
         ground: motion.expect("a positive duration").shifted(beginning.inputs[0]),
-        twin: None,
-    };
-    if like_benchmark {
-        let motion = if quintic { [0.0, duration] } else { [0.3 * duration, 1.0] };
-        rig.twin = Some(twin(&components, &control, &start, force, distance, motion));
-    }
-    Ok(rig)
+        twin: like_benchmark
+            .then(|| twin(&components, &control, &start, sign * size, distance, motion_of_twin)),
+        features: features(&components, &options, &control),
+    })
+}
+
+fn features(components: &Components, options: &MachineOptions, control: &Control) -> Vec<&'static str> {
+    let pump = if let PowerUnit::PumpLimited(pump) = options.power_unit { Some(pump) } else { None };
+    let has = [
+        ("air", components.fluid.entrained_air.is_some()),
+        ("unequal areas", components.cylinder.area_a != components.cylinder.area_b),
+        ("bristles", matches!(components.friction, Friction::LuGre(_))),
+        ("smoothed Stribeck", matches!(components.friction, Friction::Stribeck(_))),
+        ("rate limit", options.spool.rate_limit.is_some()),
+        ("hysteresis", options.spool.hysteresis_width.is_some()),
+        ("threshold", options.spool.threshold.is_some()),
+        ("pump", pump.is_some()),
+        ("accumulator", pump.is_some_and(|pump| pump.accumulator.is_some())),
+        ("end stops", options.end_stops.is_some()),
+        ("spring load", matches!(options.load, LoadModel::SpringMassDamper { .. })),
+        ("wall", matches!(options.load, LoadModel::Wall { .. })),
+        ("segments", matches!(options.lines, Some([DynamicLine::Segments(_), _]))),
+        ("one wave", matches!(options.lines, Some([DynamicLine::TransmissionLine(_), _]))),
+        ("two waves", matches!(options.lines, Some([DynamicLine::TwoWave(_), _]))),
+        ("sampled", control.sample_time_s.is_some()),
+        ("late", control.delay_s > 0.0),
+    ];
+    has.into_iter().filter(|(_, has)| *has).map(|(name, _)| name).collect()
 }
 
 fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
