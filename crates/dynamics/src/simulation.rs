@@ -18,6 +18,7 @@ mod realization;
 mod rosenbrock;
 mod sensed;
 mod slot;
+mod square;
 mod step_matrix;
 mod task;
 mod trajectory;

@@ -265,7 +265,9 @@ where
             return;
         }
         for (part, stage) in self.method.stage_times().iter().zip(&mut self.inputs.stages) {
-            passage.inputs_within(*part, inputs);
+            if *part == 0.0 || !passage.still {
+                passage.inputs_within(*part, inputs);
+            }
             set_lane(stage, lane, inputs);
         }
         passage.slopes(inputs);

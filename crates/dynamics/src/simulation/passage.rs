@@ -17,6 +17,7 @@ const ECHOES: u8 = 12;
 #[derive(Clone, Copy, Debug)]
 enum Segment {
     Still(f64),
+    Command,
     Value(Piece),
     Rate(Piece),
 }
@@ -71,7 +72,7 @@ impl<'a> Passage<'a> {
         times.dedup();
         Passage {
             course,
-            segments: course.inputs.iter().map(|input| segment(input, 0.0, 0.0)).collect(),
+            segments: course.inputs.iter().map(|input| segment(input, 0.0)).collect(),
             still: false,
             time_s: 0.0,
             proposed_s: longest_s,
@@ -172,6 +173,7 @@ impl<'a> Passage<'a> {
         for (place, segment) in inputs.iter_mut().zip(&self.segments) {
             *place = match segment {
                 Segment::Still(value) => *value,
+                Segment::Command => self.command,
                 Segment::Value(piece) => piece.at(time_s).value,
                 Segment::Rate(piece) => piece.at(time_s).rate,
             };
@@ -187,7 +189,7 @@ impl<'a> Passage<'a> {
     /// Slopes of all inputs where the step begins.
     pub(super) fn slopes(&self, slopes: &mut [f64]) {
         let known = self.segments.iter().map(|segment| match segment {
-            Segment::Still(_) => 0.0,
+            Segment::Still(_) | Segment::Command => 0.0,
             Segment::Value(piece) => piece.at(self.time_s).rate,
             Segment::Rate(piece) => piece.at(self.time_s).acceleration,
         });
@@ -255,12 +257,14 @@ impl<'a> Passage<'a> {
         }
         while self.pending.front().is_some_and(|&(arrival, _)| arrival <= self.time_s) {
             if let Some((_, command)) = self.pending.pop_front() {
-                self.command = command;
-                broken = true;
+                self.hold(command);
             }
         }
         if broken {
-            self.hold();
+            let inputs = self.course.inputs.iter();
+            self.segments.clear();
+            self.segments.extend(inputs.map(|input| segment(input, self.time_s)));
+            self.begin_anew();
         }
         if self.time_s >= self.course.duration_s {
             self.status = Some(Status::Completed);
@@ -283,24 +287,27 @@ impl<'a> Passage<'a> {
         if arrival > self.time_s {
             self.pending.push_back((arrival, command));
         } else {
-            self.command = command;
-            self.hold();
+            self.hold(command);
         }
     }
 
-    /// Takes the inputs as they are from now on.
-    fn hold(&mut self) {
+    /// Takes a command from now on.
+    fn hold(&mut self, command: f64) {
+        self.command = command;
+        self.begin_anew();
+    }
+
+    /// Inputs are not what they were in the step before.
+    fn begin_anew(&mut self) {
         self.before = 1.0;
-        let (time_s, command) = (self.time_s, self.command);
-        self.segments = self.course.inputs.iter().map(|input| segment(input, time_s, command)).collect();
         self.still = false;
     }
 
     /// Whether no input has moved or will move before the next break, and this was so before.
     pub(super) fn stands_still(&mut self) -> bool {
         let was = self.still;
-        self.still =
-            self.histories.is_empty() && self.segments.iter().all(|s| matches!(s, Segment::Still(_)));
+        let at_rest = |segment: &Segment| matches!(segment, Segment::Still(_) | Segment::Command);
+        self.still = self.histories.is_empty() && self.segments.iter().all(at_rest);
         was && self.still
     }
 
@@ -326,9 +333,9 @@ impl<'a> Passage<'a> {
     }
 }
 
-fn segment(input: &Input, time_s: f64, command: f64) -> Segment {
+fn segment(input: &Input, time_s: f64) -> Segment {
     match input {
-        Input::Command => Segment::Still(command),
+        Input::Command => Segment::Command,
         Input::Value(profile) => {
             let piece = profile.piece(time_s);
             piece.constant().map_or(Segment::Value(piece), Segment::Still)

@@ -2,6 +2,7 @@
 //! from sample to sample.
 
 use super::rosenbrock::Rosenbrock;
+use super::square::Square;
 use super::{Lane, System};
 
 /// The equations around a state, and what they make of a step of one length, lane by lane.
@@ -17,17 +18,17 @@ use super::{Lane, System};
 #[derive(Clone, Debug)]
 pub(super) struct Propagator<S> {
     states: usize,
-    /// J, h phi_1 and 2 h phi_3, row by row.
-    jacobian: Vec<S>,
-    first: Vec<S>,
-    third: Vec<S>,
+    /// J, h phi_1 and 2 h phi_3.
+    jacobian: Square<S>,
+    first: Square<S>,
+    third: Square<S>,
     /// The step of each lane in s; not a number where there is none.
     step_s: Vec<f64>,
     /// State, rates at both ends, remainder, difference.
     pub(super) end: Vec<S>,
     pub(super) rates: [Vec<S>; 2],
-    remainder: Vec<S>,
-    difference: Vec<S>,
+    remainder: Vec<[S; 4]>,
+    difference: Vec<[S; 4]>,
     /// How many steps ago each lane's matrices were found.
     age: Vec<u32>,
 }
@@ -40,7 +41,7 @@ const SAME: f64 = 1e-9;
 
 impl<S: Lane> Propagator<S> {
     pub(super) fn new(states: usize) -> Propagator<S> {
-        let (zero, matrix) = (S::from(0.0), vec![S::from(0.0); states * states]);
+        let (zero, matrix, groups) = (S::from(0.0), Square::new(states), states.div_ceil(4));
         Propagator {
             states,
             jacobian: matrix.clone(),
@@ -49,8 +50,8 @@ impl<S: Lane> Propagator<S> {
             step_s: vec![f64::NAN; S::COUNT],
             end: vec![zero; states],
             rates: [vec![zero; states], vec![zero; states]],
-            remainder: vec![zero; states],
-            difference: vec![zero; states],
+            remainder: vec![[zero; 4]; groups],
+            difference: vec![[zero; 4]; groups],
             age: vec![LEAST_AGE; S::COUNT],
         }
     }
@@ -77,20 +78,18 @@ impl<S: Lane> Propagator<S> {
         let states = self.states;
         let scales: Vec<f64> = scales.iter().map(|scale| scale.lane(lane)).collect();
         let mut scaled = vec![0.0; states * states];
-        for entry in self.jacobian.iter_mut() {
-            entry.set_lane(lane, 0.0);
-        }
+        self.jacobian.clear(lane);
         for (row, column, value) in method.jacobian_entries() {
             let (place, value) = (row * states + column, value.lane(lane));
-            self.jacobian[place].set_lane(lane, value);
+            self.jacobian.entry(row, column).set_lane(lane, value);
             scaled[place] = step_s * value * scales[column] / scales[row];
         }
         let [first, third] = first_and_third(&scaled, states);
         for row in 0..states {
             for column in 0..states {
                 let (place, unit) = (row * states + column, step_s * scales[row] / scales[column]);
-                self.first[place].set_lane(lane, unit * first[place]);
-                self.third[place].set_lane(lane, 2.0 * unit * third[place]);
+                self.first.entry(row, column).set_lane(lane, unit * first[place]);
+                self.third.entry(row, column).set_lane(lane, 2.0 * unit * third[place]);
             }
         }
         self.step_s[lane] =
@@ -109,34 +108,26 @@ impl<S: Lane> Propagator<S> {
     ) -> S {
         let [before, after] = &mut self.rates;
         system.rates(state, inputs, before);
-        multiply(&self.first, before, &mut self.difference);
-        for ((end, &start), &difference) in self.end.iter_mut().zip(state).zip(&self.difference) {
+        self.first.times(before, &mut self.difference);
+        let difference = self.difference.as_flattened();
+        for ((end, &start), &difference) in self.end.iter_mut().zip(state).zip(difference) {
             *end = start + difference;
         }
         system.rates(&self.end, inputs, after);
-        multiply(&self.jacobian, &self.difference, &mut self.remainder);
-        for ((remainder, &before), &after) in self.remainder.iter_mut().zip(&*before).zip(&*after) {
+        self.jacobian.times(difference, &mut self.remainder);
+        let remainder = self.remainder.as_flattened_mut();
+        for ((remainder, &before), &after) in remainder.iter_mut().zip(&*before).zip(&*after) {
             *remainder = (after - before) - *remainder;
         }
-        multiply(&self.third, &self.remainder, &mut self.difference);
+        self.third.times(remainder, &mut self.difference);
         let mut sum = S::from(0.0);
-        let ends = self.end.iter_mut().zip(state).zip(&self.difference).zip(scales);
+        let ends = self.end.iter_mut().zip(state).zip(self.difference.as_flattened()).zip(scales);
         for (((end, &start), &error), &scale) in ends {
             let magnitude = start.abs().maximum(end.abs());
             sum = sum + (error / (scale + magnitude)).squared();
             *end = *end + error;
         }
         sum.times(1.0 / self.states.max(1) as f64).sqrt().times(1.0 / tolerance)
-    }
-}
-
-fn multiply<S: Lane>(matrix: &[S], vector: &[S], product: &mut [S]) {
-    for (value, row) in product.iter_mut().zip(matrix.chunks_exact(vector.len().max(1))) {
-        let mut sum = S::from(0.0);
-        for (&entry, &factor) in row.iter().zip(vector) {
-            sum = sum + entry * factor;
-        }
-        *value = sum;
     }
 }
 
