@@ -123,6 +123,7 @@ impl<S: Lane> Triangle<S> {
 
     /// The same in every column of a matrix, given by rows of so many groups.
     #[inline(always)]
+    #[allow(clippy::needless_range_loop, reason = "three rows of one matrix, of which one is changed")]
     fn substitute_rows(&self, rows: &mut Rows<S>, groups: usize) {
         for Terms { values, others, state } in &self.terms {
             let [one, other] = others.map(|other| usize::from(other) % SMALL);
