@@ -15,7 +15,7 @@ use phea_hydraulics::line::{
 };
 use phea_hydraulics::machine::{
     Accumulator, Contact, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, PowerUnit,
-    PumpLimited,
+    PumpLimited, SIGNALS,
 };
 use phea_hydraulics::operating_point::{Condition, Load, operating_point};
 use phea_hydraulics::reference_rig::{
@@ -249,6 +249,30 @@ fn a_machine_with_everything_is_the_text_of_its_equations() {
         }
     }
     assert!(contacts > 50);
+}
+
+/// The forces that a machine tells of are those that accelerate its piston: M dv/dt = F_H + F_stops - F_fr - F_e.
+#[test]
+fn forces_that_are_told_accelerate_the_piston() {
+    let signal = |name: &str| SIGNALS.iter().position(|&signal| signal == name).unwrap();
+    let [hydraulic, friction, stops, sensed] =
+        ["hydraulic_force_n", "friction_n", "end_stops_n", "force_n"].map(signal);
+    let mut stopped = 0;
+    for machine in machines() {
+        let mut noise = Noise(23);
+        for index in 0..150 {
+            let (state, command, mut inputs) = some_state(&machine, &mut noise);
+            inputs[0] = [inputs[0], 0.0, 0.5][index % 3];
+            let accelerating = cylinder().moving_mass * rates_of(&machine, &state, command, &inputs)[5];
+            let told = machine.outputs(&state, &inputs);
+            let found = told[hydraulic] + told[stops] - told[friction] - told[sensed];
+            let scale =
+                [hydraulic, stops, friction, sensed].map(|force| told[force].abs()).iter().sum::<f64>();
+            assert!((found - accelerating).abs() < 1e-12 * scale, "{found} N against {accelerating} N");
+            stopped += usize::from(told[stops] != 0.0);
+        }
+    }
+    assert!(stopped > 20, "{stopped}");
 }
 
 /// Derivatives by dual numbers agree with central differences, and differ from zero only where the pattern says so.

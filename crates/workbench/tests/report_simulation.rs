@@ -79,6 +79,14 @@ fn every_event_has_its_row_and_what_was_published() {
         "simulation-2-event-7",
     ];
     assert_eq!(drawn, expected.iter().collect::<Vec<_>>());
+    // what is enlarged shows both forces, and where the load moves positions too
+    let shows = |name: &str, text: &str| {
+        let figure = report.figures.iter().find(|figure| figure.name == name).unwrap();
+        figure.to_svg_standalone().contains(text)
+    };
+    let of = |text: &str| expected.map(|name| shows(name, text));
+    assert_eq!(of("hydraulic force"), [false, true, true, false, true]);
+    assert_eq!(of("Position"), [true, false, true, true, false]);
     // each quantity of the sensitivity is named once for each event of the first scenario
     let symbol = "Load stiffness <span class=\"equation\"><i>K</i><sub>S</sub></span>";
     assert_eq!(

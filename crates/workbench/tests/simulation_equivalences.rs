@@ -127,6 +127,37 @@ fn at_slow_velocity_bristles_give_the_static_curve() {
     }
 }
 
+/// Between hydraulic and measured force lie friction and acceleration: over the motion of the load their impulses are the change
+/// of the piston's momentum, and at rest friction alone is left, which the bristles still hold.
+#[test]
+fn friction_lies_between_hydraulic_and_measured_force() {
+    const MOVING_MASS_KG: f64 = 13.1;
+    let run = run(&["simulation.tolerance=1e-8"]);
+    let [hydraulic, friction, force, velocity] =
+        ["hydraulic_force_n", "friction_n", "force_n", "velocity_m_per_s"]
+            .map(|name| run.record.signal(name));
+    let left: Vec<f64> = hydraulic
+        .iter()
+        .zip(&friction)
+        .zip(&force)
+        .map(|((all, friction), force)| all - friction - force)
+        .collect();
+    let [from, until] = [3.0, 3.5].map(|time: f64| (time / run.look_s).round() as usize);
+    let (mut impulse, mut of_friction, mut fastest) = (0.0, 0.0, 0.0_f64);
+    for look in from..until {
+        let over = |values: &[f64]| 0.5 * (values[look] + values[look + 1]) * run.look_s;
+        impulse += over(&left);
+        of_friction += over(&friction).abs();
+        let momentum = MOVING_MASS_KG * (velocity[look + 1] - velocity[from]);
+        fastest = fastest.max(momentum.abs());
+        assert!((impulse - momentum).abs() < 1e-3, "{look}: {impulse} N s, not {momentum} N s");
+    }
+    assert!(of_friction > 5.0 && fastest > 1.0, "{of_friction} N s, {fastest} N s");
+    let last = left.len() - 1;
+    assert!(velocity[last].abs() < 1e-6 && friction[last].abs() > 1.0, "{} N", friction[last]);
+    assert!(left[last].abs() < 1e-2, "{} N beside {} N of friction", left[last], friction[last]);
+}
+
 const HOSE: [&str; 0] = [];
 /// 0.35 m of 10.5 mm bore, and the controller that the thesis gives it.
 const PIPE: [&str; 5] = [

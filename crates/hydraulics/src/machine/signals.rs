@@ -4,7 +4,7 @@ use super::equations::constant;
 use super::{LoadMotion, Machine};
 
 /// Names of what a machine tells of itself, with units, in the order of [`Machine::outputs`].
-pub const SIGNALS: [&str; 17] = [
+pub const SIGNALS: [&str; 18] = [
     "force_n",
     "spool_v",
     "pressure_a_pa",
@@ -22,6 +22,7 @@ pub const SIGNALS: [&str; 17] = [
     "load_velocity_m_per_s",
     "port_pressure_a_pa",
     "port_pressure_b_pa",
+    "hydraulic_force_n",
 ];
 
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is positive in ordinary operation and
@@ -43,7 +44,12 @@ pub const INDICATORS: [&str; 8] = [
 
 impl<S: Scalar> Machine<S> {
     /// The [`SIGNALS`] at a state and inputs. `spool_v` is the position the edges have: the state less null bias and
-    /// lag; flows are those of the valve's ports A and B into the lines.
+    /// lag; flows are those of the valve's ports A and B into the lines. `force_n` is what the rod pushes on the load with,
+    /// `hydraulic_force_n` what the chambers push the piston with; between them lie its friction, end stops and acceleration:
+    ///
+    /// ```text
+    /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end but F_fr      thesis (4.29)
+    /// ```
     ///
     /// # Example
     /// ```
@@ -84,6 +90,7 @@ impl<S: Scalar> Machine<S> {
             load.velocity,
             ports[0],
             ports[1],
+            forces.hydraulic,
         ]
     }
 

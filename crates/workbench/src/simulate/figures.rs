@@ -24,41 +24,80 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
         format!("Simulated: {}", run.name),
         "Force, voltages, pressures and position over the whole scenario.",
     );
-    let mut figures = vec![picture(whole, &run.record, &run.windows, [0.0, end])];
+    let mut figures = vec![overview(whole, run, [0.0, end])];
     for (index, window) in enlarged(&run.windows, end) {
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
             format!("Enlarged: {}", cause_words(window)),
-            "The same around what begins it.",
+            "Voltages, pressures of both chambers, hydraulic force beside measured force, and measured force with its reference. \
+             Between hydraulic and measured force lie the friction and the acceleration of the piston.",
         );
-        figures.push(picture(words, &run.record, &run.windows, around(window, end)));
+        figures.push(close_up(words, run, window, around(window, end)));
     }
     figures
 }
 
-fn picture(words: Words, record: &Record, windows: &[(Window, Metrics)], span_s: [f64; 2]) -> Figure {
-    let series = |values: Vec<f64>| over_time(record, values);
-    let signal = |name: &str| series(record.signal(name));
-    let force = vec![signal("force_n"), series(record.filtered_reference_n.clone())];
-    let voltage = vec![series(record.control_v.clone()), signal("spool_v")];
-    let pressure = vec![signal("pressure_a_pa"), signal("pressure_b_pa")];
-    let position = vec![signal("position_m"), signal("load_position_m")];
+/// Everything at a glance.
+fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
+    let record = &run.record;
+    let panels = vec![measured(record, 190.0), voltages(record), pressures(record), positions(record)];
+    let legend = ["force, command, p_A, piston", "prefiltered reference, spool, p_B, load"];
+    drawn(words, run, panels, legend.map(String::from), span_s)
+}
+
+/// What happens between command and force, in the order of Figure 6.17 of Ledezma (2019); with positions where the load moves.
+fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s: [f64; 2]) -> Figure {
+    let record = &run.record;
+    let forces = ["force_n", "hydraulic_force_n"].map(|name| over_time(record, record.signal(name)));
+    let forces = panel("Forces F_e, F_H", DisplayUnit::KILONEWTON, 150.0, forces.into());
+    let mut panels = vec![voltages(record), pressures(record), forces, measured(record, 150.0)];
+    let mut legend =
+        ["command, p_A, force", "spool, p_B, hydraulic force, prefiltered reference"].map(String::from);
+    if window.cause == Cause::LoadMotion {
+        panels.push(positions(record));
+        legend = [format!("{}, piston", legend[0]), format!("{}, load", legend[1])];
+    }
+    drawn(words, run, panels, legend, span_s)
+}
+
+/// The measured force, what it should be, and what is commanded.
+fn measured(record: &Record, height: f64) -> TimePanel {
+    let series = [record.signal("force_n"), record.filtered_reference_n.clone()]
+        .map(|values| over_time(record, values));
+    TimePanel {
+        reference: Some(over_time(record, record.reference_n.clone())),
+        ..panel("Force F_e", DisplayUnit::KILONEWTON, height, series.into())
+    }
+}
+
+fn voltages(record: &Record) -> TimePanel {
+    let series = [record.control_v.clone(), record.signal("spool_v")].map(|values| over_time(record, values));
+    panel("Voltage", DisplayUnit::VOLT, 110.0, series.into())
+}
+
+fn pressures(record: &Record) -> TimePanel {
+    let series = ["pressure_a_pa", "pressure_b_pa"].map(|name| over_time(record, record.signal(name)));
+    panel("Pressure", DisplayUnit::BAR, 110.0, series.into())
+}
+
+fn positions(record: &Record) -> TimePanel {
+    let series = ["position_m", "load_position_m"].map(|name| over_time(record, record.signal(name)));
+    panel("Position", DisplayUnit::MILLIMETRE, 90.0, series.into())
+}
+
+/// Panels of one run, with what begins its windows.
+fn drawn(
+    words: Words,
+    run: &ScenarioRun,
+    panels: Vec<TimePanel>,
+    legend: [String; 2],
+    span_s: [f64; 2],
+) -> Figure {
     let input = TimePanelsInput {
-        panels: vec![
-            TimePanel {
-                reference: Some(series(record.reference_n.clone())),
-                ..panel("Force F_e", DisplayUnit::KILONEWTON, 190.0, force)
-            },
-            panel("Voltage", DisplayUnit::VOLT, 110.0, voltage),
-            panel("Pressure", DisplayUnit::BAR, 110.0, pressure),
-            panel("Position", DisplayUnit::MILLIMETRE, 90.0, position),
-        ],
-        legend: vec![
-            "force, command, p_A, piston".to_string(),
-            "prefiltered reference, spool, p_B, load".to_string(),
-        ],
+        panels,
+        legend: legend.into(),
         reference: "reference".to_string(),
-        events: windows.iter().filter_map(|(window, _)| instant(window, span_s)).collect(),
+        events: run.windows.iter().filter_map(|(window, _)| instant(window, span_s)).collect(),
         span_s,
     };
     time_panels(words, &input)
