@@ -33,7 +33,7 @@ pub struct TimePanelsInput {
     pub legend: Vec<String>,
     /// What the reference is called.
     pub reference: String,
-    /// Instants, labelled in the first panel.
+    /// Instants, labelled in the tallest panel, the first of several: there is most room beside the curves.
     pub events: Vec<TimeEvent>,
     /// From and to, s.
     pub span_s: [f64; 2],
@@ -43,12 +43,14 @@ pub struct TimePanelsInput {
 pub fn time_panels(words: Words, input: &TimePanelsInput) -> Figure {
     let [start, end] = input.span_s;
     let mut panels: Vec<Panel> = input.panels.iter().map(|panel| drawn(panel, input.span_s)).collect();
+    let tallest = input.panels.iter().map(|panel| panel.height).fold(0.0, f64::max);
+    let labelled = input.panels.iter().position(|panel| panel.height == tallest);
     for (index, panel) in panels.iter_mut().enumerate() {
         panel.marks.extend(input.events.iter().map(|event| Mark::Reference {
             direction: Direction::X,
             at: event.time_s,
             stroke: Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dotted),
-            label: if index == 0 { event.label.clone() } else { String::new() },
+            label: if Some(index) == labelled { event.label.clone() } else { String::new() },
         }));
     }
     let mut legend: Vec<LegendEntry> =

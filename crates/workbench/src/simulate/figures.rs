@@ -26,11 +26,15 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
     );
     let mut figures = vec![overview(whole, run, [0.0, end])];
     for (index, window) in enlarged(&run.windows, end) {
+        let positions = if window.cause == Cause::LoadMotion { ", positions" } else { "" };
+        let caption = format!(
+            "Voltages, pressures of both chambers, hydraulic force beside measured force, measured force with its \
+             reference{positions}. Between hydraulic and measured force lie the friction and the acceleration of the piston."
+        );
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
             format!("Enlarged: {}", cause_words(window)),
-            "Voltages, pressures of both chambers, hydraulic force beside measured force, and measured force with its reference. \
-             Between hydraulic and measured force lie the friction and the acceleration of the piston.",
+            caption,
         );
         figures.push(close_up(words, run, window, around(window, end)));
     }
