@@ -199,7 +199,9 @@ where
         self.learn(error);
         self.between.extensions.fill(None);
         self.between.propagated = false;
-        self.between.end.copy_from_slice(self.method.end());
+        for (place, &end) in self.between.end.iter_mut().zip(self.method.end()) {
+            *place = end;
+        }
         self.indicate_ends(system);
         for lane in 0..S::COUNT {
             let Some(slot) = &mut self.slots[lane] else { continue };

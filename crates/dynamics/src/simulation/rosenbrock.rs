@@ -249,7 +249,9 @@ where
         }
         let kept = self.matrix.factor();
         let states = state.len();
-        self.start.as_flattened_mut()[..states].copy_from_slice(state);
+        for (start, &state) in self.start.as_flattened_mut().iter_mut().zip(state) {
+            *start = state;
+        }
         self.finish_stage(0, step, per_step, inputs.moving);
         for stage in 1..STAGES {
             self.begin_stage(stage);
@@ -338,7 +340,7 @@ where
             5 => combine(column, rates, &C6, per_step, before),
             6 => combine(column, rates, &C7, per_step, before),
             7 => combine(column, rates, &C8, per_step, before),
-            _ => column[..self.rates.len()].copy_from_slice(&self.rates),
+            _ => column.iter_mut().zip(&self.rates).for_each(|(right, rates)| *right = *rates),
         }
         if let Some(&weight) = SLOPE_WEIGHTS.get(stage).filter(|_| moving) {
             let weighted = step.times(weight);

@@ -177,12 +177,10 @@ impl Prepared {
 pub(super) struct Watched<'a> {
     plan: &'a Plan,
     prepared: &'a Prepared,
-    /// Those that are not zero, each with the place of its value.
+    /// Those that are not zero, each with the place of its value among the states that matter and then the inputs.
     force_weights: Vec<(usize, f64)>,
     /// Of a continuous controller.
     command_weights: Vec<(usize, f64)>,
-    /// States that matter, and inputs.
-    values: Vec<f64>,
     pub(super) force_n: Vec<f64>,
     control_v: Vec<f64>,
 }
@@ -211,14 +209,9 @@ impl<'a> Watched<'a> {
             prepared,
             force_weights,
             command_weights,
-            values: vec![0.0; count],
             force_n: Vec::with_capacity(looks),
             control_v: Vec::with_capacity(looks),
         }
-    }
-
-    fn sum(&self, weights: &[(usize, f64)]) -> f64 {
-        weights.iter().fold(0.0, |sum, (place, weight)| sum + weight * self.values[*place])
     }
 }
 
@@ -228,22 +221,19 @@ impl Observer for Watched<'_> {
     }
 
     fn observe(&mut self, _time_s: f64, states: &[f64], inputs: &[f64]) {
-        let (seen, driving) = self.values.split_at_mut(self.plan.look.states.len());
-        seen.copy_from_slice(states);
-        if self.plan.look.inputs {
-            driving.copy_from_slice(inputs);
-        } else if let (Some(place), Some(reference)) =
-            (driving.first_mut(), self.plan.reference_n.get(self.force_n.len()))
-        {
-            *place = *reference;
-        }
+        let reference = [self.plan.reference_n.get(self.force_n.len()).copied().unwrap_or_default()];
+        let driving = if self.plan.look.inputs { inputs } else { &reference };
+        let sum = |weights: &[(usize, f64)]| {
+            weights.iter().fold(0.0, |sum, &(place, weight)| {
+                let driven = || driving.get(place - states.len());
+                sum + weight * states.get(place).or_else(driven).copied().unwrap_or_default()
+            })
+        };
         let command = match &self.prepared.bench.control {
-            Control::Continuous(_) => {
-                self.sum(&self.command_weights).clamp(-self.plan.limit, self.plan.limit)
-            }
+            Control::Continuous(_) => sum(&self.command_weights).clamp(-self.plan.limit, self.plan.limit),
             Control::Sampled(_) => self.prepared.log.borrow().last().map_or(0.0, |sample| sample.command_v),
         };
-        self.force_n.push(self.sum(&self.force_weights));
+        self.force_n.push(sum(&self.force_weights));
         self.control_v.push(command);
     }
 

@@ -253,7 +253,7 @@ fn options(chance: &mut Chance, components: &Components) -> MachineOptions {
     };
     let pump = PumpLimited {
         pump_flow: 20.0 * flow * chance.decades(0.02, 1.0),
-        relief_override: 0.05 * supply.pressure / flow,
+        relief_override: 0.05 * supply.pressure,
         volume: cylinder.area_a * cylinder.stroke * chance.decades(0.1, 10.0),
         effective_bulk_modulus: 1e9,
         accumulator: None,
