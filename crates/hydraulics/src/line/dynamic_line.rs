@@ -1,6 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
-use super::{Segments, TransmissionLine, TwoWaveLine};
+use super::{Content, Segments, TransmissionLine, TwoWaveLine};
 
 /// What a line does between its valve port and its chamber, as a machine holds it: states, and waves that it sends and that
 /// arrive later.
@@ -125,6 +125,18 @@ impl<S: Scalar> DynamicLine<S> {
             DynamicLine::TwoWave(line) => {
                 line.rates(flow_from_valve, chamber_pressure, state, arriving, rates)
             }
+        }
+    }
+
+    /// What the line holds; `None` with waves, much of whose content is under way and no part of its states.
+    pub(crate) fn content<T: Scalar + From<S>>(
+        &self,
+        chamber_pressure: T,
+        state: &[T],
+    ) -> Option<Content<T>> {
+        match self {
+            DynamicLine::Segments(line) => Some(line.content(chamber_pressure, state)),
+            DynamicLine::TransmissionLine(_) | DynamicLine::TwoWave(_) => None,
         }
     }
 

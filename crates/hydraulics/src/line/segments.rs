@@ -1,3 +1,7 @@
+mod content;
+
+pub(crate) use content::Content;
+
 use phea_dynamics::scalar::Scalar;
 
 use super::laminar_friction::UNSTEADY_FRICTION;

@@ -28,21 +28,21 @@ pub enum Chambers<S = f64> {
 /// m2/Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AeratedChambers<S = f64> {
-    bulk_modulus: S,
-    volume_fraction: S,
-    polytropic_index: S,
-    stroke: S,
-    side_a: AeratedSide<S>,
-    side_b: AeratedSide<S>,
+    pub(super) bulk_modulus: S,
+    pub(super) volume_fraction: S,
+    pub(super) polytropic_index: S,
+    pub(super) stroke: S,
+    pub(super) side_a: AeratedSide<S>,
+    pub(super) side_b: AeratedSide<S>,
 }
 
 /// One chamber with its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct AeratedSide<S> {
-    fluid_constant: S,
-    fluid_slope: S,
-    wall_constant: S,
-    wall_slope: S,
+pub(super) struct AeratedSide<S> {
+    pub(super) fluid_constant: S,
+    pub(super) fluid_slope: S,
+    pub(super) wall_constant: S,
+    pub(super) wall_slope: S,
 }
 
 impl Chambers {

@@ -1,0 +1,172 @@
+use phea_dynamics::scalar::Scalar;
+
+use super::super::equations::{Flows, constant};
+use super::super::signals::ground_of;
+use super::super::{Chambers, LoadMotion, Machine, MachineState, PowerUnit};
+use super::Account;
+use super::volume::{Law, Volume};
+use crate::line::{Content, DynamicLine};
+
+/// Everything that the accounts of a rig are made of, at one instant.
+pub(super) struct Instant<T> {
+    pub(super) state: MachineState<T>,
+    pub(super) load: LoadMotion<T>,
+    pub(super) ground: LoadMotion<T>,
+    pub(super) flows: Flows<T>,
+    /// Chambers, with their lines where these are lumped.
+    pub(super) sides: [Volume<T>; 2],
+    pub(super) lines: [LineInstant<T>; 2],
+    pub(super) supply: SupplyInstant<T>,
+}
+
+/// A line between the valve's port and the chamber; empty where it is lumped.
+pub(super) struct LineInstant<T> {
+    pub(super) port_pressure: T,
+    pub(super) into_chamber: T,
+    chamber_pressure: T,
+    from_valve: T,
+    content: Content<T>,
+}
+
+/// The supply line and its accumulator. Flows in m3/s.
+pub(super) struct SupplyInstant<T> {
+    pub(super) line: Volume<T>,
+    /// What the power unit feeds into both, the valve's tare flow taken off.
+    pub(super) fed: T,
+    /// Of it, and of what the edges take, the share of the gas.
+    pub(super) into_gas: T,
+    pub(super) gas: Content<T>,
+    taken: T,
+}
+
+impl<T: Scalar> Instant<T> {
+    /// Into chambers A and B, in m3/s.
+    pub(super) fn chamber_flows(&self) -> [T; 2] {
+        let [line_a, line_b] = &self.lines;
+        [line_a.into_chamber - self.flows.internal, line_b.into_chamber + self.flows.internal]
+    }
+}
+
+impl<T: Scalar> LineInstant<T> {
+    /// A line between the pressures of port and chamber; `None` with waves.
+    fn of<S: Scalar>(
+        line: &DynamicLine<S>,
+        [port_pressure, chamber_pressure]: [T; 2],
+        from_valve: T,
+        vector: &[T],
+    ) -> Option<LineInstant<T>>
+    where
+        T: From<S>,
+    {
+        let content = line.content(chamber_pressure, vector)?;
+        let mut rates = vector.to_vec();
+        let into_chamber = line.rates(from_valve, chamber_pressure, vector, &[], &mut rates);
+        Some(LineInstant { port_pressure, into_chamber, chamber_pressure, from_valve, content })
+    }
+
+    pub(super) fn oil(&self) -> Account<T> {
+        Account { stored: self.content.oil, inflow: self.from_valve - self.into_chamber, lost: T::from(0.0) }
+    }
+
+    pub(super) fn energy(&self) -> Account<T> {
+        Account {
+            stored: self.content.energy,
+            inflow: self.port_pressure * self.from_valve - self.chamber_pressure * self.into_chamber,
+            lost: self.content.heat,
+        }
+    }
+}
+
+impl<T: Scalar> SupplyInstant<T> {
+    /// What the oil of the supply line itself takes up, in m3/s.
+    pub(super) fn line_flow(&self) -> T {
+        self.fed - self.taken - self.into_gas
+    }
+}
+
+impl<S: Scalar> Machine<S> {
+    /// `None` where waves travel along a line.
+    pub(super) fn instant<T: Scalar + From<S>>(&self, vector: &[T], inputs: &[T]) -> Option<Instant<T>> {
+        let state = self.layout.read(vector);
+        let ground = ground_of(inputs);
+        let load = self.load_of(&state, &ground);
+        let ports = self.ports(&state, vector);
+        let flows = self.flows(&state, ports);
+        let ([port_a, port_b], [from_a, from_b]) = (ports, flows.from_valve);
+        let ([line_a, line_b], [vector_a, vector_b]) = (&self.lines, self.layout.lines(vector));
+        let sides = self.sides(&state, load.position + state.deflection);
+        Some(Instant {
+            lines: [
+                LineInstant::of(line_a, [port_a, state.pressure_a], from_a, vector_a)?,
+                LineInstant::of(line_b, [port_b, state.pressure_b], from_b, vector_b)?,
+            ],
+            supply: self.supply_instant(&state, &flows, &sides),
+            state,
+            load,
+            ground,
+            flows,
+            sides,
+        })
+    }
+
+    /// Both chambers as volumes.
+    fn sides<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [Volume<T>; 2] {
+        let [area_a, area_b] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
+        match self.chambers.convert(&mut constant::<S, T>) {
+            Chambers::Clean(clean) => {
+                let [compliance_a, compliance_b] = self.compliance(state, position);
+                let side = |modulus: T, compliance: T, pressure: T| Volume {
+                    fluid: compliance * modulus,
+                    beside: T::from(0.0),
+                    pressure,
+                    law: Law::Constant(modulus),
+                };
+                [
+                    side(area_a / clean.slope_a, compliance_a, state.pressure_a),
+                    side(area_b / clean.slope_b, compliance_b, state.pressure_b),
+                ]
+            }
+            Chambers::Aerated(aerated) => {
+                let (side_a, side_b) = (&aerated.side_a, &aerated.side_b);
+                let to_b = aerated.stroke - position;
+                [
+                    Volume::aerated(&aerated, side_a, area_a, position, state.pressure_a),
+                    Volume::aerated(&aerated, side_b, area_b, to_b, state.pressure_b),
+                ]
+            }
+        }
+    }
+
+    /// The gas takes what flows in by its share of the compliance.
+    fn supply_instant<T: Scalar + From<S>>(
+        &self,
+        state: &MachineState<T>,
+        flows: &Flows<T>,
+        [side_a, _]: &[Volume<T>; 2],
+    ) -> SupplyInstant<T> {
+        let zero = T::from(0.0);
+        let pressure = self.supply_of(state).pressure;
+        let taken = flows.edges.supply_to_a + flows.edges.supply_to_b;
+        let mut supply = SupplyInstant {
+            line: Volume { fluid: zero, beside: zero, pressure, law: side_a.law },
+            fed: taken,
+            into_gas: zero,
+            gas: Content { oil: zero, energy: zero, heat: zero },
+            taken,
+        };
+        if let PowerUnit::PumpLimited(unit) = self.power_unit.convert(&mut constant::<S, T>) {
+            let relief = unit.relief_flow(pressure, constant(self.supply.pressure));
+            supply.fed = unit.pump_flow - relief - self.tare_flow_of(state);
+            supply.line.fluid = unit.volume;
+            supply.line.law = Law::Constant(unit.effective_bulk_modulus);
+            if let Some(gas) = unit.accumulator {
+                let oil = unit.volume / unit.effective_bulk_modulus;
+                let share = T::from(1.0) - oil / unit.compliance(pressure);
+                supply.into_gas = share * (supply.fed - taken);
+                supply.gas.oil = gas.oil(pressure);
+                supply.gas.energy = gas.energy(pressure);
+            }
+        }
+        supply
+    }
+}
