@@ -38,7 +38,7 @@ pub const ENERGY_ACCOUNTS: [&str; 14] = [
 /// Each of the three has its own formula, so that the sum over time is a check and not a definition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Account<T> {
-    /// What the component holds: J, or m3 of oil at zero gauge pressure.
+    /// What the component holds: J, or m3 of oil, which is counted at zero gauge pressure but for the volumes of lines and gas.
     pub stored: T,
     /// What enters through its ports, in W or m3/s.
     pub inflow: T,
@@ -103,7 +103,7 @@ impl<S: Scalar> Machine<S> {
             now.lines[0].oil(),
             now.lines[1].oil(),
             supply.line.oil(supply.line_flow()),
-            Account { stored: supply.gas.oil, inflow: supply.into_gas, lost: T::from(0.0) },
+            Account { stored: supply.gas_oil, inflow: supply.into_gas, lost: T::from(0.0) },
         ];
         let [a, b, c, d, e, f] = accounts;
         let rig = Account {
@@ -140,7 +140,7 @@ impl<S: Scalar> Machine<S> {
             line_a.energy(),
             line_b.energy(),
             supply.line.energy(supply.line_flow(), zero),
-            Account { stored: supply.gas.energy, inflow: supply.line.pressure * supply.into_gas, lost: zero },
+            Account { stored: supply.gas_energy, inflow: supply.line.pressure * supply.into_gas, lost: zero },
             heat(throttled),
             heat(now.flows.internal * (side_a.pressure - side_b.pressure)),
             piston,

@@ -35,7 +35,9 @@ pub(super) struct SupplyInstant<T> {
     pub(super) fed: T,
     /// Of it, and of what the edges take, the share of the gas.
     pub(super) into_gas: T,
-    pub(super) gas: Content<T>,
+    /// What the gas has let in, in m3, and what it holds, in J.
+    pub(super) gas_oil: T,
+    pub(super) gas_energy: T,
     taken: T,
 }
 
@@ -151,7 +153,8 @@ impl<S: Scalar> Machine<S> {
             line: Volume { fluid: zero, beside: zero, pressure, law: side_a.law },
             fed: taken,
             into_gas: zero,
-            gas: Content { oil: zero, energy: zero, heat: zero },
+            gas_oil: zero,
+            gas_energy: zero,
             taken,
         };
         if let PowerUnit::PumpLimited(unit) = self.power_unit.convert(&mut constant::<S, T>) {
@@ -163,8 +166,8 @@ impl<S: Scalar> Machine<S> {
                 let oil = unit.volume / unit.effective_bulk_modulus;
                 let share = T::from(1.0) - oil / unit.compliance(pressure);
                 supply.into_gas = share * (supply.fed - taken);
-                supply.gas.oil = gas.oil(pressure);
-                supply.gas.energy = gas.energy(pressure);
+                supply.gas_oil = gas.oil(pressure);
+                supply.gas_energy = gas.energy(pressure);
             }
         }
         supply
