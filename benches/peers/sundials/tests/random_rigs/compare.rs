@@ -8,7 +8,7 @@ use std::time::Instant;
 use phea_dynamics::controller::{Compensator, Controller, ControllerState, Element, SampledController};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    ClosedLoop, Course, HeldPlant, Input, Plant, Sampler, Settings, Status, System, Work, simulate,
+    ClosedLoop, Course, HeldPlant, Input, Outcome, Plant, Sampler, Settings, Status, System, Work, simulate,
 };
 use phea_hydraulics::machine::{INDICATORS, Machine};
 use sundials::{Following, Kicks, Method, follow};
@@ -17,8 +17,10 @@ use crate::rig::{Control, DURATION_S, OUTPUT_STEP_S, Rig};
 
 /// Of CVODE's runs.
 const EXACT: f64 = 1e-11;
-/// Of phea's run: what a project has that does not say otherwise.
+/// What a project has that does not say otherwise; the size of the errors that are granted.
 pub(crate) const TOLERANCE: f64 = 1e-6;
+/// Of the run that is held to them.
+pub(crate) const JUDGED: f64 = 1e-7;
 /// Errors put into the other reference, every hundredth of a second.
 const KICKS: Kicks = Kicks { period_s: 1e-2, size: 1e-8, seed: 1 };
 /// Errors as large as the tolerance that a solver is granted between two kicks.
@@ -43,8 +45,10 @@ pub(crate) struct Compared {
     pub(crate) hunts: bool,
     /// When CVODE has left the model, a chamber having no fluid any more, in s.
     emptied_s: Option<f64>,
-    /// phea's run.
+    /// phea's run that is judged.
     pub(crate) ours: Option<Ours>,
+    /// The same at the tolerance of a project that says nothing.
+    pub(crate) by_default: Option<Ours>,
     /// The same model in C: largest difference over those rows as a part of the peak.
     pub(crate) twin: Option<f64>,
     /// Seconds of CVODE, with its stability limit, at phea's error.
@@ -63,6 +67,30 @@ pub(crate) struct Ours {
     pub(crate) beyond: f64,
     pub(crate) work: Work,
     pub(crate) seconds: f64,
+}
+
+impl Ours {
+    /// A run whose errors are not known yet.
+    fn new(outcome: &Outcome, seconds: f64) -> Ours {
+        let (status, work) = (outcome.status, outcome.work);
+        Ours { status, error: 0.0, error_of_all: 0.0, beyond: 0.0, work, seconds }
+    }
+
+    /// Whether it keeps what is asked for, and how it fails otherwise.
+    pub(crate) fn fault(&self) -> Option<String> {
+        match self {
+            Ours { status, .. } if *status != Status::Completed => {
+                Some(format!("{status:?}, where CVODE goes on"))
+            }
+            Ours { error, .. } if *error >= crate::LARGEST_ERROR => {
+                Some(format!("an error of {error:.1e} of the peak"))
+            }
+            Ours { beyond, .. } if *beyond >= ERRORS => {
+                Some(format!("an error {beyond:.1} times the growth of one of {TOLERANCE:e}"))
+            }
+            Ours { .. } => None,
+        }
+    }
 }
 
 /// A controller in its computer, its prefilter before the converter.
@@ -248,20 +276,15 @@ fn judge<'a, E: System<f64> + Clone>(
         let sampler = sampler.as_deref_mut().map(|sampler| -> &mut dyn Sampler { sampler });
         follow(&patient, &start, course, sampler, following)
     };
-    let settings = Settings { tolerance: TOLERANCE, maximum_steps: 2_000_000, ..Settings::default() };
-    let begun = Instant::now();
-    let run = simulate(system, &start, course, sampler(), &settings, &mut |_| true);
-    let seconds = begun.elapsed().as_secs_f64();
-    let run = run.expect("a course that fits");
-    let found = force(&run.trajectory.states);
-    let mut ours = Ours {
-        status: run.outcome.status,
-        error: 0.0,
-        error_of_all: 0.0,
-        beyond: 0.0,
-        work: run.outcome.work,
-        seconds,
+    let by_phea = |tolerance: f64| {
+        let settings = Settings { tolerance, maximum_steps: 2_000_000, ..Settings::default() };
+        let begun = Instant::now();
+        let run = simulate(system, &start, course, sampler(), &settings, &mut |_| true);
+        let seconds = begun.elapsed().as_secs_f64();
+        let run = run.expect("a course that fits");
+        (Ours::new(&run.outcome, seconds), force(&run.trajectory.states))
     };
+    let runs = [JUDGED, TOLERANCE].map(by_phea);
     let mut compared = Compared::default();
     let exact = Following::new(EXACT, Method::BackwardDifferentiation);
     let kicked = Following { kicks: Some(KICKS), ..Following::new(EXACT, Method::Adams) };
@@ -274,14 +297,18 @@ fn judge<'a, E: System<f64> + Clone>(
         }
         (Err(problem), _) | (_, Err(problem)) => {
             compared.without_reference = Some(problem.to_string());
-            compared.ours = Some(ours);
+            compared.ours = Some(runs[0].0);
             return (compared, Vec::new());
         }
     };
-    ours.error = compared.part_of_peak(&reference, &found, compared.rows);
-    ours.error_of_all = compared.part_of_peak(&reference, &found, reference.len());
-    ours.beyond = compared.beyond(&reference, &found);
+    let [ours, by_default] = runs.map(|(ours, found)| Ours {
+        error: compared.part_of_peak(&reference, &found, compared.rows),
+        error_of_all: compared.part_of_peak(&reference, &found, reference.len()),
+        beyond: compared.beyond(&reference, &found),
+        ..ours
+    });
     compared.ours = Some(ours);
+    compared.by_default = Some(by_default);
     if timed {
         compared.seconds_of_cvode = seconds_at(ours.error, &mut |tolerance| {
             let begun = Instant::now();
