@@ -205,6 +205,46 @@ fn a_reader_that_goes_away_is_no_error() {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
+/// Ctrl-C while runs are under way: what is done is kept, and the same command goes on to the bytes of a campaign that was never
+/// interrupted.
+#[cfg(unix)]
+#[test]
+fn a_campaign_goes_on_after_ctrl_c() {
+    let folder = folder("ctrl_c");
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/benchmark/campaign.toml");
+    std::fs::copy(campaign, folder.join("campaign.toml")).expect("the example");
+    let arguments = |out: &str, runs: usize| -> Vec<String> {
+        let (short, runs) = ("scenario.0.duration=0.1 s", runs.to_string());
+        ["campaign", "campaign.toml", "--set", short, "--runs", &runs, "--out", out]
+            .map(String::from)
+            .to_vec()
+    };
+    let mut child = Command::new(env!("CARGO_BIN_EXE_phea"))
+        .current_dir(&folder)
+        .args(arguments("stopped", 200_000))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("phea starts");
+    let table = |out: &str| std::fs::read_to_string(folder.join(out).join("runs.csv")).unwrap_or_default();
+    while table("stopped").lines().count() < 2 {
+        assert!(child.try_wait().expect("it can be asked").is_none(), "it ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    assert!(killed.success());
+    assert_eq!(child.wait().expect("phea ends").code(), Some(1));
+    let kept = table("stopped");
+    let rows = kept.lines().count() - 1;
+    assert!(rows > 0 && rows < 200_000 && kept.ends_with('\n'), "{rows} rows");
+    for out in ["stopped", "whole"] {
+        let arguments = arguments(out, rows + 10);
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        assert_eq!(phea(&folder, &arguments).status.code(), Some(0), "{out}");
+    }
+    assert!(table("stopped").starts_with(&kept) && table("stopped") == table("whole"));
+}
+
 #[test]
 fn new_writes_a_project_that_passes_and_never_over_another() {
     let folder = folder("new");

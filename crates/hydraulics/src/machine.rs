@@ -139,6 +139,11 @@ impl Machine {
         Ok(machine)
     }
 
+    /// Whether anything stops the piston at the ends of its stroke.
+    pub fn has_end_stops(&self) -> bool {
+        self.end_stops.is_some()
+    }
+
     /// Refuses end stops into which the supply pressure presses the piston further than its chambers reach.
     fn check_ends(&self) -> Result<(), MachineError> {
         let Some(contact) = self.end_stops else {

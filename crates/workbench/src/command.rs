@@ -379,7 +379,7 @@ pub fn compare_watched(
         CommandError::Compare { path, error }
     })?;
     Ok(Answer {
-        text: simulate::compare_text(&comparison),
+        text: simulate::compare_text(&comparison, projects),
         json: simulate::compare_json(&comparison),
         files: if figures { simulate::comparison_files(&comparison)? } else { vec![] },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),

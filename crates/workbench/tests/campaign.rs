@@ -69,6 +69,16 @@ fn rows_are_the_same_in_lanes_one_by_one_and_on_any_number_of_threads() {
     }
 }
 
+/// More runs than a thread takes at once: the rows of several batches come in their order.
+#[test]
+fn batches_come_in_their_order_on_any_number_of_threads() {
+    let plan = plan(&["scenario.0.duration=0.1 s"]);
+    let expected = plan.table(&plan.rows(0..1200, lanes(1)).unwrap());
+    for threads in [2, 5] {
+        assert!(plan.table(&plan.rows(0..1200, lanes(threads)).unwrap()) == expected, "{threads} threads");
+    }
+}
+
 /// A run, written as settings, is the same machine for `simulate`: where both look as often, the same bits of the force.
 #[test]
 fn a_run_is_what_simulate_makes_of_its_settings() {
@@ -181,6 +191,30 @@ fn stopping_leaves_whole_rows() {
     assert!(!answer.affirmative && rows < 600 && page.text.ends_with('\n'));
     let told: Value = serde_json::from_str(&answer.json).unwrap();
     assert_eq!((&told["complete"], &told["runs"]["rows"]), (&Value::from(false), &Value::from(rows)));
+    kept(&loaded, &asked, &mut page).unwrap();
+    let mut whole = Page::default();
+    kept(&loaded, &asked, &mut whole).unwrap();
+    assert!(page.text == whole.text && whole.text.lines().count() == 601);
+}
+
+/// Over 200 runs half of all stay within 0.02 N of the same at a tolerance of 1e-10, and all but two within 0.2 N.
+#[test]
+fn the_force_is_as_exact_as_the_campaign_says() {
+    let of = |settings: &[&str]| {
+        let plan = Plan::new(&source(), &load(settings), 1).unwrap();
+        plan.forces(0..200, lanes(2)).unwrap()
+    };
+    let (found, exact) = (of(&[]), of(&["simulation.tolerance=1e-10"]));
+    let mut errors: Vec<f64> = found
+        .iter()
+        .zip(&exact)
+        .map(|(one, other)| {
+            assert!(one.len() == 5001 && other.len() == 5001);
+            one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
+        })
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    assert!(0.5 * (errors[99] + errors[100]) <= 0.02 && errors[197] <= 0.2, "{errors:?}");
 }
 
 #[test]

@@ -82,7 +82,7 @@ fn scenario(run: &ScenarioRun, declared: &Scenario, figures: &[Figure]) -> Marku
         }
         @for remark in remarks { p { (remark) } }
         @if let Some(sentence) = coarse_sentence(run) { p { (sentence) "." } }
-        @for sentence in occurrence_sentences(&run.occurrences) { p { (sentence) "." } }
+        @for sentence in occurrence_sentences(run) { p { (sentence) "." } }
     }
 }
 

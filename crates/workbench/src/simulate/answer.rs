@@ -25,6 +25,8 @@ struct ScenarioRow<'a> {
     look_s: f64,
     events: Vec<EventRow>,
     occurrences: Vec<OccurrenceRow>,
+    outside_model_s: Option<f64>,
+    outside_model_s_reason: Option<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -127,6 +129,8 @@ fn scenario(run: &ScenarioRun) -> ScenarioRow<'_> {
         look_s: run.look_s,
         events: run.windows.iter().map(event).collect(),
         occurrences: run.occurrences.iter().map(occurrence).collect(),
+        outside_model_s: run.outside_model_s,
+        outside_model_s_reason: run.outside_model_s.is_none().then_some("its equations hold throughout"),
     }
 }
 

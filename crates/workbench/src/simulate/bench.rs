@@ -2,7 +2,7 @@
 
 use phea_dynamics::controller::{Controller, SampledController};
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Sensed, Settings};
+use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Method, Sensed, Settings};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::line::{DynamicLine, END_SHARE, Line, LineError, LineModel, Member};
 use phea_hydraulics::machine::{
@@ -13,7 +13,7 @@ use phea_qft::design::quantisation::Quantisation;
 
 use super::SimulateError;
 use crate::control::{controller, deployed, quantisation, sensor};
-use crate::project::{self, Project, SupplyModel};
+use crate::project::{self, Project, StepMethod, SupplyModel};
 use crate::rig::Rig;
 
 /// A machine with its controller.
@@ -73,7 +73,10 @@ impl Bench {
         let settings = Settings {
             tolerance: declared.tolerance,
             maximum_steps: u64::from(declared.maximum_steps),
-            ..Settings::default()
+            method: match declared.method {
+                StepMethod::Rosenbrock => Method::Rosenbrock,
+                StepMethod::DormandPrince => Method::DormandPrince,
+            },
         };
         Ok(Bench { rig, machine, control, settings, feed_forward })
     }

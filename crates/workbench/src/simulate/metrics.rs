@@ -61,7 +61,8 @@ const UNREACHED: &str = "the run ended before";
 const NO_STEP: &str = "the reference does not step";
 const NO_MOTION: &str = "the load does not begin to move";
 const NOT_REACHED: &str = "the force does not come to 90 % of the step";
-const NOT_SETTLED: &str = "outside the band at the end of the window";
+const BEGUN_BEYOND: &str = "the force is beyond 10 % of the step when it comes";
+pub(crate) const NOT_SETTLED: &str = "outside the band at the end of the window";
 const NO_REFERENCE: &str = "the reference is zero: a band around it has no width";
 
 /// The metrics of a window; `band` in percent.
@@ -77,9 +78,8 @@ pub(super) fn metrics(record: &Record, window: Window, band: f64) -> Metrics {
 
 /// The metrics of a window of what was seen; `band` in percent.
 pub(crate) fn metrics_seen(all: &Seen<'_>, window: Window, band: f64) -> Metrics {
-    let end = all.times_s.last().copied().unwrap_or(0.0);
     let seen = all.within(window);
-    let whole = end >= window.end_s;
+    let whole = all.ends_s() > window.end_s * (1.0 - 4.0 * f64::EPSILON);
     match window.cause {
         _ if seen.times_s.len() < 3 => Metrics::none(UNREACHED, band),
         Cause::ReferenceStep { from_n, to_n } => seen.step(window.start_s, [from_n, to_n], band, whole),
@@ -113,6 +113,14 @@ pub(crate) struct Seen<'a> {
 }
 
 impl<'a> Seen<'a> {
+    /// Until when it was seen, s: the last look stands for all until the next one would have come.
+    fn ends_s(&self) -> f64 {
+        match self.times_s {
+            [.., before, last] => last + (last - before),
+            _ => 0.0,
+        }
+    }
+
     /// Those in a window; its last instant belongs to it where the run ends there.
     fn within(&self, window: Window) -> Self {
         let start = self.times_s.partition_point(|time| *time < window.start_s);
@@ -139,9 +147,11 @@ impl<'a> Seen<'a> {
             Err(reason) => Err(reason),
         };
         let late = if whole { NOT_REACHED } else { UNREACHED };
+        let begun_beyond = beyond.first().is_some_and(|part| *part > -0.9);
+        let rise = step.and_then(|step| step.rise_time_10_90_s.ok_or(late));
         Metrics {
             overshoot_percent: Ok(100.0 * peak(&beyond).max(0.0)),
-            rise_time_s: step.and_then(|step| step.rise_time_10_90_s.ok_or(late)),
+            rise_time_s: if begun_beyond { Err(BEGUN_BEYOND) } else { rise },
             settling_time_s: settling,
             disturbance_peak_n: Err(NO_MOTION),
             ..self.common(band, whole)
@@ -264,6 +274,10 @@ mod tests {
         assert!((found.control_peak_v.unwrap() - 2.0).abs() < 1e-4);
         let short = metrics(&record, Window { cause, start_s: 1.0, end_s: 1.2 }, 1.0);
         assert_eq!((short.rise_time_s, short.settling_time_s), (Err(NOT_REACHED), Err(NOT_SETTLED)));
+        // where half of the step is there already, nobody sees it rise
+        let half = Cause::ReferenceStep { from_n: 500.0, to_n: -500.0 };
+        let begun = metrics(&record, Window { cause: half, start_s: 1.0, end_s: 4.0 }, 1.0);
+        assert_eq!(begun.rise_time_s, Err(BEGUN_BEYOND));
         // three seconds are 4.77 periods of the command: its mean square is 2 up to a twentieth
         assert!((found.control_rms_v.unwrap() - 2.0_f64.sqrt()).abs() < 0.05);
     }

@@ -41,6 +41,8 @@ pub struct ScenarioRun {
     pub windows: Vec<(Window, Metrics)>,
     /// What happened on the way, in the order of time.
     pub occurrences: Vec<Occurrence>,
+    /// From when on the machine is where its equations do not hold, s.
+    pub outside_model_s: Option<f64>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
 }
@@ -160,6 +162,7 @@ pub(super) fn run(
     let band = scenario.settling_band_percent;
     let windows = course.windows.iter().map(|window| (*window, metrics(&record, *window, band))).collect();
     let Outcome { status, work, .. } = outcome;
+    let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
     Ok(ScenarioRun {
         name: scenario.name.clone(),
         status,
@@ -169,8 +172,19 @@ pub(super) fn run(
         look_s,
         windows,
         occurrences,
+        outside_model_s,
         settling_band_percent: band,
     })
+}
+
+/// When a chamber first cavitates or has no volume, or the piston leaves a stroke that nothing limits.
+fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
+    let outside = |kind: &str| match kind {
+        "cavitation_a" | "cavitation_b" | "empty_a" | "empty_b" => true,
+        "end_stop_a" | "end_stop_b" => !has_end_stops,
+        _ => false,
+    };
+    occurrences.iter().find(|one| one.begins && outside(one.kind)).map(|one| one.time_s)
 }
 
 fn looks_per_row(scenario: &Scenario) -> usize {

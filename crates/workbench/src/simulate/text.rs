@@ -1,6 +1,6 @@
 //! What `simulate` and `compare` say to people.
 
-use super::metrics::Measured;
+use super::metrics::{Measured, NOT_SETTLED};
 use super::{Cause, Comparison, Metrics, Occurrence, ScenarioRun, Window};
 use crate::answer::{significant, table};
 use crate::project::Loaded;
@@ -17,7 +17,7 @@ pub(crate) fn text(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
         if !run.windows.is_empty() {
             out.push_str(&format!("{}\n", windows(run)));
         }
-        for sentence in coarse_sentence(run).into_iter().chain(occurrence_sentences(&run.occurrences)) {
+        for sentence in coarse_sentence(run).into_iter().chain(occurrence_sentences(run)) {
             out.push_str(&format!("  {sentence}\n"));
         }
         out.push('\n');
@@ -102,7 +102,8 @@ pub(crate) fn cells_of(metrics: &Metrics) -> [String; 7] {
     };
     let settling = match metrics.settling_time_s {
         Ok(time_s) => format!("{} s", significant(time_s, 3)),
-        Err(_) => "not settled".to_string(),
+        Err(NOT_SETTLED) => "not settled".to_string(),
+        Err(_) => ABSENT.to_string(),
     };
     let error = metrics.steady_state_error_n.map(small_as_zero);
     [
@@ -130,11 +131,16 @@ pub(crate) fn coarse_sentence(run: &ScenarioRun) -> Option<String> {
 }
 
 /// What happened on the way, a sentence each.
-pub(crate) fn occurrence_sentences(found: &[Occurrence]) -> Vec<String> {
+pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
+    let found = &run.occurrences;
     let mut sentences: Vec<String> = found.iter().take(TOLD).map(occurrence_words).collect();
     if found.len() > TOLD {
         sentences.push(format!("and {} more changes of this kind, listed in the JSON", found.len() - TOLD));
     }
+    sentences.extend(run.outside_model_s.map(|time_s| {
+        let from = DisplayUnit::SECOND.number(time_s, 5);
+        format!("from {from} s on the equations do not hold: what follows is theirs, not that of a machine")
+    }));
     sentences
 }
 
@@ -154,14 +160,18 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
     format!("{} s: {what}", DisplayUnit::SECOND.number(occurrence.time_s, 5))
 }
 
-/// The tables of `compare`: a row for each metric, a column for each project.
-pub(crate) fn compare_text(comparison: &Comparison<'_>) -> String {
+/// The tables of `compare`: a row for each metric, a column for each project; projects that were not begun are named.
+pub(crate) fn compare_text(comparison: &Comparison<'_>, asked: &[Loaded]) -> String {
     let mut out = String::new();
     for (number, (loaded, runs)) in comparison.projects.iter().enumerate() {
         out.push_str(&format!("{}  {} ({})\n", letter(number), loaded.project.title, loaded.path));
         for run in runs.iter().filter(|run| run.stopped().is_some()) {
             out.push_str(&format!("   {}\n", headline(run)));
         }
+    }
+    for (number, loaded) in asked.iter().enumerate().skip(comparison.projects.len()) {
+        let (letter, title) = (letter(number), &loaded.project.title);
+        out.push_str(&format!("{letter}  {title} ({})\n   not begun\n", loaded.path));
     }
     for name in comparison.scenarios() {
         let columns: Vec<Option<&ScenarioRun>> = comparison.runs_of(name).collect();

@@ -98,6 +98,9 @@ fn one_scenario(scenario: &Scenario, stroke: f64, path: &str, check: &mut Check<
         check.warning(&format!("{path}.reference"), "the last reference step is after the end");
     }
     if let Some(motion) = &scenario.load_motion {
+        if scenario.duration > 0.0 && motion.start > scenario.duration {
+            check.warning(&format!("{path}.load_motion.start"), "the load begins to move after the end");
+        }
         load_motion(motion, &format!("{path}.load_motion"), check);
     }
 }
