@@ -245,10 +245,38 @@ fn what_has_no_effect_is_told() {
     let stated = "the project states 13.1 kg for `cylinder.moving_mass`, not 13 kg: only the family has the latter as its \
                   nominal plant";
     warns(&elsewhere, stated);
+    let silent = "`noise` has no effect on a continuous controller";
+    let noisy = HOSE.replace("[force_sensor]", "[force_sensor]\nnoise = \"2 N\"");
+    warns(&noisy, silent);
+    let at_value = noisy.lines().position(|line| line == "noise = \"2 N\"").map(|index| (index + 1, 9));
+    let found = accept(&noisy).warnings.into_iter().find(|found| found.message == silent);
+    assert_eq!(found.map(|found| (found.line, found.column)), at_value);
+    let sampled = noisy.replace("saturation =", "sample_time = \"1 ms\"\nsaturation =");
+    assert!(accept(&sampled).warnings.iter().all(|found| found.message != silent));
     let improper = "[prefilter] has more zeros than poles: it can be verified, but not simulated or sampled";
     warns(&HOSE.replace("numerator = \"910\"", "numerator = \"s^3 + 910\""), improper);
     let weak = HOSE.replace("length = \"1.5 m\"", "length = \"1.5 m\"\nworking_pressure = \"50 bar\"");
     warns(&weak, "the hose's `working_pressure` is below the supply pressure");
+}
+
+/// The measured valve of the catalogue is the thesis' null at 0.078 V rising and -0.05 V falling, and the example's valve but for that.
+#[test]
+fn the_measured_valve_adds_its_null_to_that_of_the_examples() {
+    let read = |settings: &[String]| {
+        let source = Memory::default().with("rig.toml", HOSE);
+        project::read(&source, "rig.toml", settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
+    };
+    let valve = |project: &Project| project.actuator.clone().expect("a rig").valve;
+    let (plain, measured) =
+        (valve(&read(&[])), valve(&read(&["valve.model=moog_760_c263a_ybitu".to_string()])));
+    assert_eq!((plain.null_bias, plain.hysteresis), (0.0, None));
+    let half = measured.hysteresis.expect("measured") / 2.0;
+    assert!((measured.null_bias + half - 0.078).abs() < 1e-12);
+    assert!((measured.null_bias - half + 0.05).abs() < 1e-12);
+    assert_eq!(measured.threshold, None);
+    assert_eq!(measured.flow_coefficients, plain.flow_coefficients);
+    assert_eq!(measured.leakage_coefficients, plain.leakage_coefficients);
+    assert_eq!((measured.tare_flow, measured.tare_pressure), (plain.tare_flow, Some(70e5)));
 }
 
 #[test]

@@ -1,0 +1,192 @@
+//! The page on the feed-forward of the load's velocity: its equations against the linear model, its tables against the machine.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
+use phea_hydraulics::linear::{LinearParameters, linear_model};
+use phea_workbench::project::{self, Project};
+use phea_workbench::rig::Rig;
+use phea_workbench::simulate::{Cause, Metrics, simulate_project};
+use phea_workbench::source::Memory;
+
+const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+const PIPE: &str = include_str!("../../../examples/ybitu/pipe.toml");
+const PAGE: &str = include_str!("../../../book/src/theory/feed_forward.md");
+
+fn load(line: &str, settings: &[String]) -> Project {
+    let text = match line {
+        "pipe" => PIPE,
+        "hose" => HOSE,
+        other => panic!("{other}"),
+    };
+    let source = Memory::default().with("rig.toml", text);
+    project::read(&source, "rig.toml", settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
+}
+
+/// A/K_qU in V s/m: what an absent gain is.
+fn static_gain(parameters: &LinearParameters) -> f64 {
+    parameters.useful_area / parameters.flow_gain
+}
+
+/// K_x(s) of the page.
+fn exact_gain(parameters: &LinearParameters, s: Complex64) -> Complex64 {
+    let LinearParameters { useful_area: area, valve_natural_frequency: frequency, .. } = *parameters;
+    let spool = frequency * frequency
+        / (s * s + 2.0 * parameters.valve_damping_ratio * frequency * s + frequency * frequency);
+    let fluid = s / parameters.hydraulic_stiffness + parameters.flow_pressure_coefficient / (area * area);
+    static_gain(parameters) * (1.0 + fluid * (parameters.moving_mass * s + parameters.viscous_friction))
+        / spool
+}
+
+/// tau of the page, s.
+fn lag(parameters: &LinearParameters) -> f64 {
+    let area = parameters.useful_area;
+    2.0 * parameters.valve_damping_ratio / parameters.valve_natural_frequency
+        + parameters.viscous_friction / parameters.hydraulic_stiffness
+        + parameters.flow_pressure_coefficient * parameters.moving_mass / (area * area)
+}
+
+#[test]
+fn the_exact_gain_is_what_cancels_the_load_in_the_linear_model() {
+    for line in ["pipe", "hose"] {
+        let parameters = Rig::new(&load(line, &[])).unwrap().linear;
+        let model = linear_model(&parameters).unwrap();
+        for frequency in [0.01, 1.0, 10.0, 300.0, 1e3, 1e4] {
+            let s = Complex64::new(0.0, frequency);
+            let cancels =
+                -model.load_position.at_frequency(frequency) / (s * model.command.at_frequency(frequency));
+            let exact = exact_gain(&parameters, s);
+            assert!((cancels / exact - 1.0).norm_sqr() < 1e-18, "{line}, {frequency}: {cancels} {exact}");
+        }
+    }
+}
+
+/// What remains of the force of a slow motion is 1 - a + a tau s.
+#[test]
+fn what_is_left_grows_with_the_lag() {
+    let parameters = Rig::new(&load("pipe", &[])).unwrap().linear;
+    let tau = lag(&parameters);
+    assert!((tau - 1.64e-3).abs() < 0.01e-3, "{tau}");
+    for (share, frequency) in [(1.0, 10.0), (0.7, 1.0), (1.3, 5.0)] {
+        let s = Complex64::new(0.0, frequency);
+        let left = 1.0 - share * static_gain(&parameters) / exact_gain(&parameters, s);
+        let first_order = 1.0 - share + share * tau * s;
+        // the next term is (tau s)^2, and the leakage of a piston with friction 3e-5
+        let next = 2.0 * tau * tau * frequency * frequency + 4e-5;
+        assert!((left - first_order).norm_sqr() < next * next, "{share}, {frequency}: {left} {first_order}");
+    }
+}
+
+/// Re Z of the loop with feed-forward changes its sign at low frequency where (1 - a)(K_p + K_c/(A K_qU)) = tau K_i.
+#[test]
+fn a_little_less_than_the_gain_is_passive() {
+    for (line, proportional, integral, less_percent) in
+        [("pipe", 5e-4, 2e-3, 0.65), ("hose", 1e-3, 8e-3, 1.3)]
+    {
+        let parameters = Rig::new(&load(line, &[])).unwrap().linear;
+        let model = linear_model(&parameters).unwrap();
+        let zero = Complex64::new(-integral / proportional, 0.0);
+        let controller =
+            TransferFunction::from_factors(proportional, vec![zero], vec![Complex64::new(0.0, 0.0)]).unwrap();
+        let frequency = 0.02;
+        let resistance = |share: f64| {
+            let plant = model.command.at_frequency(frequency);
+            let remainder =
+                exact_gain(&parameters, Complex64::new(0.0, frequency)) - share * static_gain(&parameters);
+            (plant * remainder / (1.0 + plant * controller.at_frequency(frequency))).re
+        };
+        let leak = parameters.flow_pressure_coefficient / (parameters.useful_area * parameters.flow_gain);
+        let less = lag(&parameters) * integral / (proportional + leak);
+        assert!((100.0 * less - less_percent).abs() < 0.05, "{line}: {less}");
+        // friction beside leakage makes the gain at rest 3e-5 more than A/K_qU
+        assert!(resistance(1.0 - less - 1e-4) > 0.0 && resistance(1.0 - less + 1e-4) < 0.0, "{line}");
+        assert!(resistance(1.0) < 0.0 && resistance(0.0) > 0.0, "{line}");
+    }
+}
+
+/// What a load that moves by itself does from there on.
+fn of_the_motion(line: &str, settings: &[String]) -> Metrics {
+    let mut project = load(line, settings);
+    project.scenarios.truncate(1);
+    let run = simulate_project(&Memory::default(), &project, &mut |_| true).unwrap().remove(0);
+    assert_eq!(run.stopped(), None, "{line} {settings:?}");
+    let (_, metrics) = run.windows.into_iter().find(|(window, _)| window.cause == Cause::LoadMotion).unwrap();
+    metrics
+}
+
+/// The rows of the page's table whose head begins so: labels and numbers, and the labels of the columns.
+fn table(head: &str) -> (Vec<String>, Vec<(String, Vec<f64>)>) {
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('|').split('|').map(|cell| cell.trim().to_string()).collect()
+    };
+    let mut lines = PAGE.lines().skip_while(|line| !line.starts_with(&format!("| {head}")));
+    let columns = cells(lines.next().unwrap()).split_off(1);
+    let rows = lines.skip(1).take_while(|line| line.starts_with('|')).map(|line| {
+        let mut row = cells(line);
+        let numbers = row.split_off(1).iter().map(|cell| cell.parse().unwrap()).collect();
+        (row.remove(0), numbers)
+    });
+    (columns, rows.collect())
+}
+
+fn gain(share: f64) -> String {
+    let parameters = Rig::new(&load("pipe", &[])).unwrap().linear;
+    format!("controller.load_velocity_feed_forward.gain={:e}", share * static_gain(&parameters))
+}
+
+/// What a part of a row's label sets.
+fn settings_of(part: &str) -> Vec<String> {
+    let owned = |texts: &[&str]| texts.iter().map(|text| (*text).to_string()).collect();
+    match part {
+        "feed-forward" => owned(&["controller.load_velocity_feed_forward={}"]),
+        "feed-forward 30 % too small" => vec![gain(0.7)],
+        "feed-forward 30 % too large" => vec![gain(1.3)],
+        "supply of 50 bar" => owned(&["supply.pressure=50 bar"]),
+        "-4 kN" => owned(&["scenario.0.reference.0.force=-4 kN"]),
+        "sampled" => owned(&["controller.sample_time=1 ms", "controller.delay=0.5 ms"]),
+        other => panic!("{other}"),
+    }
+}
+
+#[test]
+fn the_tables_are_what_the_machine_does() {
+    let (columns, peaks) = table("peak, N");
+    let (same_columns, commands) = table("rms, V");
+    assert!(columns == same_columns && peaks.len() == 15 && commands.len() == 15);
+    for ((label, peaks), (same_label, commands)) in peaks.iter().zip(&commands) {
+        assert_eq!(label, same_label);
+        let (line, parts) = label.split_once(", ").unwrap_or((label, ""));
+        let parts = parts.split(", ").filter(|part| !part.is_empty());
+        let row: Vec<String> = parts.flat_map(settings_of).collect();
+        for ((column, peak), command) in columns.iter().zip(peaks).zip(commands) {
+            let (distance, duration) = column.split_once(" in ").unwrap();
+            let mut settings = row.clone();
+            settings.push(format!("scenario.0.load_motion.distance={distance}"));
+            settings.push(format!("scenario.0.load_motion.duration={duration}"));
+            let found = of_the_motion(line, &settings);
+            let (found_peak, found_rms) = (found.disturbance_peak_n.unwrap(), found.control_rms_v.unwrap());
+            assert!((found_peak - peak).abs() < 6.0, "{label}, {column}: {found_peak} N");
+            assert!((found_rms - command).abs() < 0.006, "{label}, {column}: {found_rms} V");
+        }
+    }
+}
+
+#[test]
+fn a_load_that_reacts_is_what_the_page_says() {
+    let mass = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = 2e5, damping = 500 }";
+    let (shares, rows) = table("rms with a reacting load, V");
+    assert!(shares.len() == 6 && rows.len() == 2);
+    for (line, commands) in rows {
+        let found: Vec<Metrics> = shares
+            .iter()
+            .map(|share| of_the_motion(&line, &[mass.to_string(), gain(share.parse().unwrap())]))
+            .collect();
+        for ((share, found), command) in shares.iter().zip(&found).zip(commands) {
+            let found = found.control_rms_v.unwrap();
+            assert!((found - command).abs() < 0.006 * command.max(1.0), "{line}, {share}: {found} V");
+        }
+        let peak = |index: usize| found[index].disturbance_peak_n.unwrap();
+        assert!(peak(2) < 0.51 * peak(0), "{line}");
+    }
+}
