@@ -77,7 +77,7 @@ fn refuse(text: &str, dimension: &Dimension, message: &str, help: Option<&str>) 
 #[test]
 fn refusals_say_what_is_right() {
     refuse("70 mm", &PRESSURE, "expected a pressure, found a length", None);
-    refuse("70 kg/m", &PRESSURE, "expected a pressure, found something in kg/m", None);
+    refuse("70 kg.m", &PRESSURE, "expected a pressure, found something in kg.m", None);
     refuse("70 baar", &PRESSURE, "unknown unit `baar`", Some("did you mean `bar`?"));
     refuse("70 BAR", &PRESSURE, "unknown unit `BAR`", Some("did you mean `bar`?"));
     refuse("7 Mpa", &PRESSURE, "unknown unit `Mpa`", Some("did you mean `MPa`?"));

@@ -251,9 +251,14 @@ fn what_cannot_be_simulated_is_refused_in_words() {
     };
     says(&["cylinder.friction.model=stribeck"], "regular velocity");
     let wall = ["load={ model = \"wall\", mass = 10, stiffness = 1e6 }", "scenario.0.start.force=-5 N"];
-    says(&["line.model=two_wave"], "[line] model");
     says(&["load={ model = \"wall\", stiffness = 1e6 }"], "`mass`");
     says(&wall, "a start with force of -5 is impossible");
+    let thick = answer(
+        HOSE,
+        &["line.model=transmission_line", "fluid.kinematic_viscosity=1 m2/s"],
+        &Request::Simulate,
+    );
+    assert!(thick.to_string().contains("[line] model: the dissipation number"), "{thick}");
 }
 
 #[test]

@@ -55,13 +55,33 @@ impl BraidedWall {
     /// ```
     pub fn neutral(hose: &Hose, member: Member, axial_stiffness: f64, mass_per_length: f64) -> BraidedWall {
         let axial_compliance = 1.0 / axial_stiffness;
+        BraidedWall::of_hose(hose, member, axial_compliance, -axial_compliance, mass_per_length)
+    }
+
+    /// The wall of these compliances in 1/N that swells as the catalogue says where its ends are closed and free.
+    ///
+    /// ```text
+    /// C_pp = 1/beta_free - 2 A C_pF - A C_FF
+    /// ```
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::line::{BraidedWall, Member};
+    /// let hose = phea_hydraulics::reference_rig::hose();
+    /// let stiff_braid = BraidedWall::of_hose(&hose, Member::Nominal, 2e-5, -1e-5, 0.2);
+    /// assert_eq!(stiff_braid.pressure_compliance, 1.0 / hose.wall_modulus(Member::Nominal));
+    /// ```
+    pub fn of_hose(
+        hose: &Hose,
+        member: Member,
+        axial_compliance: f64,
+        coupling_compliance: f64,
+        mass_per_length: f64,
+    ) -> BraidedWall {
         let area = std::f64::consts::FRAC_PI_4 * hose.bore * hose.bore;
-        BraidedWall {
-            mass_per_length,
-            pressure_compliance: 1.0 / hose.wall_modulus(member) + area * axial_compliance,
-            coupling_compliance: -axial_compliance,
-            axial_compliance,
-        }
+        let pulled = area * (2.0 * coupling_compliance + axial_compliance);
+        let pressure_compliance = 1.0 / hose.wall_modulus(member) - pulled;
+        BraidedWall { mass_per_length, pressure_compliance, coupling_compliance, axial_compliance }
     }
 
     /// An assumed wall for a half-inch thermoplastic hose, none of it from a data sheet: outer diameter 20.3 mm, 1150 kg/m3,

@@ -2,6 +2,7 @@
 
 use super::interval::Interval;
 use super::key::{key, plain};
+use super::line_motion::LineMotion;
 use super::visitor::{Kinds, Visitor};
 use crate::catalogue::Kind;
 use crate::quantity::{EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
@@ -27,18 +28,6 @@ pub enum Compliance {
     Uniform,
 }
 
-/// How waves in the line are modelled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LineModel {
-    /// One pressure.
-    #[default]
-    Lumped,
-    /// Fluid waves.
-    TransmissionLine,
-    /// Fluid and wall waves, coupled.
-    TwoWave,
-}
-
 /// One line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
@@ -56,8 +45,8 @@ pub struct Line {
     pub length: Option<f64>,
     /// r_β, dynamic over static modulus of the hose.
     pub dynamic_stiffening: Option<Interval>,
-    /// How waves in it are modelled.
-    pub model: LineModel,
+    /// How it moves.
+    pub motion: LineMotion,
 }
 
 /// What is known of a hose; what is absent is unknown.
@@ -128,7 +117,7 @@ pub enum Component<'a> {
 
 impl Line {
     /// What a line can be.
-    const KINDS: Kinds = Kinds {
+    const COMPONENTS: Kinds = Kinds {
         chosen_by: &["hose", "pipe", "volume"],
         keys: &[
             "hose",
@@ -144,6 +133,8 @@ impl Line {
             "effective_bulk_modulus",
         ],
     };
+    /// What a side may choose for itself.
+    const KINDS: &[Kinds] = &[Line::COMPONENTS, LineMotion::MODELS];
 
     /// What the line is made of; `None` only for a line that was not read from a valid project.
     pub fn component(&self) -> Option<Component<'_>> {
@@ -176,12 +167,7 @@ impl Line {
         v.optional(k, &mut self.length);
         let k = key("dynamic_stiffening", &RATIO, "r_β, the hose's dynamic over its static modulus.");
         Interval::visit(v, k.at_least(1.0), &mut self.dynamic_stiffening);
-        let words = &[
-            ("lumped", LineModel::Lumped),
-            ("transmission_line", LineModel::TransmissionLine),
-            ("two_wave", LineModel::TwoWave),
-        ];
-        v.choice(plain("model", "How waves in the line are modelled."), words, &mut self.model, false);
+        self.motion.visit(v);
     }
 }
 

@@ -1,6 +1,7 @@
 //! `[operating_point]` and `[linear]`: the linear model's place and parameters.
 
 use super::key::{Key, key};
+use super::line_motion::LineMotion;
 use super::visitor::Visitor;
 use crate::quantity::{
     ANGULAR_FREQUENCY, AREA, DAMPING, FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, LENGTH, MASS, PRESSURE, RATIO,
@@ -68,11 +69,12 @@ pub struct LinearParameter {
 }
 
 impl LinearParameter {
-    /// Whether it follows from the number at a path.
+    /// Whether it follows from the number at a path; of a line, how it moves does not matter.
     pub(crate) fn follows_from(&self, path: &str) -> bool {
-        self.depends_on.iter().any(|table| {
-            path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        })
+        !LineMotion::owns(path)
+            && self.depends_on.iter().any(|table| {
+                path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+            })
     }
 }
 

@@ -17,6 +17,8 @@ pub(crate) struct Listing {
     pub(crate) keys: Vec<KeyEntry>,
     /// Every number that exists, by its path.
     pub(crate) numbers: BTreeMap<String, (Key, f64)>,
+    /// The path of every whole number, stated or not.
+    pub(crate) counts: Vec<String>,
     /// Numbers to set.
     assign: BTreeMap<String, f64>,
     /// How many of them were found.
@@ -103,6 +105,12 @@ impl Visitor for Listing {
 
     fn count(&mut self, key: Key, _field: &mut u32) {
         self.list(key, "a whole number", key.default.is_none());
+        self.counts.push(self.path_of(key.name));
+    }
+
+    fn optional_count(&mut self, key: Key, _field: &mut Option<u32>) {
+        self.list(key, "a whole number", false);
+        self.counts.push(self.path_of(key.name));
     }
 
     fn flag(&mut self, key: Key, _field: &mut bool) {
@@ -194,7 +202,7 @@ impl Visitor for Listing {
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],
-        _kinds: Kinds,
+        _kinds: &'static [Kinds],
         fields: &mut [T; 2],
         visit: impl Fn(&mut T, &mut Self),
     ) {

@@ -177,6 +177,12 @@ impl Visitor for Printer {
         self.line(key.name, field.to_string());
     }
 
+    fn optional_count(&mut self, key: Key, field: &mut Option<u32>) {
+        if let Some(value) = field {
+            self.count(key, value);
+        }
+    }
+
     fn flag(&mut self, key: Key, field: &mut bool) {
         if *field {
             self.line(key.name, field.to_string());
@@ -290,7 +296,7 @@ impl Visitor for Printer {
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],
-        _kinds: Kinds,
+        _kinds: &'static [Kinds],
         fields: &mut [T; 2],
         visit: impl Fn(&mut T, &mut Self),
     ) {

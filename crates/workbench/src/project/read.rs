@@ -90,7 +90,7 @@ fn project(reader: &mut Reader<'_>, root: &Node) -> Project {
     if !is_plant {
         project.plant = None;
     }
-    reader.named = numbers(&mut project);
+    (reader.named, reader.counts) = numbers(&mut project);
     if is_plant || is_measured {
         let parameter = key("parameter", &RATIO, "A parameter of the plant.");
         reader.named = reader.parameters.iter().map(|name| (name.clone(), parameter)).collect();
@@ -156,8 +156,8 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &Node, is_plant: bool, is_measu
     }
 }
 
-/// Every number of the project that can be named, and the parameters of its linear model.
-fn numbers(project: &mut Project) -> BTreeMap<String, Key> {
+/// Every number of the project that can be named, and the parameters of its linear model; and its whole numbers, which cannot vary.
+fn numbers(project: &mut Project) -> (BTreeMap<String, Key>, Vec<String>) {
     let mut listing = Listing::default();
     project.visit_system(&mut listing);
     let mut named: BTreeMap<String, Key> =
@@ -169,13 +169,13 @@ fn numbers(project: &mut Project) -> BTreeMap<String, Key> {
         );
         named.extend(super::scenario::start_numbers());
     }
-    named
+    (named, listing.counts)
 }
 
 /// The project as TOML: [`read`] gives an equal project, if the same catalogue is at hand.
 pub fn print(project: &Project) -> String {
     let mut project = project.clone();
-    let mut named = numbers(&mut project);
+    let (mut named, _) = numbers(&mut project);
     let parameter = key("parameter", &RATIO, "A parameter of the plant.");
     let missing = project.uncertainty.iter().filter(|uncertain| !named.contains_key(&uncertain.name));
     let missing: Vec<String> = missing.map(|uncertain| uncertain.name.clone()).collect();

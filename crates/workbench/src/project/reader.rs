@@ -26,6 +26,8 @@ pub(crate) struct Reader<'a> {
     pub(crate) parts: bool,
     /// Numbers of the project that can be named, with what is known of them.
     pub(crate) named: BTreeMap<String, Key>,
+    /// Its whole numbers, which have no range to vary in.
+    pub(crate) counts: Vec<String>,
     /// Parameters that formulas may contain.
     pub(crate) parameters: Vec<String>,
     /// Where each value is written, by its path.
@@ -53,7 +55,7 @@ struct Frame<'a> {
 struct Layer<'a> {
     node: &'a Node,
     /// Keys of it that do not count.
-    hidden: &'static [&'static str],
+    hidden: Vec<&'static str>,
     /// The catalogue's entry it comes from.
     entry: Option<&'a crate::catalogue::Entry>,
 }
@@ -81,13 +83,14 @@ impl<'a> Reader<'a> {
             partial: false,
             parts: true,
             named: BTreeMap::new(),
+            counts: Vec::new(),
             parameters: Vec::new(),
             places: BTreeMap::new(),
             item_places: BTreeMap::new(),
             provenance: Vec::new(),
             catalogue_files: Vec::new(),
         };
-        reader.open(String::new(), root.place, vec![Layer { node: root, hidden: &[], entry: None }]);
+        reader.open(String::new(), root.place, vec![Layer { node: root, hidden: Vec::new(), entry: None }]);
         reader
     }
 
@@ -212,7 +215,7 @@ impl<'a> Reader<'a> {
             self.wrong_kind(key, "a table", hit.node);
             return false;
         }
-        self.open(path, hit.node.place, vec![Layer { node: hit.node, hidden: &[], entry: hit.entry }]);
+        self.open(path, hit.node.place, vec![Layer { node: hit.node, hidden: Vec::new(), entry: hit.entry }]);
         true
     }
 }

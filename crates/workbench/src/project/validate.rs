@@ -2,6 +2,7 @@
 
 mod design;
 mod family;
+mod line_motion;
 mod linear_loop;
 mod rig;
 mod specification;

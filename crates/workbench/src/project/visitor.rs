@@ -21,6 +21,8 @@ pub(crate) trait Visitor: Sized {
     fn complexes(&mut self, key: Key, field: &mut Vec<[f64; 2]>);
     /// A whole number; required unless the key has a default.
     fn count(&mut self, key: Key, field: &mut u32);
+    /// A whole number that may be absent.
+    fn optional_count(&mut self, key: Key, field: &mut Option<u32>);
     /// True or false; absent, the field keeps its value.
     fn flag(&mut self, key: Key, field: &mut bool);
     /// True or false; absent, it is true.
@@ -59,11 +61,11 @@ pub(crate) trait Visitor: Sized {
     );
     /// The present table as a list of names and numbers.
     fn numbers(&mut self, key: Key, field: &mut Vec<(String, f64)>);
-    /// Two tables `a` and `b` that inherit what the present table says, unless they choose their own kind.
+    /// Two tables `a` and `b` that inherit what the present table says, unless they choose a kind of their own.
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],
-        kinds: Kinds,
+        kinds: &'static [Kinds],
         fields: &mut [T; 2],
         visit: impl Fn(&mut T, &mut Self),
     );
@@ -72,7 +74,7 @@ pub(crate) trait Visitor: Sized {
 }
 
 /// Kinds of a thing of which one is chosen.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(crate) struct Kinds {
     /// Keys that choose.
     pub(crate) chosen_by: &'static [&'static str],

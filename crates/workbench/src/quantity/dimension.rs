@@ -130,6 +130,12 @@ dimensions! {
     VOLTAGE_PER_VELOCITY = "a gain in V.s/m", whole(0, -1, 1, 1, 0), [], "V.s/m", r#"28, "28 V.s/m", "28 V/(m/s)""#;
     /// s/m, damping of a contact relative to its elastic force.
     INVERSE_VELOCITY = "an inverse velocity", whole(0, -1, 1, 0, 0), [], "s/m", r#"0.5, "0.5 s/m""#;
+    /// kg/m, of a hose's wall.
+    MASS_PER_LENGTH = "a mass per length", whole(1, -1, 0, 0, 0), ["g/m", "kg/m"], "kg/m", r#""0.23 kg/m", "230 g/m""#;
+    /// 1/Pa, how a wall yields to pressure.
+    STRAIN_PER_PRESSURE = "a strain per pressure", whole(-1, 1, 2, 0, 0), [], "1/Pa", r#"8e-9, "8e-9 1/Pa", "0.8 1/kbar""#;
+    /// 1/N, how a wall yields to tension.
+    STRAIN_PER_FORCE = "a strain per force", whole(-1, -1, 2, 0, 0), [], "1/N", r#"2e-5, "2e-5 1/N", "0.02 1/kN""#;
     /// rad.
     ANGLE = "an angle", whole(0, 0, 0, 0, 1), ["deg"], "rad", r#""30 deg", "0.5 rad""#;
 }

@@ -67,12 +67,12 @@ impl Visitor for Reader<'_> {
             }
             return;
         };
-        let Some(number) = self.number(key, hit.node) else { return };
-        if number.fract() == 0.0 && number >= 0.0 && number <= f64::from(u32::MAX) {
-            *field = number as u32;
-        } else {
-            let message = format!("`{}` must be a whole number", key.name);
-            self.findings.push(Found::error(hit.node.place, message));
+        *field = self.whole(key, hit.node).unwrap_or(*field);
+    }
+
+    fn optional_count(&mut self, key: Key, field: &mut Option<u32>) {
+        if let Some(hit) = self.find(key) {
+            *field = self.whole(key, hit.node);
         }
     }
 
@@ -161,7 +161,7 @@ impl Visitor for Reader<'_> {
                 self.catalogue_files.push(entry.file.clone());
             }
             if let Some(frame) = self.frames.last_mut() {
-                frame.layers.push(Layer { node: &entry.values, hidden: &[], entry: Some(entry) });
+                frame.layers.push(Layer { node: &entry.values, hidden: Vec::new(), entry: Some(entry) });
             }
             return;
         }
@@ -201,7 +201,7 @@ impl Visitor for Reader<'_> {
             Value::List(items) => {
                 self.open(path, hit.node.place, Vec::new());
                 if let Some(frame) = self.frames.last_mut() {
-                    frame.layers.push(Layer { node: hit.node, hidden: &[], entry: hit.entry });
+                    frame.layers.push(Layer { node: hit.node, hidden: Vec::new(), entry: hit.entry });
                     frame.in_order = Some(items.iter());
                 }
                 true
@@ -249,8 +249,13 @@ impl Visitor for Reader<'_> {
         for entry in hit.node.entries() {
             let Some(number) = self.named.get(&entry.key).copied() else {
                 let near = nearest(&entry.key, self.named.keys().map(String::as_str));
-                let help = near.map(|name| format!("did you mean `{name}`?"));
-                let message = format!("`{}` is no number of this project", entry.key);
+                let is_count = self.counts.contains(&entry.key);
+                let help = near.filter(|_| !is_count).map(|name| format!("did you mean `{name}`?"));
+                let message = if is_count {
+                    format!("`{}` is a whole number: only quantities vary", entry.key)
+                } else {
+                    format!("`{}` is no number of this project", entry.key)
+                };
                 self.findings.push(Found::error(entry.key_place, message).maybe_help(help));
                 continue;
             };
@@ -286,7 +291,7 @@ impl Visitor for Reader<'_> {
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],
-        kinds: Kinds,
+        kinds: &'static [Kinds],
         fields: &mut [T; 2],
         visit: impl Fn(&mut T, &mut Self),
     ) {
@@ -305,12 +310,14 @@ impl Visitor for Reader<'_> {
                 }
                 None => (None, path.clone(), place),
             };
-            let own_kind =
-                own.is_some_and(|node| kinds.chosen_by.iter().any(|name| node.get(name).is_some()));
-            let hidden = if own_kind { kinds.keys } else { &[] };
+            let chooses = |kinds: &&Kinds| {
+                own.is_some_and(|node| kinds.chosen_by.iter().any(|name| node.get(name).is_some()))
+            };
+            let hidden: Vec<&str> =
+                kinds.iter().filter(chooses).flat_map(|kinds| kinds.keys).copied().collect();
             let mut layers: Vec<Layer<'_>> = Vec::new();
-            layers.extend(own.map(|node| Layer { node, hidden: &[], entry: None }));
-            layers.extend(inherited.iter().map(|layer| Layer { hidden, ..layer.clone() }));
+            layers.extend(own.map(|node| Layer { node, hidden: Vec::new(), entry: None }));
+            layers.extend(inherited.iter().map(|layer| Layer { hidden: hidden.clone(), ..layer.clone() }));
             let inherits_only = own.is_none();
             self.open(side_path, side_place, layers);
             *field = T::default();

@@ -40,6 +40,17 @@ impl Reader<'_> {
         None
     }
 
+    /// A whole number within the key's range.
+    pub(super) fn whole(&mut self, key: Key, node: &Node) -> Option<u32> {
+        let number = self.number(key, node)?;
+        if number.fract() == 0.0 && number >= 0.0 && number <= f64::from(u32::MAX) {
+            return Some(number as u32);
+        }
+        let message = format!("`{}` must be a whole number", key.name);
+        self.findings.push(Found::error(node.place, message));
+        None
+    }
+
     /// A number, or a pair of real and imaginary part.
     pub(super) fn complex(&mut self, key: Key, node: &Node) -> Option<[f64; 2]> {
         let Value::List(parts) = &node.value else { return Some([self.number(key, node)?, 0.0]) };

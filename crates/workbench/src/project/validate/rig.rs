@@ -1,6 +1,6 @@
 //! The actuator: what geometry and physics forbid.
 
-use super::Check;
+use super::{Check, line_motion};
 use crate::project::{
     Actuator, Cylinder, Friction, FrictionModel, Interval, Line, Lines, Load, LoadModel, SupplyModel, Valve,
 };
@@ -160,10 +160,12 @@ fn friction(friction: &Friction, check: &mut Check<'_, '_>) {
 }
 
 fn lines(actuator: &Actuator, lines: &Lines, check: &mut Check<'_, '_>) {
+    line_motion::nobody_inherits(check);
     for (name, side) in [("a", &lines.a), ("b", &lines.b)] {
         let own = format!("line.{name}");
         let path = if check.declared(&own) { own } else { "line".to_string() };
         line(side, &path, check);
+        line_motion::motion(side, &path, check);
         let working = side.hose_properties.working_pressure;
         if working.is_some_and(|working| working < actuator.supply.pressure) {
             let message = "the hose's `working_pressure` is below the supply pressure";
