@@ -223,7 +223,9 @@ fn a_campaign_varies_what_is_no_count() {
     let segments = ["line.model=segments", "line.segments=2", "line.relaxation_time=0.1 s", &creep, &length];
     let walls = ["line.model=two_wave", "line.wall.mass_per_length=0.25 kg/m", &mass, &length];
     for settings in [&segments[..], &["line.model=creeping", "line.relaxation_time=0.1 s", &creep], &walls] {
-        let plan = Plan::new(&Memory::default(), &load(settings), 1).unwrap();
+        let settings =
+            [settings, &["scenario.0.duration=0.1 s", "scenario.0.load_motion.start=0.05 s"]].concat();
+        let plan = Plan::new(&Memory::default(), &load(&settings), 1).unwrap();
         let alone = plan.rows(0..6, Effort { threads: 1, lanes: false }).unwrap();
         assert!(
             alone.iter().all(|row| row.ran().is_some_and(|ran| ran.status == "completed")),
