@@ -392,9 +392,9 @@ mod tests {
         assert_eq!(columns.row(&format!("{line}\r")), Err(NoRow::LineEnd));
     }
 
-    // ORIGIN: FIPS 180-4, the sum of "abc": ba7816bf 8f01cfea ...
     #[test]
     fn the_sum_of_a_row_is_that_of_other_programs() {
+        // ORIGIN: paper, FIPS 180-4 (2015), the published sum of "abc"
         assert_eq!(check("abc"), "ba7816bf");
     }
 }
