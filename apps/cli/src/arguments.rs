@@ -82,8 +82,8 @@ pub(crate) enum Command {
         #[arg(long, value_name = "INDEX", conflicts_with_all = ["runs", "shard"])]
         run: Option<u64>,
         /// Threads; the rows do not depend on it
-        #[arg(long, value_name = "N")]
-        threads: Option<usize>,
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        threads: Option<u16>,
     },
     /// Everything above as one self-contained HTML page; a controller is designed where the project has a design section or gives no law
     Report(Common),

@@ -84,7 +84,8 @@ pub(crate) fn write_as(path: &Path, file: &OutputFile) -> Result<PathBuf, String
     fs::write(path, &file.bytes).map_err(|error| unwritten(path, &error)).map(|()| path.to_path_buf())
 }
 
-fn unwritten(path: &Path, error: &std::io::Error) -> String {
+/// Why a file or folder cannot be written.
+pub(crate) fn unwritten(path: &Path, error: &std::io::Error) -> String {
     format!("cannot write {}: {}", path.display(), reason(error))
 }
 

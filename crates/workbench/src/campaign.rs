@@ -30,7 +30,8 @@ pub use workers::Effort;
 pub(crate) use answer::{json, run_json};
 pub(crate) use figures::{files, pictures};
 pub(crate) use ledger::campaign;
-pub(crate) use text::{lump_words, metric_words, run_text, text};
+pub(crate) use row::meaningful;
+pub(crate) use text::{counted, lump_words, metric_words, run_text, text, without};
 
 use crate::project::Report;
 use crate::simulate::SimulateError;
@@ -98,6 +99,25 @@ pub enum CampaignError {
         "line {line} of the kept table is no row of this campaign: choose another folder, or remove the table"
     )]
     OtherCampaign {
+        /// Counted from 1.
+        line: usize,
+    },
+    /// A row that is kept there is not what was written.
+    #[error(
+        "line {line} of the kept table {fault}: remove it and all lines after it (head -n {} keeps those before), and the same command drives them again",
+        .line - 1
+    )]
+    Damaged {
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        fault: &'static str,
+    },
+    /// Another program has written the table anew.
+    #[error(
+        "line {line} of the kept table ends in CR LF, where LF was written: give it back its line ends, or remove the table"
+    )]
+    LineEnds {
         /// Counted from 1.
         line: usize,
     },

@@ -4,12 +4,14 @@
 ///
 /// Equal but for case wins; otherwise the fewest insertions, deletions, substitutions and swaps of neighbours, at
 /// most a third of the name's length (one for two or three characters, two from four on). Ties go to the earlier one.
+/// Another word for a candidate is taken for it.
 ///
 /// # Example
 /// ```
 /// use phea_workbench::spelling::nearest;
 /// assert_eq!(nearest("presure", ["flow", "pressure"]), Some("pressure"));
 /// assert_eq!(nearest("BAR", ["mbar", "bar"]), Some("bar"));
+/// assert_eq!(nearest("gaussian", ["uniform", "normal"]), Some("normal"));
 /// assert_eq!(nearest("temperature", ["flow", "pressure"]), None);
 /// ```
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
@@ -20,7 +22,11 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         length => (length / 3).max(2),
     };
     let mut best: Option<(usize, &str)> = None;
+    let lowered: String = wanted.iter().collect();
     for candidate in candidates.into_iter().take(MAXIMUM_CANDIDATES) {
+        if OTHER_WORDS.contains(&(lowered.as_str(), candidate)) {
+            return Some(candidate);
+        }
         let letters: Vec<char> = candidate.chars().flat_map(char::to_lowercase).collect();
         if letters.len().abs_diff(wanted.len()) > allowed {
             continue;
@@ -32,6 +38,9 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     }
     best.map(|(_, candidate)| candidate)
 }
+
+/// Words for what is called otherwise here.
+const OTHER_WORDS: [(&str, &str); 2] = [("gauss", "normal"), ("gaussian", "normal")];
 
 /// More candidates are not looked at.
 const MAXIMUM_CANDIDATES: usize = 1000;

@@ -374,3 +374,112 @@ fn the_parquet_table_says_what_the_text_says() {
     assert_eq!(rows, 300);
     assert!(page.text.contains(",refused,"));
 }
+
+fn refusal(result: Result<String, CommandError>) -> CampaignError {
+    match result {
+        Err(CommandError::Campaign(error)) => error,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Whatever is not what was written is refused with its line, and left as it is; without the lines from there on, the same bytes.
+#[test]
+fn damaged_rows_are_refused_with_their_line() {
+    let loaded = load(&SHORT);
+    let asked = request(6, Shard::default());
+    let mut whole = Page::default();
+    kept(&loaded, &asked, &mut whole).unwrap();
+    let lines: Vec<&str> = whole.text.split_inclusive('\n').collect();
+    let with_third = |third: &str| [&lines[..3].concat(), third, &lines[4..].concat()].concat();
+    let cells: Vec<&str> = lines[3].split(',').collect();
+    for cell in 2..cells.len() {
+        let mut changed = cells.clone();
+        let end = if cell + 1 == cells.len() { "\n" } else { "" };
+        let other = format!("999999{end}");
+        changed[cell] = &other;
+        let mut page = Page { text: with_third(&changed.join(",")) };
+        let before = page.text.clone();
+        let error = refusal(kept(&loaded, &asked, &mut page));
+        assert!(matches!(error, CampaignError::Damaged { line: 4, .. }), "cell {cell}: {error}");
+        assert!(error.to_string().contains("head -n 3 keeps those before"), "{error}");
+        assert_eq!(page.text, before);
+    }
+    let kept_lines = whole.text.replace('\n', "\r\n");
+    let mut page = Page { text: kept_lines };
+    assert_eq!(refusal(kept(&loaded, &asked, &mut page)), CampaignError::LineEnds { line: 1 });
+    let mut page = Page { text: with_third(&lines[3].replace('\n', "\r\n")) };
+    assert_eq!(refusal(kept(&loaded, &asked, &mut page)), CampaignError::LineEnds { line: 4 });
+    // twice the same run, as two writers would leave it
+    let mut page = Page { text: [&whole.text, lines[1]].concat() };
+    let error = refusal(kept(&loaded, &request(9, Shard::default()), &mut page));
+    assert!(
+        matches!(error, CampaignError::Damaged { line: 8, fault } if fault.contains("another run")),
+        "{error}"
+    );
+    let mut page = Page { text: lines[..3].concat() };
+    kept(&loaded, &asked, &mut page).unwrap();
+    assert_eq!(page.text, whole.text);
+}
+
+/// A row with its own sum that is not of the draw it says it is.
+#[test]
+fn kept_numbers_are_those_that_are_drawn() {
+    let loaded = load(&SHORT);
+    let plan = plan(&[]);
+    let mut rows = plan.rows(0..3, lanes(1)).unwrap();
+    let asked = request(3, Shard::default());
+    kept(&loaded, &asked, &mut Page { text: plan.table(&rows) }).unwrap();
+    rows[1].values[0] = rows[1].values[0].next_up();
+    let error = refusal(kept(&loaded, &asked, &mut Page { text: plan.table(&rows) }));
+    assert!(matches!(error, CampaignError::Damaged { line: 3, fault } if fault.contains("draws")), "{error}");
+}
+
+/// Quantiles are of the runs that have a number; those that never settle are counted where the quantiles stand.
+#[test]
+fn runs_that_never_settle_are_told_beside_the_quantiles() {
+    let loaded = load(&SHORT);
+    let asked = Request::Campaign(request(20, Shard::default()));
+    let answer = command::answer(&source(), &loaded, &[], &asked).unwrap();
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let events = json["metrics"].as_array().unwrap();
+    let settling = |event: &Value| {
+        let metrics = event["metrics"].as_array().unwrap();
+        let found = metrics.iter().find(|metric| metric["name"] == "settling_time_s").unwrap();
+        found["missing"].as_u64().unwrap()
+    };
+    let missing: Vec<u64> = events.iter().map(settling).collect();
+    assert!(missing.iter().any(|missing| *missing > 1), "{missing:?}");
+    for missing in missing.iter().filter(|missing| **missing > 1) {
+        let words = format!("settling (s); {missing} of 20 never settle");
+        assert!(answer.text.contains(&words), "{}", answer.text);
+    }
+}
+
+/// What is wrong with `[campaign]` is told once, in the text that says it.
+#[test]
+fn what_is_refused_of_a_campaign_has_its_place_and_a_hint() {
+    let refused = |settings: &[&str]| {
+        let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
+        let report = project::read(&source(), "campaign.toml", &settings, &[]).map(|_| ()).unwrap_err();
+        report.to_string()
+    };
+    let pressure = |table: &str| format!("campaign.parameters.\"supply.pressure\"={table}");
+    for (table, words) in [
+        ("{ spread = \"-20 %\" }", "`spread` must be above 0"),
+        ("{ spread = \"20 bar\" }", "bar"),
+        ("{ minimum = \"90 bar\", maximum = \"60 bar\" }", "`minimum` must be below `maximum`"),
+        ("{ minimum = \"-5 bar\", maximum = \"60 bar\" }", "`minimum` must be"),
+    ] {
+        let text = refused(&[&pressure(table)]);
+        assert!(text.contains(words) && text.matches("error").count() == 1, "{text}");
+        assert!(text.contains("--> --set campaign.parameters"), "{text}");
+    }
+    let text = refused(&["campaign.distribution=gaussian"]);
+    assert!(text.contains("did you mean \"normal\"?"), "{text}");
+    let text = refused(&["campaign.scenario=step and laod motion"]);
+    assert!(text.contains("did you mean \"step and load motion\"?"), "{text}");
+    let loaded = load(&[&pressure("{ spread = 20 }")]);
+    assert!(loaded.warnings.iter().any(|warning| warning.message.contains("`spread` is 2000 %")));
+    let loaded = load(&[&pressure("{ spread = 1 }")]);
+    assert!(!loaded.warnings.iter().any(|warning| warning.message.contains("`spread`")));
+}

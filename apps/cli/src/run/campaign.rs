@@ -1,7 +1,7 @@
 //! A campaign whose table is a file that grows.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::Write as _;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
 
 use super::{FileSystem, Refused, failed, load, refused};
 use crate::arguments::Common;
-use crate::file_system::write;
+use crate::file_system::{unwritten, write};
 use crate::interruption::Interruption;
 use crate::voice::ProgressLine;
 
@@ -21,10 +21,11 @@ pub(super) fn request(
     seed: u32,
     shard: Option<&str>,
     run: Option<u64>,
-    (threads, files): (Option<usize>, bool),
+    (threads, files): (Option<u16>, bool),
 ) -> Result<CampaignRequest, String> {
     let shard = shard.map(Shard::read).transpose().map_err(|error| error.to_string())?.unwrap_or_default();
-    let threads = threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get));
+    let all = || std::thread::available_parallelism().map_or(1, NonZero::get);
+    let threads = threads.map_or_else(all, usize::from);
     let asked = match (run, runs) {
         (Some(run), _) => CampaignRuns::One(run),
         (None, runs) => CampaignRuns::All(Wanted {
@@ -62,7 +63,8 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
         command::campaign_watched(&FileSystem, &loaded, &common.catalogues, asked, ledger, &mut watch);
     line.clear();
     let answer = answer.map_err(|error| refused(&loaded, &request, &error))?;
-    let mut written: Vec<PathBuf> = table.into_iter().map(|table| table.path).collect();
+    // the table stays locked until everything beside it is written
+    let mut written: Vec<PathBuf> = table.iter().map(|table| table.path.clone()).collect();
     if let Some(folder) = &common.out {
         let more = write(folder, &answer.files).map_err(|message| failed(&request, &loaded, &message))?;
         written.extend(more);
@@ -70,7 +72,7 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     Ok((answer, written))
 }
 
-/// A file that grows at its end.
+/// A file that grows at its end, and that nobody else writes meanwhile: the system releases the lock with the process.
 struct Table {
     path: PathBuf,
     file: File,
@@ -78,23 +80,35 @@ struct Table {
 
 impl Table {
     fn open(path: &Path) -> Result<Table, String> {
-        let unwritable = |error: std::io::Error| format!("cannot write {}: {error}", path.display());
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder).map_err(unwritable)?;
+        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+            fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
         }
-        let file = OpenOptions::new().create(true).append(true).open(path).map_err(unwritable)?;
+        let mut options = OpenOptions::new();
+        options.create(true).read(true).write(true).truncate(false);
+        let file = options.open(path).map_err(|error| unwritten(path, &error))?;
+        file.try_lock().map_err(|error| match error {
+            TryLockError::WouldBlock => format!(
+                "another phea campaign is writing {}: wait until it ends, or choose another folder",
+                path.display()
+            ),
+            TryLockError::Error(error) => {
+                format!("cannot lock {}: {error}; choose a folder on another disk", path.display())
+            }
+        })?;
         Ok(Table { path: path.to_path_buf(), file })
     }
 
     fn explain(&self, error: &std::io::Error) -> String {
-        format!("cannot write {}: {error}", self.path.display())
+        unwritten(&self.path, error)
     }
 }
 
 impl Ledger for Table {
     fn kept(&mut self) -> Result<String, String> {
-        fs::read_to_string(&self.path)
-            .map_err(|error| format!("cannot read {}: {error}", self.path.display()))
+        let mut text = String::new();
+        let read = self.file.rewind().and_then(|()| self.file.read_to_string(&mut text));
+        read.map_err(|error| format!("cannot read {}: {error}", self.path.display()))?;
+        Ok(text)
     }
 
     fn cut(&mut self, bytes: usize) -> Result<(), String> {
@@ -102,6 +116,7 @@ impl Ledger for Table {
     }
 
     fn append(&mut self, text: &str) -> Result<(), String> {
-        self.file.write_all(text.as_bytes()).map_err(|error| self.explain(&error))
+        let written = self.file.seek(SeekFrom::End(0)).and_then(|_| self.file.write_all(text.as_bytes()));
+        written.map_err(|error| self.explain(&error))
     }
 }

@@ -193,7 +193,6 @@ fn parameters(plan: &Plan) -> Vec<ParameterRow<'_>> {
 
 fn events(plan: &Plan, summary: &Summary) -> Vec<EventRow> {
     let windows = plan.windows().iter().zip(&summary.metrics);
-    let driven = summary.statuses.iter().sum::<usize>() - summary.refused.len();
     windows
         .map(|(window, spreads)| EventRow {
             kind: match window.cause {
@@ -205,7 +204,7 @@ fn events(plan: &Plan, summary: &Summary) -> Vec<EventRow> {
             metrics: meaningful(window)
                 .map(|metric| MetricRow {
                     name: METRIC_NAMES[metric],
-                    spread: spread_row(spreads[metric], driven),
+                    spread: spread_row(spreads[metric], summary.driven()),
                 })
                 .collect(),
         })

@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use super::row::{METRIC_NAMES, Row};
 use super::statistics::{QUANTILES, Summary};
-use super::{CampaignError, Effort};
+use super::{CampaignError, Effort, Shard};
 use crate::answer::OutputFile;
 use crate::figure::{
     DisplayUnit, Figure, TimeBands, TimeBandsInput, TimeEvent, TimeSeries, Words, time_bands,
@@ -121,18 +121,19 @@ fn picture(
 /// A figure that cannot be drawn, and [`CampaignError`].
 pub(crate) fn files(
     plan: &Plan,
-    (name, rows): (&str, &[Row]),
+    (shard, rows): (&Shard, &[Row]),
     summary: &Summary,
 ) -> Result<Vec<OutputFile>, crate::command::CommandError> {
     let mut files = vec![OutputFile {
-        name: format!("{name}.parquet"),
+        name: format!("{}.parquet", shard.name()),
         bytes: super::parquet::table(&plan.columns, rows).map_err(CampaignError::Ledger)?,
     }];
+    let part = shard.part();
     for figure in pictures(plan, summary)? {
         let png = figure.to_png(PNG_SCALE).map_err(crate::command::CommandError::from)?;
         let svg = figure.to_svg_standalone().into_bytes();
-        files.push(OutputFile { name: format!("{}.svg", figure.name), bytes: svg });
-        files.push(OutputFile { name: format!("{}.png", figure.name), bytes: png });
+        files.push(OutputFile { name: format!("{}{part}.svg", figure.name), bytes: svg });
+        files.push(OutputFile { name: format!("{}{part}.png", figure.name), bytes: png });
     }
     Ok(files)
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::plan::Plan;
-use super::row::Row;
+use super::row::{NoRow, Row};
 use super::workers::{News, run};
 use super::{CampaignError, Effort};
 use crate::command::{Progress, Watch};
@@ -70,11 +70,16 @@ impl Shard {
         self.number == 1
     }
 
-    /// Name of its table without an ending: `runs`, or `runs-2-of-4`, numbers of one length.
+    /// Name of its table without an ending: `runs`, or `runs-2-of-4`.
     pub fn name(&self) -> String {
+        format!("runs{}", self.part())
+    }
+
+    /// What tells its files from those of other parts: nothing, or `-2-of-4`, numbers of one length.
+    pub(super) fn part(&self) -> String {
         let Shard { number, of } = *self;
         let digits = of.to_string().len();
-        if of == 1 { "runs".to_string() } else { format!("runs-{number:0digits$}-of-{of}") }
+        if of == 1 { String::new() } else { format!("-{number:0digits$}-of-{of}") }
     }
 }
 
@@ -150,23 +155,40 @@ pub(crate) fn campaign(
     Ok(rows)
 }
 
+/// A kept row, as it must have been written for that run.
+fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, CampaignError> {
+    let row = plan.columns.row(text).map_err(|fault| match fault {
+        NoRow::Other => CampaignError::OtherCampaign { line },
+        NoRow::LineEnd => CampaignError::LineEnds { line },
+        NoRow::Changed => CampaignError::Damaged { line, fault: "is not as it was written" },
+    })?;
+    if row.run != run {
+        return Err(CampaignError::Damaged { line, fault: "is another run than belongs there" });
+    }
+    if row.values != plan.draw(run).values {
+        return Err(CampaignError::Damaged { line, fault: "has other numbers than its run draws" });
+    }
+    Ok(row)
+}
+
 /// The rows that are kept already; whatever was torn at the end is dropped, and an empty ledger is begun.
 fn resumed(plan: &Plan, wanted: Wanted, ledger: &mut dyn Ledger) -> Result<Vec<Row>, CampaignError> {
     let runs = wanted.shard.runs_of(wanted.runs);
     let text = ledger.kept().map_err(CampaignError::Ledger)?;
     let (whole, torn) = text.split_at(text.rfind('\n').map_or(0, |last| last + 1));
     let header = if wanted.shard.begins() { plan.columns.header() } else { String::new() };
-    let (mut rows, mut lines) = (Vec::new(), whole.lines().enumerate());
-    if !header.is_empty() && !whole.is_empty() {
-        let first = lines.next().map(|(_, line)| line);
-        if first != Some(header.trim_end()) {
-            return Err(CampaignError::OtherCampaign { line: 1 });
-        }
+    let (mut rows, mut lines) = (Vec::new(), whole.split_terminator('\n').zip(1..));
+    if !header.is_empty()
+        && let Some((first, line)) = lines.next()
+        && first != header.trim_end()
+    {
+        return Err(match first.strip_suffix('\r') == Some(header.trim_end()) {
+            true => CampaignError::LineEnds { line },
+            false => CampaignError::OtherCampaign { line },
+        });
     }
-    for (number, line) in lines {
-        let expected = runs.start + rows.len() as u64;
-        let row = plan.columns.row(line).filter(|row| row.run == expected);
-        rows.push(row.ok_or(CampaignError::OtherCampaign { line: number + 1 })?);
+    for (text, line) in lines {
+        rows.push(kept_row(plan, runs.start + rows.len() as u64, text, line)?);
     }
     let kept = rows.len() as u64;
     let beginning = match (whole.is_empty(), header.is_empty()) {

@@ -99,5 +99,6 @@ fn contents(columns: &Columns, rows: &[Row]) -> Vec<Column> {
     }
     let force = |index: usize| rows.iter().map(|row| row.ran()?.force_n.get(index).copied()).collect();
     all.extend((0..columns.times_s.len()).map(|index| Column::Single(force(index))));
+    all.push(text(&|row| Some(columns.check(row))));
     all
 }

@@ -4,6 +4,7 @@ use phea_dynamics::{portable, random};
 
 use super::CampaignError;
 use crate::project::{Campaign, Distribution, Key, Project, Scenario, Varied};
+use crate::quantity::{self, DisplayUnit};
 
 /// A varied number: between two ends, as distributed.
 ///
@@ -48,12 +49,24 @@ impl VariedRange {
 
     /// Why the project would not accept this number.
     pub(super) fn problem(&self, value: f64) -> Option<String> {
-        (!self.key.range.contains(value)).then(|| format!("{} = {value} is outside its range", self.path))
+        let Key { range, dimension, .. } = self.key;
+        if range.contains(value) {
+            return None;
+        }
+        let show = |value: f64| quantity::display(value, dimension, 6);
+        let low = if range.above_minimum { "above" } else { "at least" };
+        let high = if range.below_maximum { "below" } else { "at most" };
+        let ends = [
+            (range.minimum > f64::MIN).then(|| format!("{low} {}", show(range.minimum))),
+            (range.maximum < f64::MAX).then(|| format!("{high} {}", show(range.maximum))),
+        ];
+        let ends: Vec<String> = ends.into_iter().flatten().collect();
+        Some(format!("{} = {} is outside its range ({})", self.path, show(value), ends.join(" and ")))
     }
 
-    /// The SI unit, empty for a pure number.
-    pub(crate) fn si(&self) -> &'static str {
-        if self.key.dimension.si == "1" { "" } else { self.key.dimension.si }
+    /// The unit in which people expect numbers of this range.
+    pub(crate) fn unit(&self) -> DisplayUnit {
+        quantity::fitting(self.minimum.abs().max(self.maximum.abs()), self.key.dimension)
     }
 
     /// In words, as in a project file.
@@ -110,7 +123,7 @@ pub(super) fn ranges(
 mod tests {
     use super::*;
     use crate::project::{key, plain};
-    use crate::quantity::RATIO;
+    use crate::quantity::{PRESSURE, RATIO, VOLUME};
 
     fn range(distribution: Distribution, minimum: f64, maximum: f64) -> VariedRange {
         VariedRange { path: "a".to_string(), distribution, minimum, maximum, key: plain("a", "") }
@@ -152,6 +165,24 @@ mod tests {
         let mass =
             VariedRange { key: key("a", &RATIO, "").positive(), ..range(Distribution::Normal, -1.0, 3.0) };
         assert_eq!(mass.problem(0.5), None);
-        assert_eq!(mass.problem(-0.5), Some("a = -0.5 is outside its range".to_string()));
+        assert_eq!(mass.problem(-0.5), Some("a = -0.5 is outside its range (above 0)".to_string()));
+        let pressure = VariedRange {
+            key: key("a", &PRESSURE, "").at_least(-1e5).below(1e8),
+            ..range(Distribution::Normal, -1e6, 3e6)
+        };
+        let expected = "a = -46.5 bar is outside its range (at least -1 bar and below 1000 bar)";
+        assert_eq!(pressure.problem(-4.65e6), Some(expected.to_string()));
+    }
+
+    #[test]
+    fn a_range_is_shown_in_the_unit_of_its_larger_end() {
+        let of = |dimension, minimum, maximum| {
+            let key = key("a", dimension, "");
+            let unit = VariedRange { key, ..range(Distribution::Uniform, minimum, maximum) }.unit();
+            (unit.symbol, unit.number(maximum, 3))
+        };
+        assert_eq!(of(&PRESSURE, 0.0, 8.4e6), ("bar", "84.0".to_string()));
+        assert_eq!(of(&VOLUME, 1.52e-4, 2.28e-4), ("mL", "228".to_string()));
+        assert_eq!(of(&RATIO, 0.1, 0.2), ("1", "0.200".to_string()));
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use phea_hydraulics::machine::INDICATORS;
+use sha2::{Digest, Sha256};
 
 use crate::simulate::{COMMAND_LIMIT, Cause, Metrics, Window};
 
@@ -28,6 +29,20 @@ pub const STATUS_WORDS: [&str; 5] =
     ["completed", "refused", "step_too_small", "not_finite", "too_many_steps"];
 
 const REFUSED: &str = "refused";
+
+/// Hexadecimal digits of the sum that ends a row.
+const CHECK_LENGTH: usize = 8;
+
+/// Why a line is no row that was written here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NoRow {
+    /// Of another campaign, or of none.
+    Other,
+    /// It ends in CR LF.
+    LineEnd,
+    /// It does not have its own sum.
+    Changed,
+}
 
 /// One run of a campaign.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,7 +115,7 @@ pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; METRIC_NAMES.len()] {
 }
 
 /// Which of [`METRIC_NAMES`] a window can have.
-pub(super) fn meaningful(window: &Window) -> impl Iterator<Item = usize> + use<> {
+pub(crate) fn meaningful(window: &Window) -> impl Iterator<Item = usize> + use<> {
     let left_out: &[&str] = match window.cause {
         Cause::ReferenceStep { .. } => &["disturbance_peak_n"],
         Cause::LoadMotion => &["overshoot_percent", "rise_time_s"],
@@ -135,7 +150,7 @@ impl Columns {
         for time_s in &self.times_s {
             let _ = write!(text, ",force_n_at_{time_s}_s");
         }
-        text.push('\n');
+        text.push_str(",check\n");
         text
     }
 
@@ -146,6 +161,17 @@ impl Columns {
 
     /// A row as a line.
     pub(super) fn line(&self, row: &Row) -> String {
+        let text = self.text(row);
+        format!("{text},{}\n", check(&text))
+    }
+
+    /// What ends the line of a row.
+    pub(super) fn check(&self, row: &Row) -> String {
+        check(&self.text(row))
+    }
+
+    /// A row without what ends it.
+    fn text(&self, row: &Row) -> String {
         let mut text = self.beginning(row.run);
         let _ = write!(text, "{},", row.status());
         let ran = row.ran();
@@ -175,18 +201,32 @@ impl Columns {
                 let _ = write!(text, "{force}");
             }
         }
-        text.push('\n');
         text
     }
 
-    /// The row that a line holds; `None` if it holds none of this campaign.
-    pub(super) fn row(&self, line: &str) -> Option<Row> {
-        let cells = cells(line);
+    /// The row that a line holds.
+    ///
+    /// # Errors
+    /// Why it holds none.
+    pub(super) fn row(&self, line: &str) -> Result<Row, NoRow> {
+        let (text, sum) = line.rsplit_once(',').ok_or(NoRow::Other)?;
+        if text.split(',').nth(1) != Some(self.mark.as_str()) {
+            return Err(NoRow::Other);
+        }
+        if sum.ends_with('\r') {
+            return Err(NoRow::LineEnd);
+        }
+        if sum != check(text) {
+            return Err(NoRow::Changed);
+        }
+        self.read(text).ok_or(NoRow::Other)
+    }
+
+    fn read(&self, text: &str) -> Option<Row> {
+        let cells = cells(text);
         let mut cells = cells.iter().map(String::as_str);
         let run = cells.next()?.parse().ok()?;
-        if cells.next()? != self.mark {
-            return None;
-        }
+        let _mark = cells.next()?;
         let status = word(&STATUS_WORDS, cells.next()?)?;
         let reason = cells.next()?.to_string();
         let ended_s = number(cells.next()?)?;
@@ -225,6 +265,12 @@ impl Columns {
         });
         Some(Row { run, values, lumps, outcome })
     }
+}
+
+/// The sum of a row: the first digits of SHA-256 of its text.
+fn check(text: &str) -> String {
+    let sum: String = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect();
+    sum.chars().take(CHECK_LENGTH).collect()
 }
 
 fn word(words: &[&'static str], text: &str) -> Option<&'static str> {
@@ -312,7 +358,7 @@ mod tests {
         for row in [driven(), refused] {
             let line = columns.line(&row);
             assert_eq!(line.matches('\n').count(), 1);
-            assert_eq!(columns.row(line.trim_end()), Some(row));
+            assert_eq!(columns.row(line.trim_end()), Ok(row));
         }
     }
 
@@ -326,10 +372,29 @@ mod tests {
     #[test]
     fn lines_of_other_campaigns_and_torn_ones_hold_no_row() {
         let (columns, line) = (columns(), columns().line(&driven()));
-        assert_eq!(Columns { mark: "other".to_string(), ..columns.clone() }.row(line.trim_end()), None);
-        // a line torn within a number may still be one: only whole lines are ever read, each ended
+        let other = Columns { mark: "other".to_string(), ..columns.clone() };
+        assert_eq!(other.row(line.trim_end()), Err(NoRow::Other));
         let torn = line.rsplit_once(',').unwrap().0;
-        assert_eq!(columns.row(torn), None);
-        assert_eq!(columns.row(""), None);
+        assert_eq!(columns.row(torn), Err(NoRow::Changed));
+        assert_eq!(columns.row(""), Err(NoRow::Other));
+    }
+
+    /// Whatever letter of a row is another than was written, it is seen.
+    #[test]
+    fn a_changed_line_holds_no_row() {
+        let (columns, line) = (columns(), columns().line(&driven()));
+        let line = line.trim_end();
+        for at in 0..line.len() {
+            let letter = if line[at..].starts_with('7') { "8" } else { "7" };
+            let changed = format!("{}{letter}{}", &line[..at], &line[at + 1..]);
+            assert!(columns.row(&changed).is_err(), "{changed}");
+        }
+        assert_eq!(columns.row(&format!("{line}\r")), Err(NoRow::LineEnd));
+    }
+
+    #[test]
+    fn the_sum_of_a_row_is_that_of_other_programs() {
+        // ORIGIN: paper, FIPS 180-4 (2015), the published sum of "abc"
+        assert_eq!(check("abc"), "ba7816bf");
     }
 }

@@ -63,6 +63,11 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Runs that were driven, to their end or not.
+    pub(crate) fn driven(&self) -> usize {
+        self.statuses.iter().sum::<usize>() - self.refused.len()
+    }
+
     /// The summary of rows.
     pub fn of(plan: &Plan, rows: &[Row]) -> Summary {
         let driven: Vec<(u64, &Ran)> = rows.iter().filter_map(|row| Some((row.run, row.ran()?))).collect();

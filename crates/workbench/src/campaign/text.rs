@@ -2,7 +2,7 @@
 
 use super::ledger::Wanted;
 use super::plan::{Draw, Plan};
-use super::row::{LUMP_NAMES, STATUS_WORDS, meaningful};
+use super::row::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
 use super::statistics::{QUANTILES, Spread, Summary};
 use crate::answer::{significant, table};
 use crate::project::Loaded;
@@ -34,15 +34,34 @@ pub(crate) fn lump_words(lump: usize) -> &'static str {
     LUMP_WORDS.get(lump).copied().unwrap_or_default()
 }
 
-/// Tables and sentences of a campaign.
-pub(crate) fn text(plan: &Plan, wanted: Wanted, rows: usize, summary: &Summary) -> String {
+/// So many runs.
+pub(crate) fn counted(runs: usize) -> String {
+    if runs == 1 { "1 run".to_string() } else { format!("{runs} runs") }
+}
+
+/// How many of the driven runs are left out of the quantiles of a metric because they have no such number; `None` where all have one.
+pub(crate) fn without(metric: usize, spread: Option<Spread>, driven: usize) -> Option<String> {
+    let missing = spread.map_or(driven, |spread| spread.missing);
+    let words = match (METRIC_NAMES.get(metric), missing) {
+        (Some(&"settling_time_s"), 1) => "never settles",
+        (Some(&"settling_time_s"), _) => "never settle",
+        (_, 1) => "has none",
+        _ => "have none",
+    };
+    (missing > 0).then(|| format!("{missing} of {driven} {words}"))
+}
+
+/// Tables and sentences of a campaign; whether its rows are kept.
+pub(crate) fn text(plan: &Plan, (wanted, kept): (Wanted, bool), rows: usize, summary: &Summary) -> String {
     let runs = wanted.shard.runs_of(wanted.runs);
     let asked = runs.end - runs.start;
-    let mut out = format!("{}: {rows} runs, seed {}\n", plan.scenario(), plan.seed());
+    let mut out = format!("{}: {}, seed {}\n", plan.scenario(), counted(rows), plan.seed());
     if (rows as u64) < asked {
-        out.push_str(&format!(
-            "Stopped after {rows} of {asked} runs; with --out the same command goes on from there.\n"
-        ));
+        let next = match kept {
+            true => "the same command goes on from there",
+            false => "with --out they would be kept, and the same command would go on from there",
+        };
+        out.push_str(&format!("Stopped after {rows} of {asked} runs; {next}.\n"));
     }
     for (word, count) in STATUS_WORDS.iter().zip(summary.statuses).filter(|(_, count)| *count > 0) {
         out.push_str(&format!("  {count} {}\n", word.replace('_', " ")));
@@ -54,7 +73,11 @@ pub(crate) fn text(plan: &Plan, wanted: Wanted, rows: usize, summary: &Summary) 
         out.push_str(&format!("  run {run}: {} at {} s\n", word.replace('_', " "), significant(*time_s, 4)));
     }
     for (kind, count, first) in &summary.occurrences {
-        out.push_str(&format!("  {} in {count} runs, the first is run {first}\n", kind.replace('_', " ")));
+        out.push_str(&format!(
+            "  {} in {}, the first is run {first}\n",
+            kind.replace('_', " "),
+            counted(*count)
+        ));
     }
     if rows > 0 {
         out.push_str(&format!("\n{}\n\n{}\n", metrics(plan, summary), lumps(plan, summary)));
@@ -76,11 +99,14 @@ fn heads(first: [&'static str; 2], last: &'static str) -> Vec<String> {
 
 fn metrics(plan: &Plan, summary: &Summary) -> String {
     let heads = heads(["event", "metric"], "worst (run)");
+    let driven = summary.driven();
     let mut rows = table(&heads.iter().map(String::as_str).collect::<Vec<_>>());
     for (window, spreads) in plan.windows().iter().zip(&summary.metrics) {
         let mut name = cause_words(window);
         for metric in meaningful(window) {
-            let mut cells = vec![std::mem::take(&mut name), metric_words(metric).to_string()];
+            let missing =
+                without(metric, spreads[metric], driven).map_or(String::new(), |text| format!("; {text}"));
+            let mut cells = vec![std::mem::take(&mut name), format!("{}{missing}", metric_words(metric))];
             cells.extend(spread_cells(spreads[metric]));
             rows.add_row(cells);
         }
@@ -88,12 +114,11 @@ fn metrics(plan: &Plan, summary: &Summary) -> String {
     rows.trim_fmt()
 }
 
-/// Quantiles, and the worst with its run; dashes where no run has such a number. Runs without one are counted.
+/// Quantiles, and the worst with its run; dashes where no run has such a number.
 fn spread_cells(spread: Option<Spread>) -> Vec<String> {
     let Some(spread) = spread else { return vec!["-".to_string(); QUANTILES.len() + 1] };
-    let without = if spread.missing > 0 { format!(", {} without", spread.missing) } else { String::new() };
     let (value, run) = spread.worst;
-    let worst = format!("{} ({run}{without})", significant(value, 4));
+    let worst = format!("{} ({run})", significant(value, 4));
     spread.quantiles.iter().map(|value| significant(*value, 4)).chain([worst]).collect()
 }
 

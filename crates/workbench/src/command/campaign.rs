@@ -50,11 +50,11 @@ pub fn campaign_watched(
     let runs = wanted.shard.runs_of(wanted.runs);
     let complete = rows.len() as u64 == runs.end - runs.start;
     let files = match request.files && complete {
-        true => campaign::files(&plan, (&wanted.shard.name(), &rows), &summary)?,
+        true => campaign::files(&plan, (&wanted.shard, &rows), &summary)?,
         false => vec![],
     };
     Ok(Answer {
-        text: campaign::text(&plan, wanted, rows.len(), &summary),
+        text: campaign::text(&plan, (wanted, request.files), rows.len(), &summary),
         json: campaign::json(loaded, &plan, wanted, rows.len(), &summary),
         files,
         affirmative: complete,

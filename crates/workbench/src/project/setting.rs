@@ -81,6 +81,7 @@ fn insert(table: &mut Node, path: &[Part], value: Node) -> Result<(), Found> {
             };
             let Some(entry) = entries.get_mut(index) else { return Ok(()) };
             if rest.is_empty() {
+                entry.key_place = *place;
                 entry.node = value;
                 return Ok(());
             }

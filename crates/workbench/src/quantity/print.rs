@@ -1,6 +1,7 @@
 //! Writing a quantity in the unit people expect, without losing a bit.
 
 use super::dimension::Dimension;
+use super::display_unit::DisplayUnit;
 use super::parse::parse;
 
 /// The shortest TOML text that reads back as exactly `value`: `"70 bar"` with its quotes where an engineering unit
@@ -41,6 +42,14 @@ pub fn display(value: f64, dimension: &Dimension, significant_digits: usize) -> 
         Some(unit) if value.is_finite() => format!("{number} {unit}"),
         _ if value.is_finite() && dimension.si != "1" => format!("{number} {}", dimension.si),
         _ => number,
+    }
+}
+
+/// The unit that people expect of such a value, for several numbers in one unit.
+pub(crate) fn fitting(value: f64, dimension: &Dimension) -> DisplayUnit {
+    match fitting_unit(value, dimension) {
+        Some(symbol) => DisplayUnit { symbol, in_si: factor(symbol, dimension) },
+        None => DisplayUnit { symbol: dimension.si, in_si: 1.0 },
     }
 }
 

@@ -8,12 +8,12 @@ use super::typeset::{figures, prose};
 use crate::answer::significant;
 use crate::campaign::{
     CampaignError, LUMP_NAMES, METRIC_NAMES, Nowhere, Plan, QUANTILES, Shard, Spread, Summary, VariedRange,
-    Wanted, Worst, campaign, lump_words, metric_words, pictures,
+    Wanted, Worst, campaign, counted, lump_words, meaningful, metric_words, pictures, without,
 };
 use crate::command::{CommandError, Watch};
 use crate::figure::Figure;
 use crate::project::{Distribution, Loaded};
-use crate::simulate::{cause_words, small_as_zero};
+use crate::simulate::{Window, cause_words, small_as_zero};
 use crate::source::Source;
 
 /// Runs of the report's campaign, and where their numbers come from.
@@ -64,7 +64,7 @@ fn body(plan: &Plan, summary: &Summary, figures: &[Figure]) -> Markup {
             p { "Run " (run) " ended at " (significant(*time_s, 4)) " s: " (word.replace('_', " ")) "." }
         }
         @for (kind, count, first) in &summary.occurrences {
-            p { (kind.replace('_', " ")) " in " (count) " runs, the first is run " (first) "." }
+            p { (kind.replace('_', " ")) " in " (counted(*count)) ", the first is run " (first) "." }
         }
         @for figure in figures { (place(figure)) }
         (metrics(plan, summary))
@@ -79,30 +79,37 @@ fn metrics(plan: &Plan, summary: &Summary) -> Markup {
     let mut heads = vec!["metric"];
     heads.extend(quantiles.iter().map(String::as_str));
     heads.push("worst (run)");
-    let of_window = |spreads: &[Option<Spread>; METRIC_NAMES.len()]| -> Vec<Vec<Markup>> {
-        let known = spreads.iter().enumerate().filter_map(|(metric, spread)| Some((metric, (*spread)?)));
-        known.map(|(metric, spread)| spread_row(metric, &spread)).collect()
+    let driven = summary.driven();
+    let of_window = |(window, spreads): (&Window, &[Option<Spread>; METRIC_NAMES.len()])| {
+        let rows = meaningful(window).map(|metric| spread_row(metric, spreads[metric], driven));
+        (cause_words(window), rows.collect())
     };
     let windows = plan.windows().iter().zip(&summary.metrics);
-    let groups: Vec<(String, Vec<Vec<Markup>>)> =
-        windows.map(|(window, spreads)| (cause_words(window), of_window(spreads))).collect();
+    let groups: Vec<(String, Vec<Vec<Markup>>)> = windows.map(of_window).collect();
     html! {
         h3 { "Metrics over the runs" }
-        p { "That share of the runs lies below each number; the worst is that of largest magnitude." }
+        p { "That share of the runs that have such a number lies below each; the worst is that of largest magnitude. Runs that have none are counted beside the name." }
         (grouped(&heads, 1, &groups))
     }
 }
 
-fn spread_row(metric: usize, spread: &Spread) -> Vec<Markup> {
+fn spread_row(metric: usize, spread: Option<Spread>, driven: usize) -> Vec<Markup> {
     let number = |value: f64| match METRIC_NAMES.get(metric) {
         Some(&"steady_state_error_n") => figures(small_as_zero(value), DIGITS),
         _ => figures(value, DIGITS),
     };
+    let missing = without(metric, spread, driven);
+    let mut row = vec![html! {
+        (unbroken(metric_words(metric)))
+        @if let Some(missing) = missing { br; (unbroken(&missing)) }
+    }];
+    let Some(spread) = spread else {
+        row.extend((0..=QUANTILES.len()).map(|_| cell("-")));
+        return row;
+    };
     let (value, run) = spread.worst;
-    let without = if spread.missing > 0 { format!(", {} without", spread.missing) } else { String::new() };
-    let mut row = vec![unbroken(metric_words(metric))];
     row.extend(spread.quantiles.map(number));
-    row.push(html! { (number(value)) " (" (run) (without) ")" });
+    row.push(html! { (number(value)) " (" (run) ")" });
     row
 }
 
@@ -166,10 +173,11 @@ fn drawn(plan: &Plan, summary: &Summary) -> Markup {
     heads.extend(runs.iter().map(String::as_str));
     let row = |(place, range): (usize, &VariedRange)| {
         let values = draws.iter().filter_map(|draw| draw.values.get(place).copied());
-        let mut row = vec![path(&range.path), html! { span.unit { (unit(range.si())) } }];
-        row.extend(
-            [range.minimum, range.maximum].into_iter().chain(values).map(|value| figures(value, DIGITS)),
-        );
+        let shown = range.unit();
+        let symbol = if shown.symbol == "1" { "" } else { shown.symbol };
+        let mut row = vec![path(&range.path), html! { span.unit { (unit(symbol)) } }];
+        let all = [range.minimum, range.maximum].into_iter().chain(values);
+        row.extend(all.map(|value| figures(shown.of(value), DIGITS)));
         row
     };
     let rows: Vec<Vec<Markup>> = plan.ranges().iter().enumerate().map(row).collect();

@@ -9,6 +9,7 @@ use crate::project::{
     LoadMotionKind, Plant, Project, Scenario, Sizing, Spacing, Uncertain,
 };
 use crate::quantity::{self, RATIO};
+use crate::spelling::nearest;
 
 /// Most rows of all scenarios together: a run holds a third of a kilobyte of each, and its table as much again.
 const MAXIMUM_ROWS: f64 = 2e6;
@@ -137,7 +138,13 @@ fn campaign(project: &Project, campaign: &Campaign, check: &mut Check<'_, '_>) {
     if let Some(name) = &campaign.scenario
         && !project.scenarios.iter().any(|scenario| scenario.name == *name)
     {
-        check.error("campaign.scenario", format!("there is no scenario called \"{name}\""));
+        let names = || project.scenarios.iter().map(|scenario| scenario.name.as_str());
+        let help = match nearest(name, names()) {
+            Some(near) => format!("did you mean \"{near}\"?"),
+            None => format!("there are: {}", names().collect::<Vec<_>>().join(", ")),
+        };
+        let message = format!("there is no scenario called \"{name}\"");
+        check.error_with_help("campaign.scenario", message, help);
     }
     let varied: Vec<&str> = campaign.parameters.iter().map(|varied| varied.path.as_str()).collect();
     for varied_path in &varied {
@@ -145,7 +152,17 @@ fn campaign(project: &Project, campaign: &Campaign, check: &mut Check<'_, '_>) {
     }
     for varied in &campaign.parameters {
         let path = format!("campaign.parameters.{}", varied.path);
+        if ["spread", "minimum", "maximum"].iter().any(|part| check.refused(&format!("{path}.{part}"))) {
+            continue;
+        }
         match (varied.spread, varied.minimum, varied.maximum) {
+            (Some(spread), None, None) if spread > 1.0 => {
+                let percent = significant(100.0 * spread, 3);
+                let message = format!(
+                    "`spread` is {percent} % of the declared value to either side: draws change sign"
+                );
+                check.warning(&format!("{path}.spread"), message);
+            }
             (Some(_), None, None) => {}
             (None, Some(low), Some(high)) if low < high => {
                 let distribution = varied.distribution.unwrap_or(campaign.distribution);

@@ -1,0 +1,101 @@
+//! A campaign's table on the disk: one writer at a time, and nothing of one part over that of another.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const PROJECT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/benchmark/campaign.toml");
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// A short campaign of eight runs.
+fn campaign(folder: &Path, more: &[&str]) -> Output {
+    let settings =
+        ["duration=0.1 s", "load_motion.start=0.05 s", "load_motion.duration=20 ms", "reference=[]"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_phea"));
+    command.current_dir(folder).args(["campaign", PROJECT, "--runs", "8"]).args(more);
+    for setting in settings {
+        command.args(["--set", &format!("scenario.0.{setting}")]);
+    }
+    command.output().expect("phea starts")
+}
+
+fn complaint(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A second one is refused while the first has the table, leaves it as it is, and goes on as soon as the first is gone.
+#[test]
+fn a_table_has_one_writer() {
+    let folder = folder("campaign_lock");
+    assert_eq!(campaign(&folder, &["--out", "out"]).status.code(), Some(0));
+    let path = folder.join("out/runs.csv");
+    let before = fs::read(&path).expect("a table");
+    let first = File::options().read(true).write(true).open(&path).expect("a table");
+    first.try_lock().expect("nobody else has it");
+    let refused = campaign(&folder, &["--out", "out"]);
+    assert_eq!(refused.status.code(), Some(2), "{}", complaint(&refused));
+    assert!(
+        complaint(&refused).contains("another phea campaign is writing out/runs.csv: wait until it ends")
+    );
+    assert_eq!(fs::read(&path).expect("a table"), before);
+    drop(first);
+    let again = campaign(&folder, &["--out", "out"]);
+    assert_eq!(again.status.code(), Some(0), "{}", complaint(&again));
+    assert_eq!(fs::read(&path).expect("a table"), before);
+}
+
+/// Torn on the disk, it goes on to the same bytes.
+#[test]
+fn a_torn_table_is_made_whole() {
+    let folder = folder("campaign_torn");
+    assert_eq!(campaign(&folder, &["--out", "out"]).status.code(), Some(0));
+    let path = folder.join("out/runs.csv");
+    let whole = fs::read(&path).expect("a table");
+    fs::write(&path, &whole[..whole.len() * 2 / 3]).expect("written");
+    assert_eq!(campaign(&folder, &["--out", "out"]).status.code(), Some(0));
+    assert_eq!(fs::read(&path).expect("a table"), whole);
+}
+
+#[test]
+fn parts_in_one_folder_have_files_of_their_own() {
+    let folder = folder("campaign_parts");
+    let names = |part: &str| {
+        let before: Vec<_> = fs::read_dir(&folder).unwrap().map(|file| file.unwrap().file_name()).collect();
+        let output = campaign(&folder, &["--out", ".", "--shard", part]);
+        assert_eq!(output.status.code(), Some(0), "{}", complaint(&output));
+        let after = fs::read_dir(&folder).unwrap().map(|file| file.unwrap().file_name());
+        let mut new: Vec<String> = after
+            .filter(|name| !before.contains(name))
+            .map(|name| name.to_string_lossy().into_owned())
+            .collect();
+        new.sort();
+        new
+    };
+    let first = names("1/2");
+    assert!(first.len() >= 4 && first.iter().all(|name| name.contains("-1-of-2.")), "{first:?}");
+    let second = names("2/2");
+    let expected: Vec<String> = first.iter().map(|name| name.replace("-1-of-2.", "-2-of-2.")).collect();
+    assert_eq!(second, expected);
+}
+
+#[test]
+fn what_is_in_the_way_and_what_cannot_be_is_said_plainly() {
+    let folder = folder("campaign_words");
+    fs::write(folder.join("afile"), "").expect("written");
+    for (more, words) in [
+        (["--out", "afile"], "cannot write afile: a file of that name is in the way"),
+        (["--threads", "0"], "0 is not in 1.."),
+    ] {
+        let output = campaign(&folder, &more);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(complaint(&output).contains(words), "{}", complaint(&output));
+    }
+}
