@@ -38,8 +38,10 @@ mod zeros;
 use num_complex::Complex64;
 
 pub use discretization::Discretization;
+pub(crate) use eigenvalues::working_eigenvalues;
 pub use polynomial::Polynomial;
 pub use state_space::StateSpace;
+pub(crate) use structure::irreducible_blocks;
 pub use transfer_function::TransferFunction;
 
 /// Whether a system lives in continuous time (its variable is s) or in samples (its variable is z).

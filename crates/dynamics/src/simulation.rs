@@ -8,6 +8,7 @@ mod closed_loop;
 mod course;
 mod driver;
 mod explicit;
+mod growth;
 mod history;
 mod method;
 mod passage;
@@ -26,6 +27,7 @@ mod trajectory;
 pub use closed_loop::{ClosedLoop, HeldPlant, LoopSignals};
 pub use course::{Course, Event, Input, Observer, Outcome, Sampler, Settings, SimulationError, Status, Work};
 pub use driver::drive;
+pub use growth::Sliding;
 pub use method::Method;
 pub use profile::{Moment, Piece, Profile, ProfileError};
 pub use sensed::Sensed;
@@ -69,6 +71,12 @@ pub trait System<S: Scalar> {
     /// Number of indicators.
     fn indicators(&self) -> usize {
         0
+    }
+
+    /// Where friction acts. Its falling slope may feed an oscillation from one step to the next; all else in the Jacobian is
+    /// taken to change over tens of steps. `None`: nothing is taken so, and the modes are found at every step.
+    fn sliding(&self) -> Option<Sliding> {
+        None
     }
 
     /// Quantities whose change of sign is an event (contact, cavitation): reported with its time, never acted on.
@@ -116,6 +124,11 @@ pub trait Plant<S: Scalar> {
 
     /// As [`System::outgoing`].
     fn outgoing<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _waves: &mut [T]) {}
+
+    /// As [`System::sliding`].
+    fn sliding(&self) -> Option<Sliding> {
+        None
+    }
 
     /// As [`System::indicators`].
     fn indicators(&self) -> usize {

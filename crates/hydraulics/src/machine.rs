@@ -39,7 +39,7 @@ pub use start::{Beginning, Start};
 pub use state::MachineState;
 
 use phea_dynamics::scalar::{Lanes, Scalar};
-use phea_dynamics::simulation::{Lane, Plant};
+use phea_dynamics::simulation::{Lane, Plant, Sliding};
 
 use crate::actuator::Actuator;
 use crate::cylinder::Cylinder;
@@ -310,6 +310,10 @@ impl<S: Scalar> Plant<S> for Machine<S> {
 
     fn outgoing<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
         self.write_outgoing(state, inputs, waves);
+    }
+
+    fn sliding(&self) -> Option<Sliding> {
+        Some(self.layout.sliding())
     }
 
     fn indicators(&self) -> usize {

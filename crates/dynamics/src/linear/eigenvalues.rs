@@ -29,6 +29,18 @@ pub(crate) fn eigenvalues_of_computed(matrix: &DMatrix<f64>) -> Result<Vec<Compl
     by_blocks(matrix, |_, _| ())
 }
 
+/// The same in working precision, unsorted, for a matrix that is looked at again and again: to a part of its largest eigenvalue,
+/// and not of each. `None` where the iteration stopped without an answer.
+pub(crate) fn working_eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Complex64>> {
+    if matrix.iter().any(|entry| !entry.is_finite()) {
+        return None;
+    }
+    nalgebra::linalg::balancing::balance_parlett_reinsch(&mut matrix);
+    let order = matrix.nrows();
+    let (_, triangular) = Schur::try_new(matrix, f64::EPSILON, 100 * order)?.unpack();
+    Some(of_quasi_triangular(&triangular))
+}
+
 fn by_blocks(
     matrix: &DMatrix<f64>,
     adjust: impl Fn(&DMatrix<f64>, &mut [Complex64]),

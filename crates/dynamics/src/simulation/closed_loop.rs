@@ -1,7 +1,7 @@
 //! A plant under a controller: one that acts continuously, or one that holds its command between samples.
 
 use super::realization::Realization;
-use super::{Plant, System};
+use super::{Plant, Sliding, System};
 use crate::controller::{AntiWindup, Controller};
 use crate::linear::{LinearError, TransferFunction};
 use crate::scalar::Scalar;
@@ -197,6 +197,10 @@ impl<S: Scalar, P: Plant<S>> System<S> for ClosedLoop<P> {
         }
     }
 
+    fn sliding(&self) -> Option<Sliding> {
+        self.plant.sliding()
+    }
+
     fn indicators(&self) -> usize {
         self.plant.indicators() + usize::from(self.limit.is_finite())
     }
@@ -287,6 +291,10 @@ impl<S: Scalar, P: Plant<S>> System<S> for HeldPlant<P> {
 
     fn outgoing<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
         self.plant.outgoing(&state[..self.plant.states()], &inputs[2..], waves);
+    }
+
+    fn sliding(&self) -> Option<Sliding> {
+        self.plant.sliding()
     }
 
     fn indicators(&self) -> usize {

@@ -96,6 +96,16 @@ pub enum Status {
         /// When, in s of simulated time.
         time_s: f64,
     },
+    /// It took more steps than it was allowed, and the last of them were short because a mode grows: its oscillation would take
+    /// more steps than there are.
+    UnresolvedOscillation {
+        /// When, in s of simulated time.
+        time_s: f64,
+        /// Magnitude of the mode's eigenvalue, in rad/s.
+        frequency_rad_per_s: f64,
+        /// Its real part, in 1/s.
+        growth_per_s: f64,
+    },
     /// It took more steps than it was allowed.
     TooManySteps {
         /// When, in s of simulated time.

@@ -1,6 +1,7 @@
 //! Drives systems through their courses, one in each lane.
 
 use super::course::{Event, Observer, Outcome, Settings, SimulationError, Status};
+use super::growth::GrowthWatch;
 use super::history::NODES;
 use super::method::{Extension, LOOKED_AT, StepInputs, Stepper};
 use super::passage::Passage;
@@ -15,9 +16,14 @@ use crate::scalar::{Dependence, Dual};
 /// add up.
 const PROPAGATED: f64 = 0.1;
 
+/// Change of friction's damping, times the step, beyond which known matrices serve no more.
+const CHANGED_FRICTION: f64 = 0.1;
+
 /// All lanes and the method they share.
 struct Drive<'a, S, O> {
     method: Stepper<S>,
+    /// What is known of the modes in each lane.
+    watches: Vec<GrowthWatch>,
     /// For lanes that are sampled.
     propagator: Propagator<S>,
     settings: Settings,
@@ -111,9 +117,11 @@ where
         let method =
             Stepper::new(settings.method, system).ok_or(SimulationError::TooLarge { states, inputs })?;
         let none = vec![zero; inputs];
+        let watch = GrowthWatch::new(system.sliding(), method.linearized(), !system.delays().is_empty());
         let stages = [none.clone(), none.clone(), none.clone(), none.clone(), none.clone(), none.clone()];
         Ok(Drive {
             method,
+            watches: vec![watch; S::COUNT],
             propagator: Propagator::new(states),
             settings: *settings,
             slots: (0..S::COUNT).map(|_| None).collect(),
@@ -172,9 +180,11 @@ where
         }
         self.fresh = true;
         self.propagator.forget(lane);
+        self.watches[lane].forget();
         let states = vec![0.0; system.states()];
         let Task { sampler, observer, .. } = task;
-        self.slots[lane] = Some(Slot { passage, sampler, observer, propagated: false, states, inputs });
+        self.slots[lane] =
+            Some(Slot { passage, sampler, observer, unwatched: 1, propagated: false, states, inputs });
         Ok(())
     }
 
@@ -184,15 +194,18 @@ where
             self.prepare(lane);
         }
         // A lane that goes by its matrices now stands, after this step, where the method has not linearised it.
-        let fresh = std::mem::take(&mut self.fresh);
+        let mut fresh = std::mem::take(&mut self.fresh);
+        self.choose_propagated();
+        if self.watch_propagated(system, fresh) {
+            fresh = false;
+        }
         if self.propagate(system) {
             return;
         }
         if fresh {
-            let mut left = self.slots.iter().flatten().filter(|slot| !slot.propagated);
-            self.inputs.moving = left.any(|slot| !slot.passage.still);
-            self.method.linearize(system, &self.state, &self.inputs);
+            self.linearize(system);
         }
+        self.watch();
         let error =
             self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
         let error = self.look_between(system, error);
@@ -213,6 +226,65 @@ where
                 self.take(system, lane);
             }
         }
+    }
+
+    /// Rates, Jacobian and slopes in time where each lane stands.
+    fn linearize<E: System<S>>(&mut self, system: &E) {
+        let mut left = self.slots.iter().flatten().filter(|slot| !slot.propagated);
+        self.inputs.moving = left.any(|slot| !slot.passage.still);
+        self.method.linearize(system, &self.state, &self.inputs);
+    }
+
+    /// Shortens steps that would calm a mode that grows.
+    fn watch(&mut self) {
+        for lane in 0..S::COUNT {
+            let (Some(slot), Some(linearized)) = (&mut self.slots[lane], self.method.linearized()) else {
+                continue;
+            };
+            if slot.propagated || slot.unwatched == 0 {
+                continue;
+            }
+            let steps = std::mem::take(&mut slot.unwatched);
+            let growing = self.watches[lane].bound(slot.passage.step_s, steps, linearized, lane);
+            if slot.passage.limit(growing) {
+                self.begin_step(lane);
+            }
+        }
+    }
+
+    /// Which lanes have matrices for the step to their next break.
+    fn choose_propagated(&mut self) {
+        for lane in 0..S::COUNT {
+            let Some(slot) = &mut self.slots[lane] else { continue };
+            let whole = slot.sampler.as_ref().and_then(|_| slot.passage.whole_step());
+            slot.propagated = whole.is_some_and(|step_s| self.propagator.knows(lane, step_s));
+        }
+    }
+
+    /// Asks now and then for the modes of lanes that go by their matrices: where one grows, or friction is not what it was when the
+    /// matrices were found, these serve no more. Whether everything has been linearised for it.
+    fn watch_propagated<E: System<S>>(&mut self, system: &E, fresh: bool) -> bool {
+        let due = |slot: &Slot<'_, O>| slot.propagated && slot.is_due();
+        if !self.slots.iter().flatten().any(due) {
+            return false;
+        }
+        if fresh {
+            self.linearize(system);
+        }
+        for lane in 0..S::COUNT {
+            let Some(linearized) = self.method.linearized() else { continue };
+            let Some(slot) = self.slots[lane].as_mut().filter(|slot| due(slot)) else { continue };
+            let (watch, step_s) = (&mut self.watches[lane], slot.passage.step_s);
+            let steps = std::mem::take(&mut slot.unwatched);
+            let growing = watch.bound(step_s, steps, linearized, lane);
+            let change = (watch.friction(linearized, lane) - self.propagator.friction[lane]).abs();
+            if slot.passage.limit(growing) || change * step_s > CHANGED_FRICTION {
+                self.propagator.forget(lane);
+                slot.propagated = false;
+                self.begin_step(lane);
+            }
+        }
+        true
     }
 
     /// The error of the step with that between its ends, in lanes where the first may not be all.
@@ -241,7 +313,7 @@ where
         for Slot { passage, .. } in self.slots.iter_mut().flatten() {
             let tried = passage.work.steps + passage.work.rejected;
             if tried >= self.settings.maximum_steps && passage.status.is_none() {
-                passage.status = Some(Status::TooManySteps { time_s: passage.time_s });
+                passage.status = Some(passage.out_of_steps());
             }
         }
     }
@@ -250,9 +322,7 @@ where
     fn prepare(&mut self, lane: usize) {
         let Some(slot) = &mut self.slots[lane] else { return };
         let Slot { passage, sampler, states, inputs, .. } = slot;
-        let mut sample_time_s = None;
         if let Some(sampler) = sampler {
-            sample_time_s = Some(sampler.sample_time_s());
             if passage.samples_now(sampler.sample_time_s()) {
                 for (place, value) in states.iter_mut().zip(&self.state) {
                     *place = value.lane(lane);
@@ -261,7 +331,13 @@ where
                 passage.act(sampler.as_mut(), states, inputs);
             }
         }
-        passage.choose(sample_time_s);
+        self.begin_step(lane);
+    }
+
+    /// Chooses the step and sets its inputs in one lane.
+    fn begin_step(&mut self, lane: usize) {
+        let Some(Slot { passage, sampler, inputs, .. }) = &mut self.slots[lane] else { return };
+        passage.choose(sampler.as_ref().map(|sampler| sampler.sample_time_s()));
         self.step.set_lane(lane, passage.step_s);
         if passage.stands_still() {
             return;
@@ -278,14 +354,7 @@ where
 
     /// Takes a step with known matrices in every lane that has them; whether this was so in all.
     fn propagate<E: System<S>>(&mut self, system: &E) -> bool {
-        let mut any = false;
-        for lane in 0..S::COUNT {
-            let Some(slot) = &mut self.slots[lane] else { continue };
-            let whole = slot.sampler.as_ref().and_then(|_| slot.passage.whole_step());
-            slot.propagated = whole.is_some_and(|step_s| self.propagator.knows(lane, step_s));
-            any |= slot.propagated;
-        }
-        if !any {
+        if !self.slots.iter().flatten().any(|slot| slot.propagated) {
             return false;
         }
         let (inputs, tolerance) = (&self.inputs.stages[0], self.settings.tolerance);
@@ -324,6 +393,7 @@ where
             let taken = slot.sampler.is_some() && !slot.propagated && error.lane(lane) <= 1.0;
             if whole && taken && self.propagator.may_learn(lane) {
                 self.propagator.learn(lane, step_s, linearized, &self.method.scales);
+                self.propagator.friction[lane] = self.watches[lane].friction(linearized, lane);
             }
         }
     }
@@ -345,6 +415,9 @@ where
     /// Moves one lane to the end of the step it took.
     fn take<E: System<S>>(&mut self, system: &E, lane: usize) {
         self.fresh = true;
+        if let Some(slot) = &mut self.slots[lane] {
+            slot.unwatched += 1;
+        }
         self.send_waves(system, lane);
         self.find_events(system, lane);
         self.observe(lane);

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use super::growth::Growing;
 use super::history::History;
 use super::{Course, Event, Input, Piece, Sampler, Status, Work};
 use crate::portable;
@@ -34,6 +35,8 @@ pub(super) struct Passage<'a> {
     proposed_s: f64,
     /// No step is longer.
     longest_s: f64,
+    /// The mode that grows and asks for the shortest step, if any does.
+    pub(super) growing: Option<Growing>,
     /// Where the step being tried ends, if at a break.
     target_s: Option<f64>,
     /// The next break, sample or arrival.
@@ -77,6 +80,7 @@ impl<'a> Passage<'a> {
             time_s: 0.0,
             proposed_s: longest_s,
             longest_s,
+            growing: None,
             target_s: None,
             goal_s: course.duration_s,
             step_s: 0.0,
@@ -124,8 +128,9 @@ impl<'a> Passage<'a> {
         }
         self.goal_s = target;
         let left = target - self.time_s;
-        let wanted = self.proposed_s.min(self.longest_s);
-        let nearly = wanted >= 0.99 * left && left <= self.longest_s;
+        let longest_s = self.growing.map_or(self.longest_s, |growing| growing.step_s.min(self.longest_s));
+        let wanted = self.proposed_s.min(longest_s);
+        let nearly = wanted >= 0.99 * left && left <= longest_s;
         (self.step_s, self.target_s) = if wanted >= left || nearly {
             (left, Some(target))
         } else if wanted > 0.5 * left {
@@ -133,6 +138,23 @@ impl<'a> Passage<'a> {
         } else {
             (wanted, None)
         };
+    }
+
+    /// Takes note of the mode that bounds the step; whether the step being tried is too long for it.
+    pub(super) fn limit(&mut self, growing: Option<Growing>) -> bool {
+        self.growing = growing;
+        growing.is_some_and(|growing| growing.step_s < self.step_s * (1.0 - 1e-9))
+    }
+
+    /// How it ends when it may take no more steps.
+    pub(super) fn out_of_steps(&self) -> Status {
+        let time_s = self.time_s;
+        match self.growing {
+            None => Status::TooManySteps { time_s },
+            Some(Growing { frequency_rad_per_s, growth_per_s, .. }) => {
+                Status::UnresolvedOscillation { time_s, frequency_rad_per_s, growth_per_s }
+            }
+        }
     }
 
     /// Time of the next row.

@@ -22,6 +22,8 @@ pub(super) struct Propagator<S> {
     jacobian: Square<S>,
     first: Square<S>,
     third: Square<S>,
+    /// Damping of friction where each lane's matrices were found.
+    pub(super) friction: Vec<f64>,
     /// The step of each lane in s; not a number where there is none.
     step_s: Vec<f64>,
     /// State, rates at both ends, remainder, difference.
@@ -47,6 +49,7 @@ impl<S: Lane> Propagator<S> {
             jacobian: matrix.clone(),
             first: matrix.clone(),
             third: matrix,
+            friction: vec![0.0; S::COUNT],
             step_s: vec![f64::NAN; S::COUNT],
             end: vec![zero; states],
             rates: [vec![zero; states], vec![zero; states]],

@@ -1,9 +1,12 @@
 //! One step of an L-stable Rosenbrock method of order five.
 
+use nalgebra::DMatrix;
+
 use super::method::{Extension, LOOKED_AT, StepInputs, relative_error};
 use super::pattern::Pattern;
 use super::step_matrix::{COLUMN, Column, StepMatrix};
 use super::{Lane, System};
+use crate::linear::irreducible_blocks;
 use crate::scalar::{Dependence, Dual};
 
 /// Stages of the method.
@@ -368,6 +371,27 @@ where
 }
 
 impl<S: Lane> Rosenbrock<S> {
+    /// The sets of states that all influence each other.
+    pub(super) fn blocks(&self) -> Vec<Vec<usize>> {
+        let mut pattern = DMatrix::zeros(self.end.len(), self.end.len());
+        for (row, column, _) in self.jacobian_entries() {
+            pattern[(row, column)] = 1.0;
+        }
+        irreducible_blocks(&pattern)
+    }
+
+    /// Where the entry in a row and a column of the Jacobian is held; `None` where it is zero whatever the state.
+    pub(super) fn place(&self, row: usize, column: usize) -> Option<usize> {
+        let before: usize = self.pattern.rows.iter().take(row).map(Vec::len).sum();
+        let place = self.pattern.rows.get(row)?.iter().position(|&other| other == column)?;
+        Some(before + place)
+    }
+
+    /// The entry of the Jacobian that is held there, in one lane.
+    pub(super) fn jacobian_at(&self, place: usize, lane: usize) -> f64 {
+        self.jacobian.get(place).map_or(0.0, |value| value.lane(lane))
+    }
+
     /// Row, column and value of every entry of the Jacobian that can differ from zero.
     pub(super) fn jacobian_entries(&self) -> impl Iterator<Item = (usize, usize, S)> + '_ {
         let places = self.pattern.rows.iter().enumerate();

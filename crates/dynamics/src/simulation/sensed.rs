@@ -1,7 +1,7 @@
 //! A plant that is seen through a sensor.
 
-use super::Plant;
 use super::realization::Realization;
+use super::{Plant, Sliding};
 use crate::linear::{LinearError, TransferFunction};
 use crate::scalar::Scalar;
 
@@ -167,6 +167,10 @@ impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
         if let Some(wave) = own.first_mut() {
             *wave = self.shown::<S, T>(state, inputs);
         }
+    }
+
+    fn sliding(&self) -> Option<Sliding> {
+        self.plant.sliding()
     }
 
     fn indicators(&self) -> usize {

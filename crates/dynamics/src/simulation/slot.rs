@@ -10,6 +10,8 @@ pub(super) struct Slot<'a, O> {
     pub(super) passage: Passage<'a>,
     pub(super) sampler: Option<Box<dyn Sampler + 'a>>,
     pub(super) observer: O,
+    /// Steps since its modes were asked for.
+    pub(super) unwatched: u64,
     /// Whether its last step was taken with known matrices.
     pub(super) propagated: bool,
     /// A state or input at one time, for sampler and observer.
@@ -17,7 +19,16 @@ pub(super) struct Slot<'a, O> {
     pub(super) inputs: Vec<f64>,
 }
 
+/// What goes by known matrices is asked for its modes after this many steps, or this time in s.
+const UNWATCHED: (u64, f64) = (32, 0.03);
+
 impl<O: Observer> Slot<'_, O> {
+    /// Whether its modes are to be asked for, though it goes by known matrices.
+    pub(super) fn is_due(&self) -> bool {
+        let (steps, time_s) = UNWATCHED;
+        self.unwatched >= steps || self.unwatched as f64 * self.passage.step_s >= time_s
+    }
+
     /// Shows the observer every row before the end of the step, from the states it wants over the step.
     #[inline]
     pub(super) fn observe(&mut self, wanted: &[Extension<f64>]) {

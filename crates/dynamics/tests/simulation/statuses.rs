@@ -63,6 +63,7 @@ fn driven<E: System<f64> + Clone>(system: &E, start: &[f64], course: &Course, st
         Status::Cancelled { time_s }
         | Status::StepTooSmall { time_s }
         | Status::NotFinite { time_s }
+        | Status::UnresolvedOscillation { time_s, .. }
         | Status::TooManySteps { time_s } => time_s,
     };
     assert!(result.outcome.work.steps + result.outcome.work.rejected <= steps);

@@ -1,4 +1,5 @@
 use phea_dynamics::scalar::Scalar;
+use phea_dynamics::simulation::Sliding;
 
 use super::{LoadMotion, Machine};
 use crate::servovalve::SpoolState;
@@ -88,6 +89,11 @@ impl Layout {
     pub(super) fn count(&self) -> usize {
         let [a, b] = self.lines;
         self.named + a + b
+    }
+
+    /// Where friction acts: on the velocity, the sixth of the states that all machines have, and on the bristles behind it.
+    pub(super) fn sliding(&self) -> Sliding {
+        Sliding { velocity: 5, memory: self.bristle.then_some(6) }
     }
 
     /// Number of inputs.

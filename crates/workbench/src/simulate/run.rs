@@ -116,6 +116,7 @@ impl Stopped {
             Status::StepTooSmall { time_s } => (time_s, "step_too_small"),
             Status::NotFinite { time_s } => (time_s, "not_finite"),
             Status::TooManySteps { time_s } => (time_s, "too_many_steps"),
+            Status::UnresolvedOscillation { time_s, .. } => (time_s, "unresolved_oscillation"),
         };
         Some(Stopped { time_s, word })
     }

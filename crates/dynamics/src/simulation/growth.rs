@@ -1,0 +1,226 @@
+//! Modes that grow: how long a step may be that shows them grow.
+//!
+//! An L-stable method damps what it steps over. A mode that decays is none the worse for it; one that grows would be calmed, and
+//! no estimate of an error sees it while its amplitude is small. So each step is measured by the modes of its own Jacobian.
+
+use nalgebra::DMatrix;
+
+use super::Lane;
+use super::rosenbrock::Rosenbrock;
+use crate::linear::working_eigenvalues;
+use crate::portable;
+
+/// Where friction acts: the one part of the damping that may change its sign from one step to the next.
+///
+/// ```text
+/// d(omega) = -df/dv - Re((df/dz) (dg/dv)/(i omega - dg/dz)),    f = dv/dt, g = dz/dt          v velocity, z its memory
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sliding {
+    /// The state that is a velocity.
+    pub velocity: usize,
+    /// The state of what remembers the motion, as bristles do.
+    pub memory: Option<usize>,
+}
+
+/// A mode that grows, and the longest step that shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Growing {
+    pub(super) step_s: f64,
+    /// Magnitude of its eigenvalue, in rad/s.
+    pub(super) frequency_rad_per_s: f64,
+    /// Real part of its eigenvalue, in 1/s.
+    pub(super) growth_per_s: f64,
+}
+
+/// Part by which the growth of a resolved mode may be off.
+const GROWTH_ERROR: f64 = 0.02;
+/// Amplitude that a step of angle theta loses: this times theta^8 (Rodas5P, on the imaginary axis).
+const AMPLITUDE_LOST: f64 = 1.2e-5;
+/// No mode that grows turns by more than this in a step, in rad: beyond, the amplitude lost follows no power.
+const LARGEST_ANGLE: f64 = 2.0;
+/// Slower growth than this part of its frequency is rounding.
+const LEAST_GROWTH: f64 = 1e-10;
+/// Turning by less in a step, in rad, no mode's growth is off by more than 3e-6 of its frequency, whatever its damping.
+const SMALL_ANGLE: f64 = 0.8;
+/// A step that is longer by no more than this is shortened to the small angle rather than looked into: it costs less.
+const NEARLY: f64 = 1.25;
+/// Below this part of what it was, friction is looked at again: modes have come up that were not there.
+const FALLEN: f64 = 0.1;
+/// Where waves come back late the Jacobian does not tell whether a mode decays: one that decays by less than this part of its
+/// frequency is taken to grow by the other.
+const UNTOLD: [f64; 2] = [0.05, 1e-3];
+/// Steps between two looks at a small system: together they cost some hundredths of its steps.
+const LEAST_INTERVAL: u64 = 128;
+/// Part of that while a mode grows.
+const WHILE_GROWING: u64 = 4;
+/// Part of the growth of the least stable mode by which friction may change it before it is looked at again.
+const CHANGED: f64 = 0.5;
+
+#[derive(Clone, Copy, Debug)]
+struct Mode {
+    magnitude: f64,
+    growth: f64,
+}
+
+impl Mode {
+    /// The longest step that shows this mode, with this growth, to [`GROWTH_ERROR`]; `None` where it does not grow.
+    ///
+    /// ```text
+    /// c theta^8 <= e zeta theta,        theta = h |lambda|, zeta = Re lambda/|lambda|
+    /// ```
+    fn bound(&self, growth: f64) -> Option<Growing> {
+        let relative = growth / self.magnitude;
+        if !(relative > LEAST_GROWTH) {
+            return None;
+        }
+        let angle = portable::pow(GROWTH_ERROR * relative / AMPLITUDE_LOST, 1.0 / 7.0).min(LARGEST_ANGLE);
+        Some(Growing {
+            step_s: angle / self.magnitude,
+            frequency_rad_per_s: self.magnitude,
+            growth_per_s: growth,
+        })
+    }
+}
+
+/// What is known of the modes of the machine in one lane.
+///
+/// Eigenvalues cost several steps, so they are found when they may have changed: every so many steps for what changes slowly, and
+/// when the damping of friction changes its sign, falls to a part of what it was, or feeds a mode half as much again. In between it
+/// shifts all modes as it would the one that has all its kinetic energy in the velocity: by half of its own change.
+#[derive(Clone, Debug, Default)]
+pub(super) struct GrowthWatch {
+    /// States that influence each other, set by set: their modes are found apart.
+    blocks: Vec<Vec<usize>>,
+    /// Places in the Jacobian of df/dv, and of df/dz, dg/dv, dg/dz.
+    own: Option<usize>,
+    memory: Option<[usize; 3]>,
+    /// Whether waves come back late.
+    delayed: bool,
+    /// Modes that oscillate or grow.
+    modes: Vec<Mode>,
+    /// Largest magnitude of those, in rad/s.
+    fastest: f64,
+    /// Largest growth of those, in 1/s.
+    growth: f64,
+    /// d at the last look.
+    damping: f64,
+    /// Steps since; `None` before the first.
+    age: Option<u64>,
+    interval: u64,
+}
+
+impl GrowthWatch {
+    pub(super) fn new<S: Lane>(
+        sliding: Option<Sliding>,
+        method: Option<&Rosenbrock<S>>,
+        delayed: bool,
+    ) -> GrowthWatch {
+        let Some(method) = method else { return GrowthWatch::default() };
+        let watch = GrowthWatch { blocks: method.blocks(), delayed, interval: 1, ..GrowthWatch::default() };
+        let Some(Sliding { velocity, memory }) = sliding else { return watch };
+        let place = |row, column| method.place(row, column);
+        let memory = memory.and_then(|memory| {
+            Some([place(velocity, memory)?, place(memory, velocity)?, place(memory, memory)?])
+        });
+        let largest = watch.blocks.iter().map(Vec::len).max().unwrap_or_default() as u64;
+        let interval = LEAST_INTERVAL.max(largest * largest);
+        GrowthWatch { own: place(velocity, velocity), memory, interval, ..watch }
+    }
+
+    /// Forgets everything: another machine is in the lane.
+    pub(super) fn forget(&mut self) {
+        self.age = None;
+    }
+
+    /// The mode that bounds a step of this length, so many steps after it was last asked for, from the Jacobian at its start;
+    /// `None` where none does.
+    pub(super) fn bound<S: Lane>(
+        &mut self,
+        step_s: f64,
+        steps: u64,
+        method: &Rosenbrock<S>,
+        lane: usize,
+    ) -> Option<Growing> {
+        let age = self.age.map_or(u64::MAX, |age| age.saturating_add(steps));
+        self.age = Some(age);
+        let interval = if self.growth > 0.0 { self.interval / WHILE_GROWING } else { self.interval };
+        if age >= interval {
+            return self.look(method, lane);
+        }
+        let small_s = SMALL_ANGLE / self.fastest;
+        if step_s <= small_s {
+            return None;
+        }
+        let damping = self.friction(method, lane);
+        if self.is_known_at(damping) {
+            self.shortest(0.5 * (self.damping.min(0.0) - damping.min(0.0)))
+        } else if damping < 0.0 && step_s <= NEARLY * small_s {
+            let growth_per_s = -0.5 * damping;
+            Some(Growing { step_s: small_s, frequency_rad_per_s: self.fastest, growth_per_s })
+        } else {
+            self.look(method, lane)
+        }
+    }
+
+    /// Whether the modes at the last look tell those under this damping of friction.
+    fn is_known_at(&self, damping: f64) -> bool {
+        match (self.damping < 0.0, damping < 0.0) {
+            (false, false) => damping >= FALLEN * self.damping,
+            (true, true) => 0.5 * (damping - self.damping).abs() <= CHANGED * self.growth.abs(),
+            _ => false,
+        }
+    }
+
+    /// d at the fastest mode.
+    pub(super) fn friction<S: Lane>(&self, method: &Rosenbrock<S>, lane: usize) -> f64 {
+        let value = |place: usize| method.jacobian_at(place, lane);
+        let own = self.own.map_or(0.0, value);
+        let memory = self.memory.map_or(0.0, |[there, back, own]| {
+            let own = value(own);
+            let squares = own * own + self.fastest * self.fastest;
+            if squares > 0.0 { value(there) * value(back) * own / squares } else { 0.0 }
+        });
+        memory - own
+    }
+
+    /// Finds the modes anew.
+    fn look<S: Lane>(&mut self, method: &Rosenbrock<S>, lane: usize) -> Option<Growing> {
+        let states = method.end.len();
+        let mut jacobian = DMatrix::zeros(states, states);
+        for (row, column, value) in method.jacobian_entries() {
+            jacobian[(row, column)] = value.lane(lane);
+        }
+        self.age = Some(0);
+        self.modes.clear();
+        (self.fastest, self.growth) = (0.0, f64::NEG_INFINITY);
+        for block in &self.blocks {
+            let order = block.len();
+            let matrix = DMatrix::from_fn(order, order, |row, column| jacobian[(block[row], block[column])]);
+            for value in working_eigenvalues(matrix).unwrap_or_default() {
+                let mode = Mode { magnitude: portable::magnitude(value), growth: value.re };
+                if value.im > 0.0 || (value.im == 0.0 && value.re > 0.0) {
+                    let mode = self.told(mode, value.im);
+                    self.fastest = self.fastest.max(mode.magnitude);
+                    self.growth = self.growth.max(mode.growth);
+                    self.modes.push(mode);
+                }
+            }
+        }
+        self.damping = self.friction(method, lane);
+        self.shortest(0.0)
+    }
+
+    /// A mode as it counts where waves come back late.
+    fn told(&self, mode: Mode, frequency: f64) -> Mode {
+        let [decay, growth] = UNTOLD.map(|part| part * mode.magnitude);
+        let unsure = self.delayed && frequency > 0.0 && mode.growth > -decay;
+        Mode { growth: if unsure { mode.growth.max(growth) } else { mode.growth }, ..mode }
+    }
+
+    /// The mode that asks for the shortest step, if friction has added so much to the growth of each.
+    fn shortest(&self, added: f64) -> Option<Growing> {
+        let bounds = self.modes.iter().filter_map(|mode| mode.bound(mode.growth + added));
+        bounds.min_by(|one, other| one.step_s.total_cmp(&other.step_s))
+    }
+}
