@@ -2,7 +2,7 @@
 
     python comparisons/compare_linear.py [systems.json]
 
-`cargo xtask reference-systems` prints a hundred random systems with everything phea computes of them; here the same is
+`cargo run --example reference_systems` prints a hundred random systems with everything phea computes of them; here the same is
 computed by python-control 0.10 and SciPy 1.17 and must agree to 1e-9 relative (step metrics: within one sample on the
 same samples).
 
@@ -440,7 +440,7 @@ def reference_systems():
     if len(sys.argv) > 1:
         return json.loads(pathlib.Path(sys.argv[1]).read_text())
     root = pathlib.Path(__file__).resolve().parent.parent
-    command = ["cargo", "run", "--quiet", "--package", "xtask", "--", "reference-systems"]
+    command = ["cargo", "run", "--quiet", "--example", "reference_systems"]
     return json.loads(subprocess.run(command, cwd=root, check=True, capture_output=True, text=True).stdout)
 
 

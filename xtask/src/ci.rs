@@ -3,7 +3,6 @@
 //! A stage that fails does not stop the later ones, so that one run tells everything there is to mend.
 
 mod comparisons;
-mod stories;
 mod tools;
 
 pub(crate) use comparisons::recomputed_by;
@@ -11,9 +10,6 @@ pub(crate) use comparisons::recomputed_by;
 use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
-
-/// Set to 0, builds leave out what names lines in a backtrace: they are quicker and take half of the disk.
-const NO_DEBUG_INFO: &str = "CARGO_PROFILE_DEV_DEBUG";
 
 /// How a stage ended.
 pub(crate) enum Outcome {
@@ -42,6 +38,9 @@ impl Outcome {
     }
 }
 
+/// What the names of the tests that run the stories begin with, in `apps/cli/tests/stories.rs`.
+const STORIES: &str = "stories::";
+
 type Stage = fn(&Path) -> Outcome;
 
 /// Cheap and telling first; what needs a network last.
@@ -50,7 +49,7 @@ const STAGES: &[(&str, Stage)] = &[
     ("clippy", clippy),
     ("tests", tests),
     ("doctests", doctests),
-    ("stories", stories::run),
+    ("stories", stories),
     ("rustdoc", rustdoc),
     ("tidy", tidy),
     ("wasm32", wasm32),
@@ -108,12 +107,8 @@ fn execute(root: &Path, program: &str, arguments: &[&str]) -> Outcome {
 fn execute_with(root: &Path, program: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Outcome {
     let line = format!("{program} {}", arguments.join(" "));
     println!("$ {line}");
-    let status = Command::new(program)
-        .args(arguments)
-        .env(NO_DEBUG_INFO, "0")
-        .envs(variables.iter().copied())
-        .current_dir(root)
-        .status();
+    let status =
+        Command::new(program).args(arguments).envs(variables.iter().copied()).current_dir(root).status();
     match status {
         Ok(status) if status.success() => Outcome::Passed,
         Ok(status) => Outcome::Failed(format!("`{line}`: {status}")),
@@ -137,13 +132,17 @@ fn clippy(root: &Path) -> Outcome {
 
 /// Unit and integration tests but for the stories, which are a stage of their own.
 fn tests(root: &Path) -> Outcome {
-    let mut arguments =
-        vec!["test", "--workspace", "--lib", "--bins", "--tests", "--no-fail-fast", "--", "--exact"];
-    let names = stories::names(root);
-    for name in &names {
-        arguments.extend(["--skip", name]);
-    }
-    execute(root, "cargo", &arguments)
+    let but_stories = ["--", "--skip", STORIES];
+    execute(
+        root,
+        "cargo",
+        &[&["test", "--workspace", "--tests", "--no-fail-fast"], &but_stories[..]].concat(),
+    )
+}
+
+/// The example stories, by the whole workspace, so that what was built for the other tests serves again.
+fn stories(root: &Path) -> Outcome {
+    execute(root, "cargo", &["test", "--workspace", "--test", "all", "--", STORIES])
 }
 
 fn doctests(root: &Path) -> Outcome {

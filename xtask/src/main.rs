@@ -6,7 +6,6 @@
 
 mod bench;
 mod ci;
-mod reference_systems;
 mod repository;
 mod tidy;
 
@@ -17,8 +16,6 @@ const USAGE: &str = "\
 usage: cargo xtask CHORE
 
   ci [STAGE]...    the test command: every stage, or only those named
-  reference-systems
-                   a hundred random linear systems and what phea computes of them, as JSON
   bench [build]    how long the command takes on the examples; with `build`, and to build from scratch
   tidy [FOLDER]    the rules of the house that compiler and clippy do not know, here or in another checkout";
 
@@ -27,7 +24,6 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words.as_slice() {
         ["ci", stages @ ..] => ci::run(&root(), stages),
-        ["reference-systems"] => reference_systems::print(),
         ["bench"] => bench::run(&root(), false),
         ["bench", "build"] => bench::run(&root(), true),
         ["tidy"] => tidy::report(&root()),

@@ -3,9 +3,6 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-#[path = "prefilter/band.rs"]
 mod band;
-#[path = "prefilter/fitted.rs"]
 mod fitted;
-#[path = "prefilter/loops.rs"]
 mod loops;

@@ -12,8 +12,7 @@ use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, gri
 use phea_qft::stability::{FamilyStability, StabilityAudit};
 use phea_qft::verification::{Evidence, PlantPoint, Verdict};
 
-#[path = "rig/thesis.rs"]
-mod rig;
+use crate::rig::force;
 
 fn parameter(name: &str, minimum: f64, nominal: f64, maximum: f64) -> UncertainParameter {
     UncertainParameter { name: name.into(), nominal, minimum, maximum }
@@ -113,7 +112,7 @@ fn thesis_family(points: [usize; 6]) -> Family {
 }
 
 fn fifth_order<S: Scalar>(p: &[S]) -> PlantCoefficients<S> {
-    let RationalCoefficients { numerator, denominator } = rig::force(p);
+    let RationalCoefficients { numerator, denominator } = force(p);
     without_load(numerator, denominator, S::from(0.0))
 }
 

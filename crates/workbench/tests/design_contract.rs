@@ -3,10 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{HOSE, answer, json, load, try_answer};
+use crate::ask::{HOSE, answer, json, load, try_answer};
 use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
 use phea_qft::loop_shaping::{Part, Structure};
 use phea_workbench::audit::AuditError;

@@ -4,10 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{HOSE, PIPE, answer, json, number, within};
+use crate::ask::{HOSE, PIPE, answer, json, number, within};
 use phea_workbench::command::Request;
 use phea_workbench::design::DESIGNED_PROJECT;
 use serde_json::Value;

@@ -1,11 +1,7 @@
 //! The concrete figures with numbers of the example rig: well formed, legible, the same every time.
 
-#[path = "../examples/figures/gallery.rs"]
-mod gallery;
-#[path = "figure_checks/legibility.rs"]
-mod legibility;
-
-use legibility::check;
+use crate::gallery;
+use crate::legibility::check;
 use phea_workbench::figure::{Figure, FigureError, Theme};
 use resvg::usvg::{self, roxmltree};
 

@@ -1,9 +1,6 @@
 //! Figures from numbers and words that make no sense: no panic, and every rule of legibility still holds.
 
-#[path = "figure_checks/legibility.rs"]
-mod legibility;
-
-use legibility::check;
+use crate::legibility::check;
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
 use phea_qft::bound::{Bound, GainIntervals};

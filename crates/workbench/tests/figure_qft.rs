@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-#[path = "../examples/figures/gallery_qft.rs"]
-mod gallery_qft;
-
+use crate::gallery::gallery_qft;
 use num_complex::Complex64;
 use phea_dynamics::portable::{cos, log10, magnitude, pow, sin};
 use phea_qft::bound::{Bound, GainIntervals};

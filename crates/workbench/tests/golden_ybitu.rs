@@ -6,10 +6,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{HOSE, PIPE, candidate, check, derived, linearize, near, number, size, size_for_gain, within};
+use crate::ask::{
+    self, HOSE, PIPE, candidate, check, derived, linearize, near, number, size, size_for_gain, within,
+};
 use serde_json::Value;
 
 const EATON: &str = "eaton_synflex_3130_08";

@@ -3,10 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{FICTITIOUS, HOSE, PIPE, json, load, number, size_request};
+use crate::ask::{self, FICTITIOUS, HOSE, PIPE, json, load, number, size_request};
 use phea_workbench::command::{Request, refusal_json};
 use phea_workbench::project;
 use phea_workbench::source::Memory;

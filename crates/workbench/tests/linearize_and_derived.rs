@@ -3,10 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{HOSE, PIPE, check, derived, linearize, near, number, within};
+use crate::ask::{HOSE, PIPE, check, derived, linearize, near, number, within};
 use num_complex::Complex64;
 use serde_json::Value;
 

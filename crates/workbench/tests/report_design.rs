@@ -2,10 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{HOSE, load};
+use crate::ask::{HOSE, load};
 use phea_workbench::command::{CommandError, Progress};
 use phea_workbench::report::{Report, report};
 use phea_workbench::source::Memory;

@@ -3,10 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{HOSE, PIPE, answer, load, try_answer};
+use crate::ask::{self, HOSE, PIPE, answer, load, try_answer};
 use std::sync::OnceLock;
 
 use phea_workbench::answer::Answer;

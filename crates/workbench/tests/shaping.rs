@@ -3,10 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{answer, json, try_answer};
+use crate::ask::{answer, json, try_answer};
 use phea_workbench::command::{CommandError, Request};
 use phea_workbench::project::{self, Element, ElementKind, Loaded};
 use phea_workbench::shaping::{Change, RequestedChange, Shaped};

@@ -3,10 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{FICTITIOUS, HOSE, OVERRIDE, candidate, candidates, json, near, number, reasons, size_request};
+use crate::ask::{
+    FICTITIOUS, HOSE, OVERRIDE, candidate, candidates, json, near, number, reasons, size_request,
+};
 use serde_json::Value;
 
 const MODELS: [&str; 2] = ["uniform", "by_volume"];

@@ -3,11 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{
-    FICTITIOUS, HOSE, candidate, json, near, number, size_for_gain, size_for_length, size_request, within,
+use crate::ask::{
+    self, FICTITIOUS, HOSE, candidate, json, near, number, size_for_gain, size_for_length, size_request,
+    within,
 };
 use serde_json::Value;
 

@@ -3,10 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-#[path = "truth/ask.rs"]
-mod ask;
-
-use ask::{HOSE, answer, json, try_answer};
+use crate::ask::{self, HOSE, answer, json, try_answer};
 use phea_workbench::command::{CommandError, Progress, Request, answer_watched};
 use phea_workbench::shaping::Shaped;
 use serde_json::Value;

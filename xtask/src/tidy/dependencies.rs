@@ -20,7 +20,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("apps/cli", &["phea-workbench"]),
     ("fuzz", &["phea-workbench"]),
     ("benches/peers/sundials", &["phea-dynamics", "phea-hydraulics", "phea-workbench"]),
-    ("xtask", &["phea-dynamics", "phea-hydraulics", "phea-qft", "phea-workbench"]),
+    ("xtask", &[]),
 ];
 
 /// The folders of the crates that compute and do nothing else.

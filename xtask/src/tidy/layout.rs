@@ -1,4 +1,5 @@
-//! One concept a file, named after it: `foo.rs` beside `foo/`, no drawer for leftovers.
+//! One concept a file, named after it: `foo.rs` beside `foo/`, no drawer for leftovers. The tests of a package are one
+//! program, and no file of tests is left out of it.
 
 use super::Violation;
 use crate::repository::Repository;
@@ -6,7 +7,32 @@ use crate::repository::Repository;
 const LEFTOVERS: [&str; 8] = ["mod", "utils", "util", "common", "helpers", "helper", "misc", "shared"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
-    repository.texts(|path| path.ends_with(".rs")).filter_map(|(path, _)| check_name(path)).collect()
+    let names = repository.texts(|path| path.ends_with(".rs")).filter_map(|(path, _)| check_name(path));
+    names.chain(unnamed_tests(repository)).collect()
+}
+
+/// Files below `tests/` that the file above them does not declare: they would not even be compiled.
+fn unnamed_tests(repository: &Repository) -> Vec<Violation> {
+    let tests = repository.texts(|path| path.ends_with(".rs") && path.contains("/tests/"));
+    let unnamed = tests.filter_map(|(path, _)| {
+        let (folder, name) = path.trim_end_matches(".rs").rsplit_once('/')?;
+        let parent =
+            if folder.ends_with("/tests") { format!("{folder}/all.rs") } else { format!("{folder}.rs") };
+        if parent == path || !repository.exists(&format!("{}/tests/all.rs", path.split_once("/tests/")?.0)) {
+            return None;
+        }
+        let declared = repository.text(&parent).is_some_and(|text| declares(text, name));
+        (!declared).then(|| Violation::new(path, 0, format!("lacks `mod {name};` in {parent}")))
+    });
+    unnamed.collect()
+}
+
+fn declares(text: &str, name: &str) -> bool {
+    text.lines().any(|line| {
+        line.strip_suffix(';').is_some_and(|line| {
+            line.rsplit(char::is_whitespace).next() == Some(name) && line.contains("mod ")
+        })
+    })
 }
 
 fn check_name(path: &str) -> Option<Violation> {
@@ -28,5 +54,23 @@ mod tests {
         for path in ["crates/a/src/modulus.rs", "crates/a/src/line.rs"] {
             assert!(check_name(path).is_none(), "{path}");
         }
+    }
+
+    #[test]
+    fn every_file_of_tests_is_declared() {
+        let found = |all: &str| {
+            let files = [
+                ("crates/a/tests/all.rs", all),
+                ("crates/a/tests/laws.rs", "mod limits;\n"),
+                ("crates/a/tests/laws/limits.rs", ""),
+                ("crates/a/tests/laws/lost.rs", ""),
+                ("benches/b/tests/courses.rs", ""),
+            ];
+            check(&Repository::from_texts(&files)).iter().map(Violation::to_string).collect::<Vec<_>>()
+        };
+        let lost = "crates/a/tests/laws/lost.rs: lacks `mod lost;` in crates/a/tests/laws.rs";
+        assert_eq!(found("mod laws;\n"), [lost]);
+        let laws = "crates/a/tests/laws.rs: lacks `mod laws;` in crates/a/tests/all.rs";
+        assert_eq!(found("mod flaws;\n"), [laws, lost]);
     }
 }

@@ -1,7 +1,5 @@
 //! SI inside: the factor between another unit and SI stands in `workbench::quantity` and nowhere else.
 
-use phea_dynamics::portable::{log10, pow};
-
 use super::Violation;
 use crate::repository::{Repository, RustFile};
 
@@ -42,8 +40,13 @@ fn check_file(file: &RustFile) -> Vec<Violation> {
 
 /// Whether the two numbers agree in their first five digits, wherever the decimal point is.
 fn has_digits_of(number: f64, factor: f64) -> bool {
-    let mantissa = |x: f64| x / pow(10.0, log10(x).floor());
     number > 0.0 && (mantissa(number) / mantissa(factor) - 1.0).abs() < 1e-5
+}
+
+/// The number with its decimal point moved behind the first digit.
+fn mantissa(number: f64) -> f64 {
+    let text = format!("{number:e}");
+    text.split('e').next().and_then(|digits| digits.parse().ok()).unwrap_or(number)
 }
 
 #[cfg(test)]

@@ -7,8 +7,8 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{ClosedLoop, Input, Method, Profile, System};
 use phea_dynamics::time_response::delayed_loop_step;
 
-use crate::closed_loop::Chain;
-use crate::laws::{course, distance, run, run_by};
+use super::closed_loop::Chain;
+use super::laws::{course, distance, run, run_by};
 
 /// y'(t) = -k y(t - T)
 #[derive(Clone)]

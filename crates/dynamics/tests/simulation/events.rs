@@ -6,7 +6,7 @@ use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Method, Profile, System};
 
-use crate::laws::{course, run, run_by};
+use super::laws::{course, run, run_by};
 
 /// x'' = -omega^2 x beside an input w; the indicators are x - a for levels a, and w - 1/2.
 #[derive(Clone)]

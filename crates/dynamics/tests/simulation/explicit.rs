@@ -3,7 +3,7 @@
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Method, Profile, Settings, Status, simulate};
 
-use crate::laws::{Law, Lawful, course, run_by, settings};
+use super::laws::{Law, Lawful, course, run_by, settings};
 
 /// A pendulum whose support is shaken: theta'' = -(9.81 + w) sin(theta) - theta'/10, sin by its series.
 #[derive(Clone)]
@@ -43,7 +43,7 @@ fn both_methods_agree_on_a_mild_system() {
 /// y' = -1e7 y: the explicit method is bounded by its stability, the implicit one is not.
 #[test]
 fn an_explicit_method_pays_for_a_fast_mode() {
-    let stiff = Lawful(crate::laws::Following(-1e7), 1.0);
+    let stiff = Lawful(super::laws::Following(-1e7), 1.0);
     let inputs = || vec![Input::Value(Profile::constant(0.0)), Input::Value(Profile::constant(0.0))];
     let course = course(1.0, 1.0, inputs());
     let limited = Settings { maximum_steps: 1000, ..settings(1e-6, Method::DormandPrince) };

@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::laws::{Law, Lawful, course, last, run};
+use super::laws::{Law, Lawful, course, last, run};
 
 /// x' = 1,  y' = |x - p|
 #[derive(Clone)]

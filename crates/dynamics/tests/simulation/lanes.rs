@@ -6,7 +6,7 @@ use phea_dynamics::simulation::{
     SimulationError, Status, System, Task, drive,
 };
 
-use crate::laws::settings;
+use super::laws::settings;
 
 /// A stiff pair, a limit, a command and, if there is one, a late wave: states x, v, z; inputs w, u and the wave of x.
 ///

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use phea_dynamics::portable;
 use phea_dynamics::simulation::{Input, Method, Profile, Simulated};
 
-use crate::laws::{Lawful, Oscillator, Reciprocal, course, distance, run_by};
+use super::laws::{Lawful, Oscillator, Reciprocal, course, distance, run_by};
 
 const METHODS: [Method; 2] = [Method::Rosenbrock, Method::DormandPrince];
 

@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Profile};
 
-use crate::laws::{Following, Integral, Law, Lawful, course, distance, last, run};
+use super::laws::{Following, Integral, Law, Lawful, course, distance, last, run};
 
 /// y' = w - y
 #[derive(Clone)]

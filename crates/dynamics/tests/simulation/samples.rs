@@ -5,7 +5,7 @@ use phea_dynamics::linear::{Discretization, StateSpace, TimeDomain, TransferFunc
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{HeldPlant, Input, Method, Plant, Profile, Sampler, Status, simulate};
 
-use crate::laws::{course, settings};
+use super::laws::{course, settings};
 
 /// A mass on a spring behind a lag, in units of `rate` rad/s: F = 3 x, times 1/rate.
 #[derive(Clone)]

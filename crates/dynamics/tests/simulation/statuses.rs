@@ -5,7 +5,7 @@ use phea_dynamics::simulation::{
     Course, Input, Profile, Sampler, Settings, Simulated, SimulationError, Status, System, simulate,
 };
 
-use crate::laws::{Integral, Law, Lawful, Oscillator, course};
+use super::laws::{Integral, Law, Lawful, Oscillator, course};
 
 /// y' = y^2,  y = 1/(1 - t)
 #[derive(Clone)]

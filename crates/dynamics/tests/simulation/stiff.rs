@@ -7,7 +7,7 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Profile, System};
 use phea_dynamics::time_response::{Signal, forced_response_of_states};
 
-use crate::laws::{Following, Law, Lawful, course, distance, last, run};
+use super::laws::{Following, Law, Lawful, course, distance, last, run};
 
 /// y' = lambda y
 #[derive(Clone)]

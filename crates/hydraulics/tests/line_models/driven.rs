@@ -5,7 +5,7 @@ use phea_dynamics::simulation::{Course, Input, Profile, Settings, Simulated, Sta
 use phea_hydraulics::line::{Conduit, DynamicLine, LineModel, Member, TransmissionLine};
 use phea_hydraulics::reference_rig::hose_line;
 
-use crate::oracle::{conduit, fluid};
+use super::oracle::{conduit, fluid};
 
 /// A flow into the valve port, a chamber of this compliance in m3/Pa out of which a flow is drawn: states of the line, the
 /// chamber's pressure, the energy put in.

@@ -8,7 +8,7 @@ use phea_hydraulics::line::{
 };
 use phea_hydraulics::reference_rig::{hose, hose_line, pipe_line};
 
-use crate::oracle::{at, conduit, errors, fluid, impedances, size, transfer_matrix};
+use super::oracle::{at, conduit, errors, fluid, impedances, size, transfer_matrix};
 
 fn exact(conduit: Conduit) -> impl Fn(Complex64) -> LineResponse {
     move |s| conduit.response(s, friction_factor(s / conduit.viscous_rate()))

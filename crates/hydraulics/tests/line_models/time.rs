@@ -6,7 +6,7 @@ use phea_hydraulics::line::{
 };
 use phea_hydraulics::reference_rig::hose;
 
-use crate::oracle::{conduit, fluid};
+use super::oracle::{conduit, fluid};
 
 /// A line between a flow into its valve port and a chamber of this compliance in m3/Pa out of which a flow is drawn.
 struct Run {

@@ -8,7 +8,7 @@ use phea_hydraulics::line::{
 };
 use phea_hydraulics::reference_rig::{hose, hose_line};
 
-use crate::oracle::{at, errors, exponential, fluid, impedance_errors, impedances, size, transfer_matrix};
+use super::oracle::{at, errors, exponential, fluid, impedance_errors, impedances, size, transfer_matrix};
 
 /// A hose of round numbers.
 fn round_hose() -> TwoWaveHose {
@@ -201,7 +201,7 @@ fn random_hoses_are_passive() {
     let mut seed = 20_260_101;
     let mut between = |low: f64, high: f64| {
         let ratio = phea_dynamics::portable::ln(high / low);
-        low * phea_dynamics::portable::exp(ratio * (0.5 + 0.5 * crate::time::next(&mut seed)))
+        low * phea_dynamics::portable::exp(ratio * (0.5 + 0.5 * super::time::next(&mut seed)))
     };
     let mut calculated = 0;
     for _ in 0..60 {

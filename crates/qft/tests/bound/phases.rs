@@ -10,7 +10,7 @@ use phea_qft::bound::{
 use phea_qft::specification::{Limit, LimitTable, Requirement, Specification};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
-use crate::random::{Numbers, random_requirements, random_template};
+use super::random::{Numbers, random_requirements, random_template};
 
 fn template(responses: &[Complex64]) -> Template {
     let one = Complex64::new(1.0, 0.0);

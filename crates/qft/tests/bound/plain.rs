@@ -7,7 +7,7 @@ use phea_qft::bound::{BoundFunction, Fill, GainIntervals};
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::template::{Template, TemplatePoint};
 
-use crate::random::{Numbers, random_requirements, random_template, template_of};
+use super::random::{Numbers, random_requirements, random_template, template_of};
 
 /// Where a g^2 + b g + c < 0 with g > 0, by the school formula.
 fn school(a: f64, b: f64, c: f64) -> Vec<[f64; 2]> {

@@ -6,7 +6,7 @@ use phea_qft::bound::{BoundFunction, Fill};
 use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
-use crate::random::{Numbers, random_requirements, random_template};
+use super::random::{Numbers, random_requirements, random_template};
 
 /// Nearer to its limit than this, a closed loop is not told from one that meets it.
 const TOLERANCE_DB: f64 = 1e-9;

@@ -3,7 +3,7 @@
 use phea_qft::design::{ControllerChoice, DesignOptions, DesignRun, DesignStatus};
 use phea_qft::verification::{TrackingJudgement, Verdict};
 
-use crate::problems::{assert_met, designed, example_d, least_gain, structure};
+use super::problems::{assert_met, designed, example_d, least_gain, structure};
 
 fn complex_poles(seed: u64) -> DesignOptions {
     least_gain(structure("Z PP", [1e-2, 1e4], [0.1, 1e5], [0.1, 5.0]), seed)

@@ -6,7 +6,7 @@ use phea_qft::family::{Extent, Family, Spacing, UncertainFamily};
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::verification::TrackingJudgement;
 
-use crate::problems::{
+use super::problems::{
     EVERYWHERE, assert_met, boxed, demand, designed, high_frequency_gain, least_gain, problem, rational,
     stability, structure, uncertain,
 };

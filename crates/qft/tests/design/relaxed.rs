@@ -5,7 +5,7 @@ use phea_qft::design::{Design, DesignProblem, DesignStatus, Relaxation};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{TrackingJudgement, Verdict};
 
-use crate::problems::{audited, demand, designed, example_d, integrator, least_gain, problem, structure};
+use super::problems::{audited, demand, designed, example_d, integrator, least_gain, problem, structure};
 
 /// The limit times a factor.
 fn times(limit: &Limit, factor: f64) -> Limit {

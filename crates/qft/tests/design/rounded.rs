@@ -12,7 +12,7 @@ use phea_qft::loop_shaping::{Part, Structure};
 use phea_qft::specification::Requirement;
 use phea_qft::verification::{TrackingJudgement, Verdict};
 
-use crate::problems::{
+use super::problems::{
     EVERYWHERE, assert_met, audited, boxed, demand, designed, least_gain, problem, rational, stability,
     uncertain,
 };

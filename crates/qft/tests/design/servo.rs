@@ -3,7 +3,7 @@
 use phea_qft::design::{DesignOptions, PrefilterChoice};
 use phea_qft::verification::TrackingJudgement;
 
-use crate::problems::{
+use super::problems::{
     assert_met, designed, example_d, following, high_frequency_gain, least_gain, problem, servo, stability,
     structure,
 };

@@ -3,7 +3,7 @@
 use phea_qft::design::{Finding, diagnose};
 use phea_qft::specification::{Limit, Requirement};
 
-use crate::problems::{
+use super::problems::{
     boxed, decibels, demand, everywhere, impossibilities, plain, problem, rational, single,
 };
 

@@ -8,7 +8,7 @@ use phea_qft::design::{DesignProblem, Place};
 use phea_qft::family::Family;
 use phea_qft::specification::{Limit, Requirement};
 
-use crate::problems::{
+use super::problems::{
     boxed, constraints, decibels, demand, everywhere, forced_peak_db, impossibilities, plain, problem,
     rational, sampled, single,
 };

@@ -3,7 +3,7 @@
 use phea_qft::design::{Finding, Place, diagnose};
 use phea_qft::specification::{Limit, Requirement};
 
-use crate::problems::{EVERYWHERE, boxed, decibels, demand, plain, problem, rational};
+use super::problems::{EVERYWHERE, boxed, decibels, demand, plain, problem, rational};
 
 fn numbers<'t, const N: usize>(values: [f64; N]) -> Vec<phea_dynamics::expression::Recorded<'t>> {
     values.into_iter().map(Into::into).collect()

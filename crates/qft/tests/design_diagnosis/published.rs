@@ -6,7 +6,7 @@ use phea_qft::design::{Severity, diagnose};
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::specification::{Limit, Requirement, Specification};
 
-use crate::problems::{EVERYWHERE, boxed, demand, plain, problem, rational, sampled};
+use super::problems::{EVERYWHERE, boxed, demand, plain, problem, rational, sampled};
 use crate::rig::force;
 
 fn stability(limit: f64, frequencies: &[f64]) -> Specification {

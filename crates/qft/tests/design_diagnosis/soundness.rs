@@ -11,7 +11,7 @@ use phea_qft::specification::{Limit, LimitTable, LoopResponse, Requirement, Spec
 use phea_qft::stability::StabilityAudit;
 use phea_qft::verification::Verdict;
 
-use crate::problems::{boxed, demand, impossibilities, plain, problem};
+use super::problems::{boxed, demand, impossibilities, plain, problem};
 
 /// Numbers between two ends, from a linear congruence.
 struct Draw(u64);

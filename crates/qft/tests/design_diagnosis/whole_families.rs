@@ -5,7 +5,7 @@ use phea_qft::design::{DesignProblem, Finding, Severity, diagnose};
 use phea_qft::family::{Family, MeasuredFamily, MeasuredPlant};
 use phea_qft::specification::{Limit, Requirement};
 
-use crate::problems::{
+use super::problems::{
     boxed, decibels, demand, everywhere, impossibilities, plain, problem, rational, sampled, single,
 };
 

@@ -5,7 +5,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_qft::prefilter::{BandEdge, PrefilterBand, PrefilterError};
 use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
 
-use crate::loops::{around, integrators, member, rational, servo, spaced, tracking};
+use super::loops::{around, integrators, member, rational, servo, spaced, tracking};
 
 const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 

@@ -12,7 +12,7 @@ use phea_qft::prefilter::{
 use phea_qft::specification::Limit;
 use phea_qft::verification::{SpecificationAudit, TrackingJudgement, Verdict};
 
-use crate::loops::{integrators, member, servo, servo_controller, servo_family, spaced, tracking};
+use super::loops::{integrators, member, servo, servo_controller, servo_family, spaced, tracking};
 
 const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 

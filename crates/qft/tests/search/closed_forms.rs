@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use phea_qft::loop_shaping::{Aim, Descent, DescentOptions, DescentStatus};
 
-use crate::formula::{Formula, check_objective, descended};
+use super::formula::{Formula, check_objective, descended};
 
 /// The quadratic nearest to x^4 between -1 and 1 is x^2 - 1/8: Chebyshev's polynomial, whose error 1/8 alternates five times.
 #[test]

@@ -2,7 +2,7 @@
 
 use phea_qft::loop_shaping::{Aim, DescentStatus};
 
-use crate::formula::{Formula, check_objective, descended};
+use super::formula::{Formula, check_objective, descended};
 
 fn squared_radius(x: &[f64]) -> f64 {
     x[0] * x[0] + x[1] * x[1]

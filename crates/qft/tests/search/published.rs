@@ -2,7 +2,7 @@
 
 use phea_qft::loop_shaping::{Aim, DescentStatus};
 
-use crate::formula::{Formula, check_objective, descended};
+use super::formula::{Formula, check_objective, descended};
 
 /// Rosen and Suzuki; problem 43 of Hock and Schittkowski (1981).
 #[test]

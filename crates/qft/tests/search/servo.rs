@@ -11,7 +11,7 @@ use phea_qft::loop_shaping::{
     SearchStatus, Slopes,
 };
 
-use crate::formula::differences;
+use super::formula::differences;
 
 /// Points of k and of a; frequencies of |T|, and of its spread.
 const POINTS: usize = 7;

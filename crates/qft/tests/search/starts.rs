@@ -2,7 +2,7 @@
 
 use phea_qft::loop_shaping::{Aim, DescentStatus, Search, SearchOptions, SearchResult, SearchStatus};
 
-use crate::formula::Formula;
+use super::formula::Formula;
 
 fn searched(problem: &mut Formula, options: SearchOptions) -> SearchResult {
     let mut search = Search::new(options);

@@ -14,7 +14,7 @@ use phea_qft::loop_shaping::{Part, Samples, SearchProblem, Shaping, Structure};
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::PlantPoint;
 
-use crate::random::Draw;
+use super::random::Draw;
 
 /// k (s^2/400 + s/100 + 1)/(s (s^2/100 + d s/5 + 1)) without any specification.
 fn problem(delay_s: f64) -> DesignProblem {

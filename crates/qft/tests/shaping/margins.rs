@@ -8,7 +8,7 @@ use phea_qft::design::{DesignProblem, Objective};
 use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure};
 use phea_qft::specification::{LoopResponse, Requirement, Specification};
 
-use crate::random::{Draw, plants, problem, rational, structure};
+use super::random::{Draw, plants, problem, rational, structure};
 
 const FREQUENCIES: [f64; 9] = [0.3, 0.5, 1.0, 3.0, 9.0, 15.0, 20.0, 60.0, 300.0];
 

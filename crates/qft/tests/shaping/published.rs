@@ -11,7 +11,7 @@ use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, gri
 use phea_qft::loop_shaping::{Samples, Shaping, Structure, search_frequencies};
 use phea_qft::specification::{Limit, Requirement, Specification};
 
-use crate::random::{plants, rational};
+use super::random::{plants, rational};
 use crate::rig::force;
 
 const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];

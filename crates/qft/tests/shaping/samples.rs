@@ -14,7 +14,7 @@ use phea_qft::loop_shaping::{
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::verification::PlantPoint;
 
-use crate::random::{plants, problem, specification};
+use super::random::{plants, problem, specification};
 
 fn gain() -> Structure {
     Structure { sign: 1.0, gain: [0.01, 100.0], parts: vec![] }

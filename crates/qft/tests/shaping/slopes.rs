@@ -5,7 +5,7 @@ use phea_qft::design::{DesignProblem, Objective};
 use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure};
 use phea_qft::specification::Requirement;
 
-use crate::random::{Draw, plants, problem, rational, structure};
+use super::random::{Draw, plants, problem, rational, structure};
 
 const STEP: f64 = 1e-5;
 

@@ -8,7 +8,7 @@ use phea_dynamics::portable::magnitude;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::loop_shaping::{Part, Structure};
 
-use crate::random::{Draw, structure};
+use super::random::{Draw, structure};
 
 const PERIOD: f64 = 0.004;
 const DISCRETIZATIONS: [Discretization; 4] = [

@@ -4,7 +4,7 @@ use phea_qft::family::Spacing::{Linear, Logarithmic};
 use phea_qft::family::UncertainFamily;
 use phea_qft::template::{Resolution, Template, TemplateOptions};
 
-use crate::support::{
+use super::support::{
     apart, beyond, built, coefficients, family, from_rim, logarithmic_area, polar, winding,
 };
 

@@ -3,7 +3,7 @@ use phea_qft::family::Spacing::Linear;
 use phea_qft::family::UncertainFamily;
 use phea_qft::template::{Resolution, TemplateOptions};
 
-use crate::support::{
+use super::support::{
     Shares, apart, beyond, built, coefficients, family, from_rim, quadratic_family, random_values, winding,
 };
 

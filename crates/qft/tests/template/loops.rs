@@ -7,7 +7,7 @@ use phea_qft::family::Spacing::Logarithmic;
 use phea_qft::family::{Coordinate, Extent, Family, MeasuredFamily, MeasuredPlant, UncertainFamily};
 use phea_qft::template::{Resolution, TemplateError, TemplateOptions, template};
 
-use crate::support::{coefficients, family, plain_loop, polar};
+use super::support::{coefficients, family, plain_loop, polar};
 
 fn motor() -> UncertainFamily {
     family(&[("k", 1.0, 4.0, Logarithmic), ("a", 1.0, 2.0, Logarithmic)], 2, |p| {

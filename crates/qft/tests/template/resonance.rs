@@ -3,7 +3,7 @@ use phea_qft::family::Spacing::{Linear, Logarithmic};
 use phea_qft::family::UncertainFamily;
 use phea_qft::template::{Resolution, TemplateOptions};
 
-use crate::support::{built, built_with, coefficients, family};
+use super::support::{built, built_with, coefficients, family};
 
 /// k (s+a) w^2/(s^2 + 2 z w s + w^2)
 fn resonant(damping: f64) -> UncertainFamily {
@@ -105,7 +105,7 @@ fn rounds_that_do_not_settle_are_said() {
     let unsettled = |rounds_maximum: usize| {
         let options = TemplateOptions { rounds_maximum, ..TemplateOptions::default() };
         let resolutions = (101..107).map(|seed| {
-            built_with(&crate::support::quadratic_family(4, seed), 1.0, options).template.resolution
+            built_with(&super::support::quadratic_family(4, seed), 1.0, options).template.resolution
         });
         resolutions.filter(|resolution| matches!(resolution, Resolution::NotResolved { .. })).count()
     };

@@ -4,8 +4,8 @@ use phea_qft::family::Family;
 use phea_qft::family::Spacing::{Linear, Logarithmic};
 use phea_qft::template::{Resolution, TemplateOptions, Templates};
 
+use super::support::{Range, beyond, coefficients, family, plain_loop, random_values};
 use crate::rig::force;
-use crate::support::{Range, beyond, coefficients, family, plain_loop, random_values};
 
 fn actuator<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     let RationalCoefficients { numerator, denominator } = force(p);

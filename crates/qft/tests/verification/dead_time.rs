@@ -7,7 +7,7 @@ use phea_qft::family::{Coordinate, Family, Spacing};
 use phea_qft::specification::{Limit, LimitTable, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, TrackingJudgement};
 
-use crate::plants::{along, audited, on_grid, parameter, rational, specification};
+use super::plants::{along, audited, on_grid, parameter, rational, specification};
 
 /// Worst margin, its frequency, and the margins at the design frequencies.
 struct Truth {

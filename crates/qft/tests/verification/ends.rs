@@ -8,7 +8,7 @@ use phea_qft::family::{Family, Spacing};
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::verification::{SpecificationFinding, TrackingJudgement, Verdict};
 
-use crate::plants::{along, audited, compensation, on_grid, parameter, rational, specification};
+use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification};
 
 const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];
 

@@ -11,7 +11,7 @@ use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, TrackingJudgement, Verdict};
 
-use crate::plants::{along, audited, compensation, on_grid, parameter, rational, specification, stability};
+use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification, stability};
 
 const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];
 

@@ -8,8 +8,8 @@ use phea_qft::family::{Family, Spacing};
 use phea_qft::specification::{LoopResponse, Specification};
 use phea_qft::verification::{PlantPoint, TrackingJudgement};
 
-use crate::plants::{along, audited, compensation, on_grid, parameter, rational, stability};
-use crate::properties::{COARSE, Case, Draw, damped_case};
+use super::plants::{along, audited, compensation, on_grid, parameter, rational, stability};
+use super::properties::{COARSE, Case, Draw, damped_case};
 
 /// k/(s^2 (s^2 + 2 k))
 fn carts<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {

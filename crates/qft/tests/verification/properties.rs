@@ -8,7 +8,7 @@ use phea_qft::family::{Family, Spacing};
 use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, TrackingJudgement};
 
-use crate::plants::{along, audited, compensation, on_grid, parameter, rational, specification};
+use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification};
 
 /// A linear congruential generator (Knuth's MMIX constants), so that the draws are the same everywhere.
 pub(crate) struct Draw(pub(crate) u64);

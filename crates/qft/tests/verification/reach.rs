@@ -9,7 +9,7 @@ use phea_qft::family::{Extent, Family, MeasuredFamily, MeasuredPlant, Spacing, U
 use phea_qft::specification::{Limit, LimitTable, LoopResponse, Requirement, Specification};
 use phea_qft::verification::{Evidence, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict};
 
-use crate::plants::{along, audited, compensation, on_grid, parameter, rational, specification, stability};
+use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification, stability};
 
 fn unity() -> Compensation {
     compensation(TransferFunction::gain_only(1.0), TransferFunction::gain_only(1.0), Timing::default())

@@ -8,7 +8,7 @@ use phea_qft::family::{Family, Spacing};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{PlantPoint, SpecificationFinding, TrackingJudgement, Verdict, WorstCase};
 
-use crate::plants::{along, audited, compensation, on_grid, parameter, rational, specification, stability};
+use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification, stability};
 use crate::rig::force;
 
 const SLOW: [f64; 8] = [0.01, 0.1, 1.0, 5.0, 10.0, 50.0, 100.0, 150.0];

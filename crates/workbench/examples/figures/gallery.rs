@@ -2,7 +2,7 @@
 //! 2938 rad/s, valve at 1099 rad/s.
 
 #[path = "gallery_qft.rs"]
-mod gallery_qft;
+pub(crate) mod gallery_qft;
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{cos, exp, pow, sin};

@@ -18,7 +18,7 @@ pub(super) enum Form {
 const COUNT: usize = 100;
 
 /// Alternately factored and state space, orders 1 to 8; every fifth sampled, every seventh with an integrator.
-pub(super) fn reference_systems<E: From<LinearError>>() -> Result<Vec<ReferenceSystem>, E> {
+pub(super) fn reference_systems() -> Result<Vec<ReferenceSystem>, LinearError> {
     let mut seeded = Seeded(2019);
     let mut systems = Vec::with_capacity(COUNT);
     for index in 0..COUNT {

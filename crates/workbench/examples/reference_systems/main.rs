@@ -1,4 +1,6 @@
-//! Random linear systems with everything phea computes of them, as JSON, for comparison with other tools.
+//! Random linear systems with everything phea computes of them, as JSON, for comparison with other tools:
+//! `cargo run --example reference_systems`.
+#![allow(clippy::print_stdout, reason = "an example talks to the person who started it")]
 
 mod generator;
 
@@ -16,21 +18,13 @@ use generator::{Form, ReferenceSystem, reference_systems};
 /// Settling band of the step metrics, percent.
 const SETTLING_BAND_PERCENT: f64 = 2.0;
 
-/// Prints one JSON array; whether that succeeded.
-pub(crate) fn print() -> bool {
-    let systems: Result<Vec<Value>, TimeResponseError> = reference_systems().and_then(|systems| {
-        systems.iter().enumerate().map(|(index, system)| described(index, system)).collect()
-    });
-    match systems {
-        Ok(systems) => {
-            println!("{}", Value::Array(systems));
-            true
-        }
-        Err(error) => {
-            eprintln!("a reference system failed: {error}");
-            false
-        }
-    }
+/// Prints one JSON array.
+fn main() -> Result<(), TimeResponseError> {
+    let systems = reference_systems()?;
+    let described: Result<Vec<Value>, TimeResponseError> =
+        systems.iter().enumerate().map(|(index, system)| described(index, system)).collect();
+    println!("{}", Value::Array(described?));
+    Ok(())
 }
 
 fn described(index: usize, system: &ReferenceSystem) -> Result<Value, TimeResponseError> {

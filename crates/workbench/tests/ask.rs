@@ -1,5 +1,4 @@
 //! Asks a command about a project held in memory and reads its JSON, as another program would.
-#![allow(dead_code, unreachable_pub, reason = "each test binary uses its part")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use phea_workbench::answer::Answer;
@@ -8,28 +7,28 @@ use phea_workbench::project::{self, Loaded};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-pub(crate) const HOSE: &str = include_str!("../../../../examples/ybitu/hose.toml");
-pub(crate) const PIPE: &str = include_str!("../../../../examples/ybitu/pipe.toml");
+pub(crate) const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+pub(crate) const PIPE: &str = include_str!("../../../examples/ybitu/pipe.toml");
 
 /// A folder of hoses that do not exist, and a file that gives another body to a built-in name.
 pub(crate) const FICTITIOUS: &str = "fictitious";
 pub(crate) const OVERRIDE: &str = "override/eaton_synflex_3130_08.toml";
 
 const FICTITIOUS_FILES: [(&str, &str); 7] = [
-    ("fictitious/rigid.toml", include_str!("../catalogue/fictitious/rigid.toml")),
-    ("fictitious/right.toml", include_str!("../catalogue/fictitious/right.toml")),
-    ("fictitious/slow.toml", include_str!("../catalogue/fictitious/slow.toml")),
-    ("fictitious/stubborn.toml", include_str!("../catalogue/fictitious/stubborn.toml")),
-    ("fictitious/surging.toml", include_str!("../catalogue/fictitious/surging.toml")),
-    ("fictitious/too_fast.toml", include_str!("../catalogue/fictitious/too_fast.toml")),
-    ("fictitious/weak.toml", include_str!("../catalogue/fictitious/weak.toml")),
+    ("fictitious/rigid.toml", include_str!("catalogue/fictitious/rigid.toml")),
+    ("fictitious/right.toml", include_str!("catalogue/fictitious/right.toml")),
+    ("fictitious/slow.toml", include_str!("catalogue/fictitious/slow.toml")),
+    ("fictitious/stubborn.toml", include_str!("catalogue/fictitious/stubborn.toml")),
+    ("fictitious/surging.toml", include_str!("catalogue/fictitious/surging.toml")),
+    ("fictitious/too_fast.toml", include_str!("catalogue/fictitious/too_fast.toml")),
+    ("fictitious/weak.toml", include_str!("catalogue/fictitious/weak.toml")),
 ];
 
 pub(crate) fn source(project: &str) -> Memory {
     FICTITIOUS_FILES
         .into_iter()
         .fold(Memory::default(), |source, (path, text)| source.with(path, text))
-        .with(OVERRIDE, include_str!("../catalogue/override/eaton_synflex_3130_08.toml"))
+        .with(OVERRIDE, include_str!("catalogue/override/eaton_synflex_3130_08.toml"))
         .with("rig.toml", project)
 }
 

@@ -5,7 +5,5 @@ mod closed_forms;
 mod filled;
 mod loops;
 mod resonance;
-#[path = "../rig/thesis.rs"]
-mod rig;
 mod six_parameters;
 mod support;

@@ -1,0 +1,6 @@
+//! The command from outside: what it prints, writes and returns.
+#![cfg(test)]
+
+mod campaign;
+mod exit_status;
+mod stories;

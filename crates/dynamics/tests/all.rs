@@ -1,0 +1,11 @@
+//! Systems, controllers and simulation from outside: closed forms, limits, conservation and published numbers.
+#![cfg(test)]
+
+mod controller;
+mod discretization;
+mod frequency;
+mod linear_roots;
+mod linear_systems;
+mod simulation;
+mod simulation_profile;
+mod time_response;

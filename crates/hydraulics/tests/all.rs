@@ -1,0 +1,16 @@
+//! The components and machines from outside: closed forms, limits, conservation and published numbers.
+#![cfg(test)]
+
+mod components;
+mod impedance;
+mod line_models;
+mod linear_models;
+mod machine_components;
+mod machine_conservation;
+mod machine_equations;
+mod machine_lines;
+mod machine_robustness;
+mod operating_point;
+mod servovalve;
+mod stiffness;
+mod two_pressure;

@@ -1,0 +1,25 @@
+//! The method from outside: closed forms, properties of random problems, and published designs.
+#![cfg(test)]
+
+mod bound;
+mod closed_loop;
+mod design;
+mod design_diagnosis;
+mod family;
+mod manual_shaping;
+mod prefilter;
+mod quantisation;
+mod rig;
+mod sample_stability;
+mod search;
+mod shaping;
+mod specification_margins;
+mod specification_spread;
+mod specification_time_domain;
+mod stability_dead_time;
+mod stability_family;
+mod stability_measured;
+mod stability_published;
+mod stability_sampled;
+mod template;
+mod verification;
