@@ -16,9 +16,6 @@ use crate::scalar::{Dependence, Dual};
 /// add up.
 const PROPAGATED: f64 = 0.1;
 
-/// Change of friction's damping, times the step, beyond which known matrices serve no more.
-const CHANGED_FRICTION: f64 = 0.1;
-
 /// All lanes and the method they share.
 struct Drive<'a, S, O> {
     method: Stepper<S>,
@@ -245,7 +242,8 @@ where
                 continue;
             }
             let steps = std::mem::take(&mut slot.unwatched);
-            let growing = self.watches[lane].bound(slot.passage.step_s, steps, linearized, lane);
+            let growing =
+                self.watches[lane].bound(slot.passage.time_s, slot.passage.step_s, steps, linearized, lane);
             if slot.passage.limit(growing) {
                 self.begin_step(lane);
             }
@@ -261,8 +259,8 @@ where
         }
     }
 
-    /// Asks now and then for the modes of lanes that go by their matrices: where one grows, or friction is not what it was when the
-    /// matrices were found, these serve no more. Whether everything has been linearised for it.
+    /// Asks now and then for the modes of lanes that go by their matrices. These are exact for a mode that grows as long as friction
+    /// feeds it as it did when they were found; where it does not they are found anew. Whether everything has been linearised for it.
     fn watch_propagated<E: System<S>>(&mut self, system: &E, fresh: bool) -> bool {
         let due = |slot: &Slot<'_, O>| slot.propagated && slot.is_due();
         if !self.slots.iter().flatten().any(due) {
@@ -276,12 +274,11 @@ where
             let Some(slot) = self.slots[lane].as_mut().filter(|slot| due(slot)) else { continue };
             let (watch, step_s) = (&mut self.watches[lane], slot.passage.step_s);
             let steps = std::mem::take(&mut slot.unwatched);
-            let growing = watch.bound(step_s, steps, linearized, lane);
-            let change = (watch.friction(linearized, lane) - self.propagator.friction[lane]).abs();
-            if slot.passage.limit(growing) || change * step_s > CHANGED_FRICTION {
-                self.propagator.forget(lane);
-                slot.propagated = false;
-                self.begin_step(lane);
+            watch.bound(slot.passage.time_s, step_s, steps, linearized, lane);
+            if watch.has_left(self.propagator.friction[lane], linearized, lane) {
+                self.propagator.learn(lane, step_s, linearized, &self.method.scales);
+                self.propagator.friction[lane] = watch.friction(linearized, lane);
+                slot.propagated = self.propagator.knows(lane, step_s);
             }
         }
         true

@@ -39,6 +39,8 @@ const GROWTH_ERROR: f64 = 0.02;
 const AMPLITUDE_LOST: f64 = 1.2e-5;
 /// No mode that grows turns by more than this in a step, in rad: beyond, the amplitude lost follows no power.
 const LARGEST_ANGLE: f64 = 2.0;
+/// Modes above this part of the fastest are about as fast.
+const FAST: f64 = 0.25;
 /// Slower growth than this part of its frequency is rounding.
 const LEAST_GROWTH: f64 = 1e-10;
 /// Turning by less in a step, in rad, no mode's growth is off by more than 3e-6 of its frequency, whatever its damping.
@@ -50,10 +52,16 @@ const FALLEN: f64 = 0.1;
 /// Where waves come back late the Jacobian does not tell whether a mode decays: one that decays by less than this part of its
 /// frequency is taken to grow by the other.
 const UNTOLD: [f64; 2] = [0.05, 1e-3];
+/// More growth than this, as a logarithm, ends in what no linear mode tells.
+const MOST_GROWN: f64 = 20.0;
+/// Decay is followed as if it were at least this part of the frequency.
+const LEAST_FOLLOWED: f64 = 1e-3;
 /// Steps between two looks at a small system: together they cost some hundredths of its steps.
 const LEAST_INTERVAL: u64 = 128;
 /// Part of that while a mode grows.
 const WHILE_GROWING: u64 = 4;
+/// Smaller changes of the growth, in 1/s, are none for matrices found before.
+const LEAST_CHANGE: f64 = 0.1;
 /// Part of the growth of the least stable mode by which friction may change it before it is looked at again.
 const CHANGED: f64 = 0.5;
 
@@ -101,11 +109,15 @@ pub(super) struct GrowthWatch {
     modes: Vec<Mode>,
     /// Largest magnitude of those, in rad/s.
     fastest: f64,
-    /// Largest growth of those, in 1/s.
+    /// Largest growth of those that are about as fast, in 1/s.
     growth: f64,
     /// d at the last look.
     damping: f64,
-    /// Steps since; `None` before the first.
+    /// When growth was last estimated, and what it was.
+    before: Option<(f64, f64)>,
+    /// Logarithm of what the least stable mode has grown by and has not decayed by since.
+    grown: f64,
+    /// Steps since the last look; `None` before the first.
     age: Option<u64>,
     interval: u64,
 }
@@ -131,12 +143,14 @@ impl GrowthWatch {
     /// Forgets everything: another machine is in the lane.
     pub(super) fn forget(&mut self) {
         self.age = None;
+        (self.before, self.grown) = (None, 0.0);
     }
 
     /// The mode that bounds a step of this length, so many steps after it was last asked for, from the Jacobian at its start;
     /// `None` where none does.
     pub(super) fn bound<S: Lane>(
         &mut self,
+        time_s: f64,
         step_s: f64,
         steps: u64,
         method: &Rosenbrock<S>,
@@ -145,22 +159,39 @@ impl GrowthWatch {
         let age = self.age.map_or(u64::MAX, |age| age.saturating_add(steps));
         self.age = Some(age);
         let interval = if self.growth > 0.0 { self.interval / WHILE_GROWING } else { self.interval };
-        if age >= interval {
-            return self.look(method, lane);
-        }
-        let small_s = SMALL_ANGLE / self.fastest;
-        if step_s <= small_s {
-            return None;
-        }
         let damping = self.friction(method, lane);
-        if self.is_known_at(damping) {
-            self.shortest(0.5 * (self.damping.min(0.0) - damping.min(0.0)))
-        } else if damping < 0.0 && step_s <= NEARLY * small_s {
-            let growth_per_s = -0.5 * damping;
-            Some(Growing { step_s: small_s, frequency_rad_per_s: self.fastest, growth_per_s })
-        } else {
-            self.look(method, lane)
+        let small_s = SMALL_ANGLE / self.fastest;
+        let nearly = step_s <= small_s || (damping < 0.0 && step_s <= NEARLY * small_s);
+        if age >= interval || !(nearly || self.is_known_at(damping)) {
+            self.look(method, lane);
         }
+        let growth_per_s = self.growth + 0.5 * (self.damping - damping);
+        self.follow(time_s, growth_per_s);
+        if !self.is_known_at(damping) {
+            let small = Growing { step_s: small_s, frequency_rad_per_s: self.fastest, growth_per_s };
+            return (step_s > small_s).then_some(small);
+        }
+        let followed = (self.grown > 0.0).then(|| self.followed(growth_per_s)).flatten();
+        let growing = self.shortest(0.5 * (self.damping.min(0.0) - damping.min(0.0)));
+        let bounds = [growing, followed].into_iter().flatten();
+        bounds.min_by(|one, other| one.step_s.total_cmp(&other.step_s))
+    }
+
+    /// Takes note of how the least stable mode has grown since it was last asked for: what has grown is there until it has decayed by as
+    /// much.
+    fn follow(&mut self, time_s: f64, growth_per_s: f64) {
+        let (before_s, before) = self.before.replace((time_s, growth_per_s)).unwrap_or((time_s, 0.0));
+        if time_s > before_s {
+            let grown = self.grown + 0.5 * (before + growth_per_s) * (time_s - before_s);
+            self.grown = grown.clamp(0.0, MOST_GROWN);
+        }
+    }
+
+    /// The longest step that shows how what has grown decays.
+    fn followed(&self, growth_per_s: f64) -> Option<Growing> {
+        let mode = Mode { magnitude: self.fastest, growth: growth_per_s };
+        let bound = mode.bound(growth_per_s.abs().max(LEAST_FOLLOWED * self.fastest))?;
+        Some(Growing { growth_per_s, ..bound })
     }
 
     /// Whether the modes at the last look tell those under this damping of friction.
@@ -170,6 +201,12 @@ impl GrowthWatch {
             (true, true) => 0.5 * (damping - self.damping).abs() <= CHANGED * self.growth.abs(),
             _ => false,
         }
+    }
+
+    /// Whether friction's damping has moved from another value by more than matrices found there can follow.
+    pub(super) fn has_left<S: Lane>(&self, other: f64, method: &Rosenbrock<S>, lane: usize) -> bool {
+        let change = 0.5 * (self.friction(method, lane) - other).abs();
+        change > (GROWTH_ERROR * self.growth.abs()).max(LEAST_CHANGE)
     }
 
     /// d at the fastest mode.
@@ -185,7 +222,7 @@ impl GrowthWatch {
     }
 
     /// Finds the modes anew.
-    fn look<S: Lane>(&mut self, method: &Rosenbrock<S>, lane: usize) -> Option<Growing> {
+    fn look<S: Lane>(&mut self, method: &Rosenbrock<S>, lane: usize) {
         let states = method.end.len();
         let mut jacobian = DMatrix::zeros(states, states);
         for (row, column, value) in method.jacobian_entries() {
@@ -202,13 +239,13 @@ impl GrowthWatch {
                 if value.im > 0.0 || (value.im == 0.0 && value.re > 0.0) {
                     let mode = self.told(mode, value.im);
                     self.fastest = self.fastest.max(mode.magnitude);
-                    self.growth = self.growth.max(mode.growth);
                     self.modes.push(mode);
                 }
             }
         }
+        let fast = self.modes.iter().filter(|mode| mode.magnitude > FAST * self.fastest);
+        self.growth = fast.fold(f64::NEG_INFINITY, |most, mode| most.max(mode.growth));
         self.damping = self.friction(method, lane);
-        self.shortest(0.0)
     }
 
     /// A mode as it counts where waves come back late.

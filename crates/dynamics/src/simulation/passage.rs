@@ -149,7 +149,7 @@ impl<'a> Passage<'a> {
     /// How it ends when it may take no more steps.
     pub(super) fn out_of_steps(&self) -> Status {
         let time_s = self.time_s;
-        match self.growing {
+        match self.growing.filter(|growing| growing.growth_per_s > 0.0) {
             None => Status::TooManySteps { time_s },
             Some(Growing { frequency_rad_per_s, growth_per_s, .. }) => {
                 Status::UnresolvedOscillation { time_s, frequency_rad_per_s, growth_per_s }

@@ -2,9 +2,11 @@
 
 use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Method, Status, simulate};
+use phea_dynamics::simulation::{
+    Input, Method, Profile, Sampler, Settings, Sliding, Status, System, simulate,
+};
 
-use crate::laws::{Law, Lawful, course, settings};
+use super::laws::{Law, Lawful, course, settings};
 
 /// Two equal masses between three equal springs, each damped by the negative of a damper; positions x_1, x_2 and velocities over
 /// omega.
@@ -70,4 +72,108 @@ fn two_masses_grow_at_their_rate() {
             }
         }
     }
+}
+
+/// A mass on a spring whose friction feeds it the more the later it is; what a command adds to its speed is nothing here.
+///
+/// ```text
+/// x' = omega y,   y' = -omega x + 2 a s y + w,   s' = 1        amplitude A exp(a (s^2 - s_0^2)/2), to the order of a/omega^2
+/// ```
+#[derive(Clone)]
+struct Drifting {
+    omega: f64,
+    rate: f64,
+}
+
+impl System<f64> for Drifting {
+    fn states(&self) -> usize {
+        3
+    }
+    fn inputs(&self) -> usize {
+        1
+    }
+    fn scales(&self) -> Vec<f64> {
+        vec![1.0; 3]
+    }
+    fn rates<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], rates: &mut [T]) {
+        rates[0] = T::from(self.omega) * y[1];
+        rates[1] = T::from(2.0 * self.rate) * y[2] * y[1] - T::from(self.omega) * y[0] + w[0];
+        rates[2] = T::from(1.0);
+    }
+    fn sliding(&self) -> Option<Sliding> {
+        Some(Sliding { velocity: 1, memory: None })
+    }
+}
+
+impl Drifting {
+    /// Logarithm of the amplitude, and s, after some time.
+    fn after(&self, duration_s: f64, from: f64, sample_time_s: Option<f64>) -> [f64; 2] {
+        let sampler = sample_time_s.map(|period| Box::new(Nothing(period)) as Box<dyn Sampler>);
+        let input = if sampler.is_some() { Input::Command } else { Input::Value(Profile::constant(0.0)) };
+        let course = course(duration_s, duration_s, vec![input]);
+        let settings = settings(1e-4, Method::Rosenbrock);
+        let run = simulate(self, &[1e-9, 0.0, from], &course, sampler, &settings, &mut |_| true).unwrap();
+        assert_eq!(run.outcome.status, Status::Completed);
+        let [x, y, reached] = run.outcome.end[..] else { panic!("three states") };
+        [portable::ln(portable::hypot(x, y)), reached]
+    }
+
+    /// Growth of the logarithm of the amplitude from one time to two seconds, over what it should be.
+    fn relative_growth(&self, since_s: f64, from: f64, sample_time_s: Option<f64>) -> f64 {
+        let [before, after] = [since_s, 2.0].map(|time_s| self.after(time_s, from, sample_time_s));
+        let expected = 0.5 * self.rate * (after[1] * after[1] - before[1] * before[1]);
+        (after[0] - before[0]) / expected
+    }
+}
+
+/// A sampler that commands nothing.
+struct Nothing(f64);
+
+impl Sampler for Nothing {
+    fn sample_time_s(&self) -> f64 {
+        self.0
+    }
+    fn delay_s(&self) -> f64 {
+        0.0
+    }
+    fn command(&mut self, _: f64, _: &[f64], _: &[f64]) -> f64 {
+        0.0
+    }
+}
+
+#[test]
+fn friction_that_feeds_more_and_more_is_followed() {
+    let system = Drifting { omega: 1300.0, rate: 8.0 };
+    let grown = system.relative_growth(0.1, 0.02, None);
+    assert!((grown - 1.0).abs() < 0.02, "{grown}");
+}
+
+/// From sample to sample it goes by matrices that are found once: these are found anew when friction has changed, so that a mode that
+/// decayed when they were found is seen to grow, through whatever angle it turns in a sample. (The first sample goes by the method, which
+/// may damp what decays.)
+#[test]
+fn samples_do_not_hide_growth() {
+    for angle in [0.3, 1.3, 2.6, 6.5, 13.0, 39.0] {
+        let system = Drifting { omega: 1300.0, rate: 8.0 };
+        let grown = system.relative_growth(0.1, -0.3, Some(angle / system.omega));
+        assert!((grown - 1.0).abs() < 0.05, "{angle} rad a sample: {grown}");
+    }
+}
+
+/// A course that is too long for the oscillation that would have to be followed ends, and tells the mode.
+#[test]
+fn what_cannot_be_resolved_is_told() {
+    let law = TwoMasses { omega: 1e4, alpha: 20.0 };
+    let settings = Settings { maximum_steps: 2_000, ..settings(1e-3, Method::Rosenbrock) };
+    let course = course(1e3, 1e3, vec![]);
+    let start = [1e-12, 0.0, 0.0, 0.0];
+    let run = simulate(&Lawful(law, 1e6), &start, &course, None, &settings, &mut |_| true).unwrap();
+    let Status::UnresolvedOscillation { time_s, frequency_rad_per_s, growth_per_s } = run.outcome.status
+    else {
+        panic!("{:?}", run.outcome.status)
+    };
+    assert!(time_s > 0.0 && time_s < 1.0);
+    // The faster mode asks for the shorter steps.
+    assert!((frequency_rad_per_s / (1e4 * 3.0_f64.sqrt()) - 1.0).abs() < 1e-6);
+    assert!((growth_per_s / 20.0 - 1.0).abs() < 1e-6);
 }

@@ -3,7 +3,7 @@
 use phea_dynamics::scalar::{Dependence, Dual, Lanes, Scalar};
 use phea_dynamics::simulation::{
     Course, Event, Input, Lane, Method, Observer, Outcome, Profile, Queue, Sampler, Settings,
-    SimulationError, Status, System, Task, drive,
+    SimulationError, Sliding, Status, System, Task, drive,
 };
 
 use super::laws::settings;
@@ -11,13 +11,15 @@ use super::laws::settings;
 /// A stiff pair, a limit, a command and, if there is one, a late wave: states x, v, z; inputs w, u and the wave of x.
 ///
 /// ```text
-/// x' = v,   v' = -k x - |v| v + w + u,   z' = r (x - z) + sqrt(|w| + 1/10) - x(t - T)/2
+/// x' = v,   v' = -k x + f v/(1 + v^2) - |v| v + w + u,   z' = r (x - z) + sqrt(|w| + 1/10) - x(t - T)/2
 /// ```
 #[derive(Clone)]
 struct Machine<S> {
     stiffness: S,
     rate: S,
     delay_s: S,
+    /// What a falling friction feeds, f.
+    feeding: S,
     waves: usize,
 }
 
@@ -33,7 +35,8 @@ impl<S: Lane> System<S> for Machine<S> {
     }
     fn rates<T: Scalar + From<S>>(&self, y: &[T], w: &[T], rates: &mut [T]) {
         rates[0] = y[1];
-        rates[1] = -T::from(self.stiffness) * y[0] - y[1].abs() * y[1] + w[0] + w[1];
+        let fed = T::from(self.feeding) * y[1] / (T::from(1.0) + y[1].squared());
+        rates[1] = fed - T::from(self.stiffness) * y[0] - y[1].abs() * y[1] + w[0] + w[1];
         rates[2] = T::from(self.rate) * (y[0] - y[2]) + (w[0].abs() + T::from(0.1)).sqrt();
         for wave in &w[2..] {
             rates[2] = rates[2] - wave.times(0.5);
@@ -45,6 +48,9 @@ impl<S: Lane> System<S> for Machine<S> {
     fn outgoing<T: Scalar + From<S>>(&self, y: &[T], _: &[T], waves: &mut [T]) {
         waves.fill(y[0]);
     }
+    fn sliding(&self) -> Option<Sliding> {
+        Some(Sliding { velocity: 1, memory: None })
+    }
     fn indicators(&self) -> usize {
         1
     }
@@ -55,7 +61,7 @@ impl<S: Lane> System<S> for Machine<S> {
 
 #[derive(Clone)]
 struct Case {
-    parameters: [f64; 3],
+    parameters: [f64; 4],
     start: [f64; 3],
     course: Course,
     sample_time_s: Option<f64>,
@@ -118,10 +124,11 @@ impl<'a, S: Lane> Queue<'a, Machine<S>> for Line<'a> {
     fn next(&mut self, machine: &mut Machine<S>, lane: usize) -> Option<Task<'a, Notes>> {
         let index = self.order.pop()?;
         let case = &self.cases[index];
-        let [stiffness, rate, delay_s] = case.parameters;
+        let [stiffness, rate, delay_s, feeding] = case.parameters;
         machine.stiffness.set_lane(lane, stiffness);
         machine.rate.set_lane(lane, rate);
         machine.delay_s.set_lane(lane, delay_s);
+        machine.feeding.set_lane(lane, feeding);
         self.in_lane[lane] = index;
         let sampler = case.sample_time_s.map(|sample_time_s| {
             Box::new(Holding { sample_time_s, noise: case.noise, number: 0.4 }) as Box<dyn Sampler>
@@ -157,7 +164,12 @@ fn cases() -> Vec<Case> {
         .map(|index: usize| {
             let part = index as f64;
             Case {
-                parameters: [4.0 + 7.0 * part, 10.0 * (1.0 + part * part * part), 0.03 + 0.01 * part],
+                parameters: [
+                    4.0 + 7.0 * part,
+                    10.0 * (1.0 + part * part * part),
+                    0.03 + 0.01 * part,
+                    [0.0, 3.0][index / 2 % 2],
+                ],
                 start: [0.1 * (part - 5.0), 0.0, if index % 4 == 3 { 1e3 } else { 0.0 }],
                 course: Course {
                     duration_s: 1.0 + 0.1 * part,
@@ -178,7 +190,7 @@ where
     Dual<6, S>: From<f64> + From<S>,
 {
     let one = S::from(1.0);
-    let mut machine = Machine { stiffness: one, rate: one, delay_s: one, waves };
+    let mut machine = Machine { stiffness: one, rate: one, delay_s: one, feeding: one, waves };
     let mut line =
         Line { cases, order, in_lane: vec![0; S::COUNT], results: vec![Seen::default(); cases.len()] };
     drive(&mut machine, &mut line, settings).unwrap();
@@ -345,7 +357,7 @@ fn stopping_stops_all() {
     let line =
         Line { cases: &cases, order, in_lane: vec![0; 4], results: vec![Seen::default(); cases.len()] };
     let one = Lanes([1.0; 4]);
-    let mut machine = Machine { stiffness: one, rate: one, delay_s: one, waves: 1 };
+    let mut machine = Machine { stiffness: one, rate: one, delay_s: one, feeding: one, waves: 1 };
     let mut queue = Stopped(line, 0);
     drive(&mut machine, &mut queue, &Settings::default()).unwrap();
     let statuses: Vec<Status> =
