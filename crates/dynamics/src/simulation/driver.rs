@@ -319,14 +319,14 @@ where
     fn prepare(&mut self, lane: usize) {
         let Some(slot) = &mut self.slots[lane] else { return };
         let Slot { passage, sampler, states, inputs, .. } = slot;
-        if let Some(sampler) = sampler {
-            if passage.samples_now(sampler.sample_time_s()) {
-                for (place, value) in states.iter_mut().zip(&self.state) {
-                    *place = value.lane(lane);
-                }
-                passage.inputs_at(passage.time_s, inputs);
-                passage.act(sampler.as_mut(), states, inputs);
+        if let Some(sampler) = sampler
+            && passage.samples_now(sampler.sample_time_s())
+        {
+            for (place, value) in states.iter_mut().zip(&self.state) {
+                *place = value.lane(lane);
             }
+            passage.inputs_at(passage.time_s, inputs);
+            passage.act(sampler.as_mut(), states, inputs);
         }
         self.begin_step(lane);
     }

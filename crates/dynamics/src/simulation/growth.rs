@@ -79,7 +79,7 @@ impl Mode {
     /// ```
     fn bound(&self, growth: f64) -> Option<Growing> {
         let relative = growth / self.magnitude;
-        if !(relative > LEAST_GROWTH) {
+        if relative.is_nan() || relative <= LEAST_GROWTH {
             return None;
         }
         let angle = portable::pow(GROWTH_ERROR * relative / AMPLITUDE_LOST, 1.0 / 7.0).min(LARGEST_ANGLE);
