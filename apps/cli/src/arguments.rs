@@ -7,7 +7,9 @@ use crate::changes::Changes;
 /// Hydraulic force control through added compliance: size the hose, see the models, audit, shape or design the controller, simulate the machine, get the report.
 #[derive(Debug, Parser)]
 #[command(name = "phea", version, arg_required_else_help = true)]
-#[command(after_help = "Exit status: 0 done, 1 the answer is no or not proven, 2 the input is wrong.")]
+#[command(
+    after_help = "Exit status: 0 done, 1 the answer is no or not proven, 2 the input is wrong, 3 something could not be written."
+)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,

@@ -1,8 +1,6 @@
 use std::fs;
 use std::io::{ErrorKind, Read};
-use std::path::{Path, PathBuf};
 
-use phea_workbench::answer::OutputFile;
 use phea_workbench::source::{Source, SourceError};
 
 /// Bytes of the largest file that is read; endless devices end here.
@@ -59,42 +57,15 @@ fn folder_reason(path: &str) -> String {
 }
 
 /// The usual reasons in words that are the same on every system.
-fn reason(error: &std::io::Error) -> String {
+pub(crate) fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "no such file or folder".to_string(),
         ErrorKind::PermissionDenied => "permission denied".to_string(),
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
             "a file of that name is in the way".to_string()
         }
+        ErrorKind::StorageFull => "the disk is full".to_string(),
         ErrorKind::ReadOnlyFilesystem => "the file system is read-only".to_string(),
         _ => error.to_string(),
     }
-}
-
-/// Writes files into a folder; gives their paths.
-pub(crate) fn write(folder: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, String> {
-    files.iter().map(|file| write_as(&folder.join(&file.name), file)).collect()
-}
-
-/// Writes a file under a path of its own, whose folder is made if need be, and gives that.
-pub(crate) fn write_as(path: &Path, file: &OutputFile) -> Result<PathBuf, String> {
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
-    }
-    fs::write(path, &file.bytes).map_err(|error| unwritten(path, &error)).map(|()| path.to_path_buf())
-}
-
-/// Why a file or folder cannot be written.
-pub(crate) fn unwritten(path: &Path, error: &std::io::Error) -> String {
-    format!("cannot write {}: {}", path.display(), reason(error))
-}
-
-/// Writes the starter project into a folder that must be empty or absent.
-pub(crate) fn write_starter(folder: &Path, text: &str) -> Result<PathBuf, String> {
-    let occupied = folder.read_dir().is_ok_and(|mut entries| entries.next().is_some());
-    if occupied || folder.is_file() {
-        return Err(format!("{} exists and is not an empty folder; nothing was written", folder.display()));
-    }
-    let file = OutputFile { name: "project.toml".to_string(), bytes: text.as_bytes().to_vec() };
-    write(folder, &[file]).map(|_| folder.join("project.toml"))
 }

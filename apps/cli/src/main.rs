@@ -2,8 +2,10 @@
 
 mod arguments;
 mod changes;
+mod failure;
 mod file_system;
 mod interruption;
+mod output;
 mod run;
 mod voice;
 

@@ -4,27 +4,19 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use phea_workbench::answer::Answer;
+use phea_workbench::answer::{Answer, OutputFile};
 use phea_workbench::command::{self, CampaignRequest, CommandError, Request};
 use phea_workbench::design::DESIGNED_PROJECT;
 use phea_workbench::project::{self, Loaded, STARTER};
 use phea_workbench::shaping::{SHAPED_PROJECT, Shaped};
+use phea_workbench::source::Destination;
 
 use crate::arguments::{Arguments, Command, Common, Several};
-use crate::file_system::{FileSystem, write, write_as, write_starter};
+use crate::failure::{DONE, Failure, NO, WRONG_INPUT};
+use crate::file_system::FileSystem;
 use crate::interruption::Interruption;
+use crate::output::{Folder, write, write_as};
 use crate::voice::{ProgressLine, complain, say};
-
-/// The answer is yes, no, or the input is wrong.
-const DONE: u8 = 0;
-const NO: u8 = 1;
-const WRONG_INPUT: u8 = 2;
-
-/// Why there is no answer: for people, and as one JSON object.
-struct Refused {
-    text: String,
-    json: String,
-}
 
 pub(crate) fn run(arguments: Arguments) -> ExitCode {
     let outcome = match arguments.command {
@@ -46,7 +38,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Campaign { common, runs, seed, shard, run, threads } => {
             match campaign::request(runs, seed, shard.as_deref(), run, (threads, common.out.is_some())) {
                 Ok(request) => on_campaign(&common, &request),
-                Err(message) => Err(format!("error: {message}")),
+                Err(message) => Err(Failure::wrong_input(format!("error: {message}"))),
             }
         }
         Command::Report(common) => {
@@ -65,61 +57,69 @@ pub(crate) fn misused(error: &clap::Error) -> ExitCode {
     if std::env::args_os().any(|argument| argument == "--json") {
         let text = error.to_string();
         let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
-        return ended(say(&format!("{}\n", command::failure_json(None, None, message))).and(Err(text)));
+        let said = say(&format!("{}\n", command::failure_json(None, None, message)));
+        return ended(said.and(Err(Failure::wrong_input(text))));
     }
     let _ = error.print();
     ExitCode::from(WRONG_INPUT)
 }
 
-fn ended(outcome: Result<u8, String>) -> ExitCode {
-    ExitCode::from(outcome.unwrap_or_else(|message| {
-        complain(&message);
-        WRONG_INPUT
+fn ended(outcome: Result<u8, Failure>) -> ExitCode {
+    ExitCode::from(outcome.unwrap_or_else(|failure| {
+        complain(&failure.text);
+        failure.status
     }))
 }
 
-fn new(folder: &Path) -> Result<u8, String> {
-    let path = write_starter(folder, STARTER).map_err(|message| format!("error: {message}"))?;
+/// Writes the starter project into a folder that must be empty or absent.
+fn new(folder: &Path) -> Result<u8, Failure> {
+    let occupied = folder.read_dir().is_ok_and(|mut entries| entries.next().is_some());
+    if occupied || folder.is_file() {
+        let text = format!("{} exists and is not an empty folder; nothing was written", folder.display());
+        return Err(Failure::wrong_input(format!("error: {text}")));
+    }
+    let file = OutputFile { name: "project.toml".to_string(), bytes: STARTER.as_bytes().to_vec() };
+    let path = write_as(&folder.join(&file.name), &file).map_err(|message| Failure::not_written(&message))?;
     say(&format!("Wrote {}. Next: phea check {0}\n", path.display()))?;
     Ok(DONE)
 }
 
-fn on_project(common: &Common, request: &Request) -> Result<u8, String> {
+fn on_project(common: &Common, request: &Request) -> Result<u8, Failure> {
     on_project_saving(common, request, None)
 }
 
 /// The same, the designed or shaped project written to a file of its own.
-fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, String> {
+fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, Failure> {
     told(common.json, answered(common, request, save))
 }
 
 /// Says an answer with what was written, or why there is none.
-fn told(json: bool, outcome: Result<(Answer, Vec<PathBuf>), Refused>) -> Result<u8, String> {
+fn told(json: bool, outcome: Result<(Answer, Vec<PathBuf>), Failure>) -> Result<u8, Failure> {
     match outcome {
         Ok((answer, _)) if json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
         Ok((answer, written)) => {
             say(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
         }
-        Err(refused) => {
+        Err(failure) => {
             if json {
-                say(&format!("{}\n", refused.json))?;
+                say(&format!("{}\n", failure.json))?;
             }
-            Err(refused.text)
+            Err(failure)
         }
     }
 }
 
 /// A campaign, its table kept in the folder for files.
-fn on_campaign(common: &Common, asked: &CampaignRequest) -> Result<u8, String> {
+fn on_campaign(common: &Common, asked: &CampaignRequest) -> Result<u8, Failure> {
     told(common.json, campaign::answered(common, asked))
 }
 
 /// Several projects in one answer.
-fn on_projects(several: &Several) -> Result<u8, String> {
+fn on_projects(several: &Several) -> Result<u8, Failure> {
     told(several.json, compared(several))
 }
 
-fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Refused> {
+fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let request = Request::Compare;
     let paths = several.projects.iter().map(|path| path.to_string_lossy());
     let loaded = paths.map(|path| load(&path, &several.settings, &several.catalogues, &request));
@@ -134,7 +134,7 @@ fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Refused> {
     line.clear();
     // the command line asks for one project at least
     let Some(first) = loaded.first() else {
-        return Err(Refused { text: "error: no project".to_string(), json: String::new() });
+        return Err(Failure::wrong_input("error: no project"));
     };
     let answer = answer.map_err(|error| refused(first, &request, &error))?;
     let written = match &several.out {
@@ -153,22 +153,26 @@ fn answered(
     common: &Common,
     request: &Request,
     save: Option<&Path>,
-) -> Result<(Answer, Vec<PathBuf>), Refused> {
+) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let path = common.project.to_string_lossy();
     let loaded = load(&path, &common.settings, &common.catalogues, request)?;
     let mut line = ProgressLine::default();
     // what ends in a best result so far is asked to stop; everything else has nothing to save
     let interruption =
         matches!(request, Request::Design { .. } | Request::Simulate).then(Interruption::listen);
-    let answer =
-        command::answer_watched(&FileSystem, &loaded, &common.catalogues, request, &mut |progress| {
-            line.show(progress);
-            !interruption.as_ref().is_some_and(Interruption::is_asked)
-        });
+    let tables = common.out.as_deref().map(Folder::new);
+    let destination = tables.as_ref().map(|tables| tables as &dyn Destination);
+    let mut watch = |progress| {
+        line.show(progress);
+        !interruption.as_ref().is_some_and(Interruption::is_asked)
+    };
+    let catalogues = &common.catalogues;
+    let answer = command::answer_into(&FileSystem, &loaded, catalogues, request, destination, &mut watch);
     line.clear();
     let answer = answer.map_err(|error| refused(&loaded, request, &error))?;
     let explain = |message: String| failed(request, &loaded, &message);
-    let mut written = write_files(common, request, &answer).map_err(explain)?;
+    let mut written = tables.map(Folder::into_begun).unwrap_or_default();
+    written.extend(write_files(common, request, &answer).map_err(explain)?);
     let project =
         answer.files.iter().find(|file| [DESIGNED_PROJECT, SHAPED_PROJECT].contains(&file.name.as_str()));
     if let (Some(path), Some(project)) = (save, project) {
@@ -183,10 +187,10 @@ fn load(
     settings: &[String],
     catalogues: &[String],
     request: &Request,
-) -> Result<Loaded, Refused> {
-    let loaded = project::read(&FileSystem, path, settings, catalogues).map_err(|report| Refused {
-        json: command::refusal_json(&FileSystem, path, request, &report),
-        text: report.render(styled()),
+) -> Result<Loaded, Failure> {
+    let loaded = project::read(&FileSystem, path, settings, catalogues).map_err(|report| {
+        let json = command::refusal_json(&FileSystem, path, request, &report);
+        Failure::wrong_input(report.render(styled())).with_json(json)
     })?;
     if !loaded.warnings.is_empty() {
         complain(&project::render(&loaded.warnings, &loaded.texts, styled()));
@@ -194,21 +198,19 @@ fn load(
     Ok(loaded)
 }
 
-fn refused(loaded: &Loaded, request: &Request, error: &CommandError) -> Refused {
-    Refused {
-        json: command::error_json(loaded, request, error),
-        text: match error.refusal() {
-            Some(report) => report.render(styled()),
-            None => format!("error: {error}"),
-        },
-    }
+fn refused(loaded: &Loaded, request: &Request, error: &CommandError) -> Failure {
+    let failure = match error.refusal() {
+        _ if error.is_of_files() => Failure::not_written(&error.to_string()),
+        Some(report) => Failure::wrong_input(report.render(styled())),
+        None => Failure::wrong_input(format!("error: {error}")),
+    };
+    failure.with_json(command::error_json(loaded, request, error))
 }
 
-fn failed(request: &Request, loaded: &Loaded, message: &str) -> Refused {
-    Refused {
-        text: format!("error: {message}"),
-        json: command::failure_json(Some(request.name()), Some(&loaded.sha256), message),
-    }
+/// Something could not be written.
+fn failed(request: &Request, loaded: &Loaded, message: &str) -> Failure {
+    let json = command::failure_json(Some(request.name()), Some(&loaded.sha256), message);
+    Failure::not_written(message).with_json(json)
 }
 
 fn written_sentence(written: &[PathBuf]) -> String {

@@ -5,12 +5,15 @@ use std::time::{Duration, Instant};
 
 use phea_workbench::command::Progress;
 
+use crate::failure::Failure;
+use crate::file_system::reason;
+
 /// Says it on standard output. A reader that has gone away (`phea check rig.toml | head`) has what it wanted.
-pub(crate) fn say(text: &str) -> Result<(), String> {
+pub(crate) fn say(text: &str) -> Result<(), Failure> {
     let mut stream = io::stdout().lock();
     match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(format!("error: cannot write to standard output: {error}"))
+            Err(Failure::not_written(&format!("cannot write to standard output: {}", reason(&error))))
         }
         _ => Ok(()),
     }
@@ -24,12 +27,19 @@ pub(crate) fn complain(text: &str) {
 /// Time after which a person wants to know that something happens, and between two lines about it.
 const PATIENCE: Duration = Duration::from_millis(500);
 
+/// The same where no terminal shows it: lines that stay, in the log of another program.
+const PATIENCE_OF_LOGS: Duration = Duration::from_secs(5);
+
+/// The variable of the environment that keeps progress out of logs, and its value.
+const KEEP_OUT: (&str, &str) = ("PHEA_PROGRESS", "never");
+
 /// Longest time that is told, s.
 const LONGEST_S: f64 = 1e9;
 
-/// One line on standard error that follows a long command; nothing where nobody looks.
+/// Follows a long command on standard error: one line that changes on a terminal, a line every few seconds elsewhere.
 pub(crate) struct ProgressLine {
     next: Option<Instant>,
+    terminal: bool,
     shown: bool,
     /// When it was first told how far it is, and how far that was: of work that goes on evenly.
     even: Option<(Instant, f64)>,
@@ -37,8 +47,12 @@ pub(crate) struct ProgressLine {
 
 impl Default for ProgressLine {
     fn default() -> Self {
-        let next = io::stderr().is_terminal().then(|| Instant::now() + PATIENCE);
-        ProgressLine { next, shown: false, even: None }
+        let (variable, never) = KEEP_OUT;
+        let wanted = std::env::var_os(variable).is_none_or(|value| value != never);
+        let terminal = io::stderr().is_terminal();
+        let mut line = ProgressLine { next: None, terminal, shown: false, even: None };
+        line.next = wanted.then(|| Instant::now() + line.patience());
+        line
     }
 }
 
@@ -58,6 +72,10 @@ impl ProgressLine {
         self.write(progress, &format!(", {hours}:{minutes:02}:{seconds:02} left"));
     }
 
+    fn patience(&self) -> Duration {
+        if self.terminal { PATIENCE } else { PATIENCE_OF_LOGS }
+    }
+
     /// Shows how far it is, not too often.
     pub(crate) fn show(&mut self, progress: Progress) {
         self.write(progress, "");
@@ -66,10 +84,14 @@ impl ProgressLine {
     fn write(&mut self, progress: Progress, more: &str) {
         let now = Instant::now();
         if self.next.is_some_and(|next| now >= next) {
-            self.next = Some(now + PATIENCE);
-            self.shown = true;
+            self.next = Some(now + self.patience());
             let percent = (100.0 * progress.share).clamp(0.0, 100.0);
-            let _ = write!(io::stderr().lock(), "\r{}: {percent:.0} %{more}\x1b[K", progress.stage);
+            let line = format!("{}: {percent:.0} %{more}", progress.stage);
+            if !self.terminal {
+                return complain(&line);
+            }
+            self.shown = true;
+            let _ = write!(io::stderr().lock(), "\r{line}\x1b[K");
         }
     }
 

@@ -32,7 +32,7 @@ pub use method::Method;
 pub use profile::{Moment, Piece, Profile, ProfileError};
 pub use sensed::Sensed;
 pub use task::{Queue, Task};
-pub use trajectory::{Simulated, Trajectory, simulate};
+pub use trajectory::{Simulated, Trajectory, drive_one, simulate};
 
 use crate::scalar::{Lanes, Scalar};
 

@@ -1,8 +1,10 @@
 //! The commands on a project: what is asked, and the answer that a shell prints and writes.
 
 mod campaign;
+mod refusal;
 
 pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
+pub use refusal::{error_json, failure_json, refusal_json};
 
 use phea_qft::family::Family;
 use phea_qft::verification::Verdict;
@@ -17,14 +19,14 @@ use crate::design::{self, DesignError, design_project};
 use crate::family::{FamilyError, family};
 use crate::figure::FigureError;
 use crate::linearize::{self, linearize};
-use crate::project::{Loaded, Report as Refusal, Severity, sha256};
+use crate::project::{Loaded, Report as Refusal};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
 use crate::shaping::{self, RequestedChange, Shaped, ShapingError, shape};
-use crate::simulate::{self, ScenarioRun, SimulateError, compare_projects, simulate_project};
+use crate::simulate::{self, ScenarioRun, SimulateError, compare_projects, simulate_into};
 use crate::sizing::{self, Question, size};
-use crate::source::Source;
+use crate::source::{Destination, Held, Source};
 use crate::specification::{self, specifications, wishes};
 
 /// What is asked of a project.
@@ -181,6 +183,17 @@ impl CommandError {
             _ => None,
         }
     }
+
+    /// Whether a file could not be written or read back: nothing is wrong with what was asked.
+    pub fn is_of_files(&self) -> bool {
+        matches!(
+            self,
+            CommandError::Simulate(SimulateError::Write(_))
+                | CommandError::Campaign(
+                    CampaignError::Ledger(_) | CampaignError::Simulate(SimulateError::Write(_))
+                )
+        )
+    }
 }
 
 /// How far a long command is.
@@ -219,6 +232,25 @@ pub fn answer_watched(
     request: &Request,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
+    let held = Held::default();
+    let mut answer = answer_into(source, loaded, catalogues, request, Some(&held), watch)?;
+    answer.files.extend(held.into_files());
+    Ok(answer)
+}
+
+/// The same, the tables of simulated scenarios written to a destination as they come, or nowhere: all other files are in the
+/// answer.
+///
+/// # Errors
+/// Those of [`answer_watched`], and where a table cannot be written.
+pub fn answer_into(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    request: &Request,
+    destination: Option<&dyn Destination>,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
     match request {
         Request::Check => check(source, loaded),
         Request::Size { gain, length } => {
@@ -233,9 +265,11 @@ pub fn answer_watched(
             Ok(Answer { text, json, files: shaping::files(&shaping), affirmative: true })
         }
         Request::Design { seed, stages } => design_answer(source, loaded, *seed, *stages, watch),
-        Request::Simulate => simulate_answer(source, loaded, watch),
+        Request::Simulate => simulate_answer(source, loaded, destination, watch),
         Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
-        Request::Campaign(asked) => campaign_watched(source, loaded, catalogues, asked, &mut Nowhere, watch),
+        Request::Campaign(asked) => {
+            campaign_watched(source, loaded, catalogues, asked, (&mut Nowhere, destination), watch)
+        }
         Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
         Request::Page => {
             report_answer(source, loaded, catalogues, watch, |report| Ok(vec![report.page_file()]))
@@ -353,13 +387,18 @@ fn design_answer(
     })
 }
 
-fn simulate_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
-    let runs = simulate_project(source, &loaded.project, watch)?;
+fn simulate_answer(
+    source: &dyn Source,
+    loaded: &Loaded,
+    destination: Option<&dyn Destination>,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
+    let runs = simulate_into(source, &loaded.project, destination, watch)?;
     let all = runs.len() == loaded.project.scenarios.len();
     Ok(Answer {
         text: simulate::text(loaded, &runs),
         json: simulate::json(loaded, &runs),
-        files: simulate::files(&runs),
+        files: vec![],
         affirmative: all && runs.iter().all(|run: &ScenarioRun| run.stopped().is_none()),
     })
 }
@@ -420,80 +459,4 @@ fn report_answer(
         figures: report.figures.iter().map(|figure| figure.name.clone()).collect(),
     };
     Ok(Answer { text, json: answer::json("report", loaded, body), files: files(&report)?, affirmative: true })
-}
-
-#[derive(Serialize)]
-struct RefusalBody<'a> {
-    schema: u32,
-    version: &'static str,
-    command: Option<&'a str>,
-    project_sha256: Option<&'a str>,
-    errors: Vec<RefusalRow<'a>>,
-}
-
-#[derive(Serialize)]
-struct RefusalRow<'a> {
-    severity: &'static str,
-    message: &'a str,
-    file: Option<&'a str>,
-    line: Option<usize>,
-    column: Option<usize>,
-    expected: Option<&'a str>,
-    help: Option<&'a str>,
-}
-
-/// The JSON object of a command whose project, at `path`, was refused.
-pub fn refusal_json(source: &dyn Source, path: &str, request: &Request, refusal: &Refusal) -> String {
-    let hash = source.read(path).ok().map(|bytes| sha256(&bytes));
-    refusal_body(Some(request.name()), hash.as_deref(), refusal_rows(refusal))
-}
-
-/// The JSON object of a command that has no answer on a sound project: a row for every finding in its files, or one for the
-/// error itself.
-pub fn error_json(loaded: &Loaded, request: &Request, error: &CommandError) -> String {
-    let (command, hash) = (Some(request.name()), Some(loaded.sha256.as_str()));
-    match error.refusal() {
-        Some(refusal) => refusal_body(command, hash, refusal_rows(refusal)),
-        None => failure_json(command, hash, &error.to_string()),
-    }
-}
-
-fn refusal_rows(refusal: &Refusal) -> Vec<RefusalRow<'_>> {
-    let place = |number: usize| Some(number).filter(|number| *number > 0);
-    let rows = refusal.diagnostics.iter().map(|diagnostic| RefusalRow {
-        severity: if diagnostic.severity == Severity::Error { "error" } else { "warning" },
-        message: &diagnostic.message,
-        file: Some(&diagnostic.file),
-        line: place(diagnostic.line),
-        column: place(diagnostic.column),
-        expected: diagnostic.expected.as_deref(),
-        help: diagnostic.help.as_deref(),
-    });
-    rows.collect()
-}
-
-/// The JSON object of a command that failed beyond its project file; `command` is absent where the command line is none.
-///
-/// # Example
-/// ```
-/// let json = phea_workbench::command::failure_json(Some("size"), None, "cannot write out: permission denied");
-/// assert!(json.contains("\"command\": \"size\"") && json.contains("permission denied"));
-/// ```
-pub fn failure_json(command: Option<&str>, project_sha256: Option<&str>, message: &str) -> String {
-    let error = RefusalRow {
-        severity: "error",
-        message,
-        file: None,
-        line: None,
-        column: None,
-        expected: None,
-        help: None,
-    };
-    refusal_body(command, project_sha256, vec![error])
-}
-
-fn refusal_body(command: Option<&str>, project_sha256: Option<&str>, errors: Vec<RefusalRow<'_>>) -> String {
-    let version = env!("CARGO_PKG_VERSION");
-    let body = RefusalBody { schema: answer::SCHEMA, version, command, project_sha256, errors };
-    serde_json::to_string_pretty(&body).unwrap_or_default()
 }

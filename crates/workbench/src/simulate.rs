@@ -7,6 +7,7 @@ mod course;
 mod digital;
 mod figures;
 mod files;
+mod look;
 mod metrics;
 mod motion_file;
 mod run;
@@ -14,15 +15,16 @@ mod text;
 
 pub use bench::Bench;
 pub use compare::{Comparison, compare_projects};
+pub use look::{Look, Record};
 pub use metrics::{Cause, Measured, Metrics, Window};
-pub use run::{Occurrence, Record, ScenarioRun, Stopped};
+pub use run::{Occurrence, ScenarioRun, Stopped};
 
 pub(crate) use answer::{Body, body, compare_json, json};
 pub(crate) use bench::{Control, options};
 pub(crate) use course::{Driven, course_of, driven, windows};
-pub(crate) use digital::{Digital, Sample};
+pub(crate) use digital::{Digital, Samples};
 pub(crate) use figures::{comparison_files, pictures};
-pub(crate) use files::files;
+pub(crate) use files::{Table, table_names};
 pub(crate) use metrics::{Seen, metrics_seen};
 pub(crate) use run::{COMMAND_LIMIT, occurrences};
 pub(crate) use text::{
@@ -40,7 +42,7 @@ use crate::command::{Progress, Watch};
 use crate::control::ControlError;
 use crate::project::{Project, Report};
 use crate::rig::RigError;
-use crate::source::Source;
+use crate::source::{Destination, Source, WriteError};
 
 /// Why a sound project is not simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -106,6 +108,9 @@ pub enum SimulateError {
         /// What does not fit.
         error: SimulationError,
     },
+    /// A table cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 /// Drives the machine of a project through each of its scenarios, in file order. Where the watch answers `false` the scenario
@@ -119,6 +124,19 @@ pub fn simulate_project(
     project: &Project,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
+    simulate_into(source, project, None, watch)
+}
+
+/// The same, with a table `SCENARIO.csv` of each scenario, its rows written as they come: no row is held, however many there are.
+///
+/// # Errors
+/// As [`simulate_project`], and [`SimulateError::Write`].
+pub fn simulate_into(
+    source: &dyn Source,
+    project: &Project,
+    destination: Option<&dyn Destination>,
+    watch: Watch<'_>,
+) -> Result<Vec<ScenarioRun>, SimulateError> {
     if project.scenarios.is_empty() {
         return Err(SimulateError::NoScenario);
     }
@@ -127,10 +145,12 @@ pub fn simulate_project(
     let courses = courses.collect::<Result<Vec<_>, _>>()?;
     let whole: f64 = project.scenarios.iter().map(|scenario| scenario.duration).sum();
     let (mut before, mut runs) = (0.0, Vec::new());
-    for (scenario, course) in project.scenarios.iter().zip(&courses) {
+    let names = table_names(project.scenarios.iter().map(|scenario| scenario.name.as_str()));
+    for ((scenario, course), name) in project.scenarios.iter().zip(&courses).zip(&names) {
+        let table = destination.map(|destination| Table::begin(destination, name)).transpose()?;
         let mut told =
             |time_s: f64| watch(Progress { stage: "simulating", share: (before + time_s) / whole });
-        let run = run::run(&bench, scenario, course, &mut told)?;
+        let run = run::run(&bench, scenario, course, table, &mut told)?;
         let stopped = run.was_cancelled();
         runs.push(run);
         before += scenario.duration;

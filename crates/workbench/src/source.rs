@@ -1,6 +1,11 @@
-//! The workbench's only door to text and bytes. Shells implement it over the file system.
+//! The workbench's only doors to text and bytes: where files come from, and where long ones go. Shells implement them over the
+//! file system.
 
 use std::collections::BTreeMap;
+use std::io;
+use std::sync::{Mutex, PoisonError};
+
+use crate::answer::OutputFile;
 
 /// Where files come from. A path is what the user wrote; only the implementation gives it a meaning.
 pub trait Source {
@@ -70,5 +75,91 @@ impl Source for Memory {
             return Err(SourceError { path: path.to_string(), reason: "no such file or folder".to_string() });
         }
         Ok(Some(files))
+    }
+}
+
+/// Where files go that are too long to be held: they are written as they come.
+pub trait Destination {
+    /// Begins a file. It has its name only when it is finished, and is nowhere if it never is.
+    ///
+    /// # Errors
+    /// [`WriteError`] if it cannot be begun.
+    fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError>;
+}
+
+/// A file that is being written. What is written may wait in a buffer until it is finished.
+pub trait Unfinished: io::Write + Send {
+    /// Puts it under its name, whole.
+    ///
+    /// # Errors
+    /// What the system says.
+    fn finish(self: Box<Self>) -> io::Result<()>;
+}
+
+/// A file that could not be written, and why.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cannot write {path}: {reason}")]
+pub struct WriteError {
+    /// Where it should go.
+    pub path: String,
+    /// In the words of the system.
+    pub reason: String,
+}
+
+/// Files held in memory, for tests and for shells without a file system.
+///
+/// # Example
+/// ```
+/// use std::io::Write;
+/// use phea_workbench::source::{Destination, Held};
+/// let held = Held::default();
+/// let mut table = held.begin("table.csv")?;
+/// table.write_all(b"time_s\n")?;
+/// table.finish()?;
+/// let mut torn = held.begin("torn.csv")?;
+/// torn.write_all(b"time")?;
+/// drop(torn);
+/// let files = held.into_files();
+/// assert_eq!((files.len(), files[0].name.as_str(), files[0].bytes.as_slice()), (1, "table.csv", b"time_s\n".as_slice()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct Held(Mutex<Vec<OutputFile>>);
+
+impl Held {
+    /// All that were finished, in that order.
+    pub fn into_files(self) -> Vec<OutputFile> {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Destination for Held {
+    fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError> {
+        let file = OutputFile { name: name.to_string(), bytes: Vec::new() };
+        Ok(Box::new(Growing { file, finished: &self.0 }))
+    }
+}
+
+struct Growing<'a> {
+    file: OutputFile,
+    finished: &'a Mutex<Vec<OutputFile>>,
+}
+
+impl io::Write for Growing<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.bytes.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Unfinished for Growing<'_> {
+    fn finish(self: Box<Self>) -> io::Result<()> {
+        let Growing { file, finished } = *self;
+        finished.lock().unwrap_or_else(PoisonError::into_inner).push(file);
+        Ok(())
     }
 }

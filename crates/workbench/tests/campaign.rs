@@ -139,7 +139,8 @@ fn request(runs: u64, shard: Shard) -> CampaignRequest {
 }
 
 fn kept(loaded: &Loaded, request: &CampaignRequest, page: &mut Page) -> Result<String, CommandError> {
-    command::campaign_watched(&source(), loaded, &[], request, page, &mut |_| true).map(|answer| answer.json)
+    command::campaign_watched(&source(), loaded, &[], request, (page, None), &mut |_| true)
+        .map(|answer| answer.json)
 }
 
 #[test]
@@ -182,7 +183,7 @@ fn stopping_leaves_whole_rows() {
     let loaded = load(&SHORT);
     let asked = request(600, Shard::default());
     let (mut page, mut asks) = (Page::default(), 0);
-    let answer = command::campaign_watched(&source(), &loaded, &[], &asked, &mut page, &mut |_| {
+    let answer = command::campaign_watched(&source(), &loaded, &[], &asked, (&mut page, None), &mut |_| {
         asks += 1;
         asks < 2
     })
@@ -345,7 +346,8 @@ fn the_parquet_table_says_what_the_text_says() {
     let asked = CampaignRequest { files: true, ..request(300, Shard::default()) };
     let mut page = Page::default();
     let mut go_on = |_| true;
-    let answer = command::campaign_watched(&source(), &loaded, &[], &asked, &mut page, &mut go_on).unwrap();
+    let answer =
+        command::campaign_watched(&source(), &loaded, &[], &asked, (&mut page, None), &mut go_on).unwrap();
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("campaign.parquet");
     fs::write(&path, &answer.files.iter().find(|file| file.name == "runs.parquet").unwrap().bytes).unwrap();
     let reader = SerializedFileReader::new(fs::File::open(&path).unwrap()).unwrap();

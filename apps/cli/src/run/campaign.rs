@@ -8,11 +8,13 @@ use std::path::{Path, PathBuf};
 use phea_workbench::answer::Answer;
 use phea_workbench::campaign::{Effort, Ledger, Nowhere, Shard, Wanted};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
+use phea_workbench::source::Destination;
 
-use super::{FileSystem, Refused, failed, load, refused};
+use super::{FileSystem, failed, load, refused};
 use crate::arguments::Common;
-use crate::file_system::{unwritten, write};
+use crate::failure::Failure;
 use crate::interruption::Interruption;
+use crate::output::{Folder, unwritten, write};
 use crate::voice::ProgressLine;
 
 /// What is asked for.
@@ -38,7 +40,7 @@ pub(super) fn request(
 }
 
 /// The answer, and the files that were written.
-pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answer, Vec<PathBuf>), Refused> {
+pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let request = Request::Campaign(*asked);
     let path = common.project.to_string_lossy();
     let loaded = load(&path, &common.settings, &common.catalogues, &request)?;
@@ -51,6 +53,8 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
         }
         _ => None,
     };
+    let tables = common.out.as_deref().map(Folder::new);
+    let destination = tables.as_ref().map(|tables| tables as &dyn Destination);
     let ledger: &mut dyn Ledger = match &mut table {
         Some(table) => table,
         None => &mut Nowhere,
@@ -59,12 +63,14 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
         line.show_evenly(progress);
         !interruption.is_asked()
     };
-    let answer =
-        command::campaign_watched(&FileSystem, &loaded, &common.catalogues, asked, ledger, &mut watch);
+    let catalogues = &common.catalogues;
+    let into = (ledger, destination);
+    let answer = command::campaign_watched(&FileSystem, &loaded, catalogues, asked, into, &mut watch);
     line.clear();
     let answer = answer.map_err(|error| refused(&loaded, &request, &error))?;
     // the table stays locked until everything beside it is written
     let mut written: Vec<PathBuf> = table.iter().map(|table| table.path.clone()).collect();
+    written.extend(tables.map(Folder::into_begun).unwrap_or_default());
     if let Some(folder) = &common.out {
         let more = write(folder, &answer.files).map_err(|message| failed(&request, &loaded, &message))?;
         written.extend(more);
@@ -116,7 +122,12 @@ impl Ledger for Table {
     }
 
     fn append(&mut self, text: &str) -> Result<(), String> {
-        let written = self.file.seek(SeekFrom::End(0)).and_then(|_| self.file.write_all(text.as_bytes()));
-        written.map_err(|error| self.explain(&error))
+        let before = self.file.seek(SeekFrom::End(0)).map_err(|error| self.explain(&error))?;
+        let written = self.file.write_all(text.as_bytes());
+        // what was torn is taken back: the table has whole rows alone
+        written.map_err(|error| {
+            let _ = self.file.set_len(before);
+            self.explain(&error)
+        })
     }
 }

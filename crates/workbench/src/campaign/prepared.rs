@@ -9,7 +9,7 @@ use super::plan::{Draw, Plan};
 use super::row::{Ran, Row, RowOutcome, numbers};
 use crate::rig::{Rig, RigError, actuator};
 use crate::simulate::{
-    Bench, COMMAND_LIMIT, Control, Digital, Occurrence, Sample, Seen, SimulateError, Stopped, course_of,
+    Bench, COMMAND_LIMIT, Control, Digital, Occurrence, Samples, Seen, SimulateError, Stopped, course_of,
     metrics_seen, occurrences, options,
 };
 
@@ -23,7 +23,7 @@ pub(super) struct Prepared {
     start: Vec<f64>,
     holding: Option<[f64; 3]>,
     /// What a sampled controller did.
-    log: RefCell<Vec<Sample>>,
+    log: RefCell<Samples>,
 }
 
 /// Makes the machine of a draw.
@@ -72,7 +72,7 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         course: Course { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs },
         start: course.start,
         holding: course.holding,
-        log: RefCell::new(Vec::new()),
+        log: RefCell::default(),
     })
 }
 
@@ -158,10 +158,8 @@ impl Prepared {
             Control::Sampled(sampled) => {
                 first.extend(self.start.iter().skip(System::<f64>::states(&sampled.held)));
                 let mut found = occurrences(&sampled.held, &self.start, &first, &outcome.events);
-                let log = self.log.take();
-                if let Some(sample) = log.iter().find(|sample| sample.limited) {
-                    let kind = COMMAND_LIMIT;
-                    found.push(Occurrence { time_s: sample.time_s, kind, begins: true });
+                if let Some((time_s, begins)) = self.log.borrow().limits.first().copied() {
+                    found.push(Occurrence { time_s, kind: COMMAND_LIMIT, begins });
                 }
                 found
             }
@@ -231,7 +229,7 @@ impl Observer for Watched<'_> {
         };
         let command = match &self.prepared.bench.control {
             Control::Continuous(_) => sum(&self.command_weights).clamp(-self.plan.limit, self.plan.limit),
-            Control::Sampled(_) => self.prepared.log.borrow().last().map_or(0.0, |sample| sample.command_v),
+            Control::Sampled(_) => self.prepared.log.borrow().last.map_or(0.0, |sample| sample.command_v),
         };
         self.force_n.push(sum(&self.force_weights));
         self.control_v.push(command);

@@ -4,8 +4,8 @@ use super::{CommandError, Watch};
 use crate::answer::Answer;
 use crate::campaign::{self, CampaignError, Ledger, Plan, Summary, Wanted};
 use crate::project::{self, Loaded};
-use crate::simulate::{self, simulate_project};
-use crate::source::Source;
+use crate::simulate::simulate_into;
+use crate::source::{Destination, Source};
 
 /// What is asked of the campaign that a project declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub enum CampaignRuns {
 }
 
 /// Answers a campaign, its rows kept in a ledger, from which an interrupted one goes on. The answer is yes if every run has its
-/// row, however it ended.
+/// row, however it ended. The table over time of one run that is driven again goes to the destination, where there is one.
 ///
 /// # Errors
 /// [`CommandError`] if the project declares no campaign, or the ledger fails.
@@ -37,13 +37,13 @@ pub fn campaign_watched(
     loaded: &Loaded,
     catalogues: &[String],
     request: &CampaignRequest,
-    ledger: &mut dyn Ledger,
+    (ledger, destination): (&mut dyn Ledger, Option<&dyn Destination>),
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     let plan = Plan::new(source, loaded, request.seed)?;
     let wanted = match request.asked {
         CampaignRuns::All(wanted) => wanted,
-        CampaignRuns::One(run) => return one(source, loaded, catalogues, &plan, run, watch),
+        CampaignRuns::One(run) => return one(source, loaded, catalogues, (&plan, run), destination, watch),
     };
     let rows = campaign::campaign(&plan, wanted, ledger, watch)?;
     let summary = Summary::of(&plan, &rows);
@@ -66,8 +66,8 @@ fn one(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
-    plan: &Plan,
-    run: u64,
+    (plan, run): (&Plan, u64),
+    destination: Option<&dyn Destination>,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     let draw = plan.draw(run);
@@ -76,11 +76,11 @@ fn one(
     let mut drawn = project::read(source, &loaded.path, &all, catalogues)
         .map_err(|report| CampaignError::Settings(Box::new(report)))?;
     drawn.project.scenarios.retain(|scenario| scenario.name == plan.scenario());
-    let runs = simulate_project(source, &drawn.project, watch)?;
+    let runs = simulate_into(source, &drawn.project, destination, watch)?;
     Ok(Answer {
         text: campaign::run_text(&draw, &settings, &drawn, &runs),
         json: campaign::run_json(loaded, (plan, &draw), &settings, (&drawn, &runs)),
-        files: simulate::files(&runs),
+        files: vec![],
         affirmative: runs.iter().all(|run| run.stopped().is_none()),
     })
 }

@@ -19,6 +19,25 @@ pub(crate) struct Sample {
     pub(crate) limited: bool,
 }
 
+/// What is kept of a sampled controller on the way.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Samples {
+    /// The last one.
+    pub(crate) last: Option<Sample>,
+    /// When the command came to its limit (`true`) or left it, s.
+    pub(crate) limits: Vec<(f64, bool)>,
+}
+
+impl Samples {
+    fn take(&mut self, sample: Sample) {
+        let before = self.last.is_some_and(|last| last.limited);
+        if before != sample.limited {
+            self.limits.push((sample.time_s, sample.limited));
+        }
+        self.last = Some(sample);
+    }
+}
+
 /// A sampled controller at work.
 ///
 /// ```text
@@ -31,7 +50,7 @@ pub(crate) struct Digital<'a> {
     random: u64,
     /// Before its first command takes effect, V.
     held: f64,
-    log: &'a RefCell<Vec<Sample>>,
+    log: &'a RefCell<Samples>,
 }
 
 impl<'a> Digital<'a> {
@@ -39,7 +58,7 @@ impl<'a> Digital<'a> {
     pub(crate) fn new(
         sampled: &'a Sampled,
         holding: Option<[f64; 3]>,
-        log: &'a RefCell<Vec<Sample>>,
+        log: &'a RefCell<Samples>,
     ) -> Digital<'a> {
         let state = match holding {
             Some([reference, measurement, command]) => {
@@ -82,7 +101,7 @@ impl Sampler for Digital<'_> {
         }
         let within = wanted.clamp(-command_limit, *command_limit);
         let command_v = converters.command.map_or(within, |converter| converter.rounded(within));
-        self.log.borrow_mut().push(Sample {
+        self.log.borrow_mut().take(Sample {
             time_s,
             filtered_reference_n: output.filtered_reference,
             command_v,

@@ -4,26 +4,24 @@ use std::fmt::Write as _;
 
 use phea_hydraulics::machine::SIGNALS;
 
-use super::ScenarioRun;
-use crate::answer::OutputFile;
+use super::Look;
+use crate::source::{Destination, Unfinished, WriteError};
 
 /// The machine's signals that come first, in this order; the others follow as the machine lists them.
 const FIRST: [&str; 5] = ["spool_v", "pressure_a_pa", "pressure_b_pa", "position_m", "velocity_m_per_s"];
 
-/// One table for each scenario, named after it.
-pub(crate) fn files(runs: &[ScenarioRun]) -> Vec<OutputFile> {
+/// Names of the tables of scenarios with these names, each after its own and no two alike.
+pub(crate) fn table_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    let mut files = Vec::new();
-    for run in runs {
-        let plain = file_name(&run.name);
+    for scenario in scenarios {
+        let plain = file_name(scenario);
         let numbered = (2..).map(|number| format!("{plain} {number}"));
         let taken = |name: &String| names.iter().any(|known| known.eq_ignore_ascii_case(name));
         let name =
             std::iter::once(plain.clone()).chain(numbered).find(|name| !taken(name)).unwrap_or(plain.clone());
-        files.push(OutputFile { name: format!("{name}.csv"), bytes: table(run).into_bytes() });
         names.push(name);
     }
-    files
+    names.into_iter().map(|name| format!("{name}.csv")).collect()
 }
 
 /// What file systems do not take in a name becomes an underscore.
@@ -37,41 +35,73 @@ fn file_name(name: &str) -> String {
     }
 }
 
-/// Rows at the output step, columns named with their units.
-fn table(run: &ScenarioRun) -> String {
-    let place = |name: &&str| SIGNALS.iter().position(|signal| signal == name);
-    let first: Vec<usize> = FIRST.iter().filter_map(place).collect();
-    let force = place(&"force_n");
-    let rest = (0..SIGNALS.len()).filter(|index| Some(*index) != force && !first.contains(index));
-    let order: Vec<usize> = first.iter().copied().chain(rest).collect();
-    let mut text = "time_s,reference_n,force_n,control_v".to_string();
-    for name in order.iter().filter_map(|index| SIGNALS.get(*index)) {
-        text.push(',');
-        text.push_str(name);
-    }
-    text.push_str(",filtered_reference_n\n");
-    let record = &run.record;
-    let columns = [&record.times_s, &record.reference_n, &record.control_v, &record.filtered_reference_n];
-    for (row, signals) in record.signals.iter().enumerate().step_by(run.looks_per_row) {
-        let [Some(time), Some(reference), Some(control), Some(filtered)] =
-            columns.map(|column| column.get(row).copied())
-        else {
-            break;
-        };
-        let force = force.and_then(|index| signals.get(index)).copied().unwrap_or(f64::NAN);
-        let _ = write!(text, "{},{},{},{}", number(time), number(reference), number(force), number(control));
-        for value in order.iter().filter_map(|index| signals.get(*index)) {
-            let _ = write!(text, ",{}", number(*value));
+/// A table that is written row by row, columns named with their units.
+pub(crate) struct Table<'a> {
+    name: String,
+    file: Box<dyn Unfinished + 'a>,
+    /// Places of the signals in a row, behind the first four columns.
+    order: Vec<usize>,
+    force: Option<usize>,
+    /// The row that is being written.
+    text: String,
+}
+
+impl<'a> Table<'a> {
+    /// A table with its head.
+    pub(super) fn begin(destination: &'a dyn Destination, name: &str) -> Result<Table<'a>, WriteError> {
+        let place = |name: &&str| SIGNALS.iter().position(|signal| signal == name);
+        let first: Vec<usize> = FIRST.iter().filter_map(place).collect();
+        let force = place(&"force_n");
+        let rest = (0..SIGNALS.len()).filter(|index| Some(*index) != force && !first.contains(index));
+        let order: Vec<usize> = first.iter().copied().chain(rest).collect();
+        let mut text = "time_s,reference_n,force_n,control_v".to_string();
+        for name in order.iter().filter_map(|index| SIGNALS.get(*index)) {
+            text.push(',');
+            text.push_str(name);
         }
-        let _ = writeln!(text, ",{}", number(filtered));
+        text.push_str(",filtered_reference_n\n");
+        let (name, file) = (name.to_string(), destination.begin(name)?);
+        let mut table = Table { name, file, order, force, text };
+        table.write()?;
+        Ok(table)
     }
-    text
+
+    pub(super) fn row(&mut self, look: &Look) -> Result<(), WriteError> {
+        let Table { order, force, text, .. } = self;
+        text.clear();
+        let signal = |index: usize| look.signals.get(index).copied();
+        let force = force.and_then(signal).unwrap_or(f64::NAN);
+        number(text, look.time_s);
+        let columns = [look.reference_n, force, look.control_v].into_iter();
+        let columns = columns.chain(order.iter().copied().filter_map(signal));
+        for value in columns.chain(std::iter::once(look.filtered_reference_n)) {
+            text.push(',');
+            number(text, value);
+        }
+        text.push('\n');
+        self.write()
+    }
+
+    /// Puts it under its name.
+    pub(super) fn finish(self) -> Result<(), WriteError> {
+        self.file.finish().map_err(|error| unwritten(&self.name, &error))
+    }
+
+    fn write(&mut self) -> Result<(), WriteError> {
+        self.file.write_all(self.text.as_bytes()).map_err(|error| unwritten(&self.name, &error))
+    }
+}
+
+fn unwritten(name: &str, error: &std::io::Error) -> WriteError {
+    WriteError { path: name.to_string(), reason: error.to_string() }
 }
 
 /// The shortest text that reads back as the same number.
-fn number(value: f64) -> String {
+fn number(text: &mut String, value: f64) {
     let size = value.abs();
-    if size == 0.0 || (1e-4..1e15).contains(&size) { format!("{value}") } else { format!("{value:e}") }
+    let plain = size == 0.0 || (1e-4..1e15).contains(&size);
+    // a text takes all that is written into it
+    let _ = if plain { write!(text, "{value}") } else { write!(text, "{value:e}") };
 }
 
 #[cfg(test)]
@@ -89,7 +119,18 @@ mod tests {
     }
 
     #[test]
+    fn tables_of_scenarios_with_like_names_have_names_of_their_own() {
+        let names = table_names(["step", "Step", "a/b", "step"].into_iter());
+        assert_eq!(names, ["step.csv", "Step 2.csv", "a_b.csv", "step 3.csv"]);
+    }
+
+    #[test]
     fn numbers_read_back() {
+        let number = |value: f64| {
+            let mut text = String::new();
+            super::number(&mut text, value);
+            text
+        };
         for value in [0.0, 0.001, 1.0 / 3.0, -4000.0, 6.02e23, -1.6e-19, 5e-324] {
             assert_eq!(number(value).parse(), Ok(value));
         }

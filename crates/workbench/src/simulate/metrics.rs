@@ -2,8 +2,6 @@
 
 use phea_dynamics::time_response::{Settling, StepBaseline, step_metrics};
 
-use super::Record;
-
 /// Share of a window, at its end, over which the steady-state error is averaged.
 const STEADY_SHARE: f64 = 0.1;
 
@@ -64,17 +62,6 @@ const NOT_REACHED: &str = "the force does not come to 90 % of the step";
 const BEGUN_BEYOND: &str = "the force is beyond 10 % of the step when it comes";
 pub(crate) const NOT_SETTLED: &str = "outside the band at the end of the window";
 const NO_REFERENCE: &str = "the reference is zero: a band around it has no width";
-
-/// The metrics of a window; `band` in percent.
-pub(super) fn metrics(record: &Record, window: Window, band: f64) -> Metrics {
-    let whole = Seen {
-        times_s: &record.times_s,
-        force_n: &record.signal("force_n"),
-        reference_n: &record.reference_n,
-        control_v: &record.control_v,
-    };
-    metrics_seen(&whole, window, band)
-}
 
 /// The metrics of a window of what was seen; `band` in percent.
 pub(crate) fn metrics_seen(all: &Seen<'_>, window: Window, band: f64) -> Metrics {
@@ -235,6 +222,17 @@ mod tests {
     use phea_dynamics::portable;
 
     use super::*;
+    use crate::simulate::Record;
+
+    fn metrics(record: &Record, window: Window, band: f64) -> Metrics {
+        let whole = Seen {
+            times_s: &record.times_s,
+            force_n: &record.signal("force_n"),
+            reference_n: &record.reference_n,
+            control_v: &record.control_v,
+        };
+        metrics_seen(&whole, window, band)
+    }
 
     /// A sine of amplitude 3 whose peak lies anywhere between two of 40 looks a period.
     #[test]
@@ -255,7 +253,14 @@ mod tests {
         }
         let reference_n: Vec<f64> = times_s.iter().map(|time| reference(*time)).collect();
         let control_v = times_s.iter().map(|time| 2.0 * portable::sin(10.0 * time)).collect();
-        Record { filtered_reference_n: reference_n.clone(), reference_n, control_v, signals, times_s }
+        Record {
+            filtered_reference_n: reference_n.clone(),
+            reference_n,
+            control_v,
+            signals,
+            times_s,
+            looks_apart: 1,
+        }
     }
 
     #[test]

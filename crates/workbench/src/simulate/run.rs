@@ -1,18 +1,18 @@
 //! One scenario, run.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use phea_dynamics::simulation::{
-    ClosedLoop, Course as Drive, Event, HeldPlant, Input, Outcome, Sensed, Simulated, Status, System, Work,
-    simulate,
+    Course as Drive, Event, Input, Outcome, Sampler, SimulationError, Status, System, Task, Work, drive_one,
 };
-use phea_hydraulics::machine::{INDICATORS, Machine, SIGNALS};
+use phea_hydraulics::machine::INDICATORS;
 
-use super::bench::{Bench, Control, Sampled};
+use super::bench::{Bench, Control};
 use super::course::Course;
-use super::digital::{Digital, Sample};
-use super::metrics::{Metrics, metrics};
-use super::{SimulateError, Window};
+use super::digital::{Digital, Samples};
+use super::look::{Looking, Record};
+use super::metrics::{Metrics, metrics_seen};
+use super::{SimulateError, Table, Window};
 use crate::project::Scenario;
 
 /// Longest time between two looks at the machine: 1 ms would cut the peaks of a ringing load cell.
@@ -31,7 +31,7 @@ pub struct ScenarioRun {
     pub status: Status,
     /// What it cost.
     pub work: Work,
-    /// What was seen, every [`ScenarioRun::look_s`].
+    /// What was seen, every [`ScenarioRun::look_s`], or at fewer looks of a long run.
     pub record: Record,
     /// Looks between two rows of the result.
     pub looks_per_row: usize,
@@ -45,21 +45,6 @@ pub struct ScenarioRun {
     pub outside_model_s: Option<f64>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
-}
-
-/// The machine and its controller over time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Record {
-    /// s.
-    pub times_s: Vec<f64>,
-    /// N; at a step, as it is from then on.
-    pub reference_n: Vec<f64>,
-    /// N, behind the prefilter.
-    pub filtered_reference_n: Vec<f64>,
-    /// V, what the controller gives out.
-    pub control_v: Vec<f64>,
-    /// What the machine tells of itself, each in the order of [`SIGNALS`].
-    pub signals: Vec<[f64; SIGNALS.len()]>,
 }
 
 /// Something that began or ended.
@@ -80,14 +65,6 @@ pub struct Stopped {
     pub time_s: f64,
     /// In one word, as in an answer.
     pub word: &'static str,
-}
-
-impl Record {
-    /// One of [`SIGNALS`] over time; empty for a name that is none.
-    pub fn signal(&self, name: &str) -> Vec<f64> {
-        let Some(index) = SIGNALS.iter().position(|signal| *signal == name) else { return Vec::new() };
-        self.signals.iter().map(|row| row[index]).collect()
-    }
 }
 
 impl ScenarioRun {
@@ -122,52 +99,44 @@ impl Stopped {
     }
 }
 
-/// Runs a scenario; `watch` is told the simulated time now and then.
+/// Runs a scenario, its rows into a table where there is one; `watch` is told the simulated time now and then.
 pub(super) fn run(
     bench: &Bench,
     scenario: &Scenario,
     course: &Course,
+    table: Option<Table<'_>>,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<ScenarioRun, SimulateError> {
     let looks_per_row = looks_per_row(scenario);
     let look_s = scenario.output_step / looks_per_row as f64;
+    let (samples, full) = (RefCell::new(Samples::default()), Cell::new(false));
     let mut steps = 0;
     let mut watch = |time_s: f64| {
         steps += 1;
-        steps % STEPS_UNWATCHED != 0 || watch(time_s)
-    };
-    let ground = [Input::Value(course.ground.clone()), Input::Rate(course.ground.clone())];
-    let inputs = |first: Vec<Input>| Drive {
-        duration_s: scenario.duration,
-        output_step_s: look_s,
-        inputs: first.into_iter().chain(ground.clone()).collect(),
+        steps % STEPS_UNWATCHED != 0 || (!full.get() && watch(time_s))
     };
     let reference = Input::Value(course.reference.clone());
-    let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
-    let (outcome, record, occurrences) = match &bench.control {
-        Control::Continuous(closed) => {
-            let drive = inputs(vec![reference]);
-            let simulated =
-                simulate(closed.as_ref(), &course.start, &drive, None, &bench.settings, &mut watch);
-            continuous(bench, closed, course, simulated.map_err(named)?)
-        }
-        Control::Sampled(sampled) => {
-            let drive = inputs(vec![Input::Command, reference]);
-            let log = RefCell::new(Vec::new());
-            let digital = Box::new(Digital::new(sampled, course.holding, &log));
-            let simulated =
-                simulate(&sampled.held, &course.start, &drive, Some(digital), &bench.settings, &mut watch);
-            self::sampled(bench, sampled, course, simulated.map_err(named)?, &log.into_inner())
-        }
+    let ground = [Input::Value(course.ground.clone()), Input::Rate(course.ground.clone())];
+    let mut inputs = match &bench.control {
+        Control::Continuous(_) => vec![reference],
+        Control::Sampled(_) => vec![Input::Command, reference],
     };
+    inputs.extend(ground);
+    let drive = Drive { duration_s: scenario.duration, output_step_s: look_s, inputs };
+    let observer = Looking::new(bench, &samples, (table, looks_per_row), &full);
+    let driven = driven(bench, course, (&drive, observer), &samples, &mut watch);
+    let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
+    let (outcome, seen) = driven.map_err(named)?;
+    let (record, looks) = seen.finish()?;
+    let occurrences = found(bench, course, &outcome, &samples.into_inner());
     let band = scenario.settling_band_percent;
-    let windows = course.windows.iter().map(|window| (*window, metrics(&record, *window, band))).collect();
-    let Outcome { status, work, .. } = outcome;
+    let metrics = |window: &Window| metrics_seen(&looks.seen(), *window, band);
+    let windows = course.windows.iter().map(|window| (*window, metrics(window))).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
     Ok(ScenarioRun {
         name: scenario.name.clone(),
-        status,
-        work,
+        status: outcome.status,
+        work: outcome.work,
         record,
         looks_per_row,
         look_s,
@@ -176,6 +145,47 @@ pub(super) fn run(
         outside_model_s,
         settling_band_percent: band,
     })
+}
+
+/// The machine under its controller, looked at on the way.
+fn driven<'a>(
+    bench: &'a Bench,
+    course: &Course,
+    (drive, observer): (&'a Drive, Looking<'a>),
+    samples: &'a RefCell<Samples>,
+    watch: &mut dyn FnMut(f64) -> bool,
+) -> Result<(Outcome, Looking<'a>), SimulationError> {
+    let start = course.start.clone();
+    match &bench.control {
+        Control::Continuous(closed) => {
+            let task = Task { start, course: drive, sampler: None, observer };
+            drive_one(closed.as_ref(), task, &bench.settings, watch)
+        }
+        Control::Sampled(sampled) => {
+            let digital: Box<dyn Sampler + 'a> = Box::new(Digital::new(sampled, course.holding, samples));
+            let task = Task { start, course: drive, sampler: Some(digital), observer };
+            drive_one(&sampled.held, task, &bench.settings, watch)
+        }
+    }
+}
+
+/// All that happened on the way.
+fn found(bench: &Bench, course: &Course, outcome: &Outcome, samples: &Samples) -> Vec<Occurrence> {
+    let reference = course.reference.value(0.0);
+    match &bench.control {
+        Control::Continuous(closed) => {
+            let first = inputs_at_start(course, vec![reference], closed.as_ref());
+            occurrences(closed.as_ref(), &course.start, &first, &outcome.events)
+        }
+        Control::Sampled(sampled) => {
+            let first = inputs_at_start(course, vec![0.0, reference], &sampled.held);
+            let mut found = occurrences(&sampled.held, &course.start, &first, &outcome.events);
+            let limits = samples.limits.iter();
+            found.extend(limits.map(|&(time_s, begins)| Occurrence { time_s, kind: COMMAND_LIMIT, begins }));
+            found.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+            found
+        }
+    }
 }
 
 /// When a chamber first cavitates or has no volume, or the piston leaves a stroke that nothing limits.
@@ -192,61 +202,6 @@ fn looks_per_row(scenario: &Scenario) -> usize {
     let wanted = (scenario.output_step / LONGEST_LOOK_S).ceil().max(1.0);
     let rows = scenario.duration / scenario.output_step;
     wanted.min((MOST_LOOKS / rows).floor().max(1.0)) as usize
-}
-
-fn continuous(
-    bench: &Bench,
-    closed: &ClosedLoop<Sensed<Machine>>,
-    course: &Course,
-    simulated: Simulated,
-) -> (Outcome, Record, Vec<Occurrence>) {
-    let trajectory = simulated.trajectory;
-    let mut record = Record { times_s: trajectory.times_s, ..Record::default() };
-    for (state, inputs) in trajectory.states.iter().zip(&trajectory.inputs) {
-        let signals = closed.signals::<f64, f64>(state, inputs);
-        record.reference_n.push(inputs[0]);
-        record.filtered_reference_n.push(signals.filtered_reference);
-        record.control_v.push(signals.command);
-        record.signals.push(bench.machine.outputs(state, &inputs[1..]));
-    }
-    let first = inputs_at_start(course, vec![course.reference.value(0.0)], closed);
-    let occurrences = occurrences(closed, &course.start, &first, &simulated.outcome.events);
-    (simulated.outcome, record, occurrences)
-}
-
-fn sampled(
-    bench: &Bench,
-    sampled: &Sampled,
-    course: &Course,
-    simulated: Simulated,
-    log: &[Sample],
-) -> (Outcome, Record, Vec<Occurrence>) {
-    let held: &HeldPlant<Sensed<Machine>> = &sampled.held;
-    let trajectory = simulated.trajectory;
-    let mut record = Record { times_s: trajectory.times_s, ..Record::default() };
-    let mut samples = log.iter().peekable();
-    let mut last = None;
-    for ((time_s, state), inputs) in record.times_s.iter().zip(&trajectory.states).zip(&trajectory.inputs) {
-        while let Some(sample) = samples.next_if(|sample| sample.time_s <= *time_s) {
-            last = Some(sample);
-        }
-        let filtered = last.map_or(0.0, |sample: &Sample| sample.filtered_reference_n);
-        record.reference_n.push(inputs[1]);
-        record.filtered_reference_n.push(filtered);
-        record.control_v.push(last.map_or(0.0, |sample| sample.command_v));
-        record.signals.push(bench.machine.outputs(state, &inputs[2..]));
-    }
-    let first = inputs_at_start(course, vec![0.0, course.reference.value(0.0)], held);
-    let mut occurrences = occurrences(held, &course.start, &first, &simulated.outcome.events);
-    let mut limited = false;
-    for sample in
-        log.iter().filter(|sample| std::mem::replace(&mut limited, sample.limited) != sample.limited)
-    {
-        let kind = COMMAND_LIMIT;
-        occurrences.push(Occurrence { time_s: sample.time_s, kind, begins: sample.limited });
-    }
-    occurrences.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
-    (simulated.outcome, record, occurrences)
 }
 
 /// The limit of the command, beside [`INDICATORS`].

@@ -1,0 +1,147 @@
+//! What a command writes. A file has its name only when it is whole: until then it stands beside it under another, which goes
+//! away with an error, and is all that a process leaves that was killed.
+
+use std::cell::RefCell;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use phea_workbench::answer::OutputFile;
+use phea_workbench::source::{Destination, Unfinished, WriteError};
+
+use crate::file_system::reason;
+
+/// Bytes that are collected before they are written.
+const COLLECTED: usize = 1 << 18;
+
+/// A folder that long files are written into as they come.
+pub(crate) struct Folder<'f> {
+    path: &'f Path,
+    begun: RefCell<Vec<PathBuf>>,
+}
+
+impl<'f> Folder<'f> {
+    pub(crate) fn new(path: &'f Path) -> Folder<'f> {
+        Folder { path, begun: RefCell::default() }
+    }
+
+    /// Every file that was begun, in that order; where nothing failed all are whole.
+    pub(crate) fn into_begun(self) -> Vec<PathBuf> {
+        self.begun.into_inner()
+    }
+}
+
+impl Destination for Folder<'_> {
+    fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError> {
+        let path = self.path.join(name);
+        let refuse = |error| WriteError { path: path.display().to_string(), reason: reason(&error) };
+        let file = Pending::begin(&path).map_err(refuse)?;
+        self.begun.borrow_mut().push(path);
+        Ok(Box::new(file))
+    }
+}
+
+/// A file that is not whole yet.
+struct Pending {
+    path: PathBuf,
+    /// Where it is until then; `None` where there is no such place, and when it is whole.
+    temporary: Option<PathBuf>,
+    file: BufWriter<File>,
+}
+
+impl Pending {
+    fn begin(path: &Path) -> io::Result<Pending> {
+        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+            fs::create_dir_all(folder)?;
+        }
+        // what a link leads to is replaced, not the link
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let known = fs::metadata(&path).ok();
+        if known.as_ref().is_some_and(|known| known.is_file() && known.permissions().readonly()) {
+            return Err(ErrorKind::PermissionDenied.into());
+        }
+        // a terminal or a pipe has no place beside it
+        if known.as_ref().is_some_and(|known| !known.is_file()) {
+            let file = OpenOptions::new().write(true).open(&path)?;
+            return Ok(Pending { path, temporary: None, file: BufWriter::with_capacity(COLLECTED, file) });
+        }
+        let temporary = path.with_file_name(temporary_name());
+        let file = File::create(&temporary)?;
+        let pending =
+            Pending { path, temporary: Some(temporary), file: BufWriter::with_capacity(COLLECTED, file) };
+        if let Some(known) = known {
+            pending.file.get_ref().set_permissions(known.permissions())?;
+        }
+        Ok(pending)
+    }
+
+    fn whole(mut self) -> io::Result<()> {
+        self.file.flush()?;
+        let Some(temporary) = &self.temporary else { return Ok(()) };
+        // a name must not reach the disk before what it names; where a file system knows no such order, nothing is lost
+        match self.file.get_ref().sync_all() {
+            Err(error) if !matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
+                return Err(error);
+            }
+            _ => {}
+        }
+        fs::rename(temporary, &self.path)?;
+        self.temporary = None;
+        Ok(())
+    }
+}
+
+/// Of this process alone, and short, however long the name of the file is.
+fn temporary_name() -> String {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    format!(".phea-{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
+}
+
+impl Drop for Pending {
+    fn drop(&mut self) {
+        if let Some(temporary) = &self.temporary {
+            let _ = fs::remove_file(temporary);
+        }
+    }
+}
+
+/// The same error in plain words.
+fn plainly(error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), reason(error))
+}
+
+impl Write for Pending {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes).map_err(|error| plainly(&error))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush().map_err(|error| plainly(&error))
+    }
+}
+
+impl Unfinished for Pending {
+    fn finish(self: Box<Self>) -> io::Result<()> {
+        self.whole().map_err(|error| plainly(&error))
+    }
+}
+
+/// Writes files into a folder; gives their paths.
+pub(crate) fn write(folder: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, String> {
+    files.iter().map(|file| write_as(&folder.join(&file.name), file)).collect()
+}
+
+/// Writes a file under a path of its own, whose folder is made if need be, and gives that.
+pub(crate) fn write_as(path: &Path, file: &OutputFile) -> Result<PathBuf, String> {
+    let written = Pending::begin(path).and_then(|mut pending| {
+        pending.file.write_all(&file.bytes)?;
+        pending.whole()
+    });
+    written.map_err(|error| unwritten(path, &error)).map(|()| path.to_path_buf())
+}
+
+/// Why a file or folder cannot be written.
+pub(crate) fn unwritten(path: &Path, error: &io::Error) -> String {
+    format!("cannot write {}: {}", path.display(), reason(error))
+}
