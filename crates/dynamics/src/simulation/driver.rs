@@ -1,5 +1,7 @@
 //! Drives systems through their courses, one in each lane.
 
+mod joined;
+
 use super::course::{Event, Observer, Outcome, Settings, SimulationError, Status};
 use super::growth::GrowthWatch;
 use super::history::NODES;
@@ -11,10 +13,6 @@ use super::slot::Slot;
 use super::task::{Queue, Task, check};
 use super::{Lane, System};
 use crate::scalar::{Dependence, Dual};
-
-/// Largest error of a step with known matrices, in units of the tolerance: such errors have one sign for many samples and
-/// add up.
-const PROPAGATED: f64 = 0.1;
 
 /// All lanes and the method they share.
 struct Drive<'a, S, O> {
@@ -250,40 +248,6 @@ where
         }
     }
 
-    /// Which lanes have matrices for the step to their next break.
-    fn choose_propagated(&mut self) {
-        for lane in 0..S::COUNT {
-            let Some(slot) = &mut self.slots[lane] else { continue };
-            let whole = slot.sampler.as_ref().and_then(|_| slot.passage.whole_step());
-            slot.propagated = whole.is_some_and(|step_s| self.propagator.knows(lane, step_s));
-        }
-    }
-
-    /// Asks now and then for the modes of lanes that go by their matrices. These are exact for a mode that grows as long as friction
-    /// feeds it as it did when they were found; where it does not they are found anew. Whether everything has been linearised for it.
-    fn watch_propagated<E: System<S>>(&mut self, system: &E, fresh: bool) -> bool {
-        let due = |slot: &Slot<'_, O>| slot.propagated && slot.is_due();
-        if !self.slots.iter().flatten().any(due) {
-            return false;
-        }
-        if fresh {
-            self.linearize(system);
-        }
-        for lane in 0..S::COUNT {
-            let Some(linearized) = self.method.linearized() else { continue };
-            let Some(slot) = self.slots[lane].as_mut().filter(|slot| due(slot)) else { continue };
-            let (watch, step_s) = (&mut self.watches[lane], slot.passage.step_s);
-            let steps = std::mem::take(&mut slot.unwatched);
-            watch.bound(slot.passage.time_s, step_s, steps, linearized, lane);
-            if watch.has_left(self.propagator.friction[lane], linearized, lane) {
-                self.propagator.learn(lane, step_s, linearized, &self.method.scales);
-                self.propagator.friction[lane] = watch.friction(linearized, lane);
-                slot.propagated = self.propagator.knows(lane, step_s);
-            }
-        }
-        true
-    }
-
     /// The error of the step with that between its ends, in lanes where the first may not be all.
     fn look_between<E: System<S>>(&mut self, system: &E, error: S) -> S {
         let mut looked = S::from(0.0);
@@ -347,52 +311,6 @@ where
         }
         passage.slopes(inputs);
         set_lane(&mut self.inputs.slopes, lane, inputs);
-    }
-
-    /// Takes a step with known matrices in every lane that has them; whether this was so in all.
-    fn propagate<E: System<S>>(&mut self, system: &E) -> bool {
-        if !self.slots.iter().flatten().any(|slot| slot.propagated) {
-            return false;
-        }
-        let (inputs, tolerance) = (&self.inputs.stages[0], self.settings.tolerance);
-        let error = self.propagator.attempt(system, &self.state, inputs, &self.method.scales, tolerance);
-        self.between.extensions.fill(None);
-        self.between.propagated = true;
-        self.between.end.copy_from_slice(&self.propagator.end);
-        let mut all = true;
-        for lane in 0..S::COUNT {
-            let Some(slot) = &mut self.slots[lane] else { continue };
-            slot.propagated &= error.lane(lane) <= PROPAGATED;
-            all &= slot.propagated;
-            if slot.propagated {
-                slot.passage.go_whole();
-                self.step.set_lane(lane, slot.passage.step_s);
-                slot.passage.work.steps += 1;
-                slot.passage.work.evaluations += 2;
-            }
-        }
-        self.indicate_ends(system);
-        for lane in 0..S::COUNT {
-            if self.slots[lane].as_ref().is_some_and(|slot| slot.propagated) {
-                self.take(system, lane);
-            }
-        }
-        all
-    }
-
-    /// Finds the matrices of lanes that a step of the method brought from sample to sample.
-    fn learn(&mut self, error: S) {
-        let Some(linearized) = self.method.linearized() else { return };
-        for lane in 0..S::COUNT {
-            let Some(slot) = &self.slots[lane] else { continue };
-            let step_s = slot.passage.step_s;
-            let whole = slot.passage.whole_step() == Some(step_s);
-            let taken = slot.sampler.is_some() && !slot.propagated && error.lane(lane) <= 1.0;
-            if whole && taken && self.propagator.may_learn(lane) {
-                self.propagator.learn(lane, step_s, linearized, &self.method.scales);
-                self.propagator.friction[lane] = self.watches[lane].friction(linearized, lane);
-            }
-        }
     }
 
     /// A state over the step, found once for all lanes.

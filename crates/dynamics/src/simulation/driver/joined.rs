@@ -1,0 +1,97 @@
+//! Lanes that go from sample to sample by matrices found once.
+
+use super::Drive;
+use crate::scalar::{Dependence, Dual};
+use crate::simulation::rosenbrock::DIRECTIONS;
+use crate::simulation::slot::Slot;
+use crate::simulation::{Lane, Observer, System};
+
+/// Largest error of a step with known matrices, in units of the tolerance: such errors have one sign for many samples and
+/// add up.
+const PROPAGATED: f64 = 0.1;
+
+impl<S: Lane, O: Observer> Drive<'_, S, O>
+where
+    Dependence: From<S>,
+    Dual<DIRECTIONS, S>: From<f64> + From<S>,
+{
+    /// Which lanes have matrices for the step to their next break.
+    pub(super) fn choose_propagated(&mut self) {
+        for lane in 0..S::COUNT {
+            let Some(slot) = &mut self.slots[lane] else { continue };
+            let whole = slot.sampler.as_ref().and_then(|_| slot.passage.whole_step());
+            slot.propagated = whole.is_some_and(|step_s| self.propagator.knows(lane, step_s));
+        }
+    }
+
+    /// Asks now and then for the modes of lanes that go by their matrices. These are exact for a mode that grows as long as friction
+    /// feeds it as it did when they were found; where it does not they are found anew. Whether everything has been linearised for it.
+    pub(super) fn watch_propagated<E: System<S>>(&mut self, system: &E, fresh: bool) -> bool {
+        let due = |slot: &Slot<'_, O>| slot.propagated && slot.is_due();
+        if !self.slots.iter().flatten().any(due) {
+            return false;
+        }
+        if fresh {
+            self.linearize(system);
+        }
+        for lane in 0..S::COUNT {
+            let Some(linearized) = self.method.linearized() else { continue };
+            let Some(slot) = self.slots[lane].as_mut().filter(|slot| due(slot)) else { continue };
+            let (watch, step_s) = (&mut self.watches[lane], slot.passage.step_s);
+            let steps = std::mem::take(&mut slot.unwatched);
+            watch.bound(slot.passage.time_s, step_s, steps, linearized, lane);
+            if watch.has_left(self.propagator.friction[lane], linearized, lane) {
+                self.propagator.learn(lane, step_s, linearized, &self.method.scales);
+                self.propagator.friction[lane] = watch.friction(linearized, lane);
+                slot.propagated = self.propagator.knows(lane, step_s);
+            }
+        }
+        true
+    }
+
+    /// Takes a step with known matrices in every lane that has them; whether this was so in all.
+    pub(super) fn propagate<E: System<S>>(&mut self, system: &E) -> bool {
+        if !self.slots.iter().flatten().any(|slot| slot.propagated) {
+            return false;
+        }
+        let (inputs, tolerance) = (&self.inputs.stages[0], self.settings.tolerance);
+        let error = self.propagator.attempt(system, &self.state, inputs, &self.method.scales, tolerance);
+        self.between.extensions.fill(None);
+        self.between.propagated = true;
+        self.between.end.copy_from_slice(&self.propagator.end);
+        let mut all = true;
+        for lane in 0..S::COUNT {
+            let Some(slot) = &mut self.slots[lane] else { continue };
+            slot.propagated &= error.lane(lane) <= PROPAGATED;
+            all &= slot.propagated;
+            if slot.propagated {
+                slot.passage.go_whole();
+                self.step.set_lane(lane, slot.passage.step_s);
+                slot.passage.work.steps += 1;
+                slot.passage.work.evaluations += 2;
+            }
+        }
+        self.indicate_ends(system);
+        for lane in 0..S::COUNT {
+            if self.slots[lane].as_ref().is_some_and(|slot| slot.propagated) {
+                self.take(system, lane);
+            }
+        }
+        all
+    }
+
+    /// Finds the matrices of lanes that a step of the method brought from sample to sample.
+    pub(super) fn learn(&mut self, error: S) {
+        let Some(linearized) = self.method.linearized() else { return };
+        for lane in 0..S::COUNT {
+            let Some(slot) = &self.slots[lane] else { continue };
+            let step_s = slot.passage.step_s;
+            let whole = slot.passage.whole_step() == Some(step_s);
+            let taken = slot.sampler.is_some() && !slot.propagated && error.lane(lane) <= 1.0;
+            if whole && taken && self.propagator.may_learn(lane) {
+                self.propagator.learn(lane, step_s, linearized, &self.method.scales);
+                self.propagator.friction[lane] = self.watches[lane].friction(linearized, lane);
+            }
+        }
+    }
+}
