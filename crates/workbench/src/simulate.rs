@@ -17,7 +17,7 @@ pub use bench::Bench;
 pub use compare::{Comparison, compare_projects};
 pub use look::{Look, Record};
 pub use metrics::{Cause, Measured, Metrics, Window};
-pub use run::{Occurrence, ScenarioRun, Stopped};
+pub use run::{Occurrence, ScenarioRun, Stopped, UnresolvedMode};
 
 pub(crate) use answer::{Body, body, compare_json, json};
 pub(crate) use bench::{Control, options};

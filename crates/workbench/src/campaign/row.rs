@@ -25,8 +25,8 @@ const LUMP_COLUMNS: [&str; 3] =
     ["hydraulic_stiffness_n_per_m", "flow_gain_m3_per_s_v", "flow_pressure_coefficient_m3_per_s_pa"];
 
 /// How a run ended, in the words of a row.
-pub const STATUS_WORDS: [&str; 5] =
-    ["completed", "refused", "step_too_small", "not_finite", "too_many_steps"];
+pub const STATUS_WORDS: [&str; 6] =
+    ["completed", "refused", "step_too_small", "not_finite", "too_many_steps", "unresolved_oscillation"];
 
 const REFUSED: &str = "refused";
 

@@ -21,12 +21,20 @@ struct ScenarioRow<'a> {
     /// When it ended before its time.
     ended_s: Option<f64>,
     ended_s_reason: Option<&'static str>,
+    unresolved_mode: Option<ModeRow>,
+    unresolved_mode_reason: Option<&'static str>,
     work: WorkRow,
     look_s: f64,
     events: Vec<EventRow>,
     occurrences: Vec<OccurrenceRow>,
     outside_model_s: Option<f64>,
     outside_model_s_reason: Option<&'static str>,
+}
+
+#[derive(Serialize)]
+struct ModeRow {
+    frequency_rad_per_s: f64,
+    growth_per_s: f64,
 }
 
 #[derive(Serialize)]
@@ -121,6 +129,14 @@ fn scenario(run: &ScenarioRun) -> ScenarioRow<'_> {
         status: stopped.map_or("completed", |stopped| stopped.word),
         ended_s: stopped.map(|stopped| stopped.time_s),
         ended_s_reason: stopped.is_none().then_some("it ran to its end"),
+        unresolved_mode: stopped.and_then(|stopped| stopped.mode).map(|mode| ModeRow {
+            frequency_rad_per_s: mode.frequency_rad_per_s,
+            growth_per_s: mode.growth_per_s,
+        }),
+        unresolved_mode_reason: stopped
+            .and_then(|stopped| stopped.mode)
+            .is_none()
+            .then_some("every mode that grew was resolved"),
         work: WorkRow {
             steps: run.work.steps,
             rejected: run.work.rejected,

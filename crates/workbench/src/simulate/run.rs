@@ -65,6 +65,17 @@ pub struct Stopped {
     pub time_s: f64,
     /// In one word, as in an answer.
     pub word: &'static str,
+    /// The mode whose oscillation would take more steps than there are.
+    pub mode: Option<UnresolvedMode>,
+}
+
+/// A mode that grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnresolvedMode {
+    /// Magnitude of its eigenvalue in rad/s.
+    pub frequency_rad_per_s: f64,
+    /// Real part of its eigenvalue in 1/s.
+    pub growth_per_s: f64,
 }
 
 impl ScenarioRun {
@@ -87,15 +98,19 @@ impl ScenarioRun {
 impl Stopped {
     /// What a status says; `None` of a run that came to its end.
     pub(crate) fn of(status: Status) -> Option<Stopped> {
+        let mut mode = None;
         let (time_s, word) = match status {
             Status::Completed => return None,
             Status::Cancelled { time_s } => (time_s, "cancelled"),
             Status::StepTooSmall { time_s } => (time_s, "step_too_small"),
             Status::NotFinite { time_s } => (time_s, "not_finite"),
             Status::TooManySteps { time_s } => (time_s, "too_many_steps"),
-            Status::UnresolvedOscillation { time_s, .. } => (time_s, "unresolved_oscillation"),
+            Status::UnresolvedOscillation { time_s, frequency_rad_per_s, growth_per_s } => {
+                mode = Some(UnresolvedMode { frequency_rad_per_s, growth_per_s });
+                (time_s, "unresolved_oscillation")
+            }
         };
-        Some(Stopped { time_s, word })
+        Some(Stopped { time_s, word, mode })
     }
 }
 

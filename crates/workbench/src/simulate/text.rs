@@ -1,7 +1,7 @@
 //! What `simulate` and `compare` say to people.
 
 use super::metrics::{Measured, NOT_SETTLED};
-use super::{Cause, Comparison, Metrics, Occurrence, ScenarioRun, Window};
+use super::{Cause, Comparison, Metrics, Occurrence, ScenarioRun, Stopped, Window};
 use crate::answer::{significant, table};
 use crate::project::Loaded;
 use crate::quantity::{DisplayUnit, FORCE, TIME, display};
@@ -40,15 +40,27 @@ pub(crate) fn headline(run: &ScenarioRun) -> String {
     match run.stopped() {
         None => format!("{}: completed ({work})", run.name),
         Some(stopped) => {
-            let why = match stopped.word {
-                "cancelled" => "stopped",
-                "step_too_small" => "no step is short enough for the tolerance",
-                "not_finite" => "a rate is no longer a number",
-                _ => "the steps it may take are used up",
-            };
+            let why = why(&stopped);
             format!("{}: ended at {} s, {why} ({work})", run.name, significant(stopped.time_s, 6))
         }
     }
+}
+
+fn why(stopped: &Stopped) -> String {
+    let told = match (stopped.word, stopped.mode) {
+        (_, Some(mode)) => {
+            return format!(
+                "an oscillation at {} rad/s that grows by {} 1/s would take more steps than `simulation.maximum_steps` allows",
+                significant(mode.frequency_rad_per_s, 4),
+                significant(mode.growth_per_s, 3)
+            );
+        }
+        ("cancelled", _) => "stopped",
+        ("step_too_small", _) => "no step is short enough for the tolerance",
+        ("not_finite", _) => "a rate is no longer a number",
+        _ => "the steps it may take are used up",
+    };
+    told.to_string()
 }
 
 fn windows(run: &ScenarioRun) -> String {
