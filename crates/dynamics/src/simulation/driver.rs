@@ -112,7 +112,8 @@ where
         let method =
             Stepper::new(settings.method, system).ok_or(SimulationError::TooLarge { states, inputs })?;
         let none = vec![zero; inputs];
-        let watch = GrowthWatch::new(system.sliding(), method.linearized(), !system.delays().is_empty());
+        let delayed = !system.delays().is_empty();
+        let watch = GrowthWatch::new(system.sliding(), method.jacobian(), method.amplitude_lost(), delayed);
         let stages = [none.clone(), none.clone(), none.clone(), none.clone(), none.clone(), none.clone()];
         Ok(Drive {
             method,
@@ -233,15 +234,13 @@ where
     /// Shortens steps that would calm a mode that grows.
     fn watch(&mut self) {
         for lane in 0..S::COUNT {
-            let (Some(slot), Some(linearized)) = (&mut self.slots[lane], self.method.linearized()) else {
-                continue;
-            };
+            let Some(slot) = &mut self.slots[lane] else { continue };
             if slot.propagated || slot.unwatched == 0 {
                 continue;
             }
             let steps = std::mem::take(&mut slot.unwatched);
-            let growing =
-                self.watches[lane].bound(slot.passage.time_s, slot.passage.step_s, steps, linearized, lane);
+            let (time_s, step_s) = (slot.passage.time_s, slot.passage.step_s);
+            let growing = self.watches[lane].bound(time_s, step_s, steps, self.method.jacobian(), lane);
             if slot.passage.limit(growing) {
                 self.begin_step(lane);
             }

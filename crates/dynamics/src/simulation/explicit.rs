@@ -1,5 +1,6 @@
 //! One step of an explicit Runge-Kutta method of order five.
 
+use super::growth::AmplitudeLost;
 use super::method::{Extension, StepInputs, relative_error};
 use super::{Lane, System};
 
@@ -33,6 +34,9 @@ const EXTENSION: [f64; STAGES] = [
     -1453857185.0 / 822651844.0,
     69997945.0 / 29380423.0,
 ];
+
+/// On the imaginary axis, ln |R(i theta)| = -(1/600 - 1/720) theta^6 + ...
+pub(super) const AMPLITUDE_LOST: AmplitudeLost = AmplitudeLost { factor: 1.0 / 3600.0, power: 6.0 };
 
 /// The method with its memory.
 ///

@@ -33,10 +33,21 @@ pub(super) struct Growing {
     pub(super) growth_per_s: f64,
 }
 
+/// What a step of angle theta takes from the amplitude of a mode that neither grows nor decays.
+///
+/// ```text
+/// ln |R(i theta)| = -c theta^p
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct AmplitudeLost {
+    /// c.
+    pub(super) factor: f64,
+    /// p.
+    pub(super) power: f64,
+}
+
 /// Part by which the growth of a resolved mode may be off.
 const GROWTH_ERROR: f64 = 0.02;
-/// Amplitude that a step of angle theta loses: this times theta^8 (Rodas5P, on the imaginary axis).
-const AMPLITUDE_LOST: f64 = 1.2e-5;
 /// No mode that grows turns by more than this in a step, in rad: beyond, the amplitude lost follows no power.
 const LARGEST_ANGLE: f64 = 2.0;
 /// Modes above this part of the fastest are about as fast.
@@ -75,14 +86,15 @@ impl Mode {
     /// The longest step that shows this mode, with this growth, to [`GROWTH_ERROR`]; `None` where it does not grow.
     ///
     /// ```text
-    /// c theta^8 <= e zeta theta,        theta = h |lambda|, zeta = Re lambda/|lambda|
+    /// c theta^p <= e zeta theta,        theta = h |lambda|, zeta = Re lambda/|lambda|
     /// ```
-    fn bound(&self, growth: f64) -> Option<Growing> {
+    fn bound(&self, growth: f64, lost: AmplitudeLost) -> Option<Growing> {
         let relative = growth / self.magnitude;
         if relative.is_nan() || relative <= LEAST_GROWTH {
             return None;
         }
-        let angle = portable::pow(GROWTH_ERROR * relative / AMPLITUDE_LOST, 1.0 / 7.0).min(LARGEST_ANGLE);
+        let angle = portable::pow(GROWTH_ERROR * relative / lost.factor, 1.0 / (lost.power - 1.0));
+        let angle = angle.min(LARGEST_ANGLE);
         Some(Growing {
             step_s: angle / self.magnitude,
             frequency_rad_per_s: self.magnitude,
@@ -103,6 +115,8 @@ pub(super) struct GrowthWatch {
     /// Places in the Jacobian of df/dv, and of df/dz, dg/dv, dg/dz.
     own: Option<usize>,
     memory: Option<[usize; 3]>,
+    /// Of the method that makes the steps.
+    lost: AmplitudeLost,
     /// Whether waves come back late.
     delayed: bool,
     /// Modes that oscillate or grow.
@@ -125,11 +139,12 @@ pub(super) struct GrowthWatch {
 impl GrowthWatch {
     pub(super) fn new<S: Lane>(
         sliding: Option<Sliding>,
-        method: Option<&Rosenbrock<S>>,
+        method: &Rosenbrock<S>,
+        lost: AmplitudeLost,
         delayed: bool,
     ) -> GrowthWatch {
-        let Some(method) = method else { return GrowthWatch::default() };
-        let watch = GrowthWatch { blocks: method.blocks(), delayed, interval: 1, ..GrowthWatch::default() };
+        let blocks = method.blocks();
+        let watch = GrowthWatch { blocks, lost, delayed, interval: 1, ..GrowthWatch::default() };
         let Some(Sliding { velocity, memory }) = sliding else { return watch };
         let place = |row, column| method.place(row, column);
         let memory = memory.and_then(|memory| {
@@ -190,7 +205,7 @@ impl GrowthWatch {
     /// The longest step that shows how what has grown decays.
     fn followed(&self, growth_per_s: f64) -> Option<Growing> {
         let mode = Mode { magnitude: self.fastest, growth: growth_per_s };
-        let bound = mode.bound(growth_per_s.abs().max(LEAST_FOLLOWED * self.fastest))?;
+        let bound = mode.bound(growth_per_s.abs().max(LEAST_FOLLOWED * self.fastest), self.lost)?;
         Some(Growing { growth_per_s, ..bound })
     }
 
@@ -257,7 +272,7 @@ impl GrowthWatch {
 
     /// The mode that asks for the shortest step, if friction has added so much to the growth of each.
     fn shortest(&self, added: f64) -> Option<Growing> {
-        let bounds = self.modes.iter().filter_map(|mode| mode.bound(mode.growth + added));
+        let bounds = self.modes.iter().filter_map(|mode| mode.bound(mode.growth + added, self.lost));
         bounds.min_by(|one, other| one.step_s.total_cmp(&other.step_s))
     }
 }

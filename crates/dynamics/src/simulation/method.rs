@@ -3,6 +3,7 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use super::explicit::{self, DormandPrince};
+use super::growth::AmplitudeLost;
 use super::passage::Passage;
 use super::rosenbrock::{self, DIRECTIONS, Rosenbrock};
 use super::{Lane, System};
@@ -37,7 +38,8 @@ pub(super) struct StepInputs<S> {
 #[derive(Clone, Debug)]
 enum Steps<S> {
     Implicit(Box<Rosenbrock<S>>),
-    Explicit(DormandPrince<S>),
+    /// With who finds the Jacobian, which is asked for the modes alone.
+    Explicit(DormandPrince<S>, Box<Rosenbrock<S>>),
 }
 
 /// The method of all lanes, and what it measures errors by.
@@ -55,9 +57,10 @@ where
 {
     /// This method for this system; `None` when the system is too large to find its pattern.
     pub(super) fn new<E: System<S>>(method: Method, system: &E) -> Option<Self> {
+        let implicit = Box::new(Rosenbrock::new(system)?);
         let steps = match method {
-            Method::Rosenbrock => Steps::Implicit(Box::new(Rosenbrock::new(system)?)),
-            Method::DormandPrince => Steps::Explicit(DormandPrince::new(system.states())),
+            Method::Rosenbrock => Steps::Implicit(implicit),
+            Method::DormandPrince => Steps::Explicit(DormandPrince::new(system.states()), implicit),
         };
         Some(Stepper { steps, scales: system.scales() })
     }
@@ -66,7 +69,7 @@ where
     pub(super) fn stage_times(&self) -> [f64; 6] {
         match self.steps {
             Steps::Implicit(_) => rosenbrock::STAGE_TIMES,
-            Steps::Explicit(_) => explicit::STAGE_TIMES,
+            Steps::Explicit(..) => explicit::STAGE_TIMES,
         }
     }
 
@@ -74,7 +77,7 @@ where
     pub(super) fn evaluations(&self) -> u64 {
         match self.steps {
             Steps::Implicit(_) => 7,
-            Steps::Explicit(_) => 6,
+            Steps::Explicit(..) => 6,
         }
     }
 
@@ -82,7 +85,10 @@ where
     pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>) {
         match &mut self.steps {
             Steps::Implicit(method) => Arch::new().dispatch(Linearization { method, system, state, inputs }),
-            Steps::Explicit(method) => method.begin(system, state, inputs),
+            Steps::Explicit(method, jacobian) => {
+                method.begin(system, state, inputs);
+                jacobian.linearize(system, state, inputs);
+            }
         }
     }
 
@@ -101,7 +107,7 @@ where
             Steps::Implicit(method) => {
                 Arch::new().dispatch(Attempt { method, system, state, step, inputs, scales, tolerance })
             }
-            Steps::Explicit(method) => method.attempt(system, state, step, inputs, scales, tolerance),
+            Steps::Explicit(method, _) => method.attempt(system, state, step, inputs, scales, tolerance),
         }
     }
 
@@ -129,7 +135,7 @@ where
         let scales = &self.scales;
         match &mut self.steps {
             Steps::Implicit(method) => method.error_between(system, state, step, inputs, scales, tolerance),
-            Steps::Explicit(_) => S::from(0.0),
+            Steps::Explicit(..) => S::from(0.0),
         }
     }
 
@@ -137,7 +143,22 @@ where
     pub(super) fn linearized(&self) -> Option<&Rosenbrock<S>> {
         match &self.steps {
             Steps::Implicit(method) => Some(method),
-            Steps::Explicit(_) => None,
+            Steps::Explicit(..) => None,
+        }
+    }
+
+    /// The Jacobian last found.
+    pub(super) fn jacobian(&self) -> &Rosenbrock<S> {
+        match &self.steps {
+            Steps::Implicit(method) | Steps::Explicit(_, method) => method,
+        }
+    }
+
+    /// What a step takes from the amplitude of a mode that neither grows nor decays.
+    pub(super) fn amplitude_lost(&self) -> AmplitudeLost {
+        match self.steps {
+            Steps::Implicit(_) => rosenbrock::AMPLITUDE_LOST,
+            Steps::Explicit(..) => explicit::AMPLITUDE_LOST,
         }
     }
 
@@ -145,7 +166,7 @@ where
     pub(super) fn extension(&self, index: usize, start: S) -> Extension<S> {
         match &self.steps {
             Steps::Implicit(method) => method.extension(index, start),
-            Steps::Explicit(method) => method.extension(index, start),
+            Steps::Explicit(method, _) => method.extension(index, start),
         }
     }
 
@@ -153,7 +174,7 @@ where
     pub(super) fn end(&self) -> &[S] {
         match &self.steps {
             Steps::Implicit(method) => &method.end,
-            Steps::Explicit(method) => &method.end,
+            Steps::Explicit(method, _) => &method.end,
         }
     }
 
