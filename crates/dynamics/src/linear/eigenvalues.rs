@@ -35,8 +35,16 @@ pub(crate) fn working_eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Comple
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
-    nalgebra::linalg::balancing::balance_parlett_reinsch(&mut matrix);
     let order = matrix.nrows();
+    match order {
+        0 => return Some(Vec::new()),
+        1 => return Some(vec![Complex64::new(matrix[(0, 0)], 0.0)]),
+        2 => {
+            let entry = |i, j| matrix[(i, j)];
+            return Some(of_two_by_two(entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)).to_vec());
+        }
+        _ => nalgebra::linalg::balancing::balance_parlett_reinsch(&mut matrix),
+    };
     let (_, triangular) = Schur::try_new(matrix, f64::EPSILON, 100 * order)?.unpack();
     Some(of_quasi_triangular(&triangular))
 }

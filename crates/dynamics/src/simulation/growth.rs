@@ -59,7 +59,7 @@ const SMALL_ANGLE: f64 = 0.8;
 /// A step that is longer by no more than this is shortened to the small angle rather than looked into: it costs less.
 const NEARLY: f64 = 1.25;
 /// Below this part of what it was, friction is looked at again: modes have come up that were not there.
-const FALLEN: f64 = 0.1;
+const FALLEN: f64 = 0.02;
 /// Where waves come back late the Jacobian does not tell whether a mode decays: one that decays by less than this part of its
 /// frequency is taken to grow by the other.
 const UNTOLD: [f64; 2] = [0.05, 1e-3];
@@ -73,8 +73,8 @@ const LEAST_INTERVAL: u64 = 128;
 const WHILE_GROWING: u64 = 4;
 /// Smaller changes of the growth, in 1/s, are none for matrices found before.
 const LEAST_CHANGE: f64 = 0.1;
-/// Part of the growth of the least stable mode by which friction may change it before it is looked at again.
-const CHANGED: f64 = 0.5;
+/// Parts of its growth to which that of the least stable mode may fall, or its decay, before it is looked at again.
+const LEFT: [f64; 2] = [0.25, 0.5];
 
 #[derive(Clone, Copy, Debug)]
 struct Mode {
@@ -106,7 +106,7 @@ impl Mode {
 /// What is known of the modes of the machine in one lane.
 ///
 /// Eigenvalues cost several steps, so they are found when they may have changed: every so many steps for what changes slowly, and
-/// when the damping of friction changes its sign, falls to a part of what it was, or feeds a mode half as much again. In between it
+/// when the damping of friction changes its sign or falls to a part of what it was, or may have turned growth into decay. In between it
 /// shifts all modes as it would the one that has all its kinetic energy in the velocity: by half of its own change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrowthWatch {
@@ -173,14 +173,15 @@ impl GrowthWatch {
     ) -> Option<Growing> {
         let age = self.age.map_or(u64::MAX, |age| age.saturating_add(steps));
         self.age = Some(age);
-        let interval = if self.growth > 0.0 { self.interval / WHILE_GROWING } else { self.interval };
         let damping = self.friction(method, lane);
+        let interval =
+            if self.growth_at(damping) > 0.0 { self.interval / WHILE_GROWING } else { self.interval };
         let small_s = SMALL_ANGLE / self.fastest;
         let nearly = step_s <= small_s || (damping < 0.0 && step_s <= NEARLY * small_s);
         if age >= interval || !(nearly || self.is_known_at(damping)) {
             self.look(method, lane);
         }
-        let growth_per_s = self.growth + 0.5 * (self.damping - damping);
+        let growth_per_s = self.growth_at(damping);
         self.follow(time_s, growth_per_s);
         if !self.is_known_at(damping) {
             let small = Growing { step_s: small_s, frequency_rad_per_s: self.fastest, growth_per_s };
@@ -209,12 +210,21 @@ impl GrowthWatch {
         Some(Growing { growth_per_s, ..bound })
     }
 
+    /// Growth of the least stable mode, in 1/s, under this damping of friction.
+    fn growth_at(&self, damping: f64) -> f64 {
+        self.growth + 0.5 * (self.damping - damping)
+    }
+
     /// Whether the modes at the last look tell those under this damping of friction.
     fn is_known_at(&self, damping: f64) -> bool {
+        let [growth, decay] = LEFT.map(|left| left * self.growth);
+        let now = self.growth_at(damping);
         match (self.damping < 0.0, damping < 0.0) {
             (false, false) => damping >= FALLEN * self.damping,
-            (true, true) => 0.5 * (damping - self.damping).abs() <= CHANGED * self.growth.abs(),
-            _ => false,
+            (false, true) => false,
+            (true, false) => now < 0.0,
+            (true, true) if self.growth > 0.0 => now >= growth,
+            (true, true) => now <= decay,
         }
     }
 
