@@ -2,5 +2,7 @@
 #![cfg(test)]
 
 mod campaign;
+mod campaign_killed;
 mod exit_status;
+mod full_disk;
 mod stories;

@@ -66,7 +66,7 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["shape", "loop.toml", "--remove", "2"], 2),
     (&["shape", "loop.toml", "--move", "-1=1"], 2),
     (&["shape", "loop.toml", "--pass", "pole through +20 deg at 1"], 2),
-    (&["shape", "loop.toml", "--save", "empty.toml/shaped.toml"], 2),
+    (&["shape", "loop.toml", "--save", "empty.toml/shaped.toml"], 3),
     (&["check", "timed.toml"], 0),
     (&["verify", "timed.toml"], 2),
     (&["design", "plant.toml"], 2),
@@ -94,8 +94,8 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["check", "hose.toml", "--set", "nonsense"], 2),
     (&["check", "hose.toml", "--catalogue", "nowhere"], 2),
     (&["check", "hose.toml", "--catalogue", "hose.toml"], 2),
-    (&["check", "hose.toml", "--out", "empty.toml"], 2),
-    (&["report", "hose.toml", "--out", "empty.toml/sub"], 2),
+    (&["check", "hose.toml", "--out", "empty.toml"], 3),
+    (&["report", "hose.toml", "--out", "empty.toml/sub"], 3),
     (&["check", "hose.toml", "--frobnicate"], 2),
     (&["check"], 2),
     (&["chek", "hose.toml"], 2),
@@ -108,8 +108,8 @@ fn every_outcome_has_its_exit_status() {
         let output = phea(&folder, arguments);
         let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(*expected), "{arguments:?}: {complaint}");
-        assert_eq!(output.stdout.is_empty(), *expected == 2, "{arguments:?}");
-        assert_eq!(complaint.contains("error: "), *expected == 2, "{arguments:?}: {complaint}");
+        assert_eq!(output.stdout.is_empty(), *expected >= 2, "{arguments:?}");
+        assert_eq!(complaint.contains("error: "), *expected >= 2, "{arguments:?}: {complaint}");
         assert!(!complaint.contains("panicked"), "{arguments:?}: {complaint}");
     }
 }
@@ -126,7 +126,7 @@ fn json_is_one_object_and_nothing_else() {
             assert!(object.get(key).is_some(), "{arguments:?} lacks {key}");
         }
         let refused = object.get("errors").and_then(serde_json::Value::as_array);
-        assert_eq!(refused.is_some_and(|errors| !errors.is_empty()), *expected == 2, "{arguments:?}");
+        assert_eq!(refused.is_some_and(|errors| !errors.is_empty()), *expected >= 2, "{arguments:?}");
     }
 }
 

@@ -16,6 +16,7 @@ fn stories() {
     let cases = trycmd::TestCases::new();
     cases.register_bin("phea", trycmd::schema::Bin::Path(env!("CARGO_BIN_EXE_phea").into()));
     cases.env("NO_COLOR", "1");
+    cases.env("PHEA_PROGRESS", "never");
     for story in stories {
         cases.case(story);
     }

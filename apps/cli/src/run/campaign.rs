@@ -1,9 +1,10 @@
 //! A campaign whose table is a file that grows.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::io::{ErrorKind, Read as _, Seek as _, SeekFrom, Write as _};
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use phea_workbench::answer::Answer;
 use phea_workbench::campaign::{Effort, Ledger, Nowhere, Shard, Wanted};
@@ -13,9 +14,13 @@ use phea_workbench::source::Destination;
 use super::{FileSystem, failed, load, refused};
 use crate::arguments::Common;
 use crate::failure::Failure;
+use crate::file_system::reason;
 use crate::interruption::Interruption;
 use crate::output::{Folder, unwritten, write};
 use crate::voice::ProgressLine;
+
+/// Longest time after which the disk is told to keep the rows.
+const KEEPING: Duration = Duration::from_secs(2);
 
 /// What is asked for.
 pub(super) fn request(
@@ -82,6 +87,8 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
 struct Table {
     path: PathBuf,
     file: File,
+    /// Until when the disk was told to keep all of it.
+    kept: Instant,
 }
 
 impl Table {
@@ -101,11 +108,24 @@ impl Table {
                 format!("cannot lock {}: {error}; choose a folder on another disk", path.display())
             }
         })?;
-        Ok(Table { path: path.to_path_buf(), file })
+        Ok(Table { path: path.to_path_buf(), file, kept: Instant::now() })
     }
 
     fn explain(&self, error: &std::io::Error) -> String {
         unwritten(&self.path, error)
+    }
+
+    /// Where rows are that wait for one before them, beside the table.
+    fn beside(&self) -> PathBuf {
+        let mut name = self.path.clone().into_os_string();
+        name.push(".ahead");
+        name.into()
+    }
+
+    /// Lets the disk keep all of it, and not the system's memory alone.
+    fn keep(&mut self) -> Result<(), String> {
+        self.kept = Instant::now();
+        self.file.sync_data().map_err(|error| self.explain(&error))
     }
 }
 
@@ -128,6 +148,30 @@ impl Ledger for Table {
         written.map_err(|error| {
             let _ = self.file.set_len(before);
             self.explain(&error)
-        })
+        })?;
+        if self.kept.elapsed() >= KEEPING { self.keep() } else { Ok(()) }
+    }
+
+    fn ahead(&mut self) -> Result<String, String> {
+        match fs::read(self.beside()) {
+            Ok(bytes) => Ok(String::from_utf8_lossy(&bytes).into_owned()),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(String::new()),
+            Err(error) => Err(format!("cannot read {}: {}", self.beside().display(), reason(&error))),
+        }
+    }
+
+    fn keep_ahead(&mut self, text: &str) -> Result<(), String> {
+        let path = self.beside();
+        let file = OpenOptions::new().create(true).append(true).open(&path);
+        // what was torn before ends in a line of its own
+        let written = file.and_then(|mut file| file.write_all(format!("\n{text}").as_bytes()));
+        written.map_err(|error| unwritten(&path, &error))
+    }
+
+    fn forget_ahead(&mut self) -> Result<(), String> {
+        match fs::remove_file(self.beside()) {
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(unwritten(&self.beside(), &error)),
+            _ => self.keep(),
+        }
     }
 }

@@ -1,10 +1,11 @@
 //! A campaign from its first row or from where it was interrupted, its rows kept as they come.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::plan::Plan;
 use super::row::{NoRow, Row};
-use super::workers::{News, run};
+use super::workers::{Asked, News, run};
 use super::{CampaignError, Effort};
 use crate::command::{Progress, Watch};
 
@@ -102,6 +103,30 @@ pub trait Ledger {
     /// # Errors
     /// Why it cannot be written.
     fn append(&mut self, text: &str) -> Result<(), String>;
+
+    /// Rows that wait for one before them, as they were kept by [`Ledger::keep_ahead`]; whatever else is there is passed over.
+    ///
+    /// # Errors
+    /// Why they cannot be read.
+    fn ahead(&mut self) -> Result<String, String> {
+        Ok(String::new())
+    }
+
+    /// Keeps rows that wait for one before them, so that they are not driven again after an end in between. A ledger may keep none.
+    ///
+    /// # Errors
+    /// Why they cannot be written.
+    fn keep_ahead(&mut self, _text: &str) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Forgets them: all are in the table.
+    ///
+    /// # Errors
+    /// Why they cannot be removed.
+    fn forget_ahead(&mut self) -> Result<(), String> {
+        Ok(())
+    }
 }
 
 /// A ledger that keeps nothing.
@@ -138,21 +163,43 @@ pub(crate) fn campaign(
         return Err(CampaignError::TooMany { runs: asked });
     }
     let mut rows = resumed(plan, wanted, ledger)?;
-    let before = rows.len() as u64;
-    let mut tell = |news: News<'_>| match news {
+    let missing = runs.start + rows.len() as u64..runs.end;
+    let known = ahead(plan, &missing, ledger)?;
+    let before = (rows.len() + known.len()) as u64;
+    let mut tell = |news: News| match news {
         News::Done(done) => {
             let share = (before + done) as f64 / (asked.max(1)) as f64;
             Ok(watch(Progress { stage: "driving", share }))
         }
         News::Rows(more) => {
-            let text: String = more.iter().map(|row| plan.columns.line(row)).collect();
+            let text: String = more.iter().map(|one| plan.columns.line(&one.row)).collect();
             ledger.append(&text).map_err(CampaignError::Ledger)?;
-            rows.extend_from_slice(more);
+            rows.extend(more.into_iter().map(|one| one.row));
+            Ok(true)
+        }
+        News::Ahead(more) => {
+            let text: String = more.iter().map(|row| plan.columns.line(row)).collect();
+            ledger.keep_ahead(&text).map_err(CampaignError::Ledger)?;
             Ok(true)
         }
     };
-    run(plan, runs.start + before..runs.end, wanted.effort, &mut tell)?;
+    run(plan, Asked { runs: missing, known, forces: false }, wanted.effort, &mut tell)?;
+    if rows.len() as u64 == asked {
+        ledger.forget_ahead().map_err(CampaignError::Ledger)?;
+    }
     Ok(rows)
+}
+
+/// Rows of these runs that were done before others: a line that is not as it was written is driven again.
+fn ahead(
+    plan: &Plan,
+    missing: &Range<u64>,
+    ledger: &mut dyn Ledger,
+) -> Result<BTreeMap<u64, Row>, CampaignError> {
+    let text = ledger.ahead().map_err(CampaignError::Ledger)?;
+    let rows = text.lines().filter_map(|line| plan.columns.row(line).ok());
+    let ours = |row: &Row| missing.contains(&row.run) && row.values == plan.draw(row.run).values;
+    Ok(rows.filter(ours).map(|row| (row.run, row)).collect())
 }
 
 /// A kept row, as it must have been written for that run.

@@ -11,6 +11,9 @@ use parquet::schema::types::{Type, TypePtr};
 
 use super::row::{Columns, Row, RowOutcome, meaningful};
 
+/// Rows of a group, whose columns are laid out beside the rows while it is written.
+const GROUP: usize = 10_000;
+
 /// The table of these rows.
 ///
 /// # Errors
@@ -30,21 +33,23 @@ enum Column {
 fn written(columns: &Columns, rows: &[Row]) -> Result<Vec<u8>, ParquetError> {
     let header = columns.header();
     let names = header.trim_end().split(',');
-    let all = contents(columns, rows);
-    let fields = names.zip(&all).map(|(name, column)| field(name, column)).collect::<Result<_, _>>()?;
+    let kinds = contents(columns, &[]);
+    let fields = names.zip(&kinds).map(|(name, column)| field(name, column)).collect::<Result<_, _>>()?;
     let schema = Arc::new(Type::group_type_builder("campaign").with_fields(fields).build()?);
     let properties = Arc::new(WriterProperties::builder().build());
     let mut file = SerializedFileWriter::new(Vec::new(), schema, properties)?;
-    let mut group = file.next_row_group()?;
-    for column in &all {
-        match column {
-            Column::Whole(values) => write::<Int64Type>(&mut group, values)?,
-            Column::Text(values) => write::<ByteArrayType>(&mut group, values)?,
-            Column::Double(values) => write::<DoubleType>(&mut group, values)?,
-            Column::Single(values) => write::<FloatType>(&mut group, values)?,
+    for rows in rows.chunks(GROUP) {
+        let mut group = file.next_row_group()?;
+        for column in &contents(columns, rows) {
+            match column {
+                Column::Whole(values) => write::<Int64Type>(&mut group, values)?,
+                Column::Text(values) => write::<ByteArrayType>(&mut group, values)?,
+                Column::Double(values) => write::<DoubleType>(&mut group, values)?,
+                Column::Single(values) => write::<FloatType>(&mut group, values)?,
+            }
         }
+        group.close()?;
     }
-    group.close()?;
     file.into_inner()
 }
 

@@ -1,6 +1,10 @@
 //! Runs side by side: a machine in each lane, each with its own time and step.
 
+use std::cell::OnceCell;
+use std::collections::BTreeSet;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use phea_dynamics::scalar::Lanes;
 use phea_dynamics::simulation::{
@@ -19,32 +23,100 @@ use super::CampaignError;
 /// Lanes of a vector: two registers of the widest kind that is common, which hide the time that divisions and roots take.
 pub(super) const LANES: usize = 4;
 
-/// What the runs of a batch share with all others.
+/// Machines that a thread makes before it forgets them: its lanes run empty at the end of so many runs.
+const MACHINES: usize = 256;
+
+/// What all threads share.
 pub(super) struct Shared<'p> {
     pub(super) plan: &'p Plan,
     /// Whether everything is to end.
     pub(super) stop: AtomicBool,
     /// Runs that are done.
     pub(super) done: AtomicU64,
+    /// Whether the force at every look is asked for.
+    forces: bool,
+    supply: Mutex<Supply>,
 }
 
-/// A run with the force at every look.
+/// The runs that nobody has taken yet.
+struct Supply {
+    runs: Range<u64>,
+    /// Those among them whose rows are there already.
+    known: BTreeSet<u64>,
+    /// Threads that drive nothing.
+    idle: usize,
+}
+
+impl Supply {
+    fn left(&mut self) -> u64 {
+        while self.known.first() == Some(&self.runs.start) && self.runs.start < self.runs.end {
+            self.known.pop_first();
+            self.runs.start += 1;
+        }
+        (self.runs.end - self.runs.start).saturating_sub(self.known.len() as u64)
+    }
+
+    /// The next run for a thread that drives so many, and `works` where it has taken one. The last runs are left to threads that
+    /// drive none: a lane costs little beside others, but a thread of its own is quicker.
+    fn take(&mut self, driving: usize, works: &mut bool) -> Option<u64> {
+        let left = self.left();
+        if left == 0 || (driving > 0 && left <= self.idle as u64) {
+            return None;
+        }
+        if !std::mem::replace(works, true) {
+            self.idle = self.idle.saturating_sub(1);
+        }
+        let run = self.runs.start;
+        self.runs.start += 1;
+        Some(run)
+    }
+}
+
+impl<'p> Shared<'p> {
+    pub(super) fn new(
+        plan: &'p Plan,
+        (runs, known): (Range<u64>, BTreeSet<u64>),
+        threads: usize,
+        forces: bool,
+    ) -> Shared<'p> {
+        let supply = Mutex::new(Supply { runs, known, idle: threads });
+        Shared { plan, stop: AtomicBool::new(false), done: AtomicU64::new(0), forces, supply }
+    }
+
+    /// Whether a thread finds work.
+    pub(super) fn has_more(&self) -> bool {
+        let mut supply = self.supply.lock().unwrap_or_else(PoisonError::into_inner);
+        !self.stop.load(Ordering::Relaxed) && supply.left() > 0
+    }
+
+    fn take(&self, driving: usize, works: &mut bool) -> Option<u64> {
+        let mut supply = self.supply.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.stop.load(Ordering::Relaxed) { None } else { supply.take(driving, works) }
+    }
+
+    /// A thread drives nothing any more.
+    fn rest(&self) {
+        self.supply.lock().unwrap_or_else(PoisonError::into_inner).idle += 1;
+    }
+}
+
+/// A run with the force at every look, where that is asked for.
 pub(super) struct Finished {
     pub(super) row: Row,
     pub(super) force_n: Vec<f64>,
 }
 
-/// Drives runs one by one. It is what lanes are held to.
+/// Takes each run when it is done.
+pub(super) type Give<'g> = &'g mut dyn FnMut(Finished);
+
+/// Drives runs one by one, until there are none or a thread has made as many machines as it keeps. It is what lanes are held to.
 ///
 /// # Errors
-/// As [`batch_in_lanes`].
-pub(super) fn batch_one_by_one(
-    shared: &Shared<'_>,
-    runs: std::ops::Range<u64>,
-) -> Result<Vec<Option<Finished>>, CampaignError> {
+/// As [`in_lanes`].
+pub(super) fn one_by_one(shared: &Shared<'_>, give: Give<'_>) -> Result<(), CampaignError> {
     let bench = &shared.plan.bench;
     let settings = &bench.settings;
-    driven(shared, runs, |batch| match &bench.control {
+    driven(shared, give, |batch| match &bench.control {
         Control::Continuous(closed) => {
             let machine: fn(&mut ClosedLoop<Sensed<Machine>>) -> &mut Machine = in_loop;
             drive::<f64, _, _>(&mut closed.as_ref().clone(), &mut Lanewise { batch, machine }, settings)
@@ -56,19 +128,16 @@ pub(super) fn batch_one_by_one(
     })
 }
 
-/// Drives runs in lanes; those that were stopped are absent. Under a sampled controller they are driven one by one: from sample to
-/// sample a machine goes by its own matrices, and where one has to leave them its neighbours wait. Lanes have the same bits there,
-/// and take as long.
+/// Drives runs in lanes; those that were stopped are not given. Under a sampled controller they are driven one by one: from sample
+/// to sample a machine goes by its own matrices, and where one has to leave them its neighbours wait. Lanes have the same bits
+/// there, and take as long.
 ///
 /// # Errors
 /// A start or course that does not fit the machine.
-pub(super) fn batch_in_lanes<const L: usize>(
-    shared: &Shared<'_>,
-    runs: std::ops::Range<u64>,
-) -> Result<Vec<Option<Finished>>, CampaignError> {
+pub(super) fn in_lanes<const L: usize>(shared: &Shared<'_>, give: Give<'_>) -> Result<(), CampaignError> {
     let plan = shared.plan;
     if matches!(plan.bench.control, Control::Sampled(_)) {
-        return batch_one_by_one(shared, runs);
+        return one_by_one(shared, give);
     }
     let settings = &plan.bench.settings;
     let machine = plan.bench.machine.convert(&mut |value| Lanes([value; L]));
@@ -79,7 +148,7 @@ pub(super) fn batch_in_lanes<const L: usize>(
     let gain = plan.bench.feed_forward;
     let mut closed = ClosedLoop::new(sensed, &control, gain).map_err(SimulateError::from)?;
     let machine: fn(&mut ClosedLoop<Sensed<Machine<Lanes<L>>>>) -> &mut Machine<Lanes<L>> = in_loop;
-    driven(shared, runs, |batch| drive(&mut closed, &mut Lanewise { batch, machine }, settings))
+    driven(shared, give, |batch| drive(&mut closed, &mut Lanewise { batch, machine }, settings))
 }
 
 fn in_loop<S>(system: &mut ClosedLoop<Sensed<Machine<S>>>) -> &mut Machine<S> {
@@ -90,34 +159,39 @@ fn in_hold(system: &mut HeldPlant<Sensed<Machine>>) -> &mut Machine {
     system.plant_mut().plant_mut()
 }
 
-/// Prepares the runs and lets them be driven.
+/// Lets runs be driven, each made when its turn comes.
 fn driven(
     shared: &Shared<'_>,
-    runs: std::ops::Range<u64>,
+    give: Give<'_>,
     drive: impl for<'a> FnOnce(&mut Batch<'a>) -> Result<(), SimulationError>,
-) -> Result<Vec<Option<Finished>>, CampaignError> {
-    let plan = shared.plan;
-    let ready: Vec<Result<Prepared, Box<Row>>> = runs.map(|run| prepared(plan, plan.draw(run))).collect();
-    let mut finished: Vec<Option<Finished>> = (0..ready.len()).map(|_| None).collect();
-    for (place, one) in finished.iter_mut().zip(&ready) {
-        if let Err(row) = one {
-            shared.done.fetch_add(1, Ordering::Relaxed);
-            *place = Some(Finished { row: row.as_ref().clone(), force_n: Vec::new() });
-        }
+) -> Result<(), CampaignError> {
+    let made: Vec<OnceCell<Prepared>> = (0..MACHINES).map(|_| OnceCell::new()).collect();
+    let mut batch = Batch { shared, made: &made, next: 0, in_lanes: Vec::new(), works: false, give };
+    let outcome = drive(&mut batch);
+    if batch.works {
+        shared.rest();
     }
-    let mut batch = Batch { shared, ready: &ready, next: 0, in_lanes: Vec::new(), finished };
-    drive(&mut batch)
-        .map_err(|error| SimulateError::Simulation { name: plan.scenario.name.clone(), error })?;
-    Ok(batch.finished)
+    let name = || shared.plan.scenario.name.clone();
+    Ok(outcome.map_err(|error| SimulateError::Simulation { name: name(), error })?)
 }
 
-/// Runs that wait, those under way in each lane, and what came of the others.
+/// Machines that were made, and those under way in each lane.
 struct Batch<'a> {
     shared: &'a Shared<'a>,
-    ready: &'a [Result<Prepared, Box<Row>>],
+    made: &'a [OnceCell<Prepared>],
+    /// The first place that is free.
     next: usize,
-    in_lanes: Vec<usize>,
-    finished: Vec<Option<Finished>>,
+    in_lanes: Vec<Option<&'a Prepared>>,
+    /// Whether a run was taken.
+    works: bool,
+    give: Give<'a>,
+}
+
+impl Batch<'_> {
+    fn refuse(&mut self, row: Row) {
+        self.shared.done.fetch_add(1, Ordering::Relaxed);
+        (self.give)(Finished { row, force_n: Vec::new() });
+    }
 }
 
 /// A batch for a kind of system, and where its machine is.
@@ -130,40 +204,76 @@ impl<'a, E, S: Lane> Queue<'a, E> for Lanewise<'_, 'a, E, S> {
     type Observer = Watched<'a>;
 
     fn next(&mut self, system: &mut E, lane: usize) -> Option<Task<'a, Watched<'a>>> {
-        let Batch { shared, ready, next, in_lanes, finished } = &mut *self.batch;
-        if shared.stop.load(Ordering::Relaxed) {
-            return None;
-        }
+        let batch = &mut *self.batch;
+        let (shared, made) = (batch.shared, batch.made);
         loop {
-            let place = *next;
-            let one = ready.get(place)?;
-            *next += 1;
-            let Ok(prepared) = one else { continue };
+            let place = made.get(batch.next)?;
+            let driving = batch.in_lanes.iter().flatten().count();
+            let run = shared.take(driving, &mut batch.works)?;
+            let prepared = match prepared(shared.plan, shared.plan.draw(run)) {
+                Ok(prepared) => prepared,
+                Err(row) => {
+                    batch.refuse(*row);
+                    continue;
+                }
+            };
             if let Err(error) = (self.machine)(system).put(lane, &prepared.bench.machine) {
                 let outcome = RowOutcome::Refused(error.to_string());
                 let Prepared { draw, lumps, .. } = prepared;
-                let row = Row { run: draw.run, values: draw.values.clone(), lumps: *lumps, outcome };
-                finished[place] = Some(Finished { row, force_n: Vec::new() });
+                batch.refuse(Row { run: draw.run, values: draw.values, lumps, outcome });
                 continue;
             }
-            in_lanes.resize(in_lanes.len().max(lane + 1), 0);
-            in_lanes[lane] = place;
+            let prepared = place.get_or_init(|| prepared);
+            batch.next += 1;
+            batch.in_lanes.resize(batch.in_lanes.len().max(lane + 1), None);
+            batch.in_lanes[lane] = Some(prepared);
             return Some(prepared.task(shared.plan));
         }
     }
 
     fn done(&mut self, lane: usize, outcome: Outcome, observer: Watched<'a>) {
-        let Batch { shared, ready, in_lanes, finished, .. } = &mut *self.batch;
-        let place = in_lanes.get(lane).copied().unwrap_or_default();
+        let Batch { shared, in_lanes, give, .. } = &mut *self.batch;
+        let prepared = in_lanes.get_mut(lane).and_then(Option::take);
         let stopped = matches!(outcome.status, Status::Cancelled { .. });
-        if let (false, Some(Ok(prepared))) = (stopped, ready.get(place)) {
+        if let (false, Some(prepared)) = (stopped, prepared) {
             let row = prepared.row(shared.plan, &outcome, &observer);
-            finished[place] = Some(Finished { row, force_n: observer.force_n });
+            let force_n = if shared.forces { observer.force_n } else { Vec::new() };
             shared.done.fetch_add(1, Ordering::Relaxed);
+            give(Finished { row, force_n });
         }
     }
 
     fn goes_on(&mut self, _lane: usize, _time_s: f64) -> bool {
         !self.batch.shared.stop.load(Ordering::Relaxed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn supply(runs: u64, idle: usize) -> Supply {
+        Supply { runs: 0..runs, known: BTreeSet::new(), idle }
+    }
+
+    /// As many runs as threads: each thread drives one, though the first could take all into its lanes.
+    #[test]
+    fn every_thread_drives_before_lanes_are_filled() {
+        let (mut supply, mut works) = (supply(6, 3), [false; 3]);
+        let taken: Vec<Option<u64>> = (0..LANES).map(|lane| supply.take(lane, &mut works[0])).collect();
+        assert_eq!(taken, [Some(0), Some(1), Some(2), Some(3)]);
+        assert_eq!((supply.take(0, &mut works[1]), supply.take(1, &mut works[1])), (Some(4), None));
+        assert_eq!((supply.take(0, &mut works[2]), supply.take(1, &mut works[2])), (Some(5), None));
+        assert_eq!((supply.left(), supply.idle), (0, 0));
+    }
+
+    #[test]
+    fn runs_whose_rows_are_there_are_passed_over() {
+        let mut supply = supply(5, 1);
+        supply.known = BTreeSet::from([0, 2, 4]);
+        let mut works = false;
+        assert_eq!(supply.left(), 2);
+        let taken: Vec<u64> = std::iter::from_fn(|| supply.take(0, &mut works)).collect();
+        assert_eq!(taken, [1, 3]);
     }
 }

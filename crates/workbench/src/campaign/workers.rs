@@ -1,18 +1,19 @@
-//! Threads that take batches of runs, and their rows in the order of the runs.
+//! Threads that take runs one by one, and their rows in the order of the runs.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::mpsc;
+use std::thread::sleep;
 use std::time::Duration;
 
 use super::plan::Plan;
-use super::queue::{Finished, LANES, Shared, batch_in_lanes, batch_one_by_one};
+use super::queue::{Finished, LANES, Shared, in_lanes, one_by_one};
 use super::{CampaignError, Row};
 
-/// Runs that a thread takes at once: lanes run empty at the end of each batch alone.
-const BATCH: u64 = 256;
-/// How long the rows of a batch are waited for before whoever watches is asked again.
-const PATIENCE: Duration = Duration::from_millis(100);
+/// How long rows are collected before they are told, and whoever watches is asked again.
+const PATIENCE: Duration = Duration::from_millis(20);
+/// Times that rows are collected until one that waits for those before it is told: about a second.
+const LATE: u32 = 50;
 
 /// How a campaign is computed; its rows do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,93 +32,136 @@ impl Default for Effort {
 }
 
 /// What whoever asked for a campaign is told.
-pub(super) enum News<'r> {
+pub(super) enum News {
     /// So many runs of those that were asked for are done.
     Done(u64),
     /// The next rows.
-    Rows(&'r [Row]),
+    Rows(Vec<Finished>),
+    /// Rows that wait for a run before them. They come again when it is their turn.
+    Ahead(Vec<Row>),
+}
+
+/// Takes what is told; everything ends soon where the answer is `false`.
+pub(super) type Tell<'t> = &'t mut dyn FnMut(News) -> Result<bool, CampaignError>;
+
+/// Which runs are driven.
+pub(super) struct Asked {
+    pub(super) runs: std::ops::Range<u64>,
+    /// Rows of some of them that are there already.
+    pub(super) known: BTreeMap<u64, Row>,
+    /// Whether the force at every look is asked for too.
+    pub(super) forces: bool,
 }
 
 /// Drives runs and tells of them, rows in the order of the runs; where the answer is `false`, everything ends soon and the rows
-/// so far are all there will be.
+/// so far are all there will be. Each thread drives a run as soon as there is one for it, and takes more into its lanes where
+/// there are more than threads.
 ///
 /// # Errors
 /// [`CampaignError`] where a run does not fit the machine, or whoever is told fails.
-pub(super) fn run(
-    plan: &Plan,
-    runs: std::ops::Range<u64>,
-    effort: Effort,
-    tell: &mut dyn FnMut(News<'_>) -> Result<bool, CampaignError>,
-) -> Result<(), CampaignError> {
-    let shared = Shared { plan, stop: AtomicBool::new(false), done: AtomicU64::new(0) };
-    let count = runs.end.saturating_sub(runs.start).div_ceil(BATCH);
-    let batch = |number: u64| {
-        let start = runs.start + number * BATCH;
-        start..(start + BATCH).min(runs.end)
-    };
-    let next = AtomicU64::new(0);
+pub(super) fn run(plan: &Plan, asked: Asked, effort: Effort, tell: Tell<'_>) -> Result<(), CampaignError> {
+    let threads = effort.threads.max(1);
+    let Asked { runs, known, forces } = asked;
+    let first = runs.start;
+    let shared = Shared::new(plan, (runs, known.keys().copied().collect()), threads, forces);
     let (sender, receiver) = mpsc::channel();
     std::thread::scope(|scope| {
-        for _ in 0..effort.threads.max(1) {
-            let (sender, shared, next) = (sender.clone(), &shared, &next);
-            scope.spawn(move || {
-                loop {
-                    let number = next.fetch_add(1, Ordering::Relaxed);
-                    if number >= count || shared.stop.load(Ordering::Relaxed) {
-                        return;
-                    }
-                    let finished = driven(shared, batch(number), effort);
-                    if sender.send((number, finished)).is_err() {
-                        return;
-                    }
-                }
-            });
+        for _ in 0..threads {
+            let (sender, shared) = (sender.clone(), &shared);
+            scope.spawn(move || work(shared, effort, &sender));
         }
         drop(sender);
-        let told = in_order(&shared, &receiver, tell);
+        let told = in_order(&shared, &receiver, (first, known), tell);
         shared.stop.store(true, Ordering::Relaxed);
         told
     })
 }
 
-fn driven(
-    shared: &Shared<'_>,
-    runs: std::ops::Range<u64>,
-    effort: Effort,
-) -> Result<Vec<Option<Finished>>, CampaignError> {
-    if effort.lanes { batch_in_lanes::<LANES>(shared, runs) } else { batch_one_by_one(shared, runs) }
+type Message = Result<Finished, CampaignError>;
+
+/// One thread, as long as there are runs.
+fn work(shared: &Shared<'_>, effort: Effort, sender: &mpsc::Sender<Message>) {
+    // where nobody listens any more, everything is stopped too
+    let mut give = |finished| drop(sender.send(Ok(finished)));
+    while shared.has_more() {
+        let outcome = match effort.lanes {
+            true => in_lanes::<LANES>(shared, &mut give),
+            false => one_by_one(shared, &mut give),
+        };
+        if let Err(error) = outcome {
+            drop(sender.send(Err(error)));
+            return;
+        }
+    }
 }
 
-type Message = (u64, Result<Vec<Option<Finished>>, CampaignError>);
+/// A row that waits for those before it.
+struct Waiting {
+    finished: Finished,
+    /// How often rows were collected since.
+    rounds: u32,
+    /// Whether it was told that it waits.
+    told: bool,
+}
 
-/// Passes the rows of batches on in their order, up to the first run that was stopped.
+/// Passes rows on in their order, up to the first run that was stopped.
 fn in_order(
     shared: &Shared<'_>,
     receiver: &mpsc::Receiver<Message>,
-    tell: &mut dyn FnMut(News<'_>) -> Result<bool, CampaignError>,
+    (mut next, known): (u64, BTreeMap<u64, Row>),
+    tell: Tell<'_>,
 ) -> Result<(), CampaignError> {
-    let mut waiting = BTreeMap::new();
-    let mut next = 0;
-    let mut broken = false;
+    let known = known.into_iter().map(|(run, row)| {
+        let finished = Finished { row, force_n: Vec::new() };
+        (run, Waiting { finished, rounds: 0, told: true })
+    });
+    let mut waiting: BTreeMap<u64, Waiting> = known.collect();
     loop {
         if !tell(News::Done(shared.done.load(Ordering::Relaxed)))? {
             shared.stop.store(true, Ordering::Relaxed);
         }
-        match receiver.recv_timeout(PATIENCE) {
-            Ok((number, finished)) => {
-                waiting.insert(number, finished?);
-            }
-            Err(mpsc::RecvTimeoutError::Timeout) => continue,
-            Err(mpsc::RecvTimeoutError::Disconnected) => return Ok(()),
-        }
-        while let Some(finished) = waiting.remove(&next).filter(|_| !broken) {
-            let expected = finished.len();
-            let rows: Vec<Row> = finished.into_iter().map_while(|one| one.map(|one| one.row)).collect();
-            broken = rows.len() < expected;
+        let (news, over) = collected(receiver)?;
+        waiting.values_mut().for_each(|one| one.rounds = one.rounds.saturating_add(1));
+        let arrived =
+            news.into_iter().map(|finished| (finished.row.run, Waiting { finished, rounds: 0, told: false }));
+        waiting.extend(arrived);
+        let mut rows = Vec::new();
+        while let Some(one) = waiting.remove(&next) {
+            rows.push(one.finished);
             next += 1;
-            if !rows.is_empty() && !tell(News::Rows(&rows))? {
-                shared.stop.store(true, Ordering::Relaxed);
-            }
+        }
+        if !rows.is_empty() && !tell(News::Rows(rows))? {
+            shared.stop.store(true, Ordering::Relaxed);
+        }
+        let late = |one: &&mut Waiting| !one.told && (over || one.rounds >= LATE);
+        let ahead: Vec<Row> = waiting
+            .values_mut()
+            .filter(late)
+            .map(|one| {
+                one.told = true;
+                one.finished.row.clone()
+            })
+            .collect();
+        if !ahead.is_empty() {
+            tell(News::Ahead(ahead))?;
+        }
+        if over {
+            return Ok(());
+        }
+    }
+}
+
+/// What comes within a moment, and whether no more will come.
+fn collected(receiver: &mpsc::Receiver<Message>) -> Result<(Vec<Finished>, bool), CampaignError> {
+    let mut news = match receiver.recv_timeout(PATIENCE) {
+        Ok(message) => vec![message?],
+        Err(error) => return Ok((vec![], error == mpsc::RecvTimeoutError::Disconnected)),
+    };
+    sleep(PATIENCE);
+    loop {
+        match receiver.try_recv() {
+            Ok(message) => news.push(message?),
+            Err(error) => return Ok((news, error == mpsc::TryRecvError::Disconnected)),
         }
     }
 }
@@ -128,14 +172,8 @@ impl Plan {
     /// # Errors
     /// [`CampaignError`] where a run does not fit the machine.
     pub fn rows(&self, runs: std::ops::Range<u64>, effort: Effort) -> Result<Vec<Row>, CampaignError> {
-        let mut rows = Vec::new();
-        run(self, runs, effort, &mut |news| {
-            if let News::Rows(more) = news {
-                rows.extend_from_slice(more);
-            }
-            Ok(true)
-        })?;
-        Ok(rows)
+        let rows = self.finished(runs, effort, false)?;
+        Ok(rows.into_iter().map(|one| one.row).collect())
     }
 
     /// Force in N at each row of the scenario, of runs in their order; empty for one that was refused.
@@ -143,9 +181,24 @@ impl Plan {
     /// # Errors
     /// [`CampaignError`] where a run does not fit the machine.
     pub fn forces(&self, runs: std::ops::Range<u64>, effort: Effort) -> Result<Vec<Vec<f64>>, CampaignError> {
-        let shared = Shared { plan: self, stop: AtomicBool::new(false), done: AtomicU64::new(0) };
-        let finished = driven(&shared, runs, effort)?;
-        Ok(finished.into_iter().flatten().map(|one| one.force_n).collect())
+        let rows = self.finished(runs, effort, true)?;
+        Ok(rows.into_iter().map(|one| one.force_n).collect())
+    }
+
+    fn finished(
+        &self,
+        runs: std::ops::Range<u64>,
+        effort: Effort,
+        forces: bool,
+    ) -> Result<Vec<Finished>, CampaignError> {
+        let mut rows = Vec::new();
+        run(self, Asked { runs, known: BTreeMap::new(), forces }, effort, &mut |news| {
+            if let News::Rows(more) = news {
+                rows.extend(more);
+            }
+            Ok(true)
+        })?;
+        Ok(rows)
     }
 
     /// The text of rows, as a campaign writes it.

@@ -1,0 +1,92 @@
+//! A disk that takes no more: the exit status says so, and no file is there that is not whole.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// The command where no file may be longer than so many blocks of a shell, 512 or 1024 bytes: writing beyond fails.
+fn limited(folder: &Path, blocks: u32, arguments: &[&str]) -> Output {
+    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
+    let mut command = Command::new("sh");
+    command.current_dir(folder).args(["-c", &script, env!("CARGO_BIN_EXE_phea")]).args(arguments);
+    command.output().expect("sh starts")
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).map(|entries| entries.collect::<Vec<_>>()).unwrap_or_default();
+    entries.into_iter().map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect()
+}
+
+#[track_caller]
+fn not_written(output: &Output) {
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{complaint}");
+    assert!(complaint.contains("error: cannot write"), "{complaint}");
+}
+
+/// A table of two thousand rows, and a project that is saved over another.
+#[test]
+fn a_file_that_does_not_fit_is_not_there() {
+    let folder = folder("full_disk");
+    let closed = format!("{EXAMPLES}/benchmark/closed_loop.toml");
+    let simulate = ["simulate", &closed, "--out", "out", "--set", "scenario.0.duration=2 s"];
+    for more in [&[] as &[&str], &["--json"]] {
+        let output = limited(&folder, 64, &[&simulate, more].concat());
+        not_written(&output);
+        assert_eq!(names(&folder.join("out")), [] as [String; 0]);
+        assert_eq!(String::from_utf8_lossy(&output.stdout).contains("\"errors\""), !more.is_empty());
+    }
+    // what was there before stays as it was
+    fs::write(folder.join("out/step and load motion.csv"), "before").unwrap();
+    not_written(&limited(&folder, 64, &simulate));
+    let names = names(&folder.join("out"));
+    let kept = names.first().map(|name| fs::read_to_string(folder.join("out").join(name)).unwrap());
+    assert_eq!((names.len(), kept.as_deref()), (1, Some("before")));
+    not_written(&limited(&folder, 1, &["new", "rig"]));
+    assert_eq!(self::names(&folder.join("rig")), [] as [String; 0]);
+}
+
+/// A campaign has whole rows alone, and goes on where there is room again.
+#[test]
+fn a_campaign_on_a_full_disk_goes_on_where_there_is_room_again() {
+    let folder = folder("full_disk_campaign");
+    let project = format!("{EXAMPLES}/benchmark/campaign.toml");
+    let campaign = |out: &'static str| {
+        let short = ["--set", "scenario.0.duration=0.1 s", "--set", "scenario.0.reference=[]"];
+        [&["campaign", &project, "--runs", "200", "--out", out], &short[..]].concat().join("\n")
+    };
+    let text = |out: &str| fs::read_to_string(folder.join(out).join("runs.csv")).unwrap();
+    let arguments = campaign("full");
+    let arguments: Vec<&str> = arguments.lines().collect();
+    not_written(&limited(&folder, 32, &arguments));
+    let kept = text("full");
+    assert!(kept.is_empty() || kept.ends_with('\n'), "{} bytes", kept.len());
+    let whole = campaign("whole");
+    for arguments in [arguments, whole.lines().collect()] {
+        let output = Command::new(env!("CARGO_BIN_EXE_phea")).current_dir(&folder).args(arguments).output();
+        assert_eq!(output.unwrap().status.code(), Some(0));
+    }
+    assert!(text("full").starts_with(&kept) && text("full") == text("whole"));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_answer_that_nobody_takes_is_not_given() {
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("the device");
+    let project = format!("{EXAMPLES}/ybitu/hose.toml");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_phea"));
+    let output = command.args(["check", &project]).stdout(full).output().expect("phea starts");
+    not_written(&output);
+}
