@@ -71,7 +71,9 @@ const LEAST_FOLLOWED: f64 = 1e-3;
 const LEAST_INTERVAL: u64 = 128;
 /// Part of that while a mode grows.
 const WHILE_GROWING: u64 = 4;
-/// Smaller changes of the growth, in 1/s, are none for matrices found before.
+/// Part of a change of the growth that a step misses by matrices found before it, over the square of the angle it turns in rad.
+const MISSED: f64 = 0.08;
+/// Smaller errors of the growth, in 1/s, are none for matrices found before.
 const LEAST_CHANGE: f64 = 0.1;
 /// Parts of its growth to which that of the least stable mode may fall, or its decay, before it is looked at again.
 const LEFT: [f64; 2] = [0.25, 0.5];
@@ -228,10 +230,19 @@ impl GrowthWatch {
         }
     }
 
-    /// Whether friction's damping has moved from another value by more than matrices found there can follow.
-    pub(super) fn has_left<S: Lane>(&self, other: f64, method: &Rosenbrock<S>, lane: usize) -> bool {
+    /// Whether friction's damping has moved so far from another value that a step of this length by matrices found there is off: of the
+    /// growth that the change makes, a step by such matrices misses a part that rises with the angle it turns.
+    pub(super) fn has_left<S: Lane>(
+        &self,
+        other: f64,
+        step_s: f64,
+        method: &Rosenbrock<S>,
+        lane: usize,
+    ) -> bool {
+        let angle = self.fastest * step_s;
+        let missed = (MISSED * angle * angle).min(1.0);
         let change = 0.5 * (self.friction(method, lane) - other).abs();
-        change > (GROWTH_ERROR * self.growth.abs()).max(LEAST_CHANGE)
+        missed * change > (GROWTH_ERROR * self.growth.abs()).max(LEAST_CHANGE)
     }
 
     /// d at the fastest mode.

@@ -20,7 +20,7 @@ pub(super) struct Slot<'a, O> {
 }
 
 /// What goes by known matrices is asked for its modes after this many steps, or this time in s.
-const UNWATCHED: (u64, f64) = (32, 0.03);
+const UNWATCHED: (u64, f64) = (64, 0.06);
 
 impl<O: Observer> Slot<'_, O> {
     /// Whether its modes are to be asked for, though it goes by known matrices.

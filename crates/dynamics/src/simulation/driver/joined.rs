@@ -40,7 +40,7 @@ where
             let (watch, step_s) = (&mut self.watches[lane], slot.passage.step_s);
             let steps = std::mem::take(&mut slot.unwatched);
             watch.bound(slot.passage.time_s, step_s, steps, linearized, lane);
-            if watch.has_left(self.propagator.friction[lane], linearized, lane) {
+            if watch.has_left(self.propagator.friction[lane], step_s, linearized, lane) {
                 self.propagator.learn(lane, step_s, linearized, &self.method.scales);
                 self.propagator.friction[lane] = watch.friction(linearized, lane);
                 slot.propagated = self.propagator.knows(lane, step_s);
