@@ -398,7 +398,7 @@ fn simulate_answer(
     Ok(Answer {
         text: simulate::text(loaded, &runs),
         json: simulate::json(loaded, &runs),
-        files: vec![],
+        files: simulate::files(loaded, &runs),
         affirmative: all && runs.iter().all(|run: &ScenarioRun| run.stopped().is_none()),
     })
 }

@@ -53,6 +53,10 @@ pub(super) fn batch_one_by_one(
             let machine: fn(&mut HeldPlant<Sensed<Machine>>) -> &mut Machine = in_hold;
             drive::<f64, _, _>(&mut sampled.held.clone(), &mut Lanewise { batch, machine }, settings)
         }
+        Control::Open(held) => {
+            let machine: fn(&mut HeldPlant<Sensed<Machine>>) -> &mut Machine = in_hold;
+            drive::<f64, _, _>(&mut held.as_ref().clone(), &mut Lanewise { batch, machine }, settings)
+        }
     })
 }
 
@@ -67,7 +71,7 @@ pub(super) fn batch_in_lanes<const L: usize>(
     runs: std::ops::Range<u64>,
 ) -> Result<Vec<Option<Finished>>, CampaignError> {
     let plan = shared.plan;
-    if matches!(plan.bench.control, Control::Sampled(_)) {
+    if !matches!(plan.bench.control, Control::Continuous(_)) {
         return batch_one_by_one(shared, runs);
     }
     let settings = &plan.bench.settings;
