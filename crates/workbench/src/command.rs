@@ -234,7 +234,7 @@ pub fn answer_watched(
 ) -> Result<Answer, CommandError> {
     let held = Held::default();
     let mut answer = answer_into(source, loaded, catalogues, request, Some(&held), watch)?;
-    answer.files.extend(held.into_files());
+    answer.files.splice(0..0, held.into_files());
     Ok(answer)
 }
 

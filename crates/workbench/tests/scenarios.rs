@@ -47,6 +47,7 @@ fn last(values: Vec<f64>) -> f64 {
     *values.last().unwrap()
 }
 
+// ORIGIN: analytic, the sum of the parts
 /// The parts add up: steps hold until the next, all else is added from its start on and holds what it ends with.
 #[test]
 fn a_reference_is_the_sum_of_its_parts() {
@@ -143,6 +144,7 @@ fn a_recorded_reference_is_followed_like_what_was_recorded() {
     );
 }
 
+// ORIGIN: analytic, the command of the one run is that of the other
 /// The command of a closed loop, played back to the machine alone, gives the force of the closed loop.
 #[test]
 fn a_command_played_back_gives_the_force_it_was_recorded_with() {
