@@ -354,7 +354,7 @@ mod tests {
             control_v,
             signals,
             times_s,
-            looks_apart: 1,
+            ..Record::default()
         }
     }
 
