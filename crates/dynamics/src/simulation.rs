@@ -29,7 +29,7 @@ pub use course::{Course, Event, Input, Observer, Outcome, Sampler, Settings, Sim
 pub use driver::drive;
 pub use growth::Sliding;
 pub use method::Method;
-pub use profile::{Moment, Piece, Profile, ProfileError};
+pub use profile::{Harmonic, Moment, Piece, Profile, ProfileError, schroeder_phases};
 pub use sensed::Sensed;
 pub use task::{Queue, Task};
 pub use trajectory::{Simulated, Trajectory, drive_one, simulate};

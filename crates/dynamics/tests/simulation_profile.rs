@@ -2,7 +2,11 @@
 #![cfg(test)]
 
 use phea_dynamics::portable;
-use phea_dynamics::simulation::{Profile, ProfileError};
+use phea_dynamics::simulation::{Harmonic, Profile, ProfileError, schroeder_phases};
+
+fn harmonic(amplitude: f64, frequency_rad_per_s: f64, phase_rad: f64) -> Harmonic {
+    Harmonic { amplitude, frequency_rad_per_s, phase_rad }
+}
 
 fn every_kind() -> Vec<(&'static str, Profile)> {
     let times = [0.0, 0.1, 0.25, 0.3, 0.6, 0.61];
@@ -16,6 +20,19 @@ fn every_kind() -> Vec<(&'static str, Profile)> {
         ("rising chirp", Profile::chirp(0.1, 0.5, 2.0, [5.0, 60.0]).unwrap()),
         ("falling chirp", Profile::chirp(0.1, 0.5, 2.0, [60.0, 5.0]).unwrap()),
         ("table", Profile::table(&times, &values).unwrap()),
+        ("ramp", Profile::ramp(0.1, 0.3, 5.0).unwrap()),
+        (
+            "multisine",
+            Profile::multisine(0.1, &[harmonic(2.0, 30.0, 0.3), harmonic(1.0, 50.0, -2.0)]).unwrap(),
+        ),
+        (
+            "sum",
+            Profile::sum(&[
+                Profile::ramp(0.1, 0.3, 5.0).unwrap(),
+                Profile::sine(0.2, 2.0, 30.0).unwrap().held_from(0.5),
+                Profile::table(&times, &values).unwrap().begun_at(0.05),
+            ]),
+        ),
     ]
 }
 
@@ -131,4 +148,64 @@ fn what_is_no_function_of_time_is_refused() {
     assert!(matches!(Profile::steps(0.0, &[(f64::NAN, 2.0)]), Err(ProfileError::TimeOrder { index: 0, .. })));
     assert_eq!(Profile::table(&[0.0], &[1.0]), Err(ProfileError::Count { times: 1, values: 1 }));
     assert_eq!(Profile::table(&[0.0, 1.0], &[1.0]), Err(ProfileError::Count { times: 2, values: 1 }));
+}
+
+/// Values, breaks and longest step of a sum follow from those of its parts.
+#[test]
+fn a_sum_is_the_sum_of_its_parts() {
+    let every: Vec<Profile> = every_kind().into_iter().map(|(_, profile)| profile).collect();
+    let sum = Profile::sum(&every);
+    for index in 0..300 {
+        let time_s = 0.0025 * f64::from(index);
+        let parts = |of: fn(&Profile, f64) -> f64| every.iter().map(|part| of(part, time_s)).sum::<f64>();
+        assert!((sum.value(time_s) - parts(Profile::value)).abs() < 1e-12, "{time_s}");
+        assert!((sum.rate(time_s) - parts(Profile::rate)).abs() < 1e-9, "{time_s}");
+        assert!((sum.value_before(time_s) - parts(Profile::value_before)).abs() < 1e-12, "{time_s}");
+    }
+    for part in &every {
+        assert!(part.breaks().iter().all(|time_s| sum.breaks().contains(time_s)));
+    }
+    let shortest = every.iter().filter_map(Profile::longest_step).reduce(f64::min);
+    assert_eq!(sum.longest_step(), shortest);
+    assert_eq!(Profile::sum(&[]), Profile::constant(0.0));
+    // steps that add up stand still between their breaks
+    let steps = [(1.0, 3.0), (2.0, 1.0)].map(|step| Profile::steps(0.0, &[step]).unwrap());
+    assert_eq!(Profile::sum(&steps), Profile::steps(0.0, &[(1.0, 3.0), (2.0, 4.0)]).unwrap());
+}
+
+#[test]
+fn a_multisine_of_one_is_a_sine_and_equal_amplitudes_have_the_phases_of_the_closed_form() {
+    let phases = schroeder_phases(&[3.0]);
+    let one = Profile::multisine(0.5, &[harmonic(3.0, 7.0, phases[0])]).unwrap();
+    assert_eq!(one, Profile::sine(0.5, 3.0, 7.0).unwrap());
+    let phases = schroeder_phases(&[2.0; 10]);
+    for (index, phase) in phases.iter().enumerate() {
+        let k = index as f64 + 1.0;
+        // ORIGIN: analytic, -pi k (k - 1)/N
+        assert!((phase + std::f64::consts::PI * k * (k - 1.0) / 10.0).abs() < 1e-12);
+    }
+    // of unequal amplitudes by the double sum itself
+    let amplitudes: [f64; 4] = [1.0, 2.0, 0.5, 3.0];
+    let power: f64 = amplitudes.iter().map(|a| a * a).sum();
+    for (k, phase) in schroeder_phases(&amplitudes).iter().enumerate() {
+        let sum: f64 = (0..k).map(|n| (k - n) as f64 * amplitudes[n] * amplitudes[n] / power).sum();
+        assert!((phase + 2.0 * std::f64::consts::PI * sum).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn what_is_held_or_begins_late_is_constant_beyond() {
+    let sine = Profile::sine(0.0, 2.0, 5.0).unwrap();
+    let held = sine.clone().held_from(0.3);
+    assert_eq!(
+        (held.value(0.2), held.value(0.3), held.value(9.0)),
+        (sine.value(0.2), sine.value(0.3), sine.value(0.3))
+    );
+    assert_eq!((held.rate(0.3), held.breaks()), (0.0, vec![0.0, 0.3]));
+    let ramp = Profile::ramp(1.0, 1.0, 2.0).unwrap();
+    let late = ramp.clone().begun_at(1.5);
+    assert_eq!((late.value(1.4), late.value(1.5), late.value(3.0)), (0.0, 1.0, 2.0));
+    assert_eq!(late.breaks(), [1.5, 2.0]);
+    // a time between two breaks cuts the later one off
+    assert_eq!(ramp.held_from(1.5).breaks(), [1.0, 1.5]);
 }

@@ -54,8 +54,9 @@ use state::Layout;
 
 /// An actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of them.
 ///
-/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]), and then the waves that arrive
-/// from line A and line B; its states are named by [`MachineState`].
+/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]), the force from outside in N where it
+/// has one ([`MachineOptions::external_force`]), and then the waves that arrive from line A and line B; its states are named by
+/// [`MachineState`].
 ///
 /// # Example
 /// A machine at rest stays at rest.
@@ -91,6 +92,7 @@ pub struct Machine<S = f64> {
     friction: MovingFriction<S>,
     sensor_stiffness: S,
     load: LoadModel<S>,
+    external_force: bool,
     vapour_pressure: S,
     layout: Layout,
 }
@@ -100,11 +102,15 @@ impl Machine {
     ///
     /// # Errors
     /// Options outside physics, all at once; a static friction curve without the velocity that smooths its jump; end stops so
-    /// soft, or dead volumes so small, that the supply pressure would press the piston through a chamber's last fluid.
+    /// soft, or dead volumes so small, that the supply pressure would press the piston through a chamber's last fluid; a force from
+    /// outside on a load that does not yield.
     pub fn new(actuator: &Actuator, options: &MachineOptions) -> Result<Machine, MachineError> {
         let problems = options.problems();
         if !problems.is_empty() {
             return Err(MachineError::Impossible { problems });
+        }
+        if options.external_force && !options.load.moves() {
+            return Err(MachineError::UnyieldingLoad);
         }
         let components = actuator.components();
         let friction = MovingFriction::new(&components.friction, options.friction_regular_velocity)
@@ -131,12 +137,18 @@ impl Machine {
             friction,
             sensor_stiffness: components.force_sensor.stiffness,
             load: options.load,
+            external_force: options.external_force,
             vapour_pressure: options.vapour_pressure_absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE,
             layout: Layout::default(),
         };
         machine.layout = Layout::of(&machine);
         machine.check_ends()?;
         Ok(machine)
+    }
+
+    /// Whether its inputs hold a force from outside.
+    pub fn has_external_force(&self) -> bool {
+        self.external_force
     }
 
     /// Whether anything stops the piston at the ends of its stroke.
@@ -183,6 +195,7 @@ impl<S: Copy> Machine<S> {
             friction: self.friction.convert(of),
             sensor_stiffness: of(self.sensor_stiffness),
             load: self.load.convert(of),
+            external_force: self.external_force,
             vapour_pressure: of(self.vapour_pressure),
             layout: self.layout,
         }

@@ -11,8 +11,8 @@ use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
 use phea_hydraulics::line::{DynamicLine, END_SHARE, LaminarFriction, LineModel, Member};
 use phea_hydraulics::machine::{
-    Account, Accumulator, Contact, ENERGY_ACCOUNTS, LoadModel, Machine, MachineOptions, OIL_ACCOUNTS,
-    PowerUnit, PumpLimited, Start,
+    Account, Accumulator, Contact, ENERGY_ACCOUNTS, LoadModel, Machine, MachineError, MachineOptions,
+    OIL_ACCOUNTS, PowerUnit, PumpLimited, Start,
 };
 use phea_hydraulics::reference_rig::{benchmark_components, components, cylinder, hose_line, pipe_line};
 use phea_hydraulics::servovalve::Servovalve;
@@ -33,13 +33,13 @@ fn step(state: &mut [f64], time: f64, width: f64, rates: &mut impl FnMut(f64, &[
 }
 
 /// Names and accounts at an instant, oil first.
-fn accounts(machine: &Machine, state: &[f64], inputs: &[f64; 2]) -> Vec<(String, Account<f64>)> {
+fn accounts(machine: &Machine, state: &[f64], inputs: &[f64]) -> Vec<(String, Account<f64>)> {
     let ledger = machine.ledger(state, inputs).unwrap();
     let oil = OIL_ACCOUNTS.iter().map(|name| format!("oil of {name}")).zip(ledger.oil);
     oil.chain(ENERGY_ACCOUNTS.iter().map(|name| format!("energy of {name}")).zip(ledger.energy)).collect()
 }
 
-/// How a machine is moved: command in V, ground of its load.
+/// How a machine is moved: command in V, ground of its load, force on the load from outside where it has that input.
 struct Motion {
     amplitude: f64,
     bias: f64,
@@ -52,12 +52,13 @@ impl Motion {
         self.bias + self.amplitude * (sin(40.0 * time) + 0.5 * sin(113.0 * time))
     }
 
-    fn inputs(&self, time: f64) -> [f64; 2] {
+    fn inputs(&self, time: f64) -> [f64; 3] {
         let frequency = 25.0;
         let cosine = sin(frequency * time + std::f64::consts::FRAC_PI_2);
         [
             self.ground + self.ground_amplitude * (1.0 - cosine),
             self.ground_amplitude * frequency * sin(frequency * time),
+            300.0 * sin(60.0 * time),
         ]
     }
 }
@@ -238,6 +239,8 @@ fn ledgers_close_with_loads_of_their_own() {
     let sprung = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     let walled = LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 4e-4, contact };
     for load in [sprung, walled] {
+        let pushed = MachineOptions { load, external_force: true, ..MachineOptions::default() };
+        check(&machine_of(asymmetric(), &pushed), &motion, &start, 0.3, 2e-5);
         let options = MachineOptions { load, power_unit: pump(), ..MachineOptions::default() };
         check(&machine_of(asymmetric(), &options), &motion, &start, 0.3, 2e-5);
         check(
@@ -420,4 +423,42 @@ fn lugre_takes_energy_under_its_condition_and_may_give_it_outside() {
             }
         }
     }
+}
+
+/// Newton's law of the load alone: a force from outside changes its acceleration by F_x/m and nothing else, and its power is what the
+/// load and the rig take in.
+#[test]
+fn a_force_from_outside_acts_on_the_load_alone() {
+    let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
+    let options = MachineOptions { load, external_force: true, ..MachineOptions::default() };
+    let machine = machine_of(asymmetric(), &options);
+    let start =
+        Start { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, force: 500.0, ..Start::default() };
+    let beginning = machine.start(&start).unwrap();
+    assert_eq!((machine.inputs(), beginning.external_force), (3, Some(0.0)));
+    let mut state = beginning.state.clone();
+    let velocity = state.len() - 1;
+    state[velocity] = 0.4;
+    let at = |force: f64| {
+        let inputs = [beginning.inputs[0], 0.1, force];
+        let mut rates = vec![0.0; state.len()];
+        machine.rates(&state, 1.0, &inputs, &mut rates);
+        (rates, machine.ledger(&state, &inputs).unwrap())
+    };
+    let ((still, alone), (pushed, ledger)) = (at(0.0), at(700.0));
+    for (index, (one, other)) in still.iter().zip(&pushed).enumerate() {
+        let expected = if index == velocity { 700.0 / 20.0 } else { 0.0 };
+        assert!((other - one - expected).abs() < 1e-9 * one.abs().max(1.0), "{index}: {one} {other}");
+    }
+    for name in ["load", "rig"] {
+        let place = ENERGY_ACCOUNTS.iter().position(|known| *known == name).unwrap();
+        let gained = ledger.energy[place].inflow - alone.energy[place].inflow;
+        assert!(
+            (gained - 700.0 * 0.4).abs() < 1e-9 * alone.energy[place].inflow.abs().max(1e3),
+            "{name}: {gained}"
+        );
+    }
+    let refused = MachineOptions { external_force: true, ..MachineOptions::default() };
+    let actuator = Actuator::new(asymmetric()).unwrap();
+    assert_eq!(Machine::new(&actuator, &refused), Err(MachineError::UnyieldingLoad));
 }

@@ -21,7 +21,7 @@ use phea_dynamics::simulation::{
 };
 use phea_hydraulics::machine::{Machine, MachineOptions, Start};
 use phea_workbench::control::{controller, sensor};
-use phea_workbench::project::{self, Project};
+use phea_workbench::project::{self, Project, Signal};
 use phea_workbench::rig::Rig;
 use phea_workbench::source::Memory;
 
@@ -144,7 +144,7 @@ impl Bench {
             pressure_b: stated.pressure_b.unwrap_or(0.0),
             ..Start::default()
         })?;
-        let steps: Vec<(f64, f64)> = scenario.reference.iter().map(|step| (step.at, step.force)).collect();
+        let steps: Vec<(f64, f64)> = scenario.reference.iter().flat_map(Signal::steps).collect();
         let reference = Input::Value(Profile::steps(0.0, &steps)?);
         let declared = scenario.load_motion.as_ref().ok_or("no motion")?;
         let number = |value: Option<f64>| value.unwrap_or(f64::NAN);

@@ -66,6 +66,20 @@ pub enum CampaignError {
         /// As written.
         path: String,
     },
+    /// A scenario without a controller.
+    #[error(
+        "a campaign draws machines under a controller: scenario \"{name}\" states a `command` and runs open loop"
+    )]
+    OpenLoop {
+        /// Of the scenario.
+        name: String,
+    },
+    /// A start that was saved is what it is.
+    #[error("[campaign] varies `{path}`, but the scenario goes on from a saved state")]
+    SavedStart {
+        /// As written.
+        path: String,
+    },
     /// A spread around nothing.
     #[error(
         "[campaign] spreads `{path}` around a number that is not stated or zero: give `minimum` and `maximum`"

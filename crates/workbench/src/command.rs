@@ -234,7 +234,7 @@ pub fn answer_watched(
 ) -> Result<Answer, CommandError> {
     let held = Held::default();
     let mut answer = answer_into(source, loaded, catalogues, request, Some(&held), watch)?;
-    answer.files.extend(held.into_files());
+    answer.files.splice(0..0, held.into_files());
     Ok(answer)
 }
 
@@ -398,7 +398,7 @@ fn simulate_answer(
     Ok(Answer {
         text: simulate::text(loaded, &runs),
         json: simulate::json(loaded, &runs),
-        files: vec![],
+        files: simulate::files(loaded, &runs),
         affirmative: all && runs.iter().all(|run: &ScenarioRun| run.stopped().is_none()),
     })
 }

@@ -7,6 +7,7 @@ mod chapter;
 mod closed_loops;
 mod derived;
 mod design;
+mod driving;
 mod family_steps;
 mod impedance;
 mod load_motion;
@@ -37,7 +38,7 @@ use crate::derived::derive;
 use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop, settling_words};
 use crate::linearize::{Linearization, linearize};
-use crate::project::{Actuator, Loaded, Project};
+use crate::project::{Actuator, Loaded, Project, Signal};
 use crate::quantity::DisplayUnit;
 use crate::rig::Rig;
 use crate::robust::robust_problem;
@@ -201,7 +202,8 @@ fn reference(project: &Project) -> Option<f64> {
         .scenarios
         .iter()
         .flat_map(|scenario| &scenario.reference)
-        .map(|step| step.force)
+        .flat_map(Signal::steps)
+        .map(|(_, force)| force)
         .find(|force| *force != 0.0)
 }
 

@@ -11,20 +11,23 @@ mod look;
 mod metrics;
 mod motion_file;
 mod run;
+mod saved;
+mod signal;
 mod text;
 
 pub use bench::Bench;
 pub use compare::{Comparison, compare_projects};
 pub use look::{Look, Record};
 pub use metrics::{Cause, Measured, Metrics, Window};
-pub use run::{Occurrence, ScenarioRun, Stopped, UnresolvedMode};
+pub use run::{BeyondExpansion, Occurrence, ScenarioRun, Stopped, UnresolvedMode};
+pub use saved::SavedState;
 
 pub(crate) use answer::{Body, body, compare_json, json};
 pub(crate) use bench::{Control, options};
-pub(crate) use course::{Driven, course_of, driven, windows};
-pub(crate) use digital::{Digital, Samples};
+pub(crate) use course::{Driven, course_of, driven};
+pub(crate) use digital::{Digital, Samples, Waking};
 pub(crate) use figures::{comparison_files, pictures};
-pub(crate) use files::{Table, table_names};
+pub(crate) use files::{Table, files, table_names};
 pub(crate) use metrics::{Seen, metrics_seen};
 pub(crate) use run::{COMMAND_LIMIT, occurrences};
 pub(crate) use text::{
@@ -57,7 +60,7 @@ pub enum SimulateError {
     #[error("there is nothing to simulate: the project has no [[scenario]]")]
     NoScenario,
     /// Nobody commands the valve.
-    #[error("nobody commands the valve: [controller] gives no law")]
+    #[error("nobody commands the valve: [controller] gives no law, and a scenario states no `command`")]
     NoController,
     /// Controller, prefilter or sensor cannot be run in time.
     #[error("[controller], [prefilter] or [sensor]: {0}")]
@@ -97,7 +100,7 @@ pub enum SimulateError {
         /// What is wrong with it.
         error: ProfileError,
     },
-    /// A file with a motion was refused.
+    /// A file with a motion, a signal or a state was refused.
     #[error("{0}")]
     Motion(Box<Report>),
     /// Start, course or settings do not fit the machine.
@@ -140,17 +143,21 @@ pub fn simulate_into(
     if project.scenarios.is_empty() {
         return Err(SimulateError::NoScenario);
     }
-    let bench = Bench::new(project)?;
-    let courses = project.scenarios.iter().map(|scenario| course::course(source, project, &bench, scenario));
-    let courses = courses.collect::<Result<Vec<_>, _>>()?;
+    let mut prepared = Vec::new();
+    for scenario in &project.scenarios {
+        let bench = Bench::of_scenario(project, scenario)?;
+        let course = course::course(source, project, &bench, scenario)?;
+        prepared.push((bench, course));
+    }
     let whole: f64 = project.scenarios.iter().map(|scenario| scenario.duration).sum();
     let (mut before, mut runs) = (0.0, Vec::new());
     let names = table_names(project.scenarios.iter().map(|scenario| scenario.name.as_str()));
-    for ((scenario, course), name) in project.scenarios.iter().zip(&courses).zip(&names) {
-        let table = destination.map(|destination| Table::begin(destination, name)).transpose()?;
+    for ((scenario, (bench, course)), name) in project.scenarios.iter().zip(&prepared).zip(&names) {
+        let pushed = course.external_force.is_some();
+        let table = destination.map(|destination| Table::begin(destination, name, pushed)).transpose()?;
         let mut told =
             |time_s: f64| watch(Progress { stage: "simulating", share: (before + time_s) / whole });
-        let run = run::run(&bench, scenario, course, table, &mut told)?;
+        let run = run::run(bench, scenario, course, table, &mut told)?;
         let stopped = run.was_cancelled();
         runs.push(run);
         before += scenario.duration;

@@ -31,6 +31,7 @@ mod project_quantity;
 mod report_design;
 mod report_page;
 mod report_simulation;
+mod scenarios;
 mod sensor;
 mod shaping;
 mod simulate;

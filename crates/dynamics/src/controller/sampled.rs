@@ -18,6 +18,13 @@ pub struct ControllerState {
     prefilter: Vec<[f64; 2]>,
 }
 
+impl ControllerState {
+    /// Every number in it: two for each section of the feedback, then of the prefilter.
+    pub fn memories(&self) -> Vec<f64> {
+        [self.feedback.as_flattened(), self.prefilter.as_flattened()].concat()
+    }
+}
+
 /// What one sample gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControllerOutput {
@@ -91,6 +98,28 @@ impl SampledController {
         signal -= measurement;
         let feedback = self.feedback.iter().map(|section| section.settled(&mut signal, command)).collect();
         ControllerState { feedback, prefilter }
+    }
+
+    /// A state with these memories, in the order of [`ControllerState::memories`]; `None` for another number of them.
+    ///
+    /// # Example
+    /// A controller goes on where another left off.
+    /// ```
+    /// use phea_dynamics::controller::{Compensator, Controller, Element};
+    /// let feedback = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
+    /// let sampled = Controller { feedback, ..Controller::default() }.sampled(0.1)?;
+    /// let mut state = sampled.at_rest();
+    /// sampled.step(&mut state, 1.0, 0.0);
+    /// assert_eq!(sampled.resumed(&state.memories()), Some(state));
+    /// assert_eq!(sampled.resumed(&[]), None);
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn resumed(&self, memories: &[f64]) -> Option<ControllerState> {
+        let feedback = 2 * self.feedback.len();
+        let whole = memories.len() == feedback + 2 * self.prefilter.len();
+        let (of_feedback, of_prefilter) = memories.split_at_checked(feedback).filter(|_| whole)?;
+        let pairs = |values: &[f64]| values.as_chunks::<2>().0.to_vec();
+        Some(ControllerState { feedback: pairs(of_feedback), prefilter: pairs(of_prefilter) })
     }
 
     /// One sample: the command for this reference and measurement, and the next state.

@@ -15,7 +15,7 @@ const SAFETY: f64 = 0.9;
 const ECHOES: u8 = 12;
 
 /// An input between two breaks.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Segment {
     Still(f64),
     Command,

@@ -1,8 +1,11 @@
 //! Known functions of time: references and load motions, smooth between breaks.
 
+mod combination;
 mod interpolation;
+mod multisine;
 mod piece;
 
+pub use multisine::{Harmonic, schroeder_phases};
 pub use piece::{Moment, Piece};
 
 use piece::Shape;
@@ -116,6 +119,33 @@ impl Profile {
         Ok(Profile::from_rest(&[(start_s, rise), (start_s + duration_s, end)]))
     }
 
+    /// From zero to `distance` at one rate within `duration_s`; the rate jumps at both ends.
+    ///
+    /// ```text
+    /// w = d (t - t_0)/D,     t - t_0 in [0, D];      w = d from then on
+    /// ```
+    ///
+    /// # Errors
+    /// [`ProfileError::OutOfRange`] unless the duration is positive and all numbers are finite.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::simulation::Profile;
+    /// let ramp = Profile::ramp(1.0, 0.5, 4000.0)?;
+    /// assert_eq!([0.9, 1.25, 1.5, 9.0].map(|time_s| ramp.value(time_s)), [0.0, 2000.0, 4000.0, 4000.0]);
+    /// assert_eq!((ramp.rate(1.1), ramp.rate(1.6)), (8000.0, 0.0));
+    /// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
+    /// ```
+    pub fn ramp(start_s: f64, duration_s: f64, distance: f64) -> Result<Profile, ProfileError> {
+        finite("the start of a ramp", start_s)?;
+        positive("the duration of a ramp", duration_s)?;
+        finite("the height of a ramp", distance)?;
+        let coefficients = [0.0, distance, 0.0, 0.0, 0.0, 0.0];
+        let rise = Shape::Polynomial { origin_s: start_s, span_s: duration_s, coefficients };
+        let end = Shape::Constant { value: distance };
+        Ok(Profile::from_rest(&[(start_s, rise), (start_s + duration_s, end)]))
+    }
+
     /// From zero towards `distance`, as a first-order lag answers a step.
     ///
     /// ```text
@@ -150,6 +180,7 @@ impl Profile {
             frequency_rad_per_s,
             sweep_rad_per_s2: 0.0,
             span_s: 0.0,
+            phase_rad: 0.0,
         };
         Ok(Profile::from_rest(&[(start_s, sine)]))
     }
@@ -179,6 +210,7 @@ impl Profile {
             frequency_rad_per_s: initial_rad_per_s,
             sweep_rad_per_s2: (final_rad_per_s - initial_rad_per_s) / duration_s,
             span_s: duration_s,
+            phase_rad: 0.0,
         };
         let end_s = start_s + duration_s;
         let end = Shape::Constant { value: Piece::new(sine).at(end_s).value };
@@ -237,17 +269,17 @@ impl Profile {
 
     /// The function at a time.
     pub fn value(&self, time_s: f64) -> f64 {
-        self.piece(time_s).at(time_s).value
+        self.holding(time_s).at(time_s).value
     }
 
     /// Its first derivative, per second.
     pub fn rate(&self, time_s: f64) -> f64 {
-        self.piece(time_s).at(time_s).rate
+        self.holding(time_s).at(time_s).rate
     }
 
     /// Its second derivative, per second squared.
     pub fn acceleration(&self, time_s: f64) -> f64 {
-        self.piece(time_s).at(time_s).acceleration
+        self.holding(time_s).at(time_s).acceleration
     }
 
     /// The piece that holds from this time on.
@@ -261,8 +293,16 @@ impl Profile {
     /// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
     /// ```
     pub fn piece(&self, time_s: f64) -> Piece {
-        let begun = self.later.partition_point(|(start_s, _)| *start_s <= time_s);
-        begun.checked_sub(1).and_then(|last| self.later.get(last)).map_or(self.first, |(_, piece)| *piece)
+        self.holding(time_s).clone()
+    }
+
+    fn holding(&self, time_s: f64) -> &Piece {
+        self.last_of(self.later.partition_point(|(start_s, _)| *start_s <= time_s))
+    }
+
+    /// The last piece of so many that have begun.
+    fn last_of(&self, begun: usize) -> &Piece {
+        begun.checked_sub(1).and_then(|last| self.later.get(last)).map_or(&self.first, |(_, piece)| piece)
     }
 
     /// The times at which the function or one of its derivatives jumps, rising.

@@ -189,6 +189,8 @@ impl<S: Scalar> Machine<S> {
         let [compliance_a, compliance_b] = self.compliance(&state, position);
         let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let pushing = forces.hydraulic + forces.end_stops - forces.friction.force - forces.sensed;
+        let external = self.layout.external_force(inputs);
+        let on_load = external.map_or(forces.sensed, |external| forces.sensed + external);
         let valve = self.valve.convert(&mut constant::<S, T>);
         let [into_a, into_b] = if self.layout.has_lines() {
             self.through_lines(&state, &flows, self.layout.lines(vector), inputs, rates)
@@ -204,11 +206,7 @@ impl<S: Scalar> Machine<S> {
             bristle: forces.friction.bristle_rate,
             load: LoadMotion {
                 position: load.velocity - ground.velocity,
-                velocity: self.load.convert(&mut constant::<S, T>).acceleration(
-                    forces.sensed,
-                    &load,
-                    &ground,
-                ),
+                velocity: self.load.convert(&mut constant::<S, T>).acceleration(on_load, &load, &ground),
             },
             supply_pressure: self.supply_rate(&state, &flows),
         };

@@ -149,14 +149,14 @@ impl<S: Scalar> Machine<S> {
             end_stops,
             load,
         ];
-        // Only what crosses the rig's border: flow work and compression energy of the oil, and the work on the ground.
+        // Only what crosses the rig's border: flow work and compression energy of the oil, the work of the force from outside, and that on the ground.
         let carried = side_a.compression() * into_a
             + side_b.compression() * into_b
             + supply.line.compression() * supply.line_flow();
         let oil = supply.line.pressure * supply.fed - tank * (edges.a_to_tank + edges.b_to_tank) + carried;
         let rig = Account {
             stored: total(&accounts, |account| account.stored),
-            inflow: oil - self.on_ground(now),
+            inflow: oil + now.external_power - self.on_ground(now),
             lost: total(&accounts, |account| account.lost),
         };
         let [a, b, c, d, e, f, g, h, i, j, k, l, m] = accounts;
@@ -189,7 +189,7 @@ impl<S: Scalar> Machine<S> {
             self.end_stop_account(position, velocity, forces.end_stops),
             Account {
                 stored: held,
-                inflow: forces.sensed * load.velocity - self.on_ground(now),
+                inflow: forces.sensed * load.velocity + now.external_power - self.on_ground(now),
                 lost: damped,
             },
         ]

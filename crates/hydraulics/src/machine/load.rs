@@ -9,9 +9,11 @@ use crate::parameter::{ParameterError, Problems};
 ///
 /// ```text
 /// prescribed motion      x_L = x_0                                           thesis (4.45): the load does not yield
-/// spring, mass, damper   m dv_L/dt = F_e - k (x_L - x_0) - c (v_L - v_0)     relaxed on its ground
-/// wall                   m dv_L/dt = F_e - F_wall - c (v_L - v_0)            F_wall(d = x_L - x_0 - gap), see Contact
+/// spring, mass, damper   m dv_L/dt = F_e + F_x - k (x_L - x_0) - c (v_L - v_0)     relaxed on its ground
+/// wall                   m dv_L/dt = F_e + F_x - F_wall - c (v_L - v_0)            F_wall(d = x_L - x_0 - gap), see Contact
 /// ```
+///
+/// F_x is a force from outside in N, positive in the direction of positive position; a machine that has it takes it as an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum LoadModel<S = f64> {
     /// The load moves as its ground does. The sensor's stiffness is that in series with the environment.
@@ -103,18 +105,18 @@ impl<S: Copy> LoadModel<S> {
 }
 
 impl<S: Scalar> LoadModel<S> {
-    /// The load's acceleration in m/s2 under the sensor's force in N; zero for a prescribed motion, which yields to none.
+    /// The load's acceleration in m/s2 under the forces of sensor and outside together in N; zero for a prescribed motion, which yields to none.
     #[inline(always)]
-    pub fn acceleration(&self, sensed: S, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> S {
+    pub fn acceleration(&self, pushing: S, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> S {
         let relative = relative(load, ground);
         match self {
             LoadModel::Prescribed => S::from(0.0),
             LoadModel::SpringMassDamper { mass, stiffness, damping } => {
-                (sensed - *stiffness * relative.position - *damping * relative.velocity) / *mass
+                (pushing - *stiffness * relative.position - *damping * relative.velocity) / *mass
             }
             LoadModel::Wall { mass, damping, gap, contact } => {
                 let pressed = contact.force(relative.position - *gap, relative.velocity);
-                (sensed - pressed - *damping * relative.velocity) / *mass
+                (pushing - pressed - *damping * relative.velocity) / *mass
             }
         }
     }

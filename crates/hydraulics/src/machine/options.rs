@@ -23,6 +23,8 @@ pub struct MachineOptions {
     pub power_unit: PowerUnit,
     /// What the force sensor pushes on.
     pub load: LoadModel,
+    /// Whether a force from outside acts on the load, as an input of the machine; it needs a load that has a mass.
+    pub external_force: bool,
     /// Pressure in Pa absolute below which a chamber is reported to cavitate. Fluid with entrained air expands before it boils
     /// and comes to no vacuum: for it, state the pressure at which dissolved air comes out.
     pub vapour_pressure_absolute: f64,
@@ -42,6 +44,7 @@ impl Default for MachineOptions {
             friction_regular_velocity: None,
             power_unit: PowerUnit::Constant,
             load: LoadModel::Prescribed,
+            external_force: false,
             vapour_pressure_absolute: VAPOUR_PRESSURE_ABSOLUTE,
             member: Member::Nominal,
             lines: None,
@@ -87,6 +90,9 @@ pub enum MachineError {
     /// A static friction curve has a jump, which no integrator can hold; it needs a velocity that smooths it, or bristles.
     #[error("static Stribeck friction jumps at standstill: state a regular velocity, or use LuGre friction")]
     StaticFriction,
+    /// A force from outside on a load whose motion is prescribed: it would move nothing.
+    #[error("a force from outside moves no load whose motion is prescribed: it needs one with a mass")]
+    UnyieldingLoad,
     /// Pressed into its end stop by the whole supply pressure, the piston would leave no fluid in the chamber.
     #[error("pressed {penetration} m into its end stop, the piston leaves no fluid ({compliance} m3/Pa)")]
     ChamberVanishes {

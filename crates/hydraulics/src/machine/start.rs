@@ -32,14 +32,16 @@ pub struct Beginning {
     pub command: f64,
     /// Position in m and velocity in m/s of the load's ground: where a prescribed motion starts.
     pub inputs: [f64; 2],
+    /// The force on the load from outside in N, zero until then; `None` for a machine without that input.
+    pub external_force: Option<f64>,
     /// The waves that arrive from the lines until then, in Pa, as the machine's last inputs.
     pub waves: Vec<f64>,
 }
 
 impl Beginning {
-    /// All inputs of the machine: the ground's and the waves.
+    /// All inputs of the machine: the ground's, the force from outside, and the waves.
     pub fn all_inputs(&self) -> Vec<f64> {
-        [&self.inputs, self.waves.as_slice()].concat()
+        [&self.inputs, self.external_force.as_slice(), self.waves.as_slice()].concat()
     }
 }
 
@@ -150,7 +152,13 @@ impl Machine {
             place.copy_from_slice(&line_state);
             waves.extend(arriving);
         }
-        Beginning { state: vector, command: state.spool.spool, inputs: [ground, state.velocity], waves }
+        Beginning {
+            state: vector,
+            command: state.spool.spool,
+            inputs: [ground, state.velocity],
+            external_force: self.external_force.then_some(0.0),
+            waves,
+        }
     }
 
     /// Deflection of the bristles in steady motion: z = sign(v) g(v)/sigma_0.

@@ -37,6 +37,8 @@ pub(super) struct Layout {
     supply: bool,
     spool_friction: bool,
     magnetic_lag: bool,
+    /// Whether a force from outside is an input.
+    external_force: bool,
     /// States of both lines, which follow all others, A first.
     lines: [usize; 2],
     /// Waves that arrive from both lines, the last inputs, A first.
@@ -45,7 +47,7 @@ pub(super) struct Layout {
     named: usize,
 }
 
-/// Position and velocity of the ground come before the waves.
+/// Position and velocity of the ground come first.
 const GROUND_INPUTS: usize = 2;
 
 impl<T: Scalar> MachineState<T> {
@@ -74,6 +76,7 @@ impl Layout {
             supply: machine.power_unit.yields(),
             spool_friction: machine.spool.threshold.is_some(),
             magnetic_lag: machine.spool.hysteresis_width.is_some(),
+            external_force: machine.external_force,
             lines: machine.lines.map(|line| line.states()),
             waves: machine.lines.map(|line| line.delays().len()),
             named: 0,
@@ -100,7 +103,20 @@ impl Layout {
     #[inline(always)]
     pub(super) fn inputs(&self) -> usize {
         let [a, b] = self.waves;
-        GROUND_INPUTS + a + b
+        self.before_waves() + a + b
+    }
+
+    /// Number of inputs before the waves.
+    #[inline(always)]
+    fn before_waves(&self) -> usize {
+        GROUND_INPUTS + usize::from(self.external_force)
+    }
+
+    /// The force from outside in N, an input; `None` where there is none.
+    #[inline(always)]
+    pub(super) fn external_force<T: Scalar>(&self, inputs: &[T]) -> Option<T> {
+        let missing = T::from(f64::NAN);
+        self.external_force.then(|| inputs.get(GROUND_INPUTS).copied().unwrap_or(missing))
     }
 
     /// Whether lines have states of their own.
@@ -129,7 +145,7 @@ impl Layout {
     /// Waves that arrive from both lines.
     #[inline(always)]
     pub(super) fn arriving<'a, T>(&self, inputs: &'a [T]) -> [&'a [T]; 2] {
-        two_parts(inputs, GROUND_INPUTS, self.waves)
+        two_parts(inputs, self.before_waves(), self.waves)
     }
 
     /// Places of what is sent into both lines.
@@ -198,6 +214,46 @@ fn two_parts<T>(vector: &[T], behind: usize, [first, second]: [usize; 2]) -> [&[
         None => [&[], &[]],
     }
 }
+
+impl Machine {
+    /// Names of all states with their units, in the order of the vector; those of a line are counted.
+    ///
+    /// # Example
+    /// ```
+    /// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
+    /// # use phea_hydraulics::reference_rig::{components, hose_line};
+    /// # use phea_hydraulics::machine::{Machine, MachineOptions};
+    /// let actuator = Actuator::new(components(hose_line(), StiffnessModel::Uniform))?;
+    /// let machine = Machine::new(&actuator, &MachineOptions::default())?;
+    /// assert_eq!(machine.state_names()[..3], ["spool_v", "spool_rate_v_per_s", "pressure_a_pa"]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn state_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        self.layout.visit(&mut NAMES.clone(), |name| names.push((*name).to_string()));
+        for (line, count) in ["line_a", "line_b"].into_iter().zip(self.layout.lines) {
+            names.extend((1..=count).map(|number| format!("{line}_{number}")));
+        }
+        names
+    }
+}
+
+/// Names of the states with their units.
+const NAMES: MachineState<&str> = MachineState {
+    spool: SpoolState {
+        spool: "spool_v",
+        spool_rate: "spool_rate_v_per_s",
+        spool_friction: "spool_friction_v",
+        magnetic_lag: "magnetic_lag_v",
+    },
+    pressure_a: "pressure_a_pa",
+    pressure_b: "pressure_b_pa",
+    deflection: "deflection_m",
+    velocity: "velocity_m_per_s",
+    bristle: "bristle_m",
+    load: LoadMotion { position: "load_displacement_m", velocity: "load_velocity_m_per_s" },
+    supply_pressure: "supply_pressure_pa",
+};
 
 impl<S: Scalar> Machine<S> {
     /// A tenth of what the supply can push with, in N: the magnitude from which those of the states follow.

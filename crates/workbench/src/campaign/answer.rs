@@ -10,7 +10,7 @@ use super::row::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
 use super::statistics::{Bands, QUANTILES, Spread, Summary};
 use crate::answer;
 use crate::project::Loaded;
-use crate::simulate::{self, Cause, ScenarioRun};
+use crate::simulate::{self, ScenarioRun};
 
 #[derive(Serialize)]
 struct Body<'a> {
@@ -195,10 +195,7 @@ fn events(plan: &Plan, summary: &Summary) -> Vec<EventRow> {
     let windows = plan.windows().iter().zip(&summary.metrics);
     windows
         .map(|(window, spreads)| EventRow {
-            kind: match window.cause {
-                Cause::ReferenceStep { .. } => "reference_step",
-                Cause::LoadMotion => "load_motion",
-            },
+            kind: window.cause.word(),
             time_s: window.start_s,
             until_s: window.end_s,
             metrics: meaningful(window)

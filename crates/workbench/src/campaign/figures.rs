@@ -49,14 +49,18 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
 fn worst_metric(window: &Window) -> &'static str {
     match window.cause {
         Cause::ReferenceStep { .. } => "overshoot_percent",
-        Cause::LoadMotion => "disturbance_peak_n",
+        Cause::ReferenceMotion { .. } => "tracking_error_peak_n",
+        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => "force_peak_n",
+        Cause::LoadMotion | Cause::ExternalForce => "disturbance_peak_n",
     }
 }
 
 fn worst_words(window: &Window) -> &'static str {
     match window.cause {
         Cause::ReferenceStep { .. } => "overshoot",
-        Cause::LoadMotion => "disturbance",
+        Cause::ReferenceMotion { .. } => "tracking error",
+        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => "force",
+        Cause::LoadMotion | Cause::ExternalForce => "disturbance",
     }
 }
 
@@ -90,13 +94,8 @@ fn picture(
         values: plan.reference_n.clone(),
     };
     let inside = |window: &&Window| window.start_s >= span_s[0] && window.start_s <= span_s[1];
-    let event = |window: &Window| TimeEvent {
-        time_s: window.start_s,
-        label: match window.cause {
-            Cause::ReferenceStep { .. } => "step".to_string(),
-            Cause::LoadMotion => "load moves".to_string(),
-        },
-    };
+    let event =
+        |window: &Window| TimeEvent { time_s: window.start_s, label: window.cause.label().to_string() };
     time_bands(
         words,
         &TimeBandsInput {

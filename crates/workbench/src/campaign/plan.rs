@@ -2,7 +2,8 @@
 
 use phea_dynamics::random;
 use phea_dynamics::scalar::Dependence;
-use phea_dynamics::simulation::Plant;
+use phea_dynamics::simulation::{HeldPlant, Plant, Sensed};
+use phea_hydraulics::machine::Machine;
 use sha2::{Digest, Sha256};
 
 use super::CampaignError;
@@ -10,7 +11,7 @@ use super::range::{VariedRange, ranges};
 use super::row::Columns;
 use crate::control::controller;
 use crate::project::{Loaded, Project, Scenario, print};
-use crate::simulate::{Bench, Control, Driven, SimulateError, Window, driven, windows};
+use crate::simulate::{Bench, Control, Driven, SimulateError, Window, driven};
 use crate::source::Source;
 
 /// Most times at which the bands of the force are given over the whole scenario, and as many more around what begins its windows.
@@ -102,13 +103,16 @@ impl Plan {
                 .ok_or_else(|| CampaignError::NoSuchScenario { name: name.clone() })?,
         };
         let scenario = project.scenarios.get(place).ok_or(CampaignError::NoScenario)?.clone();
+        if scenario.is_open_loop() {
+            return Err(CampaignError::OpenLoop { name: scenario.name });
+        }
         let ranges = ranges(&project, campaign, &scenario)?;
-        let bench = Bench::new(&project)?;
-        let driven = driven(source, &project, &scenario)?;
+        let bench = Bench::of_scenario(&project, &scenario)?;
+        let driven = driven(source, &project, &bench, &scenario)?;
         let looks = (scenario.duration / scenario.output_step * (1.0 + 4.0 * f64::EPSILON)) as usize + 1;
         let times_s: Vec<f64> = (0..looks).map(|look| look as f64 * scenario.output_step).collect();
         let reference_n = times_s.iter().map(|time_s| driven.reference.value(*time_s)).collect();
-        let windows = windows(&scenario);
+        let windows = driven.windows.clone();
         let band_looks = band_looks(&times_s, &windows);
         let columns = Columns {
             mark: mark(source, &project, &scenario, seed),
@@ -172,7 +176,7 @@ impl Plan {
         let values = self.ranges.iter().map(|range| range.draw(&mut stream)).collect();
         let noisy = match &self.bench.control {
             Control::Sampled(sampled) => sampled.noise > 0.0,
-            Control::Continuous(_) => false,
+            Control::Continuous(_) | Control::Open(_) => false,
         };
         let noise_seed = noisy.then(|| (random::share(&mut stream) * SEEDS) as u32);
         Draw { run, values, noise_seed }
@@ -264,14 +268,17 @@ fn plain(time_s: f64) -> f64 {
 /// Tables of the project that may be written as arrays.
 const EDGES: [&str; 2] = ["valve.flow_coefficients", "valve.leakage_coefficients"];
 
-/// What everything follows from: project with settings and catalogue in it, a file it names, seed, and version.
+/// What everything follows from: project with settings and catalogue in it, the files it names, seed, and version.
 fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) -> String {
     let mut hash = Sha256::new();
     hash.update(print(project));
     hash.update(env!("CARGO_PKG_VERSION"));
     hash.update(seed.to_le_bytes());
-    let file = scenario.load_motion.as_ref().and_then(|motion| motion.file.as_ref());
-    if let Some(bytes) = file.and_then(|name| source.read(&project.path_of(name)).ok()) {
+    let motion = scenario.load_motion.iter().filter_map(|motion| motion.file.as_ref());
+    let signals = scenario.reference.iter().chain(&scenario.external_force);
+    let signals = signals.filter_map(|signal| signal.file.as_ref());
+    let signals = signals.chain(scenario.start.iter().filter_map(|start| start.file.as_ref()));
+    for bytes in motion.chain(signals).filter_map(|name| source.read(&project.path_of(name)).ok()) {
         hash.update(bytes);
     }
     let text: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
@@ -282,6 +289,14 @@ impl Look {
     fn of(control: &Control) -> Look {
         let variables = |count: usize, from: usize| -> Vec<Dependence> {
             (from..from + count).map(Dependence::on).collect()
+        };
+        let held = |held: &HeldPlant<Sensed<Machine>>| {
+            let states = phea_dynamics::simulation::System::<f64>::states(held);
+            let inputs = phea_dynamics::simulation::System::<f64>::inputs(held);
+            let (state, input) = (variables(states, 0), variables(inputs, states));
+            let force = held.plant().plant().measurement(&state, &input[2..]);
+            let other = (states..states + inputs).any(|index| force.includes(index));
+            (states, [force, Dependence::from(0.0)], other)
         };
         let (states, needed, other) = match control {
             Control::Continuous(closed) => {
@@ -295,14 +310,8 @@ impl Look {
                 let other = (states + 1..states + inputs).any(|index| includes(&needed, index));
                 (states, needed, other)
             }
-            Control::Sampled(sampled) => {
-                let states = phea_dynamics::simulation::System::<f64>::states(&sampled.held);
-                let inputs = phea_dynamics::simulation::System::<f64>::inputs(&sampled.held);
-                let (state, input) = (variables(states, 0), variables(inputs, states));
-                let force = sampled.held.plant().plant().measurement(&state, &input[2..]);
-                let other = (states..states + inputs).any(|index| force.includes(index));
-                (states, [force, Dependence::from(0.0)], other)
-            }
+            Control::Sampled(sampled) => held(&sampled.held),
+            Control::Open(open) => held(open),
         };
         Look { states: (0..states).filter(|index| includes(&needed, *index)).collect(), inputs: other }
     }

@@ -3,14 +3,14 @@
 use std::cell::RefCell;
 
 use phea_dynamics::simulation::{Course, Input, Observer, Outcome, Plant, Sampler, System, Task};
-use phea_hydraulics::machine::Machine;
+use phea_hydraulics::machine::{Machine, MachineOptions};
 
 use super::plan::{Draw, Plan};
 use super::row::{Ran, Row, RowOutcome, numbers};
 use crate::rig::{Rig, RigError, actuator};
 use crate::simulate::{
-    Bench, COMMAND_LIMIT, Control, Digital, Occurrence, Samples, Seen, SimulateError, Stopped, course_of,
-    metrics_seen, occurrences, options,
+    Bench, COMMAND_LIMIT, Control, Digital, Occurrence, Samples, Seen, SimulateError, Stopped, Waking,
+    course_of, metrics_seen, occurrences, options,
 };
 
 /// A run ready to be driven.
@@ -21,7 +21,7 @@ pub(super) struct Prepared {
     pub(super) bench: Bench,
     course: Course,
     start: Vec<f64>,
-    holding: Option<[f64; 3]>,
+    waking: Waking,
     /// What a sampled controller did.
     log: RefCell<Samples>,
 }
@@ -47,7 +47,8 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
     let made = || -> Result<_, SimulateError> {
         let declared = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
         let actuator = actuator(declared).map_err(RigError::from)?;
-        let options = options(&project, &actuator)?;
+        let external_force = plan.bench.machine.has_external_force();
+        let options = MachineOptions { external_force, ..options(&project, &actuator)? };
         let machine = Machine::new(&actuator, &options).map_err(SimulateError::Machine)?;
         let mut bench = plan.bench.around(machine, actuator);
         if let (Control::Sampled(sampled), Some(seed)) = (&mut bench.control, draw.noise_seed) {
@@ -57,13 +58,14 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         Ok((bench, course))
     };
     let (bench, course) = made().map_err(|error| refused(error.to_string(), lumps))?;
+    let driving = course.machine_inputs();
     let reference = Input::Value(course.reference);
     let first = match &bench.control {
         Control::Continuous(_) => vec![reference],
         Control::Sampled(_) => vec![Input::Command, reference],
+        Control::Open(_) => vec![Input::Value(course.command), reference],
     };
-    let ground = [Input::Value(course.ground.clone()), Input::Rate(course.ground)];
-    let inputs = first.into_iter().chain(ground).collect();
+    let inputs = first.into_iter().chain(driving).collect();
     let scenario = &plan.scenario;
     Ok(Prepared {
         draw,
@@ -71,7 +73,7 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         bench,
         course: Course { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs },
         start: course.start,
-        holding: course.holding,
+        waking: course.waking,
         log: RefCell::default(),
     })
 }
@@ -80,8 +82,8 @@ impl Prepared {
     /// What is to be done in a lane.
     pub(super) fn task<'a>(&'a self, plan: &'a Plan) -> Task<'a, Watched<'a>> {
         let sampler: Option<Box<dyn Sampler + 'a>> = match &self.bench.control {
-            Control::Continuous(_) => None,
-            Control::Sampled(sampled) => Some(Box::new(Digital::new(sampled, self.holding, &self.log))),
+            Control::Continuous(_) | Control::Open(_) => None,
+            Control::Sampled(sampled) => Some(Box::new(Digital::new(sampled, &self.waking, &self.log))),
         };
         let observer = Watched::new(plan, self);
         Task { start: self.start.clone(), course: &self.course, sampler, observer }
@@ -96,6 +98,9 @@ impl Prepared {
             Control::Sampled(sampled) => {
                 (System::<f64>::states(&sampled.held), System::<f64>::inputs(&sampled.held))
             }
+            Control::Open(held) => {
+                (System::<f64>::states(held.as_ref()), System::<f64>::inputs(held.as_ref()))
+            }
         }
     }
 
@@ -105,6 +110,7 @@ impl Prepared {
         match &self.bench.control {
             Control::Continuous(closed) => (force(1), closed.signals::<f64, f64>(state, inputs).wanted),
             Control::Sampled(_) => (force(2), 0.0),
+            Control::Open(_) => (force(2), inputs.first().copied().unwrap_or_default()),
         }
     }
 
@@ -162,6 +168,10 @@ impl Prepared {
                     found.push(Occurrence { time_s, kind: COMMAND_LIMIT, begins });
                 }
                 found
+            }
+            Control::Open(held) => {
+                first.extend(self.start.iter().skip(System::<f64>::states(held.as_ref())));
+                occurrences(held.as_ref(), &self.start, &first, &outcome.events)
             }
         }
     }
@@ -228,6 +238,7 @@ impl Observer for Watched<'_> {
             })
         };
         let command = match &self.prepared.bench.control {
+            Control::Open(_) => sum(&self.command_weights),
             Control::Continuous(_) => sum(&self.command_weights).clamp(-self.plan.limit, self.plan.limit),
             Control::Sampled(_) => self.prepared.log.borrow().last.map_or(0.0, |sample| sample.command_v),
         };

@@ -125,6 +125,10 @@ pub(super) fn one_by_one(shared: &Shared<'_>, give: Give<'_>) -> Result<(), Camp
             let machine: fn(&mut HeldPlant<Sensed<Machine>>) -> &mut Machine = in_hold;
             drive::<f64, _, _>(&mut sampled.held.clone(), &mut Lanewise { batch, machine }, settings)
         }
+        Control::Open(held) => {
+            let machine: fn(&mut HeldPlant<Sensed<Machine>>) -> &mut Machine = in_hold;
+            drive::<f64, _, _>(&mut held.as_ref().clone(), &mut Lanewise { batch, machine }, settings)
+        }
     })
 }
 
@@ -136,7 +140,7 @@ pub(super) fn one_by_one(shared: &Shared<'_>, give: Give<'_>) -> Result<(), Camp
 /// A start or course that does not fit the machine.
 pub(super) fn in_lanes<const L: usize>(shared: &Shared<'_>, give: Give<'_>) -> Result<(), CampaignError> {
     let plan = shared.plan;
-    if matches!(plan.bench.control, Control::Sampled(_)) {
+    if !matches!(plan.bench.control, Control::Continuous(_)) {
         return one_by_one(shared, give);
     }
     let settings = &plan.bench.settings;

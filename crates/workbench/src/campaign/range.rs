@@ -100,6 +100,9 @@ pub(super) fn ranges(
         };
         let stated = match path.strip_prefix("start.") {
             Some(_) if scenario.start.is_none() => return Err(CampaignError::NoStart { path }),
+            Some(_) if scenario.start.as_ref().is_some_and(|start| start.file.is_some()) => {
+                return Err(CampaignError::SavedStart { path });
+            }
             Some(state) => scenario.start.as_ref().and_then(|start| start.number(state)).or(Some(0.0)),
             None => stated,
         };

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use crate::simulate::{COMMAND_LIMIT, Cause, Metrics, Window};
 
 /// Names of the metrics, in the order of a row.
-pub const METRIC_NAMES: [&str; 7] = [
+pub const METRIC_NAMES: [&str; 9] = [
     "overshoot_percent",
     "rise_time_s",
     "settling_time_s",
@@ -16,6 +16,8 @@ pub const METRIC_NAMES: [&str; 7] = [
     "steady_state_error_n",
     "control_peak_v",
     "control_rms_v",
+    "tracking_error_peak_n",
+    "force_peak_n",
 ];
 
 /// Parameters of the linear model that a drawn machine visits: K_H, K_qU, K_c.
@@ -111,14 +113,29 @@ pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; METRIC_NAMES.len()] {
         metrics.steady_state_error_n.ok(),
         metrics.control_peak_v.ok(),
         metrics.control_rms_v.ok(),
+        metrics.tracking_error_peak_n.ok(),
+        metrics.force_peak_n.ok(),
     ]
 }
 
 /// Which of [`METRIC_NAMES`] a window can have.
 pub(crate) fn meaningful(window: &Window) -> impl Iterator<Item = usize> + use<> {
     let left_out: &[&str] = match window.cause {
-        Cause::ReferenceStep { .. } => &["disturbance_peak_n"],
-        Cause::LoadMotion => &["overshoot_percent", "rise_time_s"],
+        Cause::ReferenceStep { .. } => &["disturbance_peak_n", "tracking_error_peak_n", "force_peak_n"],
+        Cause::ReferenceMotion { .. } => {
+            &["overshoot_percent", "rise_time_s", "settling_time_s", "disturbance_peak_n", "force_peak_n"]
+        }
+        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => &[
+            "overshoot_percent",
+            "rise_time_s",
+            "settling_time_s",
+            "disturbance_peak_n",
+            "steady_state_error_n",
+            "tracking_error_peak_n",
+        ],
+        Cause::LoadMotion | Cause::ExternalForce => {
+            &["overshoot_percent", "rise_time_s", "tracking_error_peak_n", "force_peak_n"]
+        }
     };
     (0..METRIC_NAMES.len()).filter(move |metric| !left_out.contains(&METRIC_NAMES[*metric]))
 }
@@ -340,8 +357,8 @@ mod tests {
             steps: 17,
             occurrences: vec![INDICATORS[0], COMMAND_LIMIT],
             metrics: vec![
-                [Some(1.0 / 3.0), Some(0.15), None, None, Some(-2e-7), Some(3.0), Some(0.0)],
-                [None, None, Some(0.25), Some(2015.0), None, Some(-0.0), Some(6e22)],
+                [Some(1.0 / 3.0), Some(0.15), None, None, Some(-2e-7), Some(3.0), Some(0.0), None, None],
+                [None, None, Some(0.25), Some(2015.0), None, Some(-0.0), Some(6e22), None, None],
             ],
             force_n: vec![0.1, -4e-9],
         };

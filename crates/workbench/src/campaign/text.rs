@@ -12,7 +12,7 @@ use crate::simulate::{self, ScenarioRun, cause_words};
 const TOLD: usize = 6;
 
 /// Words and units of [`METRIC_NAMES`].
-const METRIC_WORDS: [&str; 7] = [
+const METRIC_WORDS: [&str; 9] = [
     "overshoot (%)",
     "rise (s)",
     "settling (s)",
@@ -20,6 +20,8 @@ const METRIC_WORDS: [&str; 7] = [
     "steady-state error (N)",
     "control peak (V)",
     "control rms (V)",
+    "tracking error peak (N)",
+    "force peak (N)",
 ];
 
 const LUMP_WORDS: [&str; 3] = ["K_H (N/m)", "K_qU (m3/(s.V))", "K_c (m3/(s.Pa))"];

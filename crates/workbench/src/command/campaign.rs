@@ -4,7 +4,7 @@ use super::{CommandError, Watch};
 use crate::answer::Answer;
 use crate::campaign::{self, CampaignError, Ledger, Plan, Summary, Wanted};
 use crate::project::{self, Loaded};
-use crate::simulate::simulate_into;
+use crate::simulate::{self, simulate_into};
 use crate::source::{Destination, Source};
 
 /// What is asked of the campaign that a project declares.
@@ -80,7 +80,7 @@ fn one(
     Ok(Answer {
         text: campaign::run_text(&draw, &settings, &drawn, &runs),
         json: campaign::run_json(loaded, (plan, &draw), &settings, (&drawn, &runs)),
-        files: vec![],
+        files: simulate::files(&drawn, &runs),
         affirmative: runs.iter().all(|run| run.stopped().is_none()),
     })
 }

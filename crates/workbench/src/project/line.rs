@@ -49,6 +49,13 @@ pub struct Line {
     pub motion: LineMotion,
 }
 
+impl Line {
+    /// Pa, the pressure up to which the expansion of a hose was measured, where it is stated.
+    pub fn expansion_stated_at(&self) -> Option<f64> {
+        self.hose_properties.volumetric_expansion_pressure
+    }
+}
+
 /// What is known of a hose; what is absent is unknown.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HoseProperties {

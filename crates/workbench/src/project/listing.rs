@@ -181,6 +181,10 @@ impl Visitor for Listing {
         }
     }
 
+    fn one_or_more<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
+        self.tables(key, field, visit);
+    }
+
     fn dictionary<T: Default>(
         &mut self,
         key: Key,

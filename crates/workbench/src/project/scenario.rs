@@ -1,6 +1,7 @@
 //! `[[scenario]]`: what is simulated.
 
 use super::key::{Key, key, plain};
+use super::signal::{Signal, SignalUnit};
 use super::visitor::Visitor;
 use crate::quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PRESSURE, RATIO, TIME, VELOCITY, VOLTAGE};
 
@@ -15,10 +16,14 @@ pub struct Scenario {
     pub output_step: f64,
     /// The state at the start; absent: equilibrium at mid stroke.
     pub start: Option<Start>,
-    /// The reference force; each holds until the next.
-    pub reference: Vec<ReferenceStep>,
+    /// The reference force, the sum of these.
+    pub reference: Vec<Signal>,
+    /// The open-loop command of the valve, the sum of these; none: the controller commands.
+    pub command: Vec<Signal>,
     /// What the load does.
     pub load_motion: Option<LoadMotion>,
+    /// A force on the load from outside, the sum of these; positive in the direction of positive position.
+    pub external_force: Vec<Signal>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
 }
@@ -38,17 +43,8 @@ pub struct Start {
     pub spool: Option<f64>,
     /// N, deflection of the load cell as a force.
     pub force: Option<f64>,
-}
-
-/// The reference takes a value.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ReferenceStep {
-    /// s.
-    pub at: f64,
-    /// N.
-    pub force: f64,
-    /// What somebody published of it, to stand beside the simulation's own.
-    pub published: Option<Published>,
+    /// A file with the state at the end of another run, instead of all these.
+    pub file: Option<String>,
 }
 
 /// Published metrics of a step.
@@ -104,6 +100,11 @@ pub enum LoadMotionKind {
 }
 
 impl Scenario {
+    /// Whether it runs open loop.
+    pub fn is_open_loop(&self) -> bool {
+        !self.command.is_empty()
+    }
+
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let mut name = Some(std::mem::take(&mut self.name));
         v.text(plain("name", "Names its results."), &mut name, true);
@@ -114,9 +115,14 @@ impl Scenario {
         v.quantity(k, &mut self.output_step);
         let k = plain("start", "State at the start; states not named are zero. Absent: equilibrium.");
         v.table(k, &mut self.start, Start::visit);
-        let k = plain("reference", "Values of the reference force; each holds until the next.");
-        v.tables(k, &mut self.reference, ReferenceStep::visit);
+        let k =
+            plain("reference", "The reference force: steps, each until the next, and what is added to them.");
+        v.one_or_more(k, &mut self.reference, Signal::visitor(SignalUnit::REFERENCE));
+        let k = plain("command", "The command of the valve, open loop: no controller acts.");
+        v.one_or_more(k, &mut self.command, Signal::visitor(SignalUnit::COMMAND));
         v.table(plain("load_motion", "What the load does."), &mut self.load_motion, LoadMotion::visit);
+        let k = plain("external_force", "A force on the load from outside, towards positive positions.");
+        v.one_or_more(k, &mut self.external_force, Signal::visitor(SignalUnit::EXTERNAL_FORCE));
         let k = key("settling_band_percent", &RATIO, "Band of every settling time, in percent.");
         v.quantity(k.positive().below(100.0).or(1.0), &mut self.settling_band_percent);
     }
@@ -155,20 +161,12 @@ impl Start {
         v.optional(k, &mut self.pressure_b);
         v.optional(key("spool", &VOLTAGE, "Spool position as equivalent command."), &mut self.spool);
         v.optional(key("force", &FORCE, "Force in the load cell."), &mut self.force);
-    }
-}
-
-impl ReferenceStep {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.quantity(key("at", &TIME, "When.").not_negative(), &mut self.at);
-        v.quantity(key("force", &FORCE, "The reference from then on."), &mut self.force);
-        let k = plain("published", "Metrics somebody published of this step, for the report to set beside.");
-        v.table(k, &mut self.published, Published::visit);
+        v.text(plain("file", "A saved state to go on from, instead of all these."), &mut self.file, false);
     }
 }
 
 impl Published {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    pub(super) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("overshoot_percent", &RATIO, "Overshoot, in percent of the step.").not_negative();
         v.optional(k, &mut self.overshoot_percent);
         let k = key("settling_time", &TIME, "Settling time.").positive();

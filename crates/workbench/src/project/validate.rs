@@ -5,6 +5,7 @@ mod family;
 mod line_motion;
 mod linear_loop;
 mod rig;
+mod signal;
 mod specification;
 mod wishes;
 

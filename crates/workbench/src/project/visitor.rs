@@ -51,6 +51,8 @@ pub(crate) trait Visitor: Sized {
     fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
     /// An array of tables.
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self));
+    /// One table, or an array of them.
+    fn one_or_more<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self));
     /// A table whose keys name numbers of the project; each is handed to `visit` with what is known of it.
     fn dictionary<T: Default>(
         &mut self,

@@ -26,6 +26,8 @@ impl DisplayUnit {
     pub const SECOND: Self = DisplayUnit { symbol: "s", in_si: 1.0 };
     /// Time.
     pub const MILLISECOND: Self = DisplayUnit { symbol: "ms", in_si: 1e-3 };
+    /// Frequency.
+    pub const HERTZ: Self = DisplayUnit { symbol: "Hz", in_si: 2.0 * std::f64::consts::PI };
     /// Flow.
     pub const LITRE_PER_MINUTE: Self = DisplayUnit { symbol: "L/min", in_si: 1e-3 / 60.0 };
     /// Stiffness.

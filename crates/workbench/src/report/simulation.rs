@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, grouped, place, table, unbroken};
+use super::driving;
 use super::typeset::prose;
 use crate::answer::significant;
 use crate::command::{CommandError, Watch};
@@ -75,6 +76,7 @@ fn scenario(run: &ScenarioRun, declared: &Scenario, figures: &[Figure]) -> Marku
     html! {
         h3 { (run.name) }
         p { (headline(run)) "." }
+        @for sentence in driving::sentences(declared) { p { (sentence) } }
         @for figure in figures { (place(figure)) }
         @if !rows.is_empty() {
             (table(&heads, 1, &rows))
@@ -94,8 +96,9 @@ fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> Vec<usize> 
 
 /// What was published of the step that begins this window, and where; `None` where that are no numbers.
 fn published<'a>(declared: &'a Scenario, window: &Window) -> Option<(&'a str, [String; METRICS.len()])> {
-    let step = declared.reference.iter().find(|step| step.at == window.start_s)?;
-    let published = step.published.as_ref().filter(|_| window.cause != Cause::LoadMotion)?;
+    let step = declared.reference.iter().find(|step| step.at == Some(window.start_s))?;
+    let published =
+        step.published.as_ref().filter(|_| matches!(window.cause, Cause::ReferenceStep { .. }))?;
     let overshoot = published.overshoot_percent.map(|percent| format!("{} %", significant(percent, 3)));
     let settling = published.settling_time.map(|time| format!("{} s", significant(time, 3)));
     if overshoot.is_none() && settling.is_none() {

@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
+use super::files::state_names;
 use super::metrics::Measured;
-use super::{Cause, Comparison, Metrics, Occurrence, ScenarioRun, Window};
+use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, ScenarioRun, Window};
 use crate::answer;
 use crate::project::Loaded;
 
@@ -25,10 +26,24 @@ struct ScenarioRow<'a> {
     unresolved_mode_reason: Option<&'static str>,
     work: WorkRow,
     look_s: f64,
+    /// Whether a stated command drives the valve, and no controller.
+    open_loop: bool,
+    /// Name of the file with the state at the end.
+    state_file: Option<String>,
+    state_file_reason: Option<&'static str>,
     events: Vec<EventRow>,
     occurrences: Vec<OccurrenceRow>,
     outside_model_s: Option<f64>,
     outside_model_s_reason: Option<&'static str>,
+    /// Chambers above the pressure that the expansion of their hose is stated at.
+    beyond_expansion: Vec<BeyondRow>,
+}
+
+#[derive(Serialize)]
+struct BeyondRow {
+    chamber: char,
+    peak_pressure_pa: f64,
+    stated_pressure_pa: f64,
 }
 
 #[derive(Serialize)]
@@ -52,6 +67,8 @@ struct EventRow {
     /// Before and after; of a step.
     reference_n: Option<[f64; 2]>,
     reference_n_reason: Option<&'static str>,
+    command_v: Option<[f64; 2]>,
+    command_v_reason: Option<&'static str>,
     metrics: MetricsRow,
 }
 
@@ -66,6 +83,10 @@ struct MetricsRow {
     settling_band_percent: f64,
     disturbance_peak_n: Option<f64>,
     disturbance_peak_n_reason: Option<&'static str>,
+    tracking_error_peak_n: Option<f64>,
+    tracking_error_peak_n_reason: Option<&'static str>,
+    force_peak_n: Option<f64>,
+    force_peak_n_reason: Option<&'static str>,
     steady_state_error_n: Option<f64>,
     steady_state_error_n_reason: Option<&'static str>,
     control_peak_v: Option<f64>,
@@ -119,10 +140,12 @@ pub(crate) fn compare_json(comparison: &Comparison<'_>) -> String {
 /// What `simulate` says of a project.
 pub(crate) fn body<'a>(loaded: &'a Loaded, runs: &'a [ScenarioRun]) -> Body<'a> {
     let declared = loaded.project.scenarios.iter().map(|scenario| scenario.name.as_str());
-    Body { scenarios: runs.iter().map(scenario).collect(), not_run: declared.skip(runs.len()).collect() }
+    let names = state_names(runs.iter().map(|run| run.name.as_str()));
+    let rows = runs.iter().zip(names).map(|(run, name)| scenario(run, name));
+    Body { scenarios: rows.collect(), not_run: declared.skip(runs.len()).collect() }
 }
 
-fn scenario(run: &ScenarioRun) -> ScenarioRow<'_> {
+fn scenario(run: &ScenarioRun, state_file: String) -> ScenarioRow<'_> {
     let stopped = run.stopped();
     ScenarioRow {
         name: &run.name,
@@ -143,24 +166,42 @@ fn scenario(run: &ScenarioRun) -> ScenarioRow<'_> {
             evaluations: run.work.evaluations,
         },
         look_s: run.look_s,
+        open_loop: run.open_loop,
+        state_file: run.end.is_ok().then_some(state_file),
+        state_file_reason: run.end.as_ref().err().copied(),
         events: run.windows.iter().map(event).collect(),
         occurrences: run.occurrences.iter().map(occurrence).collect(),
         outside_model_s: run.outside_model_s,
         outside_model_s_reason: run.outside_model_s.is_none().then_some("its equations hold throughout"),
+        beyond_expansion: run.beyond_expansion.iter().map(beyond).collect(),
+    }
+}
+
+fn beyond(beyond: &BeyondExpansion) -> BeyondRow {
+    BeyondRow {
+        chamber: beyond.chamber,
+        peak_pressure_pa: beyond.peak_pa,
+        stated_pressure_pa: beyond.stated_pa,
     }
 }
 
 fn event((window, metrics): &(Window, Metrics)) -> EventRow {
-    let (kind, reference_n) = match window.cause {
-        Cause::ReferenceStep { from_n, to_n } => ("reference_step", Some([from_n, to_n])),
-        Cause::LoadMotion => ("load_motion", None),
+    let reference_n = match window.cause {
+        Cause::ReferenceStep { from_n, to_n } => Some([from_n, to_n]),
+        _ => None,
+    };
+    let command_v = match window.cause {
+        Cause::CommandStep { from_v, to_v } => Some([from_v, to_v]),
+        _ => None,
     };
     EventRow {
-        kind,
+        kind: window.cause.word(),
         time_s: window.start_s,
         until_s: window.end_s,
         reference_n,
         reference_n_reason: reference_n.is_none().then_some("the reference does not step"),
+        command_v,
+        command_v_reason: command_v.is_none().then_some("no open-loop command steps"),
         metrics: metrics_row(metrics),
     }
 }
@@ -171,6 +212,8 @@ fn metrics_row(metrics: &Metrics) -> MetricsRow {
     let (rise_time_s, rise_time_s_reason) = split(metrics.rise_time_s);
     let (settling_time_s, settling_time_s_reason) = split(metrics.settling_time_s);
     let (disturbance_peak_n, disturbance_peak_n_reason) = split(metrics.disturbance_peak_n);
+    let (tracking_error_peak_n, tracking_error_peak_n_reason) = split(metrics.tracking_error_peak_n);
+    let (force_peak_n, force_peak_n_reason) = split(metrics.force_peak_n);
     let (steady_state_error_n, steady_state_error_n_reason) = split(metrics.steady_state_error_n);
     let (control_peak_v, control_peak_v_reason) = split(metrics.control_peak_v);
     let (control_rms_v, control_rms_v_reason) = split(metrics.control_rms_v);
@@ -184,6 +227,10 @@ fn metrics_row(metrics: &Metrics) -> MetricsRow {
         settling_band_percent: metrics.settling_band_percent,
         disturbance_peak_n,
         disturbance_peak_n_reason,
+        tracking_error_peak_n,
+        tracking_error_peak_n_reason,
+        force_peak_n,
+        force_peak_n_reason,
         steady_state_error_n,
         steady_state_error_n_reason,
         control_peak_v,

@@ -15,7 +15,7 @@ use phea_qft::design::quantisation::Quantisation;
 
 use super::SimulateError;
 use crate::control::{controller, deployed, quantisation, sensor};
-use crate::project::{self, LineFriction, LineMotion, LineWall, Project, StepMethod, SupplyModel};
+use crate::project::{self, LineFriction, LineMotion, LineWall, Project, Scenario, StepMethod, SupplyModel};
 use crate::rig::Rig;
 
 /// A machine with its controller.
@@ -28,6 +28,8 @@ pub struct Bench {
     pub(crate) settings: Settings,
     /// From the load's velocity to the command, V s/m; zero where nothing is fed forward.
     pub(crate) feed_forward: f64,
+    /// Pressures in Pa up to which the expansions of hoses A and B were measured, where they are stated.
+    pub(crate) expansion_stated_at: [Option<f64>; 2],
 }
 
 /// A machine under its controller.
@@ -37,6 +39,8 @@ pub(crate) enum Control {
     Continuous(Box<ClosedLoop<Sensed<Machine>>>),
     /// It acts once a sample.
     Sampled(Box<Sampled>),
+    /// There is none: a stated command goes to the valve.
+    Open(Box<HeldPlant<Sensed<Machine>>>),
 }
 
 /// A machine behind a hold, and what commands it.
@@ -59,28 +63,43 @@ impl Bench {
     /// # Errors
     /// [`SimulateError`] where one of them is missing or impossible.
     pub fn new(project: &Project) -> Result<Bench, SimulateError> {
-        let rig = Rig::new(project)?;
-        let options = options(project, &rig.actuator)?;
-        let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
+        Bench::closed(project, false)
+    }
+
+    /// What a scenario of the project is driven on: open loop where it states a command, with a force from outside where it states one.
+    ///
+    /// # Errors
+    /// As [`Bench::new`]; an open loop needs no controller.
+    pub fn of_scenario(project: &Project, scenario: &Scenario) -> Result<Bench, SimulateError> {
+        let external_force = !scenario.external_force.is_empty();
+        match scenario.is_open_loop() {
+            false => Bench::closed(project, external_force),
+            true => Bench::open(project, external_force),
+        }
+    }
+
+    fn closed(project: &Project, external_force: bool) -> Result<Bench, SimulateError> {
+        let (rig, sensed) = rig_and_machine(project, external_force)?;
         let controller = controller(project)?.ok_or(SimulateError::NoController)?;
-        let sensed = Sensed::new(machine, &sensor(project)?)?;
         let feed_forward = feed_forward(project, &rig);
+        let machine = *sensed.plant();
         let control = match controller.timing.sample_time_s {
             None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &controller, feed_forward)?)),
             Some(sample_time_s) => {
                 Control::Sampled(Box::new(sampled(project, sensed, controller, sample_time_s, feed_forward)?))
             }
         };
-        let declared = &project.simulation;
-        let settings = Settings {
-            tolerance: declared.tolerance,
-            maximum_steps: u64::from(declared.maximum_steps),
-            method: match declared.method {
-                StepMethod::Rosenbrock => Method::Rosenbrock,
-                StepMethod::DormandPrince => Method::DormandPrince,
-            },
-        };
-        Ok(Bench { rig, machine, control, settings, feed_forward })
+        let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
+        Ok(Bench { rig, machine, control, settings, feed_forward, expansion_stated_at })
+    }
+
+    /// The machine alone, for a command that is stated: limits, samples and delays of a controller do not act on it.
+    fn open(project: &Project, external_force: bool) -> Result<Bench, SimulateError> {
+        let (rig, sensed) = rig_and_machine(project, external_force)?;
+        let machine = *sensed.plant();
+        let control = Control::Open(Box::new(HeldPlant::new(sensed, &TransferFunction::gain_only(1.0))?));
+        let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
+        Ok(Bench { rig, machine, control, settings, feed_forward: 0.0, expansion_stated_at })
     }
 
     /// The same controller around another machine, made of this actuator.
@@ -91,6 +110,7 @@ impl Bench {
         match &mut bench.control {
             Control::Continuous(closed) => *closed.plant_mut().plant_mut() = machine,
             Control::Sampled(sampled) => *sampled.held.plant_mut().plant_mut() = machine,
+            Control::Open(held) => *held.plant_mut().plant_mut() = machine,
         }
         bench
     }
@@ -100,7 +120,33 @@ impl Bench {
         match &self.control {
             Control::Continuous(closed) => closed.plant(),
             Control::Sampled(sampled) => sampled.held.plant(),
+            Control::Open(held) => held.plant(),
         }
+    }
+}
+
+/// The rig, and its machine behind its sensor.
+fn rig_and_machine(project: &Project, external_force: bool) -> Result<(Rig, Sensed<Machine>), SimulateError> {
+    let rig = Rig::new(project)?;
+    let options = MachineOptions { external_force, ..options(project, &rig.actuator)? };
+    let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
+    Ok((rig, Sensed::new(machine, &sensor(project)?)?))
+}
+
+fn expansion_stated_at(project: &Project) -> [Option<f64>; 2] {
+    let lines = project.actuator.as_ref().map(|actuator| &actuator.line);
+    lines.map_or([None; 2], |lines| [&lines.a, &lines.b].map(project::Line::expansion_stated_at))
+}
+
+fn settings(project: &Project) -> Settings {
+    let declared = &project.simulation;
+    Settings {
+        tolerance: declared.tolerance,
+        maximum_steps: u64::from(declared.maximum_steps),
+        method: match declared.method {
+            StepMethod::Rosenbrock => Method::Rosenbrock,
+            StepMethod::DormandPrince => Method::DormandPrince,
+        },
     }
 }
 
@@ -143,7 +189,7 @@ fn feed_forward(project: &Project, rig: &Rig) -> f64 {
     declared.map_or(0.0, |declared| declared.gain.unwrap_or(rig.linear.useful_area / rig.linear.flow_gain))
 }
 
-/// What the machine has beyond its actuator.
+/// What the machine has beyond its actuator, whatever acts on it.
 pub(crate) fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions, SimulateError> {
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
     if declared.load.model == project::LoadModel::Wall && declared.load.mass.is_none() {
@@ -166,6 +212,7 @@ pub(crate) fn options(project: &Project, actuator: &Actuator) -> Result<MachineO
         friction_regular_velocity: friction.and_then(|friction| friction.regular_velocity),
         power_unit: power_unit(declared),
         load: load(&declared.load),
+        external_force: false,
         vapour_pressure_absolute: declared.fluid.vapour_pressure,
         member: Member::Nominal,
         lines: lines(&declared.line, actuator)?,

@@ -1,11 +1,14 @@
 //! Where a scenario begins, and what drives it.
 
-use phea_dynamics::simulation::{Plant, Profile, ProfileError, System};
+use phea_dynamics::simulation::{Input, Plant, Profile, ProfileError, System};
 use phea_hydraulics::machine::{Beginning, Start};
 use phea_hydraulics::operating_point::{Condition, Load, operating_point};
 
 use super::bench::{Bench, Control};
-use super::motion_file;
+use super::digital::Waking;
+use super::motion_file::{self, Column};
+use super::saved::{self, SavedState};
+use super::signal::{self, Beginning as Begun};
 use super::{Cause, SimulateError, Window};
 use crate::project::{self, LoadMotion, LoadMotionKind, Project, Scenario};
 use crate::source::Source;
@@ -14,12 +17,16 @@ use crate::source::Source;
 pub(crate) struct Course {
     /// In N.
     pub(crate) reference: Profile,
+    /// In V, of an open loop.
+    pub(crate) command: Profile,
     /// Position of the load or of its ground in m.
     pub(crate) ground: Profile,
+    /// On the load from outside in N, where the machine has that input.
+    pub(crate) external_force: Option<Profile>,
     /// States of the machine, its sensor and all that is continuous in its controller, and the waves under way.
     pub(crate) start: Vec<f64>,
-    /// What a sampled controller holds at the start, if it begins in equilibrium: reference, measurement and command.
-    pub(crate) holding: Option<[f64; 3]>,
+    /// How a sampled controller begins.
+    pub(crate) waking: Waking,
     /// What is looked at by itself.
     pub(crate) windows: Vec<Window>,
 }
@@ -28,8 +35,24 @@ pub(crate) struct Course {
 pub(crate) struct Driven {
     /// In N.
     pub(crate) reference: Profile,
+    /// In V, of an open loop.
+    command: Profile,
+    /// On the load from outside in N.
+    external_force: Profile,
     /// Of the load or of its ground in m, from where it starts.
     pub(crate) motion: Profile,
+    /// What is looked at by itself.
+    pub(crate) windows: Vec<Window>,
+    /// Where it goes on from.
+    saved: Option<SavedState>,
+}
+
+impl Course {
+    /// What drives the machine beside its command.
+    pub(crate) fn machine_inputs(&self) -> Vec<Input> {
+        let ground = [Input::Value(self.ground.clone()), Input::Rate(self.ground.clone())];
+        ground.into_iter().chain(self.external_force.clone().map(Input::Value)).collect()
+    }
 }
 
 pub(super) fn course(
@@ -38,7 +61,7 @@ pub(super) fn course(
     bench: &Bench,
     scenario: &Scenario,
 ) -> Result<Course, SimulateError> {
-    let driven = driven(source, project, scenario)?;
+    let driven = driven(source, project, bench, scenario)?;
     course_of(&driven, bench, scenario)
 }
 
@@ -46,11 +69,11 @@ pub(super) fn course(
 pub(crate) fn driven(
     source: &dyn Source,
     project: &Project,
+    bench: &Bench,
     scenario: &Scenario,
 ) -> Result<Driven, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.name.clone(), error };
-    let steps: Vec<(f64, f64)> = scenario.reference.iter().map(|step| (step.at, step.force)).collect();
-    let reference = Profile::steps(0.0, &steps).map_err(named)?;
+    let reference = signal::profile(source, project, &scenario.name, &scenario.reference, Column::FORCE)?;
     let motion = match &scenario.load_motion {
         None => Profile::constant(0.0),
         Some(declared) if declared.kind == LoadMotionKind::File => {
@@ -58,7 +81,14 @@ pub(crate) fn driven(
         }
         Some(declared) => motion(declared).map_err(named)?,
     };
-    Ok(Driven { reference, motion })
+    let command = signal::profile(source, project, &scenario.name, &scenario.command, Column::VOLTAGE)?;
+    let external_force =
+        signal::profile(source, project, &scenario.name, &scenario.external_force, Column::FORCE)?;
+    let windows = windows(scenario, [&reference, &command, &external_force]);
+    let file = scenario.start.as_ref().and_then(|start| start.file.as_ref());
+    let read = |file: &String| saved::read(source, project, file, bench).map_err(SimulateError::Motion);
+    let saved = file.map(read).transpose()?;
+    Ok(Driven { reference, command, external_force, motion, windows, saved })
 }
 
 /// The scenario for the machine of a bench.
@@ -67,16 +97,31 @@ pub(crate) fn course_of(
     bench: &Bench,
     scenario: &Scenario,
 ) -> Result<Course, SimulateError> {
+    if let Some(saved) = &driven.saved {
+        let waking = saved.memory(bench).map_or(Waking::AtRest, Waking::Resumed);
+        return Ok(driven.course(bench, saved.ground_m(), saved.states(bench), waking));
+    }
     let beginning = beginning(bench, scenario)?;
     let ([ground, _], holds) = (beginning.inputs, scenario.start.is_none());
     let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
-    Ok(Course {
-        reference: driven.reference.clone(),
-        ground: driven.motion.clone().shifted(ground),
-        start: start(bench, &beginning, measured, holds),
-        holding: holds.then_some([0.0, measured, beginning.command]),
-        windows: windows(scenario),
-    })
+    let holding = Waking::Holding([0.0, measured, beginning.command]);
+    let waking = if holds { holding } else { Waking::AtRest };
+    Ok(driven.course(bench, ground, start(bench, &beginning, measured, holds), waking))
+}
+
+impl Driven {
+    /// From a state, the ground of the load where it is in m.
+    fn course(&self, bench: &Bench, ground: f64, start: Vec<f64>, waking: Waking) -> Course {
+        Course {
+            reference: self.reference.clone(),
+            command: self.command.clone(),
+            ground: self.motion.clone().shifted(ground),
+            external_force: bench.machine.has_external_force().then(|| self.external_force.clone()),
+            start,
+            waking,
+            windows: self.windows.clone(),
+        }
+    }
 }
 
 /// A validated motion has every number its kind needs; a missing one is refused as not finite.
@@ -138,6 +183,7 @@ fn start(bench: &Bench, beginning: &Beginning, measured: f64, holds: bool) -> Ve
     let mut control = match &bench.control {
         Control::Continuous(closed) => closed.controller_at_rest(0.0, measured, beginning.command),
         Control::Sampled(sampled) => sampled.held.prefilter_at_rest(0.0),
+        Control::Open(held) => held.prefilter_at_rest(0.0),
     };
     if !holds {
         sensor.fill(0.0);
@@ -148,6 +194,7 @@ fn start(bench: &Bench, beginning: &Beginning, measured: f64, holds: bool) -> Ve
     let waves = match &bench.control {
         Control::Continuous(closed) => under_way(closed.as_ref(), &start, &[0.0], beginning),
         Control::Sampled(sampled) => under_way(&sampled.held, &start, &[0.0, 0.0], beginning),
+        Control::Open(held) => under_way(held.as_ref(), &start, &[0.0, 0.0], beginning),
     };
     start.extend(waves);
     start
@@ -156,7 +203,7 @@ fn start(bench: &Bench, beginning: &Beginning, measured: f64, holds: bool) -> Ve
 /// What is under way in each delay: the waves of the lines, and then what sensor and controller sent until now, the one from
 /// the other. `first` stands before the inputs of the machine.
 fn under_way(system: &impl System<f64>, state: &[f64], first: &[f64], beginning: &Beginning) -> Vec<f64> {
-    let mut inputs = [first, &beginning.inputs, &beginning.waves].concat();
+    let mut inputs = [first, &beginning.all_inputs()].concat();
     let (known, lines) = (inputs.len(), beginning.waves.len());
     inputs.resize(system.inputs(), 0.0);
     let mut sent = vec![0.0; system.delays().len()];
@@ -169,25 +216,31 @@ fn under_way(system: &impl System<f64>, state: &[f64], first: &[f64], beginning:
     inputs.split_off(known - lines)
 }
 
-/// One for each step of the reference and for the motion of the load, each until the next.
-pub(crate) fn windows(scenario: &Scenario) -> Vec<Window> {
-    let mut windows = Vec::new();
-    let mut from_n = 0.0;
-    for step in scenario.reference.iter().filter(|step| step.at < scenario.duration) {
-        if step.force != from_n {
-            let cause = Cause::ReferenceStep { from_n, to_n: step.force };
-            windows.push(Window { cause, start_s: step.at, end_s: scenario.duration });
-        }
-        from_n = step.force;
-    }
-    if let Some(motion) = scenario.load_motion.as_ref().filter(|motion| motion.start < scenario.duration) {
-        windows.push(Window { cause: Cause::LoadMotion, start_s: motion.start, end_s: scenario.duration });
+/// One for whatever begins in reference, command and force from outside, and for the motion of the load, each until the next.
+fn windows(scenario: &Scenario, [reference, command, external]: [&Profile; 3]) -> Vec<Window> {
+    let end_s = scenario.duration;
+    let window = |cause: Cause, start_s: f64| Window { cause, start_s, end_s };
+    let referred = |begun: Begun| match begun {
+        Begun::Step { time_s, from, to } => window(Cause::ReferenceStep { from_n: from, to_n: to }, time_s),
+        Begun::Motion { time_s, kind } => window(Cause::ReferenceMotion { kind }, time_s),
+    };
+    let commanded = |begun: Begun| match begun {
+        Begun::Step { time_s, from, to } => window(Cause::CommandStep { from_v: from, to_v: to }, time_s),
+        Begun::Motion { time_s, kind } => window(Cause::CommandMotion { kind }, time_s),
+    };
+    let begun = signal::beginnings(&scenario.reference, reference, end_s).into_iter().map(referred);
+    let of_command = signal::beginnings(&scenario.command, command, end_s).into_iter().map(commanded);
+    let outside = signal::beginnings(&scenario.external_force, external, end_s).into_iter();
+    let outside = outside.map(|begun| window(Cause::ExternalForce, begun.time_s()));
+    let mut windows: Vec<Window> = begun.chain(of_command).chain(outside).collect();
+    if let Some(motion) = scenario.load_motion.as_ref().filter(|motion| motion.start < end_s) {
+        windows.push(window(Cause::LoadMotion, motion.start));
     }
     windows.sort_by(|one, other| one.start_s.total_cmp(&other.start_s));
     let starts: Vec<f64> = windows.iter().map(|window| window.start_s).collect();
     for window in &mut windows {
         let next = starts.iter().copied().find(|start| *start > window.start_s);
-        window.end_s = next.unwrap_or(scenario.duration);
+        window.end_s = next.unwrap_or(end_s);
     }
     windows
 }

@@ -38,6 +38,28 @@ impl Samples {
     }
 }
 
+/// All that a sampled controller knows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Memory {
+    /// Its last command, V.
+    pub(crate) command_v: f64,
+    /// Of its sections.
+    pub(crate) memories: Vec<f64>,
+    /// Where its random numbers are.
+    pub(crate) random: u64,
+}
+
+/// How a sampled controller begins.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Waking {
+    /// At rest.
+    AtRest,
+    /// Holding a command while reference and measurement stand still: these three.
+    Holding([f64; 3]),
+    /// Where another run ended.
+    Resumed(Memory),
+}
+
 /// A sampled controller at work.
 ///
 /// ```text
@@ -51,23 +73,31 @@ pub(crate) struct Digital<'a> {
     /// Before its first command takes effect, V.
     held: f64,
     log: &'a RefCell<Samples>,
+    /// Where it leaves what it knows.
+    memory: Option<&'a RefCell<Memory>>,
 }
 
 impl<'a> Digital<'a> {
-    /// At rest, or holding a command while reference and measurement stand still.
-    pub(crate) fn new(
-        sampled: &'a Sampled,
-        holding: Option<[f64; 3]>,
-        log: &'a RefCell<Samples>,
-    ) -> Digital<'a> {
-        let state = match holding {
-            Some([reference, measurement, command]) => {
-                sampled.controller.holding(reference, measurement, command)
+    /// A controller that begins so.
+    pub(crate) fn new(sampled: &'a Sampled, waking: &Waking, log: &'a RefCell<Samples>) -> Digital<'a> {
+        let controller = &sampled.controller;
+        let (state, held, random) = match waking {
+            Waking::AtRest => (controller.at_rest(), 0.0, sampled.seed),
+            Waking::Holding([reference, measurement, command]) => {
+                (controller.holding(*reference, *measurement, *command), *command, sampled.seed)
             }
-            None => sampled.controller.at_rest(),
+            Waking::Resumed(memory) => {
+                // a state that was read has as many memories as its controller
+                let resumed = controller.resumed(&memory.memories).unwrap_or_else(|| controller.at_rest());
+                (resumed, memory.command_v, memory.random)
+            }
         };
-        let held = holding.map_or(0.0, |[_, _, command]| command);
-        Digital { sampled, state, random: sampled.seed, held, log }
+        Digital { sampled, state, random, held, log, memory: None }
+    }
+
+    /// Leaves what it knows after each sample.
+    pub(crate) fn remembered_in(self, memory: &'a RefCell<Memory>) -> Digital<'a> {
+        Digital { memory: Some(memory), ..self }
     }
 }
 
@@ -107,6 +137,10 @@ impl Sampler for Digital<'_> {
             command_v,
             limited: output.limited || within != wanted,
         });
+        if let Some(memory) = self.memory {
+            let memories = self.state.memories();
+            *memory.borrow_mut() = Memory { command_v, memories, random: self.random };
+        }
         command_v
     }
 }

@@ -10,7 +10,7 @@ use crate::figure::{
 const BEFORE_S: f64 = 0.02;
 const AFTER_S: f64 = 0.5;
 
-/// Most events that are enlarged each; of more, motions of the load and the greatest step.
+/// Most events that are enlarged each; of more, all that is no step, and the greatest step.
 const ENLARGED: usize = 3;
 
 /// Scale of figures as PNG: 1120 pixels of width.
@@ -26,10 +26,11 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
     );
     let mut figures = vec![overview(whole, run, [0.0, end])];
     for (index, window) in enlarged(&run.windows, end) {
-        let positions = if window.cause == Cause::LoadMotion { ", positions" } else { "" };
+        let positions = if moves_load(window) { ", positions" } else { "" };
+        let asked_for = if run.open_loop { "" } else { " with its reference" };
         let caption = format!(
-            "Voltages, pressures of both chambers, hydraulic force beside measured force, measured force with its \
-             reference{positions}. Between hydraulic and measured force lie the friction and the acceleration of the piston."
+            "Voltages, pressures of both chambers, hydraulic force beside measured force, measured force\
+             {asked_for}{positions}. Between hydraulic and measured force lie the friction and the acceleration of the piston."
         );
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
@@ -44,9 +45,17 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
 /// Everything at a glance.
 fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
-    let panels = vec![measured(record, 190.0), voltages(record), pressures(record), positions(record)];
-    let legend = ["force, command, p_A, piston", "prefiltered reference, spool, p_B, load"];
-    drawn(words, run, panels, legend.map(String::from), span_s)
+    let mut panels = vec![measured(record, 190.0), voltages(record), pressures(record), positions(record)];
+    panels.extend(from_outside(record));
+    let legend = match run.open_loop {
+        false => ["force, command, p_A, piston", "prefiltered reference, spool, p_B, load"],
+        true => ["force, command, p_A, piston", "spool, p_B, load"],
+    };
+    let mut legend = legend.map(String::from);
+    if !record.external_force_n.is_empty() {
+        legend[0] = format!("{}, force from outside", legend[0]);
+    }
+    drawn(words, run, panels, legend, span_s)
 }
 
 /// What happens between command and force, in the order of Figure 6.17 of Ledezma (2019); with positions where the load moves.
@@ -55,11 +64,18 @@ fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s: [f64; 2]) 
     let forces = ["force_n", "hydraulic_force_n"].map(|name| over_time(record, record.signal(name)));
     let forces = panel("Forces F_e, F_H", DisplayUnit::KILONEWTON, 150.0, forces.into());
     let mut panels = vec![voltages(record), pressures(record), forces, measured(record, 150.0)];
-    let mut legend =
-        ["command, p_A, force", "spool, p_B, hydraulic force, prefiltered reference"].map(String::from);
-    if window.cause == Cause::LoadMotion {
+    let second = match run.open_loop {
+        false => "spool, p_B, hydraulic force, prefiltered reference",
+        true => "spool, p_B, hydraulic force",
+    };
+    let mut legend = ["command, p_A, force", second].map(String::from);
+    if moves_load(window) {
         panels.push(positions(record));
         legend = [format!("{}, piston", legend[0]), format!("{}, load", legend[1])];
+    }
+    if window.cause == Cause::ExternalForce {
+        panels.extend(from_outside(record));
+        legend[0] = format!("{}, force from outside", legend[0]);
     }
     drawn(words, run, panels, legend, span_s)
 }
@@ -69,9 +85,26 @@ fn measured(record: &Record, height: f64) -> TimePanel {
     let series = [record.signal("force_n"), record.filtered_reference_n.clone()]
         .map(|values| over_time(record, values));
     TimePanel {
-        reference: Some(over_time(record, record.reference_n.clone())),
+        reference: asked_for(record),
         ..panel("Force F_e", DisplayUnit::KILONEWTON, height, series.into())
     }
+}
+
+/// The reference; none in an open loop.
+fn asked_for(record: &Record) -> Option<TimeSeries> {
+    (!record.reference_n.is_empty()).then(|| over_time(record, record.reference_n.clone()))
+}
+
+/// Whether what begins a window moves the load.
+fn moves_load(window: &Window) -> bool {
+    matches!(window.cause, Cause::LoadMotion | Cause::ExternalForce)
+}
+
+/// The force on the load from outside, where there is one.
+fn from_outside(record: &Record) -> Option<TimePanel> {
+    let series =
+        (!record.external_force_n.is_empty()).then(|| over_time(record, record.external_force_n.clone()))?;
+    Some(panel("From outside F_x", DisplayUnit::KILONEWTON, 90.0, vec![series]))
 }
 
 fn voltages(record: &Record) -> TimePanel {
@@ -116,11 +149,15 @@ fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize, &Window)> 
     }
     let height = |window: &Window| match window.cause {
         Cause::ReferenceStep { from_n, to_n } => (to_n - from_n).abs(),
-        Cause::LoadMotion => 0.0,
+        Cause::CommandStep { from_v, to_v } => (to_v - from_v).abs(),
+        _ => 0.0,
     };
     let greatest = begun.iter().map(|(_, window)| height(window)).fold(0.0, f64::max);
     let first = begun.iter().position(|(_, window)| height(window) == greatest);
-    let chosen = |place: usize, window: &Window| window.cause == Cause::LoadMotion || Some(place) == first;
+    let chosen = |place: usize, window: &Window| {
+        !matches!(window.cause, Cause::ReferenceStep { .. } | Cause::CommandStep { .. })
+            || Some(place) == first
+    };
     begun
         .iter()
         .enumerate()
@@ -131,12 +168,8 @@ fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize, &Window)> 
 
 /// What begins a window, where it is seen.
 fn instant(window: &Window, [start, end]: [f64; 2]) -> Option<TimeEvent> {
-    let label = match window.cause {
-        Cause::ReferenceStep { .. } => "step",
-        Cause::LoadMotion => "load moves",
-    };
     let seen = window.start_s >= start && window.start_s < end;
-    seen.then(|| TimeEvent { time_s: window.start_s, label: label.to_string() })
+    seen.then(|| TimeEvent { time_s: window.start_s, label: window.cause.label().to_string() })
 }
 
 /// From a little before what begins a window to half a second later, within the run.
@@ -199,7 +232,7 @@ fn side_by_side(words: Words, titles: &[String], runs: &[&ScenarioRun], span_s: 
         let (one, other) = (record.signal("pressure_a_pa"), record.signal("pressure_b_pa"));
         one.iter().zip(&other).map(|(one, other)| one - other).collect()
     };
-    let reference = runs.first().map(|run| over_time(&run.record, run.record.reference_n.clone()));
+    let reference = runs.iter().find_map(|run| asked_for(&run.record));
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
     let input = TimePanelsInput {
         panels: vec![

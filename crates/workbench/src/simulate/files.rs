@@ -1,17 +1,39 @@
-//! The files of `simulate`: a table for each scenario.
+//! The files of `simulate`: a table for each scenario, and the state it ended in.
 
 use std::fmt::Write as _;
 
 use phea_hydraulics::machine::SIGNALS;
 
-use super::Look;
+use super::{Look, ScenarioRun};
+use crate::answer::OutputFile;
+use crate::project::Loaded;
 use crate::source::{Destination, Unfinished, WriteError};
 
 /// The machine's signals that come first, in this order; the others follow as the machine lists them.
 const FIRST: [&str; 5] = ["spool_v", "pressure_a_pa", "pressure_b_pa", "position_m", "velocity_m_per_s"];
 
+/// The state each run ended in, where that can be saved.
+pub(crate) fn files(loaded: &Loaded, runs: &[ScenarioRun]) -> Vec<OutputFile> {
+    let names = state_names(runs.iter().map(|run| run.name.as_str()));
+    let state = |(run, name): (&ScenarioRun, String)| {
+        let end = run.end.as_ref().ok()?;
+        Some(OutputFile { name, bytes: end.text(&run.name, &loaded.sha256).into_bytes() })
+    };
+    runs.iter().zip(names).filter_map(state).collect()
+}
+
+/// Names of the files with the states of these scenarios.
+pub(crate) fn state_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
+    names(scenarios).into_iter().map(|name| format!("{name}.state.toml")).collect()
+}
+
 /// Names of the tables of scenarios with these names, each after its own and no two alike.
 pub(crate) fn table_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
+    names(scenarios).into_iter().map(|name| format!("{name}.csv")).collect()
+}
+
+/// Each after its own and no two alike.
+fn names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for scenario in scenarios {
         let plain = file_name(scenario);
@@ -21,7 +43,7 @@ pub(crate) fn table_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<S
             std::iter::once(plain.clone()).chain(numbered).find(|name| !taken(name)).unwrap_or(plain.clone());
         names.push(name);
     }
-    names.into_iter().map(|name| format!("{name}.csv")).collect()
+    names
 }
 
 /// What file systems do not take in a name becomes an underscore.
@@ -47,8 +69,12 @@ pub(crate) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// A table with its head.
-    pub(super) fn begin(destination: &'a dyn Destination, name: &str) -> Result<Table<'a>, WriteError> {
+    /// A table with its head, and a last column for the force from outside where the load is `pushed`.
+    pub(super) fn begin(
+        destination: &'a dyn Destination,
+        name: &str,
+        pushed: bool,
+    ) -> Result<Table<'a>, WriteError> {
         let place = |name: &&str| SIGNALS.iter().position(|signal| signal == name);
         let first: Vec<usize> = FIRST.iter().filter_map(place).collect();
         let force = place(&"force_n");
@@ -59,7 +85,8 @@ impl<'a> Table<'a> {
             text.push(',');
             text.push_str(name);
         }
-        text.push_str(",filtered_reference_n\n");
+        text.push_str(",filtered_reference_n");
+        text.push_str(if pushed { ",external_force_n\n" } else { "\n" });
         let (name, file) = (name.to_string(), destination.begin(name)?);
         let mut table = Table { name, file, order, force, text };
         table.write()?;
@@ -72,11 +99,15 @@ impl<'a> Table<'a> {
         let signal = |index: usize| look.signals.get(index).copied();
         let force = force.and_then(signal).unwrap_or(f64::NAN);
         number(text, look.time_s);
-        let columns = [look.reference_n, force, look.control_v].into_iter();
-        let columns = columns.chain(order.iter().copied().filter_map(signal));
-        for value in columns.chain(std::iter::once(look.filtered_reference_n)) {
+        let columns = [look.reference_n, Some(force), Some(look.control_v)].into_iter();
+        let columns = columns.chain(order.iter().map(|index| signal(*index)));
+        let last = [Some(look.filtered_reference_n), look.external_force_n.map(Some)];
+        // what an open loop does not have is empty
+        for value in columns.chain(last.into_iter().flatten()) {
             text.push(',');
-            number(text, value);
+            if let Some(value) = value {
+                number(text, value);
+            }
         }
         text.push('\n');
         self.write()
@@ -97,7 +128,7 @@ fn unwritten(name: &str, error: &std::io::Error) -> WriteError {
 }
 
 /// The shortest text that reads back as the same number.
-fn number(text: &mut String, value: f64) {
+pub(super) fn number(text: &mut String, value: f64) {
     let size = value.abs();
     let plain = size == 0.0 || (1e-4..1e15).contains(&size);
     // a text takes all that is written into it

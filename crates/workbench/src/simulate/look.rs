@@ -19,12 +19,14 @@ const MOST_KEPT: usize = 100_000;
 pub struct Look {
     /// s.
     pub time_s: f64,
-    /// N; at a step, as it is from then on.
-    pub reference_n: f64,
-    /// N, behind the prefilter.
-    pub filtered_reference_n: f64,
-    /// V, what the controller gives out.
+    /// N; at a step, as it is from then on. `None` in an open loop.
+    pub reference_n: Option<f64>,
+    /// N, behind the prefilter. `None` in an open loop.
+    pub filtered_reference_n: Option<f64>,
+    /// V, what the controller gives out, or what is commanded in an open loop.
     pub control_v: f64,
+    /// N, on the load from outside, where there is such a force.
+    pub external_force_n: Option<f64>,
     /// What the machine tells of itself, in the order of [`SIGNALS`].
     pub signals: [f64; SIGNALS.len()],
 }
@@ -35,12 +37,14 @@ pub struct Look {
 pub struct Record {
     /// s.
     pub times_s: Vec<f64>,
-    /// N; at a step, as it is from then on.
+    /// N; at a step, as it is from then on. None in an open loop.
     pub reference_n: Vec<f64>,
-    /// N, behind the prefilter.
+    /// N, behind the prefilter. None in an open loop.
     pub filtered_reference_n: Vec<f64>,
-    /// V, what the controller gives out.
+    /// V, what the controller gives out, or what is commanded in an open loop.
     pub control_v: Vec<f64>,
+    /// N, on the load from outside; none where there is no such force.
+    pub external_force_n: Vec<f64>,
     /// What the machine tells of itself, each in the order of [`SIGNALS`].
     pub signals: Vec<[f64; SIGNALS.len()]>,
     /// Looks from one of these to the next.
@@ -54,6 +58,7 @@ impl Default for Record {
             reference_n: vec![],
             filtered_reference_n: vec![],
             control_v: vec![],
+            external_force_n: vec![],
             signals: vec![],
             looks_apart: 1,
         }
@@ -73,9 +78,10 @@ impl Record {
             return;
         }
         self.times_s.push(look.time_s);
-        self.reference_n.push(look.reference_n);
-        self.filtered_reference_n.push(look.filtered_reference_n);
+        self.reference_n.extend(look.reference_n);
+        self.filtered_reference_n.extend(look.filtered_reference_n);
         self.control_v.push(look.control_v);
+        self.external_force_n.extend(look.external_force_n);
         self.signals.push(look.signals);
         if self.times_s.len() > MOST_KEPT {
             self.halve();
@@ -83,8 +89,13 @@ impl Record {
     }
 
     fn halve(&mut self) {
-        let columns =
-            [&mut self.times_s, &mut self.reference_n, &mut self.filtered_reference_n, &mut self.control_v];
+        let columns = [
+            &mut self.times_s,
+            &mut self.reference_n,
+            &mut self.filtered_reference_n,
+            &mut self.control_v,
+            &mut self.external_force_n,
+        ];
         columns.into_iter().for_each(every_second);
         every_second(&mut self.signals);
         self.looks_apart *= 2;
@@ -107,14 +118,19 @@ pub(super) struct Looks {
     force_n: Vec<f64>,
     reference_n: Vec<f64>,
     control_v: Vec<f64>,
+    /// Highest pressures of chambers A and B so far, Pa.
+    pub(super) peak_pressures_pa: [f64; 2],
 }
 
 impl Looks {
-    fn take(&mut self, look: &Look, force: usize) {
+    fn take(&mut self, look: &Look, Places { force, pressures }: Places) {
         self.times_s.push(look.time_s);
         self.force_n.push(look.signals[force]);
-        self.reference_n.push(look.reference_n);
+        self.reference_n.extend(look.reference_n);
         self.control_v.push(look.control_v);
+        for (peak, place) in self.peak_pressures_pa.iter_mut().zip(pressures) {
+            *peak = peak.max(look.signals[place]);
+        }
     }
 
     pub(super) fn seen(&self) -> Seen<'_> {
@@ -127,6 +143,14 @@ impl Looks {
     }
 }
 
+/// Where among the signals is what metrics are read off.
+#[derive(Clone, Copy, Debug)]
+struct Places {
+    force: usize,
+    /// Of chambers A and B.
+    pressures: [usize; 2],
+}
+
 /// Looks at a machine and its controller.
 pub(super) struct Looking<'a> {
     bench: &'a Bench,
@@ -134,8 +158,7 @@ pub(super) struct Looking<'a> {
     samples: &'a RefCell<Samples>,
     /// All states.
     wanted: Vec<usize>,
-    /// Place of the force among the signals.
-    force: usize,
+    places: Places,
     /// Looks so far.
     count: u64,
     looks_per_row: u64,
@@ -157,12 +180,17 @@ impl<'a> Looking<'a> {
         let states = match &bench.control {
             Control::Continuous(closed) => System::<f64>::states(closed.as_ref()),
             Control::Sampled(sampled) => System::<f64>::states(&sampled.held),
+            Control::Open(held) => System::<f64>::states(held.as_ref()),
         };
+        let place = |name: &str| SIGNALS.iter().position(|signal| *signal == name).unwrap_or_default();
         Looking {
             bench,
             samples,
             wanted: (0..states).collect(),
-            force: SIGNALS.iter().position(|name| *name == "force_n").unwrap_or_default(),
+            places: Places {
+                force: place("force_n"),
+                pressures: [place("pressure_a_pa"), place("pressure_b_pa")],
+            },
             count: 0,
             looks_per_row: looks_per_row as u64,
             table,
@@ -188,20 +216,28 @@ impl<'a> Looking<'a> {
     }
 
     fn look(&self, time_s: f64, states: &[f64], inputs: &[f64]) -> Look {
-        let (reference_n, filtered_reference_n, control_v, others) = match &self.bench.control {
+        let (asked_for, control_v, others) = match &self.bench.control {
             Control::Continuous(closed) => {
                 let signals = closed.signals::<f64, f64>(states, inputs);
-                (inputs[0], signals.filtered_reference, signals.command, &inputs[1..])
+                (Some([inputs[0], signals.filtered_reference]), signals.command, &inputs[1..])
             }
             Control::Sampled(_) => {
                 let last = self.samples.borrow().last;
                 let [filtered, command] =
                     last.map_or([0.0; 2], |sample| [sample.filtered_reference_n, sample.command_v]);
-                (inputs[1], filtered, command, &inputs[2..])
+                (Some([inputs[1], filtered]), command, &inputs[2..])
             }
+            Control::Open(_) => (None, inputs[0], &inputs[2..]),
         };
-        let signals = self.bench.machine.outputs(states, others);
-        Look { time_s, reference_n, filtered_reference_n, control_v, signals }
+        let machine = &self.bench.machine;
+        Look {
+            time_s,
+            reference_n: asked_for.map(|[reference, _]| reference),
+            filtered_reference_n: asked_for.map(|[_, filtered]| filtered),
+            control_v,
+            external_force_n: others.get(2).copied().filter(|_| machine.has_external_force()),
+            signals: machine.outputs(states, others),
+        }
     }
 }
 
@@ -222,7 +258,7 @@ impl Observer for Looking<'_> {
             self.full.set(true);
         }
         self.record.take(self.count, &look);
-        self.looks.take(&look, self.force);
+        self.looks.take(&look, self.places);
         self.count += 1;
     }
 }
@@ -239,14 +275,17 @@ mod tests {
         for number in 0..looks {
             let time_s = number as f64;
             let signals = [time_s; SIGNALS.len()];
-            let (reference_n, filtered_reference_n, control_v) = (time_s, time_s, time_s);
-            record.take(number, &Look { time_s, reference_n, filtered_reference_n, control_v, signals });
+            let (reference_n, filtered_reference_n, control_v) = (Some(time_s), Some(time_s), time_s);
+            let external_force_n = Some(time_s);
+            let look =
+                Look { time_s, reference_n, filtered_reference_n, control_v, external_force_n, signals };
+            record.take(number, &look);
             assert!(record.times_s.len() <= MOST_KEPT);
         }
         assert_eq!(record.looks_apart, 4);
         let expected: Vec<f64> = (0..looks).step_by(4).map(|number| number as f64).collect();
         assert!(record.times_s == expected && record.control_v == expected);
         assert!(record.signal("force_n") == expected && record.reference_n == expected);
-        assert!(record.filtered_reference_n == expected);
+        assert!(record.filtered_reference_n == expected && record.external_force_n == expected);
     }
 }

@@ -2,6 +2,8 @@
 
 use phea_dynamics::time_response::{Settling, StepBaseline, step_metrics};
 
+use crate::project::SignalKind;
+
 /// Share of a window, at its end, over which the steady-state error is averaged.
 const STEADY_SHARE: f64 = 0.1;
 
@@ -26,8 +28,51 @@ pub enum Cause {
         /// N.
         to_n: f64,
     },
+    /// A part of the reference begins to move.
+    ReferenceMotion {
+        /// What kind of part.
+        kind: SignalKind,
+    },
+    /// The open-loop command changes.
+    CommandStep {
+        /// V.
+        from_v: f64,
+        /// V.
+        to_v: f64,
+    },
+    /// A part of the open-loop command begins to move.
+    CommandMotion {
+        /// What kind of part.
+        kind: SignalKind,
+    },
     /// The load begins to move.
     LoadMotion,
+    /// A force on the load from outside begins or changes.
+    ExternalForce,
+}
+
+impl Cause {
+    /// Its word in answers.
+    pub(crate) fn word(&self) -> &'static str {
+        match self {
+            Cause::ReferenceStep { .. } => "reference_step",
+            Cause::ReferenceMotion { .. } => "reference_motion",
+            Cause::CommandStep { .. } => "command_step",
+            Cause::CommandMotion { .. } => "command_motion",
+            Cause::LoadMotion => "load_motion",
+            Cause::ExternalForce => "external_force",
+        }
+    }
+
+    /// What a figure says of the moment.
+    pub(crate) fn label(&self) -> &'static str {
+        match self {
+            Cause::ReferenceStep { .. } | Cause::CommandStep { .. } => "step",
+            Cause::ReferenceMotion { kind } | Cause::CommandMotion { kind } => kind.name(),
+            Cause::LoadMotion => "load moves",
+            Cause::ExternalForce => "force from outside",
+        }
+    }
 }
 
 /// A number, or why there is none.
@@ -45,8 +90,12 @@ pub struct Metrics {
     pub settling_time_s: Measured,
     /// The band of the settling time: percent of the step, or of the reference that a load motion disturbs.
     pub settling_band_percent: f64,
-    /// Largest difference of force and reference while the load moves and after, N.
+    /// Largest difference of force and reference while the load moves, or is pushed from outside, and after, N.
     pub disturbance_peak_n: Measured,
+    /// Largest difference of force and reference while the reference moves, N.
+    pub tracking_error_peak_n: Measured,
+    /// Largest magnitude of the force where no force is asked for, N.
+    pub force_peak_n: Measured,
     /// Reference less force, mean over the last tenth of the window, N.
     pub steady_state_error_n: Measured,
     /// Largest magnitude of the command, V.
@@ -61,6 +110,10 @@ const NO_MOTION: &str = "the load does not begin to move";
 const NOT_REACHED: &str = "the force does not come to 90 % of the step";
 const BEGUN_BEYOND: &str = "the force is beyond 10 % of the step when it comes";
 pub(crate) const NOT_SETTLED: &str = "outside the band at the end of the window";
+const MOVES: &str = "the reference moves";
+const OPEN_LOOP: &str = "open loop: no force is asked for";
+const ASKED_FOR: &str = "the reference says which force there should be";
+const STANDS_STILL: &str = "the reference stands still";
 const NO_REFERENCE: &str = "the reference is zero: a band around it has no width";
 
 /// The metrics of a window of what was seen; `band` in percent.
@@ -70,7 +123,11 @@ pub(crate) fn metrics_seen(all: &Seen<'_>, window: Window, band: f64) -> Metrics
     match window.cause {
         _ if seen.times_s.len() < 3 => Metrics::none(UNREACHED, band),
         Cause::ReferenceStep { from_n, to_n } => seen.step(window.start_s, [from_n, to_n], band, whole),
-        Cause::LoadMotion => seen.motion(window.start_s, band, whole),
+        _ if seen.reference_n.is_empty() => seen.open_loop(band),
+        Cause::ReferenceMotion { .. } | Cause::CommandStep { .. } | Cause::CommandMotion { .. } => {
+            Metrics { disturbance_peak_n: Err(NO_MOTION), ..seen.common(band, whole) }
+        }
+        Cause::LoadMotion | Cause::ExternalForce => seen.motion(window.start_s, band, whole),
     }
 }
 
@@ -82,6 +139,8 @@ impl Metrics {
             settling_time_s: Err(reason),
             settling_band_percent,
             disturbance_peak_n: Err(reason),
+            tracking_error_peak_n: Err(reason),
+            force_peak_n: Err(reason),
             steady_state_error_n: Err(reason),
             control_peak_v: Err(reason),
             control_rms_v: Err(reason),
@@ -95,6 +154,7 @@ pub(crate) struct Seen<'a> {
     /// Rising.
     pub(crate) times_s: &'a [f64],
     pub(crate) force_n: &'a [f64],
+    /// None where nothing is asked for.
     pub(crate) reference_n: &'a [f64],
     pub(crate) control_v: &'a [f64],
 }
@@ -124,6 +184,9 @@ impl<'a> Seen<'a> {
     }
 
     fn step(&self, start_s: f64, [from_n, to_n]: [f64; 2], band: f64, whole: bool) -> Metrics {
+        if self.reference_moves() {
+            return Metrics { disturbance_peak_n: Err(NO_MOTION), ..self.common(band, whole) };
+        }
         let beyond: Vec<f64> = self.force_n.iter().map(|force| (force - to_n) / (to_n - from_n)).collect();
         let baseline = StepBaseline { step_time_s: start_s, initial_value: from_n, final_value: to_n };
         let step = step_metrics(self.times_s, self.force_n, baseline, band).map_err(|_| NO_STEP);
@@ -146,15 +209,28 @@ impl<'a> Seen<'a> {
     }
 
     fn motion(&self, start_s: f64, band: f64, whole: bool) -> Metrics {
-        let errors = self.errors();
-        let largest = peak(&errors).max(peak(&errors.iter().map(|error| -error).collect::<Vec<_>>()));
+        let settling = match whole {
+            true if self.reference_moves() => Err(MOVES),
+            true => self.settled(start_s, band),
+            false => Err(UNREACHED),
+        };
         Metrics {
             overshoot_percent: Err(NO_STEP),
             rise_time_s: Err(NO_STEP),
-            settling_time_s: if whole { self.settled(start_s, band) } else { Err(UNREACHED) },
-            disturbance_peak_n: Ok(largest),
+            settling_time_s: settling,
+            disturbance_peak_n: Ok(self.largest_error()),
             ..self.common(band, whole)
         }
+    }
+
+    /// Whether the reference is not the same throughout.
+    fn reference_moves(&self) -> bool {
+        self.reference_n.windows(2).any(|pair| pair[0] != pair[1])
+    }
+
+    fn largest_error(&self) -> f64 {
+        let errors = self.errors();
+        peak(&errors).max(peak(&errors.iter().map(|error| -error).collect::<Vec<_>>()))
     }
 
     /// From the start until the last error beyond the band, between two looks on a straight line.
@@ -174,23 +250,42 @@ impl<'a> Seen<'a> {
     }
 
     fn common(&self, band: f64, whole: bool) -> Metrics {
-        let magnitudes: Vec<f64> = self.control_v.iter().map(|command| command.abs()).collect();
+        let moves = self.reference_moves();
         Metrics {
-            steady_state_error_n: if whole { Ok(self.steady_error()) } else { Err(UNREACHED) },
-            control_peak_v: Ok(magnitudes.iter().copied().fold(0.0, f64::max)),
-            control_rms_v: Ok(root_mean_square(self.times_s, self.control_v)),
-            ..Metrics::none(UNREACHED, band)
+            force_peak_n: Err(ASKED_FOR),
+            tracking_error_peak_n: if moves { Ok(self.largest_error()) } else { Err(STANDS_STILL) },
+            steady_state_error_n: if whole { self.steady_error() } else { Err(UNREACHED) },
+            ..self.commanded(if moves { MOVES } else { UNREACHED }, band)
         }
+    }
+
+    /// What the command alone tells.
+    fn commanded(&self, reason: &'static str, band: f64) -> Metrics {
+        Metrics {
+            control_peak_v: Ok(self.control_v.iter().map(|command| command.abs()).fold(0.0, f64::max)),
+            control_rms_v: Ok(root_mean_square(self.times_s, self.control_v)),
+            ..Metrics::none(reason, band)
+        }
+    }
+
+    fn open_loop(&self, band: f64) -> Metrics {
+        let magnitudes: Vec<f64> = self.force_n.iter().map(|force| force.abs()).collect();
+        Metrics { force_peak_n: Ok(peak(&magnitudes)), ..self.commanded(OPEN_LOOP, band) }
     }
 
     fn errors(&self) -> Vec<f64> {
         self.reference_n.iter().zip(self.force_n).map(|(reference, force)| reference - force).collect()
     }
 
-    fn steady_error(&self) -> f64 {
+    /// Where the reference stands still in the end.
+    fn steady_error(&self) -> Measured {
         let errors = self.errors();
         let last = ((errors.len() as f64 * STEADY_SHARE) as usize).max(1);
-        errors.iter().rev().take(last).sum::<f64>() / last as f64
+        let before = self.reference_n.len().saturating_sub(last);
+        if self.reference_n.get(before..).is_some_and(|end| end.windows(2).any(|pair| pair[0] != pair[1])) {
+            return Err(MOVES);
+        }
+        Ok(errors.iter().rev().take(last).sum::<f64>() / last as f64)
     }
 }
 
@@ -259,7 +354,7 @@ mod tests {
             control_v,
             signals,
             times_s,
-            looks_apart: 1,
+            ..Record::default()
         }
     }
 

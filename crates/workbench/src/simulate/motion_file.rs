@@ -1,23 +1,42 @@
-//! A measured motion of the load from a CSV file.
+//! A function of time from a CSV file: a measured motion of the load, or a recorded signal.
 //!
 //! ```text
 //! time_s, position_mm
 //! 0.000,  0.00
 //! 0.010,  0.02
 //! ```
-//! Rows in the order of time. The motion is counted from the first row, and starts where the load is.
+//! Rows in the order of time. A motion is counted from the first row, and starts where the load is; a signal has the values of the
+//! file, from its first row on.
 
 use phea_dynamics::simulation::{Profile, ProfileError};
 
 use crate::family::measured::table::{self, Cell};
-use crate::project::{Findings, Found, LoadMotion, Project, Report};
-use crate::quantity::{self, Dimension, LENGTH, TIME};
+use crate::project::{Findings, Found, LoadMotion, Project, Report, Signal};
+use crate::quantity::{self, Dimension, FORCE, LENGTH, TIME, VOLTAGE};
 use crate::source::Source;
 use crate::spelling::nearest;
 
-/// Columns of time, and of position, with the unit that belongs to each.
-const TIMES: [(&str, &str); 2] = [("time_s", "s"), ("time_ms", "ms")];
-const POSITIONS: [(&str, &str); 2] = [("position_m", "m"), ("position_mm", "mm")];
+/// Columns of time with the unit that belongs to each.
+const TIMES: Names = [("time_s", "s"), ("time_ms", "ms")];
+
+/// Names of a column with the unit that belongs to each.
+type Names = [(&'static str, &'static str); 2];
+
+/// A column of values.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Column {
+    names: Names,
+    dimension: &'static Dimension,
+}
+
+impl Column {
+    const POSITION: Column =
+        Column { names: [("position_m", "m"), ("position_mm", "mm")], dimension: &LENGTH };
+    pub(super) const FORCE: Column =
+        Column { names: [("force_n", "N"), ("force_kn", "kN")], dimension: &FORCE };
+    pub(super) const VOLTAGE: Column =
+        Column { names: [("voltage_v", "V"), ("voltage_mv", "mV")], dimension: &VOLTAGE };
+}
 
 /// The motion as a function of time, or what is wrong with the file.
 pub(super) fn motion(
@@ -25,41 +44,62 @@ pub(super) fn motion(
     project: &Project,
     declared: &LoadMotion,
 ) -> Result<Result<Profile, ProfileError>, Box<Report>> {
-    let mut findings = Findings::default();
-    let path = project.path_of(declared.file.as_deref().unwrap_or_default());
-    let rows = match source.read(&path) {
-        Ok(bytes) => rows(&path, &bytes, &mut findings),
-        Err(error) => {
-            findings.unreadable(&path, &error.to_string());
-            Vec::new()
-        }
-    };
-    if findings.error_count() > 0 {
-        return Err(Box::new(findings.report()));
-    }
+    let rows = read(source, project, declared.file.as_deref(), Column::POSITION)?;
     let (first_s, first_m) = rows.first().copied().unwrap_or_default();
     let times: Vec<f64> = rows.iter().map(|row| declared.start + row.0 - first_s).collect();
     let positions: Vec<f64> = rows.iter().map(|row| row.1 - first_m).collect();
     Ok(Profile::table(&times, &positions))
 }
 
-fn rows(path: &str, bytes: &[u8], findings: &mut Findings) -> Vec<(f64, f64)> {
+/// The signal as a function of time, zero before its first row, or what is wrong with the file.
+pub(super) fn signal(
+    source: &dyn Source,
+    project: &Project,
+    declared: &Signal,
+    column: Column,
+) -> Result<Result<Profile, ProfileError>, Box<Report>> {
+    let rows = read(source, project, declared.file.as_deref(), column)?;
+    let (start_s, first_s) = (declared.begins_s(), rows.first().copied().unwrap_or_default().0);
+    let times: Vec<f64> = rows.iter().map(|row| start_s + row.0 - first_s).collect();
+    let values: Vec<f64> = rows.iter().map(|row| row.1).collect();
+    Ok(Profile::table(&times, &values).map(|profile| profile.begun_at(start_s)))
+}
+
+fn read(
+    source: &dyn Source,
+    project: &Project,
+    file: Option<&str>,
+    column: Column,
+) -> Result<Vec<(f64, f64)>, Box<Report>> {
+    let mut findings = Findings::default();
+    let path = project.path_of(file.unwrap_or_default());
+    let rows = match source.read(&path) {
+        Ok(bytes) => rows(&path, &bytes, column, &mut findings),
+        Err(error) => {
+            findings.unreadable(&path, &error.to_string());
+            Vec::new()
+        }
+    };
+    if findings.error_count() > 0 { Err(Box::new(findings.report())) } else { Ok(rows) }
+}
+
+fn rows(path: &str, bytes: &[u8], values: Column, findings: &mut Findings) -> Vec<(f64, f64)> {
     let Some(table) = table::read(path, bytes, findings) else { return Vec::new() };
-    let columns = [column(&table.header, &TIMES, findings), column(&table.header, &POSITIONS, findings)];
-    unknown(&table.header, findings);
-    let [Some(time), Some(position)] = columns else { return Vec::new() };
+    let columns = [column(&table.header, TIMES, findings), column(&table.header, values.names, findings)];
+    unknown(&table.header, values.names, findings);
+    let [Some(time), Some(value)] = columns else { return Vec::new() };
     let mut rows: Vec<(f64, f64)> = Vec::with_capacity(table.rows.len());
     for row in table.rows.iter().filter(|row| table.is_complete(row, findings)).collect::<Vec<_>>() {
-        let values = [(time, &TIME), (position, &LENGTH)]
-            .map(|((index, unit), dimension)| value(row.get(index), unit, dimension));
-        match values {
+        let numbers = [(time, &TIME), (value, values.dimension)]
+            .map(|((index, unit), dimension)| number(row.get(index), unit, dimension));
+        match numbers {
             [Ok(time_s), Ok(_)] if rows.last().is_some_and(|last| last.0 >= time_s) => {
                 let place = row.get(time.0).map(|cell| cell.place).unwrap_or_default();
                 let found = Found::error(place, "times must increase from row to row");
                 findings.push(found.expected("a later time"));
                 return rows;
             }
-            [Ok(time_s), Ok(position_m)] => rows.push((time_s, position_m)),
+            [Ok(time_s), Ok(value)] => rows.push((time_s, value)),
             [one, other] => {
                 [one.err(), other.err()].into_iter().flatten().for_each(|found| findings.push(found))
             }
@@ -67,17 +107,14 @@ fn rows(path: &str, bytes: &[u8], findings: &mut Findings) -> Vec<(f64, f64)> {
     }
     if rows.len() < 2 && findings.error_count() == 0 {
         let place = table.header.first().map(|cell| cell.place).unwrap_or_default();
-        findings.push(Found::error(place, "a motion needs two rows at least"));
+        let what = if std::ptr::eq(values.dimension, &LENGTH) { "motion" } else { "signal" };
+        findings.push(Found::error(place, format!("a {what} needs two rows at least")));
     }
     rows
 }
 
 /// Where a column is, and its unit.
-fn column(
-    header: &[Cell<'_>],
-    names: &'static [(&'static str, &'static str); 2],
-    findings: &mut Findings,
-) -> Option<(usize, &'static str)> {
+fn column(header: &[Cell<'_>], names: Names, findings: &mut Findings) -> Option<(usize, &'static str)> {
     let unit = |cell: &Cell<'_>| names.iter().find(|(name, _)| *name == cell.text).map(|(_, unit)| *unit);
     let mut found =
         header.iter().enumerate().filter_map(|(index, cell)| Some((index, unit(cell)?, cell.place)));
@@ -87,14 +124,14 @@ fn column(
     }
     if first.is_none() {
         let place = header.first().map(|cell| cell.place).unwrap_or_default();
-        let [(one, _), (other, _)] = *names;
+        let [(one, _), (other, _)] = names;
         findings.push(Found::error(place, format!("the columns lack `{one}` or `{other}`")));
     }
     first.map(|(index, unit, _)| (index, unit))
 }
 
-fn unknown(header: &[Cell<'_>], findings: &mut Findings) {
-    let names = || TIMES.iter().chain(&POSITIONS).map(|(name, _)| *name);
+fn unknown(header: &[Cell<'_>], values: Names, findings: &mut Findings) {
+    let names = || TIMES.iter().chain(&values).map(|(name, _)| *name);
     for cell in header.iter().filter(|cell| !names().any(|name| name == cell.text)) {
         let found = Found::error(cell.place, format!("unknown column `{}`", cell.text));
         findings.push(match nearest(cell.text, names()) {
@@ -105,7 +142,7 @@ fn unknown(header: &[Cell<'_>], findings: &mut Findings) {
 }
 
 /// SI.
-fn value(cell: Option<&Cell<'_>>, unit: &str, dimension: &'static Dimension) -> Result<f64, Found> {
+fn number(cell: Option<&Cell<'_>>, unit: &str, dimension: &'static Dimension) -> Result<f64, Found> {
     let cell = cell.copied().unwrap_or(Cell { text: "", place: Default::default() });
     let bare = cell.text.parse::<f64>().is_ok_and(f64::is_finite);
     let value = bare.then(|| quantity::parse(&format!("{} {unit}", cell.text), dimension).ok()).flatten();

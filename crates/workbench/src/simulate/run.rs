@@ -9,9 +9,10 @@ use phea_hydraulics::machine::INDICATORS;
 
 use super::bench::{Bench, Control};
 use super::course::Course;
-use super::digital::{Digital, Samples};
+use super::digital::{Digital, Memory, Samples};
 use super::look::{Looking, Record};
 use super::metrics::{Metrics, metrics_seen};
+use super::saved::{self, SavedState};
 use super::{SimulateError, Table, Window};
 use crate::project::Scenario;
 
@@ -45,6 +46,23 @@ pub struct ScenarioRun {
     pub outside_model_s: Option<f64>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
+    /// Whether a stated command drove the valve, and no controller.
+    pub open_loop: bool,
+    /// Chambers whose pressure went beyond what the expansion of their hose was measured at.
+    pub beyond_expansion: Vec<BeyondExpansion>,
+    /// Its end, to go on from, or why it is not saved.
+    pub end: Result<SavedState, &'static str>,
+}
+
+/// A chamber above the pressure up to which the expansion of its hose was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeyondExpansion {
+    /// `a` or `b`.
+    pub chamber: char,
+    /// Its highest pressure, Pa.
+    pub peak_pa: f64,
+    /// Where the expansion is stated, Pa.
+    pub stated_pa: f64,
 }
 
 /// Something that began or ended.
@@ -125,21 +143,22 @@ pub(super) fn run(
     let looks_per_row = looks_per_row(scenario);
     let look_s = scenario.output_step / looks_per_row as f64;
     let (samples, full) = (RefCell::new(Samples::default()), Cell::new(false));
+    let memory = RefCell::new(Memory::default());
     let mut steps = 0;
     let mut watch = |time_s: f64| {
         steps += 1;
         steps % STEPS_UNWATCHED != 0 || (!full.get() && watch(time_s))
     };
     let reference = Input::Value(course.reference.clone());
-    let ground = [Input::Value(course.ground.clone()), Input::Rate(course.ground.clone())];
     let mut inputs = match &bench.control {
         Control::Continuous(_) => vec![reference],
         Control::Sampled(_) => vec![Input::Command, reference],
+        Control::Open(_) => vec![Input::Value(course.command.clone()), reference],
     };
-    inputs.extend(ground);
+    inputs.extend(course.machine_inputs());
     let drive = Drive { duration_s: scenario.duration, output_step_s: look_s, inputs };
     let observer = Looking::new(bench, &samples, (table, looks_per_row), &full);
-    let driven = driven(bench, course, (&drive, observer), &samples, &mut watch);
+    let driven = driven(bench, course, (&drive, observer), (&samples, &memory), &mut watch);
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let (outcome, seen) = driven.map_err(named)?;
     let (record, looks) = seen.finish()?;
@@ -148,6 +167,9 @@ pub(super) fn run(
     let metrics = |window: &Window| metrics_seen(&looks.seen(), *window, band);
     let windows = course.windows.iter().map(|window| (*window, metrics(window))).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
+    let memory = memory.into_inner();
+    let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
+    let end = saved::of_end(bench, course, (outcome.status, &outcome.end, scenario.duration), memory);
     Ok(ScenarioRun {
         name: scenario.name.clone(),
         status: outcome.status,
@@ -159,6 +181,9 @@ pub(super) fn run(
         occurrences,
         outside_model_s,
         settling_band_percent: band,
+        open_loop: scenario.is_open_loop(),
+        beyond_expansion: beyond_expansion(bench, looks.peak_pressures_pa),
+        end,
     })
 }
 
@@ -167,7 +192,7 @@ fn driven<'a>(
     bench: &'a Bench,
     course: &Course,
     (drive, observer): (&'a Drive, Looking<'a>),
-    samples: &'a RefCell<Samples>,
+    (samples, memory): (&'a RefCell<Samples>, &'a RefCell<Memory>),
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(Outcome, Looking<'a>), SimulationError> {
     let start = course.start.clone();
@@ -177,9 +202,14 @@ fn driven<'a>(
             drive_one(closed.as_ref(), task, &bench.settings, watch)
         }
         Control::Sampled(sampled) => {
-            let digital: Box<dyn Sampler + 'a> = Box::new(Digital::new(sampled, course.holding, samples));
+            let digital = Digital::new(sampled, &course.waking, samples).remembered_in(memory);
+            let digital: Box<dyn Sampler + 'a> = Box::new(digital);
             let task = Task { start, course: drive, sampler: Some(digital), observer };
             drive_one(&sampled.held, task, &bench.settings, watch)
+        }
+        Control::Open(held) => {
+            let task = Task { start, course: drive, sampler: None, observer };
+            drive_one(held.as_ref(), task, &bench.settings, watch)
         }
     }
 }
@@ -200,6 +230,10 @@ fn found(bench: &Bench, course: &Course, outcome: &Outcome, samples: &Samples) -
             found.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
             found
         }
+        Control::Open(held) => {
+            let first = inputs_at_start(course, vec![course.command.value(0.0), reference], held.as_ref());
+            occurrences(held.as_ref(), &course.start, &first, &outcome.events)
+        }
     }
 }
 
@@ -213,6 +247,14 @@ fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f6
     occurrences.iter().find(|one| one.begins && outside(one.kind)).map(|one| one.time_s)
 }
 
+fn beyond_expansion(bench: &Bench, peaks_pa: [f64; 2]) -> Vec<BeyondExpansion> {
+    let beyond = |((chamber, peak_pa), stated): ((char, f64), Option<f64>)| {
+        let stated_pa = stated?;
+        (peak_pa > stated_pa * (1.0 + 1e-6)).then_some(BeyondExpansion { chamber, peak_pa, stated_pa })
+    };
+    ['a', 'b'].into_iter().zip(peaks_pa).zip(bench.expansion_stated_at).filter_map(beyond).collect()
+}
+
 fn looks_per_row(scenario: &Scenario) -> usize {
     let wanted = (scenario.output_step / LONGEST_LOOK_S).ceil().max(1.0);
     let rows = scenario.duration / scenario.output_step;
@@ -222,9 +264,10 @@ fn looks_per_row(scenario: &Scenario) -> usize {
 /// The limit of the command, beside [`INDICATORS`].
 pub(crate) const COMMAND_LIMIT: &str = "command_limit";
 
-/// Inputs at time zero: those before the machine's, its ground, and the waves under way.
+/// Inputs at time zero: those before the machine's, its ground, the force from outside, and the waves under way.
 fn inputs_at_start(course: &Course, mut first: Vec<f64>, system: &impl System<f64>) -> Vec<f64> {
     first.extend([course.ground.value(0.0), course.ground.rate(0.0)]);
+    first.extend(course.external_force.as_ref().map(|force| force.value(0.0)));
     first.extend(course.start.iter().skip(system.states()));
     first
 }

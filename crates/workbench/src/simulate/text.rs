@@ -1,10 +1,10 @@
 //! What `simulate` and `compare` say to people.
 
 use super::metrics::{Measured, NOT_SETTLED};
-use super::{Cause, Comparison, Metrics, Occurrence, ScenarioRun, Stopped, Window};
+use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, ScenarioRun, Stopped, Window};
 use crate::answer::{significant, table};
 use crate::project::Loaded;
-use crate::quantity::{DisplayUnit, FORCE, TIME, display};
+use crate::quantity::{DisplayUnit, FORCE, PRESSURE, TIME, VOLTAGE, display};
 
 /// Occurrences that are told one by one; more are counted.
 const TOLD: usize = 8;
@@ -37,11 +37,12 @@ fn not_run(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
 /// Name and end of a run, and what it cost.
 pub(crate) fn headline(run: &ScenarioRun) -> String {
     let work = format!("{} steps, {} rejected", run.work.steps, run.work.rejected);
+    let loop_words = if run.open_loop { " open loop" } else { "" };
     match run.stopped() {
-        None => format!("{}: completed ({work})", run.name),
+        None => format!("{}: completed{loop_words} ({work})", run.name),
         Some(stopped) => {
             let why = why(&stopped);
-            format!("{}: ended at {} s, {why} ({work})", run.name, significant(stopped.time_s, 6))
+            format!("{}: ended{loop_words} at {} s, {why} ({work})", run.name, significant(stopped.time_s, 6))
         }
     }
 }
@@ -63,23 +64,27 @@ fn why(stopped: &Stopped) -> String {
     told.to_string()
 }
 
+/// Metrics that have a column only where some window has them.
+const RARE: [&str; 2] = ["tracking error peak", "force peak"];
+
 fn windows(run: &ScenarioRun) -> String {
     let band = run.settling_band_percent;
-    let settling = format!("settling ({band} %)");
-    let mut rows = table(&[
-        "event",
-        "overshoot",
-        "rise",
-        settling.as_str(),
-        "disturbance",
-        "steady-state error",
-        "control peak",
-        "control rms",
-    ]);
-    for (window, metrics) in &run.windows {
-        let mut cells = vec![cause_words(window)];
-        cells.extend(cells_of(metrics));
-        rows.add_row(cells);
+    let cells: Vec<[String; METRICS.len()]> =
+        run.windows.iter().map(|(_, metrics)| cells_of(metrics)).collect();
+    let has = |metric: usize| cells.iter().any(|cells| cells[metric] != ABSENT);
+    let always = |name: &str| !run.open_loop && !RARE.contains(&name);
+    let shown: Vec<usize> =
+        (0..METRICS.len()).filter(|metric| always(METRICS[*metric]) || has(*metric)).collect();
+    let head = |metric: &usize| match METRICS[*metric] {
+        "settling" => format!("settling ({band} %)"),
+        "disturbance peak" => "disturbance".to_string(),
+        name => name.to_string(),
+    };
+    let heads: Vec<String> = std::iter::once("event".to_string()).chain(shown.iter().map(head)).collect();
+    let mut rows = table(&heads.iter().map(String::as_str).collect::<Vec<_>>());
+    for ((window, _), cells) in run.windows.iter().zip(&cells) {
+        let shown = shown.iter().map(|metric| cells[*metric].clone());
+        rows.add_row(std::iter::once(cause_words(window)).chain(shown).collect::<Vec<_>>());
     }
     rows.trim_fmt()
 }
@@ -89,16 +94,22 @@ pub(crate) fn cause_words(window: &Window) -> String {
     let at = display(window.start_s, &TIME, 4);
     match window.cause {
         Cause::ReferenceStep { to_n, .. } => format!("step to {} at {at}", display(to_n, &FORCE, 4)),
+        Cause::ReferenceMotion { kind } => format!("{} at {at}", kind.name()),
+        Cause::CommandStep { to_v, .. } => format!("command to {} at {at}", display(to_v, &VOLTAGE, 4)),
+        Cause::CommandMotion { kind } => format!("{} of the command at {at}", kind.name()),
         Cause::LoadMotion => format!("load motion at {at}"),
+        Cause::ExternalForce => format!("force from outside at {at}"),
     }
 }
 
 /// Names and cells of the metrics, in one order.
-pub(crate) const METRICS: [&str; 7] = [
+pub(crate) const METRICS: [&str; 9] = [
     "overshoot",
     "rise",
     "settling",
     "disturbance peak",
+    "tracking error peak",
+    "force peak",
     "steady-state error",
     "control peak",
     "control rms",
@@ -108,7 +119,7 @@ pub(crate) const METRICS: [&str; 7] = [
 pub(crate) const ABSENT: &str = "-";
 
 /// Each metric with its unit; [`ABSENT`] where there is none.
-pub(crate) fn cells_of(metrics: &Metrics) -> [String; 7] {
+pub(crate) fn cells_of(metrics: &Metrics) -> [String; METRICS.len()] {
     let cell = |measured: Measured, digits: usize, unit: &str| {
         measured.map_or(ABSENT.to_string(), |value| format!("{} {unit}", significant(value, digits)))
     };
@@ -123,6 +134,8 @@ pub(crate) fn cells_of(metrics: &Metrics) -> [String; 7] {
         cell(metrics.rise_time_s, 3, "s"),
         settling,
         cell(metrics.disturbance_peak_n, 4, "N"),
+        cell(metrics.tracking_error_peak_n, 4, "N"),
+        cell(metrics.force_peak_n, 4, "N"),
         cell(error, 2, "N"),
         cell(metrics.control_peak_v, 3, "V"),
         cell(metrics.control_rms_v, 3, "V"),
@@ -149,11 +162,20 @@ pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
     if found.len() > TOLD {
         sentences.push(format!("and {} more changes of this kind, listed in the JSON", found.len() - TOLD));
     }
+    sentences.extend(run.beyond_expansion.iter().map(beyond_words));
     sentences.extend(run.outside_model_s.map(|time_s| {
         let from = DisplayUnit::SECOND.number(time_s, 5);
         format!("from {from} s on the equations do not hold: what follows is theirs, not that of a machine")
     }));
     sentences
+}
+
+fn beyond_words(beyond: &BeyondExpansion) -> String {
+    let [peak, stated] = [beyond.peak_pa, beyond.stated_pa].map(|pressure| display(pressure, &PRESSURE, 4));
+    let chamber = beyond.chamber.to_ascii_uppercase();
+    format!(
+        "chamber {chamber} comes to {peak}; the expansion of its hose is stated at {stated}, and carried on along its slope"
+    )
 }
 
 fn occurrence_words(occurrence: &Occurrence) -> String {
@@ -207,7 +229,7 @@ fn side_by_side(columns: &[Option<&ScenarioRun>]) -> String {
             columns.iter().map(|run| run.and_then(|run| run.windows.get(index))).collect();
         let Some((first, _)) = windows.iter().flatten().next() else { continue };
         let mut name = cause_words(first);
-        let cells: Vec<Option<[String; 7]>> =
+        let cells: Vec<Option<[String; METRICS.len()]>> =
             windows.iter().map(|window| window.map(|(_, metrics)| cells_of(metrics))).collect();
         for (row, metric) in METRICS.iter().enumerate() {
             let values = cells.iter().map(|cells| cells.as_ref().map_or(ABSENT, |cells| cells[row].as_str()));

@@ -1,9 +1,10 @@
 use crate::portable;
 
 /// One smooth piece of a [`super::Profile`]: an analytic function, defined beyond its ends as well.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    shape: Shape,
+    /// What is added up beside the offset; a piece without any stands still.
+    terms: Vec<Shape>,
     offset: f64,
 }
 
@@ -26,13 +27,28 @@ pub(super) enum Shape {
     Polynomial { origin_s: f64, span_s: f64, coefficients: [f64; 6] },
     /// d (1 - exp(-(t - origin)/tau)).
     Exponential { origin_s: f64, time_constant_s: f64, distance: f64 },
-    /// a sin(omega tau + r tau^2/2), tau = t - origin; the frequency omega + r tau holds up to the span.
-    Sine { origin_s: f64, amplitude: f64, frequency_rad_per_s: f64, sweep_rad_per_s2: f64, span_s: f64 },
+    /// a sin(omega tau + r tau^2/2 + phi), tau = t - origin; the frequency omega + r tau holds up to the span.
+    Sine {
+        origin_s: f64,
+        amplitude: f64,
+        frequency_rad_per_s: f64,
+        sweep_rad_per_s2: f64,
+        span_s: f64,
+        phase_rad: f64,
+    },
 }
 
 impl Piece {
     pub(super) fn new(shape: Shape) -> Piece {
-        Piece { shape, offset: 0.0 }
+        match shape {
+            Shape::Constant { value } => Piece { terms: Vec::new(), offset: value },
+            _ => Piece { terms: vec![shape], offset: 0.0 },
+        }
+    }
+
+    /// The sum of shapes that move.
+    pub(super) fn of(terms: Vec<Shape>) -> Piece {
+        Piece { terms, offset: 0.0 }
     }
 
     /// The piece with a number added to its values.
@@ -40,11 +56,22 @@ impl Piece {
         Piece { offset: self.offset + by, ..self }
     }
 
+    /// The sum of two pieces.
+    pub(super) fn plus(mut self, other: &Piece) -> Piece {
+        self.terms.extend_from_slice(&other.terms);
+        self.shifted(other.offset)
+    }
+
     /// The function, its rate and its acceleration at a time.
     #[inline]
     pub fn at(&self, time_s: f64) -> Moment {
-        let moment = self.shape.at(time_s);
-        Moment { value: moment.value + self.offset, ..moment }
+        let [mut value, mut rate, mut acceleration] = [0.0; 3];
+        for moment in self.terms.iter().map(|shape| shape.at(time_s)) {
+            value += moment.value;
+            rate += moment.rate;
+            acceleration += moment.acceleration;
+        }
+        Moment { value: value + self.offset, rate, acceleration }
     }
 }
 
@@ -61,9 +88,9 @@ impl Shape {
                 let rate = distance * (1.0 + approached) / time_constant_s;
                 Moment { value: -distance * approached, rate, acceleration: -rate / time_constant_s }
             }
-            Shape::Sine { origin_s, amplitude, frequency_rad_per_s, sweep_rad_per_s2, .. } => {
+            Shape::Sine { origin_s, amplitude, frequency_rad_per_s, sweep_rad_per_s2, phase_rad, .. } => {
                 let tau = time_s - origin_s;
-                let phase = (frequency_rad_per_s + 0.5 * sweep_rad_per_s2 * tau) * tau;
+                let phase = (frequency_rad_per_s + 0.5 * sweep_rad_per_s2 * tau) * tau + phase_rad;
                 let frequency = frequency_rad_per_s + sweep_rad_per_s2 * tau;
                 let (sine, cosine) = (portable::sin(phase), portable::cos(phase));
                 Moment {
@@ -79,19 +106,19 @@ impl Shape {
 impl Piece {
     /// The value of a piece that does not change.
     pub(in crate::simulation) fn constant(&self) -> Option<f64> {
-        match self.shape {
-            Shape::Constant { value } => Some(value + self.offset),
-            _ => None,
-        }
+        self.terms.is_empty().then_some(self.offset)
     }
 
     /// A quarter of the shortest period within the piece, in s; none without a swing.
     pub(super) fn quarter_period_s(&self) -> Option<f64> {
-        let Shape::Sine { frequency_rad_per_s, sweep_rad_per_s2, span_s, .. } = self.shape else {
-            return None;
+        let quarter = |shape: &Shape| match *shape {
+            Shape::Sine { frequency_rad_per_s, sweep_rad_per_s2, span_s, .. } => {
+                let highest = frequency_rad_per_s.max(frequency_rad_per_s + sweep_rad_per_s2 * span_s);
+                Some(0.5 * std::f64::consts::PI / highest)
+            }
+            _ => None,
         };
-        let highest = frequency_rad_per_s.max(frequency_rad_per_s + sweep_rad_per_s2 * span_s);
-        Some(0.5 * std::f64::consts::PI / highest)
+        self.terms.iter().filter_map(quarter).reduce(f64::min)
     }
 }
 

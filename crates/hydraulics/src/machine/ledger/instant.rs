@@ -12,6 +12,8 @@ pub(super) struct Instant<T> {
     pub(super) state: MachineState<T>,
     pub(super) load: LoadMotion<T>,
     pub(super) ground: LoadMotion<T>,
+    /// Of the force from outside on the load, in W.
+    pub(super) external_power: T,
     pub(super) flows: Flows<T>,
     /// Chambers, with their lines where these are lumped.
     pub(super) sides: [Volume<T>; 2],
@@ -92,6 +94,7 @@ impl<S: Scalar> Machine<S> {
         let state = self.layout.read(vector);
         let ground = ground_of(inputs);
         let load = self.load_of(&state, &ground);
+        let external = self.layout.external_force(inputs);
         let ports = self.ports(&state, vector);
         let flows = self.flows(&state, ports);
         let ([port_a, port_b], [from_a, from_b]) = (ports, flows.from_valve);
@@ -106,6 +109,7 @@ impl<S: Scalar> Machine<S> {
             state,
             load,
             ground,
+            external_power: external.map_or(T::from(0.0), |force| force * load.velocity),
             flows,
             sides,
         })

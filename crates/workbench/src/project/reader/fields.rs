@@ -6,7 +6,7 @@ use crate::project::Origin;
 use crate::project::formula::Formula;
 use crate::project::key::Key;
 use crate::project::text::Found;
-use crate::project::tree::Value;
+use crate::project::tree::{Node, Value};
 use crate::project::visitor::{Form, Kinds, Named, Shape, Visitor};
 use crate::spelling::nearest;
 
@@ -223,16 +223,18 @@ impl Visitor for Reader<'_> {
             let help = format!("write [[{}]] over each", self.path(key.name));
             return self.findings.push(Found::error(hit.node.place, message).help(help));
         };
-        for (index, node) in items.iter().enumerate() {
-            let path = format!("{}[{index}]", self.path(key.name));
-            self.item_places.insert(path.clone(), node.place);
-            if self.enter(key, Hit { node, entry: hit.entry }, path) {
-                let mut value = T::default();
-                visit(&mut value, self);
-                self.close();
-                field.push(value);
-            }
-        }
+        let items: Vec<&Node> = items.iter().collect();
+        self.each_table(key, &items, hit, field, visit);
+    }
+
+    fn one_or_more<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
+        let Some(hit) = self.find(key) else { return };
+        let items: Vec<&Node> = match &hit.node.value {
+            Value::List(items) => items.iter().collect(),
+            Value::Table(_) => vec![hit.node],
+            _ => return self.wrong_kind(key, "a table or a list of tables", hit.node),
+        };
+        self.each_table(key, &items, hit, field, visit);
     }
 
     fn dictionary<T: Default>(
@@ -335,6 +337,29 @@ impl Visitor for Reader<'_> {
             Value::Table(_) => Form::Table,
             Value::Text(text) if self.reads_as_formula(key, text) => Form::Text,
             _ => Form::Number,
+        }
+    }
+}
+
+impl<'a> Reader<'a> {
+    /// Reads the tables of a list.
+    fn each_table<T: Default>(
+        &mut self,
+        key: Key,
+        items: &[&'a Node],
+        hit: Hit<'a>,
+        field: &mut Vec<T>,
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        for (index, &node) in items.iter().enumerate() {
+            let path = format!("{}[{index}]", self.path(key.name));
+            self.item_places.insert(path.clone(), node.place);
+            if self.enter(key, Hit { node, entry: hit.entry }, path) {
+                let mut value = T::default();
+                visit(&mut value, self);
+                self.close();
+                field.push(value);
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use super::{Check, line_motion};
 use crate::project::{
     Actuator, Cylinder, Friction, FrictionModel, Interval, Line, Lines, Load, LoadModel, SupplyModel, Valve,
 };
+use crate::quantity::{self, PRESSURE};
 
 pub(super) fn actuator(actuator: &Actuator, check: &mut Check<'_, '_>) {
     supply(actuator, check);
@@ -166,6 +167,7 @@ fn lines(actuator: &Actuator, lines: &Lines, check: &mut Check<'_, '_>) {
         let path = if check.declared(&own) { own } else { "line".to_string() };
         line(side, &path, check);
         line_motion::motion(side, &path, check);
+        expansion(side, actuator.supply.pressure, &path, check);
         let working = side.hose_properties.working_pressure;
         if working.is_some_and(|working| working < actuator.supply.pressure) {
             let message = "the hose's `working_pressure` is below the supply pressure";
@@ -175,6 +177,19 @@ fn lines(actuator: &Actuator, lines: &Lines, check: &mut Check<'_, '_>) {
             );
         }
     }
+}
+
+/// The expansion of a hose is known up to the pressure it is stated at.
+fn expansion(line: &Line, supply: f64, path: &str, check: &mut Check<'_, '_>) {
+    let Some(stated) = line.expansion_stated_at().filter(|stated| supply > stated * (1.0 + 1e-9)) else {
+        return;
+    };
+    let [stated, supply] = [stated, supply].map(|pressure| quantity::display(pressure, &PRESSURE, 4));
+    let message = format!(
+        "the expansion of the hose is stated at {stated}, and the supply has {supply}: in between it is carried on along its slope"
+    );
+    let key = if line.hose.is_some() { "hose" } else { "volumetric_expansion_pressure" };
+    check.warning(&format!("{path}.{key}"), message);
 }
 
 fn line(line: &Line, path: &str, check: &mut Check<'_, '_>) {

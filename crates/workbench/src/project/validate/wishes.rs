@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use super::signal::signals;
 use super::{Check, linear_parameter};
 use crate::answer::significant;
 use crate::project::{
-    Actuator, Campaign, DELAY_PATH, Distribution, Formula, LINEAR_PARAMETERS, LinearParameter, LoadMotion,
-    LoadMotionKind, Plant, Project, Scenario, Sizing, Spacing, Uncertain,
+    Actuator, Campaign, DELAY_PATH, Distribution, Formula, LINEAR_PARAMETERS, LinearParameter, LoadModel,
+    LoadMotion, LoadMotionKind, Plant, Project, Scenario, SignalUnit, Sizing, Spacing, Start, Uncertain,
 };
 use crate::quantity::{self, RATIO};
 use crate::spelling::nearest;
@@ -26,7 +27,7 @@ pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut 
     let mut names = BTreeSet::new();
     for (index, scenario) in project.scenarios.iter().enumerate() {
         let path = format!("scenario[{index}]");
-        one_scenario(scenario, actuator.cylinder.stroke, &path, check);
+        one_scenario(scenario, actuator, &path, check);
         if !names.insert(&scenario.name) {
             check.error(&format!("{path}.name"), format!("a second scenario called \"{}\"", scenario.name));
         }
@@ -85,18 +86,34 @@ fn rows(scenarios: &[Scenario], check: &mut Check<'_, '_>) {
     }
 }
 
-fn one_scenario(scenario: &Scenario, stroke: f64, path: &str, check: &mut Check<'_, '_>) {
+fn one_scenario(scenario: &Scenario, actuator: &Actuator, path: &str, check: &mut Check<'_, '_>) {
+    let stroke = actuator.cylinder.stroke;
     if scenario.output_step > scenario.duration && scenario.duration > 0.0 {
         check.error(&format!("{path}.output_step"), "`output_step` is longer than `duration`");
+    }
+    if let Some(start) = scenario.start.as_ref().filter(|start| start.file.is_some()) {
+        let stated = Start { file: None, ..start.clone() } != Start::default();
+        if stated {
+            let message = "a start from a `file` has every state already";
+            check.error_with_help(&format!("{path}.start.file"), message, "state nothing beside it");
+        }
     }
     let position = scenario.start.as_ref().and_then(|start| start.position);
     if position.is_some_and(|position| position > stroke && stroke > 0.0) {
         check.error(&format!("{path}.start.position"), "`position` is beyond the stroke");
     }
-    let times: Vec<f64> = scenario.reference.iter().map(|step| step.at).collect();
-    check.increasing(&format!("{path}.reference"), &times);
-    if scenario.duration > 0.0 && times.last().is_some_and(|last| *last > scenario.duration) {
-        check.warning(&format!("{path}.reference"), "the last reference step is after the end");
+    signals(&scenario.reference, SignalUnit::REFERENCE, [path, "reference"], scenario.duration, check);
+    signals(&scenario.command, SignalUnit::COMMAND, [path, "command"], scenario.duration, check);
+    if scenario.is_open_loop() && !scenario.reference.is_empty() {
+        let message = "a scenario with a `command` runs open loop: nothing follows its `reference`";
+        check.error_with_help(&format!("{path}.command"), message, "give one of the two");
+    }
+    let (external, unit) = (&scenario.external_force, SignalUnit::EXTERNAL_FORCE);
+    signals(external, unit, [path, "external_force"], scenario.duration, check);
+    if !external.is_empty() && actuator.load.model == LoadModel::Prescribed {
+        let message = "an `external_force` moves no load whose motion is prescribed";
+        let help = "give [load] a model with a mass: \"spring_mass_damper\" or \"wall\"";
+        check.error_with_help(&format!("{path}.external_force"), message, help);
     }
     if let Some(motion) = &scenario.load_motion {
         if scenario.duration > 0.0 && motion.start > scenario.duration {
