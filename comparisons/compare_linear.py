@@ -2,9 +2,9 @@
 
     python comparisons/compare_linear.py [systems.json]
 
-`cargo run --example reference_systems` prints a hundred random systems with everything phea computes of them; here the same is
-computed by python-control 0.10 and SciPy 1.17 and must agree to 1e-9 relative (step metrics: within one sample on the
-same samples).
+`cargo run --example reference_systems`, or the program that the variable REFERENCE_SYSTEMS names, prints a hundred random
+systems with everything phea computes of them; here the same is computed by python-control 0.10 and SciPy 1.17 and must agree
+to 1e-9 relative (step metrics: within one sample on the same samples).
 
 python-control expands a factored system into polynomials, which loses small roots beside large ones, so it is given
 factored systems as a series of first- and second-order state-space sections. Where a peer still differs, arithmetic
@@ -13,6 +13,7 @@ with 50 digits (mpmath) on the same input decides: phea must be within the toler
 """
 
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -440,7 +441,8 @@ def reference_systems():
     if len(sys.argv) > 1:
         return json.loads(pathlib.Path(sys.argv[1]).read_text())
     root = pathlib.Path(__file__).resolve().parent.parent
-    command = ["cargo", "run", "--quiet", "--example", "reference_systems"]
+    built = os.environ.get("REFERENCE_SYSTEMS")
+    command = [built] if built else ["cargo", "run", "--quiet", "--example", "reference_systems"]
     return json.loads(subprocess.run(command, cwd=root, check=True, capture_output=True, text=True).stdout)
 
 

@@ -1,6 +1,6 @@
 """Compares `phea verify` with a search of its own over the same project files.
 
-    python comparisons/compare_verify.py [--alone] [PHEA]
+    python comparisons/compare_verify.py [--alone] [PHEA]        # or the variable PHEA; without either, what cargo builds
 
 Each loop of the examples is evaluated from the text of its project file (loop_model.py), its worst margins are sought by
 dense grids and SciPy's searches (worst_case.py), its stability and delay margin by poles, by the growth of the argument
@@ -10,6 +10,7 @@ verdicts, exit status and frequencies agree. `--alone` leaves phea out and holds
 """
 
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -193,7 +194,8 @@ def main(arguments):
     warnings.filterwarnings("ignore", category=RuntimeWarning)  # infinities at poles on the axis are discarded
     alone = "--alone" in arguments
     named = [argument for argument in arguments if argument != "--alone"]
-    program = named or ["cargo", "run", "-q", "-p", "phea-cli", "--"]
+    built = [os.environ["PHEA"]] if "PHEA" in os.environ else None
+    program = named or built or ["cargo", "run", "-q", "-p", "phea-cli", "--"]
     findings = Findings()
     for name in measured_plants.PLANTS:
         same = (measured_plants.FOLDER / f"{name}.csv").read_text() == measured_plants.text(name)

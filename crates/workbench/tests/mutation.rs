@@ -16,7 +16,8 @@ use std::thread;
 use phea_workbench::project::{self, STARTER};
 use phea_workbench::source::Memory;
 
-const INPUTS: u64 = 200_000;
+/// In the test command; the stage `mutation` of `cargo xtask ci` reads twenty times as many.
+const INPUTS: u64 = 10_000;
 const THREADS: u64 = 2;
 
 /// Marsaglia's xorshift with 64 bits.
@@ -199,8 +200,8 @@ fn run(seed: u64, inputs: u64, valid: &[Vec<u8>], all: &[Vec<u8>]) -> u64 {
     accepted
 }
 
-#[test]
-fn mutated_projects_neither_panic_nor_hang() {
+/// Reads so many inputs, split between the threads.
+fn neither_panic_nor_hang(inputs: u64) {
     let mut valid = corpus(&["tests/project_valid", "../../examples/ybitu"]);
     valid.push(STARTER.as_bytes().to_vec());
     let all: Vec<_> =
@@ -208,13 +209,24 @@ fn mutated_projects_neither_panic_nor_hang() {
     let accepted: u64 = thread::scope(|scope| {
         let one = |seed| {
             let (valid, all) = (&valid, &all);
-            scope.spawn(move || run(seed, INPUTS / THREADS, valid, all))
+            scope.spawn(move || run(seed, inputs / THREADS, valid, all))
         };
         let threads = [0x9e37_79b9_7f4a_7c15, 0xd1b5_4a32_d192_ed03].map(one);
         threads.into_iter().map(|thread| thread.join().expect("no panic")).sum()
     });
     // Mutations that leave a project valid make the test reach past the reader; most do not.
-    assert!(accepted > INPUTS / 100 && accepted < INPUTS, "{accepted}");
+    assert!(accepted > inputs / 100 && accepted < inputs, "{accepted}");
+}
+
+#[test]
+fn mutated_projects_neither_panic_nor_hang() {
+    neither_panic_nor_hang(INPUTS);
+}
+
+#[test]
+#[ignore = "long: `cargo xtask ci mutation` runs it"]
+fn many_mutated_projects_neither_panic_nor_hang() {
+    neither_panic_nor_hang(20 * INPUTS);
 }
 
 #[test]

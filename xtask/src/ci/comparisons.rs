@@ -2,37 +2,118 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::thread::JoinHandle;
 
-use super::{Outcome, execute};
+use super::{Outcome, execute, execute_with, tools};
 use crate::repository::Repository;
+
+/// What the scripts that ask phea begin with.
+const COMPARE: &str = "comparisons/compare_";
 
 const REQUIREMENTS: &str = "comparisons/requirements.txt";
 
-/// Makes the environment, then runs every comparison and every script that a golden number names as its origin.
+/// What was found beside the other stages: the Python, and each script that failed.
+type Recomputed = Result<(String, Vec<String>), String>;
+
+/// Recomputations that go on beside the other stages.
+pub(super) type Begun = JoinHandle<(String, Recomputed)>;
+
+/// Makes the environment, runs every comparison and every script that a golden number names as its origin.
 pub(super) fn run(root: &Path) -> Outcome {
-    let scripts = match Repository::read(root) {
-        Ok(repository) => scripts(&repository),
-        Err(error) => return Outcome::Failed(format!("cannot read the repository: {error}")),
+    end(root, begin(root))
+}
+
+/// Begins with the scripts that ask nothing of phea: each runs on one core, its output kept until the end.
+pub(super) fn begin(root: &Path) -> Begun {
+    let root = root.to_path_buf();
+    std::thread::spawn(move || {
+        let mut told = String::new();
+        let recomputed = recompute(&root, &mut told);
+        (told, recomputed)
+    })
+}
+
+/// Waits for what was begun, then runs the scripts that ask phea.
+pub(super) fn end(root: &Path, begun: Begun) -> Outcome {
+    let Ok((told, recomputed)) = begun.join() else {
+        return Outcome::Failed("the recomputations ended early".to_string());
     };
-    let python = match environment(root) {
-        Ok(python) => python.to_string_lossy().into_owned(),
+    print!("{told}");
+    let (python, mut failed) = match recomputed {
+        Ok(found) => found,
         Err(problem) => return Outcome::Failed(problem),
     };
-    if !scripts.iter().any(|script| script.starts_with("comparisons/compare_")) {
-        return Outcome::Failed("there is no comparisons/compare_*.py".to_string());
+    let asking: Vec<String> = match Repository::read(root) {
+        Ok(repository) => scripts(&repository).into_iter().filter(|script| asks_phea(script)).collect(),
+        Err(error) => return Outcome::Failed(format!("cannot read the repository: {error}")),
+    };
+    if asking.is_empty() {
+        return Outcome::Failed(format!("there is no {COMPARE}*.py"));
     }
-    let failed: Vec<String> = scripts
-        .into_iter()
-        .filter(|script| !matches!(execute(root, &python, &[script]), Outcome::Passed))
-        .collect();
-    if failed.is_empty() { Outcome::Passed } else { Outcome::Failed(failed.join(", ")) }
+    // As the tests are built, so that nothing is built again: what they run is what is compared.
+    let built = execute(root, "cargo", &["test", "--workspace", "--test", "all", "--examples", "--no-run"]);
+    let programs = target(root).join("debug");
+    let program = |name: &str| programs.join(name).to_string_lossy().into_owned();
+    let variables = [("PHEA", program("phea")), ("REFERENCE_SYSTEMS", program("examples/reference_systems"))];
+    let variables = variables.each_ref().map(|(name, value)| (*name, value.as_str()));
+    let compare = |script: &String| execute_with(root, &python, &[script], &variables);
+    failed.extend(asking.into_iter().filter(|script| !matches!(compare(script), Outcome::Passed)));
+    match built {
+        Outcome::Passed if failed.is_empty() => Outcome::Passed,
+        Outcome::Passed => Outcome::Failed(failed.join(", ")),
+        other => other,
+    }
+}
+
+fn target(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), |folder| root.join(folder))
+}
+
+fn asks_phea(script: &str) -> bool {
+    script.starts_with(COMPARE)
+}
+
+fn recompute(root: &Path, told: &mut String) -> Recomputed {
+    let repository =
+        Repository::read(root).map_err(|error| format!("cannot read the repository: {error}"))?;
+    let python = environment(root, told)?.to_string_lossy().into_owned();
+    if let Err(missing) = tools::sundials() {
+        told.push_str(&format!("{missing}: nothing is recomputed with CVODE\n"));
+    }
+    let mut failed = Vec::new();
+    for script in scripts(&repository).into_iter().filter(|script| !asks_phea(script)) {
+        if quietly(root, told, &python, &[&script]).is_err() {
+            failed.push(script);
+        }
+    }
+    Ok((python, failed))
+}
+
+/// Runs one command in the root, what it prints kept.
+fn quietly(root: &Path, told: &mut String, program: &str, arguments: &[&str]) -> Result<(), String> {
+    let line = format!("{program} {}", arguments.join(" "));
+    // The libraries below NumPy would take every core for matrices of a few rows.
+    let ran = Command::new(program)
+        .args(arguments)
+        .current_dir(root)
+        .env("OPENBLAS_NUM_THREADS", "1")
+        .stdin(Stdio::null())
+        .output();
+    let (output, ended) = match ran {
+        Ok(output) => (
+            String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned(),
+            if output.status.success() { Ok(()) } else { Err(format!("`{line}`: {}", output.status)) },
+        ),
+        Err(error) => (String::new(), Err(format!("`{line}`: {error}"))),
+    };
+    told.push_str(&format!("$ {line}\n{output}"));
+    ended
 }
 
 /// `comparisons/compare_*.py`, `book/recompute_*.py` and the scripts named in `ORIGIN: recomputed by PATH`.
 fn scripts(repository: &Repository) -> Vec<String> {
     let comparison = |path: &str| {
-        (path.starts_with("comparisons/compare_") || path.starts_with("book/recompute_"))
-            && path.ends_with(".py")
+        (path.starts_with(COMPARE) || path.starts_with("book/recompute_")) && path.ends_with(".py")
     };
     let mut scripts: Vec<String> = repository.texts(comparison).map(|(path, _)| path.to_string()).collect();
     for (_, text) in repository.texts(|path| path.ends_with(".rs")) {
@@ -53,15 +134,15 @@ pub(crate) fn recomputed_by(line: &str) -> Option<&str> {
 }
 
 /// The Python of the virtual environment, made and filled where needed.
-fn environment(root: &Path) -> Result<PathBuf, String> {
+fn environment(root: &Path, told: &mut String) -> Result<PathBuf, String> {
     let folder = root.join("target").join("venv");
     let python = folder.join("bin").join("python");
     if !has_pip(&python) {
-        make_environment(root, &folder)?;
+        make_environment(root, told, &folder)?;
     }
     let program = python.to_string_lossy().into_owned();
     if root.join(REQUIREMENTS).exists() {
-        required(execute(root, &program, &["-m", "pip", "install", "--quiet", "-r", REQUIREMENTS]))?;
+        quietly(root, told, &program, &["-m", "pip", "install", "--quiet", "-r", REQUIREMENTS])?;
     }
     Ok(python)
 }
@@ -73,23 +154,16 @@ fn has_pip(python: &Path) -> bool {
 }
 
 /// Debian splits the module off into a package of its own; root may install it.
-fn make_environment(root: &Path, folder: &Path) -> Result<(), String> {
+fn make_environment(root: &Path, told: &mut String, folder: &Path) -> Result<(), String> {
     let place = folder.to_string_lossy().into_owned();
-    let make = || execute(root, "python3", &["-m", "venv", "--clear", &place]);
-    if matches!(make(), Outcome::Passed) {
+    let make = ["-m", "venv", "--clear", &place];
+    if quietly(root, told, "python3", &make).is_ok() {
         return Ok(());
     }
-    println!("`python3 -m venv` failed; trying Debian's package python3-venv");
-    required(execute(root, "apt-get", &["update", "-qq"]))?;
-    required(execute(root, "apt-get", &["install", "-y", "-qq", "python3", "python3-venv"]))?;
-    required(make())
-}
-
-fn required(outcome: Outcome) -> Result<(), String> {
-    match outcome {
-        Outcome::Passed => Ok(()),
-        Outcome::Failed(problem) | Outcome::Skipped(problem) => Err(problem),
-    }
+    told.push_str("`python3 -m venv` failed; trying Debian's package python3-venv\n");
+    quietly(root, told, "apt-get", &["update", "-qq"])?;
+    quietly(root, told, "apt-get", &["install", "-y", "-qq", "python3", "python3-venv"])?;
+    quietly(root, told, "python3", &make)
 }
 
 #[cfg(test)]

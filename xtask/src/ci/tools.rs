@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 
 /// Sees to it that `cargo SUBCOMMAND` works; says what is missing where it cannot.
 pub(super) fn component(name: &str, subcommand: &str) -> Result<(), String> {
@@ -22,6 +23,9 @@ pub(super) fn target(name: &str) -> Result<(), String> {
 
 /// Sees to it that SUNDIALS can be linked against; says what is missing where it cannot. Root of a Debian may install it.
 pub(super) fn sundials() -> Result<(), String> {
+    // Asked for by two stages at once, it is installed once.
+    static ASKED: Mutex<()> = Mutex::new(());
+    let _asked = ASKED.lock().unwrap_or_else(PoisonError::into_inner);
     let header = ["-fsyntax-only", "-include", "cvode/cvode.h", "-x", "c", "/dev/null"];
     let install = || {
         quietly("apt-get", &["update", "-qq"])
