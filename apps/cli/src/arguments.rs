@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use phea_workbench::answer::TableFormat;
 
 use crate::changes::Changes;
 
@@ -64,7 +65,25 @@ pub(crate) enum Command {
         save: Option<PathBuf>,
     },
     /// The nonlinear machine under its controller, through every scenario; Ctrl-C ends it with what there is
-    Simulate(Common),
+    Simulate {
+        #[command(flatten)]
+        common: Common,
+        /// How tables are written: csv or parquet
+        #[arg(long, value_name = "FORMAT", requires = "out")]
+        table: Option<TableFormat>,
+        /// Instead of the scenarios, the machine's response to sines around its operating point, beside the linear plant
+        #[arg(long)]
+        frequency_response: bool,
+        /// Frequencies of the sines, such as "1, 10, 100 rad/s"; a unit holds for the numbers before it
+        #[arg(long, value_name = "LIST", requires = "frequency_response", allow_hyphen_values = true)]
+        frequencies: Option<String>,
+        /// Amplitude of the command of the open loop ("0.1 V")
+        #[arg(long, value_name = "VOLTAGE", requires = "frequency_response", allow_hyphen_values = true)]
+        amplitude: Option<String>,
+        /// Amplitude of the reference of the closed loop ("100 N")
+        #[arg(long, value_name = "FORCE", requires = "frequency_response", allow_hyphen_values = true)]
+        reference_amplitude: Option<String>,
+    },
     /// The same scenarios of several projects side by side
     Compare(Several),
     /// Monte Carlo: the nonlinear machine with drawn numbers, many times; Ctrl-C keeps what is done, and the same command goes on

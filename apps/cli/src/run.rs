@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use phea_workbench::answer::{Answer, OutputFile};
-use phea_workbench::command::{self, CampaignRequest, CommandError, Request};
+use phea_workbench::command::{
+    self, CampaignRequest, CommandError, FrequencyOptions, Request, SimulateRequest,
+};
 use phea_workbench::design::DESIGNED_PROJECT;
 use phea_workbench::project::{self, Loaded, STARTER};
 use phea_workbench::shaping::{SHAPED_PROJECT, Shaped};
@@ -33,7 +35,22 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             let request = Request::Design { seed, stages: common.out.is_some() };
             on_project_saving(&common, &request, save.as_deref())
         }
-        Command::Simulate(common) => on_project(&common, &Request::Simulate),
+        Command::Simulate {
+            common,
+            table,
+            frequency_response,
+            frequencies,
+            amplitude,
+            reference_amplitude,
+        } => {
+            let options = FrequencyOptions { frequencies, amplitude, reference_amplitude };
+            let request = Request::SimulateAs(SimulateRequest {
+                table: table.unwrap_or_default(),
+                figures: common.out.is_some(),
+                frequency_response: frequency_response.then_some(options),
+            });
+            on_project(&common, &request)
+        }
         Command::Compare(several) => on_projects(&several),
         Command::Campaign { common, runs, seed, shard, run, threads } => {
             match campaign::request(runs, seed, shard.as_deref(), run, (threads, common.out.is_some())) {
@@ -158,8 +175,8 @@ fn answered(
     let loaded = load(&path, &common.settings, &common.catalogues, request)?;
     let mut line = ProgressLine::default();
     // what ends in a best result so far is asked to stop; everything else has nothing to save
-    let interruption =
-        matches!(request, Request::Design { .. } | Request::Simulate).then(Interruption::listen);
+    let interruption = matches!(request, Request::Design { .. } | Request::Simulate | Request::SimulateAs(_))
+        .then(Interruption::listen);
     let tables = common.out.as_deref().map(Folder::new);
     let destination = tables.as_ref().map(|tables| tables as &dyn Destination);
     let mut watch = |progress| {

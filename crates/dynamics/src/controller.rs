@@ -4,8 +4,11 @@
 //! step of [`SampledController`]: four users of one value.
 
 mod element;
+mod integral;
 mod sampled;
 mod section;
+
+pub(crate) use integral::integral_row;
 
 pub use element::{Compensator, Element, Stage};
 pub use sampled::{ControllerOutput, ControllerState, SampledController};

@@ -18,7 +18,9 @@ mod propagator;
 mod realization;
 mod rosenbrock;
 mod sensed;
+mod sine_response;
 mod slot;
+mod small_signal;
 mod square;
 mod step_matrix;
 mod task;
@@ -31,6 +33,8 @@ pub use growth::Sliding;
 pub use method::Method;
 pub use profile::{Harmonic, Moment, Piece, Profile, ProfileError, schroeder_phases};
 pub use sensed::Sensed;
+pub use sine_response::{SinePlan, SineResponse, sine_response};
+pub use small_signal::small_signal;
 pub use task::{Queue, Task};
 pub use trajectory::{Simulated, Trajectory, drive_one, simulate};
 

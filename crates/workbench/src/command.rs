@@ -2,9 +2,11 @@
 
 mod campaign;
 mod refusal;
+mod simulate;
 
 pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
 pub use refusal::{error_json, failure_json, refusal_json};
+pub use simulate::{FrequencyOptions, SimulateRequest};
 
 use phea_qft::family::Family;
 use phea_qft::verification::Verdict;
@@ -24,10 +26,11 @@ use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
 use crate::shaping::{self, RequestedChange, Shaped, ShapingError, shape};
-use crate::simulate::{self, ScenarioRun, SimulateError, compare_projects, simulate_into};
+use crate::simulate::{SimulateError, compare_projects};
 use crate::sizing::{self, Question, size};
 use crate::source::{Destination, Held, Source};
 use crate::specification::{self, specifications, wishes};
+use simulate::simulate_answer;
 
 /// What is asked of a project.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,8 +62,10 @@ pub enum Request {
         /// Whether every stage is wanted as files, and not the designed project alone.
         stages: bool,
     },
-    /// The nonlinear machine through every scenario.
+    /// The nonlinear machine through every scenario, its tables as text.
     Simulate,
+    /// The same with the files that are asked for, or the machine's frequency response.
+    SimulateAs(SimulateRequest),
     /// The same scenarios of this project and others side by side.
     Compare,
     /// The nonlinear machine with drawn numbers, many times.
@@ -81,7 +86,7 @@ impl Request {
             Request::Verify => "verify",
             Request::Shape { .. } => "shape",
             Request::Design { .. } => "design",
-            Request::Simulate => "simulate",
+            Request::Simulate | Request::SimulateAs(_) => "simulate",
             Request::Compare => "compare",
             Request::Campaign(_) => "campaign",
             Request::Report | Request::Page => "report",
@@ -265,7 +270,8 @@ pub fn answer_into(
             Ok(Answer { text, json, files: shaping::files(&shaping), affirmative: true })
         }
         Request::Design { seed, stages } => design_answer(source, loaded, *seed, *stages, watch),
-        Request::Simulate => simulate_answer(source, loaded, destination, watch),
+        Request::Simulate => simulate_answer(source, loaded, &SimulateRequest::default(), destination, watch),
+        Request::SimulateAs(asked) => simulate_answer(source, loaded, asked, destination, watch),
         Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
         Request::Campaign(asked) => {
             campaign_watched(source, loaded, catalogues, asked, (&mut Nowhere, destination), watch)
@@ -387,22 +393,6 @@ fn design_answer(
     })
 }
 
-fn simulate_answer(
-    source: &dyn Source,
-    loaded: &Loaded,
-    destination: Option<&dyn Destination>,
-    watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
-    let runs = simulate_into(source, &loaded.project, destination, watch)?;
-    let all = runs.len() == loaded.project.scenarios.len();
-    Ok(Answer {
-        text: simulate::text(loaded, &runs),
-        json: simulate::json(loaded, &runs),
-        files: simulate::files(loaded, &runs),
-        affirmative: all && runs.iter().all(|run: &ScenarioRun| run.stopped().is_none()),
-    })
-}
-
 /// The same scenarios of several projects side by side, with `figures` as files, telling its progress. The answer is yes if every one ran to its end.
 ///
 /// # Errors
@@ -418,9 +408,9 @@ pub fn compare_watched(
         CommandError::Compare { path, error }
     })?;
     Ok(Answer {
-        text: simulate::compare_text(&comparison, projects),
-        json: simulate::compare_json(&comparison),
-        files: if figures { simulate::comparison_files(&comparison)? } else { vec![] },
+        text: crate::simulate::compare_text(&comparison, projects),
+        json: crate::simulate::compare_json(&comparison),
+        files: if figures { crate::simulate::comparison_files(&comparison)? } else { vec![] },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     })
 }

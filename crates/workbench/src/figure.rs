@@ -21,6 +21,7 @@ pub mod family_magnitude;
 pub mod family_step;
 pub mod impedance;
 pub mod legend;
+pub mod measured_response;
 pub mod nichols;
 pub mod nomograph;
 mod open_loop;
@@ -51,6 +52,7 @@ pub use family_magnitude::{
 };
 pub use family_step::{FamilyStepInput, family_step};
 pub use impedance::{Asymptote, ImpedanceInput, impedance};
+pub use measured_response::{MeasuredResponseInput, ResponseCurve, measured_response};
 pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, nichols};
 pub use nomograph::{NomographBore, NomographInput, nomograph};
 pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};

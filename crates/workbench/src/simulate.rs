@@ -2,12 +2,15 @@
 
 mod answer;
 mod bench;
+mod columns;
 mod compare;
 mod course;
 mod digital;
 mod figures;
 mod files;
+mod frequency;
 mod look;
+mod measured;
 mod metrics;
 mod motion_file;
 mod run;
@@ -16,23 +19,29 @@ mod signal;
 mod text;
 
 pub use bench::Bench;
+pub use columns::LOOP_SIGNALS;
 pub use compare::{Comparison, compare_projects};
+pub use frequency::{FrequencyRequest, FrequencyResponse, Response, ResponsePoint, frequency_response};
 pub use look::{Look, Record};
+pub use measured::Overlay;
 pub use metrics::{Cause, Measured, Metrics, Window};
 pub use run::{BeyondExpansion, Occurrence, ScenarioRun, Stopped, UnresolvedMode};
 pub use saved::SavedState;
 
-pub(crate) use answer::{Body, body, compare_json, json};
+pub(crate) use answer::{Body, body, compare_json, frequency_json, json};
 pub(crate) use bench::{Control, options};
 pub(crate) use course::{Driven, course_of, driven};
 pub(crate) use digital::{Digital, Samples, Waking};
-pub(crate) use figures::{comparison_files, pictures};
+pub(crate) use figures::{comparison_files, figure_files, picture_files, pictures};
 pub(crate) use files::{Table, files, table_names};
+pub(crate) use frequency::{
+    files as frequency_files, pictures as frequency_pictures, text as frequency_text,
+};
 pub(crate) use metrics::{Seen, metrics_seen};
 pub(crate) use run::{COMMAND_LIMIT, occurrences};
 pub(crate) use text::{
-    ABSENT, METRICS, cause_words, cells_of, coarse_sentence, compare_text, headline, occurrence_sentences,
-    small_as_zero, text,
+    ABSENT, MEASURED, METRICS, cause_words, cells_of, coarse_sentence, compare_text, headline,
+    measured_cells, occurrence_sentences, small_as_zero, text,
 };
 
 use phea_dynamics::linear::LinearError;
@@ -41,8 +50,10 @@ use phea_hydraulics::line::LineError;
 use phea_hydraulics::machine::MachineError;
 use phea_hydraulics::operating_point::OperatingPointError;
 
+use crate::answer::TableFormat;
 use crate::command::{Progress, Watch};
 use crate::control::ControlError;
+use crate::linear_loop::LoopError;
 use crate::project::{Project, Report};
 use crate::rig::RigError;
 use crate::source::{Destination, Source, WriteError};
@@ -65,6 +76,12 @@ pub enum SimulateError {
     /// Controller, prefilter or sensor cannot be run in time.
     #[error("[controller], [prefilter] or [sensor]: {0}")]
     Loop(#[from] LinearError),
+    /// The linear plant cannot be computed.
+    #[error("the linear plant: {0}")]
+    Plant(LinearError),
+    /// The linear loop cannot be closed.
+    #[error("the linear loop: {0}")]
+    LinearLoop(#[from] LoopError),
     /// A load before a wall that has no mass to be stopped.
     #[error(
         "[load] model \"wall\" is simulated with the `mass` of what moves beyond the load cell: none is stated"
@@ -100,7 +117,7 @@ pub enum SimulateError {
         /// What is wrong with it.
         error: ProfileError,
     },
-    /// A file with a motion, a signal or a state was refused.
+    /// A file with a motion, a signal, a state or a measurement was refused.
     #[error("{0}")]
     Motion(Box<Report>),
     /// Start, course or settings do not fit the machine.
@@ -130,14 +147,14 @@ pub fn simulate_project(
     simulate_into(source, project, None, watch)
 }
 
-/// The same, with a table `SCENARIO.csv` of each scenario, its rows written as they come: no row is held, however many there are.
+/// The same, with a table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, its rows written as they come: no row is held, however many there are.
 ///
 /// # Errors
 /// As [`simulate_project`], and [`SimulateError::Write`].
 pub fn simulate_into(
     source: &dyn Source,
     project: &Project,
-    destination: Option<&dyn Destination>,
+    destination: Option<(&dyn Destination, TableFormat)>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
     if project.scenarios.is_empty() {
@@ -147,17 +164,20 @@ pub fn simulate_into(
     for scenario in &project.scenarios {
         let bench = Bench::of_scenario(project, scenario)?;
         let course = course::course(source, project, &bench, scenario)?;
-        prepared.push((bench, course));
+        let measured = measured::measurements(source, project, scenario).map_err(SimulateError::Motion)?;
+        prepared.push((bench, course, measured));
     }
     let whole: f64 = project.scenarios.iter().map(|scenario| scenario.duration).sum();
     let (mut before, mut runs) = (0.0, Vec::new());
-    let names = table_names(project.scenarios.iter().map(|scenario| scenario.name.as_str()));
-    for ((scenario, (bench, course)), name) in project.scenarios.iter().zip(&prepared).zip(&names) {
+    let ending = destination.map_or("csv", |(_, format)| format.ending());
+    let names = table_names(project.scenarios.iter().map(|scenario| scenario.name.as_str()), ending);
+    for ((scenario, (bench, course, measured)), name) in project.scenarios.iter().zip(&prepared).zip(&names) {
         let pushed = course.external_force.is_some();
-        let table = destination.map(|destination| Table::begin(destination, name, pushed)).transpose()?;
+        let begin = |(destination, format)| Table::begin((destination, name), format, pushed);
+        let table = destination.map(begin).transpose()?;
         let mut told =
             |time_s: f64| watch(Progress { stage: "simulating", share: (before + time_s) / whole });
-        let run = run::run(bench, scenario, course, table, &mut told)?;
+        let run = run::run(bench, scenario, (course, measured), table, &mut told)?;
         let stopped = run.was_cancelled();
         runs.push(run);
         before += scenario.duration;

@@ -15,6 +15,7 @@ mod figure_gallery;
 mod figure_hostile;
 mod figure_primitives;
 mod figure_qft;
+mod frequency_response;
 #[path = "../examples/figures/gallery.rs"]
 mod gallery;
 mod golden_ybitu;
@@ -35,7 +36,9 @@ mod scenarios;
 mod sensor;
 mod shaping;
 mod simulate;
+mod simulation_columns;
 mod simulation_equivalences;
+mod simulation_measured;
 mod simulation_robustness;
 mod sizing_catalogue;
 mod sizing_laws;

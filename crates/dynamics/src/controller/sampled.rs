@@ -1,11 +1,15 @@
-use super::{AntiWindup, Compensator, Controller, Section};
-use crate::linear::{LinearError, TimeDomain};
+use nalgebra::{DMatrix, DVector};
+
+use super::{AntiWindup, Compensator, Controller, Section, integral_row};
+use crate::linear::{LinearError, TimeDomain, TransferFunction};
 
 /// A controller ready to run once a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledController {
     feedback: Vec<Section>,
     prefilter: Vec<Section>,
+    /// Reads the integral part of the command off the states of the feedback.
+    integral: Vec<f64>,
     command_limit: f64,
     anti_windup: AntiWindup,
     sample_time_s: f64,
@@ -30,6 +34,10 @@ impl ControllerState {
 pub struct ControllerOutput {
     /// The command, within its limits.
     pub command: f64,
+    /// The command before its limits.
+    pub wanted: f64,
+    /// Part of the command that the integral part of G holds, the error of this sample not yet in it; zero where nothing integrates.
+    pub integral: f64,
     /// Whether the limit was reached.
     pub limited: bool,
     /// The reference behind the prefilter.
@@ -43,18 +51,20 @@ impl Controller {
     /// # Errors
     /// A compensator that is improper, has dead time or cannot be discretised, or a sampled one with another sample time.
     pub fn sampled(&self, sample_time_s: f64) -> Result<SampledController, LinearError> {
-        let sections = |compensator: &Compensator| -> Result<Vec<Section>, LinearError> {
+        let sampled = |compensator: &Compensator| -> Result<TransferFunction, LinearError> {
             let function = compensator.transfer_function()?;
-            let sampled = match function.domain() {
-                TimeDomain::Continuous => function.discretized(sample_time_s, self.timing.discretization)?,
-                TimeDomain::Discrete { sample_time_s: own } if own == sample_time_s => function,
-                TimeDomain::Discrete { .. } => return Err(LinearError::DomainMismatch),
-            };
-            Section::in_series(&sampled)
+            match function.domain() {
+                TimeDomain::Continuous => function.discretized(sample_time_s, self.timing.discretization),
+                TimeDomain::Discrete { sample_time_s: own } if own == sample_time_s => Ok(function),
+                TimeDomain::Discrete { .. } => Err(LinearError::DomainMismatch),
+            }
         };
+        let feedback = sampled(&self.feedback)?;
+        let sections = Section::in_series(&feedback)?;
         Ok(SampledController {
-            feedback: sections(&self.feedback)?,
-            prefilter: sections(&self.prefilter)?,
+            integral: integral_of(&feedback, &sections),
+            feedback: sections,
+            prefilter: Section::in_series(&sampled(&self.prefilter)?)?,
             command_limit: self.command_limit.unwrap_or(f64::INFINITY),
             anti_windup: self.anti_windup,
             sample_time_s,
@@ -146,21 +156,23 @@ impl SampledController {
             filtered_reference = output;
         }
         let error = filtered_reference - measurement;
-        let (command, limited) = self.feedback_step(&mut state.feedback, error);
-        ControllerOutput { command, limited, filtered_reference }
+        let integral =
+            state.feedback.iter().flatten().zip(&self.integral).map(|(state, part)| state * part).sum();
+        let (command, wanted) = self.feedback_step(&mut state.feedback, error);
+        ControllerOutput { command, wanted, integral, limited: command != wanted, filtered_reference }
     }
 
-    fn feedback_step(&self, state: &mut [[f64; 2]], error: f64) -> (f64, bool) {
+    /// The command within its limit, and before it.
+    fn feedback_step(&self, state: &mut [[f64; 2]], error: f64) -> (f64, f64) {
         let before: Vec<[f64; 2]> = state.to_vec();
         let last = self.feedback.len().saturating_sub(1);
-        let (mut signal, mut limited, mut wanted) = (error, false, 0.0);
+        let (mut signal, mut wanted) = (error, error);
         for (index, (section, memory)) in self.feedback.iter().zip(state.iter_mut()).enumerate() {
             let mut output = section.output(*memory, signal);
             let mut continued = output;
             if index == last {
                 wanted = output;
                 output = output.clamp(-self.command_limit, self.command_limit);
-                limited = output != wanted;
                 if self.anti_windup == AntiWindup::BackCalculation {
                     continued = output;
                 }
@@ -168,9 +180,32 @@ impl SampledController {
             *memory = section.advance(*memory, signal, continued);
             signal = output;
         }
-        if limited && self.anti_windup == AntiWindup::Clamping && wanted * error > 0.0 {
+        if signal != wanted && self.anti_windup == AntiWindup::Clamping && wanted * error > 0.0 {
             state.copy_from_slice(&before);
         }
-        (signal, limited)
+        (signal, wanted)
     }
+}
+
+/// The row that reads the integral part off the states of these sections: their matrices are what each state alone and the
+/// input alone make of them.
+fn integral_of(function: &TransferFunction, sections: &[Section]) -> Vec<f64> {
+    let states = 2 * sections.len();
+    let next = |state: &[f64], input: f64| -> Vec<f64> {
+        let mut signal = input;
+        let mut next = Vec::with_capacity(states);
+        for (section, memory) in sections.iter().zip(state.chunks_exact(2)) {
+            let memory = [memory[0], memory[1]];
+            let output = section.output(memory, signal);
+            next.extend(section.advance(memory, signal, output));
+            signal = output;
+        }
+        next
+    };
+    let unit = |place: usize| -> Vec<f64> { (0..states).map(|index| f64::from(index == place)).collect() };
+    let columns: Vec<f64> = (0..states).flat_map(|place| next(&unit(place), 0.0)).collect();
+    let dynamics = DMatrix::from_vec(states, states, columns);
+    let drive = DVector::from_vec(next(&vec![0.0; states], 1.0));
+    // a first-order section leaves its second state unused: nothing is to be read off it
+    integral_row(function, &dynamics, &drive, 1.0)
 }

@@ -2,8 +2,8 @@
 
 use super::realization::Realization;
 use super::{Plant, Sliding, System};
-use crate::controller::{AntiWindup, Controller};
-use crate::linear::{LinearError, TransferFunction};
+use crate::controller::{AntiWindup, Controller, integral_row};
+use crate::linear::{LinearError, StateSpace, TransferFunction};
 use crate::scalar::Scalar;
 
 /// A plant under a continuous controller.
@@ -20,6 +20,8 @@ use crate::scalar::Scalar;
 pub struct ClosedLoop<P> {
     plant: P,
     feedback: Realization,
+    /// Reads the integral part of the command off the states of G.
+    integral: Vec<f64>,
     prefilter: Realization,
     limit: f64,
     anti_windup: AntiWindup,
@@ -35,7 +37,10 @@ impl<P> ClosedLoop<P> {
     /// compensator with dead time; [`LinearError::NoFeedthrough`] for back calculation through a strictly proper compensator,
     /// whose command no error can bring to its limit at once.
     pub fn new(plant: P, controller: &Controller, feed_forward: f64) -> Result<Self, LinearError> {
-        let feedback = Realization::new(&controller.feedback.transfer_function()?)?;
+        let function = controller.feedback.transfer_function()?;
+        let feedback = Realization::new(&function)?;
+        let system = StateSpace::from_transfer_function(&function)?;
+        let integral = integral_row(&function, system.a(), &system.b().column(0).into_owned(), 0.0);
         let prefilter = Realization::new(&controller.prefilter.transfer_function()?)?;
         let anti_windup = controller.anti_windup;
         if anti_windup == AntiWindup::BackCalculation && feedback.feedthrough == 0.0 {
@@ -43,7 +48,7 @@ impl<P> ClosedLoop<P> {
         }
         let limit = controller.command_limit.unwrap_or(f64::INFINITY);
         let delay_s = controller.timing.delay_s;
-        Ok(ClosedLoop { plant, feedback, prefilter, limit, anti_windup, feed_forward, delay_s })
+        Ok(ClosedLoop { plant, feedback, integral, prefilter, limit, anti_windup, feed_forward, delay_s })
     }
 
     /// The plant.
@@ -108,6 +113,52 @@ impl<P> ClosedLoop<P> {
         }
         let command = wanted.minimum(T::from(self.limit)).maximum(T::from(-self.limit));
         LoopSignals { filtered_reference, measurement, error, wanted, command }
+    }
+
+    /// Part of the command that the integral part of G holds; zero where nothing integrates.
+    ///
+    /// ```text
+    /// G = c_1/s + ... + c_m/s^m + what does not integrate          of a simple pole c_1 times the integral of F r - y
+    /// ```
+    ///
+    /// # Example
+    /// Of 2 + 3/s the error of one leaves 3 t.
+    /// ```
+    /// use phea_dynamics::controller::{Compensator, Controller, Element};
+    /// use phea_dynamics::scalar::Scalar;
+    /// use phea_dynamics::simulation::{ClosedLoop, Plant};
+    /// # struct Still;
+    /// # impl Plant<f64> for Still {
+    /// #     fn states(&self) -> usize { 0 }
+    /// #     fn inputs(&self) -> usize { 0 }
+    /// #     fn scales(&self) -> Vec<f64> { vec![] }
+    /// #     fn command_scale(&self) -> f64 { 1.0 }
+    /// #     fn measurement_scale(&self) -> f64 { 1.0 }
+    /// #     fn rates<T: Scalar + From<f64>>(&self, _: &[T], _: T, _: &[T], _: &mut [T]) {}
+    /// #     fn measurement<T: Scalar + From<f64>>(&self, _: &[T], _: &[T]) -> T { T::from(0.0) }
+    /// # }
+    /// let law = Element::ProportionalIntegral { proportional_gain: 2.0, integral_gain: 3.0 };
+    /// let controller = Controller { feedback: Compensator::new(vec![law]), ..Controller::default() };
+    /// let closed = ClosedLoop::new(Still, &controller, 0.0)?;
+    /// let held = closed.controller_at_rest(0.0, 0.0, 0.6);
+    /// assert!((closed.integral_part(&held) - 0.6).abs() < 1e-12);
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn integral_part(&self, state: &[f64]) -> f64
+    where
+        P: Plant<f64>,
+    {
+        let of_feedback = state.iter().skip(self.plant.states());
+        of_feedback.zip(&self.integral).map(|(state, part)| state * part).sum()
+    }
+
+    /// The command as it comes to the plant: behind the delay.
+    pub fn arriving_command(&self, state: &[f64], inputs: &[f64]) -> f64
+    where
+        P: Plant<f64>,
+    {
+        let delayed = inputs.get(1 + self.plant.inputs()).copied().filter(|_| self.is_delayed());
+        delayed.unwrap_or_else(|| self.signals::<f64, f64>(state, inputs).command)
     }
 
     /// What drives the states of G.

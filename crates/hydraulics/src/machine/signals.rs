@@ -4,7 +4,7 @@ use super::equations::constant;
 use super::{LoadMotion, Machine};
 
 /// Names of what a machine tells of itself, with units, in the order of [`Machine::outputs`].
-pub const SIGNALS: [&str; 18] = [
+pub const SIGNALS: [&str; 19] = [
     "force_n",
     "spool_v",
     "pressure_a_pa",
@@ -23,6 +23,7 @@ pub const SIGNALS: [&str; 18] = [
     "port_pressure_a_pa",
     "port_pressure_b_pa",
     "hydraulic_force_n",
+    "opening_v",
 ];
 
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is positive in ordinary operation and
@@ -43,8 +44,10 @@ pub const INDICATORS: [&str; 8] = [
 ];
 
 impl<S: Scalar> Machine<S> {
-    /// The [`SIGNALS`] at a state and inputs. `spool_v` is the position the edges have: the state less null bias and
-    /// lag; flows are those of the valve's ports A and B into the lines. `force_n` is what the rod pushes on the load with,
+    /// The [`SIGNALS`] at a state and inputs. `spool_v` is the spool's position U, `opening_v` what the edges are opened by,
+    /// y = U - U_0 - z, less null bias and magnetic lag ([`crate::servovalve::SpoolImperfection`]); flows are those of the valve's
+    /// ports A and B into the lines. `port_pressure` is that of a line's end at the valve, `pressure` that of its end at the
+    /// chamber, which is the chamber's. `force_n` is what the rod pushes on the load with,
     /// `hydraulic_force_n` what the chambers push the piston with; between them lie its friction, end stops and acceleration:
     ///
     /// ```text
@@ -74,7 +77,7 @@ impl<S: Scalar> Machine<S> {
         let forces = self.forces(&state, position);
         [
             forces.sensed,
-            self.spool.convert(&mut constant::<S, T>).opening(&state.spool),
+            state.spool.spool,
             state.pressure_a,
             state.pressure_b,
             self.supply_of(&state).pressure,
@@ -91,6 +94,7 @@ impl<S: Scalar> Machine<S> {
             ports[0],
             ports[1],
             forces.hydraulic,
+            self.spool.convert(&mut constant::<S, T>).opening(&state.spool),
         ]
     }
 

@@ -1,7 +1,7 @@
 //! Campaigns as a command: all runs with their rows kept somewhere, or one run again.
 
 use super::{CommandError, Watch};
-use crate::answer::Answer;
+use crate::answer::{Answer, TableFormat};
 use crate::campaign::{self, CampaignError, Ledger, Plan, Summary, Wanted};
 use crate::project::{self, Loaded};
 use crate::simulate::{self, simulate_into};
@@ -76,7 +76,8 @@ fn one(
     let mut drawn = project::read(source, &loaded.path, &all, catalogues)
         .map_err(|report| CampaignError::Settings(Box::new(report)))?;
     drawn.project.scenarios.retain(|scenario| scenario.name == plan.scenario());
-    let runs = simulate_into(source, &drawn.project, destination, watch)?;
+    let table = destination.map(|destination| (destination, TableFormat::Csv));
+    let runs = simulate_into(source, &drawn.project, table, watch)?;
     Ok(Answer {
         text: campaign::run_text(&draw, &settings, &drawn, &runs),
         json: campaign::run_json(loaded, (plan, &draw), &settings, (&drawn, &runs)),

@@ -1,6 +1,7 @@
 //! `[[scenario]]`: what is simulated.
 
 use super::key::{Key, key, plain};
+use super::measured::MeasuredFile;
 use super::signal::{Signal, SignalUnit};
 use super::visitor::Visitor;
 use crate::quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PRESSURE, RATIO, TIME, VELOCITY, VOLTAGE};
@@ -26,6 +27,8 @@ pub struct Scenario {
     pub external_force: Vec<Signal>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
+    /// What was measured on the rig.
+    pub measured: Vec<MeasuredFile>,
 }
 
 /// The state at the start; states not named are zero.
@@ -125,6 +128,8 @@ impl Scenario {
         v.one_or_more(k, &mut self.external_force, Signal::visitor(SignalUnit::EXTERNAL_FORCE));
         let k = key("settling_band_percent", &RATIO, "Band of every settling time, in percent.");
         v.quantity(k.positive().below(100.0).or(1.0), &mut self.settling_band_percent);
+        let k = plain("measured", "What was measured on the rig, laid over the simulation.");
+        v.tables(k, &mut self.measured, MeasuredFile::visit);
     }
 }
 

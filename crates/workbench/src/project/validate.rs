@@ -4,6 +4,7 @@ mod design;
 mod family;
 mod line_motion;
 mod linear_loop;
+mod measured;
 mod rig;
 mod signal;
 mod specification;

@@ -32,6 +32,10 @@ impl DisplayUnit {
     pub const LITRE_PER_MINUTE: Self = DisplayUnit { symbol: "L/min", in_si: 1e-3 / 60.0 };
     /// Stiffness.
     pub const MEGANEWTON_PER_METRE: Self = DisplayUnit { symbol: "MN/m", in_si: 1e6 };
+    /// Velocity.
+    pub const METRE_PER_SECOND: Self = DisplayUnit { symbol: "m/s", in_si: 1.0 };
+    /// Force.
+    pub const NEWTON: Self = DisplayUnit { symbol: "N", in_si: 1.0 };
     /// Force.
     pub const KILONEWTON: Self = DisplayUnit { symbol: "kN", in_si: 1e3 };
     /// Pressure.

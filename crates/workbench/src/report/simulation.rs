@@ -10,8 +10,8 @@ use crate::command::{CommandError, Watch};
 use crate::figure::{DisplayUnit, Figure};
 use crate::project::{FrictionModel, Project, Scenario};
 use crate::simulate::{
-    ABSENT, Cause, METRICS, Metrics, ScenarioRun, SimulateError, Window, cause_words, cells_of,
-    coarse_sentence, headline, occurrence_sentences, pictures, simulate_project,
+    ABSENT, Cause, MEASURED, METRICS, Metrics, ScenarioRun, SimulateError, Window, cause_words, cells_of,
+    coarse_sentence, headline, measured_cells, occurrence_sentences, pictures, simulate_project,
 };
 use crate::source::Source;
 
@@ -72,6 +72,8 @@ fn scenario(run: &ScenarioRun, declared: &Scenario, figures: &[Figure]) -> Marku
         let published = published(declared, window);
         rows.extend(published.map(|(source, cells)| [vec![unbroken(source)], of(cells)].concat()));
     }
+    let cells = |overlay| measured_cells(overlay).iter().map(cell).collect::<Vec<_>>();
+    let measured: Vec<Vec<Markup>> = run.measured.iter().map(cells).collect();
     let remarks = declared.reference.iter().filter_map(|step| step.published.as_ref()?.remark.as_ref());
     html! {
         h3 { (run.name) }
@@ -81,6 +83,10 @@ fn scenario(run: &ScenarioRun, declared: &Scenario, figures: &[Figure]) -> Marku
         @if !rows.is_empty() {
             (table(&heads, 1, &rows))
             p { "Settling is to " (run.settling_band_percent) " % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less force, averaged over the last tenth of the window; the rise is from 10 to 90 % of the step." }
+        }
+        @if !run.measured.is_empty() {
+            (table(&MEASURED, 2, &measured))
+            p { "NRMSE is the root mean square of measured less simulated, over the range of what was measured." }
         }
         @for remark in remarks { p { (remark) } }
         @if let Some(sentence) = coarse_sentence(run) { p { (sentence) "." } }

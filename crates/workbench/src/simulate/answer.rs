@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::files::state_names;
+use super::frequency::{self, FrequencyResponse};
 use super::metrics::Measured;
-use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, ScenarioRun, Window};
+use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, Overlay, ScenarioRun, Window};
 use crate::answer;
 use crate::project::Loaded;
 
@@ -35,6 +36,7 @@ struct ScenarioRow<'a> {
     occurrences: Vec<OccurrenceRow>,
     outside_model_s: Option<f64>,
     outside_model_s_reason: Option<&'static str>,
+    measured: Vec<MeasuredRow<'a>>,
     /// Chambers above the pressure that the expansion of their hose is stated at.
     beyond_expansion: Vec<BeyondRow>,
 }
@@ -44,6 +46,20 @@ struct BeyondRow {
     chamber: char,
     peak_pressure_pa: f64,
     stated_pressure_pa: f64,
+}
+
+#[derive(Serialize)]
+struct MeasuredRow<'a> {
+    file: &'a str,
+    column: &'a str,
+    signal: &'static str,
+    rows: usize,
+    rows_outside: usize,
+    /// In the unit of the signal's name.
+    rmse: Option<f64>,
+    rmse_reason: Option<&'static str>,
+    nrmse: Option<f64>,
+    nrmse_reason: Option<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -123,6 +139,19 @@ pub(crate) fn json(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
     answer::json("simulate", loaded, body(loaded, runs))
 }
 
+#[derive(Serialize)]
+struct FrequencyBody<'a> {
+    frequency_response: frequency::Body<'a>,
+    #[serde(flatten)]
+    body: Body<'a>,
+}
+
+/// The JSON object of `simulate` where a frequency response is asked for: no scenario is run.
+pub(crate) fn frequency_json(loaded: &Loaded, found: &FrequencyResponse) -> String {
+    let (frequency_response, body) = (frequency::body(found), body(loaded, &[]));
+    answer::json("simulate", loaded, FrequencyBody { frequency_response, body })
+}
+
 /// The JSON object of `compare`, in the envelope of the first project.
 pub(crate) fn compare_json(comparison: &Comparison<'_>) -> String {
     let Some((first, _)) = comparison.projects.first() else { return String::new() };
@@ -173,6 +202,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> ScenarioRow<'_> {
         occurrences: run.occurrences.iter().map(occurrence).collect(),
         outside_model_s: run.outside_model_s,
         outside_model_s_reason: run.outside_model_s.is_none().then_some("its equations hold throughout"),
+        measured: run.measured.iter().map(measured).collect(),
         beyond_expansion: run.beyond_expansion.iter().map(beyond).collect(),
     }
 }
@@ -182,6 +212,20 @@ fn beyond(beyond: &BeyondExpansion) -> BeyondRow {
         chamber: beyond.chamber,
         peak_pressure_pa: beyond.peak_pa,
         stated_pressure_pa: beyond.stated_pa,
+    }
+}
+
+fn measured(overlay: &Overlay) -> MeasuredRow<'_> {
+    MeasuredRow {
+        file: &overlay.file,
+        column: &overlay.column,
+        signal: overlay.signal,
+        rows: overlay.times_s.len(),
+        rows_outside: overlay.rows_outside,
+        rmse: overlay.rmse.ok(),
+        rmse_reason: overlay.rmse.err(),
+        nrmse: overlay.nrmse.ok(),
+        nrmse_reason: overlay.nrmse.err(),
     }
 }
 

@@ -138,7 +138,8 @@ fn expansion_stated_at(project: &Project) -> [Option<f64>; 2] {
     lines.map_or([None; 2], |lines| [&lines.a, &lines.b].map(project::Line::expansion_stated_at))
 }
 
-fn settings(project: &Project) -> Settings {
+/// How the project wants its machine integrated.
+pub(super) fn settings(project: &Project) -> Settings {
     let declared = &project.simulation;
     Settings {
         tolerance: declared.tolerance,

@@ -202,7 +202,12 @@ fn start(bench: &Bench, beginning: &Beginning, measured: f64, holds: bool) -> Ve
 
 /// What is under way in each delay: the waves of the lines, and then what sensor and controller sent until now, the one from
 /// the other. `first` stands before the inputs of the machine.
-fn under_way(system: &impl System<f64>, state: &[f64], first: &[f64], beginning: &Beginning) -> Vec<f64> {
+pub(super) fn under_way(
+    system: &impl System<f64>,
+    state: &[f64],
+    first: &[f64],
+    beginning: &Beginning,
+) -> Vec<f64> {
     let mut inputs = [first, &beginning.all_inputs()].concat();
     let (known, lines) = (inputs.len(), beginning.waves.len());
     inputs.resize(system.inputs(), 0.0);

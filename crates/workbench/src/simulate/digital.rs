@@ -16,6 +16,12 @@ pub(crate) struct Sample {
     pub(crate) filtered_reference_n: f64,
     /// What the computer gives out, V.
     pub(crate) command_v: f64,
+    /// The same before its limit and its rounding, V.
+    pub(crate) unlimited_v: f64,
+    /// Part of the command that the integral part of G holds, V.
+    pub(crate) integral_v: f64,
+    /// What the computer read, N.
+    pub(crate) measurement_n: f64,
     pub(crate) limited: bool,
 }
 
@@ -124,17 +130,21 @@ impl Sampler for Digital<'_> {
             measurement = converter.rounded(measurement);
         }
         let output = controller.step(&mut self.state, reference, measurement);
-        let mut wanted = output.command;
+        let mut forward = 0.0;
         if *feed_forward != 0.0 {
             let states: usize = Plant::<f64>::states(held.plant());
-            wanted += feed_forward * held.plant().disturbance(&state[..states], &inputs[2..]);
+            forward = feed_forward * held.plant().disturbance(&state[..states], &inputs[2..]);
         }
+        let wanted = output.command + forward;
         let within = wanted.clamp(-command_limit, *command_limit);
         let command_v = converters.command.map_or(within, |converter| converter.rounded(within));
         self.log.borrow_mut().take(Sample {
             time_s,
             filtered_reference_n: output.filtered_reference,
             command_v,
+            unlimited_v: output.wanted + forward,
+            integral_v: output.integral,
+            measurement_n: measurement,
             limited: output.limited || within != wanted,
         });
         if let Some(memory) = self.memory {

@@ -1,9 +1,10 @@
 //! Figures of runs over time.
 
 use super::{Cause, Comparison, Metrics, Record, ScenarioRun, Window, cause_words};
-use crate::answer::OutputFile;
+use crate::answer::{OutputFile, significant};
 use crate::figure::{
-    DisplayUnit, Figure, FigureError, TimeEvent, TimePanel, TimePanelsInput, TimeSeries, Words, time_panels,
+    DisplayUnit, Figure, FigureError, SettlingBand, StepResponseInput, TimeEvent, TimePanel, TimePanelsInput,
+    TimeSeries, Words, step_response, time_panels,
 };
 
 /// How much of a run is drawn before and after what begins a window, s.
@@ -39,7 +40,30 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
         );
         figures.push(close_up(words, run, window, around(window, end)));
     }
+    figures.extend(overlaid(run, number, [0.0, end]));
     figures
+}
+
+/// What was measured on what was simulated, a panel for each signal.
+fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure> {
+    let height = if run.measured.len() > 3 { 100.0 } else { 150.0 };
+    let panels = run.measured.iter().map(|overlay| {
+        let simulated = over_time(&run.record, run.record.signal(overlay.signal));
+        let measured = TimeSeries {
+            name: String::new(),
+            times_s: overlay.times_s.clone(),
+            values: overlay.measured.clone(),
+        };
+        panel(&overlay.quantity(), overlay.display_unit(), height, vec![simulated, measured])
+    });
+    let panels: Vec<TimePanel> = panels.collect();
+    let words = Words::new(
+        format!("simulation-{number}-measured"),
+        format!("Measured and simulated: {}", run.name),
+        "What was measured on the rig, on what the machine of the project does.",
+    );
+    let legend = ["simulated", "measured"].map(String::from);
+    (!panels.is_empty()).then(|| drawn(words, run, panels, legend, span_s))
 }
 
 /// Everything at a glance.
@@ -185,20 +209,85 @@ fn over_time(record: &Record, values: Vec<f64>) -> TimeSeries {
     TimeSeries { name: String::new(), times_s: record.times_s.clone(), values }
 }
 
+/// Figures as SVG and PNG.
+///
+/// # Errors
+/// A figure that the rasteriser refuses.
+pub(crate) fn picture_files(figures: &[Figure]) -> Result<Vec<OutputFile>, FigureError> {
+    let mut files = Vec::new();
+    for figure in figures {
+        let svg = figure.to_svg_standalone().into_bytes();
+        files.push(OutputFile { name: format!("{}.svg", figure.name), bytes: svg });
+        files.push(OutputFile { name: format!("{}.png", figure.name), bytes: figure.to_png(PNG_SCALE)? });
+    }
+    Ok(files)
+}
+
+/// Each scenario over time, its events enlarged, and its steps with their settling bands, as SVG and PNG.
+///
+/// # Errors
+/// A figure that the rasteriser refuses.
+pub(crate) fn figure_files(runs: &[ScenarioRun]) -> Result<Vec<OutputFile>, FigureError> {
+    let of_run = |(number, run): (usize, &ScenarioRun)| {
+        let mut figures = pictures(run, number + 1);
+        figures.extend(steps(run, number + 1));
+        figures
+    };
+    picture_files(&runs.iter().enumerate().flat_map(of_run).collect::<Vec<_>>())
+}
+
+/// The steps of the reference that are worth a figure, each until the next event.
+fn steps(run: &ScenarioRun, number: usize) -> Vec<Figure> {
+    let end = run.record.times_s.last().copied().unwrap_or(0.0);
+    let steps = enlarged(&run.windows, end);
+    steps.into_iter().filter_map(|(index, window)| step(run, window, (number, index + 1))).collect()
+}
+
+fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> Option<Figure> {
+    let Cause::ReferenceStep { to_n, .. } = window.cause else { return None };
+    let (_, metrics) = run.windows.iter().find(|(one, _)| one == window)?;
+    let settling = metrics.settling_time_s.ok();
+    // three settling times show what came of it; without one, the whole window
+    let until = settling.map_or(window.end_s, |time_s| window.end_s.min(window.start_s + 3.0 * time_s));
+    let span = [(window.start_s - 0.05 * (until - window.start_s)).max(0.0), until];
+    let record = &run.record;
+    let of = |name: &str, values: &[f64]| {
+        let pairs =
+            record.times_s.iter().zip(values).filter(|(time, _)| **time >= span[0] && **time <= span[1]);
+        let (times_s, values) = pairs.map(|(time, value)| (*time, *value)).unzip();
+        TimeSeries { name: name.to_string(), times_s, values }
+    };
+    let settled = settling.map(|time_s| TimeEvent {
+        time_s: window.start_s + time_s,
+        label: format!("t_s = {} s", significant(time_s, 3)),
+    });
+    let percent = run.settling_band_percent;
+    let input = StepResponseInput {
+        quantity: "Force F_e".to_string(),
+        unit: DisplayUnit::KILONEWTON,
+        reference: Some(of("reference", &record.reference_n)),
+        responses: vec![
+            of("force", &record.signal("force_n")),
+            of("prefiltered reference", &record.filtered_reference_n),
+        ],
+        settling_band: (to_n != 0.0).then_some(SettlingBand { level: to_n, percent }),
+        bounds: None,
+        events: settled.into_iter().collect(),
+        controls: vec![of("command", &record.control_v)],
+    };
+    let title = format!("Step response: {}", cause_words(window));
+    let caption = "Measured force, reference before and behind the prefilter, and the command; the band is that of the settling time.";
+    Some(step_response(Words::new(format!("simulation-{number}-step-{event}"), title, caption), &input))
+}
+
 /// Each scenario of a comparison and each of its events, all projects in one figure, as SVG and PNG.
 ///
 /// # Errors
 /// A figure that the rasteriser refuses.
 pub(crate) fn comparison_files(comparison: &Comparison<'_>) -> Result<Vec<OutputFile>, FigureError> {
-    let mut files = Vec::new();
-    for (number, name) in comparison.scenarios().into_iter().enumerate() {
-        for figure in compared(comparison, name, number + 1) {
-            let svg = figure.to_svg_standalone().into_bytes();
-            files.push(OutputFile { name: format!("{}.svg", figure.name), bytes: svg });
-            files.push(OutputFile { name: format!("{}.png", figure.name), bytes: figure.to_png(PNG_SCALE)? });
-        }
-    }
-    Ok(files)
+    let scenarios = comparison.scenarios().into_iter().enumerate();
+    let figures = scenarios.flat_map(|(number, name)| compared(comparison, name, number + 1));
+    picture_files(&figures.collect::<Vec<_>>())
 }
 
 /// One scenario of all projects that have it: the whole, and each event of the first.

@@ -2,15 +2,11 @@
 
 use std::fmt::Write as _;
 
-use phea_hydraulics::machine::SIGNALS;
-
+use super::columns::Columns;
 use super::{Look, ScenarioRun};
-use crate::answer::OutputFile;
+use crate::answer::{NumberTable, OutputFile, TableFormat};
 use crate::project::Loaded;
 use crate::source::{Destination, Unfinished, WriteError};
-
-/// The machine's signals that come first, in this order; the others follow as the machine lists them.
-const FIRST: [&str; 5] = ["spool_v", "pressure_a_pa", "pressure_b_pa", "position_m", "velocity_m_per_s"];
 
 /// The state each run ended in, where that can be saved.
 pub(crate) fn files(loaded: &Loaded, runs: &[ScenarioRun]) -> Vec<OutputFile> {
@@ -28,8 +24,8 @@ pub(crate) fn state_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<S
 }
 
 /// Names of the tables of scenarios with these names, each after its own and no two alike.
-pub(crate) fn table_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
-    names(scenarios).into_iter().map(|name| format!("{name}.csv")).collect()
+pub(crate) fn table_names<'a>(scenarios: impl Iterator<Item = &'a str>, ending: &str) -> Vec<String> {
+    names(scenarios).into_iter().map(|name| format!("{name}.{ending}")).collect()
 }
 
 /// Each after its own and no two alike.
@@ -60,66 +56,34 @@ fn file_name(name: &str) -> String {
 /// A table that is written row by row, columns named with their units.
 pub(crate) struct Table<'a> {
     name: String,
-    file: Box<dyn Unfinished + 'a>,
-    /// Places of the signals in a row, behind the first four columns.
-    order: Vec<usize>,
-    force: Option<usize>,
+    columns: Columns,
+    table: NumberTable<Box<dyn Unfinished + 'a>>,
     /// The row that is being written.
-    text: String,
+    values: Vec<f64>,
 }
 
 impl<'a> Table<'a> {
     /// A table with its head, and a last column for the force from outside where the load is `pushed`.
     pub(super) fn begin(
-        destination: &'a dyn Destination,
-        name: &str,
+        (destination, name): (&'a dyn Destination, &str),
+        format: TableFormat,
         pushed: bool,
     ) -> Result<Table<'a>, WriteError> {
-        let place = |name: &&str| SIGNALS.iter().position(|signal| signal == name);
-        let first: Vec<usize> = FIRST.iter().filter_map(place).collect();
-        let force = place(&"force_n");
-        let rest = (0..SIGNALS.len()).filter(|index| Some(*index) != force && !first.contains(index));
-        let order: Vec<usize> = first.iter().copied().chain(rest).collect();
-        let mut text = "time_s,reference_n,force_n,control_v".to_string();
-        for name in order.iter().filter_map(|index| SIGNALS.get(*index)) {
-            text.push(',');
-            text.push_str(name);
-        }
-        text.push_str(",filtered_reference_n");
-        text.push_str(if pushed { ",external_force_n\n" } else { "\n" });
-        let (name, file) = (name.to_string(), destination.begin(name)?);
-        let mut table = Table { name, file, order, force, text };
-        table.write()?;
-        Ok(table)
+        let columns = Columns::new(pushed);
+        let table = NumberTable::new(destination.begin(name)?, format, &columns.names());
+        let table = table.map_err(|error| unwritten(name, &error))?;
+        Ok(Table { name: name.to_string(), columns, table, values: Vec::new() })
     }
 
     pub(super) fn row(&mut self, look: &Look) -> Result<(), WriteError> {
-        let Table { order, force, text, .. } = self;
-        text.clear();
-        let signal = |index: usize| look.signals.get(index).copied();
-        let force = force.and_then(signal).unwrap_or(f64::NAN);
-        number(text, look.time_s);
-        let columns = [look.reference_n, Some(force), Some(look.control_v)].into_iter();
-        let columns = columns.chain(order.iter().map(|index| signal(*index)));
-        let last = [Some(look.filtered_reference_n), look.external_force_n.map(Some)];
-        // what an open loop does not have is empty
-        for value in columns.chain(last.into_iter().flatten()) {
-            text.push(',');
-            if let Some(value) = value {
-                number(text, value);
-            }
-        }
-        text.push('\n');
-        self.write()
+        self.columns.read(look, &mut self.values);
+        self.table.row(&self.values).map_err(|error| unwritten(&self.name, &error))
     }
 
     /// Puts it under its name.
     pub(super) fn finish(self) -> Result<(), WriteError> {
-        self.file.finish().map_err(|error| unwritten(&self.name, &error))
-    }
-
-    fn write(&mut self) -> Result<(), WriteError> {
-        self.file.write_all(self.text.as_bytes()).map_err(|error| unwritten(&self.name, &error))
+        let Table { name, table, .. } = self;
+        table.finish().and_then(Unfinished::finish).map_err(|error| unwritten(&name, &error))
     }
 }
 
@@ -151,7 +115,7 @@ mod tests {
 
     #[test]
     fn tables_of_scenarios_with_like_names_have_names_of_their_own() {
-        let names = table_names(["step", "Step", "a/b", "step"].into_iter());
+        let names = table_names(["step", "Step", "a/b", "step"].into_iter(), "csv");
         assert_eq!(names, ["step.csv", "Step 2.csv", "a_b.csv", "step 3.csv"]);
     }
 

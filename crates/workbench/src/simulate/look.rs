@@ -6,8 +6,10 @@ use phea_dynamics::simulation::{Observer, System};
 use phea_hydraulics::machine::SIGNALS;
 
 use super::bench::{Bench, Control};
-use super::digital::Samples;
+use super::columns::{self, LOOP_SIGNALS};
+use super::digital::{Sample, Samples};
 use super::files::Table;
+use super::measured::{Measurement, Overlay, Overlaying};
 use super::{Seen, SimulateError};
 use crate::source::WriteError;
 
@@ -29,6 +31,8 @@ pub struct Look {
     pub external_force_n: Option<f64>,
     /// What the machine tells of itself, in the order of [`SIGNALS`].
     pub signals: [f64; SIGNALS.len()],
+    /// What the control loop tells of itself, in the order of [`LOOP_SIGNALS`]; in an open loop what is commanded, and nothing that integrates.
+    pub of_loop: [f64; LOOP_SIGNALS.len()],
 }
 
 /// The machine and its controller over time: every look, or of a long run every second, fourth, eighth and so on, so that no
@@ -47,6 +51,8 @@ pub struct Record {
     pub external_force_n: Vec<f64>,
     /// What the machine tells of itself, each in the order of [`SIGNALS`].
     pub signals: Vec<[f64; SIGNALS.len()]>,
+    /// What the control loop tells of itself, each in the order of [`LOOP_SIGNALS`].
+    pub of_loop: Vec<[f64; LOOP_SIGNALS.len()]>,
     /// Looks from one of these to the next.
     pub looks_apart: u64,
 }
@@ -60,16 +66,16 @@ impl Default for Record {
             control_v: vec![],
             external_force_n: vec![],
             signals: vec![],
+            of_loop: vec![],
             looks_apart: 1,
         }
     }
 }
 
 impl Record {
-    /// One of [`SIGNALS`] over time; empty for a name that is none.
+    /// A column of the table over time; empty for a name that is none.
     pub fn signal(&self, name: &str) -> Vec<f64> {
-        let Some(index) = SIGNALS.iter().position(|signal| *signal == name) else { return Vec::new() };
-        self.signals.iter().map(|row| row[index]).collect()
+        columns::signal(self, name)
     }
 
     /// Takes the look of this number, counted from zero, or leaves it out.
@@ -83,6 +89,7 @@ impl Record {
         self.control_v.push(look.control_v);
         self.external_force_n.extend(look.external_force_n);
         self.signals.push(look.signals);
+        self.of_loop.push(look.of_loop);
         if self.times_s.len() > MOST_KEPT {
             self.halve();
         }
@@ -98,6 +105,7 @@ impl Record {
         ];
         columns.into_iter().for_each(every_second);
         every_second(&mut self.signals);
+        every_second(&mut self.of_loop);
         self.looks_apart *= 2;
     }
 }
@@ -151,6 +159,13 @@ struct Places {
     pressures: [usize; 2],
 }
 
+/// What was seen of a run.
+pub(super) struct Sighted {
+    pub(super) record: Record,
+    pub(super) looks: Looks,
+    pub(super) measured: Vec<Overlay>,
+}
+
 /// Looks at a machine and its controller.
 pub(super) struct Looking<'a> {
     bench: &'a Bench,
@@ -165,6 +180,7 @@ pub(super) struct Looking<'a> {
     table: Option<Table<'a>>,
     record: Record,
     looks: Looks,
+    overlays: Vec<Overlaying<'a>>,
     /// Whether the table takes no more, and why.
     full: &'a Cell<bool>,
     fault: Option<WriteError>,
@@ -175,6 +191,7 @@ impl<'a> Looking<'a> {
         bench: &'a Bench,
         samples: &'a RefCell<Samples>,
         (table, looks_per_row): (Option<Table<'a>>, usize),
+        measurements: &'a [Measurement],
         full: &'a Cell<bool>,
     ) -> Looking<'a> {
         let states = match &bench.control {
@@ -196,6 +213,7 @@ impl<'a> Looking<'a> {
             table,
             record: Record::default(),
             looks: Looks::default(),
+            overlays: measurements.iter().map(Overlaying::new).collect(),
             full,
             fault: None,
         }
@@ -205,29 +223,42 @@ impl<'a> Looking<'a> {
     ///
     /// # Errors
     /// [`SimulateError::Write`] where a row could not be written.
-    pub(super) fn finish(self) -> Result<(Record, Looks), SimulateError> {
+    pub(super) fn finish(self) -> Result<Sighted, SimulateError> {
         if let Some(fault) = self.fault {
             return Err(SimulateError::Write(fault));
         }
         if let Some(table) = self.table {
             table.finish().map_err(SimulateError::Write)?;
         }
-        Ok((self.record, self.looks))
+        let measured = self.overlays.into_iter().map(Overlaying::finish).collect();
+        Ok(Sighted { record: self.record, looks: self.looks, measured })
     }
 
     fn look(&self, time_s: f64, states: &[f64], inputs: &[f64]) -> Look {
-        let (asked_for, control_v, others) = match &self.bench.control {
+        let (asked_for, control_v, of_loop, others) = match &self.bench.control {
             Control::Continuous(closed) => {
                 let signals = closed.signals::<f64, f64>(states, inputs);
-                (Some([inputs[0], signals.filtered_reference]), signals.command, &inputs[1..])
+                let (arriving, integral) =
+                    (closed.arriving_command(states, inputs), closed.integral_part(states));
+                let of_loop = [arriving, signals.wanted, integral, signals.measurement];
+                (Some([inputs[0], signals.filtered_reference]), signals.command, of_loop, &inputs[1..])
             }
             Control::Sampled(_) => {
                 let last = self.samples.borrow().last;
-                let [filtered, command] =
-                    last.map_or([0.0; 2], |sample| [sample.filtered_reference_n, sample.command_v]);
-                (Some([inputs[1], filtered]), command, &inputs[2..])
+                let of_sample = |number: fn(&Sample) -> f64| last.as_ref().map_or(0.0, number);
+                let of_loop = [
+                    inputs[0],
+                    of_sample(|sample| sample.unlimited_v),
+                    of_sample(|sample| sample.integral_v),
+                    of_sample(|sample| sample.measurement_n),
+                ];
+                let filtered = of_sample(|sample| sample.filtered_reference_n);
+                (Some([inputs[1], filtered]), of_sample(|sample| sample.command_v), of_loop, &inputs[2..])
             }
-            Control::Open(_) => (None, inputs[0], &inputs[2..]),
+            Control::Open(held) => {
+                let [_, measured] = held.sampled::<f64, f64>(states, inputs);
+                (None, inputs[0], [inputs[0], inputs[0], 0.0, measured], &inputs[2..])
+            }
         };
         let machine = &self.bench.machine;
         Look {
@@ -237,6 +268,7 @@ impl<'a> Looking<'a> {
             control_v,
             external_force_n: others.get(2).copied().filter(|_| machine.has_external_force()),
             signals: machine.outputs(states, others),
+            of_loop,
         }
     }
 }
@@ -259,6 +291,9 @@ impl Observer for Looking<'_> {
         }
         self.record.take(self.count, &look);
         self.looks.take(&look, self.places);
+        for overlay in &mut self.overlays {
+            overlay.take(&look);
+        }
         self.count += 1;
     }
 }
@@ -277,8 +312,16 @@ mod tests {
             let signals = [time_s; SIGNALS.len()];
             let (reference_n, filtered_reference_n, control_v) = (Some(time_s), Some(time_s), time_s);
             let external_force_n = Some(time_s);
-            let look =
-                Look { time_s, reference_n, filtered_reference_n, control_v, external_force_n, signals };
+            let of_loop = [time_s; LOOP_SIGNALS.len()];
+            let look = Look {
+                time_s,
+                reference_n,
+                filtered_reference_n,
+                control_v,
+                external_force_n,
+                signals,
+                of_loop,
+            };
             record.take(number, &look);
             assert!(record.times_s.len() <= MOST_KEPT);
         }
@@ -286,6 +329,7 @@ mod tests {
         let expected: Vec<f64> = (0..looks).step_by(4).map(|number| number as f64).collect();
         assert!(record.times_s == expected && record.control_v == expected);
         assert!(record.signal("force_n") == expected && record.reference_n == expected);
+        assert!(record.signal("integral_v") == expected);
         assert!(record.filtered_reference_n == expected && record.external_force_n == expected);
     }
 }

@@ -353,6 +353,7 @@ mod tests {
             reference_n,
             control_v,
             signals,
+            of_loop: Vec::new(),
             times_s,
             ..Record::default()
         }

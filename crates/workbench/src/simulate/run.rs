@@ -10,7 +10,8 @@ use phea_hydraulics::machine::INDICATORS;
 use super::bench::{Bench, Control};
 use super::course::Course;
 use super::digital::{Digital, Memory, Samples};
-use super::look::{Looking, Record};
+use super::look::{Looking, Record, Sighted};
+use super::measured::{Measurement, Overlay};
 use super::metrics::{Metrics, metrics_seen};
 use super::saved::{self, SavedState};
 use super::{SimulateError, Table, Window};
@@ -46,6 +47,8 @@ pub struct ScenarioRun {
     pub outside_model_s: Option<f64>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
+    /// What was measured, beside what was simulated.
+    pub measured: Vec<Overlay>,
     /// Whether a stated command drove the valve, and no controller.
     pub open_loop: bool,
     /// Chambers whose pressure went beyond what the expansion of their hose was measured at.
@@ -136,7 +139,7 @@ impl Stopped {
 pub(super) fn run(
     bench: &Bench,
     scenario: &Scenario,
-    course: &Course,
+    (course, measurements): (&Course, &[Measurement]),
     table: Option<Table<'_>>,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<ScenarioRun, SimulateError> {
@@ -157,11 +160,11 @@ pub(super) fn run(
     };
     inputs.extend(course.machine_inputs());
     let drive = Drive { duration_s: scenario.duration, output_step_s: look_s, inputs };
-    let observer = Looking::new(bench, &samples, (table, looks_per_row), &full);
+    let observer = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full);
     let driven = driven(bench, course, (&drive, observer), (&samples, &memory), &mut watch);
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let (outcome, seen) = driven.map_err(named)?;
-    let (record, looks) = seen.finish()?;
+    let Sighted { record, looks, measured } = seen.finish()?;
     let occurrences = found(bench, course, &outcome, &samples.into_inner());
     let band = scenario.settling_band_percent;
     let metrics = |window: &Window| metrics_seen(&looks.seen(), *window, band);
@@ -181,6 +184,7 @@ pub(super) fn run(
         occurrences,
         outside_model_s,
         settling_band_percent: band,
+        measured,
         open_loop: scenario.is_open_loop(),
         beyond_expansion: beyond_expansion(bench, looks.peak_pressures_pa),
         end,

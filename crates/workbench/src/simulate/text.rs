@@ -1,7 +1,7 @@
 //! What `simulate` and `compare` say to people.
 
 use super::metrics::{Measured, NOT_SETTLED};
-use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, ScenarioRun, Stopped, Window};
+use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, Overlay, ScenarioRun, Stopped, Window};
 use crate::answer::{significant, table};
 use crate::project::Loaded;
 use crate::quantity::{DisplayUnit, FORCE, PRESSURE, TIME, VOLTAGE, display};
@@ -16,6 +16,9 @@ pub(crate) fn text(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
         out.push_str(&format!("{}\n", headline(run)));
         if !run.windows.is_empty() {
             out.push_str(&format!("{}\n", windows(run)));
+        }
+        if !run.measured.is_empty() {
+            out.push_str(&format!("{}\n", measured(run)));
         }
         for sentence in coarse_sentence(run).into_iter().chain(occurrence_sentences(run)) {
             out.push_str(&format!("  {sentence}\n"));
@@ -87,6 +90,33 @@ fn windows(run: &ScenarioRun) -> String {
         rows.add_row(std::iter::once(cause_words(window)).chain(shown).collect::<Vec<_>>());
     }
     rows.trim_fmt()
+}
+
+fn measured(run: &ScenarioRun) -> String {
+    let mut rows = table(&MEASURED);
+    for overlay in &run.measured {
+        rows.add_row(measured_cells(overlay));
+    }
+    rows.trim_fmt()
+}
+
+/// Heads of the table of what was measured, and its cells.
+pub(crate) const MEASURED: [&str; 5] = ["measured", "as column of", "NRMSE", "RMSE", "rows"];
+
+pub(crate) fn measured_cells(overlay: &Overlay) -> [String; 5] {
+    let unit = overlay.display_unit();
+    let percent = |ratio: f64| format!("{} %", significant(100.0 * ratio, 3));
+    let rows = match overlay.rows_outside {
+        0 => overlay.times_s.len().to_string(),
+        outside => format!("{}, {outside} more outside", overlay.times_s.len()),
+    };
+    [
+        overlay.signal.to_string(),
+        format!("{} `{}`", overlay.file, overlay.column),
+        overlay.nrmse.map_or(ABSENT.to_string(), percent),
+        overlay.rmse.map_or(ABSENT.to_string(), |rmse| unit.text(rmse, 3)),
+        rows,
+    ]
 }
 
 /// What began a window.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::measured::measured;
 use super::signal::signals;
 use super::{Check, linear_parameter};
 use crate::answer::significant;
@@ -115,6 +116,7 @@ fn one_scenario(scenario: &Scenario, actuator: &Actuator, path: &str, check: &mu
         let help = "give [load] a model with a mass: \"spring_mass_damper\" or \"wall\"";
         check.error_with_help(&format!("{path}.external_force"), message, help);
     }
+    measured(&scenario.measured, path, check);
     if let Some(motion) = &scenario.load_motion {
         if scenario.duration > 0.0 && motion.start > scenario.duration {
             check.warning(&format!("{path}.load_motion.start"), "the load begins to move after the end");

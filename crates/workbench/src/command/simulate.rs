@@ -1,0 +1,151 @@
+//! `simulate`: scenarios, or a frequency response.
+
+use super::{CommandError, Watch, error_words};
+use crate::answer::{Answer, OutputFile, TableFormat};
+use crate::project::Loaded;
+use crate::quantity::{self, ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
+use crate::simulate::{
+    FrequencyRequest, ScenarioRun, figure_files, files, frequency_files, frequency_json, frequency_pictures,
+    frequency_response, frequency_text, json, picture_files, simulate_into, text,
+};
+use crate::source::{Destination, Source};
+
+/// What is asked of `simulate`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SimulateRequest {
+    /// How tables are written.
+    pub table: TableFormat,
+    /// Whether figures are wanted as files.
+    pub figures: bool,
+    /// The frequency response of the machine instead of its scenarios.
+    pub frequency_response: Option<FrequencyOptions>,
+}
+
+/// Options of a frequency response, as written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FrequencyOptions {
+    /// Such as `1, 10, 100 rad/s`: a unit holds for the bare numbers before it.
+    pub frequencies: Option<String>,
+    /// Of the command of the open loop, such as `0.1 V`.
+    pub amplitude: Option<String>,
+    /// Of the reference of the closed loop, such as `100 N`.
+    pub reference_amplitude: Option<String>,
+}
+
+pub(super) fn simulate_answer(
+    source: &dyn Source,
+    loaded: &Loaded,
+    asked: &SimulateRequest,
+    destination: Option<&dyn Destination>,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
+    if let Some(options) = &asked.frequency_response {
+        return frequency_answer(loaded, asked, &request(options)?, watch);
+    }
+    let tables = destination.map(|destination| (destination, asked.table));
+    let runs = simulate_into(source, &loaded.project, tables, watch)?;
+    let mut written = files(loaded, &runs);
+    if asked.figures {
+        written.extend(figure_files(&runs)?);
+    }
+    let all = runs.len() == loaded.project.scenarios.len();
+    Ok(Answer {
+        text: text(loaded, &runs),
+        json: json(loaded, &runs),
+        files: written,
+        affirmative: all && runs.iter().all(|run: &ScenarioRun| run.stopped().is_none()),
+    })
+}
+
+fn frequency_answer(
+    loaded: &Loaded,
+    asked: &SimulateRequest,
+    request: &FrequencyRequest,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
+    let found = frequency_response(&loaded.project, request, watch)?;
+    // nothing that is written to memory can fail
+    let mut written: Vec<OutputFile> = frequency_files(&found, asked.table).unwrap_or_default();
+    if asked.figures {
+        written.extend(picture_files(&frequency_pictures(&found))?);
+    }
+    Ok(Answer {
+        text: frequency_text(&found),
+        json: frequency_json(loaded, &found),
+        files: written,
+        affirmative: found.is_settled(),
+    })
+}
+
+fn request(options: &FrequencyOptions) -> Result<FrequencyRequest, CommandError> {
+    let one = |option: &'static str, text: &Option<String>, dimension: &'static Dimension| {
+        text.as_deref().map(|text| positive(option, text, text, dimension)).transpose()
+    };
+    Ok(FrequencyRequest {
+        frequencies_rad_per_s: options.frequencies.as_deref().map_or(Ok(vec![]), frequencies)?,
+        command_amplitude_v: one("amplitude", &options.amplitude, &VOLTAGE)?,
+        reference_amplitude_n: one("reference-amplitude", &options.reference_amplitude, &FORCE)?,
+    })
+}
+
+/// `1, 10, 100 Hz`: the unit holds for the bare numbers before it; without any, rad/s.
+fn frequencies(text: &str) -> Result<Vec<f64>, CommandError> {
+    let mut unit = "";
+    let mut found = Vec::new();
+    for part in text.rsplit(',').map(str::trim) {
+        let bare = is_number(part);
+        if !bare {
+            let number = (0..part.len()).rev().find(|end| part.get(..*end).is_some_and(is_number));
+            unit = number.and_then(|end| part.get(end..)).unwrap_or_default().trim();
+        }
+        let written = if bare { format!("{part} {unit}") } else { part.to_string() };
+        found.push(positive("frequencies", text, written.trim(), &ANGULAR_FREQUENCY)?);
+    }
+    found.reverse();
+    Ok(found)
+}
+
+fn is_number(text: &str) -> bool {
+    text.trim().parse::<f64>().is_ok()
+}
+
+/// A positive number in SI, bare or with its unit.
+fn positive(
+    option: &'static str,
+    text: &str,
+    part: &str,
+    dimension: &'static Dimension,
+) -> Result<f64, CommandError> {
+    let refuse = |message: String| CommandError::Option { option, text: text.to_string(), message };
+    let bare = part.parse::<f64>().ok().filter(|value| value.is_finite());
+    let value = match bare {
+        Some(value) => value,
+        None => quantity::parse(part, dimension).map_err(|error| refuse(error_words(&error, dimension)))?,
+    };
+    if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string())) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_unit_holds_for_the_numbers_before_it() {
+        // ORIGIN: analytic, 2 pi rad/s is 1 Hz
+        let turn = std::f64::consts::TAU;
+        for (text, expected) in [
+            ("1, 10,100", vec![1.0, 10.0, 100.0]),
+            ("1, 2 Hz", vec![turn, 2.0 * turn]),
+            ("1 rad/s, 1e1, 2e0 Hz", vec![1.0, 10.0 * turn, 2.0 * turn]),
+        ] {
+            let found = frequencies(text).unwrap();
+            assert_eq!(found.len(), expected.len());
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-12 * expected, "{text}: {found} {expected}");
+            }
+        }
+        for text in ["", "1,", "0", "-1 Hz", "1 kN", "fast"] {
+            assert!(frequencies(text).is_err(), "{text}");
+        }
+    }
+}

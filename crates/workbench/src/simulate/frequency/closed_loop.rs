@@ -1,0 +1,250 @@
+//! From reference to force, under the controller as it is deployed.
+
+use std::cell::RefCell;
+use std::f64::consts::TAU;
+
+use num_complex::Complex64;
+use phea_dynamics::controller::Controller;
+use phea_dynamics::linear::{TimeDomain, TransferFunction};
+use phea_dynamics::portable;
+use phea_dynamics::simulation::{ClosedLoop, Input, Profile, Sensed, Settings, small_signal};
+use phea_hydraulics::machine::Machine;
+
+use super::open_loop::profile;
+use super::point::{ResponsePoint, Shaken, finer, force_amplitude, point, respond};
+use super::{FrequencyRequest, Response, Rested, USUAL_AMPLITUDE, curve};
+use crate::control::{controller, deployed, sensor};
+use crate::linear_loop::{LinearLoop, linear_loop};
+use crate::project::Project;
+use crate::simulate::SimulateError;
+use crate::simulate::bench::{Bench, Control, Sampled};
+use crate::simulate::course::under_way;
+use crate::simulate::digital::{Digital, Samples, Waking};
+
+/// Fewest samples of a period: a command that changes its sign at each has no other form than a square.
+const FEWEST_SAMPLES: f64 = 4.0;
+/// Part of what the supply can push with by which errors of the force are measured.
+const TYPICAL_PUSH: f64 = 0.1;
+
+/// Measures the response at these frequencies; ends before the first for which `goes_on` is false. The reason where there is no
+/// loop.
+pub(super) fn measured(
+    project: &Project,
+    rested: &Rested,
+    frequencies: &[f64],
+    request: &FrequencyRequest,
+    goes_on: &mut dyn FnMut(usize) -> bool,
+) -> Result<Result<Response, String>, SimulateError> {
+    let Some(given) = controller(project)? else {
+        return Ok(Err("the project gives no controller".to_string()));
+    };
+    let bench = Bench::new(project)?;
+    let amplitude = request.reference_amplitude_n.unwrap_or(USUAL_AMPLITUDE * rested.push_n);
+    let model = Model::new(project, rested, &given)?;
+    let reference_n = held_reference(rested, &given)?;
+    if !reference_n.is_finite() {
+        return Ok(Err("no reference holds the force of the operating point".to_string()));
+    }
+    let shared = Shared { rested, model: &model, reference_n, amplitude };
+    match &bench.control {
+        Control::Continuous(closed) => shared.continuous(closed, frequencies, goes_on).map(Ok),
+        Control::Sampled(sampled) => shared.sampled(sampled, frequencies, goes_on).map(Ok),
+        Control::Open(_) => Ok(Err("nobody closes the loop".to_string())),
+    }
+}
+
+/// The reference at which the controller holds the force and the command of the rest: (F_0 + U_0/G(0))/F(0).
+fn held_reference(rested: &Rested, given: &Controller) -> Result<f64, SimulateError> {
+    let gain = given.feedback.transfer_function()?.dc_gain();
+    let error = if rested.rest.command == 0.0 { 0.0 } else { rested.rest.command / gain };
+    Ok((rested.force_n + error) / given.prefilter.transfer_function()?.dc_gain())
+}
+
+/// What both kinds of loop need.
+struct Shared<'a> {
+    rested: &'a Rested,
+    model: &'a Model,
+    reference_n: f64,
+    amplitude: f64,
+}
+
+impl Shared<'_> {
+    fn settings(&self) -> Settings {
+        finer(self.rested.settings, self.amplitude / (TYPICAL_PUSH * self.rested.push_n))
+    }
+
+    fn reference(&self, frequency: f64) -> Result<Input, SimulateError> {
+        let sine = Profile::sine(0.0, self.amplitude, frequency).map_err(profile)?;
+        Ok(Input::Value(sine.shifted(self.reference_n)))
+    }
+
+    fn ground(&self) -> [Input; 2] {
+        let ground = Profile::constant(self.rested.rest.inputs[0]);
+        [Input::Value(ground.clone()), Input::Rate(ground)]
+    }
+
+    fn response(&self, points: Vec<ResponsePoint>, frequencies: &[f64], machine: Vec<Complex64>) -> Response {
+        let curve_rad_per_s = curve(frequencies);
+        Response {
+            points,
+            linear_plant: curve_rad_per_s.iter().map(|frequency| self.model.at(*frequency)).collect(),
+            linearised_machine: machine,
+            curve_rad_per_s,
+        }
+    }
+
+    fn continuous(
+        &self,
+        closed: &ClosedLoop<Sensed<Machine>>,
+        frequencies: &[f64],
+        goes_on: &mut dyn FnMut(usize) -> bool,
+    ) -> Result<Response, SimulateError> {
+        let rest = &self.rested.rest;
+        let mut state = rest.state.clone();
+        state.extend(closed.plant().sensor_at_rest(self.rested.force_n));
+        state.extend(closed.controller_at_rest(self.reference_n, self.rested.force_n, rest.command));
+        let waves = under_way(closed, &state, &[self.reference_n], rest);
+        let inputs = [&[self.reference_n], &rest.inputs[..], &waves].concat();
+        let orbit = |frequency: f64| small_signal(closed, &state, &inputs, &[Complex64::ONE], frequency);
+        let force = |orbit: &Vec<Complex64>| force_amplitude(&self.rested.machine, orbit);
+        let start = [state.as_slice(), &waves].concat();
+        let mut points = Vec::new();
+        for (index, frequency) in frequencies.iter().enumerate() {
+            if !goes_on(index) {
+                break;
+            }
+            let orbit = orbit(*frequency);
+            let linearised = orbit.as_ref().map(force);
+            let shaken = Shaken {
+                system: closed,
+                rest: &start,
+                orbit: orbit.unwrap_or_default(),
+                inputs: [self.reference(*frequency)?].into_iter().chain(self.ground()).collect(),
+                machine: &self.rested.machine,
+                settings: self.settings(),
+            };
+            let sine = [*frequency, self.amplitude];
+            let found = respond(shaken, None, sine, &mut || goes_on(index))?;
+            points.push(point(sine, &found, self.model.at(*frequency), linearised));
+        }
+        let machine = curve(frequencies).into_iter().map(|frequency| Some(force(&orbit(frequency)?)));
+        let machine = machine.collect::<Option<Vec<_>>>().unwrap_or_default();
+        Ok(self.response(points, frequencies, machine))
+    }
+
+    /// At the nearest frequencies whose period is a whole number of samples, and without the noise of the sensor.
+    fn sampled(
+        &self,
+        sampled: &Sampled,
+        frequencies: &[f64],
+        goes_on: &mut dyn FnMut(usize) -> bool,
+    ) -> Result<Response, SimulateError> {
+        let quiet = Sampled { noise: 0.0, ..sampled.clone() };
+        let (held, rest) = (&quiet.held, &self.rested.rest);
+        let mut state = rest.state.clone();
+        state.extend(held.plant().sensor_at_rest(self.rested.force_n));
+        state.extend(held.prefilter_at_rest(self.reference_n));
+        let waves = under_way(held, &state, &[rest.command, self.reference_n], rest);
+        let start = [state.as_slice(), &waves].concat();
+        let filtered = held.sampled::<f64, f64>(
+            &state,
+            &[&[rest.command, self.reference_n], &rest.inputs[..], &waves].concat(),
+        );
+        let sample_time_s = quiet.controller.sample_time_s();
+        let mut sampled: Vec<f64> = frequencies.iter().filter_map(|one| whole(*one, sample_time_s)).collect();
+        sampled.dedup();
+        let mut points = Vec::new();
+        for (index, frequency) in sampled.iter().enumerate() {
+            if !goes_on(index) {
+                break;
+            }
+            let shaken = Shaken {
+                system: held,
+                rest: &start,
+                orbit: Vec::new(),
+                inputs: [Input::Command, self.reference(*frequency)?]
+                    .into_iter()
+                    .chain(self.ground())
+                    .collect(),
+                machine: &self.rested.machine,
+                settings: self.settings(),
+            };
+            let log = RefCell::new(Samples::default());
+            let waking = Waking::Holding([filtered[0], filtered[1], rest.command]);
+            let digital = Box::new(Digital::new(&quiet, &waking, &log));
+            let sine = [*frequency, self.amplitude];
+            let found = respond(shaken, Some(digital), sine, &mut || goes_on(index))?;
+            points.push(point(sine, &found, self.model.at(*frequency), None));
+        }
+        Ok(self.response(points, &sampled, Vec::new()))
+    }
+}
+
+/// The nearest frequency whose period is a whole number of samples; `None` for one with fewer than four a period.
+fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
+    let samples = (TAU / (frequency * sample_time_s)).round();
+    (samples >= FEWEST_SAMPLES).then(|| TAU / (samples * sample_time_s))
+}
+
+/// The loop that the linear plant closes, from reference to force.
+///
+/// ```text
+/// T = F G P e^(-s d)/(1 + G P H e^(-s d))
+/// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of what is between the samples
+/// ```
+struct Model {
+    plant: TransferFunction,
+    sensor: TransferFunction,
+    delay_s: f64,
+    feedback: TransferFunction,
+    prefilter: TransferFunction,
+    /// Sample time and loop in z.
+    sampled: Option<(f64, LinearLoop)>,
+}
+
+impl Model {
+    fn new(project: &Project, rested: &Rested, given: &Controller) -> Result<Model, SimulateError> {
+        let sensor = sensor(project)?;
+        let sampled = match given.timing.sample_time_s {
+            None => None,
+            Some(sample_time_s) => {
+                let deployed = deployed(project, given)?;
+                Some((sample_time_s, linear_loop(&rested.plant, &deployed, &sensor, 1.0)?))
+            }
+        };
+        let prefilter = given.prefilter.transfer_function()?;
+        let between = project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous);
+        Ok(Model {
+            plant: rested.plant.clone(),
+            sensor,
+            delay_s: given.timing.delay_s,
+            feedback: given.feedback.transfer_function()?,
+            prefilter: match &sampled {
+                Some((_, sampled)) if !between || prefilter.domain() != TimeDomain::Continuous => {
+                    sampled.prefilter.clone()
+                }
+                _ => prefilter,
+            },
+            sampled,
+        })
+    }
+
+    fn at(&self, frequency: f64) -> Complex64 {
+        let late = portable::exp_complex(Complex64::new(0.0, -frequency * self.delay_s));
+        let plant = self.plant.at_frequency(frequency) * late;
+        let prefilter = self.prefilter.at_frequency(frequency);
+        match &self.sampled {
+            None => {
+                let feedback = self.feedback.at_frequency(frequency);
+                prefilter * feedback * plant / (1.0 + feedback * plant * self.sensor.at_frequency(frequency))
+            }
+            Some((sample_time_s, sampled)) => {
+                let turn = Complex64::new(0.0, frequency * sample_time_s);
+                let hold = (1.0 - portable::exp_complex(-turn)) / turn;
+                let (feedback, loop_) =
+                    (sampled.controller.at_frequency(frequency), sampled.open_loop.at_frequency(frequency));
+                prefilter * feedback / (1.0 + loop_) * hold * plant
+            }
+        }
+    }
+}

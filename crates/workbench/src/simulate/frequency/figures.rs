@@ -1,0 +1,63 @@
+//! Bode diagrams of a frequency response: points of the machine on the curves of its models.
+
+use super::{FrequencyResponse, Response};
+use crate::figure::{Figure, MeasuredResponseInput, ResponseCurve, Words, measured_response};
+
+/// A diagram for each loop.
+pub(crate) fn pictures(found: &FrequencyResponse) -> Vec<Figure> {
+    let mut figures = vec![diagram(
+        &found.open_loop,
+        (
+            "frequency-response-open-loop",
+            "Open loop: machine and linear plant",
+            "F_e/U_C",
+            "N/V",
+            "linear plant P",
+        ),
+    )];
+    if let Ok(closed) = &found.closed_loop {
+        figures.push(diagram(
+            closed,
+            (
+                "frequency-response-closed-loop",
+                "Closed loop: machine and linear plant",
+                "F_e/F_ref",
+                "N/N",
+                "loop of the linear plant",
+            ),
+        ));
+    }
+    figures
+}
+
+fn diagram(
+    response: &Response,
+    (name, title, quantity, unit, model): (&str, &str, &str, &str, &str),
+) -> Figure {
+    let caption = "Each point is the fundamental of the force, over whole periods of a sine that the nonlinear machine has settled to; \
+                   below, what it differs by from the linear plant, and its harmonics over the fundamental.";
+    let curve = |name: &str, response: &[num_complex::Complex64], frequencies: &[f64]| ResponseCurve {
+        name: name.to_string(),
+        frequencies_rad_per_s: frequencies.to_vec(),
+        response: response.to_vec(),
+    };
+    let frequencies = &response.curve_rad_per_s;
+    let mut curves = vec![curve(model, &response.linear_plant, frequencies)];
+    if !response.linearised_machine.is_empty() {
+        curves.push(curve("machine, linearised", &response.linearised_machine, frequencies));
+    }
+    let seen = || response.points.iter().filter(|point| point.machine.is_finite());
+    let input = MeasuredResponseInput {
+        quantity: quantity.to_string(),
+        unit: unit.to_string(),
+        curves,
+        measured: ResponseCurve {
+            name: "machine, sines".to_string(),
+            frequencies_rad_per_s: seen().map(|point| point.frequency_rad_per_s).collect(),
+            response: seen().map(|point| point.machine).collect(),
+        },
+        model: seen().map(|point| point.linear_plant).collect(),
+        distortion_percent: seen().map(|point| 100.0 * point.distortion).collect(),
+    };
+    measured_response(Words::new(name, title, caption), &input)
+}

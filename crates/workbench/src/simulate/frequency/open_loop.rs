@@ -1,0 +1,74 @@
+//! From command to force, nobody closing the loop.
+
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable;
+use phea_dynamics::simulation::{HeldPlant, Input, Plant, Profile, small_signal};
+use phea_hydraulics::machine::Machine;
+
+use super::point::{Shaken, finer, force_amplitude, point, respond};
+use super::{FrequencyRequest, Response, Rested, SimulateError, USUAL_AMPLITUDE, curve};
+
+/// Measures the response at these frequencies; ends before the first for which `goes_on` is false.
+pub(super) fn measured(
+    rested: &Rested,
+    frequencies: &[f64],
+    request: &FrequencyRequest,
+    goes_on: &mut dyn FnMut(usize) -> bool,
+) -> Result<Response, SimulateError> {
+    let held = HeldPlant::new(rested.machine, &TransferFunction::gain_only(1.0))?;
+    let mut points = Vec::new();
+    for (index, frequency) in frequencies.iter().enumerate() {
+        if !goes_on(index) {
+            break;
+        }
+        let orbit = orbit(&held, rested, *frequency);
+        let linearised = orbit.as_deref().map(|orbit| force_amplitude(&rested.machine, orbit));
+        let plant = rested.plant.at_frequency(*frequency);
+        let amplitude =
+            request.command_amplitude_v.unwrap_or_else(|| usual(rested, linearised.unwrap_or(plant)));
+        let sine = Profile::sine(0.0, amplitude, *frequency).map_err(profile)?.shifted(rested.rest.command);
+        let ground = Profile::constant(rested.rest.inputs[0]);
+        let typical: f64 = Plant::<f64>::command_scale(&rested.machine);
+        let start = [rested.rest.state.as_slice(), &rested.rest.waves].concat();
+        let shaken = Shaken {
+            system: &held,
+            rest: &start,
+            orbit: orbit.unwrap_or_default(),
+            inputs: vec![
+                Input::Value(sine),
+                Input::Value(Profile::constant(0.0)),
+                Input::Value(ground.clone()),
+                Input::Rate(ground),
+            ],
+            machine: &rested.machine,
+            settings: finer(rested.settings, amplitude / typical),
+        };
+        let found = respond(shaken, None, [*frequency, amplitude], &mut || goes_on(index))?;
+        points.push(point([*frequency, amplitude], &found, plant, linearised));
+    }
+    let curve_rad_per_s = curve(frequencies);
+    let of_machine =
+        |frequency: &f64| Some(force_amplitude(&rested.machine, &orbit(&held, rested, *frequency)?));
+    Ok(Response {
+        points,
+        linear_plant: curve_rad_per_s.iter().map(|frequency| rested.plant.at_frequency(*frequency)).collect(),
+        linearised_machine: curve_rad_per_s.iter().map(of_machine).collect::<Option<_>>().unwrap_or_default(),
+        curve_rad_per_s,
+    })
+}
+
+/// States on the orbit of a command of one volt.
+fn orbit(held: &HeldPlant<Machine>, rested: &Rested, frequency: f64) -> Option<Vec<Complex64>> {
+    let inputs = [&[rested.rest.command, 0.0], rested.rest.all_inputs().as_slice()].concat();
+    small_signal(held, &rested.rest.state, &inputs, &[Complex64::ONE], frequency)
+}
+
+fn usual(rested: &Rested, response: Complex64) -> f64 {
+    let voltage = rested.rig.actuator.components().valve.nominal_voltage;
+    USUAL_AMPLITUDE * voltage.min(rested.push_n / portable::magnitude(response))
+}
+
+pub(super) fn profile(error: phea_dynamics::simulation::ProfileError) -> SimulateError {
+    SimulateError::Profile { name: "frequency response".to_string(), error }
+}

@@ -1,0 +1,144 @@
+//! One frequency: a machine on its linear orbit, shaken until what it answers has settled.
+
+use std::f64::consts::TAU;
+
+use num_complex::Complex64;
+use phea_dynamics::portable;
+use phea_dynamics::simulation::{
+    Input, Plant, Sampler, Settings, SinePlan, SineResponse, System, sine_response,
+};
+use phea_hydraulics::machine::{INDICATORS, Machine};
+
+use crate::simulate::SimulateError;
+use crate::simulate::run::{COMMAND_LIMIT, Stopped};
+
+/// Shortest window, s, and in periods.
+const WINDOW_S: f64 = 1.0;
+const WINDOW_PERIODS: f64 = 2.0;
+const MOST_WINDOWS: u32 = 60;
+/// What two windows may differ by.
+const CHANGE: f64 = 1e-4;
+/// Finest and coarsest tolerance of the integration.
+const TOLERANCE: [f64; 2] = [1e-10, 1e-6];
+
+/// What was measured at one frequency, and what the models say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponsePoint {
+    /// rad/s.
+    pub frequency_rad_per_s: f64,
+    /// Of the sine: V of the open loop, N of the closed one.
+    pub amplitude: f64,
+    /// Fundamental of the force over the amplitude: N/V or 1; not a number where no window was seen to its end.
+    pub machine: Complex64,
+    /// The machine's own exact derivatives at its rest; absent where they are no linear system.
+    pub linearised_machine: Option<Complex64>,
+    /// The linear plant, or the loop it closes.
+    pub linear_plant: Complex64,
+    /// Harmonics from the second to the twentieth over the fundamental, root of the sum of squares.
+    pub distortion: f64,
+    /// Whether the fundamental changed by a ten-thousandth or less between the last two windows.
+    pub settled: bool,
+    /// What it changed by.
+    pub change: f64,
+    /// Periods that were watched.
+    pub periods: u64,
+    /// Steps of the integration.
+    pub steps: u64,
+    /// What was reached on the way, and is no more the neighbourhood of the rest.
+    pub reached: Vec<&'static str>,
+    /// In a word, why the simulation ended where it did not settle.
+    pub ended: Option<&'static str>,
+}
+
+impl ResponsePoint {
+    /// Magnitude of the machine over that of a model in dB, and its phase less the model's in degrees, within half a turn.
+    pub fn differs(&self, model: Complex64) -> [f64; 2] {
+        let quotient = self.machine / model;
+        [20.0 * portable::log10(portable::magnitude(quotient)), portable::argument(quotient).to_degrees()]
+    }
+}
+
+/// Force on the load at a state of a machine, or of what begins with it.
+pub(super) fn force(machine: &Machine, state: &[f64]) -> f64 {
+    let own: usize = Plant::<f64>::states(machine);
+    state.get(..own).map_or(f64::NAN, |state| Plant::<f64>::measurement(machine, state, &[]))
+}
+
+/// The same of complex amplitudes, in which it is linear.
+pub(super) fn force_amplitude(machine: &Machine, amplitudes: &[Complex64]) -> Complex64 {
+    let part = |of: fn(&Complex64) -> f64| force(machine, &amplitudes.iter().map(of).collect::<Vec<_>>());
+    Complex64::new(part(|amplitude| amplitude.re), part(|amplitude| amplitude.im))
+}
+
+/// What is shaken, and from where.
+pub(super) struct Shaken<'a, E> {
+    pub(super) system: &'a E,
+    /// Of all states, and behind them the waves under way.
+    pub(super) rest: &'a [f64],
+    /// Amplitudes of the states on the orbit of the linearised system, for an amplitude of one; empty where there is none.
+    pub(super) orbit: Vec<Complex64>,
+    pub(super) inputs: Vec<Input>,
+    pub(super) machine: &'a Machine,
+    pub(super) settings: Settings,
+}
+
+/// What a machine answers to a sine of this frequency and amplitude. It begins on the orbit that its derivatives have, so that
+/// only what they leave out has to settle.
+pub(super) fn respond<E: System<f64> + Clone>(
+    shaken: Shaken<'_, E>,
+    sampler: Option<Box<dyn Sampler + '_>>,
+    [frequency, amplitude]: [f64; 2],
+    watch: &mut dyn FnMut() -> bool,
+) -> Result<SineResponse, SimulateError> {
+    let Shaken { system, rest, orbit, inputs, machine, settings } = shaken;
+    let mut start = rest.to_vec();
+    for (state, part) in start.iter_mut().zip(&orbit) {
+        *state += amplitude * part.im;
+    }
+    let window_periods = (WINDOW_S * frequency / TAU).max(WINDOW_PERIODS).ceil() as u32;
+    let plan = SinePlan {
+        frequency_rad_per_s: frequency,
+        window_periods,
+        most_windows: MOST_WINDOWS,
+        change: CHANGE,
+    };
+    let output = |state: &[f64], _: &[f64]| force(machine, state);
+    let mut steps = 0_u32;
+    let mut watch = |_: f64| {
+        steps = steps.wrapping_add(1);
+        !steps.is_multiple_of(1024) || watch()
+    };
+    let answered = sine_response(system, &start, inputs, sampler, &settings, &plan, &output, &mut watch);
+    answered.map_err(|error| SimulateError::Simulation { name: "frequency response".to_string(), error })
+}
+
+/// As fine as so small a sine needs: errors are measured by what is typical, which is larger than it.
+pub(super) fn finer(settings: Settings, amplitude_over_typical: f64) -> Settings {
+    let [finest, coarsest] = TOLERANCE;
+    let wanted = (coarsest * amplitude_over_typical).clamp(finest, coarsest);
+    Settings { tolerance: settings.tolerance.min(wanted), ..settings }
+}
+
+/// The measured point beside its models.
+pub(super) fn point(
+    [frequency_rad_per_s, amplitude]: [f64; 2],
+    found: &SineResponse,
+    linear_plant: Complex64,
+    linearised_machine: Option<Complex64>,
+) -> ResponsePoint {
+    let name = |index: &usize| INDICATORS.get(*index).copied().unwrap_or(COMMAND_LIMIT);
+    ResponsePoint {
+        frequency_rad_per_s,
+        amplitude,
+        machine: found.fundamental / amplitude,
+        linearised_machine,
+        linear_plant,
+        distortion: found.distortion,
+        settled: found.settled,
+        change: found.change,
+        periods: found.periods,
+        steps: found.work.steps,
+        reached: found.indicators.iter().map(name).collect(),
+        ended: found.ended.and_then(|status| Some(Stopped::of(status)?.word)),
+    }
+}

@@ -1,0 +1,209 @@
+//! The machine shaken by sines, against linear systems that it must agree with where motions are small.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
+
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
+use phea_workbench::answer::Answer;
+use phea_workbench::command::{self, FrequencyOptions, Request, SimulateRequest};
+use phea_workbench::linearize::linearize;
+use phea_workbench::project::{self, Loaded};
+use phea_workbench::rig::Rig;
+use phea_workbench::simulate::{FrequencyRequest, FrequencyResponse, ResponsePoint, frequency_response};
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
+
+/// Viscous friction and four equal edges: nothing has a kink, so that derivatives exist at null.
+const SMOOTH: [&str; 3] = [
+    "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
+    "valve.flow_coefficients=[3e-7, 3e-7, 3e-7, 3e-7]",
+    "valve.leakage_coefficients=[2.4e-9, 2.4e-9, 2.4e-9, 2.4e-9]",
+];
+
+fn load(settings: &[&str]) -> Loaded {
+    let source = Memory::default().with("rig.toml", BENCHMARK);
+    let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
+    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn smooth(more: &[&str]) -> Loaded {
+    load(&[&SMOOTH[..], more].concat())
+}
+
+fn shaken(loaded: &Loaded, frequencies: &[f64], amplitudes: [f64; 2]) -> FrequencyResponse {
+    let request = FrequencyRequest {
+        frequencies_rad_per_s: frequencies.to_vec(),
+        command_amplitude_v: Some(amplitudes[0]),
+        reference_amplitude_n: Some(amplitudes[1]),
+    };
+    let found = frequency_response(&loaded.project, &request, &mut |_| true).unwrap();
+    assert!(found.is_settled(), "{found:?}");
+    found
+}
+
+/// What is left between two complex numbers, over the second.
+fn apart(one: Complex64, other: Complex64) -> f64 {
+    (one / other - 1.0).norm_sqr().sqrt()
+}
+
+fn worst(points: &[ResponsePoint], of: impl Fn(&ResponsePoint) -> f64) -> f64 {
+    points.iter().map(of).fold(0.0, f64::max)
+}
+
+/// Small sines: the machine is its own derivatives, these are the linearised two-pressure model, and the loop that the linear
+/// plant closes is that of the machine.
+#[test]
+fn small_sines_give_the_linear_plant() {
+    let loaded = smooth(&[]);
+    let found = shaken(&loaded, &[1.0, 30.0, 1000.0], [1e-4, 1.0]);
+    let rig = Rig::new(&loaded.project).unwrap();
+    let two_pressure = linearize(&rig, None, &TransferFunction::gain_only(1.0)).unwrap().two_pressure.command;
+    for point in &found.open_loop.points {
+        let linearised = point.linearised_machine.unwrap();
+        let exact = two_pressure.at_frequency(point.frequency_rad_per_s);
+        assert!(apart(linearised, exact) < 1e-6, "{point:?} {exact}");
+        assert!(apart(point.machine, linearised) < 1e-3 && point.distortion < 1e-2, "{point:?}");
+        assert!(apart(point.machine, point.linear_plant) < 1e-3, "{point:?}");
+    }
+    for point in &found.closed_loop.unwrap().points {
+        assert!(apart(point.linearised_machine.unwrap(), point.linear_plant) < 1e-6, "{point:?}");
+        assert!(apart(point.machine, point.linear_plant) < 1e-3, "{point:?}");
+    }
+}
+
+/// With the amplitude what the derivatives leave out becomes small too, and the harmonics with it.
+#[test]
+fn the_amplitude_goes_to_zero_and_with_it_the_difference() {
+    let loaded = smooth(&[]);
+    let [large, middle, small] = [0.4, 0.04, 0.004].map(|amplitude| {
+        let points = shaken(&loaded, &[100.0], [amplitude, 100.0]).open_loop.points;
+        let difference = worst(&points, |point| apart(point.machine, point.linearised_machine.unwrap()));
+        [difference, points[0].distortion]
+    });
+    for (more, less) in [(large, middle), (middle, small)] {
+        assert!(less[0] < 0.2 * more[0] && less[1] < 0.2 * more[1], "{more:?} {less:?}");
+    }
+}
+
+/// Waves in the lines, a late command and a sensor that lags: what is linearised has delays, and still is what small sines see.
+#[test]
+fn delays_are_part_of_what_is_linearised() {
+    let line = "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
+    let late = "controller.delay=2 ms";
+    let sensor = "sensor={ numerator = \"2000\", denominator = \"s + 2000\", delay = \"0.5 ms\" }";
+    let gain = "controller.numerator=0.0001*s + 0.0008";
+    let found = shaken(&smooth(&[line, late, sensor, gain]), &[30.0, 300.0], [1e-3, 1.0]);
+    let closed = found.closed_loop.unwrap();
+    for point in found.open_loop.points.iter().chain(&closed.points) {
+        assert!(apart(point.machine, point.linearised_machine.unwrap()) < 2e-3, "{point:?}");
+    }
+    // a lumped line is what the linear plant has: at 30 rad/s waves are far away, and delay and sensor are in both
+    assert!(apart(closed.points[0].linearised_machine.unwrap(), closed.points[0].linear_plant) < 0.05);
+}
+
+/// Sampled, the fundamental between the samples is that of the held command.
+#[test]
+fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {
+    for settings in [
+        vec!["controller.sample_time=1 ms"],
+        vec![
+            "controller.sample_time=1 ms",
+            "controller.delay=1 ms",
+            "controller.numerator=0.0001*s + 0.0008",
+            "prefilter.continuous=true",
+        ],
+    ] {
+        let closed = shaken(&smooth(&settings), &[40.0, 200.0], [1e-3, 1.0]).closed_loop.unwrap();
+        for point in &closed.points {
+            assert!(apart(point.machine, point.linear_plant) < 2e-3, "{settings:?} {point:?}");
+        }
+    }
+}
+
+/// Bristles hold the piston: below their break-away the machine is stiffer than any plant of viscous friction, and the sines see it.
+/// A spring of 1e7 N/m beside the load cell of 2e7 N/m leaves two thirds of the force.
+#[test]
+fn sines_below_break_away_see_the_bristles() {
+    let found = shaken(&load(&SMOOTH[1..]), &[20.0], [1e-4, 1.0]);
+    let point = &found.open_loop.points[0];
+    assert!(apart(point.machine, point.linearised_machine.unwrap()) < 0.02, "{point:?}");
+    let held = point.machine.norm_sqr().sqrt() / point.linear_plant.norm_sqr().sqrt();
+    assert!((held - 2.0 / 3.0).abs() < 0.05, "{held}");
+}
+
+fn answered(settings: &[&str], options: FrequencyOptions, figures: bool) -> Result<Answer, String> {
+    let asked = SimulateRequest { frequency_response: Some(options), figures, ..SimulateRequest::default() };
+    let request = Request::SimulateAs(asked);
+    command::answer(&Memory::default(), &load(settings), &[], &request).map_err(|error| error.to_string())
+}
+
+#[test]
+fn the_answer_has_its_keys_files_and_figures() {
+    let options =
+        FrequencyOptions { frequencies: Some("20, 50 rad/s".to_string()), ..FrequencyOptions::default() };
+    let answer = answered(&SMOOTH, options, true).unwrap();
+    assert!(answer.affirmative);
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    assert_eq!((&json["command"], &json["scenarios"]), (&"simulate".into(), &serde_json::json!([])));
+    let response = &json["frequency_response"];
+    for (name, amplitude) in [("open_loop", "amplitude_v"), ("closed_loop", "amplitude_n")] {
+        let points = response[name]["points"].as_array().unwrap();
+        assert_eq!(points.len(), 2);
+        for key in ["frequency_rad_per_s", amplitude, "difference_db", "difference_deg", "distortion_percent"]
+        {
+            assert!(points[0][key].is_f64(), "{name}.{key}: {}", points[0]);
+        }
+        assert!(points[1]["machine"].as_array().is_some_and(|pair| pair.len() == 2));
+        assert_eq!(points[1]["settled"], true);
+    }
+    let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
+    let expected = [
+        "frequency_response_open_loop.csv",
+        "frequency_response_closed_loop.csv",
+        "frequency-response-open-loop.svg",
+        "frequency-response-open-loop.png",
+        "frequency-response-closed-loop.svg",
+        "frequency-response-closed-loop.png",
+    ];
+    assert_eq!(names, expected);
+    assert!(answer.text.contains("less linear plant"), "{}", answer.text);
+}
+
+#[test]
+fn options_that_are_none_are_refused() {
+    let cases = [
+        (
+            FrequencyOptions { amplitude: Some("0 V".into()), ..Default::default() },
+            "--amplitude 0 V: must be positive",
+        ),
+        (FrequencyOptions { amplitude: Some("3 N".into()), ..Default::default() }, "--amplitude 3 N: "),
+        (
+            FrequencyOptions { reference_amplitude: Some("1 V".into()), ..Default::default() },
+            "--reference-amplitude 1 V: ",
+        ),
+        (
+            FrequencyOptions { frequencies: Some("1, 2 kN".into()), ..Default::default() },
+            "--frequencies 1, 2 kN: ",
+        ),
+    ];
+    for (options, words) in cases {
+        let error = answered(&[], options, false).unwrap_err();
+        assert!(error.starts_with(words), "{error}");
+    }
+}
+
+/// Without a controller the machine is shaken all the same.
+#[test]
+fn an_open_loop_needs_no_controller() {
+    let bare = BENCHMARK.split("[controller]").next().unwrap();
+    let source = Memory::default().with("rig.toml", bare);
+    let settings: Vec<String> = SMOOTH.iter().map(|text| (*text).to_string()).collect();
+    let loaded =
+        project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
+    let found = shaken(&loaded, &[50.0], [1e-2, 1.0]);
+    assert_eq!(found.closed_loop, Err("the project gives no controller".to_string()));
+    assert_eq!(found.open_loop.points.len(), 1);
+}

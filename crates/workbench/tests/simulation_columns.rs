@@ -1,0 +1,124 @@
+//! What the columns of a scenario's table are: each against what defines it.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use phea_workbench::project;
+use phea_workbench::simulate::{Record, simulate_project};
+use phea_workbench::source::Memory;
+
+const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
+
+fn record_of(settings: &[&str]) -> Record {
+    let mut settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
+    settings.push("scenario.0.duration=2.3 s".to_string());
+    let source = Memory::default().with("rig.toml", BENCHMARK);
+    let loaded =
+        project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
+    simulate_project(&source, &loaded.project, &mut |_| true).unwrap().remove(0).record
+}
+
+/// The largest magnitude of a difference of two columns, and of the first of them.
+fn apart(one: &[f64], other: &[f64]) -> (f64, f64) {
+    assert!(one.len() == other.len() && one.len() > 1000);
+    let largest =
+        |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, value| most.max(value.abs()));
+    (largest(&mut one.iter().zip(other).map(|(one, other)| one - other)), largest(&mut one.iter().copied()))
+}
+
+/// y = U - U_0 - z: without hysteresis the opening is the spool less the null bias, with it the spool leads or lags.
+#[test]
+fn spool_and_opening_differ_by_bias_and_hysteresis() {
+    let of = |settings: &[&str]| {
+        let record = record_of(settings);
+        [record.signal("spool_v"), record.signal("opening_v")]
+    };
+    let [spool, opening] = of(&["valve.null_bias=0.05 V"]);
+    let shifted: Vec<f64> = opening.iter().map(|opening| opening + 0.05).collect();
+    assert!(apart(&spool, &shifted).0 < 1e-15);
+    let [spool, opening] = of(&["valve.hysteresis=0.2 V"]);
+    let (lag, most) = apart(&spool, &opening);
+    // the lag is within half the width
+    assert!(lag > 0.02 && lag <= 0.1 + 1e-6 && most > 0.3, "{lag} {most}");
+    let [spool, opening] = of(&[]);
+    assert_eq!(spool, opening);
+}
+
+/// What comes to the valve is what the controller gave out a delay ago.
+#[test]
+fn the_command_behind_the_delay_is_that_before_it_later() {
+    let looks = 8;
+    // a look each quarter of a millisecond
+    let continuous = record_of(&["controller.delay=2 ms", "simulation.tolerance=1e-9"]);
+    let sampled = record_of(&["controller.delay=2 ms", "controller.sample_time=1 ms"]);
+    for (record, tolerance) in [(continuous, 1e-5), (sampled, 0.0)] {
+        // between two samples, where rounding of times decides nothing
+        let between = |values: &[f64]| values.iter().skip(2).step_by(4).copied().collect::<Vec<_>>();
+        let (before, behind) = (&record.control_v, record.signal("command_v"));
+        let (difference, most) = apart(&between(&behind[looks..]), &between(&before[..before.len() - looks]));
+        assert!(difference <= tolerance && most > 0.1, "{difference} V of {most} V");
+        assert!(apart(&behind, before).0 > 0.01);
+    }
+    let without = record_of(&[]);
+    assert_eq!(without.control_v, without.signal("command_v"));
+}
+
+/// u = K_p e + the integral part, of a law K_p + K_i/s; sampled by the bilinear rule, half a sample's integral goes with K_p.
+#[test]
+fn proportional_and_integral_part_are_the_command() {
+    for (sample_time_s, setting) in [(0.0, None), (1e-3, Some("controller.sample_time=1 ms"))] {
+        let settings: Vec<&str> = setting.into_iter().collect();
+        let record = record_of(&settings);
+        let error = record.filtered_reference_n.iter().zip(record.signal("measurement_n"));
+        let proportional = 0.001 + 0.5 * 0.008 * sample_time_s;
+        let expected: Vec<f64> = error
+            .zip(record.signal("integral_v"))
+            .map(|((reference, measured), integral)| proportional * (reference - measured) + integral)
+            .collect();
+        let (difference, most) = apart(&record.control_v, &expected);
+        assert!(difference < 1e-12 && most > 0.3, "{difference} V of {most} V");
+        assert!(record.signal("integral_v").iter().any(|part| part.abs() > 0.1));
+    }
+    let strictly_proportional = record_of(&["controller={ numerator = \"0.001\", denominator = \"1\" }"]);
+    assert!(strictly_proportional.signal("integral_v").iter().all(|part| *part == 0.0));
+}
+
+#[test]
+fn the_limit_is_all_between_the_unlimited_command_and_that_given_out() {
+    for extra in [None, Some("controller.sample_time=1 ms")] {
+        let mut settings = vec!["controller.saturation=0.3 V"];
+        settings.extend(extra);
+        let record = record_of(&settings);
+        let unlimited = record.signal("unlimited_control_v");
+        assert!(unlimited.iter().any(|command| command.abs() > 0.35));
+        for (unlimited, given) in unlimited.iter().zip(&record.control_v) {
+            assert_eq!(unlimited.clamp(-0.3, 0.3), *given);
+        }
+    }
+}
+
+/// H = 1 measures the force itself; 1/(tau s + 1) what its own equation makes of it, here by the trapezoid rule.
+#[test]
+fn the_measurement_is_the_force_behind_the_sensor() {
+    let plain = record_of(&[]);
+    assert_eq!(plain.signal("measurement_n"), plain.signal("force_n"));
+    let late = record_of(&["sensor={ numerator = \"100\", denominator = \"s + 100\" }"]);
+    let (force, measured) = (late.signal("force_n"), late.signal("measurement_n"));
+    let half = 0.5 * 100.0 * 0.25e-3;
+    let mut state = measured[0];
+    let mut largest: f64 = 0.0;
+    for row in 1..force.len() {
+        state = ((1.0 - half) * state + half * (force[row] + force[row - 1])) / (1.0 + half);
+        largest = largest.max((state - measured[row]).abs());
+    }
+    assert!(largest < 0.5 && apart(&force, &measured).0 > 20.0, "{largest} N");
+}
+
+/// A lumped line has one pressure, that of its chamber; segments have another at the valve while oil flows.
+#[test]
+fn pressures_at_both_ends_of_a_line() {
+    let [port, chamber] = ["port_pressure_a_pa", "pressure_a_pa"].map(|name| record_of(&[]).signal(name));
+    assert_eq!(port, chamber);
+    let line = "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"segments\" }";
+    let [port, chamber] = ["port_pressure_a_pa", "pressure_a_pa"].map(|name| record_of(&[line]).signal(name));
+    assert!(apart(&port, &chamber).0 > 1e3, "{} Pa", apart(&port, &chamber).0);
+}
