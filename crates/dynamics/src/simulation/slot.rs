@@ -3,7 +3,7 @@
 use super::Lane;
 use super::course::{Observer, Sampler};
 use super::method::Extension;
-use super::passage::Passage;
+use super::passage::{Passage, later};
 
 /// A machine in its lane.
 pub(super) struct Slot<'a, O> {
@@ -38,7 +38,8 @@ impl<O: Observer> Slot<'_, O> {
         let seen = if observer.wants_inputs() { inputs.len() } else { 0 };
         loop {
             let time_s = passage.next_row_s();
-            if time_s >= before_s {
+            // at a break the row is of what follows
+            if later(time_s) >= before_s {
                 return;
             }
             let part = ((time_s - start_s) / step_s).max(0.0);
@@ -57,7 +58,7 @@ impl<O: Observer> Slot<'_, O> {
     pub(super) fn observe_end<S: Lane>(&mut self, state: &[S], lane: usize) {
         let Slot { passage, observer, states, inputs, .. } = self;
         let duration_s = passage.course.duration_s;
-        if passage.next_row_s() > duration_s * (1.0 + 4.0 * f64::EPSILON) {
+        if passage.next_row_s() > later(duration_s) {
             return;
         }
         let mut count = 0;

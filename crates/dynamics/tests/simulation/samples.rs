@@ -5,7 +5,7 @@ use phea_dynamics::linear::{Discretization, StateSpace, TimeDomain, TransferFunc
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{HeldPlant, Input, Method, Plant, Profile, Sampler, Status, simulate};
 
-use super::laws::{course, settings};
+use super::laws::{Integral, Lawful, course, settings};
 
 /// A mass on a spring behind a lag, in units of `rate` rad/s: F = 3 x, times 1/rate.
 #[derive(Clone)]
@@ -178,6 +178,51 @@ fn rows_show_the_command_that_is_held() {
     assert_eq!((seen.len(), result.trajectory.times_s.len()), (20, 21));
     for (row, seen) in result.trajectory.inputs.iter().zip(&seen) {
         assert_eq!(row[0], seen[2]);
+    }
+}
+
+/// A step of the reference at a whole number of samples acts at that sample, whatever rounding makes of the two times: its
+/// transient is that of any other, shifted.
+#[test]
+fn a_step_at_a_sample_acts_there() {
+    let plant = HeldPlant::new(Spring { rate: 300.0 }, &TransferFunction::gain_only(1.0)).unwrap();
+    let sample_time_s = 0.7e-3;
+    let commands = |samples: u32| {
+        let mut seen = Vec::new();
+        let sampler = Box::new(Integrating { sample_time_s, delay_s: 0.0, sum: 0.0, seen: &mut seen });
+        // the decimal fraction, rounded once
+        let step_s = f64::from(7 * samples) / 1e4;
+        let reference = Profile::steps(0.0, &[(step_s, 1.0)]).unwrap();
+        let course = course(0.2, 0.2, vec![Input::Command, Input::Value(reference)]);
+        let settings = settings(1e-10, Method::Rosenbrock);
+        simulate(&plant, &[0.0; 3], &course, Some(sampler), &settings, &mut |_| true).unwrap();
+        let (still, moving) = seen.split_at(samples as usize);
+        assert!(still.iter().all(|row| row[2] == 0.0), "{samples}");
+        moving.iter().take(50).map(|row| row[2]).collect::<Vec<f64>>()
+    };
+    let expected = commands(16);
+    // rounded, some of these samples lie before the decimal fraction: they would not see the step
+    let before = |samples: &u32| f64::from(*samples) * sample_time_s < f64::from(7 * samples) / 1e4;
+    assert!((1..200).filter(before).count() > 10);
+    for samples in 1..200 {
+        for (one, other) in commands(samples).iter().zip(&expected) {
+            assert!((one - other).abs() < 1e-8, "{samples}: {one} {other}");
+        }
+    }
+}
+
+/// A row that falls on a break, but for rounding, is of what follows.
+#[test]
+fn a_row_at_a_break_shows_what_follows() {
+    for rows in 1..300_u32 {
+        let step_s = f64::from(7 * rows) / 1e4;
+        let reference = Profile::steps(0.0, &[(step_s, 1.0)]).unwrap();
+        let course = course(0.25, 0.7e-3, vec![Input::Value(reference)]);
+        let settings = settings(1e-6, Method::Rosenbrock);
+        let law = Lawful(Integral, 1.0);
+        let result = simulate(&law, &[0.0], &course, None, &settings, &mut |_| true).unwrap();
+        let before = result.trajectory.inputs.iter().take_while(|inputs| inputs[0] == 0.0).count();
+        assert_eq!(before, rows as usize);
     }
 }
 
