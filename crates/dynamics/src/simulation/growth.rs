@@ -178,7 +178,7 @@ impl GrowthWatch {
         let damping = self.friction(method, lane);
         let interval =
             if self.growth_at(damping) > 0.0 { self.interval / WHILE_GROWING } else { self.interval };
-        let small_s = SMALL_ANGLE / self.fastest;
+        let small_s = self.small_step();
         let nearly = step_s <= small_s || (damping < 0.0 && step_s <= NEARLY * small_s);
         if age >= interval || !(nearly || self.is_known_at(damping)) {
             self.look(method, lane);
@@ -186,13 +186,19 @@ impl GrowthWatch {
         let growth_per_s = self.growth_at(damping);
         self.follow(time_s, growth_per_s);
         if !self.is_known_at(damping) {
-            let small = Growing { step_s: small_s, frequency_rad_per_s: self.fastest, growth_per_s };
-            return (step_s > small_s).then_some(small);
+            let (small_s, frequency_rad_per_s) = (self.small_step(), self.fastest);
+            let small = Growing { step_s: small_s, frequency_rad_per_s, growth_per_s };
+            return (small_s > 0.0 && step_s > small_s).then_some(small);
         }
         let followed = (self.grown > 0.0).then(|| self.followed(growth_per_s)).flatten();
         let growing = self.shortest(0.5 * (self.damping.min(0.0) - damping.min(0.0)));
         let bounds = [growing, followed].into_iter().flatten();
         bounds.min_by(|one, other| one.step_s.total_cmp(&other.step_s))
+    }
+
+    /// The step in which the fastest mode turns by the small angle; zero where no mode oscillates, so that no step counts as small.
+    fn small_step(&self) -> f64 {
+        if self.fastest > 0.0 { SMALL_ANGLE / self.fastest } else { 0.0 }
     }
 
     /// Takes note of how the least stable mode has grown since it was last asked for: what has grown is there until it has decayed by as

@@ -182,3 +182,50 @@ fn what_cannot_be_resolved_is_told() {
     assert!((frequency_rad_per_s / (1e4 * 3.0_f64.sqrt()) - 1.0).abs() < 1e-6);
     assert!((growth_per_s / 20.0 - 1.0).abs() < 1e-6);
 }
+
+/// A mass that creeps against friction far above critical, without any oscillation, until friction falls: the oscillation that comes up
+/// then is seen from its beginning.
+///
+/// ```text
+/// x' = omega y,   y' = -omega x - d(s) y + w,   s' = 1,   d = 1e5 (1 - s) before s = 1 and -400 (s - 1) after it
+/// ```
+#[derive(Clone)]
+struct Loosening;
+
+impl System<f64> for Loosening {
+    fn states(&self) -> usize {
+        3
+    }
+    fn inputs(&self) -> usize {
+        1
+    }
+    fn scales(&self) -> Vec<f64> {
+        vec![1.0; 3]
+    }
+    fn rates<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], rates: &mut [T]) {
+        let left = T::from(1.0) - y[2];
+        let damping = T::select(T::from(0.0).less_than(left), left.times(1e5), left.times(400.0));
+        rates[0] = y[1].times(1300.0);
+        rates[1] = w[0] - y[0].times(1300.0) - damping * y[1];
+        rates[2] = T::from(1.0);
+    }
+    fn sliding(&self) -> Option<Sliding> {
+        Some(Sliding { velocity: 1, memory: None })
+    }
+}
+
+#[test]
+fn an_oscillation_that_was_not_there_is_seen_when_it_comes_up() {
+    let motion = Profile::sine(0.0, 1e-3, 7.0).unwrap();
+    let course = course(2.0, 2.0, vec![Input::Value(motion)]);
+    let begin = [0.0; 3];
+    for tolerance in [1e-4, 1e-9] {
+        let settings = settings(tolerance, Method::Rosenbrock);
+        let run = simulate(&Loosening, &begin, &course, None, &settings, &mut |_| true).unwrap();
+        assert_eq!(run.outcome.status, Status::Completed);
+        let [x, y, _] = run.outcome.end[..] else { panic!("three states") };
+        // It grows by e^100, from however little the friction and rounding leave; what the motion alone makes of it is 1e-6.
+        let amplitude = portable::ln(portable::hypot(x, y));
+        assert!(amplitude > 30.0, "{tolerance:e}: {amplitude}");
+    }
+}
