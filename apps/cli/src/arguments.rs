@@ -83,6 +83,9 @@ pub(crate) enum Command {
         /// Amplitude of the reference of the closed loop ("100 N")
         #[arg(long, value_name = "FORCE", requires = "frequency_response", allow_hyphen_values = true)]
         reference_amplitude: Option<String>,
+        /// Run each scenario a second time at a tenth of the tolerance: how far the two differ estimates the error
+        #[arg(long, conflicts_with = "frequency_response")]
+        check: bool,
     },
     /// The same scenarios of several projects side by side
     Compare(Several),

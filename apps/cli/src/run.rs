@@ -42,12 +42,14 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             frequencies,
             amplitude,
             reference_amplitude,
+            check,
         } => {
             let options = FrequencyOptions { frequencies, amplitude, reference_amplitude };
             let request = Request::SimulateAs(SimulateRequest {
                 table: table.unwrap_or_default(),
                 figures: common.out.is_some(),
                 frequency_response: frequency_response.then_some(options),
+                check,
             });
             on_project(&common, &request)
         }

@@ -2,6 +2,7 @@
 
 mod answer;
 mod bench;
+mod check;
 mod columns;
 mod compare;
 mod course;
@@ -19,6 +20,7 @@ mod signal;
 mod text;
 
 pub use bench::Bench;
+pub use check::{Check, Difference, MetricDifferences, simulate_checked};
 pub use columns::LOOP_SIGNALS;
 pub use compare::{Comparison, compare_projects};
 pub use frequency::{FrequencyRequest, FrequencyResponse, Response, ResponsePoint, frequency_response};

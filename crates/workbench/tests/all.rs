@@ -36,6 +36,7 @@ mod scenarios;
 mod sensor;
 mod shaping;
 mod simulate;
+mod simulation_check;
 mod simulation_columns;
 mod simulation_equivalences;
 mod simulation_measured;

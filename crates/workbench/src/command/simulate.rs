@@ -6,7 +6,7 @@ use crate::project::Loaded;
 use crate::quantity::{self, ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
 use crate::simulate::{
     FrequencyRequest, ScenarioRun, figure_files, files, frequency_files, frequency_json, frequency_pictures,
-    frequency_response, frequency_text, json, picture_files, simulate_into, text,
+    frequency_response, frequency_text, json, picture_files, simulate_checked, simulate_into, text,
 };
 use crate::source::{Destination, Source};
 
@@ -19,6 +19,8 @@ pub struct SimulateRequest {
     pub figures: bool,
     /// The frequency response of the machine instead of its scenarios.
     pub frequency_response: Option<FrequencyOptions>,
+    /// Whether each scenario is run a second time at a tenth of the tolerance, and how far the two differ is told.
+    pub check: bool,
 }
 
 /// Options of a frequency response, as written.
@@ -43,7 +45,11 @@ pub(super) fn simulate_answer(
         return frequency_answer(loaded, asked, &request(options)?, watch);
     }
     let tables = destination.map(|destination| (destination, asked.table));
-    let runs = simulate_into(source, &loaded.project, tables, watch)?;
+    let runs = if asked.check {
+        simulate_checked(source, &loaded.project, tables, watch)?
+    } else {
+        simulate_into(source, &loaded.project, tables, watch)?
+    };
     let mut written = files(loaded, &runs);
     if asked.figures {
         written.extend(figure_files(&runs)?);

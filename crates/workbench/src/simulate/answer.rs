@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::check::{self, CheckRow};
 use super::files::state_names;
 use super::frequency::{self, FrequencyResponse};
 use super::metrics::Measured;
@@ -37,6 +38,8 @@ struct ScenarioRow<'a> {
     outside_model_s: Option<f64>,
     outside_model_s_reason: Option<&'static str>,
     measured: Vec<MeasuredRow<'a>>,
+    check: Option<CheckRow>,
+    check_reason: Option<&'static str>,
     /// Chambers above the pressure that the expansion of their hose is stated at.
     beyond_expansion: Vec<BeyondRow>,
 }
@@ -203,6 +206,8 @@ fn scenario(run: &ScenarioRun, state_file: String) -> ScenarioRow<'_> {
         outside_model_s: run.outside_model_s,
         outside_model_s_reason: run.outside_model_s.is_none().then_some("its equations hold throughout"),
         measured: run.measured.iter().map(measured).collect(),
+        check: run.check.as_ref().map(check::row),
+        check_reason: run.check.is_none().then_some("it was not checked"),
         beyond_expansion: run.beyond_expansion.iter().map(beyond).collect(),
     }
 }

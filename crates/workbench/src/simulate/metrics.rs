@@ -132,6 +132,21 @@ pub(crate) fn metrics_seen(all: &Seen<'_>, window: Window, band: f64) -> Metrics
 }
 
 impl Metrics {
+    /// Each that is measured with its name, in the order of an answer.
+    pub(crate) fn named(&self) -> [(&'static str, Measured); 9] {
+        [
+            ("overshoot_percent", self.overshoot_percent),
+            ("rise_time_s", self.rise_time_s),
+            ("settling_time_s", self.settling_time_s),
+            ("disturbance_peak_n", self.disturbance_peak_n),
+            ("tracking_error_peak_n", self.tracking_error_peak_n),
+            ("force_peak_n", self.force_peak_n),
+            ("steady_state_error_n", self.steady_state_error_n),
+            ("control_peak_v", self.control_peak_v),
+            ("control_rms_v", self.control_rms_v),
+        ]
+    }
+
     fn none(reason: &'static str, settling_band_percent: f64) -> Metrics {
         Metrics {
             overshoot_percent: Err(reason),

@@ -14,7 +14,7 @@ use super::look::{Looking, Record, Sighted};
 use super::measured::{Measurement, Overlay};
 use super::metrics::{Metrics, metrics_seen};
 use super::saved::{self, SavedState};
-use super::{SimulateError, Table, Window};
+use super::{Check, SimulateError, Table, Window};
 use crate::project::Scenario;
 
 /// Longest time between two looks at the machine: 1 ms would cut the peaks of a ringing load cell.
@@ -49,6 +49,8 @@ pub struct ScenarioRun {
     pub settling_band_percent: f64,
     /// What was measured, beside what was simulated.
     pub measured: Vec<Overlay>,
+    /// How far a run at a tenth of the tolerance differs; `None` where nobody asked.
+    pub check: Option<Check>,
     /// Whether a stated command drove the valve, and no controller.
     pub open_loop: bool,
     /// Chambers whose pressure went beyond what the expansion of their hose was measured at.
@@ -188,6 +190,7 @@ pub(super) fn run(
         open_loop: scenario.is_open_loop(),
         beyond_expansion: beyond_expansion(bench, looks.peak_pressures_pa),
         end,
+        check: None,
     })
 }
 

@@ -1,5 +1,6 @@
 //! What `simulate` and `compare` say to people.
 
+use super::check;
 use super::metrics::{Measured, NOT_SETTLED};
 use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, Overlay, ScenarioRun, Stopped, Window};
 use crate::answer::{significant, table};
@@ -20,7 +21,8 @@ pub(crate) fn text(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
         if !run.measured.is_empty() {
             out.push_str(&format!("{}\n", measured(run)));
         }
-        for sentence in coarse_sentence(run).into_iter().chain(occurrence_sentences(run)) {
+        let checked = run.check.iter().flat_map(check::sentences);
+        for sentence in coarse_sentence(run).into_iter().chain(checked).chain(occurrence_sentences(run)) {
             out.push_str(&format!("  {sentence}\n"));
         }
         out.push('\n');

@@ -1,0 +1,122 @@
+//! A second run at a tenth of the tolerance as an estimate of the error.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use phea_workbench::command::{self, Request, SimulateRequest};
+use phea_workbench::project::{self, Loaded};
+use phea_workbench::simulate::{ScenarioRun, simulate_checked, simulate_project};
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
+const SHORT: &str = "scenario.0.duration=3.2 s";
+/// The piston follows where its friction falls, and feeds a ringing that any error moves.
+const SLOW: [&str; 2] = ["scenario.0.load_motion.duration=1.5 s", "scenario.0.load_motion.distance=10 mm"];
+
+fn load(settings: &[&str]) -> Loaded {
+    let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
+    let source = Memory::default().with("rig.toml", BENCHMARK);
+    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn run(settings: &[&str]) -> ScenarioRun {
+    simulate_project(&Memory::default(), &load(settings).project, &mut |_| true).unwrap().remove(0)
+}
+
+fn checked(settings: &[&str]) -> ScenarioRun {
+    let project = load(settings).project;
+    simulate_checked(&Memory::default(), &project, None, &mut |_| true).unwrap().remove(0)
+}
+
+fn with_check() -> Request {
+    Request::SimulateAs(SimulateRequest { check: true, ..SimulateRequest::default() })
+}
+
+fn apart(one: &ScenarioRun, other: &ScenarioRun) -> f64 {
+    let (one, other) = (one.record.signal("force_n"), other.record.signal("force_n"));
+    assert_eq!(one.len(), other.len());
+    one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
+}
+
+/// The run that is told is the one without a check, and what is told of it is the difference to a run at a tenth.
+#[test]
+fn a_check_is_the_difference_of_two_runs() {
+    let run_checked = checked(&[SHORT, "simulation.tolerance=1e-5"]);
+    let [plain, tenth] = [1e-5, 0.1 * 1e-5].map(|tolerance: f64| {
+        let tolerance = format!("simulation.tolerance={tolerance:e}");
+        run(&[SHORT, tolerance.as_str()])
+    });
+    assert_eq!(run_checked.record, plain.record);
+    assert_eq!(plain.check, None);
+    let check = run_checked.check.unwrap();
+    assert!((check.tolerance - 1e-6).abs() < 1e-18 && check.stopped.is_none());
+    let force = check.force.unwrap();
+    assert!(force.difference > 0.0 && force.difference == apart(&plain, &tenth));
+    let peak =
+        |run: &ScenarioRun| run.record.signal("force_n").iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+    assert_eq!(force.peak, peak(&plain).max(peak(&tenth)));
+    let disturbances = [&plain, &tenth].map(|run| run.windows[1].1.disturbance_peak_n.unwrap());
+    assert_eq!(
+        check.metrics[1].of("disturbance_peak_n"),
+        Some(Ok((disturbances[0] - disturbances[1]).abs()))
+    );
+    assert_eq!(check.metrics[1].of("overshoot_percent"), Some(run_checked.windows[1].1.overshoot_percent));
+}
+
+/// Twice the estimate covers the error against a run that is exact for all that matters here.
+#[test]
+fn the_estimate_covers_the_error() {
+    let exact = run(&[SHORT, "simulation.tolerance=1e-10"]);
+    for tolerance in ["1e-4", "1e-5", "1e-6", "1e-7"] {
+        let told = checked(&[SHORT, &format!("simulation.tolerance={tolerance}")]);
+        let (error, force) = (apart(&told, &exact), told.check.unwrap().force.unwrap());
+        assert!(error < 2.0 * force.difference, "{tolerance}: {error} N, estimated {}", force.difference);
+        assert!(error > 0.2 * force.difference, "{tolerance}: {error} N, estimated {}", force.difference);
+    }
+}
+
+#[test]
+fn an_answer_tells_the_check_where_it_was_asked_for() {
+    let ask = |settings: &[&str], request: &Request| {
+        let answer = command::answer(&Memory::default(), &load(settings), &[], request).unwrap();
+        assert!(answer.affirmative);
+        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        (json["scenarios"][0].clone(), answer.text)
+    };
+    let doubt = "more than a thousandth";
+    let (plain, text) = ask(&[SHORT], &Request::Simulate);
+    assert!(plain["check"].is_null() && plain["check_reason"].is_string() && !text.contains("checked at"));
+    let (sure, text) = ask(&[SHORT], &with_check());
+    let check = &sure["check"];
+    assert!(check["part_of_peak"].as_f64().unwrap() < 1e-3 && !text.contains(doubt), "{check} {text}");
+    assert!(text.contains("checked at the tolerance 1.00e-7: the force differs by"), "{text}");
+    let of_step = &check["events"][0];
+    assert_eq!((&check["status"], &of_step["kind"]), (&"completed".into(), &"reference_step".into()));
+    let metrics = of_step["metrics"].as_array().unwrap();
+    let metric = |name: &str| metrics.iter().find(|metric| metric["name"] == name).unwrap();
+    assert!(metric("overshoot_percent")["difference"].is_f64());
+    let absent = metric("disturbance_peak_n");
+    assert!(absent["difference"].is_null() && absent["difference_reason"].is_string());
+    let signals = check["signals"].as_array().unwrap();
+    let named = |name: &str| signals.iter().find(|signal| signal["name"] == name).unwrap();
+    assert_eq!(named("force_n")["difference"], check["force_difference_n"]);
+    assert!(named("control_v")["part_of_peak"].is_f64());
+    let (unsure, text) = ask(&SLOW, &with_check());
+    assert!(unsure["check"]["part_of_peak"].as_f64().unwrap() > 1e-3 && text.contains(doubt), "{text}");
+}
+
+/// What is stopped while it is checked keeps its run, and says how far the check came.
+#[test]
+fn a_check_that_is_stopped_compares_what_there_is() {
+    let project = load(&[SHORT]).project;
+    let mut watch = |progress: command::Progress| progress.share < 0.75;
+    let stopped = simulate_checked(&Memory::default(), &project, None, &mut watch).unwrap().remove(0);
+    assert!(stopped.stopped().is_none());
+    let check = stopped.check.unwrap();
+    assert_eq!(check.stopped.unwrap().word, "cancelled");
+    assert!(check.force.unwrap().time_s <= check.stopped.unwrap().time_s);
+    let project = load(&[SHORT]).project;
+    let mut watch = |progress: command::Progress| progress.share < 0.25;
+    let first = simulate_checked(&Memory::default(), &project, None, &mut watch).unwrap().remove(0);
+    assert!(first.was_cancelled() && first.check.is_none());
+}
