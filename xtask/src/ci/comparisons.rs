@@ -54,7 +54,7 @@ pub(super) fn end(root: &Path, begun: Begun) -> Outcome {
     let built = execute(root, "cargo", &["test", "--workspace", "--test", "all", "--examples", "--no-run"]);
     let programs = target(root).join("debug");
     let program = |name: &str| programs.join(name).to_string_lossy().into_owned();
-    let variables = [("PHEA", program("phea")), ("REFERENCE_SYSTEMS", program("examples/reference_systems"))];
+    let variables = [("PHEA", program("phea"))];
     let variables = variables.each_ref().map(|(name, value)| (*name, value.as_str()));
     let compare = |script: &String| execute_with(root, &python, &[script], &variables);
     failed.extend(asking.into_iter().filter(|script| !matches!(compare(script), Outcome::Passed)));
