@@ -15,6 +15,7 @@ mod passage;
 mod pattern;
 mod profile;
 mod propagator;
+mod quartic;
 mod realization;
 mod rosenbrock;
 mod sensed;
@@ -23,18 +24,23 @@ mod slot;
 mod small_signal;
 mod square;
 mod step_matrix;
+mod stretch;
 mod task;
 mod trajectory;
 
 pub use closed_loop::{ClosedLoop, HeldPlant, LoopSignals};
-pub use course::{Course, Event, Input, Observer, Outcome, Sampler, Settings, SimulationError, Status, Work};
+pub use course::{
+    Attention, Course, Event, Input, Observer, Outcome, Sampler, Settings, SimulationError, Status, Work,
+};
 pub use driver::drive;
 pub use growth::Sliding;
 pub use method::Method;
 pub use profile::{Harmonic, Moment, Piece, Profile, ProfileError, schroeder_phases};
+pub use quartic::Quartic;
 pub use sensed::Sensed;
 pub use sine_response::{SinePlan, SineResponse, sine_response};
 pub use small_signal::small_signal;
+pub use stretch::Stretch;
 pub use task::{Queue, Task};
 pub use trajectory::{Simulated, Trajectory, drive_one, simulate};
 

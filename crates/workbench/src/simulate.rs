@@ -9,6 +9,7 @@ mod course;
 mod digital;
 mod figures;
 mod files;
+mod follower;
 mod frequency;
 mod look;
 mod measured;
@@ -17,6 +18,8 @@ mod motion_file;
 mod run;
 mod saved;
 mod signal;
+mod sums;
+mod tally;
 mod text;
 
 pub use bench::Bench;
@@ -36,11 +39,12 @@ pub(crate) use course::{Driven, course_of, driven};
 pub(crate) use digital::{Digital, Samples, Waking};
 pub(crate) use figures::{comparison_files, figure_files, picture_files, pictures};
 pub(crate) use files::{Table, files, table_names};
+pub(crate) use follower::Follower;
 pub(crate) use frequency::{
     files as frequency_files, pictures as frequency_pictures, text as frequency_text,
 };
-pub(crate) use metrics::{Seen, metrics_seen};
 pub(crate) use run::{COMMAND_LIMIT, occurrences};
+pub(crate) use sums::size as loop_size;
 pub(crate) use text::{
     ABSENT, MEASURED, METRICS, cause_words, cells_of, coarse_sentence, compare_text, headline,
     measured_cells, occurrence_sentences, small_as_zero, text,

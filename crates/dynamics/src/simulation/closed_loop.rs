@@ -61,6 +61,11 @@ impl<P> ClosedLoop<P> {
         &mut self.plant
     }
 
+    /// Limit of the command's magnitude, in its unit; infinite where there is none.
+    pub fn limit(&self) -> f64 {
+        self.limit
+    }
+
     /// How many states controller and prefilter have.
     pub fn controller_states(&self) -> usize {
         self.feedback.states + self.prefilter.states

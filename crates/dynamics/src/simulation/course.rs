@@ -1,6 +1,6 @@
 //! What a system is driven by, and what comes out.
 
-use super::{Method, Profile};
+use super::{Method, Profile, Stretch};
 
 /// How long a system is driven, by what, and how often it is looked at.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +54,33 @@ pub trait Observer {
     fn wants_inputs(&self) -> bool {
         true
     }
+
+    /// What it is shown beside the rows.
+    fn attention(&self) -> Attention {
+        Attention::Rows
+    }
+
+    /// Called with each step that was taken, after its rows, where it pays attention to steps.
+    fn follow(&mut self, _stretch: &Stretch<'_>) {}
+
+    /// Whether it wants to know a step from sample to sample more exactly between its ends than by the cubic that it is shown,
+    /// and not yet told to follow.
+    fn looks_closer(&self, _stretch: &Stretch<'_>) -> bool {
+        false
+    }
+}
+
+/// How closely an observer follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Attention {
+    /// Rows alone: how often there are rows may decide how a step is made.
+    #[default]
+    Rows,
+    /// Every step as a whole. Between samples a machine may go by known matrices; [`Observer::looks_closer`] is asked of each
+    /// such step.
+    Steps,
+    /// Every step as a whole and every row, so that rows decide nothing: no step is made by known matrices.
+    Everything,
 }
 
 /// How exactly, and how much work at most.

@@ -2,12 +2,13 @@
 
 mod joined;
 
-use super::course::{Event, Observer, Outcome, Settings, SimulationError, Status};
+use super::course::{Attention, Event, Observer, Outcome, Settings, SimulationError, Status};
 use super::growth::GrowthWatch;
 use super::history::NODES;
 use super::method::{Extension, LOOKED_AT, StepInputs, Stepper};
 use super::passage::Passage;
 use super::propagator::Propagator;
+use super::quartic::Quartic;
 use super::rosenbrock::DIRECTIONS;
 use super::slot::Slot;
 use super::task::{Queue, Task, check};
@@ -40,6 +41,8 @@ struct Between<S> {
     propagated: bool,
     /// Those an observer wants, in its lane.
     wanted: Vec<Extension<f64>>,
+    /// The same as polynomials.
+    quartics: Vec<Quartic>,
     /// State at the end of the step.
     end: Vec<S>,
     state: Vec<S>,
@@ -130,6 +133,7 @@ where
                 extensions: vec![None; states],
                 propagated: false,
                 wanted: Vec::new(),
+                quartics: Vec::new(),
                 end: vec![zero; states],
                 state: vec![zero; states],
                 inputs: none,
@@ -179,6 +183,7 @@ where
         self.watches[lane].forget();
         let states = vec![0.0; system.states()];
         let Task { sampler, observer, .. } = task;
+        passage.attention = observer.attention();
         self.slots[lane] =
             Some(Slot { passage, sampler, observer, unwatched: 1, propagated: false, states, inputs });
         Ok(())
@@ -345,12 +350,24 @@ where
         }
     }
 
-    /// Shows the observer of a lane every row before the end of the step.
+    /// Shows the observer of a lane every row before the end of the step, and the step itself if it wants to be.
     fn observe(&mut self, lane: usize) {
         let Some(slot) = &self.slots[lane] else { return };
-        if slot.passage.next_row_s() >= slot.passage.end_s() {
+        let follows = slot.passage.attention != Attention::Rows;
+        if !follows && slot.passage.next_row_s() >= slot.passage.end_s() {
             return;
         }
+        self.want(lane);
+        if let Some(slot) = &mut self.slots[lane] {
+            slot.observe(&self.between.wanted);
+            if follows {
+                slot.follow(&self.between.wanted, &mut self.between.quartics);
+            }
+        }
+    }
+
+    /// Finds the states that the observer of a lane wants over the step.
+    fn want(&mut self, lane: usize) {
         self.between.wanted.clear();
         for place in 0.. {
             let wanted =
@@ -358,9 +375,6 @@ where
             let Some(index) = wanted else { break };
             let extension = self.extension(index).lane(lane);
             self.between.wanted.push(extension);
-        }
-        if let Some(slot) = &mut self.slots[lane] {
-            slot.observe(&self.between.wanted);
         }
     }
 

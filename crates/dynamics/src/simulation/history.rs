@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use super::quartic::Quartic;
+
 /// A wave on its way: pieces of degree four in time, as long as the delay.
 #[derive(Clone, Debug)]
 pub(super) struct History {
@@ -37,7 +39,7 @@ impl History {
         while self.pieces.front().is_some_and(|piece| piece.start_s + piece.length_s < arrived - length_s) {
             self.pieces.pop_front();
         }
-        self.pieces.push_back(Piece { start_s, length_s, coefficients: coefficients(values) });
+        self.pieces.push_back(Piece { start_s, length_s, coefficients: Quartic::through(values).0 });
     }
 
     /// What arrives at this time, and its slope. Where the wave jumps it is that of the side on which `beside_s` lies, within
@@ -56,17 +58,6 @@ impl History {
         let slope = c1 + part * (2.0 * c2 + part * (3.0 * c3 + part * 4.0 * c4));
         [value, slope / piece.length_s]
     }
-}
-
-/// Coefficients of the polynomial through five values at [`NODES`].
-fn coefficients([f0, f1, f2, f3, f4]: [f64; 5]) -> [f64; 5] {
-    [
-        f0,
-        (-25.0 * f0 + 48.0 * f1 - 36.0 * f2 + 16.0 * f3 - 3.0 * f4) / 3.0,
-        (70.0 * f0 - 208.0 * f1 + 228.0 * f2 - 112.0 * f3 + 22.0 * f4) / 3.0,
-        (-80.0 * f0 + 288.0 * f1 - 384.0 * f2 + 224.0 * f3 - 48.0 * f4) / 3.0,
-        (32.0 * f0 - 128.0 * f1 + 192.0 * f2 - 128.0 * f3 + 32.0 * f4) / 3.0,
-    ]
 }
 
 #[cfg(test)]

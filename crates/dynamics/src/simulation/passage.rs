@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::growth::Growing;
 use super::history::History;
-use super::{Course, Event, Input, Piece, Sampler, Status, Work};
+use super::{Attention, Course, Event, Input, Piece, Sampler, Status, Work};
 use crate::portable;
 
 /// No step grows by more than this, nor shrinks below the other.
@@ -49,6 +49,8 @@ pub(super) struct Passage<'a> {
     pending: VecDeque<(f64, f64)>,
     command: f64,
     pub(super) row: u64,
+    /// How closely it is followed.
+    pub(super) attention: Attention,
     /// Whether the last step was refused.
     pub(super) rejected: bool,
     /// Error of the last step.
@@ -90,6 +92,7 @@ impl<'a> Passage<'a> {
             pending: VecDeque::new(),
             command,
             row: 0,
+            attention: Attention::Rows,
             rejected: false,
             before: 1.0,
             work: Work::default(),
@@ -166,7 +169,7 @@ impl<'a> Passage<'a> {
     pub(super) fn looked_into(&self) -> bool {
         let past = self.next_row_s() <= later(self.time_s);
         let next_row_s = (self.row + u64::from(past)) as f64 * self.course.output_step_s;
-        !self.histories.is_empty() || next_row_s < self.end_s()
+        self.attention != Attention::Rows || !self.histories.is_empty() || next_row_s < self.end_s()
     }
 
     /// Length of the step to the next break, if no input moves and no row is looked at on the way.
@@ -175,7 +178,7 @@ impl<'a> Passage<'a> {
         let past = self.next_row_s() <= later(self.time_s);
         let next_row_s = (self.row + u64::from(past)) as f64 * self.course.output_step_s;
         let seen = next_row_s < self.time_s + step_s * (1.0 - 1e-9);
-        (self.still && !seen).then_some(step_s)
+        (self.still && !seen && self.attention != Attention::Everything).then_some(step_s)
     }
 
     /// Makes the step being tried that to the next break.

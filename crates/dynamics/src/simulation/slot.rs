@@ -1,9 +1,9 @@
 //! A machine in its lane, and what its observer is shown.
 
-use super::Lane;
 use super::course::{Observer, Sampler};
 use super::method::Extension;
 use super::passage::{Passage, later};
+use super::{Lane, Quartic, Stretch};
 
 /// A machine in its lane.
 pub(super) struct Slot<'a, O> {
@@ -27,6 +27,21 @@ impl<O: Observer> Slot<'_, O> {
     pub(super) fn is_due(&self) -> bool {
         let (steps, time_s) = UNWATCHED;
         self.unwatched >= steps || self.unwatched as f64 * self.passage.step_s >= time_s
+    }
+
+    /// Shows the observer the step, from the states it wants over it.
+    #[inline]
+    pub(super) fn follow(&mut self, wanted: &[Extension<f64>], quartics: &mut Vec<Quartic>) {
+        quartics.clear();
+        quartics.extend(wanted.iter().map(Quartic::of));
+        self.observer.follow(&Stretch { passage: &self.passage, states: quartics });
+    }
+
+    /// Whether the observer wants to know the step more exactly.
+    pub(super) fn looks_closer(&self, wanted: &[Extension<f64>], quartics: &mut Vec<Quartic>) -> bool {
+        quartics.clear();
+        quartics.extend(wanted.iter().map(Quartic::of));
+        self.observer.looks_closer(&Stretch { passage: &self.passage, states: quartics })
     }
 
     /// Shows the observer every row before the end of the step, from the states it wants over the step.

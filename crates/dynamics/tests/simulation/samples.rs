@@ -186,27 +186,30 @@ fn rows_show_the_command_that_is_held() {
 #[test]
 fn a_step_at_a_sample_acts_there() {
     let plant = HeldPlant::new(Spring { rate: 300.0 }, &TransferFunction::gain_only(1.0)).unwrap();
-    let sample_time_s = 0.7e-3;
-    let commands = |samples: u32| {
+    let commands = |tenths: u32, samples: u32| {
+        let sample_time_s = f64::from(tenths) / 1e4;
         let mut seen = Vec::new();
         let sampler = Box::new(Integrating { sample_time_s, delay_s: 0.0, sum: 0.0, seen: &mut seen });
         // the decimal fraction, rounded once
-        let step_s = f64::from(7 * samples) / 1e4;
+        let step_s = f64::from(tenths * samples) / 1e4;
         let reference = Profile::steps(0.0, &[(step_s, 1.0)]).unwrap();
-        let course = course(0.2, 0.2, vec![Input::Command, Input::Value(reference)]);
+        let course = course(0.3, 0.3, vec![Input::Command, Input::Value(reference)]);
         let settings = settings(1e-10, Method::Rosenbrock);
         simulate(&plant, &[0.0; 3], &course, Some(sampler), &settings, &mut |_| true).unwrap();
         let (still, moving) = seen.split_at(samples as usize);
         assert!(still.iter().all(|row| row[2] == 0.0), "{samples}");
         moving.iter().take(50).map(|row| row[2]).collect::<Vec<f64>>()
     };
-    let expected = commands(16);
-    // rounded, some of these samples lie before the decimal fraction: they would not see the step
-    let before = |samples: &u32| f64::from(*samples) * sample_time_s < f64::from(7 * samples) / 1e4;
-    assert!((1..200).filter(before).count() > 10);
-    for samples in 1..200 {
-        for (one, other) in commands(samples).iter().zip(&expected) {
-            assert!((one - other).abs() < 1e-8, "{samples}: {one} {other}");
+    // tenths of a millisecond, and on which side of the decimal fraction the rounding of the product lies
+    for (tenths, below) in [(7, true), (11, false)] {
+        let decimal = |samples: u32| f64::from(tenths * samples) / 1e4;
+        let off = (1..200).map(|samples| f64::from(samples) * decimal(1) - decimal(samples));
+        assert!(off.filter(|off| *off != 0.0).map(|off| off < 0.0).any(|found| found == below), "{tenths}");
+        let expected = commands(tenths, 16);
+        for samples in 1..200 {
+            for (one, other) in commands(tenths, samples).iter().zip(&expected) {
+                assert!((one - other).abs() < 1e-8, "{samples} of {tenths}: {one} {other}");
+            }
         }
     }
 }

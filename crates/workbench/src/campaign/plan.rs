@@ -2,16 +2,14 @@
 
 use phea_dynamics::random;
 use phea_dynamics::scalar::Dependence;
-use phea_dynamics::simulation::{HeldPlant, Plant, Sensed};
-use phea_hydraulics::machine::Machine;
+use phea_dynamics::simulation::Plant;
 use sha2::{Digest, Sha256};
 
 use super::CampaignError;
 use super::range::{VariedRange, ranges};
 use super::row::Columns;
-use crate::control::controller;
 use crate::project::{Loaded, Project, Scenario, print};
-use crate::simulate::{Bench, Control, Driven, SimulateError, Window, driven};
+use crate::simulate::{Bench, Control, Driven, Window, driven, loop_size};
 use crate::source::Source;
 
 /// Most times at which the bands of the force are given over the whole scenario, and as many more around what begins its windows.
@@ -59,9 +57,8 @@ pub struct Plan {
     pub(super) reference_n: Vec<f64>,
     /// Looks at the times of the bands.
     pub(super) band_looks: Vec<usize>,
-    pub(super) look: Look,
-    /// Of the command, V.
-    pub(super) limit: f64,
+    /// Indices of the states that force and command depend on.
+    pub(super) look: Vec<usize>,
     ranges: Vec<VariedRange>,
     seed: u32,
 }
@@ -75,15 +72,6 @@ pub struct Draw {
     pub values: Vec<f64>,
     /// Of the noise that a sampled controller sees, where there is noise.
     pub(super) noise_seed: Option<u32>,
-}
-
-/// What force and command depend on: all that has to be looked at.
-#[derive(Clone, Debug)]
-pub(super) struct Look {
-    /// Indices of states.
-    pub(super) states: Vec<usize>,
-    /// Whether inputs other than the reference matter.
-    pub(super) inputs: bool,
 }
 
 impl Plan {
@@ -124,9 +112,7 @@ impl Plan {
                 .collect(),
             windows,
         };
-        let look = Look::of(&bench.control);
-        let given = controller(&project).map_err(SimulateError::from)?;
-        let limit = given.and_then(|given| given.command_limit).unwrap_or(f64::INFINITY);
+        let look = look(&bench.control);
         Ok(Plan {
             project,
             scenario,
@@ -138,7 +124,6 @@ impl Plan {
             reference_n,
             band_looks,
             look,
-            limit,
             ranges,
             seed,
         })
@@ -285,36 +270,27 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
     text.chars().take(MARK_LENGTH).collect()
 }
 
-impl Look {
-    fn of(control: &Control) -> Look {
-        let variables = |count: usize, from: usize| -> Vec<Dependence> {
-            (from..from + count).map(Dependence::on).collect()
-        };
-        let held = |held: &HeldPlant<Sensed<Machine>>| {
-            let states = phea_dynamics::simulation::System::<f64>::states(held);
-            let inputs = phea_dynamics::simulation::System::<f64>::inputs(held);
-            let (state, input) = (variables(states, 0), variables(inputs, states));
+/// Indices of the states that force and command depend on: all that has to be looked at.
+fn look(control: &Control) -> Vec<usize> {
+    let variables =
+        |count: usize, from: usize| -> Vec<Dependence> { (from..from + count).map(Dependence::on).collect() };
+    let [states, inputs] = loop_size(control);
+    let (state, input) = (variables(states, 0), variables(inputs, states));
+    let needed = match control {
+        Control::Continuous(closed) => {
+            let force = closed.plant().plant().measurement(&state, &input[1..]);
+            [force, closed.signals::<f64, Dependence>(&state, &input).command]
+        }
+        Control::Sampled(sampled) => {
+            let force = sampled.held.plant().plant().measurement(&state, &input[2..]);
+            [force, Dependence::from(0.0)]
+        }
+        Control::Open(held) => {
             let force = held.plant().plant().measurement(&state, &input[2..]);
-            let other = (states..states + inputs).any(|index| force.includes(index));
-            (states, [force, Dependence::from(0.0)], other)
-        };
-        let (states, needed, other) = match control {
-            Control::Continuous(closed) => {
-                let states = phea_dynamics::simulation::System::<f64>::states(closed.as_ref());
-                let inputs = phea_dynamics::simulation::System::<f64>::inputs(closed.as_ref());
-                let (state, input) = (variables(states, 0), variables(inputs, states));
-                let machine = closed.plant().plant();
-                let force = machine.measurement(&state, &input[1..]);
-                let needed = [force, closed.signals::<f64, Dependence>(&state, &input).command];
-                // the reference is the first input, known without being looked at
-                let other = (states + 1..states + inputs).any(|index| includes(&needed, index));
-                (states, needed, other)
-            }
-            Control::Sampled(sampled) => held(&sampled.held),
-            Control::Open(open) => held(open),
-        };
-        Look { states: (0..states).filter(|index| includes(&needed, *index)).collect(), inputs: other }
-    }
+            [force, Dependence::from(0.0)]
+        }
+    };
+    (0..states).filter(|index| includes(&needed, *index)).collect()
 }
 
 fn includes(needed: &[Dependence], index: usize) -> bool {

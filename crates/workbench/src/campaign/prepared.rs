@@ -2,15 +2,17 @@
 
 use std::cell::RefCell;
 
-use phea_dynamics::simulation::{Course, Input, Observer, Outcome, Plant, Sampler, System, Task};
+use phea_dynamics::simulation::{
+    Attention, Course, Input, Observer, Outcome, Sampler, Stretch, System, Task,
+};
 use phea_hydraulics::machine::{Machine, MachineOptions};
 
 use super::plan::{Draw, Plan};
 use super::row::{Ran, Row, RowOutcome, numbers};
 use crate::rig::{Rig, RigError, actuator};
 use crate::simulate::{
-    Bench, COMMAND_LIMIT, Control, Digital, Occurrence, Samples, Seen, SimulateError, Stopped, Waking,
-    course_of, metrics_seen, occurrences, options,
+    Bench, COMMAND_LIMIT, Control, Digital, Follower, Occurrence, Samples, SimulateError, Stopped, Waking,
+    course_of, occurrences, options,
 };
 
 /// A run ready to be driven.
@@ -89,42 +91,9 @@ impl Prepared {
         Task { start: self.start.clone(), course: &self.course, sampler, observer }
     }
 
-    /// How many states and inputs there are.
-    fn size(&self) -> (usize, usize) {
-        match &self.bench.control {
-            Control::Continuous(closed) => {
-                (System::<f64>::states(closed.as_ref()), System::<f64>::inputs(closed.as_ref()))
-            }
-            Control::Sampled(sampled) => {
-                (System::<f64>::states(&sampled.held), System::<f64>::inputs(&sampled.held))
-            }
-            Control::Open(held) => {
-                (System::<f64>::states(held.as_ref()), System::<f64>::inputs(held.as_ref()))
-            }
-        }
-    }
-
-    /// The machine's own force, whatever a sensor makes of it, and what a continuous controller wants before the limit.
-    fn signals(&self, state: &[f64], inputs: &[f64]) -> (f64, f64) {
-        let force = |others: usize| self.bench.machine.measurement(state, &inputs[others..]);
-        match &self.bench.control {
-            Control::Continuous(closed) => (force(1), closed.signals::<f64, f64>(state, inputs).wanted),
-            Control::Sampled(_) => (force(2), 0.0),
-            Control::Open(_) => (force(2), inputs.first().copied().unwrap_or_default()),
-        }
-    }
-
     /// What came of it.
     pub(super) fn row(&self, plan: &Plan, outcome: &Outcome, seen: &Watched<'_>) -> Row {
-        let looks = seen.force_n.len().min(plan.times_s.len());
-        let all = Seen {
-            times_s: plan.times_s.get(..looks).unwrap_or_default(),
-            force_n: seen.force_n.get(..looks).unwrap_or_default(),
-            reference_n: plan.reference_n.get(..looks).unwrap_or_default(),
-            control_v: seen.control_v.get(..looks).unwrap_or_default(),
-        };
-        let band = plan.scenario.settling_band_percent;
-        let metrics = plan.windows().iter().map(|window| numbers(&metrics_seen(&all, *window, band)));
+        let metrics = seen.follower.metrics();
         let stopped = Stopped::of(outcome.status);
         let mut kinds: Vec<&'static str> = Vec::new();
         for occurrence in self.occurrences(outcome).iter().filter(|occurrence| occurrence.begins) {
@@ -132,13 +101,13 @@ impl Prepared {
                 kinds.push(occurrence.kind);
             }
         }
-        let seen_at = plan.band_looks.iter().map_while(|look| all.force_n.get(*look));
+        let seen_at = plan.band_looks.iter().map_while(|look| seen.force_n.get(*look));
         let ran = Ran {
             status: stopped.map_or("completed", |stopped| stopped.word),
             ended_s: stopped.map(|stopped| stopped.time_s),
             steps: outcome.work.steps,
             occurrences: kinds,
-            metrics: metrics.collect(),
+            metrics: metrics.iter().map(numbers).collect(),
             force_n: seen_at.map(|force| *force as f32).collect(),
         };
         Row {
@@ -177,76 +146,45 @@ impl Prepared {
     }
 }
 
-/// Looks at force and command, which are sums of states and inputs with weights that a machine keeps.
-///
-/// ```text
-/// F_e = sum of f_i v_i,    u = sum of g_i v_i within its limit          v the states that matter, then the inputs
-/// ```
+/// Looks at force and command of a run.
 pub(super) struct Watched<'a> {
     plan: &'a Plan,
-    prepared: &'a Prepared,
-    /// Those that are not zero, each with the place of its value among the states that matter and then the inputs.
-    force_weights: Vec<(usize, f64)>,
-    /// Of a continuous controller.
-    command_weights: Vec<(usize, f64)>,
+    follower: Follower<'a>,
+    /// At every look, N.
     pub(super) force_n: Vec<f64>,
-    control_v: Vec<f64>,
 }
 
 impl<'a> Watched<'a> {
     fn new(plan: &'a Plan, prepared: &'a Prepared) -> Watched<'a> {
-        let (states, inputs) = prepared.size();
-        let places = &plan.look.states;
-        let count = places.len() + inputs;
-        let (mut force_weights, mut command_weights) = (Vec::new(), Vec::new());
-        for index in 0..count {
-            let (mut state, mut input) = (vec![0.0; states], vec![0.0; inputs]);
-            match places.get(index) {
-                Some(place) => state[*place] = 1.0,
-                None => input[index - places.len()] = 1.0,
-            }
-            let (force, command) = prepared.signals(&state, &input);
-            force_weights.push((index, force));
-            command_weights.push((index, command));
-        }
-        force_weights.retain(|(_, weight)| *weight != 0.0);
-        command_weights.retain(|(_, weight)| *weight != 0.0);
-        let looks = plan.times_s.len();
-        Watched {
-            plan,
-            prepared,
-            force_weights,
-            command_weights,
-            force_n: Vec::with_capacity(looks),
-            control_v: Vec::with_capacity(looks),
-        }
+        let windows = (plan.windows(), plan.scenario.settling_band_percent);
+        let reference = &plan.driven.reference;
+        let follower = Follower::of(&prepared.bench, &plan.look, &prepared.log, reference, windows);
+        Watched { plan, follower, force_n: Vec::with_capacity(plan.times_s.len()) }
     }
 }
 
 impl Observer for Watched<'_> {
     fn wanted(&self) -> &[usize] {
-        &self.plan.look.states
+        &self.plan.look
     }
 
-    fn observe(&mut self, _time_s: f64, states: &[f64], inputs: &[f64]) {
-        let reference = [self.plan.reference_n.get(self.force_n.len()).copied().unwrap_or_default()];
-        let driving = if self.plan.look.inputs { inputs } else { &reference };
-        let sum = |weights: &[(usize, f64)]| {
-            weights.iter().fold(0.0, |sum, &(place, weight)| {
-                let driven = || driving.get(place - states.len());
-                sum + weight * states.get(place).or_else(driven).copied().unwrap_or_default()
-            })
-        };
-        let command = match &self.prepared.bench.control {
-            Control::Open(_) => sum(&self.command_weights),
-            Control::Continuous(_) => sum(&self.command_weights).clamp(-self.plan.limit, self.plan.limit),
-            Control::Sampled(_) => self.prepared.log.borrow().last.map_or(0.0, |sample| sample.command_v),
-        };
-        self.force_n.push(sum(&self.force_weights));
-        self.control_v.push(command);
+    fn observe(&mut self, _time_s: f64, states: &[f64], _inputs: &[f64]) {
+        self.force_n.push(self.follower.force_n(states));
     }
 
     fn wants_inputs(&self) -> bool {
-        self.plan.look.inputs
+        false
+    }
+
+    fn attention(&self) -> Attention {
+        Attention::Steps
+    }
+
+    fn follow(&mut self, stretch: &Stretch<'_>) {
+        self.follower.follow(stretch);
+    }
+
+    fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
+        self.follower.looks_closer(stretch)
     }
 }

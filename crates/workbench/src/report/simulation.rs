@@ -48,7 +48,7 @@ pub(super) fn chapter(
         figures.extend(drawn);
     }
     let body = html! {
-        p { "The machine as a whole: spool with saturation, the flow of each edge, chambers that grow and shrink, friction as declared, load cell and load, under the controller as it is deployed. Peaks are those of parabolas between looks at most a quarter of a millisecond apart, so that they do not depend on the rows of the table." }
+        p { "The machine as a whole: spool with saturation, the flow of each edge, chambers that grow and shrink, friction as declared, load cell and load, under the controller as it is deployed. Peaks and settling times are those of the solution over each step of the integration, so that they do not depend on the rows of the table." }
         @for part in &parts { (part) }
         (sensitivity_table(&sensitivity))
     };

@@ -1,16 +1,19 @@
-//! What is seen of a run on the way: each look goes into the table and the metrics as it comes, and a course is kept for figures.
+//! What is seen of a run on the way: each look goes into the table, each step into the metrics, and a course is kept for figures.
 
 use std::cell::{Cell, RefCell};
 
-use phea_dynamics::simulation::{Observer, System};
+use phea_dynamics::simulation::{Attention, Observer, Stretch};
 use phea_hydraulics::machine::SIGNALS;
 
 use super::bench::{Bench, Control};
 use super::columns::{self, LOOP_SIGNALS};
+use super::course::Course;
 use super::digital::{Sample, Samples};
 use super::files::Table;
+use super::follower::Follower;
 use super::measured::{Measurement, Overlay, Overlaying};
-use super::{Seen, SimulateError};
+use super::sums::{self, Sum};
+use super::{Metrics, SimulateError};
 use crate::source::WriteError;
 
 /// Most looks of a run that its record keeps.
@@ -119,50 +122,13 @@ fn every_second<T>(values: &mut Vec<T>) {
     });
 }
 
-/// What metrics are read off, at every look.
-#[derive(Debug, Default)]
-pub(super) struct Looks {
-    times_s: Vec<f64>,
-    force_n: Vec<f64>,
-    reference_n: Vec<f64>,
-    control_v: Vec<f64>,
-    /// Highest pressures of chambers A and B so far, Pa.
-    pub(super) peak_pressures_pa: [f64; 2],
-}
-
-impl Looks {
-    fn take(&mut self, look: &Look, Places { force, pressures }: Places) {
-        self.times_s.push(look.time_s);
-        self.force_n.push(look.signals[force]);
-        self.reference_n.extend(look.reference_n);
-        self.control_v.push(look.control_v);
-        for (peak, place) in self.peak_pressures_pa.iter_mut().zip(pressures) {
-            *peak = peak.max(look.signals[place]);
-        }
-    }
-
-    pub(super) fn seen(&self) -> Seen<'_> {
-        Seen {
-            times_s: &self.times_s,
-            force_n: &self.force_n,
-            reference_n: &self.reference_n,
-            control_v: &self.control_v,
-        }
-    }
-}
-
-/// Where among the signals is what metrics are read off.
-#[derive(Clone, Copy, Debug)]
-struct Places {
-    force: usize,
-    /// Of chambers A and B.
-    pressures: [usize; 2],
-}
-
 /// What was seen of a run.
 pub(super) struct Sighted {
     pub(super) record: Record,
-    pub(super) looks: Looks,
+    /// Of each window.
+    pub(super) metrics: Vec<Metrics>,
+    /// Highest pressures of chambers A and B, Pa.
+    pub(super) peak_pressures_pa: [f64; 2],
     pub(super) measured: Vec<Overlay>,
 }
 
@@ -173,13 +139,15 @@ pub(super) struct Looking<'a> {
     samples: &'a RefCell<Samples>,
     /// All states.
     wanted: Vec<usize>,
-    places: Places,
     /// Looks so far.
     count: u64,
     looks_per_row: u64,
     table: Option<Table<'a>>,
     record: Record,
-    looks: Looks,
+    follower: Follower<'a>,
+    /// Of chambers A and B, and the highest so far, Pa.
+    pressures: [Sum; 2],
+    peak_pressures_pa: [f64; 2],
     overlays: Vec<Overlaying<'a>>,
     /// Whether the table takes no more, and why.
     full: &'a Cell<bool>,
@@ -193,26 +161,24 @@ impl<'a> Looking<'a> {
         (table, looks_per_row): (Option<Table<'a>>, usize),
         measurements: &'a [Measurement],
         full: &'a Cell<bool>,
+        (course, band): (&'a Course, f64),
     ) -> Looking<'a> {
-        let states = match &bench.control {
-            Control::Continuous(closed) => System::<f64>::states(closed.as_ref()),
-            Control::Sampled(sampled) => System::<f64>::states(&sampled.held),
-            Control::Open(held) => System::<f64>::states(held.as_ref()),
-        };
-        let place = |name: &str| SIGNALS.iter().position(|signal| *signal == name).unwrap_or_default();
+        let [states, _] = sums::size(&bench.control);
+        let wanted: Vec<usize> = (0..states).collect();
+        let windows = (course.windows.as_slice(), band);
+        let follower = Follower::of(bench, &wanted, samples, &course.reference, windows);
+        let pressures = sums::pressures(bench, &wanted);
         Looking {
             bench,
             samples,
-            wanted: (0..states).collect(),
-            places: Places {
-                force: place("force_n"),
-                pressures: [place("pressure_a_pa"), place("pressure_b_pa")],
-            },
+            wanted,
             count: 0,
             looks_per_row: looks_per_row as u64,
             table,
             record: Record::default(),
-            looks: Looks::default(),
+            follower,
+            pressures,
+            peak_pressures_pa: [f64::NEG_INFINITY; 2],
             overlays: measurements.iter().map(Overlaying::new).collect(),
             full,
             fault: None,
@@ -231,7 +197,8 @@ impl<'a> Looking<'a> {
             table.finish().map_err(SimulateError::Write)?;
         }
         let measured = self.overlays.into_iter().map(Overlaying::finish).collect();
-        Ok(Sighted { record: self.record, looks: self.looks, measured })
+        let metrics = self.follower.metrics();
+        Ok(Sighted { record: self.record, metrics, peak_pressures_pa: self.peak_pressures_pa, measured })
     }
 
     fn look(&self, time_s: f64, states: &[f64], inputs: &[f64]) -> Look {
@@ -290,11 +257,24 @@ impl Observer for Looking<'_> {
             self.full.set(true);
         }
         self.record.take(self.count, &look);
-        self.looks.take(&look, self.places);
         for overlay in &mut self.overlays {
             overlay.take(&look);
         }
         self.count += 1;
+    }
+
+    fn attention(&self) -> Attention {
+        Attention::Everything
+    }
+
+    fn follow(&mut self, stretch: &Stretch<'_>) {
+        self.follower.follow(stretch);
+        for (sum, peak) in self.pressures.iter().zip(&mut self.peak_pressures_pa) {
+            let pressure = sum.over(stretch.states);
+            if pressure.bounds()[1] > *peak {
+                *peak = peak.max(pressure.extremes([0.0, 1.0])[1]);
+            }
+        }
     }
 }
 

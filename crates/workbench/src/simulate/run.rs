@@ -12,12 +12,12 @@ use super::course::Course;
 use super::digital::{Digital, Memory, Samples};
 use super::look::{Looking, Record, Sighted};
 use super::measured::{Measurement, Overlay};
-use super::metrics::{Metrics, metrics_seen};
+use super::metrics::Metrics;
 use super::saved::{self, SavedState};
 use super::{Check, SimulateError, Table, Window};
 use crate::project::Scenario;
 
-/// Longest time between two looks at the machine: 1 ms would cut the peaks of a ringing load cell.
+/// Longest time between two looks at the machine, of which figures are drawn: 1 ms would cut the peaks of a ringing load cell.
 const LONGEST_LOOK_S: f64 = 0.25e-3;
 /// Most looks where the project asks for fewer rows.
 const MOST_LOOKS: f64 = 400_000.0;
@@ -37,7 +37,7 @@ pub struct ScenarioRun {
     pub record: Record,
     /// Looks between two rows of the result.
     pub looks_per_row: usize,
-    /// Time between two looks, s: what is shorter is not seen.
+    /// Time between two looks, s: what is shorter is not drawn.
     pub look_s: f64,
     /// Each window with what is read off it.
     pub windows: Vec<(Window, Metrics)>,
@@ -102,7 +102,7 @@ pub struct UnresolvedMode {
 }
 
 impl ScenarioRun {
-    /// Whether it is so long that it was looked at less often than peaks want.
+    /// Whether it is so long that it was looked at less often than its figures want.
     pub(crate) fn is_coarse(&self) -> bool {
         self.look_s > LONGEST_LOOK_S * (1.0 + 1e-9)
     }
@@ -162,15 +162,14 @@ pub(super) fn run(
     };
     inputs.extend(course.machine_inputs());
     let drive = Drive { duration_s: scenario.duration, output_step_s: look_s, inputs };
-    let observer = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full);
+    let band = scenario.settling_band_percent;
+    let observer = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
     let driven = driven(bench, course, (&drive, observer), (&samples, &memory), &mut watch);
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let (outcome, seen) = driven.map_err(named)?;
-    let Sighted { record, looks, measured } = seen.finish()?;
-    let occurrences = found(bench, course, &outcome, &samples.into_inner());
-    let band = scenario.settling_band_percent;
-    let metrics = |window: &Window| metrics_seen(&looks.seen(), *window, band);
-    let windows = course.windows.iter().map(|window| (*window, metrics(window))).collect();
+    let Sighted { record, metrics, peak_pressures_pa, measured } = seen.finish()?;
+    let occurrences = found(bench, course, &outcome, &samples.borrow());
+    let windows = course.windows.iter().copied().zip(metrics).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
     let memory = memory.into_inner();
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
@@ -188,7 +187,7 @@ pub(super) fn run(
         settling_band_percent: band,
         measured,
         open_loop: scenario.is_open_loop(),
-        beyond_expansion: beyond_expansion(bench, looks.peak_pressures_pa),
+        beyond_expansion: beyond_expansion(bench, peak_pressures_pa),
         end,
         check: None,
     })

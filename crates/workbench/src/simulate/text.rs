@@ -179,11 +179,11 @@ pub(crate) fn small_as_zero(error_n: f64) -> f64 {
     if error_n.abs() < 1e-3 { 0.0 } else { error_n }
 }
 
-/// What the numbers of a long scenario are not.
+/// What the figures of a long scenario do not show.
 pub(crate) fn coarse_sentence(run: &ScenarioRun) -> Option<String> {
     run.is_coarse().then(|| {
         let look = DisplayUnit::MILLISECOND.number(run.look_s, 3);
-        format!("so long a scenario is looked at every {look} ms only: what is shorter is not seen, and peaks may be larger")
+        format!("so long a scenario is drawn from looks every {look} ms only; its numbers are those of the solution between them too")
     })
 }
 

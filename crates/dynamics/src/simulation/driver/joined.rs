@@ -4,7 +4,7 @@ use super::Drive;
 use crate::scalar::{Dependence, Dual};
 use crate::simulation::rosenbrock::DIRECTIONS;
 use crate::simulation::slot::Slot;
-use crate::simulation::{Lane, Observer, System};
+use crate::simulation::{Attention, Lane, Observer, System};
 
 /// Largest error of a step with known matrices, in units of the tolerance: such errors have one sign for many samples and
 /// add up.
@@ -59,14 +59,23 @@ where
         self.between.extensions.fill(None);
         self.between.propagated = true;
         self.between.end.copy_from_slice(&self.propagator.end);
-        let mut all = true;
         for lane in 0..S::COUNT {
             let Some(slot) = &mut self.slots[lane] else { continue };
             slot.propagated &= error.lane(lane) <= PROPAGATED;
-            all &= slot.propagated;
             if slot.propagated {
                 slot.passage.go_whole();
                 self.step.set_lane(lane, slot.passage.step_s);
+            }
+        }
+        let mut all = true;
+        for lane in 0..S::COUNT {
+            if self.looks_closer(lane) {
+                self.slots[lane].iter_mut().for_each(|slot| slot.propagated = false);
+                self.begin_step(lane);
+            }
+            let Some(slot) = &mut self.slots[lane] else { continue };
+            all &= slot.propagated;
+            if slot.propagated {
                 slot.passage.work.steps += 1;
                 slot.passage.work.evaluations += 2;
             }
@@ -78,6 +87,17 @@ where
             }
         }
         all
+    }
+
+    /// Whether the observer of a lane wants to know the step with known matrices more exactly.
+    fn looks_closer(&mut self, lane: usize) -> bool {
+        let asks = |slot: &Slot<'_, O>| slot.propagated && slot.passage.attention == Attention::Steps;
+        if !self.slots[lane].as_ref().is_some_and(asks) {
+            return false;
+        }
+        self.want(lane);
+        let Some(slot) = &self.slots[lane] else { return false };
+        slot.looks_closer(&self.between.wanted, &mut self.between.quartics)
     }
 
     /// Finds the matrices of lanes that a step of the method brought from sample to sample.

@@ -105,7 +105,15 @@ impl Shape {
 
 impl Piece {
     /// The value of a piece that does not change.
-    pub(in crate::simulation) fn constant(&self) -> Option<f64> {
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::simulation::Profile;
+    /// let sine = Profile::sine(1.0, 2.0, 5.0)?;
+    /// assert_eq!((sine.piece(0.5).constant(), sine.piece(1.5).constant()), (Some(0.0), None));
+    /// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
+    /// ```
+    pub fn constant(&self) -> Option<f64> {
         self.terms.is_empty().then_some(self.offset)
     }
 
