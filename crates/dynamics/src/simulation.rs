@@ -7,6 +7,7 @@
 mod closed_loop;
 mod course;
 mod driver;
+mod equilibrium;
 mod explicit;
 mod growth;
 mod history;
@@ -33,6 +34,7 @@ pub use course::{
     Attention, Course, Event, Input, Observer, Outcome, Sampler, Settings, SimulationError, Status, Work,
 };
 pub use driver::drive;
+pub use equilibrium::{EquilibriumError, equilibrium};
 pub use growth::Sliding;
 pub use method::Method;
 pub use profile::{Harmonic, Moment, Piece, Profile, ProfileError, schroeder_phases};

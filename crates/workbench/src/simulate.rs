@@ -7,6 +7,7 @@ mod columns;
 mod compare;
 mod course;
 mod digital;
+mod equilibrium;
 mod figures;
 mod files;
 mod follower;
@@ -51,7 +52,7 @@ pub(crate) use text::{
 };
 
 use phea_dynamics::linear::LinearError;
-use phea_dynamics::simulation::{ProfileError, SimulationError};
+use phea_dynamics::simulation::{EquilibriumError, ProfileError, SimulationError};
 use phea_hydraulics::line::LineError;
 use phea_hydraulics::machine::MachineError;
 use phea_hydraulics::operating_point::OperatingPointError;
@@ -107,13 +108,53 @@ pub enum SimulateError {
         /// What is wrong with its start.
         error: MachineError,
     },
-    /// There is no equilibrium to begin with.
-    #[error("scenario \"{name}\": no equilibrium without force at mid stroke: {error}")]
+    /// There is no operating point to begin a search for rest with.
+    #[error(
+        "scenario \"{name}\" states no `start`, and there is no operating point without force at mid stroke: {error}"
+    )]
     Equilibrium {
         /// Of the scenario.
         name: String,
         /// Why not.
         error: OperatingPointError,
+    },
+    /// There is no rest to begin with.
+    #[error(
+        "scenario \"{name}\" states no `start`, and the closed loop does not rest at its reference of {reference_n} N: where \
+         all moves least, {what} still moves by {rate:.2e} of its typical magnitude a second"
+    )]
+    NoRest {
+        /// Of the scenario.
+        name: String,
+        /// At time zero, N.
+        reference_n: f64,
+        /// What moves.
+        what: &'static str,
+        /// 1/s.
+        rate: f64,
+    },
+    /// To rest takes more than the command may be.
+    #[error(
+        "scenario \"{name}\" states no `start`, and to rest at its reference of {reference_n} N takes a command of {command_v:.3} \
+         V, beyond the limit of {limit_v} V"
+    )]
+    RestBeyondLimit {
+        /// Of the scenario.
+        name: String,
+        /// At time zero, N.
+        reference_n: f64,
+        /// V.
+        command_v: f64,
+        /// V.
+        limit_v: f64,
+    },
+    /// The search for rest does not fit the loop.
+    #[error("scenario \"{name}\" states no `start`: {error}")]
+    Rest {
+        /// Of the scenario.
+        name: String,
+        /// What does not fit.
+        error: EquilibriumError,
     },
     /// A reference or motion that is no function of time.
     #[error("scenario \"{name}\": {error}")]

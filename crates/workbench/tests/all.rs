@@ -32,6 +32,7 @@ mod project_quantity;
 mod report_design;
 mod report_page;
 mod report_simulation;
+mod rest;
 mod scenarios;
 mod sensor;
 mod shaping;

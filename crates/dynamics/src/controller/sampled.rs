@@ -132,6 +132,24 @@ impl SampledController {
         Some(ControllerState { feedback: pairs(of_feedback), prefilter: pairs(of_prefilter) })
     }
 
+    /// What prefilter and feedback make of inputs that stand still; `None` of one that integrates.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::controller::{Compensator, Controller, Element};
+    /// let feedback = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
+    /// let prefilter = Compensator::new(vec![Element::RealPole { frequency: 5.0 }]);
+    /// let controller = Controller { feedback, prefilter, ..Controller::default() };
+    /// let [of_prefilter, of_feedback] = controller.sampled(0.1)?.steady_gains();
+    /// assert!(of_prefilter.is_some_and(|gain| (gain - 1.0).abs() < 1e-12) && of_feedback.is_none());
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn steady_gains(&self) -> [Option<f64>; 2] {
+        [&self.prefilter, &self.feedback].map(|sections| {
+            sections.iter().try_fold(1.0, |gain, section| Some(gain * section.steady_gain()?))
+        })
+    }
+
     /// One sample: the command for this reference and measurement, and the next state.
     ///
     /// # Example

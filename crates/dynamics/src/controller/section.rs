@@ -86,6 +86,12 @@ impl Section {
         [self.numerator[1] * input - self.denominator[0] * *signal + second, second]
     }
 
+    /// What a constant input of one gives in the end; `None` of a section that integrates.
+    pub(super) fn steady_gain(&self) -> Option<f64> {
+        let under = 1.0 + self.denominator.iter().sum::<f64>();
+        (under.abs() > INTEGRATING).then(|| self.numerator.iter().sum::<f64>() / under)
+    }
+
     /// The next state, once the output is known (limited or not).
     pub fn advance(&self, state: [f64; 2], input: f64, output: f64) -> [f64; 2] {
         [

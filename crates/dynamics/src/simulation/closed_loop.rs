@@ -66,6 +66,12 @@ impl<P> ClosedLoop<P> {
         self.limit
     }
 
+    /// The same loop without a limit of the command, and so without anti-windup.
+    #[must_use]
+    pub fn unlimited(self) -> Self {
+        ClosedLoop { limit: f64::INFINITY, ..self }
+    }
+
     /// How many states controller and prefilter have.
     pub fn controller_states(&self) -> usize {
         self.feedback.states + self.prefilter.states

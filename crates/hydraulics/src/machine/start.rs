@@ -101,6 +101,23 @@ impl Machine {
         self.settled(point, Kept::Force(point.hydraulic_force))
     }
 
+    /// Places of the states that stand still at any value while all others do: memories of friction and magnetisation. At zero they
+    /// carry no force.
+    ///
+    /// # Example
+    /// ```
+    /// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
+    /// # use phea_hydraulics::reference_rig::{components, hose_line};
+    /// # use phea_hydraulics::machine::{Machine, MachineOptions};
+    /// let actuator = Actuator::new(components(hose_line(), StiffnessModel::Uniform))?;
+    /// let machine = Machine::new(&actuator, &MachineOptions::default())?;
+    /// assert!(machine.memories().is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn memories(&self) -> Vec<usize> {
+        self.layout.memories()
+    }
+
     fn settled(&self, point: &OperatingPoint, kept: Kept) -> Result<Beginning, MachineError> {
         let start = Start {
             position: point.position,

@@ -125,6 +125,15 @@ impl Layout {
         self.lines != [0, 0]
     }
 
+    /// Places of the states that remember, and stand still wherever all else does: bristles and the friction and lag of the spool.
+    pub(super) fn memories(&self) -> Vec<usize> {
+        let mut state = MachineState::<f64>::zero();
+        (state.bristle, state.spool.spool_friction, state.spool.magnetic_lag) = (1.0, 1.0, 1.0);
+        let mut vector = vec![0.0; self.count()];
+        self.write(&state, &mut vector);
+        vector.iter().enumerate().filter(|(_, value)| **value != 0.0).map(|(index, _)| index).collect()
+    }
+
     /// States of both lines.
     #[inline(always)]
     pub(super) fn lines<'a, T>(&self, vector: &'a [T]) -> [&'a [T]; 2] {

@@ -15,7 +15,7 @@ pub struct Scenario {
     pub duration: f64,
     /// s, between rows of the result.
     pub output_step: f64,
-    /// The state at the start; absent: equilibrium at mid stroke.
+    /// The state at the start; absent: the closed loop at rest at mid stroke.
     pub start: Option<Start>,
     /// The reference force, the sum of these.
     pub reference: Vec<Signal>,
@@ -116,7 +116,8 @@ impl Scenario {
         v.quantity(k, &mut self.duration);
         let k = key("output_step", &TIME, "Time between rows of the result.").positive().or(1e-3);
         v.quantity(k, &mut self.output_step);
-        let k = plain("start", "State at the start; states not named are zero. Absent: equilibrium.");
+        let k =
+            plain("start", "State at the start; states not named are zero. Absent: the closed loop at rest.");
         v.table(k, &mut self.start, Start::visit);
         let k =
             plain("reference", "The reference force: steps, each until the next, and what is added to them.");

@@ -6,6 +6,7 @@ use phea_hydraulics::operating_point::{Condition, Load, operating_point};
 
 use super::bench::{Bench, Control};
 use super::digital::Waking;
+use super::equilibrium::{Rest, Standing, rest};
 use super::motion_file::{self, Column};
 use super::saved::{self, SavedState};
 use super::signal::{self, Beginning as Begun};
@@ -101,12 +102,28 @@ pub(crate) fn course_of(
         let waking = saved.memory(bench).map_or(Waking::AtRest, Waking::Resumed);
         return Ok(driven.course(bench, saved.ground_m(), saved.states(bench), waking));
     }
-    let beginning = beginning(bench, scenario)?;
-    let ([ground, _], holds) = (beginning.inputs, scenario.start.is_none());
-    let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
-    let holding = Waking::Holding([0.0, measured, beginning.command]);
-    let waking = if holds { holding } else { Waking::AtRest };
-    Ok(driven.course(bench, ground, start(bench, &beginning, measured, holds), waking))
+    if let Some(stated) = &scenario.start {
+        let named = |error| SimulateError::Start { name: scenario.name.clone(), error };
+        let beginning = bench.machine.start(&stated_start(stated)).map_err(named)?;
+        let start = loop_start(bench, &beginning, None);
+        return Ok(driven.course(bench, beginning.inputs[0], start, Waking::AtRest));
+    }
+    let at = driven.at_start();
+    let near = near_rest(bench, scenario, at.reference_n)?;
+    let guess = loop_start(bench, &near, Some(at.reference_n));
+    let Rest { start, ground_m, measured_n, command_v } = rest(bench, &guess, &near, at, &scenario.name)?;
+    let waking = Waking::Holding([at.reference_n, measured_n, command_v]);
+    Ok(driven.course(bench, ground_m, start, waking))
+}
+
+impl Driven {
+    fn at_start(&self) -> Standing {
+        Standing {
+            reference_n: self.reference.value(0.0),
+            command_v: self.command.value(0.0),
+            external_n: self.external_force.value(0.0),
+        }
+    }
 }
 
 impl Driven {
@@ -149,19 +166,24 @@ fn motion(declared: &LoadMotion) -> Result<Profile, ProfileError> {
     }
 }
 
-/// The machine at the stated values, or at rest without force at mid stroke.
-fn beginning(bench: &Bench, scenario: &Scenario) -> Result<Beginning, SimulateError> {
-    let named = |error| SimulateError::Start { name: scenario.name.clone(), error };
-    match &scenario.start {
-        Some(stated) => bench.machine.start(&stated_start(stated)).map_err(named),
-        None => {
-            let stroke = bench.rig.actuator.components().cylinder.stroke;
-            let condition = Condition::Load(Load::Force(0.0));
-            let point = operating_point(&bench.rig.actuator, stroke / 2.0, condition)
-                .map_err(|error| SimulateError::Equilibrium { name: scenario.name.clone(), error })?;
-            bench.machine.rest(&point).map_err(named)
-        }
-    }
+/// Where the search for a rest begins: the machine at mid stroke under the force of the reference, or without force where there is
+/// no such operating point.
+fn near_rest(bench: &Bench, scenario: &Scenario, reference_n: f64) -> Result<Beginning, SimulateError> {
+    let stroke = bench.rig.actuator.components().cylinder.stroke;
+    let near = |force: f64| -> Result<Beginning, SimulateError> {
+        let point = operating_point(&bench.rig.actuator, stroke / 2.0, Condition::Load(Load::Force(force)))
+            .map_err(|error| SimulateError::Equilibrium { name: scenario.name.clone(), error })?;
+        let start = Start {
+            position: point.position,
+            pressure_a: point.pressure_a,
+            pressure_b: point.pressure_b,
+            spool: point.command,
+            ..Start::default()
+        };
+        let named = |error| SimulateError::Start { name: scenario.name.clone(), error };
+        bench.machine.rest_under_load(&point).or_else(|_| bench.machine.start(&start)).map_err(named)
+    };
+    near(reference_n).or_else(|_| near(0.0))
 }
 
 fn stated_start(stated: &project::Start) -> Start {
@@ -176,25 +198,28 @@ fn stated_start(stated: &project::Start) -> Start {
     }
 }
 
-/// Controller and sensor hold an equilibrium; after a stated start they begin at zero, as all that is not stated.
-fn start(bench: &Bench, beginning: &Beginning, measured: f64, holds: bool) -> Vec<f64> {
+/// States of the loop with its machine there, and the waves under way. Controller and sensor hold the machine at a reference in N; without
+/// one they begin at zero, as all that is not stated.
+fn loop_start(bench: &Bench, beginning: &Beginning, held_at: Option<f64>) -> Vec<f64> {
     let mut start = beginning.state.clone();
+    let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
+    let reference = held_at.unwrap_or(0.0);
     let mut sensor = bench.sensed().sensor_at_rest(measured);
     let mut control = match &bench.control {
-        Control::Continuous(closed) => closed.controller_at_rest(0.0, measured, beginning.command),
-        Control::Sampled(sampled) => sampled.held.prefilter_at_rest(0.0),
-        Control::Open(held) => held.prefilter_at_rest(0.0),
+        Control::Continuous(closed) => closed.controller_at_rest(reference, measured, beginning.command),
+        Control::Sampled(sampled) => sampled.held.prefilter_at_rest(reference),
+        Control::Open(held) => held.prefilter_at_rest(reference),
     };
-    if !holds {
+    if held_at.is_none() {
         sensor.fill(0.0);
         control.fill(0.0);
     }
     start.extend(sensor);
     start.extend(control);
     let waves = match &bench.control {
-        Control::Continuous(closed) => under_way(closed.as_ref(), &start, &[0.0], beginning),
-        Control::Sampled(sampled) => under_way(&sampled.held, &start, &[0.0, 0.0], beginning),
-        Control::Open(held) => under_way(held.as_ref(), &start, &[0.0, 0.0], beginning),
+        Control::Continuous(closed) => under_way(closed.as_ref(), &start, &[reference], beginning),
+        Control::Sampled(sampled) => under_way(&sampled.held, &start, &[0.0, reference], beginning),
+        Control::Open(held) => under_way(held.as_ref(), &start, &[0.0, reference], beginning),
     };
     start.extend(waves);
     start
@@ -237,7 +262,13 @@ fn windows(scenario: &Scenario, [reference, command, external]: [&Profile; 3]) -
     let of_command = signal::beginnings(&scenario.command, command, end_s).into_iter().map(commanded);
     let outside = signal::beginnings(&scenario.external_force, external, end_s).into_iter();
     let outside = outside.map(|begun| window(Cause::ExternalForce, begun.time_s()));
-    let mut windows: Vec<Window> = begun.chain(of_command).chain(outside).collect();
+    // a loop that begins at rest begins with what stands at time zero
+    let stands = |window: &Window| {
+        let steps = matches!(window.cause, Cause::ReferenceStep { .. } | Cause::CommandStep { .. });
+        scenario.start.is_none() && steps && window.start_s <= 0.0
+    };
+    let begun = begun.chain(of_command).chain(outside);
+    let mut windows: Vec<Window> = begun.filter(|window| !stands(window)).collect();
     if let Some(motion) = scenario.load_motion.as_ref().filter(|motion| motion.start < end_s) {
         windows.push(window(Cause::LoadMotion, motion.start));
     }

@@ -1,0 +1,202 @@
+//! Where a system stands still.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::System;
+use crate::scalar::Dual;
+
+/// Derivatives found at once.
+const DIRECTIONS: usize = 4;
+/// Newton steps, and halvings of each.
+const STEPS: usize = 100;
+const HALVINGS: usize = 40;
+/// Singular values below this are zero: a direction in which nothing is decided, along which the guess is kept.
+const SINGULAR: f64 = 1e-11;
+/// How far off, in scales, a state may be where it stands still.
+const TOLERANCE: f64 = 1e-8;
+
+/// Why there is no equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum EquilibriumError {
+    /// A count does not fit the system.
+    #[error("{found} {what} where the system has {expected}")]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// A rate at the guess is not a finite number.
+    #[error("the equations have no value where the search begins")]
+    NotFinite,
+    /// Nothing stands still near the guess.
+    #[error("state {state} still moves at {rate} of its typical magnitude per second where all move least")]
+    NotFound {
+        /// The state that is farthest from standing still.
+        state: usize,
+        /// Its rate over its scale, 1/s.
+        rate: f64,
+    },
+}
+
+/// The state in which a system stands still under inputs that do, and the waves under way in its delays, in one vector: by damped
+/// Newton steps from a guess of both.
+///
+/// ```text
+/// f(y, w, z) = 0,    z = g(y, w, z)        y states, w inputs, z the waves, which arrive as they were sent
+/// ```
+///
+/// The Jacobian is exact. What these equations leave open (a load before its wall, the share of equal waves) stays as it was guessed, and
+/// so do the states in `kept`: memories such as the bristles of friction, which stand still anywhere.
+///
+/// # Errors
+/// [`EquilibriumError`]; what the system cannot do within its equations is not found.
+///
+/// # Example
+/// A tank of which more flows out the higher it stands, sqrt(y), holds at 4 what flows in
+/// ```
+/// use phea_dynamics::scalar::Scalar;
+/// use phea_dynamics::simulation::{System, equilibrium};
+/// struct Tank;
+/// impl System<f64> for Tank {
+///     fn states(&self) -> usize {
+///         1
+///     }
+///     fn inputs(&self) -> usize {
+///         1
+///     }
+///     fn scales(&self) -> Vec<f64> {
+///         vec![1.0]
+///     }
+///     fn rates<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], rates: &mut [T]) {
+///         rates[0] = w[0] - y[0].sqrt();
+///     }
+/// }
+/// let level = equilibrium(&Tank, &[1.0], &[2.0], &[])?;
+/// assert!((level[0] - 4.0).abs() < 1e-12);
+/// # Ok::<(), phea_dynamics::simulation::EquilibriumError>(())
+/// ```
+pub fn equilibrium<E: System<f64>>(
+    system: &E,
+    guess: &[f64],
+    inputs: &[f64],
+    kept: &[usize],
+) -> Result<Vec<f64>, EquilibriumError> {
+    let (states, waves) = (system.states(), system.delays().len());
+    let counts = [
+        ("states and waves", guess.len(), states + waves),
+        ("inputs", inputs.len() + waves, system.inputs()),
+    ];
+    if let Some((what, found, expected)) = counts.into_iter().find(|(_, found, expected)| found != expected) {
+        return Err(EquilibriumError::Count { what, found, expected });
+    }
+    let search = Search { system, states, guess, inputs, kept, scales: scales(system, guess) };
+    let mut best = guess.to_vec();
+    let (mut rest, mut jacobian) = search.surplus(&best);
+    if rest.iter().chain(jacobian.iter()).any(|value| !value.is_finite()) {
+        return Err(EquilibriumError::NotFinite);
+    }
+    for _ in 0..STEPS {
+        // each equation over what a scale of its most telling variable makes of it
+        let weights: Vec<f64> =
+            (0..rest.len()).map(|row| 1.0 / jacobian.row(row).amax().max(f64::MIN_POSITIVE)).collect();
+        let weighted = |rest: &DVector<f64>| DVector::from_fn(rest.len(), |row, _| weights[row] * rest[row]);
+        let before = weighted(&rest);
+        if before.amax() <= f64::EPSILON {
+            break;
+        }
+        let matrix =
+            DMatrix::from_fn(rest.len(), rest.len(), |row, column| weights[row] * jacobian[(row, column)]);
+        let Ok(step) = matrix.svd(true, true).solve(&before, SINGULAR) else { break };
+        let mut share = 2.0;
+        let better = (0..HALVINGS).find_map(|_| {
+            share *= 0.5;
+            let next: Vec<f64> = best
+                .iter()
+                .zip(step.iter().zip(&search.scales))
+                .map(|(value, (step, scale))| value - share * step * scale)
+                .collect();
+            let (left, slopes) = search.surplus(&next);
+            let finite = left.iter().chain(slopes.iter()).all(|value| value.is_finite());
+            (finite && weighted(&left).norm() < before.norm()).then_some((next, left, slopes))
+        });
+        match better {
+            Some((next, left, slopes)) => (best, rest, jacobian) = (next, left, slopes),
+            None => break,
+        }
+    }
+    search.checked(best, &rest, &jacobian)
+}
+
+struct Search<'a, E> {
+    system: &'a E,
+    states: usize,
+    guess: &'a [f64],
+    inputs: &'a [f64],
+    kept: &'a [usize],
+    scales: Vec<f64>,
+}
+
+impl<E: System<f64>> Search<'_, E> {
+    /// What is left of each equation, and its derivatives by all unknowns, each in its scale.
+    fn surplus(&self, unknowns: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
+        let count = unknowns.len();
+        let (mut rest, mut jacobian) = (DVector::zeros(count), DMatrix::zeros(count, count));
+        let zero = Dual::<DIRECTIONS>::constant(0.0);
+        let (mut rates, mut sent) = (vec![zero; self.states], vec![zero; count - self.states]);
+        for first in (0..count).step_by(DIRECTIONS) {
+            let seeded = |index: usize| {
+                let mut gradient = [0.0; DIRECTIONS];
+                if let Some(place) = index.checked_sub(first).and_then(|place| gradient.get_mut(place)) {
+                    *place = self.scales[index];
+                }
+                Dual::new(unknowns[index], gradient)
+            };
+            let state: Vec<_> = (0..self.states).map(seeded).collect();
+            let known = self.inputs.iter().map(|&input| Dual::constant(input));
+            let inputs: Vec<_> = known.chain((self.states..count).map(seeded)).collect();
+            self.system.rates(&state, &inputs, &mut rates);
+            self.system.outgoing(&state, &inputs, &mut sent);
+            let waves = sent.iter().zip(self.states..).map(|(&sent, index)| sent - seeded(index));
+            for (row, value) in rates.iter().copied().chain(waves).enumerate() {
+                let value = if self.kept.contains(&row) {
+                    seeded(row) - Dual::constant(self.guess[row])
+                } else {
+                    value
+                };
+                rest[row] = value.value();
+                for (column, slope) in (first..count).zip(value.gradient()) {
+                    jacobian[(row, column)] = *slope;
+                }
+            }
+        }
+        (rest, jacobian)
+    }
+
+    /// What was found, if it stands still.
+    fn checked(
+        &self,
+        found: Vec<f64>,
+        rest: &DVector<f64>,
+        jacobian: &DMatrix<f64>,
+    ) -> Result<Vec<f64>, EquilibriumError> {
+        let off = |row: usize| rest[row].abs() / jacobian.row(row).amax().max(f64::MIN_POSITIVE);
+        if (0..found.len()).all(|row| off(row) <= TOLERANCE) {
+            return Ok(found);
+        }
+        let rate = |state: usize| rest[state].abs() / self.scales[state];
+        let farthest = |one: usize, other: usize| if off(other) > off(one) { other } else { one };
+        let state = (0..self.states).reduce(farthest).unwrap_or_default();
+        Err(EquilibriumError::NotFound { state, rate: rate(state) })
+    }
+}
+
+/// Of states as they are, of waves as they are guessed.
+fn scales<E: System<f64>>(system: &E, guess: &[f64]) -> Vec<f64> {
+    let mut scales = system.scales();
+    let waves = guess.iter().skip(scales.len()).map(|wave| wave.abs().max(1.0)).collect::<Vec<f64>>();
+    scales.extend(waves);
+    scales
+}

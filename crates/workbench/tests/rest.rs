@@ -1,0 +1,227 @@
+//! A scenario that states no start begins with the closed loop at rest: nothing moves until something happens.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use phea_hydraulics::machine::SIGNALS;
+use phea_workbench::project;
+use phea_workbench::simulate::{ScenarioRun, SimulateError, simulate_project};
+use phea_workbench::source::Memory;
+
+const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
+const EVERYTHING: &str = include_str!("project_valid/simulation.toml");
+const EXAMPLES: [&str; 5] = [
+    BENCHMARK,
+    include_str!("../../../examples/benchmark/closed_loop.toml"),
+    include_str!("../../../examples/benchmark/closed_loop_sampled.toml"),
+    include_str!("../../../examples/ybitu/hose.toml"),
+    include_str!("../../../examples/ybitu/pipe.toml"),
+];
+
+/// A project with this scenario in the place of its own.
+fn still(text: &str, reference: &str) -> String {
+    let before = text.split("[[scenario]]").next().unwrap();
+    let settings = text.find("[simulation]").map_or("", |place| &text[place..]);
+    let own = settings.split("[[").next().unwrap();
+    let kept = if before.contains("[simulation]") { "" } else { own };
+    format!(
+        "{before}\n{kept}\n[[scenario]]\nname = \"still\"\nduration = \"1 s\"\noutput_step = \"10 ms\"\n{reference}\n"
+    )
+}
+
+fn run(text: &str, settings: &[String]) -> Result<ScenarioRun, SimulateError> {
+    let source = Memory::default().with("rig.toml", text);
+    let loaded =
+        project::read(&source, "rig.toml", settings, &[]).unwrap_or_else(|report| panic!("{report}"));
+    simulate_project(&source, &loaded.project, &mut |_| true).map(|mut runs| runs.remove(0))
+}
+
+/// What no signal may move by in a second, as its name ends: a part in a hundred thousand of what a run moves it by.
+fn allowed(name: &str) -> f64 {
+    let parts =
+        [("_pa", 10.0), ("_m_per_s", 1e-7), ("_m3_per_s", 1e-10), ("_n", 1e-2), ("_v", 1e-5), ("_m", 1e-9)];
+    parts.into_iter().find(|(end, _)| name.ends_with(end)).unwrap().1
+}
+
+#[track_caller]
+fn check_still(text: &str, settings: &[String], force_n: f64) {
+    let run = run(text, settings).unwrap_or_else(|error| panic!("{settings:?}: {error}"));
+    assert_eq!(run.stopped(), None, "{settings:?}");
+    assert_eq!(run.windows, [], "{settings:?}");
+    let force = run.record.signal("force_n");
+    assert!((force[0] - force_n).abs() < 1e-3, "{settings:?}: {} N at the start", force[0]);
+    for name in SIGNALS {
+        let values = run.record.signal(name);
+        let moved = values.iter().map(|value| (value - values[0]).abs()).fold(0.0, f64::max);
+        assert!(moved <= allowed(name), "{settings:?}: {name} moves by {moved} from {}", values[0]);
+    }
+    let commands = &run.record.control_v;
+    let moved = commands.iter().map(|value| (value - commands[0]).abs()).fold(0.0, f64::max);
+    assert!(moved <= 1e-5, "{settings:?}: the command moves by {moved} V");
+}
+
+fn settings(all: &[&str]) -> Vec<String> {
+    all.iter().map(|one| (*one).to_string()).collect()
+}
+
+#[test]
+fn every_example_rests_at_its_reference() {
+    for text in EXAMPLES {
+        for (reference, force_n) in [("", 0.0), ("reference = [{ at = \"0 s\", force = \"2 kN\" }]", 2e3)] {
+            check_still(&still(text, reference), &[], force_n);
+        }
+    }
+}
+
+/// A rod on one side and leakage across the piston: between the pressures that the open valve would leave there are 1.1 kN.
+#[test]
+fn leakage_across_an_asymmetric_piston_is_held() {
+    let rods = "cylinder.rod_diameters=[\"0 mm\", \"28 mm\"]";
+    let leaks = "cylinder.internal_leakage=1e-12";
+    check_still(&still(EXAMPLES[1], ""), &settings(&[rods, leaks]), 0.0);
+    check_still(&still(EXAMPLES[2], ""), &settings(&[rods, leaks]), 0.0);
+}
+
+/// Lines, supplies, loads, sensors, controllers and friction of every kind, combined in a fixed pattern.
+#[test]
+fn machines_of_all_components_rest() {
+    let lines: [&[&str]; 6] = [
+        &[],
+        &["line.model=creeping", "line.relaxation_time=50 ms"],
+        &["line.model=segments", "line.segments=4"],
+        &["line.model=segments", "line.segments=3", "line.friction=steady"],
+        &["line.model=transmission_line"],
+        &["line.model=two_wave"],
+    ];
+    let supplies: [&[&str]; 3] = [
+        &[],
+        &["supply.model=pump_limited", "supply.volume=0.8 L"],
+        &[
+            "supply.model=pump_limited",
+            "supply.volume=0.8 L",
+            "supply.accumulator={ gas_volume = \"1 L\", precharge_pressure = \"50 bar\" }",
+        ],
+    ];
+    let loads: [&[&str]; 3] = [
+        &[],
+        &[
+            "load.model=spring_mass_damper",
+            "load.mass=20 kg",
+            "load.stiffness=2 MN/m",
+            "load.damping=500 N.s/m",
+        ],
+        &[
+            "load.model=wall",
+            "load.mass=20 kg",
+            "load.stiffness=5 MN/m",
+            "load.damping=2000 N.s/m",
+            "load.gap=2 mm",
+        ],
+    ];
+    let controllers: [&[&str]; 4] = [
+        &[],
+        &["controller.sample_time=1 ms", "controller.delay=0.5 ms"],
+        &[
+            "controller.anti_windup=back_calculation",
+            "sensor={ numerator = \"600\", denominator = \"s + 600\" }",
+        ],
+        &["controller.delay=1 ms", "controller.load_velocity_feed_forward={}"],
+    ];
+    let others: [&[&str]; 4] = [
+        &[],
+        &["cylinder.internal_leakage=2e-13", "valve.null_bias=30 mV"],
+        &["valve.hysteresis=0.1 V", "valve.threshold=20 mV"],
+        &["cylinder.end_stops={ stiffness = \"100 MN/m\", relative_damping = \"0.5 s/m\" }"],
+    ];
+    for number in 0..36 {
+        let chosen = [
+            lines[number % 6],
+            supplies[number % 3],
+            loads[(number / 2) % 3],
+            controllers[(number / 3) % 4],
+            others[(number / 5) % 4],
+        ];
+        let force_n = if number % 2 == 0 { 0.0 } else { 1500.0 };
+        let reference = format!("reference = [{{ at = 0, force = {force_n} }}]");
+        check_still(&still(EXAMPLES[3], &reference), &settings(&chosen.concat()), force_n);
+    }
+}
+
+/// What a valve with memory, a pump that yields and a wall at some distance leave open stays where it is; noise aside.
+#[test]
+fn a_machine_with_everything_rests_against_its_wall() {
+    let quiet = ["force_sensor.noise=0 N", "simulation.method=rosenbrock"];
+    let of = |force_n: f64| format!("reference = [{{ at = 0, force = {force_n} }}]");
+    for force_n in [0.0, 1e3] {
+        let text = still(EVERYTHING, &of(force_n));
+        // converters give the command in steps: without them
+        let text = text.replace("[controller.quantization]", "[unused]");
+        let text = match text.split_once("[unused]") {
+            Some((before, after)) => format!("{before}{}", &after[after.find("[prefilter]").unwrap()..]),
+            None => text,
+        };
+        check_still(&text, &settings(&quiet), force_n);
+    }
+}
+
+/// Without an integral part the loop rests with an error: it is the equilibrium of the closed loop that it begins in.
+///
+/// ```text
+/// u = k (r - F)
+/// ```
+#[test]
+fn a_proportional_controller_rests_with_its_error() {
+    for more in ["controller.anti_windup=none", "controller.sample_time=1 ms"] {
+        let proportional = [
+            "controller.numerator=2e-4",
+            "controller.denominator=1",
+            "prefilter={ numerator = \"1\", denominator = \"1\" }",
+        ];
+        let mut all = settings(&proportional);
+        all.extend(settings(&[
+            more,
+            "cylinder.internal_leakage=1e-12",
+            "cylinder.rod_diameters=[\"0 mm\", \"28 mm\"]",
+        ]));
+        let text = still(EXAMPLES[1], "reference = [{ at = 0, force = \"2 kN\" }]");
+        let run = run(&text, &all).unwrap();
+        let force = run.record.signal("force_n");
+        let moved = force.iter().map(|value| (value - force[0]).abs()).fold(0.0, f64::max);
+        assert!(moved < 1e-2, "{moved} N");
+        let error = 2e3 - force[0];
+        assert!(error.abs() > 1.0, "{error} N");
+        assert!((run.record.control_v[0] - 2e-4 * error).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn where_there_is_no_rest_it_is_said_why() {
+    // more than the supply can push
+    let text = still(BENCHMARK, "reference = [{ at = 0, force = \"50 kN\" }]");
+    let error = run(&text, &[]).unwrap_err();
+    assert!(matches!(error, SimulateError::NoRest { .. }), "{error}");
+    assert!(error.to_string().contains("does not rest at its reference of 50000 N"), "{error}");
+    // a command beyond what the controller may give
+    let limited = settings(&[
+        "controller.saturation=1 mV",
+        "cylinder.internal_leakage=1e-12",
+        "cylinder.rod_diameters=[\"0 mm\", \"28 mm\"]",
+    ]);
+    let error = run(&still(EXAMPLES[1], ""), &limited).unwrap_err();
+    let SimulateError::RestBeyondLimit { command_v, limit_v, .. } = error else { panic!("{error}") };
+    assert!(command_v.abs() > limit_v && limit_v == 1e-3);
+    // a free mass holds no force
+    let free = settings(&["load.model=spring_mass_damper", "load.mass=20 kg", "load.stiffness=0 N/m"]);
+    let error = run(&still(BENCHMARK, "reference = [{ at = 0, force = \"1 kN\" }]"), &free).unwrap_err();
+    assert!(matches!(error, SimulateError::NoRest { .. }), "{error}");
+}
+
+/// What acts at time zero and is no reference acts from there: rest is before it.
+#[test]
+fn a_step_later_is_a_step() {
+    let text =
+        still(BENCHMARK, "reference = [{ at = 0, force = \"1 kN\" }, { at = \"0.1 s\", force = \"2 kN\" }]");
+    let run = run(&text, &[]).unwrap();
+    let [(window, metrics)] = run.windows.as_slice() else { panic!("{:?}", run.windows) };
+    assert_eq!(window.start_s, 0.1);
+    assert!(metrics.rise_time_s.is_ok() && metrics.overshoot_percent.is_ok());
+}
