@@ -11,9 +11,10 @@ use phea_dynamics::simulation::{
     ClosedLoop, Course, HeldPlant, Input, Outcome, Plant, Sampler, Settings, Status, System, Work, simulate,
 };
 use phea_hydraulics::machine::{INDICATORS, Machine};
-use sundials::{Following, Kicks, Method, follow};
+use sundials::{CvodeError, Following, Kicks, Method, follow};
 
-use crate::rig::{Control, DURATION_S, OUTPUT_STEP_S, Rig};
+use crate::rig::{Control, OUTPUT_STEP_S, Rig};
+use crate::roughness::{Roughness, is_rough, roughest};
 
 /// Of CVODE's runs.
 const EXACT: f64 = 1e-11;
@@ -27,6 +28,11 @@ const KICKS: Kicks = Kicks { period_s: 1e-2, size: 1e-8, seed: 1 };
 pub(crate) const ERRORS: f64 = 10.0;
 /// Growth of kicks from which on it cannot hold the largest error.
 const SEPARATED: f64 = crate::LARGEST_ERROR / (ERRORS * TOLERANCE);
+/// A rig is well posed if CVODE at this tolerance finds what it finds at the other, up to this part of the peak.
+const LOOSER: f64 = 1e-9;
+const WELL_POSED: f64 = 1e-5;
+/// Around the row at which CVODE meets a chamber without fluid, s.
+const NEAR_S: f64 = 1e-3;
 /// Evaluations after which CVODE is told that a rate is not a number.
 const PATIENCE: u64 = 20_000_000;
 
@@ -41,6 +47,12 @@ pub(crate) struct Compared {
     pub(crate) rows: usize,
     /// Largest magnitude of the force or of what is asked for, N.
     pub(crate) peak: f64,
+    /// Whether CVODE finds the same at two tolerances.
+    pub(crate) well_posed: bool,
+    /// Whether CVODE's force rings anywhere, above the floor of [`Roughness`].
+    pub(crate) rough: bool,
+    /// Largest difference between phea's runs over all rows, as a part of the peak: what a check at a tenth of the tolerance tells.
+    pub(crate) estimate: f64,
     /// Whether the force still swings to and fro at the end, long after the last thing that happened.
     pub(crate) hunts: bool,
     /// When CVODE has left the model, a chamber having no fluid any more, in s.
@@ -51,8 +63,16 @@ pub(crate) struct Compared {
     pub(crate) by_default: Option<Ours>,
     /// The same model in C: largest difference over those rows as a part of the peak.
     pub(crate) twin: Option<f64>,
-    /// Seconds of CVODE, with its stability limit, at phea's error.
-    pub(crate) seconds_of_cvode: Option<f64>,
+    /// What CVODE costs at phea's error: with its stability limit, and by Adams' method.
+    pub(crate) costs_of_cvode: [Option<Cost>; 2],
+}
+
+/// What a run costs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cost {
+    pub(crate) seconds: f64,
+    /// Of the rates, those for derivatives included.
+    pub(crate) evaluations: f64,
 }
 
 /// A run of phea.
@@ -65,6 +85,8 @@ pub(crate) struct Ours {
     pub(crate) error_of_all: f64,
     /// Largest error over what kicks as large as the tolerance grow to, over all rows after they separate.
     pub(crate) beyond: f64,
+    /// Its ringing where trajectories have separated; `None` where they do not.
+    pub(crate) roughness: Option<Roughness>,
     pub(crate) work: Work,
     pub(crate) seconds: f64,
 }
@@ -73,7 +95,7 @@ impl Ours {
     /// A run whose errors are not known yet.
     fn new(outcome: &Outcome, seconds: f64) -> Ours {
         let (status, work) = (outcome.status, outcome.work);
-        Ours { status, error: 0.0, error_of_all: 0.0, beyond: 0.0, work, seconds }
+        Ours { status, error: 0.0, error_of_all: 0.0, beyond: 0.0, roughness: None, work, seconds }
     }
 
     /// Whether it keeps what is asked for, and how it fails otherwise.
@@ -88,7 +110,7 @@ impl Ours {
             Ours { beyond, .. } if *beyond >= ERRORS => {
                 Some(format!("an error {beyond:.1} times the growth of one of {TOLERANCE:e}"))
             }
-            Ours { .. } => None,
+            Ours { roughness, .. } => roughness.and_then(|roughness| roughness.fault()),
         }
     }
 }
@@ -163,6 +185,7 @@ impl Compared {
         }
         self.rows = self.growth.partition_point(|growth| *growth <= SEPARATED);
         self.hunts = hunts(reference, self.peak);
+        self.rough = is_rough(roughest(reference, OUTPUT_STEP_S), self.peak);
     }
 
     /// Whether phea ended where there is no model any more: CVODE steps over the infinite pressure of a chamber that empties.
@@ -172,12 +195,40 @@ impl Compared {
             _ => None,
         });
         let emptied = self.emptied_s.zip(ended_s);
-        emptied.is_some_and(|(emptied_s, ended_s)| (ended_s - emptied_s).abs() <= OUTPUT_STEP_S)
+        emptied.is_some_and(|(emptied_s, ended_s)| (ended_s - emptied_s).abs() <= NEAR_S)
     }
 
     /// Whether kicks grow so much that not all rows can be compared.
     pub(crate) fn separates(&self) -> bool {
         self.rows < self.growth.len()
+    }
+
+    /// Takes phea's runs, the judged one first, and holds them against CVODE's two.
+    fn take(&mut self, runs: [(Ours, Vec<f64>); 2], reference: &[f64], kicked: &[f64]) {
+        let [judged, by_default] = &runs;
+        self.estimate = self.part_of_peak(&judged.1, &by_default.1, reference.len());
+        let [ours, by_default] = runs.map(|(ours, found)| Ours {
+            error: self.part_of_peak(reference, &found, self.rows),
+            error_of_all: self.part_of_peak(reference, &found, reference.len()),
+            beyond: self.beyond(reference, &found),
+            roughness: Roughness::compared(&found, [reference, kicked], self.rows, self.peak, OUTPUT_STEP_S),
+            ..ours
+        });
+        (self.ours, self.by_default) = (Some(ours), Some(by_default));
+    }
+
+    /// What CVODE costs at phea's error, by the methods of [`Compared::costs_of_cvode`].
+    fn costs(
+        &self,
+        reference: &[f64],
+        run: &dyn Fn(&Following) -> Option<(Vec<f64>, Cost)>,
+    ) -> [Option<Cost>; 2] {
+        [Method::StabilityLimit, Method::Adams].map(|method| {
+            cost_at(self.ours?.error, &|tolerance| {
+                let (found, cost) = run(&Following::new(tolerance, method))?;
+                Some((self.part_of_peak(reference, &found, self.rows), cost))
+            })
+        })
     }
 
     /// Largest error over the first rows as a part of the peak; infinite if some are missing.
@@ -201,7 +252,7 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, timed: bool) -> Co
     let controller = controller(&rig.control);
     let [value, rate] = [Input::Value, Input::Rate].map(|input| input(rig.ground.clone()));
     let reference = Input::Value(rig.reference.clone());
-    let course = |inputs| Course { duration_s: DURATION_S, output_step_s: OUTPUT_STEP_S, inputs };
+    let course = |inputs| Course { duration_s: rig.duration_s, output_step_s: OUTPUT_STEP_S, inputs };
     let mut compared = match rig.control.sample_time_s {
         None => {
             let closed = ClosedLoop::new(rig.machine, &controller, 0.0).expect("a proper controller");
@@ -266,16 +317,15 @@ fn judge<'a, E: System<f64> + Clone>(
     let mut start = rig.start.clone();
     start.resize(system.states(), 0.0);
     start.extend(&rig.waves);
-    let force = |states: &[Vec<f64>]| -> Vec<f64> {
-        let machine_states = Plant::<f64>::states(&rig.machine);
-        states.iter().map(|state| rig.machine.measurement(&state[..machine_states], &[0.0; 2])).collect()
-    };
-    let by_cvode = |following: &Following| {
+    let force = |states: &[Vec<f64>]| force_of(rig, states);
+    let counted = |following: &Following| {
         let patient = Patient { system, left: Cell::new(PATIENCE) };
         let mut sampler = sampler();
         let sampler = sampler.as_deref_mut().map(|sampler| -> &mut dyn Sampler { sampler });
-        follow(&patient, &start, course, sampler, following)
+        let states = follow(&patient, &start, course, sampler, following)?;
+        Ok::<_, CvodeError>((states, (PATIENCE - patient.left.get()) as f64))
     };
+    let by_cvode = |following: &Following| counted(following).map(|(states, _)| states);
     let by_phea = |tolerance: f64| {
         let settings = Settings { tolerance, maximum_steps: 2_000_000, ..Settings::default() };
         let begun = Instant::now();
@@ -288,12 +338,12 @@ fn judge<'a, E: System<f64> + Clone>(
     let mut compared = Compared::default();
     let exact = Following::new(EXACT, Method::BackwardDifferentiation);
     let kicked = Following { kicks: Some(KICKS), ..Following::new(EXACT, Method::Adams) };
-    let reference = match (by_cvode(&exact), by_cvode(&kicked)) {
+    let [reference, kicked] = match (by_cvode(&exact), by_cvode(&kicked)) {
         (Ok(states), Ok(kicked)) => {
-            let reference = force(&states);
-            compared.look_at(rig.reference.value(DURATION_S), &reference, &force(&kicked));
+            let (reference, kicked) = (force(&states), force(&kicked));
+            compared.look_at(rig.reference.value(rig.duration_s), &reference, &kicked);
             compared.emptied_s = emptied(rig, &states);
-            reference
+            [reference, kicked]
         }
         (Err(problem), _) | (_, Err(problem)) => {
             compared.without_reference = Some(problem.to_string());
@@ -301,23 +351,25 @@ fn judge<'a, E: System<f64> + Clone>(
             return (compared, Vec::new());
         }
     };
-    let [ours, by_default] = runs.map(|(ours, found)| Ours {
-        error: compared.part_of_peak(&reference, &found, compared.rows),
-        error_of_all: compared.part_of_peak(&reference, &found, reference.len()),
-        beyond: compared.beyond(&reference, &found),
-        ..ours
-    });
-    compared.ours = Some(ours);
-    compared.by_default = Some(by_default);
+    let looser = by_cvode(&Following::new(LOOSER, Method::BackwardDifferentiation));
+    let looser = looser
+        .map_or(f64::INFINITY, |states| compared.part_of_peak(&reference, &force(&states), reference.len()));
+    compared.well_posed = looser <= WELL_POSED;
+    compared.take(runs, &reference, &kicked);
     if timed {
-        compared.seconds_of_cvode = seconds_at(ours.error, &mut |tolerance| {
+        compared.costs_of_cvode = compared.costs(&reference, &|following| {
             let begun = Instant::now();
-            let found = force(&by_cvode(&Following::new(tolerance, Method::StabilityLimit)).ok()?);
-            let seconds = begun.elapsed().as_secs_f64();
-            Some((compared.part_of_peak(&reference, &found, compared.rows), seconds))
+            let (states, evaluations) = counted(following).ok()?;
+            Some((force(&states), Cost { seconds: begun.elapsed().as_secs_f64(), evaluations }))
         });
     }
     (compared, reference)
+}
+
+/// The force in these states.
+fn force_of(rig: &Rig, states: &[Vec<f64>]) -> Vec<f64> {
+    let machine_states = Plant::<f64>::states(&rig.machine);
+    states.iter().map(|state| rig.machine.measurement(&state[..machine_states], &[0.0; 2])).collect()
 }
 
 /// Time of the first row at which a chamber has no fluid.
@@ -344,17 +396,21 @@ fn hunts(force: &[f64], peak: f64) -> bool {
     crossings >= 4 && most - least >= 0.05 * peak
 }
 
-/// Seconds at an error, on a straight line between two runs in a plane of logarithms.
-fn seconds_at(error: f64, run: &mut dyn FnMut(f64) -> Option<(f64, f64)>) -> Option<f64> {
-    let mut before = None;
+/// What an error costs, on a straight line between two runs in a plane of logarithms.
+fn cost_at(error: f64, run: &dyn Fn(f64) -> Option<(f64, Cost)>) -> Option<Cost> {
+    let mut before: Option<(f64, Cost)> = None;
     for exponent in [-3.0, -4.0, -5.0, -6.0, -7.0, -8.0, -9.0] {
-        let (found, seconds) = run(10.0_f64.powf(exponent))?;
+        let (found, cost) = run(10.0_f64.powf(exponent))?;
         if found <= error {
-            let (worse, fewer): (f64, f64) = before?;
+            let (worse, fewer) = before?;
             let part = (worse / error).ln() / (worse / found).ln();
-            return Some(fewer * (seconds / fewer).powf(part));
+            let between = |fewer: f64, more: f64| fewer * (more / fewer).powf(part);
+            return Some(Cost {
+                seconds: between(fewer.seconds, cost.seconds),
+                evaluations: between(fewer.evaluations, cost.evaluations),
+            });
         }
-        before = Some((found, seconds));
+        before = Some((found, cost));
     }
     None
 }

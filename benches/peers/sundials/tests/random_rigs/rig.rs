@@ -18,8 +18,9 @@ use phea_hydraulics::stiffness::StiffnessModel;
 use crate::rich;
 
 /// Of every run, in s.
-pub(crate) const DURATION_S: f64 = 1.0;
-pub(crate) const OUTPUT_STEP_S: f64 = 1e-3;
+const DURATION_S: f64 = 1.0;
+/// Fine enough for what rings with 5000 rad/s.
+pub(crate) const OUTPUT_STEP_S: f64 = 0.25e-3;
 const REFERENCE_S: f64 = 0.1;
 const MOTION_S: f64 = 0.5;
 
@@ -45,6 +46,8 @@ pub(crate) struct Rig {
     pub(crate) control: Control,
     pub(crate) reference: Profile,
     pub(crate) ground: Profile,
+    /// Of its run, in s.
+    pub(crate) duration_s: f64,
     /// Parameters of `closed_loop.h` that describe the same, if it can.
     pub(crate) twin: Option<Vec<String>>,
     /// What it is made of, in words.
@@ -63,6 +66,13 @@ pub(crate) enum Refusal {
 pub(crate) struct Chance(u64);
 
 impl Chance {
+    /// That of the rig of this number, in the family of this seed.
+    pub(crate) fn of(number: u64, seed: u64) -> Chance {
+        let mut chance = Chance(number.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ seed);
+        random::share(&mut chance.0);
+        chance
+    }
+
     pub(crate) fn between(&mut self, least: f64, most: f64) -> f64 {
         least + (most - least) * random::share(&mut self.0)
     }
@@ -75,7 +85,7 @@ impl Chance {
         random::share(&mut self.0) < share
     }
 
-    fn edges(&mut self, typical: f64) -> Edges {
+    pub(crate) fn edges(&mut self, typical: f64) -> Edges {
         Edges::from_array([0; 4].map(|_| typical * self.between(0.7, 1.3)))
     }
 }
@@ -83,8 +93,7 @@ impl Chance {
 /// The rig of this number. Every fourth is one that `closed_loop.h` can describe too, every fourth a richer one, one in five of
 /// those with lines that have dynamics of their own: CVODE takes long for their many states.
 pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
-    let mut chance = Chance(number.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ 0x1405_7b7e_f767_814f);
-    random::share(&mut chance.0);
+    let mut chance = Chance::of(number, 0x1405_7b7e_f767_814f);
     let (like_benchmark, rich) = (number.is_multiple_of(4), number % 4 == 2);
     let mut components = components(&mut chance, like_benchmark);
     let mut options =
@@ -130,6 +139,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
         control,
         reference,
         ground: motion.expect("a positive duration").shifted(beginning.inputs[0]),
+        duration_s: DURATION_S,
         twin: like_benchmark
             .then(|| twin(&components, &control, &start, sign * size, distance, motion_of_twin)),
         features: features(&components, &options, &control),

@@ -1,0 +1,112 @@
+//! How much of a force rings: what tells whether a solver has calmed an oscillation, where trajectories have parted.
+//!
+//! ```text
+//! R_k^2 = mean over window k of (F - mean of F over the 10 ms around)^2          windows of 0.1 s
+//! ```
+//!
+//! The phase of a ringing that grew out of next to nothing says nothing, how strong it is does. CVODE has two runs, one of them moved
+//! by chance, and an onset may fall into the window before or after:
+//!
+//! ```text
+//! largest of R_(k-1), R_k, R_(k+1)  >=  0.7 smallest of CVODE's R_k
+//! R_k  <=  1.3 largest of CVODE's R_(k-1), R_k, R_(k+1)
+//! ```
+//!
+//! of each window with rows after those have separated; smaller ringing than a thousandth of the peak is none.
+
+/// Over which the slow part of a force is taken, s.
+const SLOW_S: f64 = 10e-3;
+const WINDOW_S: f64 = 0.1;
+/// Below the smallest and above the largest of CVODE's.
+const LEAST: f64 = 0.7;
+const MOST: f64 = 1.3;
+/// Part of the peak from which on a force counts as rough.
+const FLOOR: f64 = 1e-3;
+
+/// The ringing of one run held against that of CVODE's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Roughness {
+    /// Windows in which CVODE rings.
+    pub(crate) windows: usize,
+    /// Smallest part of CVODE's smallest; 1 where it rings in no window.
+    pub(crate) least: f64,
+    /// Largest part of CVODE's largest; 1 where neither rings.
+    pub(crate) most: f64,
+}
+
+impl Roughness {
+    /// Of a run's force, its rows so far apart, which separate after so many; `None` where they do not.
+    pub(crate) fn compared(
+        force: &[f64],
+        references: [&[f64]; 2],
+        rows: usize,
+        peak: f64,
+        step_s: f64,
+    ) -> Option<Roughness> {
+        let first = (rows < force.len()).then(|| rows / rows_of(WINDOW_S, step_s))?;
+        let ours = rough(force, step_s);
+        let theirs = references.map(|reference| rough(reference, step_s));
+        let floor = FLOOR * peak;
+        let mut found = Roughness { windows: 0, least: 1.0, most: 1.0 };
+        for (window, &rough) in ours.iter().enumerate().skip(first) {
+            let here = theirs.iter().filter_map(|one| one.get(window)).copied().fold(f64::INFINITY, f64::min);
+            if here >= floor {
+                found.windows += 1;
+                found.least = found.least.min(most_near(&ours, window) / here);
+            }
+            if rough >= floor {
+                let near = theirs.iter().map(|one| most_near(one, window)).fold(floor, f64::max);
+                found.most = found.most.max(rough / near);
+            }
+        }
+        Some(found)
+    }
+
+    /// How it differs from what CVODE finds, if it does.
+    pub(crate) fn fault(&self) -> Option<String> {
+        if self.least < LEAST {
+            Some(format!("rings with {:.2} of the least that CVODE finds: calmed", self.least))
+        } else if self.most > MOST {
+            Some(format!("rings with {:.2} of the most that CVODE finds", self.most))
+        } else {
+            None
+        }
+    }
+}
+
+/// Largest root mean square of what is fast in a force, over all its windows.
+pub(crate) fn roughest(force: &[f64], step_s: f64) -> f64 {
+    rough(force, step_s).into_iter().fold(0.0, f64::max)
+}
+
+/// Whether it is large enough to count.
+pub(crate) fn is_rough(roughness: f64, peak: f64) -> bool {
+    roughness >= FLOOR * peak
+}
+
+/// The largest of a window and its neighbours.
+fn most_near(rough: &[f64], window: usize) -> f64 {
+    let around = window.saturating_sub(1)..(window + 2).min(rough.len());
+    rough[around].iter().copied().fold(0.0, f64::max)
+}
+
+/// Root mean square of what is fast, window by window.
+fn rough(force: &[f64], step_s: f64) -> Vec<f64> {
+    let half = rows_of(SLOW_S, step_s) / 2;
+    let mut sums = vec![0.0];
+    for value in force {
+        sums.push(sums[sums.len() - 1] + value);
+    }
+    let fast: Vec<f64> = (0..force.len())
+        .map(|row| {
+            let (from, to) = (row.saturating_sub(half), (row + half + 1).min(force.len()));
+            force[row] - (sums[to] - sums[from]) / (to - from) as f64
+        })
+        .collect();
+    let mean_square = |rows: &[f64]| rows.iter().map(|value| value * value).sum::<f64>() / rows.len() as f64;
+    fast.chunks_exact(rows_of(WINDOW_S, step_s)).map(|rows| mean_square(rows).sqrt()).collect()
+}
+
+fn rows_of(time_s: f64, step_s: f64) -> usize {
+    (time_s / step_s).round() as usize
+}

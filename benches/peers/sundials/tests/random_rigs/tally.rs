@@ -1,0 +1,244 @@
+//! What was found over all rigs of a family.
+
+use std::collections::BTreeMap;
+
+use phea_dynamics::simulation::Status;
+
+use crate::compare::{Compared, JUDGED, Ours, TOLERANCE};
+use crate::{Described, LARGEST_ERROR, Outcome};
+
+/// Between the machine and `closed_loop.h`, part of the peak.
+const LARGEST_DIFFERENCE: f64 = 1e-4;
+
+#[derive(Default)]
+pub(crate) struct Tally {
+    run: usize,
+    refused: BTreeMap<String, usize>,
+    without_reference: usize,
+    /// Which phea ends where a chamber has emptied.
+    without_model: usize,
+    features: BTreeMap<&'static str, usize>,
+    hunting: usize,
+    rough: usize,
+    /// Parts of their rows that are compared.
+    separating: Vec<f64>,
+    errors: Vec<f64>,
+    /// Whose error exceeds the largest in any row, separated or not.
+    exceeding: usize,
+    beyond: Vec<f64>,
+    /// Rigs and windows whose ringing is compared, and parts of CVODE's.
+    ringing: [usize; 2],
+    least: Vec<f64>,
+    most: Vec<f64>,
+    steps: u64,
+    evaluations: u64,
+    /// Of the runs at the default tolerance: errors, and what would be failures.
+    default_errors: Vec<f64>,
+    default_faults: Vec<String>,
+    default_steps: u64,
+    checks: Checks,
+    twins: Vec<f64>,
+    /// CVODE's seconds and evaluations over phea's: with its stability limit, and by Adams' method.
+    ratios: [[Vec<f64>; 2]; 2],
+    failures: Vec<String>,
+}
+
+/// What a run at a tenth of the default tolerance says of the error at it.
+#[derive(Default)]
+struct Checks {
+    well_posed: usize,
+    /// Errors over all rows of well-posed rigs.
+    errors: Vec<f64>,
+    /// True error over what the check says, where either exceeds the largest: of well-posed rigs, and of the others.
+    factors: [Vec<f64>; 2],
+}
+
+impl Tally {
+    pub(crate) fn take(&mut self, number: u64, outcome: &Outcome, told: bool) {
+        self.run += 1;
+        match outcome {
+            Ok((described, compared)) => {
+                if told {
+                    tell(described, compared);
+                }
+                for feature in &described.features {
+                    *self.features.entry(feature).or_default() += 1;
+                }
+                self.judge(number, compared);
+            }
+            Err(refusal) => {
+                println!("rig {number}: refused: {refusal}");
+                let kind = refusal.split(' ').filter(|word| !word.contains(|c: char| c.is_ascii_digit()));
+                *self.refused.entry(kind.collect::<Vec<_>>().join(" ")).or_default() += 1;
+            }
+        }
+    }
+
+    pub(crate) fn passes(&self) -> bool {
+        self.failures.is_empty()
+    }
+
+    fn judge(&mut self, number: u64, compared: &Compared) {
+        let Some(ours) = compared.ours else { return };
+        if let Some(reason) = &compared.without_reference {
+            self.without_reference += 1;
+            println!("rig {number}: {reason}; phea: {:?}", ours.status);
+            return;
+        }
+        self.hunting += usize::from(compared.hunts);
+        self.rough += usize::from(compared.rough);
+        self.exceeding += usize::from(ours.error_of_all >= LARGEST_ERROR);
+        if compared.separates() {
+            self.separate(number, compared, &ours);
+        }
+        if compared.leaves_the_model() {
+            println!("rig {number}: {:?}, where a chamber has no fluid any more", ours.status);
+            self.without_model += 1;
+        } else {
+            self.failures.extend(ours.fault().map(|fault| format!("rig {number}: {fault}")));
+            self.take_default(number, compared);
+        }
+        if let Some(twin) = compared.twin {
+            self.twins.push(twin);
+            if twin >= LARGEST_DIFFERENCE {
+                self.failures.push(format!("rig {number}: {twin:.1e} of the peak from closed_loop.h"));
+            }
+        }
+        self.errors.push(ours.error);
+        self.steps += ours.work.steps + ours.work.rejected;
+        self.evaluations += ours.work.evaluations;
+        for (ratios, cost) in self.ratios.iter_mut().zip(compared.costs_of_cvode) {
+            let Some(cost) = cost else { continue };
+            let parts = [cost.seconds / ours.seconds, cost.evaluations / ours.work.evaluations as f64];
+            ratios.iter_mut().zip(parts).for_each(|(ratios, part)| ratios.push(part));
+        }
+    }
+
+    /// Takes what is told of a rig whose trajectories separate.
+    fn separate(&mut self, number: u64, compared: &Compared, ours: &Ours) {
+        let (rows, of) = (compared.rows, compared.growth.len());
+        self.separating.push(rows as f64 / of as f64);
+        self.beyond.push(ours.beyond);
+        let growth = compared.growth.last().copied().unwrap_or_default();
+        let mut ringing = "does not ring".to_string();
+        if let Some(roughness) = ours.roughness.filter(|roughness| roughness.windows > 0) {
+            self.ringing = [self.ringing[0] + 1, self.ringing[1] + roughness.windows];
+            self.least.push(roughness.least);
+            self.most.push(roughness.most);
+            ringing = format!(
+                "rings with {:.2} of the least, {:.2} of the most that CVODE finds, {} windows",
+                roughness.least, roughness.most, roughness.windows
+            );
+        }
+        println!(
+            "rig {number}: separates after {rows} of {of} rows, growth {growth:.1e}; error {:.1e} until then, {:.1e} in all, \
+             {:.1} times the growth of one tolerance; {ringing}",
+            ours.error, ours.error_of_all, ours.beyond
+        );
+    }
+
+    fn take_default(&mut self, number: u64, compared: &Compared) {
+        let Some(run) = compared.by_default else { return };
+        self.default_errors.push(run.error);
+        self.default_steps += run.work.steps + run.work.rejected;
+        if let Some(fault) = run.fault() {
+            let told = format!("rig {number}, at {TOLERANCE:e}: {fault}");
+            let list =
+                if run.status == Status::Completed { &mut self.default_faults } else { &mut self.failures };
+            list.push(told);
+        }
+        if run.status == Status::Completed {
+            self.checks.take(number, compared, &run);
+        }
+    }
+
+    pub(crate) fn print(&mut self) {
+        let refused: usize = self.refused.values().sum();
+        println!(
+            "{} rigs: {refused} refused {:?}, {} without reference, {} end where a chamber has emptied",
+            self.run, self.refused, self.without_reference, self.without_model
+        );
+        println!("of the others have: {:?}", self.features);
+        println!("hunting at the end: {}; ringing somewhere: {}", self.hunting, self.rough);
+        println!("separate before the end: {}", self.separating.len());
+        println!("ringing compared there: {} rigs, {} windows", self.ringing[0], self.ringing[1]);
+        println!("error above {LARGEST_ERROR:e} in any row: {}", self.exceeding);
+        let [[limited, of_limited], [adams, of_adams]] = &mut self.ratios;
+        for (name, values) in [
+            ("part of the rows before those separate", &mut self.separating),
+            ("error, part of the peak", &mut self.errors),
+            ("the same at the default tolerance", &mut self.default_errors),
+            ("error after separation over the growth of one tolerance", &mut self.beyond),
+            ("ringing over the least of CVODE's", &mut self.least),
+            ("ringing over the most of CVODE's", &mut self.most),
+            ("difference to closed_loop.h, part of the peak", &mut self.twins),
+            ("time of CVODE with stability limit over phea's at equal error", limited),
+            ("evaluations, likewise", of_limited),
+            ("time of CVODE by Adams' method over phea's at equal error", adams),
+            ("evaluations, likewise", of_adams),
+        ] {
+            spread(name, values);
+        }
+        self.checks.print();
+        println!("steps at {JUDGED:e}: {}, evaluations {}", self.steps, self.evaluations);
+        println!("steps at {TOLERANCE:e}: {}", self.default_steps);
+        for fault in &self.default_faults {
+            println!("{fault}");
+        }
+        for failure in &self.failures {
+            println!("FAILED {failure}");
+        }
+    }
+}
+
+impl Checks {
+    /// `run` is that at the default tolerance.
+    fn take(&mut self, number: u64, compared: &Compared, run: &Ours) {
+        let (error, estimate) = (run.error_of_all, compared.estimate);
+        if compared.well_posed {
+            self.well_posed += 1;
+            self.errors.push(error);
+        }
+        let larger = error >= LARGEST_ERROR;
+        if larger && compared.well_posed {
+            println!(
+                "rig {number}: well posed, errs by {error:.1e} at {TOLERANCE:e}; a check says {estimate:.1e}"
+            );
+        }
+        if larger || estimate >= LARGEST_ERROR {
+            let list = usize::from(!compared.well_posed);
+            self.factors[list].push(error / estimate);
+        }
+    }
+
+    fn print(&mut self) {
+        println!("well posed: {}", self.well_posed);
+        let beyond = self.errors.iter().filter(|error| **error >= LARGEST_ERROR).count();
+        println!("of those, error at {TOLERANCE:e} of {LARGEST_ERROR:e} or more in any row: {beyond}");
+        let [well, ill] = &mut self.factors;
+        spread("error of well-posed rigs at the default tolerance, all rows", &mut self.errors);
+        spread("where error or check exceed it: error over check, well posed", well);
+        spread("likewise, the others", ill);
+    }
+}
+
+fn spread(name: &str, values: &mut [f64]) {
+    values.sort_by(f64::total_cmp);
+    let at = |share: f64| values.get((share * values.len().saturating_sub(1) as f64) as usize);
+    let (Some(least), Some(tenth), Some(middle), Some(ninetieth), Some(most)) =
+        (at(0.0), at(0.1), at(0.5), at(0.9), at(1.0))
+    else {
+        return;
+    };
+    println!(
+        "{name}: least {least:.2e}, tenth {tenth:.2e}, median {middle:.2e}, ninetieth {ninetieth:.2e}, most {most:.2e} ({})",
+        values.len()
+    );
+}
+
+fn tell(described: &Described, compared: &Compared) {
+    println!("{:?}\n{:?}\npeak {} N", described.features, described.control, compared.peak);
+    if let Some(ours) = compared.ours {
+        println!("{ours:?}\n{:?}", compared.by_default);
+    }
+}
