@@ -177,6 +177,66 @@ fn an_interrupted_campaign_goes_on_to_the_same_bytes() {
     assert!(page.text.starts_with(&whole.text) && page.text.lines().count() == 34);
 }
 
+/// A table, and rows that waited for others when it was left.
+struct Pages {
+    table: Page,
+    ahead: String,
+}
+
+impl Ledger for Pages {
+    fn kept(&mut self) -> Result<String, String> {
+        self.table.kept()
+    }
+
+    fn cut(&mut self, bytes: usize) -> Result<(), String> {
+        self.table.cut(bytes)
+    }
+
+    fn append(&mut self, text: &str) -> Result<(), String> {
+        self.table.append(text)
+    }
+
+    fn ahead(&mut self) -> Result<String, String> {
+        Ok(self.ahead.clone())
+    }
+
+    fn keep_ahead(&mut self, text: &str) -> Result<(), String> {
+        self.ahead.push_str(text);
+        Ok(())
+    }
+
+    fn forget_ahead(&mut self) -> Result<(), String> {
+        self.ahead.clear();
+        Ok(())
+    }
+}
+
+/// Rows that waited for a slower run are not driven again; torn ones, others' and those that the table has are passed over.
+#[test]
+fn rows_that_waited_are_not_driven_again() {
+    let loaded = load(&SHORT);
+    let asked = request(30, Shard::default());
+    let mut whole = Page::default();
+    kept(&loaded, &asked, &mut whole).unwrap();
+    let lines: Vec<&str> = whole.text.split_inclusive('\n').collect();
+    // runs 0 to 3 in the table; 2 again, 6 to 8, half of 9, and 20 of another campaign ahead of it
+    let other = CampaignRequest { seed: 2, ..asked };
+    let mut strange = Page::default();
+    kept(&loaded, &other, &mut strange).unwrap();
+    let foreign = strange.text.split_inclusive('\n').nth(21).unwrap();
+    let half = &lines[10][..lines[10].len() / 2];
+    let ahead = [lines[3], lines[8], lines[7], lines[9], foreign, half].concat();
+    let mut pages = Pages { table: Page { text: lines[..5].concat() }, ahead };
+    let mut shares = Vec::new();
+    let mut watch = |progress: command::Progress| {
+        shares.push(progress.share);
+        true
+    };
+    command::campaign_watched(&source(), &loaded, &[], &asked, (&mut pages, None), &mut watch).unwrap();
+    assert_eq!(shares.first().copied(), Some(7.0 / 30.0));
+    assert!(pages.table.text == whole.text && pages.ahead.is_empty());
+}
+
 /// Stopped at once, it has no row that is not whole, and goes on.
 #[test]
 fn stopping_leaves_whole_rows() {
