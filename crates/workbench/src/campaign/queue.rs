@@ -24,7 +24,7 @@ use super::CampaignError;
 pub(super) const LANES: usize = 4;
 
 /// Machines that a thread makes before it forgets them: its lanes run empty at the end of so many runs.
-const MACHINES: usize = 256;
+pub(super) const MACHINES: usize = 256;
 
 /// What all threads share.
 pub(super) struct Shared<'p> {
@@ -33,6 +33,8 @@ pub(super) struct Shared<'p> {
     pub(super) stop: AtomicBool,
     /// Runs that are done.
     pub(super) done: AtomicU64,
+    /// How often rows were collected: all that threads know of time, and no result depends on it.
+    pub(super) rounds: AtomicU64,
     /// Whether the force at every look is asked for.
     forces: bool,
     supply: Mutex<Supply>,
@@ -80,7 +82,8 @@ impl<'p> Shared<'p> {
         forces: bool,
     ) -> Shared<'p> {
         let supply = Mutex::new(Supply { runs, known, idle: threads });
-        Shared { plan, stop: AtomicBool::new(false), done: AtomicU64::new(0), forces, supply }
+        let (done, rounds) = (AtomicU64::new(0), AtomicU64::new(0));
+        Shared { plan, stop: AtomicBool::new(false), done, rounds, forces, supply }
     }
 
     /// Whether a thread finds work.
@@ -109,14 +112,14 @@ pub(super) struct Finished {
 /// Takes each run when it is done.
 pub(super) type Give<'g> = &'g mut dyn FnMut(Finished);
 
-/// Drives runs one by one, until there are none or a thread has made as many machines as it keeps. It is what lanes are held to.
+/// Drives runs one by one, until there are none or so many were. It is what lanes are held to.
 ///
 /// # Errors
 /// As [`in_lanes`].
-pub(super) fn one_by_one(shared: &Shared<'_>, give: Give<'_>) -> Result<(), CampaignError> {
+pub(super) fn one_by_one(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Result<(), CampaignError> {
     let bench = &shared.plan.bench;
     let settings = &bench.settings;
-    driven(shared, give, |batch| match &bench.control {
+    driven(shared, (most, give), |batch| match &bench.control {
         Control::Continuous(closed) => {
             let machine: fn(&mut ClosedLoop<Sensed<Machine>>) -> &mut Machine = in_loop;
             drive::<f64, _, _>(&mut closed.as_ref().clone(), &mut Lanewise { batch, machine }, settings)
@@ -132,16 +135,20 @@ pub(super) fn one_by_one(shared: &Shared<'_>, give: Give<'_>) -> Result<(), Camp
     })
 }
 
-/// Drives runs in lanes; those that were stopped are not given. Under a sampled controller they are driven one by one: from sample
-/// to sample a machine goes by its own matrices, and where one has to leave them its neighbours wait. Lanes have the same bits
-/// there, and take as long.
+/// Drives so many runs at most in lanes; those that were stopped are not given. Under a sampled controller they are driven one by
+/// one: from sample to sample a machine goes by its own matrices, and where one has to leave them its neighbours wait. Lanes have
+/// the same bits there, and take as long.
 ///
 /// # Errors
 /// A start or course that does not fit the machine.
-pub(super) fn in_lanes<const L: usize>(shared: &Shared<'_>, give: Give<'_>) -> Result<(), CampaignError> {
+pub(super) fn in_lanes<const L: usize>(
+    shared: &Shared<'_>,
+    most: usize,
+    give: Give<'_>,
+) -> Result<(), CampaignError> {
     let plan = shared.plan;
     if !matches!(plan.bench.control, Control::Continuous(_)) {
-        return one_by_one(shared, give);
+        return one_by_one(shared, most, give);
     }
     let settings = &plan.bench.settings;
     let machine = plan.bench.machine.convert(&mut |value| Lanes([value; L]));
@@ -152,7 +159,7 @@ pub(super) fn in_lanes<const L: usize>(shared: &Shared<'_>, give: Give<'_>) -> R
     let gain = plan.bench.feed_forward;
     let mut closed = ClosedLoop::new(sensed, &control, gain).map_err(SimulateError::from)?;
     let machine: fn(&mut ClosedLoop<Sensed<Machine<Lanes<L>>>>) -> &mut Machine<Lanes<L>> = in_loop;
-    driven(shared, give, |batch| drive(&mut closed, &mut Lanewise { batch, machine }, settings))
+    driven(shared, (most, give), |batch| drive(&mut closed, &mut Lanewise { batch, machine }, settings))
 }
 
 fn in_loop<S>(system: &mut ClosedLoop<Sensed<Machine<S>>>) -> &mut Machine<S> {
@@ -166,10 +173,10 @@ fn in_hold(system: &mut HeldPlant<Sensed<Machine>>) -> &mut Machine {
 /// Lets runs be driven, each made when its turn comes.
 fn driven(
     shared: &Shared<'_>,
-    give: Give<'_>,
+    (most, give): (usize, Give<'_>),
     drive: impl for<'a> FnOnce(&mut Batch<'a>) -> Result<(), SimulationError>,
 ) -> Result<(), CampaignError> {
-    let made: Vec<OnceCell<Prepared>> = (0..MACHINES).map(|_| OnceCell::new()).collect();
+    let made: Vec<OnceCell<Prepared>> = (0..most).map(|_| OnceCell::new()).collect();
     let mut batch = Batch { shared, made: &made, next: 0, in_lanes: Vec::new(), works: false, give };
     let outcome = drive(&mut batch);
     if batch.works {

@@ -7,13 +7,16 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use super::plan::Plan;
-use super::queue::{Finished, LANES, Shared, in_lanes, one_by_one};
+use super::queue::{Finished, LANES, MACHINES, Shared, in_lanes, one_by_one};
 use super::{CampaignError, Row};
 
-/// How long rows are collected before they are told, and whoever watches is asked again.
-const PATIENCE: Duration = Duration::from_millis(20);
-/// Times that rows are collected until one that waits for those before it is told: about a second.
+/// How long rows are collected before they are told, and whoever watches is asked again: a round.
+const ROUND: Duration = Duration::from_millis(20);
+/// Rounds until a row that waits for those before it is told: about a second.
 const LATE: u32 = 50;
+/// Rounds of a run beyond which it is driven alone: in lanes four take little more than twice as long as one, but nothing of
+/// them is there before, and some four seconds of work may be lost at any time.
+const LONG: u64 = 85;
 
 /// How a campaign is computed; its rows do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,19 +82,25 @@ pub(super) fn run(plan: &Plan, asked: Asked, effort: Effort, tell: Tell<'_>) -> 
 
 type Message = Result<Finished, CampaignError>;
 
-/// One thread, as long as there are runs.
+/// One thread, as long as there are runs. It drives one alone, and where that was not long as many in lanes as it keeps machines;
+/// then one alone again.
 fn work(shared: &Shared<'_>, effort: Effort, sender: &mpsc::Sender<Message>) {
     // where nobody listens any more, everything is stopped too
     let mut give = |finished| drop(sender.send(Ok(finished)));
+    let mut in_lanes_next = false;
     while shared.has_more() {
-        let outcome = match effort.lanes {
-            true => in_lanes::<LANES>(shared, &mut give),
-            false => one_by_one(shared, &mut give),
+        let begun = shared.rounds.load(Ordering::Relaxed);
+        let outcome = match (effort.lanes, in_lanes_next) {
+            (false, _) => one_by_one(shared, MACHINES, &mut give),
+            (true, false) => one_by_one(shared, 1, &mut give),
+            (true, true) => in_lanes::<LANES>(shared, MACHINES, &mut give),
         };
         if let Err(error) = outcome {
             drop(sender.send(Err(error)));
             return;
         }
+        let took = shared.rounds.load(Ordering::Relaxed).saturating_sub(begun);
+        in_lanes_next = !in_lanes_next && took <= LONG;
     }
 }
 
@@ -120,6 +129,8 @@ fn in_order(
         if !tell(News::Done(shared.done.load(Ordering::Relaxed)))? {
             shared.stop.store(true, Ordering::Relaxed);
         }
+        sleep(ROUND);
+        shared.rounds.fetch_add(1, Ordering::Relaxed);
         let (news, over) = collected(receiver)?;
         waiting.values_mut().for_each(|one| one.rounds = one.rounds.saturating_add(1));
         let arrived =
@@ -151,13 +162,9 @@ fn in_order(
     }
 }
 
-/// What comes within a moment, and whether no more will come.
+/// What has come, and whether no more will come.
 fn collected(receiver: &mpsc::Receiver<Message>) -> Result<(Vec<Finished>, bool), CampaignError> {
-    let mut news = match receiver.recv_timeout(PATIENCE) {
-        Ok(message) => vec![message?],
-        Err(error) => return Ok((vec![], error == mpsc::RecvTimeoutError::Disconnected)),
-    };
-    sleep(PATIENCE);
+    let mut news = Vec::new();
     loop {
         match receiver.try_recv() {
             Ok(message) => news.push(message?),
