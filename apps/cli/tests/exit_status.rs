@@ -101,25 +101,16 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["chek", "hose.toml"], 2),
 ];
 
+/// Each outcome is run once, as programs ask for it: what standard error says and the status are the same for people.
 #[test]
-fn every_outcome_has_its_exit_status() {
+fn every_outcome_has_its_exit_status_and_one_json_object() {
     let folder = folder("exit_status");
     for (arguments, expected) in OUTCOMES {
-        let output = phea(&folder, arguments);
+        let output = phea(&folder, &[arguments, ["--json"].as_slice()].concat());
         let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(*expected), "{arguments:?}: {complaint}");
-        assert_eq!(output.stdout.is_empty(), *expected >= 2, "{arguments:?}");
         assert_eq!(complaint.contains("error: "), *expected >= 2, "{arguments:?}: {complaint}");
         assert!(!complaint.contains("panicked"), "{arguments:?}: {complaint}");
-    }
-}
-
-#[test]
-fn json_is_one_object_and_nothing_else() {
-    let folder = folder("json");
-    for (arguments, expected) in OUTCOMES {
-        let output = phea(&folder, &[arguments, ["--json"].as_slice()].concat());
-        assert_eq!(output.status.code(), Some(*expected), "{arguments:?}");
         let object: serde_json::Value =
             serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}"));
         for key in ["schema", "version", "command", "project_sha256"] {
@@ -127,6 +118,28 @@ fn json_is_one_object_and_nothing_else() {
         }
         let refused = object.get("errors").and_then(serde_json::Value::as_array);
         assert_eq!(refused.is_some_and(|errors| !errors.is_empty()), *expected >= 2, "{arguments:?}");
+    }
+}
+
+/// People find a refusal on standard error alone, and an answer on standard output.
+#[test]
+fn people_are_told_of_a_refusal_on_standard_error() {
+    let folder = folder("people");
+    let outcomes: [(&[&str], i32); 7] = [
+        (&["check", "plant.toml"], 0),
+        (&["size", "hose.toml", "--length", "200 cm"], 1),
+        (&["verify", "plant.toml"], 2),
+        (&["check", "missing.toml"], 2),
+        (&["check", "binary.toml"], 2),
+        (&["check", "hose.toml", "--out", "empty.toml"], 3),
+        (&["chek", "hose.toml"], 2),
+    ];
+    for (arguments, expected) in outcomes {
+        let output = phea(&folder, arguments);
+        let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(expected), "{arguments:?}: {complaint}");
+        assert_eq!(output.stdout.is_empty(), expected >= 2, "{arguments:?}");
+        assert_eq!(complaint.contains("error: "), expected >= 2, "{arguments:?}: {complaint}");
     }
 }
 
