@@ -2,6 +2,7 @@
 
 mod ceiling;
 mod combined;
+mod covering;
 mod fill;
 mod function;
 mod hull;
@@ -9,6 +10,7 @@ mod inequality;
 mod interval;
 mod leaf;
 mod phases;
+mod power_of_two;
 mod quadratic;
 mod rule;
 mod tree;

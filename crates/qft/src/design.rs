@@ -5,6 +5,7 @@ mod binding;
 mod candidates;
 mod counterexample;
 mod diagnosis;
+mod feedback_sign;
 mod problem;
 pub mod quantisation;
 mod result;

@@ -14,7 +14,7 @@ const PLANTS_MAXIMUM: usize = 100_000;
 /// Plants of one family within one loop that were sampled before, by the bits of their parameter values: sampling costs more than a
 /// thousand responses. A continuous loop takes its plants as they are and keeps none.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SampledPlants(RefCell<BTreeMap<Vec<u64>, Result<Member, LinearError>>>);
+pub struct SampledPlants(RefCell<BTreeMap<Vec<u64>, Result<Member, LinearError>>>);
 
 impl SampledPlants {
     /// The plant with these parameter values within the loop.
@@ -36,8 +36,9 @@ impl SampledPlants {
         kept.entry(key).or_insert_with(build).clone()
     }
 
-    #[cfg(test)]
-    pub(crate) fn count(&self) -> usize {
+    /// How many are kept, for the tests of this package.
+    #[doc(hidden)]
+    pub fn count(&self) -> usize {
         self.0.borrow().len()
     }
 }

@@ -1,11 +1,13 @@
 //! The method from outside: closed forms, properties of random problems, and published designs.
 #![cfg(test)]
 
+mod audit_plants;
 mod bound;
 mod closed_loop;
 mod design;
 mod design_diagnosis;
 mod family;
+mod kernels;
 mod manual_shaping;
 mod prefilter;
 mod quantisation;
@@ -13,6 +15,7 @@ mod rig;
 mod sample_stability;
 mod search;
 mod shaping;
+mod specification_kinds;
 mod specification_margins;
 mod specification_spread;
 mod specification_time_domain;

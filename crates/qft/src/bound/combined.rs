@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
+use super::covering::covering;
 use super::function::BoundFunction;
 use super::interval::GainIntervals;
 use super::phases::{PhaseGrid, Sample, sampled};
@@ -226,25 +227,6 @@ impl FrequencyBounds {
     }
 }
 
-/// Specifications that together forbid every gain, each of them needed: gains are climbed with whichever reaches farthest.
-fn covering(parts: Vec<(usize, &GainIntervals)>) -> Vec<usize> {
-    let mut reached = 0.0;
-    let mut chosen = Vec::new();
-    while reached < f64::INFINITY {
-        let farthest = parts
-            .iter()
-            .flat_map(|(index, part)| part.intervals().iter().map(move |interval| (*index, *interval)))
-            .filter(|(_, [low, high])| *low <= reached && reached < *high)
-            .max_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
-        let Some((index, [_, high])) = farthest else { break };
-        if !chosen.contains(&index) {
-            chosen.push(index);
-        }
-        reached = high;
-    }
-    chosen
-}
-
 impl CombinedBound {
     /// The specifications that forbid a gain at a phase of the bound, given by its place there.
     pub fn forbidding(&self, place: usize, gain: f64) -> Vec<usize> {
@@ -266,22 +248,4 @@ fn distance_db(from: f64, to: f64) -> f64 {
 fn slack_db(union: &GainIntervals, gain: f64) -> f64 {
     let ends = union.intervals().iter().flatten().filter(|end| **end > 0.0);
     ends.map(|end| distance_db(gain, *end).abs()).fold(f64::INFINITY, f64::min)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn where_no_two_collide_the_fewest_that_do_are_named() {
-        let part = |intervals: &[[f64; 2]]| GainIntervals::union_of(intervals.to_vec());
-        let parts = [
-            part(&[[0.5, 1.0]]),
-            part(&[[3.0, f64::INFINITY]]),
-            part(&[[0.0, 0.7], [1.5, 2.0]]),
-            part(&[[0.6, 4.0]]),
-            part(&[[0.0, 0.5]]),
-        ];
-        assert_eq!(covering(parts.iter().enumerate().collect()), [2, 3, 1]);
-    }
 }

@@ -7,6 +7,7 @@ use super::BoundError;
 use super::ceiling::Candidate;
 use super::fill::Edge;
 use super::inequality::{Form, Plant};
+use super::power_of_two::power_of_two;
 use crate::specification::{Limit, Requirement};
 use crate::template::{Template, TemplatePoint};
 
@@ -143,23 +144,4 @@ fn modulus(value: Complex64) -> f64 {
 fn scaled(limit: f64, weight: f64) -> (f64, f64) {
     let scale = power_of_two(limit.max(weight));
     if limit == 0.0 && weight == 0.0 { (1.0, 0.0) } else { (limit / scale, weight / scale) }
-}
-
-/// The greatest power of two that is not above a positive number, by which dividing is exact.
-fn power_of_two(value: f64) -> f64 {
-    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    f64::from_bits(value.max(f64::MIN_POSITIVE).to_bits() & EXPONENT)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::power_of_two;
-
-    #[test]
-    fn powers_of_two_lie_at_or_below() {
-        for (value, power) in [(1.0, 1.0), (1.99, 1.0), (2.0, 2.0), (0.3, 0.25), (1e3, 512.0)] {
-            assert_eq!(power_of_two(value), power);
-        }
-        assert_eq!(power_of_two(0.0), f64::MIN_POSITIVE);
-    }
 }

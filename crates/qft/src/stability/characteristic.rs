@@ -3,8 +3,7 @@ use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunctio
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
-use super::Irresolution;
-use crate::closed_loop::Compensation;
+use super::{Compensation, Irresolution};
 
 /// What leads from the output back to the plant, as polynomials: G H of a continuous loop, G of a sampled one (there the
 /// sensor is sampled together with the plant).

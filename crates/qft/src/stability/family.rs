@@ -159,7 +159,8 @@ impl StabilityAudit {
     }
 
     /// Hands over the plants that were judged, as they are within a sampled loop.
-    pub(crate) fn take_sampled(&mut self) -> SampledPlants {
+    #[doc(hidden)]
+    pub fn take_sampled(&mut self) -> SampledPlants {
         std::mem::take(&mut self.sampled)
     }
 

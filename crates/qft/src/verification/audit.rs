@@ -164,7 +164,8 @@ impl SpecificationAudit {
     }
 
     /// Takes over plants of the same family within the same loop, whatever its controller, so that none is sampled twice.
-    pub(crate) fn take_over(&mut self, sampled: SampledPlants) {
+    #[doc(hidden)]
+    pub fn take_over(&mut self, sampled: SampledPlants) {
         self.evaluator.sampled = sampled;
     }
 

@@ -16,25 +16,25 @@ const LARGEST: f64 = 1e6;
 ///
 /// Source: Powell (1978); Nocedal and Wright (2006), procedure 18.2.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::loop_shaping) struct Curvature {
+pub(crate) struct Curvature {
     rows: Vec<Vec<f64>>,
 }
 
 impl Curvature {
     /// The same curvature |d.y|/(d.d) in every direction; `None` where step or change say nothing.
-    pub(in crate::loop_shaping) fn first(step: &[f64], change: &[f64]) -> Option<Curvature> {
+    pub(crate) fn first(step: &[f64], change: &[f64]) -> Option<Curvature> {
         let size = dot(step, change).abs() / dot(step, step);
         let row = |at: usize| (0..step.len()).map(|column| if column == at { size } else { 0.0 }).collect();
         (size.is_finite() && size > 0.0).then(|| Curvature { rows: (0..step.len()).map(row).collect() })
     }
 
     /// Entry of a row and a column.
-    pub(in crate::loop_shaping) fn at(&self, row: usize, column: usize) -> f64 {
+    pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         self.rows[row][column]
     }
 
     /// B d
-    pub(in crate::loop_shaping) fn times(&self, step: &[f64]) -> Vec<f64> {
+    pub(crate) fn times(&self, step: &[f64]) -> Vec<f64> {
         self.rows.iter().map(|row| dot(row, step)).collect()
     }
 

@@ -1,0 +1,46 @@
+//! Kernels that cannot be reached from outside, compiled here once more for the unit tests beside their code: the library
+//! itself is not built for tests.
+#![allow(dead_code, unreachable_pub, reason = "a kernel's callers stay in the library")]
+
+mod descent;
+
+#[path = "../src/bound/ceiling.rs"]
+mod ceiling;
+#[path = "../src/stability/characteristic.rs"]
+mod characteristic;
+#[path = "../src/bound/covering.rs"]
+mod covering;
+#[path = "../src/manual_shaping/edit.rs"]
+mod edit;
+#[path = "../src/stability/encirclement.rs"]
+mod encirclement;
+#[path = "../src/design/feedback_sign.rs"]
+mod feedback_sign;
+#[path = "../src/bound/fill.rs"]
+mod fill;
+#[path = "../src/bound/inequality.rs"]
+mod inequality;
+#[path = "../src/bound/interval.rs"]
+mod interval;
+#[path = "../src/specification/limit.rs"]
+mod limit;
+#[path = "../src/specification/minimum.rs"]
+mod minimum_of_a_limit;
+#[path = "../src/verification/minimum.rs"]
+mod minimum_of_a_margin;
+#[path = "../src/design/diagnosis/plane.rs"]
+mod plane;
+#[path = "../src/bound/power_of_two.rs"]
+mod power_of_two;
+#[path = "../src/bound/quadratic.rs"]
+mod quadratic;
+#[path = "../src/stability/search.rs"]
+mod search_of_a_box;
+#[path = "../src/loop_shaping/start/spread.rs"]
+mod spread;
+#[path = "../src/loop_shaping/subproblem.rs"]
+mod subproblem;
+
+use phea_qft::closed_loop::Compensation;
+use phea_qft::loop_shaping as search;
+use phea_qft::stability::Irresolution;
