@@ -76,7 +76,8 @@ fn every_example_rests_at_its_reference() {
 fn asymmetric(text: &str) -> String {
     let Some((before, after)) = text.split_once("piston_area = \"1.583e-3 m2\"") else { panic!("{text}") };
     let after = after.split_once("stroke").unwrap().1;
-    let unequal = "piston_diameter = \"50 mm\"\nrod_diameters = [\"0 mm\", \"28 mm\"]\ninternal_leakage = 1e-12";
+    let unequal =
+        "piston_diameter = \"50 mm\"\nrod_diameters = [\"0 mm\", \"28 mm\"]\ninternal_leakage = 1e-12";
     format!("{before}{unequal}\nstroke{after}")
 }
 
@@ -87,66 +88,59 @@ fn leakage_across_an_asymmetric_piston_is_held() {
     check_still(&asymmetric(&still(EXAMPLES[2], "")), &[], 0.0);
 }
 
+const LINES: [&[&str]; 6] = [
+    &[],
+    &["line.model=creeping", "line.relaxation_time=50 ms"],
+    &["line.model=segments", "line.segments=4"],
+    &["line.model=segments", "line.segments=3", "line.friction=steady"],
+    &["line.model=transmission_line"],
+    &["line.model=two_wave"],
+];
+const SUPPLIES: [&[&str]; 3] = [
+    &[],
+    &["supply.model=pump_limited", "supply.volume=0.8 L"],
+    &[
+        "supply.model=pump_limited",
+        "supply.volume=0.8 L",
+        "supply.accumulator={ gas_volume = \"1 L\", precharge_pressure = \"50 bar\" }",
+    ],
+];
+const LOADS: [&[&str]; 3] = [
+    &[],
+    &["load.model=spring_mass_damper", "load.mass=20 kg", "load.stiffness=2 MN/m", "load.damping=500 N.s/m"],
+    &[
+        "load.model=wall",
+        "load.mass=20 kg",
+        "load.stiffness=5 MN/m",
+        "load.damping=2000 N.s/m",
+        "load.gap=2 mm",
+    ],
+];
+const CONTROLLERS: [&[&str]; 4] = [
+    &[],
+    &["controller.sample_time=1 ms", "controller.delay=0.5 ms"],
+    &["controller.anti_windup=back_calculation", "sensor={ numerator = \"600\", denominator = \"s + 600\" }"],
+    &["controller.delay=0.2 ms", "controller.load_velocity_feed_forward={}"],
+];
+const OTHERS: [&[&str]; 4] = [
+    &[],
+    &["cylinder.internal_leakage=2e-13", "valve.null_bias=30 mV"],
+    &["valve.hysteresis=0.1 V", "valve.threshold=20 mV"],
+    &["cylinder.end_stops={ stiffness = \"100 MN/m\", relative_damping = \"0.5 s/m\" }"],
+];
+
 /// Lines, supplies, loads, sensors, controllers and friction of every kind, combined in a fixed pattern.
 #[test]
 fn machines_of_all_components_rest() {
-    let lines: [&[&str]; 6] = [
-        &[],
-        &["line.model=creeping", "line.relaxation_time=50 ms"],
-        &["line.model=segments", "line.segments=4"],
-        &["line.model=segments", "line.segments=3", "line.friction=steady"],
-        &["line.model=transmission_line"],
-        &["line.model=two_wave"],
-    ];
-    let supplies: [&[&str]; 3] = [
-        &[],
-        &["supply.model=pump_limited", "supply.volume=0.8 L"],
-        &[
-            "supply.model=pump_limited",
-            "supply.volume=0.8 L",
-            "supply.accumulator={ gas_volume = \"1 L\", precharge_pressure = \"50 bar\" }",
-        ],
-    ];
-    let loads: [&[&str]; 3] = [
-        &[],
-        &[
-            "load.model=spring_mass_damper",
-            "load.mass=20 kg",
-            "load.stiffness=2 MN/m",
-            "load.damping=500 N.s/m",
-        ],
-        &[
-            "load.model=wall",
-            "load.mass=20 kg",
-            "load.stiffness=5 MN/m",
-            "load.damping=2000 N.s/m",
-            "load.gap=2 mm",
-        ],
-    ];
-    let controllers: [&[&str]; 4] = [
-        &[],
-        &["controller.sample_time=1 ms", "controller.delay=0.5 ms"],
-        &[
-            "controller.anti_windup=back_calculation",
-            "sensor={ numerator = \"600\", denominator = \"s + 600\" }",
-        ],
-        &["controller.delay=0.2 ms", "controller.load_velocity_feed_forward={}"],
-    ];
-    let others: [&[&str]; 4] = [
-        &[],
-        &["cylinder.internal_leakage=2e-13", "valve.null_bias=30 mV"],
-        &["valve.hysteresis=0.1 V", "valve.threshold=20 mV"],
-        &["cylinder.end_stops={ stiffness = \"100 MN/m\", relative_damping = \"0.5 s/m\" }"],
-    ];
     for number in 0..36 {
         let chosen = [
             // some of these loops are unstable: what rounding leaves has no time to grow
             ["controller.numerator=0.0002*s + 0.002", "scenario.0.duration=0.2 s"].as_slice(),
-            lines[number % 6],
-            supplies[number % 3],
-            loads[(number / 2) % 3],
-            controllers[(number / 3) % 4],
-            others[(number / 5) % 4],
+            LINES[number % 6],
+            SUPPLIES[number % 3],
+            LOADS[(number / 2) % 3],
+            CONTROLLERS[(number / 3) % 4],
+            OTHERS[(number / 5) % 4],
         ];
         let force_n = if number % 2 == 0 { 0.0 } else { 1500.0 };
         let reference = format!("reference = [{{ at = 0, force = {force_n} }}]");

@@ -66,6 +66,9 @@ pub(super) fn run(plan: &Plan, asked: Asked, effort: Effort, tell: Tell<'_>) -> 
     let threads = effort.threads.max(1);
     let Asked { runs, known, forces } = asked;
     let first = runs.start;
+    if !tell(News::Done(0))? {
+        return Ok(());
+    }
     let shared = Shared::new(plan, (runs, known.keys().copied().collect()), threads, forces);
     let (sender, receiver) = mpsc::channel();
     std::thread::scope(|scope| {

@@ -1,0 +1,200 @@
+//! Tables of campaigns that were interrupted, cut, damaged, or are another campaign's.
+
+use super::*;
+
+#[test]
+fn parts_in_a_row_are_the_whole() {
+    let loaded = load(&SHORT);
+    let mut whole = Page::default();
+    kept(&loaded, &request(30, Shard::default()), &mut whole).unwrap();
+    assert_eq!(whole.text.lines().count(), 31);
+    let parts = ["1/3", "2/3", "3/3"].map(|text| {
+        let mut page = Page::default();
+        kept(&loaded, &request(30, Shard::read(text).unwrap()), &mut page).unwrap();
+        page.text
+    });
+    assert_eq!(parts.concat(), whole.text);
+}
+
+#[test]
+fn an_interrupted_campaign_goes_on_to_the_same_bytes() {
+    let loaded = load(&SHORT);
+    let asked = request(30, Shard::default());
+    let mut whole = Page::default();
+    let answer = kept(&loaded, &asked, &mut whole).unwrap();
+    // torn anywhere: within the header, between two rows, within a row
+    let bytes = whole.text.len();
+    for torn in [0, 100, whole.text.find('\n').unwrap() + 1, bytes / 2, bytes - 1, bytes] {
+        let mut page = Page { text: whole.text[..torn].to_string() };
+        let again = kept(&loaded, &asked, &mut page).unwrap();
+        assert!(page.text == whole.text, "torn at {torn} of {bytes}");
+        assert_eq!(again, answer);
+    }
+    // more of the same
+    let mut page = Page { text: whole.text.clone() };
+    kept(&loaded, &request(33, Shard::default()), &mut page).unwrap();
+    assert!(page.text.starts_with(&whole.text) && page.text.lines().count() == 34);
+}
+
+/// A table, and rows that waited for others when it was left.
+struct Pages {
+    table: Page,
+    ahead: String,
+}
+
+impl Ledger for Pages {
+    fn kept(&mut self) -> Result<String, String> {
+        self.table.kept()
+    }
+
+    fn cut(&mut self, bytes: usize) -> Result<(), String> {
+        self.table.cut(bytes)
+    }
+
+    fn append(&mut self, text: &str) -> Result<(), String> {
+        self.table.append(text)
+    }
+
+    fn ahead(&mut self) -> Result<String, String> {
+        Ok(self.ahead.clone())
+    }
+
+    fn keep_ahead(&mut self, text: &str) -> Result<(), String> {
+        self.ahead.push_str(text);
+        Ok(())
+    }
+
+    fn forget_ahead(&mut self) -> Result<(), String> {
+        self.ahead.clear();
+        Ok(())
+    }
+}
+
+/// Rows that waited for a slower run are not driven again; torn ones, others' and those that the table has are passed over.
+#[test]
+fn rows_that_waited_are_not_driven_again() {
+    let loaded = load(&SHORT);
+    let asked = request(30, Shard::default());
+    let mut whole = Page::default();
+    kept(&loaded, &asked, &mut whole).unwrap();
+    let lines: Vec<&str> = whole.text.split_inclusive('\n').collect();
+    // runs 0 to 3 in the table; 2 again, 6 to 8, half of 9, and 20 of another campaign ahead of it
+    let other = CampaignRequest { seed: 2, ..asked };
+    let mut strange = Page::default();
+    kept(&loaded, &other, &mut strange).unwrap();
+    let foreign = strange.text.split_inclusive('\n').nth(21).unwrap();
+    let half = &lines[10][..lines[10].len() / 2];
+    let ahead = [lines[3], lines[8], lines[7], lines[9], foreign, half].concat();
+    let mut pages = Pages { table: Page { text: lines[..5].concat() }, ahead };
+    let mut shares = Vec::new();
+    let mut watch = |progress: command::Progress| {
+        shares.push(progress.share);
+        true
+    };
+    command::campaign_watched(&source(), &loaded, &[], &asked, (&mut pages, None), &mut watch).unwrap();
+    assert_eq!(shares.first().copied(), Some(7.0 / 30.0));
+    assert!(pages.table.text == whole.text && pages.ahead.is_empty());
+}
+
+/// Stopped at once, it has no row that is not whole, and goes on.
+#[test]
+fn stopping_leaves_whole_rows() {
+    let loaded = load(&SHORT);
+    let asked = request(600, Shard::default());
+    let (mut page, mut asks) = (Page::default(), 0);
+    let answer = command::campaign_watched(&source(), &loaded, &[], &asked, (&mut page, None), &mut |_| {
+        asks += 1;
+        asks < 3
+    })
+    .unwrap();
+    let rows = page.text.lines().count() - 1;
+    assert!(!answer.affirmative && rows < 600 && page.text.ends_with('\n'));
+    let told: Value = serde_json::from_str(&answer.json).unwrap();
+    assert_eq!((&told["complete"], &told["runs"]["rows"]), (&Value::from(false), &Value::from(rows)));
+    kept(&loaded, &asked, &mut page).unwrap();
+    let mut whole = Page::default();
+    kept(&loaded, &asked, &mut whole).unwrap();
+    assert!(page.text == whole.text && whole.text.lines().count() == 601);
+}
+
+#[test]
+fn a_table_of_another_campaign_is_left_alone() {
+    let loaded = load(&SHORT);
+    let asked = request(4, Shard::default());
+    let mut page = Page::default();
+    kept(&loaded, &asked, &mut page).unwrap();
+    let before = page.text.clone();
+    let other = CampaignRequest { seed: 2, ..asked };
+    let refused = |result: Result<String, CommandError>| match result {
+        Err(CommandError::Campaign(error)) => error,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(refused(kept(&loaded, &other, &mut page)), CampaignError::OtherCampaign { line: 2 });
+    let fewer = request(3, Shard::default());
+    assert_eq!(refused(kept(&loaded, &fewer, &mut page)), CampaignError::MoreKept { kept: 4, asked: 3 });
+    let changed = load(&[&SHORT as &[&str], &["controller.saturation=9 V"]].concat());
+    assert_eq!(refused(kept(&changed, &asked, &mut page)), CampaignError::OtherCampaign { line: 2 });
+    assert_eq!(page.text, before);
+    let mut letter = Page { text: "Dear reader".to_string() };
+    assert_eq!(refused(kept(&loaded, &asked, &mut letter)), CampaignError::OtherCampaign { line: 1 });
+    assert_eq!(letter.text, "Dear reader");
+}
+
+fn refusal(result: Result<String, CommandError>) -> CampaignError {
+    match result {
+        Err(CommandError::Campaign(error)) => error,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Whatever is not what was written is refused with its line, and left as it is; without the lines from there on, the same bytes.
+#[test]
+fn damaged_rows_are_refused_with_their_line() {
+    let loaded = load(&SHORT);
+    let asked = request(6, Shard::default());
+    let mut whole = Page::default();
+    kept(&loaded, &asked, &mut whole).unwrap();
+    let lines: Vec<&str> = whole.text.split_inclusive('\n').collect();
+    let with_third = |third: &str| [&lines[..3].concat(), third, &lines[4..].concat()].concat();
+    let cells: Vec<&str> = lines[3].split(',').collect();
+    for cell in 2..cells.len() {
+        let mut changed = cells.clone();
+        let end = if cell + 1 == cells.len() { "\n" } else { "" };
+        let other = format!("999999{end}");
+        changed[cell] = &other;
+        let mut page = Page { text: with_third(&changed.join(",")) };
+        let before = page.text.clone();
+        let error = refusal(kept(&loaded, &asked, &mut page));
+        assert!(matches!(error, CampaignError::Damaged { line: 4, .. }), "cell {cell}: {error}");
+        assert!(error.to_string().contains("head -n 3 keeps those before"), "{error}");
+        assert_eq!(page.text, before);
+    }
+    let kept_lines = whole.text.replace('\n', "\r\n");
+    let mut page = Page { text: kept_lines };
+    assert_eq!(refusal(kept(&loaded, &asked, &mut page)), CampaignError::LineEnds { line: 1 });
+    let mut page = Page { text: with_third(&lines[3].replace('\n', "\r\n")) };
+    assert_eq!(refusal(kept(&loaded, &asked, &mut page)), CampaignError::LineEnds { line: 4 });
+    // twice the same run, as two writers would leave it
+    let mut page = Page { text: [&whole.text, lines[1]].concat() };
+    let error = refusal(kept(&loaded, &request(9, Shard::default()), &mut page));
+    assert!(
+        matches!(error, CampaignError::Damaged { line: 8, fault } if fault.contains("another run")),
+        "{error}"
+    );
+    let mut page = Page { text: lines[..3].concat() };
+    kept(&loaded, &asked, &mut page).unwrap();
+    assert_eq!(page.text, whole.text);
+}
+
+/// A row with its own sum that is not of the draw it says it is.
+#[test]
+fn kept_numbers_are_those_that_are_drawn() {
+    let loaded = load(&SHORT);
+    let plan = plan(&[]);
+    let mut rows = plan.rows(0..3, lanes(1)).unwrap();
+    let asked = request(3, Shard::default());
+    kept(&loaded, &asked, &mut Page { text: plan.table(&rows) }).unwrap();
+    rows[1].values[0] = rows[1].values[0].next_up();
+    let error = refusal(kept(&loaded, &asked, &mut Page { text: plan.table(&rows) }));
+    assert!(matches!(error, CampaignError::Damaged { line: 3, fault } if fault.contains("draws")), "{error}");
+}
