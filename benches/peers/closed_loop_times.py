@@ -7,7 +7,8 @@ the best of all its runs is compared with the best of all of CVODE's, at the tol
 Time of one thread, the best of many runs, largest error of the force at 1 ms against CVODE at 1e-12. With
 stability-limit detection CVODE falls by chance into one of two regimes, a factor of two apart in steps: the tolerance is
 varied by 20 % either way, and the fastest is reported beside the one asked for. Restarting at the load's motion or not
-is tried as well. The machine should be quiet. The curves of work against precision are left in
+is tried as well. Whole commands are timed from the start of a process to its end, tables included. The machine should be
+quiet. The curves of work against precision are left in
 target/peers/work_precision.csv; benches/peers/work_precision.csv is one such, and what the figure of the book shows:
 cargo run -p phea-workbench --example work_precision.
 
@@ -21,6 +22,7 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import time
 
 import numpy as np
 
@@ -135,6 +137,33 @@ def work_and_precision(controller, reference):
     return points
 
 
+def whole_commands():
+    """A process each, from its start to its end, tables written: phea's with all its columns, the peer's with its five."""
+    words = ["cargo", "build", "--release", "-p", "phea-cli", "--message-format=json"]
+    report = subprocess.run(words, check=True, capture_output=True, text=True, cwd=ROOT).stdout
+    phea = [json.loads(text).get("executable") for text in report.splitlines()]
+    phea = [name for name in phea if name][-1]
+    answers = BUILT / "answers"
+    project = ROOT / "examples" / "benchmark" / "closed_loop.toml"
+    commands = {"phea simulate --out": [phea, "simulate", project, "--out", answers]}
+    for method in ("bdf_stability", "bdf", "adams"):
+        commands[f"CVODE {method} 1e-6"] = [BUILT / "cvode_closed_loop", method, "1e-6", "repeats=1", f"output={BUILT / 'five.csv'}"]
+    best = dict.fromkeys(commands, np.inf)
+    for _ in range(REPEATS):
+        for name, command in commands.items():
+            shutil.rmtree(answers, ignore_errors=True)
+            begun = time.perf_counter()
+            subprocess.run(list(map(str, command)), check=True, capture_output=True)
+            best[name] = min(best[name], time.perf_counter() - begun)
+            if name.startswith("phea"):
+                tables = sorted(answers.glob("*.csv"))
+                columns = [len(table.open().readline().split(",")) for table in tables]
+    print(f"  phea's columns: {columns}")
+    ours = next(iter(best.values()))
+    for name, seconds in best.items():
+        print(f"  {name:46s}{1e3 * seconds:9.1f} ms, ratio {seconds / ours:.2f}")
+
+
 def main():
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     program("cvode_closed_loop", *SUNDIALS)
@@ -153,6 +182,8 @@ def main():
     header = "controller,method,tolerance_or_step_s,processor_ms,force_error_n"
     text = "\n".join([header, *(",".join(map(str, point)) for point in points)])
     (BUILT / "work_precision.csv").write_text(text + "\n")
+    print("whole commands in turn on one core")
+    whole_commands()
     if "curves" not in sys.argv[1:]:
         print("CVODE's settings one by one, continuous")
         baseline(references["continuous"])

@@ -225,7 +225,7 @@ fn rows_that_do_not_divide_the_scenario() {
     }
 }
 
-/// A scenario whose rows no memory holds is refused at its key, with what is asked for and what there may be.
+/// A scenario whose table no disk would be asked to hold is refused at its key, with what is asked for and what there may be.
 #[test]
 fn more_rows_than_are_held() {
     for (setting, asked) in [
@@ -236,9 +236,9 @@ fn more_rows_than_are_held() {
         let refusal = refused(BENCHMARK, &[setting]);
         assert!(refusal.contains(&format!("asks for {asked} rows")), "{refusal}");
         assert!(
-            refusal.contains("all scenarios together may have 2000000") && refusal.contains("--set"),
+            refusal.contains("all scenarios together may have 10000000") && refusal.contains("--set"),
             "{refusal}"
         );
     }
-    assert!(read(BENCHMARK, &["scenario.0.duration=2000 s"]).is_ok());
+    assert!(read(BENCHMARK, &["scenario.0.duration=9999 s"]).is_ok());
 }

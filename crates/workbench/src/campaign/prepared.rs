@@ -82,12 +82,12 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
 
 impl Prepared {
     /// What is to be done in a lane.
-    pub(super) fn task<'a>(&'a self, plan: &'a Plan) -> Task<'a, Watched<'a>> {
+    pub(super) fn task<'a>(&'a self, plan: &'a Plan, every_look: bool) -> Task<'a, Watched<'a>> {
         let sampler: Option<Box<dyn Sampler + 'a>> = match &self.bench.control {
             Control::Continuous(_) | Control::Open(_) => None,
             Control::Sampled(sampled) => Some(Box::new(Digital::new(sampled, &self.waking, &self.log))),
         };
-        let observer = Watched::new(plan, self);
+        let observer = Watched::new(plan, self, every_look);
         Task { start: self.start.clone(), course: &self.course, sampler, observer }
     }
 
@@ -101,14 +101,13 @@ impl Prepared {
                 kinds.push(occurrence.kind);
             }
         }
-        let seen_at = plan.band_looks.iter().map_while(|look| seen.force_n.get(*look));
         let ran = Ran {
             status: stopped.map_or("completed", |stopped| stopped.word),
             ended_s: stopped.map(|stopped| stopped.time_s),
             steps: outcome.work.steps,
             occurrences: kinds,
             metrics: metrics.iter().map(numbers).collect(),
-            force_n: seen_at.map(|force| *force as f32).collect(),
+            force_n: seen.of_bands().map(|force| force as f32).collect(),
         };
         Row {
             run: self.draw.run,
@@ -150,16 +149,26 @@ impl Prepared {
 pub(super) struct Watched<'a> {
     plan: &'a Plan,
     follower: Follower<'a>,
-    /// At every look, N.
+    /// Whether all looks are kept, or those of the bands alone.
+    every_look: bool,
+    looks: usize,
+    /// N.
     pub(super) force_n: Vec<f64>,
 }
 
 impl<'a> Watched<'a> {
-    fn new(plan: &'a Plan, prepared: &'a Prepared) -> Watched<'a> {
+    fn new(plan: &'a Plan, prepared: &'a Prepared, every_look: bool) -> Watched<'a> {
         let windows = (plan.windows(), plan.scenario.settling_band_percent);
         let reference = &plan.driven.reference;
         let follower = Follower::of(&prepared.bench, &plan.look, &prepared.log, reference, windows);
-        Watched { plan, follower, force_n: Vec::with_capacity(plan.times_s.len()) }
+        let kept = if every_look { plan.times_s.len() } else { plan.band_looks.len() };
+        Watched { plan, follower, every_look, looks: 0, force_n: Vec::with_capacity(kept) }
+    }
+
+    /// The force at the times of the bands, as far as it went, N.
+    fn of_bands(&self) -> impl Iterator<Item = f64> {
+        let places = self.plan.band_looks.iter().enumerate();
+        places.map_while(|(place, look)| self.force_n.get(if self.every_look { *look } else { place }).copied())
     }
 }
 
@@ -169,7 +178,10 @@ impl Observer for Watched<'_> {
     }
 
     fn observe(&mut self, _time_s: f64, states: &[f64], _inputs: &[f64]) {
-        self.force_n.push(self.follower.force_n(states));
+        if self.every_look || self.plan.band_looks.get(self.force_n.len()) == Some(&self.looks) {
+            self.force_n.push(self.follower.force_n(states));
+        }
+        self.looks += 1;
     }
 
     fn wants_inputs(&self) -> bool {

@@ -238,7 +238,7 @@ impl<'a, E, S: Lane> Queue<'a, E> for Lanewise<'_, 'a, E, S> {
             batch.next += 1;
             batch.in_lanes.resize(batch.in_lanes.len().max(lane + 1), None);
             batch.in_lanes[lane] = Some(prepared);
-            return Some(prepared.task(shared.plan));
+            return Some(prepared.task(shared.plan, shared.forces));
         }
     }
 

@@ -13,8 +13,8 @@ use crate::project::{
 use crate::quantity::{self, RATIO};
 use crate::spelling::nearest;
 
-/// Most rows of all scenarios together: a run holds a third of a kilobyte of each, and its table as much again.
-const MAXIMUM_ROWS: f64 = 2e6;
+/// Most rows of all scenarios together: four gigabytes of tables.
+const MAXIMUM_ROWS: f64 = 1e7;
 /// Where a step is shorter, s, it is to blame for the rows, otherwise the duration.
 const ORDINARY_STEP: f64 = 1e-3;
 
