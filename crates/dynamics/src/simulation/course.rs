@@ -46,7 +46,12 @@ pub trait Observer {
     /// Indices of the states it wants, in the order it wants them.
     fn wanted(&self) -> &[usize];
 
-    /// Called at each row of the result with those states and all inputs, beginning with time zero. At a break it sees the
+    /// Whether it looks at the row of this number, counted from zero.
+    fn wants_row(&self, _row: u64) -> bool {
+        true
+    }
+
+    /// Called at each row of the result that it wants, with those states and all inputs, beginning with time zero. At a break it sees the
     /// inputs as they are from then on.
     fn observe(&mut self, time_s: f64, states: &[f64], inputs: &[f64]);
 

@@ -36,7 +36,7 @@ const EXTENSION: [f64; STAGES] = [
 ];
 
 /// On the imaginary axis, ln |R(i theta)| = -(1/600 - 1/720) theta^6 + ...
-pub(super) const AMPLITUDE_LOST: AmplitudeLost = AmplitudeLost { factor: 1.0 / 3600.0, power: 6.0 };
+pub(super) const AMPLITUDE_LOST: AmplitudeLost = AmplitudeLost { factor: 1.0 / 3600.0, power: 6 };
 
 /// The method with its memory.
 ///

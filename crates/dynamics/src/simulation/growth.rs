@@ -43,13 +43,15 @@ pub(super) struct AmplitudeLost {
     /// c.
     pub(super) factor: f64,
     /// p.
-    pub(super) power: f64,
+    pub(super) power: u32,
 }
 
 /// Part by which the growth of a resolved mode may be off.
 const GROWTH_ERROR: f64 = 0.02;
 /// No mode that grows turns by more than this in a step, in rad: beyond, the amplitude lost follows no power.
 const LARGEST_ANGLE: f64 = 2.0;
+/// So many times as long as the step before it no step is, where a mode grows: what may be longer is not computed.
+const FAR: f64 = 2.0;
 /// Modes above this part of the fastest are about as fast.
 const FAST: f64 = 0.25;
 /// Slower growth than this part of its frequency is rounding.
@@ -67,10 +69,10 @@ const UNTOLD: [f64; 2] = [0.05, 1e-3];
 const MOST_GROWN: f64 = 20.0;
 /// Decay is followed as if it were at least this part of the frequency.
 const LEAST_FOLLOWED: f64 = 1e-3;
-/// Steps between two looks at a small system: together they cost some hundredths of its steps.
-const LEAST_INTERVAL: u64 = 128;
+/// Steps between two looks at a small system: together they cost a hundredth or two of its steps.
+const LEAST_INTERVAL: u64 = 256;
 /// Part of that while a mode grows.
-const WHILE_GROWING: u64 = 4;
+const WHILE_GROWING: u64 = 8;
 /// Part of a change of the growth that a step misses by matrices found before it, over the square of the angle it turns in rad.
 const MISSED: f64 = 0.08;
 /// Smaller errors of the growth, in 1/s, are none for matrices found before.
@@ -85,23 +87,24 @@ struct Mode {
 }
 
 impl Mode {
-    /// The longest step that shows this mode, with this growth, to [`GROWTH_ERROR`]; `None` where it does not grow.
+    /// The longest step that shows this mode, with this growth, to [`GROWTH_ERROR`], or [`FAR`] such steps as are taken where that is
+    /// shorter; `None` where it does not grow.
     ///
     /// ```text
     /// c theta^p <= e zeta theta,        theta = h |lambda|, zeta = Re lambda/|lambda|
     /// ```
-    fn bound(&self, growth: f64, lost: AmplitudeLost) -> Option<Growing> {
-        let relative = growth / self.magnitude;
-        if relative.is_nan() || relative <= LEAST_GROWTH {
+    fn bound(&self, growth: f64, lost: AmplitudeLost, taken_s: f64) -> Option<Growing> {
+        if growth.is_nan() || growth <= LEAST_GROWTH * self.magnitude {
             return None;
         }
-        let angle = portable::pow(GROWTH_ERROR * relative / lost.factor, 1.0 / (lost.power - 1.0));
-        let angle = angle.min(LARGEST_ANGLE);
-        Some(Growing {
-            step_s: angle / self.magnitude,
-            frequency_rad_per_s: self.magnitude,
-            growth_per_s: growth,
-        })
+        let growing = |step_s| Growing { step_s, frequency_rad_per_s: self.magnitude, growth_per_s: growth };
+        let far = FAR * taken_s * self.magnitude;
+        let most = GROWTH_ERROR * growth / (lost.factor * self.magnitude);
+        if far <= LARGEST_ANGLE && (1..lost.power).fold(1.0, |power, _| power * far) <= most {
+            return Some(growing(FAR * taken_s));
+        }
+        let angle = portable::exp(portable::ln(most) / f64::from(lost.power - 1));
+        Some(growing(angle.min(LARGEST_ANGLE) / self.magnitude))
     }
 }
 
@@ -125,6 +128,8 @@ pub(super) struct GrowthWatch {
     modes: Vec<Mode>,
     /// Largest magnitude of those, in rad/s.
     fastest: f64,
+    /// The step in which the fastest turns by the small angle, in s; zero where no mode oscillates, so that no step counts as small.
+    small_s: f64,
     /// Largest growth of those that are about as fast, in 1/s.
     growth: f64,
     /// d at the last look.
@@ -178,27 +183,21 @@ impl GrowthWatch {
         let damping = self.friction(method, lane);
         let interval =
             if self.growth_at(damping) > 0.0 { self.interval / WHILE_GROWING } else { self.interval };
-        let small_s = self.small_step();
-        let nearly = step_s <= small_s || (damping < 0.0 && step_s <= NEARLY * small_s);
+        let nearly = step_s <= self.small_s || (damping < 0.0 && step_s <= NEARLY * self.small_s);
         if age >= interval || !(nearly || self.is_known_at(damping)) {
             self.look(method, lane);
         }
         let growth_per_s = self.growth_at(damping);
         self.follow(time_s, growth_per_s);
         if !self.is_known_at(damping) {
-            let (small_s, frequency_rad_per_s) = (self.small_step(), self.fastest);
+            let (small_s, frequency_rad_per_s) = (self.small_s, self.fastest);
             let small = Growing { step_s: small_s, frequency_rad_per_s, growth_per_s };
             return (small_s > 0.0 && step_s > small_s).then_some(small);
         }
-        let followed = (self.grown > 0.0).then(|| self.followed(growth_per_s)).flatten();
-        let growing = self.shortest(0.5 * (self.damping.min(0.0) - damping.min(0.0)));
+        let followed = (self.grown > 0.0).then(|| self.followed(growth_per_s, step_s)).flatten();
+        let growing = self.shortest(0.5 * (self.damping.min(0.0) - damping.min(0.0)), step_s);
         let bounds = [growing, followed].into_iter().flatten();
         bounds.min_by(|one, other| one.step_s.total_cmp(&other.step_s))
-    }
-
-    /// The step in which the fastest mode turns by the small angle; zero where no mode oscillates, so that no step counts as small.
-    fn small_step(&self) -> f64 {
-        if self.fastest > 0.0 { SMALL_ANGLE / self.fastest } else { 0.0 }
     }
 
     /// Takes note of how the least stable mode has grown since it was last asked for: what has grown is there until it has decayed by as
@@ -212,9 +211,9 @@ impl GrowthWatch {
     }
 
     /// The longest step that shows how what has grown decays.
-    fn followed(&self, growth_per_s: f64) -> Option<Growing> {
+    fn followed(&self, growth_per_s: f64, taken_s: f64) -> Option<Growing> {
         let mode = Mode { magnitude: self.fastest, growth: growth_per_s };
-        let bound = mode.bound(growth_per_s.abs().max(LEAST_FOLLOWED * self.fastest), self.lost)?;
+        let bound = mode.bound(growth_per_s.abs().max(LEAST_FOLLOWED * self.fastest), self.lost, taken_s)?;
         Some(Growing { growth_per_s, ..bound })
     }
 
@@ -264,6 +263,7 @@ impl GrowthWatch {
     }
 
     /// Finds the modes anew.
+    #[cold]
     fn look<S: Lane>(&mut self, method: &Rosenbrock<S>, lane: usize) {
         let states = method.end.len();
         let mut jacobian = DMatrix::zeros(states, states);
@@ -287,6 +287,7 @@ impl GrowthWatch {
         }
         let fast = self.modes.iter().filter(|mode| mode.magnitude > FAST * self.fastest);
         self.growth = fast.fold(f64::NEG_INFINITY, |most, mode| most.max(mode.growth));
+        self.small_s = if self.fastest > 0.0 { SMALL_ANGLE / self.fastest } else { 0.0 };
         self.damping = self.friction(method, lane);
     }
 
@@ -298,8 +299,8 @@ impl GrowthWatch {
     }
 
     /// The mode that asks for the shortest step, if friction has added so much to the growth of each.
-    fn shortest(&self, added: f64) -> Option<Growing> {
-        let bounds = self.modes.iter().filter_map(|mode| mode.bound(mode.growth + added, self.lost));
+    fn shortest(&self, added: f64, taken_s: f64) -> Option<Growing> {
+        let bounds = self.modes.iter().filter_map(|mode| mode.bound(mode.growth + added, self.lost, taken_s));
         bounds.min_by(|one, other| one.step_s.total_cmp(&other.step_s))
     }
 }

@@ -98,7 +98,7 @@ const EXTENSION: [[f64; STAGES]; 3] = [
 ];
 
 /// On the imaginary axis, ln |R(i theta)| = -c theta^8 + ...: below by a fifth at 0.5 rad, above by a third at 1.5 rad.
-pub(super) const AMPLITUDE_LOST: AmplitudeLost = AmplitudeLost { factor: 1.2e-5, power: 8.0 };
+pub(super) const AMPLITUDE_LOST: AmplitudeLost = AmplitudeLost { factor: 1.2e-5, power: 8 };
 
 /// Where an entry of the Jacobian is found.
 #[derive(Clone, Copy, Debug)]

@@ -57,6 +57,10 @@ impl<O: Observer> Slot<'_, O> {
             if later(time_s) >= before_s {
                 return;
             }
+            passage.row += 1;
+            if !observer.wants_row(passage.row - 1) {
+                continue;
+            }
             let part = ((time_s - start_s) / step_s).max(0.0);
             for (place, extension) in states.iter_mut().zip(wanted) {
                 *place = extension.at(part);
@@ -65,7 +69,6 @@ impl<O: Observer> Slot<'_, O> {
                 passage.inputs_at(time_s, inputs);
             }
             observer.observe(time_s, states, &inputs[..seen]);
-            passage.row += 1;
         }
     }
 
@@ -73,7 +76,7 @@ impl<O: Observer> Slot<'_, O> {
     pub(super) fn observe_end<S: Lane>(&mut self, state: &[S], lane: usize) {
         let Slot { passage, observer, states, inputs, .. } = self;
         let duration_s = passage.course.duration_s;
-        if passage.next_row_s() > later(duration_s) {
+        if passage.next_row_s() > later(duration_s) || !observer.wants_row(passage.row) {
             return;
         }
         let mut count = 0;

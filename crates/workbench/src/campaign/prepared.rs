@@ -92,7 +92,7 @@ impl Prepared {
     }
 
     /// What came of it.
-    pub(super) fn row(&self, plan: &Plan, outcome: &Outcome, seen: &Watched<'_>) -> Row {
+    pub(super) fn row(&self, outcome: &Outcome, seen: &Watched<'_>) -> Row {
         let metrics = seen.follower.metrics();
         let stopped = Stopped::of(outcome.status);
         let mut kinds: Vec<&'static str> = Vec::new();
@@ -151,7 +151,6 @@ pub(super) struct Watched<'a> {
     follower: Follower<'a>,
     /// Whether all looks are kept, or those of the bands alone.
     every_look: bool,
-    looks: usize,
     /// N.
     pub(super) force_n: Vec<f64>,
 }
@@ -162,13 +161,14 @@ impl<'a> Watched<'a> {
         let reference = &plan.driven.reference;
         let follower = Follower::of(&prepared.bench, &plan.look, &prepared.log, reference, windows);
         let kept = if every_look { plan.times_s.len() } else { plan.band_looks.len() };
-        Watched { plan, follower, every_look, looks: 0, force_n: Vec::with_capacity(kept) }
+        Watched { plan, follower, every_look, force_n: Vec::with_capacity(kept) }
     }
 
     /// The force at the times of the bands, as far as it went, N.
     fn of_bands(&self) -> impl Iterator<Item = f64> {
         let places = self.plan.band_looks.iter().enumerate();
-        places.map_while(|(place, look)| self.force_n.get(if self.every_look { *look } else { place }).copied())
+        places
+            .map_while(|(place, look)| self.force_n.get(if self.every_look { *look } else { place }).copied())
     }
 }
 
@@ -177,11 +177,13 @@ impl Observer for Watched<'_> {
         &self.plan.look
     }
 
+    fn wants_row(&self, row: u64) -> bool {
+        let next = self.plan.band_looks.get(self.force_n.len());
+        self.every_look || next.is_some_and(|look| *look as u64 == row)
+    }
+
     fn observe(&mut self, _time_s: f64, states: &[f64], _inputs: &[f64]) {
-        if self.every_look || self.plan.band_looks.get(self.force_n.len()) == Some(&self.looks) {
-            self.force_n.push(self.follower.force_n(states));
-        }
-        self.looks += 1;
+        self.force_n.push(self.follower.force_n(states));
     }
 
     fn wants_inputs(&self) -> bool {

@@ -247,7 +247,7 @@ impl<'a, E, S: Lane> Queue<'a, E> for Lanewise<'_, 'a, E, S> {
         let prepared = in_lanes.get_mut(lane).and_then(Option::take);
         let stopped = matches!(outcome.status, Status::Cancelled { .. });
         if let (false, Some(prepared)) = (stopped, prepared) {
-            let row = prepared.row(shared.plan, &outcome, &observer);
+            let row = prepared.row(&outcome, &observer);
             let force_n = if shared.forces { observer.force_n } else { Vec::new() };
             shared.done.fetch_add(1, Ordering::Relaxed);
             give(Finished { row, force_n });
