@@ -70,6 +70,17 @@ fn a_burst_is_looked_for_in_the_windows_around() {
     assert!(elsewhere.fault().is_some(), "{elsewhere:?}");
 }
 
+/// Where CVODE's own runs differ the strength is nobody's, but there is ringing.
+#[test]
+fn ringing_that_hangs_on_rounding_is_asked_for_at_all() {
+    let (reference, kicked) = (force(10.0, 0.0, 0.5), force(28.0, 0.0, 0.5));
+    let references = [reference.as_slice(), kicked.as_slice()];
+    let weak = compared(&force(4.0, 0.0, 0.5), references);
+    assert!(weak.windows >= 3 && weak.fault().is_none(), "{weak:?}");
+    let calmed = compared(&force(0.1, 0.0, 0.5), references);
+    assert!(calmed.fault().is_some_and(|fault| fault.contains("calmed")), "{calmed:?}");
+}
+
 /// Ringing before trajectories separate is judged row by row, and one below a thousandth of the peak is none.
 #[test]
 fn what_is_too_small_or_too_early_is_not_judged() {

@@ -56,12 +56,25 @@ pub fn round_step(span: f64, count: usize, steps: Steps) -> f64 {
     found.unwrap_or(10.0 * decade)
 }
 
-/// Ticks of a linear axis from `minimum` to `maximum`, at most `count` intervals, labels divided by 10^`exponent`.
+/// Ticks of a linear axis from `minimum` to `maximum`, at most `count` intervals, labels divided by 10^`exponent`. Where that leaves
+/// a single one, which tells no scale, the steps are finer.
+///
+/// # Example
+/// ```
+/// use phea_workbench::figure::ticks::{Steps, linear};
+/// let labels: Vec<String> = linear(15.0, 35.0, 2, Steps::Decimal, 0).into_iter().filter_map(|tick| tick.label).collect();
+/// assert_eq!(labels, ["20", "30"]);
+/// let labels: Vec<String> = linear(22.0, 38.0, 2, Steps::Decimal, 0).into_iter().filter_map(|tick| tick.label).collect();
+/// assert_eq!(labels, ["25", "30", "35"]);
+/// ```
 pub fn linear(minimum: f64, maximum: f64, count: usize, steps: Steps, exponent: i32) -> Vec<Tick> {
-    let step = round_step(maximum - minimum, count, steps);
     let slack = 1e-9 * (maximum - minimum);
-    let first = ((minimum - slack) / step).ceil();
-    let last = ((maximum + slack) / step).floor();
+    let ends = |step: f64| [((minimum - slack) / step).ceil(), ((maximum + slack) / step).floor()];
+    let mut step = round_step(maximum - minimum, count, steps);
+    if steps == Steps::Decimal && ends(step)[1] - ends(step)[0] < 1.0 {
+        step = round_step(maximum - minimum, 2 * count, steps);
+    }
+    let [first, last] = ends(step);
     let decimals = decimals_of(step / decimal_power(exponent));
     let number = (last - first).clamp(0.0, 100.0) as usize;
     (0..=number)

@@ -128,7 +128,7 @@ fn moves_load(window: &Window) -> bool {
 fn from_outside(record: &Record) -> Option<TimePanel> {
     let series =
         (!record.external_force_n.is_empty()).then(|| over_time(record, record.external_force_n.clone()))?;
-    Some(panel("From outside F_x", DisplayUnit::KILONEWTON, 90.0, vec![series]))
+    Some(panel("Force F_x", DisplayUnit::KILONEWTON, 90.0, vec![series]))
 }
 
 fn voltages(record: &Record) -> TimePanel {
