@@ -12,8 +12,8 @@
 //! R_k  <=  1.3 largest of CVODE's R_(k-1), R_k, R_(k+1)
 //! ```
 //!
-//! of each window with rows after those have separated; smaller ringing than a thousandth of the peak is none. Where CVODE's two runs
-//! ring with less than 0.7 of one another, the strength hangs on what is smaller than any tolerance: there the first line asks
+//! of each window with rows after those have separated; smaller ringing than a thousandth of the peak is none. Where one of CVODE's
+//! runs rings with less than 0.7 of the other in these three windows, the strength hangs on what is smaller than any tolerance: there the first line asks
 //! for ringing at all, a thousandth of the peak in the place of the smallest.
 
 /// Over which the slow part of a force is taken, s.
@@ -52,10 +52,12 @@ impl Roughness {
         let mut found = Roughness { windows: 0, least: 1.0, most: 1.0 };
         for (window, &rough) in ours.iter().enumerate().skip(first) {
             let [one, other] = theirs.each_ref().map(|one| one.get(window).copied().unwrap_or_default());
-            let (least, most) = (one.min(other), one.max(other));
+            let least = one.min(other);
             if least >= floor {
                 found.windows += 1;
-                let asked = if least < LEAST * most { floor } else { least };
+                let [one, other] = theirs.each_ref().map(|one| most_near(one, window));
+                let agreed = one.min(other) >= LEAST * one.max(other);
+                let asked = if agreed { least } else { floor };
                 found.least = found.least.min(most_near(&ours, window) / asked);
             }
             if rough >= floor {
