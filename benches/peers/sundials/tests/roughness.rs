@@ -28,7 +28,7 @@ fn burst(amplitude: f64, from_s: f64, until_s: f64) -> Vec<f64> {
 }
 
 fn compared(ours: &[f64], references: [&[f64]; 2]) -> Roughness {
-    Roughness::compared(ours, references, 1500, PEAK_N, STEP_S).expect("rows are left")
+    Roughness::compared(ours, &references, 1500, PEAK_N, STEP_S).expect("rows are left")
 }
 
 #[test]
@@ -88,5 +88,5 @@ fn what_is_too_small_or_too_early_is_not_judged() {
     let found = compared(&force(0.0, 0.0, 0.0), [&small, &small]);
     assert_eq!((found.windows, found.fault()), (0, None));
     let whole = force(10.0, 0.0, 0.0);
-    assert_eq!(Roughness::compared(&whole, [&whole, &whole], whole.len(), PEAK_N, STEP_S), None);
+    assert_eq!(Roughness::compared(&whole, &[&whole, &whole], whole.len(), PEAK_N, STEP_S), None);
 }

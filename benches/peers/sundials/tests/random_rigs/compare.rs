@@ -203,15 +203,16 @@ impl Compared {
         self.rows < self.growth.len()
     }
 
-    /// Takes phea's runs, the judged one first, and holds them against CVODE's two.
-    fn take(&mut self, runs: [(Ours, Vec<f64>); 2], reference: &[f64], kicked: &[f64]) {
+    /// Takes phea's runs, the judged one first, and holds them against CVODE's: the reference, the same moved by chance, and a looser one.
+    fn take(&mut self, runs: [(Ours, Vec<f64>); 2], references: [&[f64]; 3]) {
+        let [reference, ..] = references;
         let [judged, by_default] = &runs;
         self.estimate = self.part_of_peak(&judged.1, &by_default.1, reference.len());
         let [ours, by_default] = runs.map(|(ours, found)| Ours {
             error: self.part_of_peak(reference, &found, self.rows),
             error_of_all: self.part_of_peak(reference, &found, reference.len()),
             beyond: self.beyond(reference, &found),
-            roughness: Roughness::compared(&found, [reference, kicked], self.rows, self.peak, OUTPUT_STEP_S),
+            roughness: Roughness::compared(&found, &references, self.rows, self.peak, OUTPUT_STEP_S),
             ..ours
         });
         (self.ours, self.by_default) = (Some(ours), Some(by_default));
@@ -351,11 +352,11 @@ fn judge<'a, E: System<f64> + Clone>(
             return (compared, Vec::new());
         }
     };
-    let looser = by_cvode(&Following::new(LOOSER, Method::BackwardDifferentiation));
-    let looser = looser
-        .map_or(f64::INFINITY, |states| compared.part_of_peak(&reference, &force(&states), reference.len()));
-    compared.well_posed = looser <= WELL_POSED;
-    compared.take(runs, &reference, &kicked);
+    let looser = by_cvode(&Following::new(LOOSER, Method::BackwardDifferentiation)).ok();
+    let looser = looser.map(|states| force(&states));
+    let apart = |looser: &Vec<f64>| compared.part_of_peak(&reference, looser, reference.len());
+    compared.well_posed = looser.as_ref().is_some_and(|looser| apart(looser) <= WELL_POSED);
+    compared.take(runs, [&reference, &kicked, looser.as_deref().unwrap_or(&reference)]);
     if timed {
         compared.costs_of_cvode = compared.costs(&reference, &|following| {
             let begun = Instant::now();

@@ -4,17 +4,17 @@
 //! R_k^2 = mean over window k of (F - mean of F over the 10 ms around)^2          windows of 0.1 s
 //! ```
 //!
-//! The phase of a ringing that grew out of next to nothing says nothing, how strong it is does. CVODE has two runs, one of them moved
-//! by chance, and an onset may fall into the window before or after:
+//! The phase of a ringing that grew out of next to nothing says nothing, how strong it is does, as far as anybody knows: an onset may
+//! fall into the window before or after, and where CVODE's own runs (at 1e-11, the same moved by chance, at 1e-9) differ by
+//! more than these parts in the largest of R_(k-1), R_k, R_(k+1), the strength hangs on what is smaller than any tolerance.
 //!
 //! ```text
-//! largest of R_(k-1), R_k, R_(k+1)  >=  0.7 smallest of CVODE's R_k
-//! R_k  <=  1.3 largest of CVODE's R_(k-1), R_k, R_(k+1)
+//! known       largest of R_(k-1), R_k, R_(k+1)  >=  0.7 smallest of CVODE's R_k
+//!             R_k  <=  1.3 largest of CVODE's R_(k-1), R_k, R_(k+1)
+//! unknown     largest of R_(k-1), R_k, R_(k+1)  >=  0.7 P        where all of CVODE's R_k are P or more: it must ring
 //! ```
 //!
-//! of each window with rows after those have separated; smaller ringing than a thousandth of the peak is none. Where one of CVODE's
-//! runs rings with less than 0.7 of the other in these three windows, the strength hangs on what is smaller than any tolerance: there the first line asks
-//! for ringing at all, a thousandth of the peak in the place of the smallest.
+//! of each window with rows after trajectories have separated; P, a thousandth of the peak, is the smallest that counts as ringing.
 
 /// Over which the slow part of a force is taken, s.
 const SLOW_S: f64 = 10e-3;
@@ -28,11 +28,12 @@ const FLOOR: f64 = 1e-3;
 /// The ringing of one run held against that of CVODE's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Roughness {
-    /// Windows in which CVODE rings.
+    /// Windows in which CVODE rings, and those among them of which it knows how strongly.
     pub(crate) windows: usize,
+    pub(crate) known: usize,
     /// Smallest part of CVODE's smallest, or of what is ringing at all; 1 where it rings in no window.
     pub(crate) least: f64,
-    /// Largest part of CVODE's largest; 1 where neither rings.
+    /// Largest part of CVODE's largest where that is known; 1 where neither rings.
     pub(crate) most: f64,
 }
 
@@ -40,29 +41,31 @@ impl Roughness {
     /// Of a run's force, its rows so far apart, which separate after so many; `None` where they do not.
     pub(crate) fn compared(
         force: &[f64],
-        references: [&[f64]; 2],
+        references: &[&[f64]],
         rows: usize,
         peak: f64,
         step_s: f64,
     ) -> Option<Roughness> {
         let first = (rows < force.len()).then(|| rows / rows_of(WINDOW_S, step_s))?;
         let ours = rough(force, step_s);
-        let theirs = references.map(|reference| rough(reference, step_s));
+        let theirs: Vec<Vec<f64>> = references.iter().map(|reference| rough(reference, step_s)).collect();
         let floor = FLOOR * peak;
-        let mut found = Roughness { windows: 0, least: 1.0, most: 1.0 };
+        let mut found = Roughness { windows: 0, known: 0, least: 1.0, most: 1.0 };
         for (window, &rough) in ours.iter().enumerate().skip(first) {
-            let [one, other] = theirs.each_ref().map(|one| one.get(window).copied().unwrap_or_default());
-            let least = one.min(other);
+            let here = theirs.iter().map(|one| one.get(window).copied().unwrap_or_default());
+            let least = here.fold(f64::INFINITY, f64::min);
+            let near = theirs.iter().map(|one| most_near(one, window).max(floor));
+            let [lowest, highest] =
+                near.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], one| [low.min(one), high.max(one)]);
+            let known = lowest >= LEAST * highest;
             if least >= floor {
                 found.windows += 1;
-                let [one, other] = theirs.each_ref().map(|one| most_near(one, window));
-                let agreed = one.min(other) >= LEAST * one.max(other);
-                let asked = if agreed { least } else { floor };
+                found.known += usize::from(known);
+                let asked = if known { least } else { floor };
                 found.least = found.least.min(most_near(&ours, window) / asked);
             }
-            if rough >= floor {
-                let near = theirs.iter().map(|one| most_near(one, window)).fold(floor, f64::max);
-                found.most = found.most.max(rough / near);
+            if known {
+                found.most = found.most.max(rough / highest);
             }
         }
         Some(found)

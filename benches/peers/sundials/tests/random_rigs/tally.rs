@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use phea_dynamics::simulation::Status;
 
 use crate::compare::{Compared, JUDGED, Ours, TOLERANCE};
+use crate::roughness::Roughness;
 use crate::{Described, LARGEST_ERROR, Outcome};
 
 /// Between the machine and `closed_loop.h`, part of the peak.
@@ -26,8 +27,8 @@ pub(crate) struct Tally {
     /// Whose error exceeds the largest in any row, separated or not.
     exceeding: usize,
     beyond: Vec<f64>,
-    /// Rigs and windows whose ringing is compared, and parts of CVODE's.
-    ringing: [usize; 2],
+    /// Rigs and windows that ring, windows where it is known how strongly, and parts of CVODE's.
+    ringing: [usize; 3],
     least: Vec<f64>,
     most: Vec<f64>,
     steps: u64,
@@ -122,7 +123,8 @@ impl Tally {
         let growth = compared.growth.last().copied().unwrap_or_default();
         let mut ringing = "does not ring".to_string();
         if let Some(roughness) = ours.roughness.filter(|roughness| roughness.windows > 0) {
-            self.ringing = [self.ringing[0] + 1, self.ringing[1] + roughness.windows];
+            let Roughness { windows, known, .. } = roughness;
+            self.ringing = [self.ringing[0] + 1, self.ringing[1] + windows, self.ringing[2] + known];
             self.least.push(roughness.least);
             self.most.push(roughness.most);
             ringing = format!(
@@ -161,7 +163,10 @@ impl Tally {
         println!("of the others have: {:?}", self.features);
         println!("hunting at the end: {}; ringing somewhere: {}", self.hunting, self.rough);
         println!("separate before the end: {}", self.separating.len());
-        println!("ringing compared there: {} rigs, {} windows", self.ringing[0], self.ringing[1]);
+        let [rigs, windows, known] = self.ringing;
+        println!(
+            "ringing there: {rigs} rigs, {windows} windows, of which CVODE knows how strongly in {known}"
+        );
         println!("error above {LARGEST_ERROR:e} in any row: {}", self.exceeding);
         let [[limited, of_limited], [adams, of_adams]] = &mut self.ratios;
         for (name, values) in [
