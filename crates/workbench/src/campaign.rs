@@ -16,15 +16,19 @@ mod prepared;
 mod queue;
 mod range;
 mod row;
+mod spread;
 mod statistics;
+mod supply;
 mod text;
+mod varied;
 mod workers;
 
 pub use ledger::{Ledger, Nowhere, Shard, Wanted};
 pub use plan::{Draw, Plan};
 pub use range::VariedRange;
 pub use row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS};
-pub use statistics::{Bands, QUANTILES, Spread, Summary, Worst};
+pub use spread::{QUANTILES, Spread};
+pub use statistics::{Bands, Summary, Worst};
 pub use workers::Effort;
 
 pub(crate) use answer::{json, run_json};
@@ -33,8 +37,9 @@ pub(crate) use ledger::campaign;
 pub(crate) use row::meaningful;
 pub(crate) use text::{counted, lump_words, metric_words, run_text, text, without};
 
-use crate::project::Report;
-use crate::simulate::SimulateError;
+use crate::project::{self, Report};
+use crate::quantity;
+use crate::simulate::{self, SimulateError};
 
 /// Why a sound project has no campaign.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -12,9 +12,6 @@ mod stages;
 mod text;
 mod words;
 
-#[cfg(test)]
-mod printing;
-
 pub use answer::json;
 pub use explanation::Explanation;
 pub use factors::Factors;
@@ -37,6 +34,7 @@ use crate::audit::{ProjectAudit, audit_problem};
 use crate::command::{CommandError, Progress, Watch};
 use crate::control::{controller, deployed, sensor};
 use crate::project::{self, Loaded, Project};
+use crate::quantity;
 use crate::robust::{RobustProblem, robust_problem};
 use crate::source::Source;
 
@@ -84,6 +82,58 @@ pub struct ProjectDesign {
 }
 
 impl ProjectDesign {
+    /// A design with what is to be told of it alone: without a published controller beside it, and without explanations. The family
+    /// in the loop of the project is `given`, and what was `asked` for is the problem that was designed for.
+    ///
+    /// # Errors
+    /// [`CommandError`] for a law or a sensor that is no transfer function.
+    pub fn new(
+        project: &Project,
+        given: &RobustProblem,
+        asked: &DesignProblem,
+        design: Design,
+        options: DesignOptions,
+    ) -> Result<ProjectDesign, CommandError> {
+        let has_prefilter = options.prefilter != PrefilterChoice::None;
+        let law = design.law.clone();
+        let problem = RobustProblem {
+            compensation: Compensation::new(&design.controller, sensor(project)?)?,
+            has_controller: true,
+            has_prefilter,
+            ..given.clone()
+        };
+        let view = ProjectAudit::new(&problem, design.audit.clone());
+        let rounding = rounding::rounding(project, &problem)?;
+        let declared = project.controller.clone().unwrap_or_default();
+        let declared_controller = project::Controller {
+            transfer: factors::declared(&law.feedback.transfer_function()?),
+            ..declared
+        };
+        let declared_prefilter = match options.prefilter {
+            PrefilterChoice::Grow { .. } => Some(project::Prefilter {
+                transfer: factors::declared(&law.prefilter.transfer_function()?),
+                sample_time: None,
+                continuous: project.prefilter.as_ref().is_some_and(|given| given.continuous),
+            }),
+            PrefilterChoice::None | PrefilterChoice::Given(_) => None,
+        };
+        let designed = Side::new(law, problem, view)?;
+        Ok(ProjectDesign {
+            bears_its_delay: asked.bears_its_delay(designed.figures.delay_margin_s.unwrap_or(0.0)),
+            minimum_delay_margin_s: asked.minimum_delay_margin_s,
+            designed,
+            design,
+            options,
+            stopped: false,
+            published: None,
+            continuous: None,
+            explanations: vec![],
+            rounding,
+            declared_controller,
+            declared_prefilter,
+        })
+    }
+
     /// Whether the designed controller keeps to every specification.
     pub fn is_met(&self) -> bool {
         self.designed.view.audit.verdict == Verdict::Met && self.bears_its_delay
@@ -116,7 +166,7 @@ pub fn design_project(
     let problem = design_problem(project, &given)?;
     let options = design_options(project, &given, seed)?;
     let mut run = DesignRun::new(problem, options);
-    let explanations = explanation::explanations(run.findings());
+    let explanations = run.findings().iter().map(Explanation::of).collect::<Vec<_>>();
     let mut stopped = false;
     while !stopped && run.step().map_err(DesignError::from)? {
         stopped = !watch(Progress { stage: run.stage(), share: run.progress() });
@@ -127,7 +177,7 @@ pub fn design_project(
     let (options, found) = (run.options().clone(), run.design().cloned());
     match found {
         Some(design) => {
-            let told = told(project, &given, run.problem(), design, options)?;
+            let told = ProjectDesign::new(project, &given, run.problem(), design, options)?;
             let continuous = if stopped { None } else { continuous_as_sampled(project, &run, &told, watch)? };
             Ok(ProjectDesign { stopped, published, explanations, continuous, ..told })
         }
@@ -164,50 +214,4 @@ fn continuous_as_sampled(
     let problem = RobustProblem { compensation, ..told.designed.problem.clone() };
     let view = audit_problem(&problem, watch)?;
     Ok(Some(Side::new(controller, problem, view)?))
-}
-
-/// A design with what is to be told of it alone.
-fn told(
-    project: &Project,
-    given: &RobustProblem,
-    asked: &DesignProblem,
-    design: Design,
-    options: DesignOptions,
-) -> Result<ProjectDesign, CommandError> {
-    let has_prefilter = options.prefilter != PrefilterChoice::None;
-    let law = design.law.clone();
-    let problem = RobustProblem {
-        compensation: Compensation::new(&design.controller, sensor(project)?)?,
-        has_controller: true,
-        has_prefilter,
-        ..given.clone()
-    };
-    let view = ProjectAudit::new(&problem, design.audit.clone());
-    let rounding = rounding::rounding(project, &problem)?;
-    let declared = project.controller.clone().unwrap_or_default();
-    let declared_controller =
-        project::Controller { transfer: factors::declared(&law.feedback.transfer_function()?), ..declared };
-    let declared_prefilter = match options.prefilter {
-        PrefilterChoice::Grow { .. } => Some(project::Prefilter {
-            transfer: factors::declared(&law.prefilter.transfer_function()?),
-            sample_time: None,
-            continuous: project.prefilter.as_ref().is_some_and(|given| given.continuous),
-        }),
-        PrefilterChoice::None | PrefilterChoice::Given(_) => None,
-    };
-    let designed = Side::new(law, problem, view)?;
-    Ok(ProjectDesign {
-        bears_its_delay: asked.bears_its_delay(designed.figures.delay_margin_s.unwrap_or(0.0)),
-        minimum_delay_margin_s: asked.minimum_delay_margin_s,
-        designed,
-        design,
-        options,
-        stopped: false,
-        published: None,
-        continuous: None,
-        explanations: vec![],
-        rounding,
-        declared_controller,
-        declared_prefilter,
-    })
 }

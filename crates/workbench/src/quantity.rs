@@ -14,6 +14,6 @@ mod unit;
 pub use dimension::*;
 pub use display_unit::DisplayUnit;
 pub use parse::{QuantityError, parse};
-pub use print::{display, print};
-pub(crate) use print::{fitting, print_bare};
+pub(crate) use print::print_bare;
+pub use print::{display, fitting, print};
 pub use significant::significant;

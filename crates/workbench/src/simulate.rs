@@ -9,16 +9,22 @@ mod course;
 mod digital;
 mod equilibrium;
 mod figures;
+mod file_names;
 mod files;
 mod follower;
+mod following;
 mod frequency;
 mod look;
 mod measured;
 mod metrics;
 mod motion_file;
+mod record;
 mod run;
+mod samples;
 mod saved;
+mod shortest_number;
 mod signal;
+mod sum;
 mod sums;
 mod tally;
 mod text;
@@ -28,23 +34,25 @@ pub use check::{Check, Difference, MetricDifferences, simulate_checked};
 pub use columns::LOOP_SIGNALS;
 pub use compare::{Comparison, compare_projects};
 pub use frequency::{FrequencyRequest, FrequencyResponse, Response, ResponsePoint, frequency_response};
-pub use look::{Look, Record};
 pub use measured::Overlay;
 pub use metrics::{Cause, Measured, Metrics, Window};
-pub use run::{BeyondExpansion, Occurrence, ScenarioRun, Stopped, UnresolvedMode};
+pub use record::{Look, Record};
+pub use run::{BeyondExpansion, COMMAND_LIMIT, Occurrence, ScenarioRun, Stopped, UnresolvedMode};
 pub use saved::SavedState;
 
 pub(crate) use answer::{Body, body, compare_json, frequency_json, json};
 pub(crate) use bench::{Control, options};
 pub(crate) use course::{Driven, course_of, driven};
-pub(crate) use digital::{Digital, Samples, Waking};
+pub(crate) use digital::{Digital, Waking};
 pub(crate) use figures::{comparison_files, figure_files, picture_files, pictures};
-pub(crate) use files::{Table, files, table_names};
+pub(crate) use file_names::table_names;
+pub(crate) use files::{Table, files};
 pub(crate) use follower::Follower;
 pub(crate) use frequency::{
     files as frequency_files, pictures as frequency_pictures, text as frequency_text,
 };
-pub(crate) use run::{COMMAND_LIMIT, occurrences};
+pub(crate) use run::occurrences;
+pub(crate) use samples::Samples;
 pub(crate) use sums::size as loop_size;
 pub(crate) use text::{
     ABSENT, MEASURED, METRICS, cause_words, cells_of, coarse_sentence, compare_text, headline,
@@ -61,7 +69,7 @@ use crate::answer::TableFormat;
 use crate::command::{Progress, Watch};
 use crate::control::ControlError;
 use crate::linear_loop::LoopError;
-use crate::project::{Project, Report};
+use crate::project::{self, Project, Report};
 use crate::rig::RigError;
 use crate::source::{Destination, Source, WriteError};
 

@@ -4,15 +4,19 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use crate::ask::{HOSE, answer, json, load, try_answer};
-use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
+use phea_qft::design::{
+    ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice, diagnose,
+};
 use phea_qft::loop_shaping::{Part, Structure};
 use phea_workbench::audit::AuditError;
 use phea_workbench::command::{CommandError, Request};
-use phea_workbench::design::{DesignError, design_options, design_problem};
+use phea_workbench::design::{DesignError, Explanation, design_options, design_problem};
+use phea_workbench::project;
 use phea_workbench::robust::robust_problem;
 use phea_workbench::source::Memory;
 
 const TIMED: &str = include_str!("project_valid/design.toml");
+const CONTRADICTORY: &str = include_str!("../../../examples/qft/mistakes/contradictory_bounds.toml");
 const DESIGN: Request = Request::Design { seed: None, stages: false };
 
 fn begun(project: &str, settings: &[&str], seed: Option<u32>) -> (DesignProblem, DesignOptions) {
@@ -169,4 +173,19 @@ fn the_answer_is_what_is_deployed() {
     assert_eq!(gain, f64::from(gain as f32));
     let exact = json(CONVERTED, &[], &[], &DESIGN)["controller"]["gain"].as_f64().unwrap();
     assert_ne!(exact, f64::from(exact as f32));
+}
+
+#[test]
+fn two_limits_that_no_loop_keeps_together_are_explained() {
+    let source = Memory::default().with("mistake.toml", CONTRADICTORY);
+    let project = project::read(&source, "mistake.toml", &[], &[]).unwrap().project;
+    let given = robust_problem(&source, &project).unwrap();
+    let findings = diagnose(&design_problem(&project, &given).unwrap());
+    let found: Vec<Explanation> = findings.iter().map(Explanation::of).collect();
+    let impossible = found.iter().find(|one| one.is_impossible && one.specifications == [0, 1]).unwrap();
+    // |S| <= w/|jw + 30| up to 10 rad/s and |T| <= 5/|jw + 5| from 8 rad/s: both hold there alone
+    assert!((8.0..=10.0).contains(&impossible.frequency_rad_per_s.unwrap()), "{impossible:?}");
+    assert!(impossible.relaxation_db.unwrap() > 0.0 && impossible.sentence.contains("rad/s"));
+    assert!(!impossible.plants.is_empty());
+    assert!(found.is_sorted_by_key(|one| !one.is_impossible));
 }

@@ -207,3 +207,26 @@ fn an_open_loop_needs_no_controller() {
     assert_eq!(found.closed_loop, Err("the project gives no controller".to_string()));
     assert_eq!(found.open_loop.points.len(), 1);
 }
+
+#[test]
+fn a_unit_holds_for_the_numbers_before_it() {
+    let frequencies = |text: &str| {
+        FrequencyOptions { frequencies: Some(text.to_string()), ..FrequencyOptions::default() }.request()
+    };
+    // ORIGIN: analytic, 2 pi rad/s is 1 Hz
+    let turn = std::f64::consts::TAU;
+    for (text, expected) in [
+        ("1, 10,100", vec![1.0, 10.0, 100.0]),
+        ("1, 2 Hz", vec![turn, 2.0 * turn]),
+        ("1 rad/s, 1e1, 2e0 Hz", vec![1.0, 10.0 * turn, 2.0 * turn]),
+    ] {
+        let found = frequencies(text).unwrap().frequencies_rad_per_s;
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-12 * expected, "{text}: {found} {expected}");
+        }
+    }
+    for text in ["", "1,", "0", "-1 Hz", "1 kN", "fast"] {
+        assert!(frequencies(text).is_err(), "{text}");
+    }
+}

@@ -2,7 +2,8 @@
 
 use super::plan::Plan;
 use super::row::{METRIC_NAMES, Row};
-use super::statistics::{QUANTILES, Summary};
+use super::spread::QUANTILES;
+use super::statistics::Summary;
 use super::{CampaignError, Effort, Shard};
 use crate::answer::OutputFile;
 use crate::figure::{

@@ -6,8 +6,9 @@ use phea_dynamics::simulation::Plant;
 use sha2::{Digest, Sha256};
 
 use super::CampaignError;
-use super::range::{VariedRange, ranges};
+use super::range::VariedRange;
 use super::row::Columns;
+use super::varied::ranges;
 use crate::project::{Loaded, Project, Scenario, print};
 use crate::simulate::{Bench, Control, Driven, Window, driven, loop_size};
 use crate::source::Source;

@@ -15,6 +15,7 @@ use phea_hydraulics::machine::Machine;
 use super::plan::Plan;
 use super::prepared::{Prepared, Watched, prepared};
 use super::row::{Row, RowOutcome};
+use super::supply::Supply;
 use crate::control::{controller, sensor};
 use crate::simulate::{Control, SimulateError};
 
@@ -38,40 +39,6 @@ pub(super) struct Shared<'p> {
     /// Whether the force at every look is asked for.
     forces: bool,
     supply: Mutex<Supply>,
-}
-
-/// The runs that nobody has taken yet.
-struct Supply {
-    runs: Range<u64>,
-    /// Those among them whose rows are there already.
-    known: BTreeSet<u64>,
-    /// Threads that drive nothing.
-    idle: usize,
-}
-
-impl Supply {
-    fn left(&mut self) -> u64 {
-        while self.known.first() == Some(&self.runs.start) && self.runs.start < self.runs.end {
-            self.known.pop_first();
-            self.runs.start += 1;
-        }
-        (self.runs.end - self.runs.start).saturating_sub(self.known.len() as u64)
-    }
-
-    /// The next run for a thread that drives so many, and `works` where it has taken one. The last runs are left to threads that
-    /// drive none: a lane costs little beside others, but a thread of its own is quicker.
-    fn take(&mut self, driving: usize, works: &mut bool) -> Option<u64> {
-        let left = self.left();
-        if left == 0 || (driving > 0 && left <= self.idle as u64) {
-            return None;
-        }
-        if !std::mem::replace(works, true) {
-            self.idle = self.idle.saturating_sub(1);
-        }
-        let run = self.runs.start;
-        self.runs.start += 1;
-        Some(run)
-    }
 }
 
 impl<'p> Shared<'p> {
@@ -256,35 +223,5 @@ impl<'a, E, S: Lane> Queue<'a, E> for Lanewise<'_, 'a, E, S> {
 
     fn goes_on(&mut self, _lane: usize, _time_s: f64) -> bool {
         !self.batch.shared.stop.load(Ordering::Relaxed)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn supply(runs: u64, idle: usize) -> Supply {
-        Supply { runs: 0..runs, known: BTreeSet::new(), idle }
-    }
-
-    /// As many runs as threads: each thread drives one, though the first could take all into its lanes.
-    #[test]
-    fn every_thread_drives_before_lanes_are_filled() {
-        let (mut supply, mut works) = (supply(6, 3), [false; 3]);
-        let taken: Vec<Option<u64>> = (0..LANES).map(|lane| supply.take(lane, &mut works[0])).collect();
-        assert_eq!(taken, [Some(0), Some(1), Some(2), Some(3)]);
-        assert_eq!((supply.take(0, &mut works[1]), supply.take(1, &mut works[1])), (Some(4), None));
-        assert_eq!((supply.take(0, &mut works[2]), supply.take(1, &mut works[2])), (Some(5), None));
-        assert_eq!((supply.left(), supply.idle), (0, 0));
-    }
-
-    #[test]
-    fn runs_whose_rows_are_there_are_passed_over() {
-        let mut supply = supply(5, 1);
-        supply.known = BTreeSet::from([0, 2, 4]);
-        let mut works = false;
-        assert_eq!(supply.left(), 2);
-        let taken: Vec<u64> = std::iter::from_fn(|| supply.take(0, &mut works)).collect();
-        assert_eq!(taken, [1, 3]);
     }
 }

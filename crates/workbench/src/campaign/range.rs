@@ -2,9 +2,8 @@
 
 use phea_dynamics::{portable, random};
 
-use super::CampaignError;
-use crate::project::{Campaign, Distribution, Key, Project, Scenario, Varied};
-use crate::quantity::{self, DisplayUnit};
+use super::project::{Distribution, Key};
+use super::quantity::{self, DisplayUnit};
 
 /// A varied number: between two ends, as distributed.
 ///
@@ -80,56 +79,26 @@ impl VariedRange {
     }
 }
 
-/// The ranges of everything a campaign varies, in file order.
-///
-/// # Errors
-/// [`CampaignError`] where a spread has no declared number to spread around, or a logarithm would be of none.
-pub(super) fn ranges(
-    project: &Project,
-    campaign: &Campaign,
-    scenario: &Scenario,
-) -> Result<Vec<VariedRange>, CampaignError> {
-    if campaign.parameters.is_empty() {
-        return Err(CampaignError::Nothing);
-    }
-    let known = project.listed_numbers();
-    let range = |varied: &Varied| {
-        let path = varied.path.clone();
-        let Some((key, stated)) = known.get(&path).copied() else {
-            return Err(CampaignError::Unknown { path });
-        };
-        let stated = match path.strip_prefix("start.") {
-            Some(_) if scenario.start.is_none() => return Err(CampaignError::NoStart { path }),
-            Some(_) if scenario.start.as_ref().is_some_and(|start| start.file.is_some()) => {
-                return Err(CampaignError::SavedStart { path });
-            }
-            Some(state) => scenario.start.as_ref().and_then(|start| start.number(state)).or(Some(0.0)),
-            None => stated,
-        };
-        let (minimum, maximum) = match (varied.spread, varied.minimum, varied.maximum, stated) {
-            (None, Some(minimum), Some(maximum), _) => (minimum, maximum),
-            (Some(spread), _, _, Some(value)) if value != 0.0 => {
-                (value - spread * value.abs(), value + spread * value.abs())
-            }
-            _ => return Err(CampaignError::NotStated { path }),
-        };
-        let distribution = varied.distribution.unwrap_or(campaign.distribution);
-        if distribution == Distribution::LogUniform && minimum <= 0.0 {
-            return Err(CampaignError::NoLogarithm { path, minimum });
-        }
-        Ok(VariedRange { path, distribution, minimum, maximum, key })
-    };
-    campaign.parameters.iter().map(range).collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::project::Range;
+    use super::super::quantity::{Dimension, PRESSURE, RATIO, VOLUME};
     use super::*;
-    use crate::project::{key, plain};
-    use crate::quantity::{PRESSURE, RATIO, VOLUME};
+
+    const ANY: Range = Range {
+        minimum: f64::MIN,
+        maximum: f64::MAX,
+        above_minimum: false,
+        below_maximum: false,
+        infinity: false,
+    };
+
+    fn key(dimension: &'static Dimension, range: Range) -> Key {
+        Key { name: "a", dimension, range, default: None, doc: "" }
+    }
 
     fn range(distribution: Distribution, minimum: f64, maximum: f64) -> VariedRange {
-        VariedRange { path: "a".to_string(), distribution, minimum, maximum, key: plain("a", "") }
+        VariedRange { path: "a".to_string(), distribution, minimum, maximum, key: key(&RATIO, ANY) }
     }
 
     /// Mean and variance of each distribution over a hundred thousand draws, within five standard errors.
@@ -165,14 +134,12 @@ mod tests {
 
     #[test]
     fn what_the_project_would_not_accept_is_a_problem() {
-        let mass =
-            VariedRange { key: key("a", &RATIO, "").positive(), ..range(Distribution::Normal, -1.0, 3.0) };
+        let positive = Range { minimum: 0.0, above_minimum: true, ..ANY };
+        let mass = VariedRange { key: key(&RATIO, positive), ..range(Distribution::Normal, -1.0, 3.0) };
         assert_eq!(mass.problem(0.5), None);
         assert_eq!(mass.problem(-0.5), Some("a = -0.5 is outside its range (above 0)".to_string()));
-        let pressure = VariedRange {
-            key: key("a", &PRESSURE, "").at_least(-1e5).below(1e8),
-            ..range(Distribution::Normal, -1e6, 3e6)
-        };
+        let between = Range { minimum: -1e5, maximum: 1e8, below_maximum: true, ..ANY };
+        let pressure = VariedRange { key: key(&PRESSURE, between), ..range(Distribution::Normal, -1e6, 3e6) };
         let expected = "a = -46.5 bar is outside its range (at least -1 bar and below 1000 bar)";
         assert_eq!(pressure.problem(-4.65e6), Some(expected.to_string()));
     }
@@ -180,7 +147,7 @@ mod tests {
     #[test]
     fn a_range_is_shown_in_the_unit_of_its_larger_end() {
         let of = |dimension, minimum, maximum| {
-            let key = key("a", dimension, "");
+            let key = key(dimension, ANY);
             let unit = VariedRange { key, ..range(Distribution::Uniform, minimum, maximum) }.unit();
             (unit.symbol, unit.number(maximum, 3))
         };

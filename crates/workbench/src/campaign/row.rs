@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use phea_hydraulics::machine::INDICATORS;
 use sha2::{Digest, Sha256};
 
-use crate::simulate::{COMMAND_LIMIT, Cause, Metrics, Window};
+use super::simulate::{COMMAND_LIMIT, Cause, Metrics, Window};
 
 /// Names of the metrics, in the order of a row.
 pub const METRIC_NAMES: [&str; 9] = [

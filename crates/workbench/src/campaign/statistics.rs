@@ -2,31 +2,14 @@
 
 use super::plan::Plan;
 use super::row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS, meaningful};
-
-/// Shares of the runs below each quantile, percent.
-pub const QUANTILES: [u8; 5] = [5, 25, 50, 75, 95];
-
-/// How a number is spread over the runs that have one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
-    /// Runs that have one.
-    pub count: usize,
-    /// Runs that were driven and have none.
-    pub missing: usize,
-    /// [`QUANTILES`], between two runs on a straight line.
-    pub quantiles: [f64; 5],
-    /// The least and the greatest.
-    pub extremes: [f64; 2],
-    /// The number of largest magnitude, and its run.
-    pub worst: (f64, u64),
-}
+use super::spread::{Spread, quantiles, spread};
 
 /// Quantiles of the force over time, of all runs that got so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bands {
     /// s.
     pub times_s: Vec<f64>,
-    /// [`QUANTILES`] in N at each time.
+    /// [`QUANTILES`](super::QUANTILES) in N at each time.
     pub force_n: Vec<[f64; 5]>,
 }
 
@@ -108,38 +91,6 @@ fn outside(plan: &Plan, rows: &[Row], lump: usize) -> Option<usize> {
     Some(rows.iter().filter(|row| row.lumps.is_some_and(|lumps| beyond(lumps[lump]))).count())
 }
 
-/// `None` where no run has such a number.
-fn spread(numbers: impl Iterator<Item = (u64, Option<f64>)>) -> Option<Spread> {
-    let mut missing = 0;
-    let mut values = Vec::new();
-    let mut worst: Option<(f64, u64)> = None;
-    for (run, value) in numbers {
-        match value {
-            None => missing += 1,
-            Some(value) => {
-                values.push(value);
-                if worst.is_none_or(|(largest, _)| value.abs() > largest.abs()) {
-                    worst = Some((value, run));
-                }
-            }
-        }
-    }
-    values.sort_by(f64::total_cmp);
-    let extremes = [*values.first()?, *values.last()?];
-    Some(Spread { count: values.len(), missing, quantiles: quantiles(&values), extremes, worst: worst? })
-}
-
-/// Of sorted values, at least one: at (n - 1) q, between two on a straight line.
-fn quantiles(sorted: &[f64]) -> [f64; 5] {
-    let last = sorted.len().saturating_sub(1);
-    QUANTILES.map(|percent| {
-        let place = last as f64 * f64::from(percent) / 100.0;
-        let below = (place as usize).min(last);
-        let value = |index: usize| sorted.get(index.min(last)).copied().unwrap_or(f64::NAN);
-        value(below) + (place - below as f64) * (value(below + 1) - value(below))
-    })
-}
-
 fn occurrences(driven: &[(u64, &Ran)]) -> Vec<(&'static str, usize, u64)> {
     let mut found: Vec<(&'static str, usize, u64)> = Vec::new();
     for (run, kind) in
@@ -180,26 +131,4 @@ fn worst(metrics: &[[Option<Spread>; METRIC_NAMES.len()]]) -> Vec<Worst> {
         }
     }
     found
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_of_whole_numbers_are_where_they_should_be() {
-        let values: Vec<f64> = (0..=100).map(f64::from).collect();
-        assert_eq!(quantiles(&values), [5.0, 25.0, 50.0, 75.0, 95.0]);
-        assert_eq!(quantiles(&[7.0]), [7.0; 5]);
-        assert_eq!(quantiles(&[0.0, 1.0])[1], 0.25);
-    }
-
-    #[test]
-    fn the_worst_is_the_largest_magnitude_and_what_is_missing_is_counted() {
-        let numbers = [(3, Some(1.0)), (4, Some(-5.0)), (5, None), (6, Some(5.0))];
-        let found = spread(numbers.into_iter()).unwrap();
-        assert_eq!((found.count, found.missing, found.worst), (3, 1, (-5.0, 4)));
-        assert_eq!(found.extremes, [-5.0, 5.0]);
-        assert_eq!(spread([(0, None)].into_iter()), None);
-    }
 }

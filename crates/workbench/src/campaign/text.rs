@@ -3,7 +3,8 @@
 use super::ledger::Wanted;
 use super::plan::{Draw, Plan};
 use super::row::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
-use super::statistics::{QUANTILES, Spread, Summary};
+use super::spread::{QUANTILES, Spread};
+use super::statistics::Summary;
 use crate::answer::{significant, table};
 use crate::project::Loaded;
 use crate::simulate::{self, ScenarioRun, cause_words};

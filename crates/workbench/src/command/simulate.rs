@@ -34,6 +34,31 @@ pub struct FrequencyOptions {
     pub reference_amplitude: Option<String>,
 }
 
+impl FrequencyOptions {
+    /// What they ask for, in SI.
+    ///
+    /// # Errors
+    /// [`CommandError::Option`] for a text that is no positive quantity of its kind.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_workbench::command::FrequencyOptions;
+    /// let options = FrequencyOptions { amplitude: Some("100 mV".to_string()), ..FrequencyOptions::default() };
+    /// assert_eq!(options.request()?.command_amplitude_v, Some(0.1));
+    /// # Ok::<(), phea_workbench::command::CommandError>(())
+    /// ```
+    pub fn request(&self) -> Result<FrequencyRequest, CommandError> {
+        let one = |option: &'static str, text: &Option<String>, dimension: &'static Dimension| {
+            text.as_deref().map(|text| positive(option, text, text, dimension)).transpose()
+        };
+        Ok(FrequencyRequest {
+            frequencies_rad_per_s: self.frequencies.as_deref().map_or(Ok(vec![]), frequencies)?,
+            command_amplitude_v: one("amplitude", &self.amplitude, &VOLTAGE)?,
+            reference_amplitude_n: one("reference-amplitude", &self.reference_amplitude, &FORCE)?,
+        })
+    }
+}
+
 pub(super) fn simulate_answer(
     source: &dyn Source,
     loaded: &Loaded,
@@ -42,7 +67,7 @@ pub(super) fn simulate_answer(
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     if let Some(options) = &asked.frequency_response {
-        return frequency_answer(loaded, asked, &request(options)?, watch);
+        return frequency_answer(loaded, asked, &options.request()?, watch);
     }
     let tables = destination.map(|destination| (destination, asked.table));
     let runs = if asked.check {
@@ -83,17 +108,6 @@ fn frequency_answer(
     })
 }
 
-fn request(options: &FrequencyOptions) -> Result<FrequencyRequest, CommandError> {
-    let one = |option: &'static str, text: &Option<String>, dimension: &'static Dimension| {
-        text.as_deref().map(|text| positive(option, text, text, dimension)).transpose()
-    };
-    Ok(FrequencyRequest {
-        frequencies_rad_per_s: options.frequencies.as_deref().map_or(Ok(vec![]), frequencies)?,
-        command_amplitude_v: one("amplitude", &options.amplitude, &VOLTAGE)?,
-        reference_amplitude_n: one("reference-amplitude", &options.reference_amplitude, &FORCE)?,
-    })
-}
-
 /// `1, 10, 100 Hz`: the unit holds for the bare numbers before it; without any, rad/s.
 fn frequencies(text: &str) -> Result<Vec<f64>, CommandError> {
     let mut unit = "";
@@ -129,29 +143,4 @@ fn positive(
         None => quantity::parse(part, dimension).map_err(|error| refuse(error_words(&error, dimension)))?,
     };
     if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string())) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_unit_holds_for_the_numbers_before_it() {
-        // ORIGIN: analytic, 2 pi rad/s is 1 Hz
-        let turn = std::f64::consts::TAU;
-        for (text, expected) in [
-            ("1, 10,100", vec![1.0, 10.0, 100.0]),
-            ("1, 2 Hz", vec![turn, 2.0 * turn]),
-            ("1 rad/s, 1e1, 2e0 Hz", vec![1.0, 10.0 * turn, 2.0 * turn]),
-        ] {
-            let found = frequencies(text).unwrap();
-            assert_eq!(found.len(), expected.len());
-            for (found, expected) in found.iter().zip(expected) {
-                assert!((found - expected).abs() < 1e-12 * expected, "{text}: {found} {expected}");
-            }
-        }
-        for text in ["", "1,", "0", "-1 Hz", "1 kN", "fast"] {
-            assert!(frequencies(text).is_err(), "{text}");
-        }
-    }
 }

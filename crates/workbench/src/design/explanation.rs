@@ -20,19 +20,17 @@ pub struct Explanation {
     pub relaxation_db: Option<f64>,
 }
 
-/// In the order of the findings, impossibilities first.
-pub(super) fn explanations(findings: &[Finding]) -> Vec<Explanation> {
-    findings.iter().map(explanation).collect()
-}
-
-fn explanation(finding: &Finding) -> Explanation {
-    Explanation {
-        sentence: finding.to_string(),
-        is_impossible: finding.severity() == Severity::Impossible,
-        frequency_rad_per_s: frequency(finding),
-        plants: plants(finding),
-        specifications: finding.specifications(),
-        relaxation_db: finding.relaxation_db(),
+impl Explanation {
+    /// Of what a diagnosis found.
+    pub fn of(finding: &Finding) -> Explanation {
+        Explanation {
+            sentence: finding.to_string(),
+            is_impossible: finding.severity() == Severity::Impossible,
+            frequency_rad_per_s: frequency(finding),
+            plants: plants(finding),
+            specifications: finding.specifications(),
+            relaxation_db: finding.relaxation_db(),
+        }
     }
 }
 
@@ -72,31 +70,5 @@ fn plants(finding: &Finding) -> Vec<PlantPoint> {
         }
         Finding::OutOfReach { plant, .. } => plant.iter().cloned().collect(),
         Finding::CrossedLimits { .. } | Finding::StaticGain { .. } => vec![],
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use phea_qft::design::diagnose;
-
-    use super::*;
-    use crate::design::design_problem;
-    use crate::robust::robust_problem;
-    use crate::source::Memory;
-
-    const CONTRADICTORY: &str = include_str!("../../../../examples/qft/mistakes/contradictory_bounds.toml");
-
-    #[test]
-    fn two_limits_that_no_loop_keeps_together_are_explained() {
-        let source = Memory::default().with("mistake.toml", CONTRADICTORY);
-        let project = crate::project::read(&source, "mistake.toml", &[], &[]).unwrap().project;
-        let given = robust_problem(&source, &project).unwrap();
-        let found = explanations(&diagnose(&design_problem(&project, &given).unwrap()));
-        let impossible = found.iter().find(|one| one.is_impossible && one.specifications == [0, 1]).unwrap();
-        // |S| <= w/|jw + 30| up to 10 rad/s and |T| <= 5/|jw + 5| from 8 rad/s: both hold there alone
-        assert!((8.0..=10.0).contains(&impossible.frequency_rad_per_s.unwrap()), "{impossible:?}");
-        assert!(impossible.relaxation_db.unwrap() > 0.0 && impossible.sentence.contains("rad/s"));
-        assert!(!impossible.plants.is_empty());
-        assert!(found.is_sorted_by_key(|one| !one.is_impossible));
     }
 }

@@ -4,8 +4,8 @@ use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use serde::Serialize;
 
-use crate::project::{Transfer, Variable};
-use crate::quantity::{RATIO, display};
+use super::project::{Transfer, Variable};
+use super::quantity::{RATIO, display};
 
 /// k Π(s - z)/Π(s - p) in JSON, or the same in z.
 ///

@@ -1,5 +1,8 @@
 //! Step responses of a family inside the band between the step responses of the limits.
 
+mod edge;
+
+use self::edge::settling;
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_dash, series_role};
 use super::legend::LegendEntry;
@@ -69,21 +72,6 @@ fn points(series: &TimeSeries, unit: DisplayUnit) -> Vec<(f64, f64)> {
     series.times_s.iter().map(|time| unit.of(*time)).zip(series.values.iter().copied()).collect()
 }
 
-/// The edge of the band that a limit's response allows: itself until it is farthest out, then the farthest out that it will
-/// still be. `outwards` is 1 for the upper limit and -1 for the lower.
-fn settling(mut points: Vec<(f64, f64)>, outwards: f64) -> Vec<(f64, f64)> {
-    points.retain(|point| point.0.is_finite() && point.1.is_finite());
-    let mut reach = f64::NEG_INFINITY;
-    let farthest = points.iter().map(|point| outwards * point.1).fold(reach, f64::max);
-    for point in points.iter_mut().rev() {
-        if reach < farthest {
-            reach = reach.max(outwards * point.1);
-            point.1 = outwards * reach;
-        }
-    }
-    points
-}
-
 fn marks(input: &FamilyStepInput, unit: DisplayUnit) -> Vec<Mark> {
     let line = |series: &TimeSeries, stroke: Stroke| Mark::Line { points: points(series, unit), stroke };
     let mut marks = Vec::new();
@@ -113,20 +101,4 @@ fn legend(input: &FamilyStepInput) -> Vec<LegendEntry> {
         legend.push(LegendEntry { stroke, ..LegendEntry::area("band of the limits", BAND) });
     }
     legend
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_band_closes_with_what_a_limit_still_reaches() {
-        let edge = |values: &[f64], outwards| -> Vec<f64> {
-            let points = values.iter().enumerate().map(|(time, value)| (time as f64, *value)).collect();
-            settling(points, outwards).into_iter().map(|point| point.1).collect()
-        };
-        assert_eq!(edge(&[0.0, 1.2, 0.9, 1.05, 1.0], 1.0), [0.0, 1.2, 1.05, 1.05, 1.0]);
-        assert_eq!(edge(&[0.0, 0.5, 0.4, 1.0], -1.0), [0.0, 0.4, 0.4, 1.0]);
-        assert_eq!(edge(&[0.0, f64::NAN, 1.0], 1.0), [0.0, 1.0]);
-    }
 }

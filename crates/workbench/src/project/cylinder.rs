@@ -173,23 +173,3 @@ impl Friction {
         v.optional(k, &mut self.bristle_damping);
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn areas_come_from_diameters_or_stand_for_themselves() {
-        let diameters =
-            Cylinder { piston_diameter: Some(0.05), rod_diameter: Some(0.022), ..Cylinder::default() };
-        let [area_a, area_b] = diameters.effective_areas_m2();
-        // ORIGIN: analytic, pi/4 (0.05^2 - 0.022^2) = 1.58336e-3
-        assert!((area_a - 1.58336e-3).abs() < 0.5e-8 && area_a == area_b);
-        // An area is what the pressure acts on: a rod given beside it takes nothing away.
-        let area = Cylinder { piston_area: Some(1.583e-3), rod_diameter: Some(0.022), ..Cylinder::default() };
-        assert_eq!(area.effective_areas_m2(), [1.583e-3; 2]);
-        assert!((area.piston_diameter_m() - 0.05).abs() < 1e-5);
-        let areas = Cylinder { piston_areas: Some([2e-3, 1e-3]), ..Cylinder::default() };
-        assert_eq!(areas.effective_areas_m2(), [2e-3, 1e-3]);
-    }
-}

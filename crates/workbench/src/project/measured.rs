@@ -35,8 +35,9 @@ const fn signal(name: &'static str) -> (&'static str, &'static str) {
     (name, name)
 }
 
-/// Every column of a simulation's table but time.
-pub(crate) static MEASURABLE: [(&str, &str); 27] = [
+/// The signals that can be measured, each as a project names it and as the column of a simulation's table is called: every
+/// column but time.
+pub static MEASURABLE: [(&str, &str); 27] = [
     signal("force_n"),
     signal("reference_n"),
     signal("control_v"),

@@ -46,7 +46,14 @@ pub fn display(value: f64, dimension: &Dimension, significant_digits: usize) -> 
 }
 
 /// The unit that people expect of such a value, for several numbers in one unit.
-pub(crate) fn fitting(value: f64, dimension: &Dimension) -> DisplayUnit {
+///
+/// # Example
+/// ```
+/// use phea_workbench::quantity::{LENGTH, fitting};
+/// let unit = fitting(0.25, &LENGTH);
+/// assert_eq!((unit.symbol, unit.number(0.005, 2)), ("mm", "5.0".to_string()));
+/// ```
+pub fn fitting(value: f64, dimension: &Dimension) -> DisplayUnit {
     match fitting_unit(value, dimension) {
         Some(symbol) => DisplayUnit { symbol, in_si: factor(symbol, dimension) },
         None => DisplayUnit { symbol: dimension.si, in_si: 1.0 },

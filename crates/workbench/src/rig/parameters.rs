@@ -81,30 +81,3 @@ pub(super) fn linear(parameters: &[ResolvedParameter], derived: &LinearParameter
     }
     linear
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_parameter_of_the_project_has_its_field() {
-        let one = 1.0;
-        let mut parameters = LinearParameters {
-            useful_area: one,
-            moving_mass: one,
-            viscous_friction: one,
-            flow_gain: one,
-            flow_pressure_coefficient: one,
-            hydraulic_stiffness: one,
-            sensor_stiffness: one,
-            valve_natural_frequency: one,
-            valve_damping_ratio: one,
-        };
-        for parameter in &LINEAR_PARAMETERS {
-            let slot = parameter_field(&mut parameters, parameter.key.name);
-            // Each field is reached once: a second key for it would find 2.
-            assert_eq!(slot.as_deref(), Some(&1.0), "{}", parameter.key.name);
-            *slot.unwrap() = 2.0;
-        }
-    }
-}

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::check::{self, CheckRow};
-use super::files::state_names;
+use super::file_names::state_names;
 use super::frequency::{self, FrequencyResponse};
 use super::metrics::Measured;
 use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, Overlay, ScenarioRun, Window};

@@ -2,7 +2,7 @@
 
 use phea_hydraulics::machine::SIGNALS;
 
-use super::{Look, Record};
+use super::record::{Look, Record};
 
 /// Names of what the control loop tells of itself beside reference and command, in the order of [`Record::of_loop`].
 ///
@@ -131,7 +131,8 @@ mod tests {
     fn every_column_can_be_measured() {
         let mut columns = Columns::new(true).names();
         columns.remove(0);
-        let mut measurable: Vec<&str> = crate::project::MEASURABLE.iter().map(|(name, _)| *name).collect();
+        let mut measurable: Vec<&str> =
+            super::super::project::MEASURABLE.iter().map(|(name, _)| *name).collect();
         columns.sort_unstable();
         measurable.sort_unstable();
         assert_eq!(columns, measurable);

@@ -4,9 +4,8 @@ use std::cell::RefCell;
 
 use phea_dynamics::simulation::{Piece, Profile, Quartic, Stretch};
 
-use super::bench::{Bench, Control};
-use super::digital::Samples;
-use super::sums::{self, Sum};
+use super::samples::Samples;
+use super::sum::Sum;
 use super::tally::{Command, Passed, Tally};
 use super::{Metrics, Window};
 
@@ -17,7 +16,7 @@ const PARTS: u32 = 4;
 const SAME: f64 = 1e-9;
 
 /// Where the command comes from.
-enum Commanded<'a> {
+pub(super) enum Commanded<'a> {
     /// A continuous controller, which wants this and is held within this limit in V; or what is stated in an open loop.
     Continuously(Sum, f64),
     /// What a sampled controller gave out last.
@@ -38,28 +37,8 @@ pub(crate) struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    /// Of the loop of a bench whose observer wants these states, in windows in the order of their starts; the band of settling times
-    /// in percent.
-    pub(crate) fn of(
-        bench: &Bench,
-        wanted: &[usize],
-        samples: &'a RefCell<Samples>,
-        reference: &'a Profile,
-        (windows, band): (&[Window], f64),
-    ) -> Follower<'a> {
-        let commanded = match &bench.control {
-            Control::Continuous(closed) => {
-                Commanded::Continuously(sums::command(bench, wanted), closed.limit())
-            }
-            Control::Open(_) => Commanded::Continuously(sums::command(bench, wanted), f64::INFINITY),
-            Control::Sampled(_) => Commanded::Sampled(samples),
-        };
-        let reference = if matches!(bench.control, Control::Open(_)) { None } else { Some(reference) };
-        let [_, inputs] = sums::size(&bench.control);
-        Follower::new(sums::force(bench, wanted), commanded, inputs, reference, (windows, band))
-    }
-
-    fn new(
+    /// Of a loop with so many inputs, in windows in the order of their starts; the band of settling times in percent.
+    pub(super) fn new(
         force: Sum,
         commanded: Commanded<'a>,
         inputs: usize,

@@ -1,6 +1,6 @@
 //! What is measured of a run: one window for each step of the reference and for the motion of the load.
 
-use crate::project::SignalKind;
+use super::project::SignalKind;
 
 /// Part of a run that is looked at by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,10 +9,12 @@ use phea_hydraulics::machine::INDICATORS;
 
 use super::bench::{Bench, Control};
 use super::course::Course;
-use super::digital::{Digital, Memory, Samples};
-use super::look::{Looking, Record, Sighted};
+use super::digital::{Digital, Memory};
+use super::look::{Looking, Sighted};
 use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
+use super::record::Record;
+use super::samples::Samples;
 use super::saved::{self, SavedState};
 use super::{Check, SimulateError, Table, Window};
 use crate::project::Scenario;
@@ -267,8 +269,8 @@ fn looks_per_row(scenario: &Scenario) -> usize {
     wanted.min((MOST_LOOKS / rows).floor().max(1.0)) as usize
 }
 
-/// The limit of the command, beside [`INDICATORS`].
-pub(crate) const COMMAND_LIMIT: &str = "command_limit";
+/// What an [`Occurrence`] is called while the command is at its limit, beside the names of what a machine tells of itself.
+pub const COMMAND_LIMIT: &str = "command_limit";
 
 /// Inputs at time zero: those before the machine's, its ground, the force from outside, and the waves under way.
 fn inputs_at_start(course: &Course, mut first: Vec<f64>, system: &impl System<f64>) -> Vec<f64> {

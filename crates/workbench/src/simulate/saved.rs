@@ -21,7 +21,7 @@ use phea_dynamics::simulation::{Status, System};
 use super::bench::{Bench, Control};
 use super::course::Course;
 use super::digital::Memory;
-use super::files::number;
+use super::shortest_number::number;
 use crate::project::{Findings, Found, Node, Project, Report, TreeValue, read_tree};
 use crate::source::Source;
 

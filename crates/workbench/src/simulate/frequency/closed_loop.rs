@@ -19,7 +19,8 @@ use crate::project::Project;
 use crate::simulate::SimulateError;
 use crate::simulate::bench::{Bench, Control, Sampled};
 use crate::simulate::course::under_way;
-use crate::simulate::digital::{Digital, Samples, Waking};
+use crate::simulate::digital::{Digital, Waking};
+use crate::simulate::samples::Samples;
 
 /// Fewest samples of a period: a command that changes its sign at each has no other form than a square.
 const FEWEST_SAMPLES: f64 = 4.0;

@@ -1,20 +1,29 @@
 //! What is printed and written of a design, whatever found it: a design made by hand.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::TransferFunction;
 use phea_qft::audit::AuditRun;
+use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantisation::{CoefficientFormat, rounded};
 use phea_qft::design::{
-    BindingLimit, Conflict, ControllerChoice, Design, DesignRound, DesignStatus, PrefilterChoice, Relaxation,
+    BindingLimit, Conflict, ControllerChoice, Design, DesignProblem, DesignRound, DesignStatus,
+    PrefilterChoice, Relaxation,
 };
 use phea_qft::loop_shaping::{Part, Structure};
 use phea_qft::verification::{PlantPoint, TOLERANCE_DB, TrackingJudgement, Verdict};
-
-use super::*;
-use crate::command::{Request, answer};
-use crate::source::Memory;
+use phea_workbench::audit::audit_project;
+use phea_workbench::command::{Request, answer};
+use phea_workbench::control::controller;
+use phea_workbench::design::{
+    DESIGNED_PROJECT, ProjectDesign, Side, design_options, design_problem, files, json, stage_files, text,
+};
+use phea_workbench::project::{self, FeedForward, Loaded, Prefilter, Quantization, Transfer};
+use phea_workbench::robust::robust_problem;
+use phea_workbench::source::Memory;
 
 /// k/(s (s + 10)) with two specifications and a law that is too slow for the second.
 const PROJECT: &str = "schema = 1\ntitle = \"drive\"\n\n[plant]\nnumerator = \"k\"\ndenominator = \"s*(s + 10)\"\n\n\
@@ -31,11 +40,7 @@ fn loaded(text: &str) -> (Memory, Loaded) {
 }
 
 /// 5 (s/50 + 1)/(s/500 + 1) and a prefilter of first order, as if a search had found them for coefficients that are kept so.
-fn design(
-    problem: &phea_qft::design::DesignProblem,
-    coefficients: CoefficientFormat,
-    status: DesignStatus,
-) -> Design {
+fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: DesignStatus) -> Design {
     let lead = Element::LeadLag { zero_frequency: 50.0, pole_frequency: 500.0 };
     let law = Controller {
         feedback: Compensator::new(vec![Element::Gain(5.0), lead]),
@@ -85,15 +90,14 @@ fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
     let (source, loaded) = loaded(text);
     let given = robust_problem(&source, &loaded.project).unwrap();
     let law = controller(&loaded.project).unwrap().unwrap();
-    let audit = audit_problem(&given, &mut |_| true).unwrap();
+    let audit = audit_project(&source, &loaded.project, &mut |_| true).unwrap();
     let published = Side::new(law, given.clone(), audit).unwrap();
     let problem = design_problem(&loaded.project, &given).unwrap();
     let options = design_options(&loaded.project, &given, Some(7)).unwrap();
     assert_eq!(options.controller, ControllerChoice::Grow { maximum_order: 4 });
     assert_eq!(options.prefilter, PrefilterChoice::Grow { maximum_order: 3 });
-    let view =
-        told(&loaded.project, &given, &problem, design(&problem, options.coefficients, status), options)
-            .unwrap();
+    let design = design(&problem, options.coefficients, status);
+    let view = ProjectDesign::new(&loaded.project, &given, &problem, design, options).unwrap();
     (source, loaded, ProjectDesign { published: Some(published), ..view })
 }
 
@@ -202,8 +206,9 @@ fn a_prefilter_that_acts_between_samples_goes_on_doing_so() {
 #[test]
 fn every_stage_is_a_file() {
     let (_, loaded, mut view) = view(&PROJECT.replace("TIMING\n", ""), DesignStatus::Met);
-    let names =
-        |files: Vec<crate::answer::OutputFile>| files.into_iter().map(|file| file.name).collect::<Vec<_>>();
+    let names = |files: Vec<phea_workbench::answer::OutputFile>| {
+        files.into_iter().map(|file| file.name).collect::<Vec<_>>()
+    };
     let files = stage_files(&loaded, &view, &mut |_| true).unwrap();
     let content = |name: &str| {
         let file = files.iter().find(|file| file.name == name).unwrap_or_else(|| panic!("no {name}"));
@@ -285,4 +290,37 @@ fn what_the_computer_rounds_is_part_of_the_design() {
     let verified = answer(&source, &loaded, &[], &Request::Verify).unwrap().json;
     let verified: serde_json::Value = serde_json::from_str(&verified).unwrap();
     assert_eq!(object["verification"]["specifications"], verified["specifications"]);
+}
+
+#[test]
+fn what_a_setting_says_beside_the_law_is_written_with_it() {
+    let (_, mut loaded, mut view) = view(&PROJECT.replace("TIMING\n", ""), DesignStatus::Met);
+    let text = "[controller]\ngain = 1\n[controller.quantization]\ncommand_bits = 8\n[prefilter]\ngain = 1\n";
+    let transfer = Transfer { gain: Some(2.0), ..Transfer::default() };
+    view.declared_controller = project::Controller {
+        transfer: transfer.clone(),
+        sample_time: Some(1e-3),
+        quantization: Some(Quantization { command_bits: 12, ..Quantization::default() }),
+        load_velocity_feed_forward: Some(FeedForward { gain: Some(3.0) }),
+        ..project::Controller::default()
+    };
+    view.declared_prefilter = Some(Prefilter { transfer, continuous: true, ..Prefilter::default() });
+    loaded.bytes = text.as_bytes().to_vec();
+    let mut written = |settings: &[&str]| {
+        loaded.settings = settings.iter().map(|setting| setting.to_string()).collect();
+        String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap()
+    };
+    // without a setting the text says it already
+    assert_eq!(written(&[]), text.replace("gain = 1", "gain = 2"));
+    let set = written(&["controller.sample_time=1e-3", "prefilter.continuous=true"]);
+    for line in
+        ["sample_time = ", "quantization = { command_bits = 12", "load_velocity_feed_forward = { gain = 3 }"]
+    {
+        assert_eq!(set.matches(line).count(), 1, "{line} in\n{set}");
+    }
+    assert!(set.ends_with("[prefilter]\ngain = 2\ncontinuous = true\n"), "{set}");
+    assert!(!set.contains("command_bits = 8") && !set.contains("[controller.quantization]"), "{set}");
+    let pasted = self::text(&loaded, &view).unwrap();
+    assert!(pasted.contains("load_velocity_feed_forward = {"), "{pasted}");
+    assert!(pasted.contains("[prefilter]\ngain = 2\ncontinuous = true\n\n"), "{pasted}");
 }

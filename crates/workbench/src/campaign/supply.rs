@@ -1,0 +1,69 @@
+//! The runs of a campaign that are still to be driven, and to whom they are given.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+/// The runs that nobody has taken yet.
+pub(super) struct Supply {
+    pub(super) runs: Range<u64>,
+    /// Those among them whose rows are there already.
+    pub(super) known: BTreeSet<u64>,
+    /// Threads that drive nothing.
+    pub(super) idle: usize,
+}
+
+impl Supply {
+    /// How many there are.
+    pub(super) fn left(&mut self) -> u64 {
+        while self.known.first() == Some(&self.runs.start) && self.runs.start < self.runs.end {
+            self.known.pop_first();
+            self.runs.start += 1;
+        }
+        (self.runs.end - self.runs.start).saturating_sub(self.known.len() as u64)
+    }
+
+    /// The next run for a thread that drives so many, and `works` where it has taken one. The last runs are left to threads that
+    /// drive none: a lane costs little beside others, but a thread of its own is quicker.
+    pub(super) fn take(&mut self, driving: usize, works: &mut bool) -> Option<u64> {
+        let left = self.left();
+        if left == 0 || (driving > 0 && left <= self.idle as u64) {
+            return None;
+        }
+        if !std::mem::replace(works, true) {
+            self.idle = self.idle.saturating_sub(1);
+        }
+        let run = self.runs.start;
+        self.runs.start += 1;
+        Some(run)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn supply(runs: u64, idle: usize) -> Supply {
+        Supply { runs: 0..runs, known: BTreeSet::new(), idle }
+    }
+
+    /// As many runs as threads: each thread drives one, though the first could take all into its lanes.
+    #[test]
+    fn every_thread_drives_before_lanes_are_filled() {
+        let (mut supply, mut works) = (supply(6, 3), [false; 3]);
+        let taken: Vec<Option<u64>> = (0..4).map(|lane| supply.take(lane, &mut works[0])).collect();
+        assert_eq!(taken, [Some(0), Some(1), Some(2), Some(3)]);
+        assert_eq!((supply.take(0, &mut works[1]), supply.take(1, &mut works[1])), (Some(4), None));
+        assert_eq!((supply.take(0, &mut works[2]), supply.take(1, &mut works[2])), (Some(5), None));
+        assert_eq!((supply.left(), supply.idle), (0, 0));
+    }
+
+    #[test]
+    fn runs_whose_rows_are_there_are_passed_over() {
+        let mut supply = supply(5, 1);
+        supply.known = BTreeSet::from([0, 2, 4]);
+        let mut works = false;
+        assert_eq!(supply.left(), 2);
+        let taken: Vec<u64> = std::iter::from_fn(|| supply.take(0, &mut works)).collect();
+        assert_eq!(taken, [1, 3]);
+    }
+}

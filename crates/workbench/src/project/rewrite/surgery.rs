@@ -1,0 +1,161 @@
+//! Keys of one table of a text taken out, and lines put in their place.
+
+use super::statement::{Content, Statement, entries, statements};
+
+/// Keys of [controller] and [prefilter] that make a law.
+pub(super) const LAW: [&str; 7] =
+    ["numerator", "denominator", "gain", "zeros", "poles", "domain", "elements"];
+
+/// Keys with their values as TOML.
+pub(super) type Lines = Vec<(String, String)>;
+
+/// The text with these keys of a top-level table taken out and these lines in their place.
+pub(super) fn replaced(text: &str, table: &str, keys: &[&str], lines: &[(String, String)]) -> String {
+    let end = if text.contains("\r\n") { "\r\n" } else { "\n" };
+    let mut surgery =
+        Surgery { table, keys, lines, end, out: String::new(), inserted: false, section: vec![] };
+    for statement in statements(text) {
+        surgery.take(text.get(statement.range.clone()).unwrap_or_default(), &statement);
+    }
+    if !surgery.inserted {
+        surgery.end_line();
+        surgery.out.push_str(&format!("{end}[{table}]{end}"));
+        surgery.insert("");
+    }
+    surgery.out
+}
+
+/// A text on its way from statement to statement.
+struct Surgery<'a> {
+    table: &'a str,
+    /// Keys of it that are taken out.
+    keys: &'a [&'a str],
+    lines: &'a [(String, String)],
+    /// End of a line.
+    end: &'static str,
+    out: String,
+    inserted: bool,
+    /// Path of the present table.
+    section: Vec<String>,
+}
+
+impl Surgery<'_> {
+    fn take(&mut self, written: &str, statement: &Statement) {
+        match &statement.content {
+            Content::Nothing => self.out.push_str(written),
+            Content::Header(path) => {
+                self.section = path.clone();
+                if !self.is_replaced(path) {
+                    self.out.push_str(written);
+                }
+                if path.len() == 1 && path.first().is_some_and(|first| first == self.table) {
+                    self.end_line();
+                    self.insert("");
+                }
+            }
+            Content::Value { path, value } => {
+                let whole = [self.section.as_slice(), path].concat();
+                let is_table = whole.len() == 1 && whole.first().is_some_and(|first| first == self.table);
+                if is_table {
+                    return self.inline(written, value.clone());
+                }
+                // dotted keys above every header
+                let dotted =
+                    self.section.is_empty() && whole.first().is_some_and(|first| first == self.table);
+                if dotted && !self.inserted {
+                    self.insert(&format!("{}.", self.table));
+                }
+                if !self.is_replaced(&whole) {
+                    self.out.push_str(written);
+                }
+            }
+        }
+    }
+
+    /// Whether a key or table is part of what is replaced.
+    fn is_replaced(&self, path: &[String]) -> bool {
+        matches!(path, [table, key, ..] if table == self.table && self.keys.contains(&key.as_str()))
+    }
+
+    fn insert(&mut self, prefix: &str) {
+        self.inserted = true;
+        for (key, value) in self.lines {
+            self.out.push_str(&format!("{prefix}{key} = {value}{}", self.end));
+        }
+    }
+
+    /// `controller = { ... }`: what stays of it and the new entries, in one line.
+    fn inline(&mut self, written: &str, value: std::ops::Range<usize>) {
+        self.inserted = true;
+        let kept = entries(written.get(value.clone()).unwrap_or_default());
+        let kept =
+            kept.into_iter().filter(|(key, _)| !self.keys.contains(&key.as_str())).map(|(_, text)| text);
+        let new = self.lines.iter().map(|(key, value)| format!("{key} = {value}"));
+        let all: Vec<String> = new.chain(kept).collect();
+        let (before, after) = (written.get(..value.start), written.get(value.end..));
+        let text =
+            format!("{}{{ {} }}{}", before.unwrap_or_default(), all.join(", "), after.unwrap_or_default());
+        self.out.push_str(&text);
+    }
+
+    fn end_line(&mut self) {
+        if !self.out.is_empty() && !self.out.ends_with('\n') {
+            self.out.push_str(self.end);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn law() -> Lines {
+        [("gain", "2"), ("poles", "[0]")].map(|(key, value)| (key.to_string(), value.to_string())).to_vec()
+    }
+
+    fn rewritten(text: &str) -> String {
+        replaced(text, "controller", &LAW, &law())
+    }
+
+    #[test]
+    fn a_table_keeps_its_other_keys_and_comments() {
+        let text = "a = \"[controller]\"\n[controller]  # G\nnumerator = \"s\"  # old\n# why\ndelay = \"1 ms\"\ndenominator = '''\ns'''\n\n[x]\ngain = 1\n";
+        let expected = "a = \"[controller]\"\n[controller]  # G\ngain = 2\npoles = [0]\n# why\ndelay = \"1 ms\"\n\n[x]\ngain = 1\n";
+        assert_eq!(rewritten(text), expected);
+    }
+
+    #[test]
+    fn elements_go_in_every_form() {
+        let expected = "[controller]\ngain = 2\npoles = [0]\ndelay = 1\n[x]\nelements = 1\n";
+        for elements in
+            ["elements = [\n  { kind = \"gain\", value = 1 }, # one\n  { kind = \"integrator\" },\n]\n", ""]
+        {
+            let text = format!("[controller]\n{elements}delay = 1\n[x]\nelements = 1\n");
+            assert_eq!(rewritten(&text), expected);
+        }
+        let tables = "[controller]\ndelay = 1\n[[controller.elements]]\nkind = \"gain\"\nvalue = 1\n[[controller . \"elements\"]]\nkind = \"integrator\"\n[x]\nelements = 1\n";
+        assert_eq!(rewritten(tables), expected);
+    }
+
+    #[test]
+    fn dotted_inline_and_absent_tables() {
+        assert_eq!(
+            rewritten("controller.numerator = \"1\"\ncontroller.delay = 1\n[x]\n"),
+            "controller.gain = 2\ncontroller.poles = [0]\ncontroller.delay = 1\n[x]\n"
+        );
+        assert_eq!(
+            rewritten("controller = { numerator = \"1, 2\", delay = 1, zeros = [1, [2, 3]] } # c\n[x]\n"),
+            "controller = { gain = 2, poles = [0], delay = 1 } # c\n[x]\n"
+        );
+        assert_eq!(rewritten("[x]\ny = 1"), "[x]\ny = 1\n\n[controller]\ngain = 2\npoles = [0]\n");
+        assert_eq!(
+            rewritten("[x]\r\ny = 1\r\n"),
+            "[x]\r\ny = 1\r\n\r\n[controller]\r\ngain = 2\r\npoles = [0]\r\n"
+        );
+        // a table within it stays
+        assert_eq!(
+            rewritten("[controller.q]\ngain = 1\n"),
+            "[controller.q]\ngain = 1\n\n[controller]\ngain = 2\npoles = [0]\n"
+        );
+    }
+}

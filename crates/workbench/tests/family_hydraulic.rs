@@ -1,0 +1,198 @@
+//! The family of an actuator against the linear model of its rig.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
+use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
+use phea_qft::family::Family;
+use phea_workbench::family::{FamilyError, family};
+use phea_workbench::project::{self, LINEAR_PARAMETERS, Project, Random, Uncertain};
+use phea_workbench::rig::Rig;
+use phea_workbench::source::Memory;
+
+fn loaded(text: &str) -> Project {
+    let source = Memory::default().with("p.toml", text);
+    project::read(&source, "p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}")).project
+}
+
+const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+
+/// The plant of the family, of which few members are looked at: their grid may be large.
+fn recorded(project: &Project) -> Result<UncertainPlant, FamilyError> {
+    let few = project::Family { random: Some(Random { count: 1, seed: 1 }), ..project::Family::default() };
+    let project = Project { family: Some(few), ..project.clone() };
+    match family(&project, &Memory::default())? {
+        Family::Uncertain(family) => Ok(family.plant().clone()),
+        Family::Measured(_) => panic!("nothing was measured"),
+    }
+}
+
+/// Values within the ranges: multiples of the golden ratio fill the unit interval evenly.
+fn points(plant: &UncertainPlant) -> Vec<Vec<f64>> {
+    let mut share = 0.0_f64;
+    let mut value = |parameter: &UncertainParameter| {
+        share = (share + 0.618_033_988_75).fract();
+        parameter.minimum + share * (parameter.maximum - parameter.minimum)
+    };
+    (0..50).map(|_| plant.parameters().iter().map(&mut value).collect()).collect()
+}
+
+/// The recorded coefficients are those of the equations run with numbers, inside the box and at its corners.
+#[test]
+fn the_recorded_rig_is_the_linear_model() {
+    let project = loaded(HOSE);
+    let plant = recorded(&project).unwrap();
+    let rig = Rig::new(&project).unwrap();
+    assert_eq!(plant.coefficients(&plant.nominal()), linear_model_coefficients(&rig.linear));
+    for values in points(&plant) {
+        let mut stated = project.clone();
+        for (uncertain, value) in stated.uncertainty.iter_mut().zip(&values) {
+            uncertain.nominal = *value;
+        }
+        let linear = Rig::new(&stated).unwrap().linear;
+        assert_eq!(plant.coefficients(&values), linear_model_coefficients(&linear));
+    }
+}
+
+/// A project whose `[linear]` and `[uncertainty]` are replaced.
+fn with_uncertain(text: &str, ranges: &[(&str, [f64; 3])]) -> String {
+    let start = text.find("[uncertainty]").unwrap();
+    let end = text.find("[[specification]]").unwrap_or(text.len());
+    let lines: String = ranges
+        .iter()
+        .map(|(name, [low, nominal, high])| {
+            format!("\"{name}\" = {{ nominal = {nominal:e}, minimum = {low:e}, maximum = {high:e} }}\n")
+        })
+        .collect();
+    format!("{}[uncertainty]\n{lines}{}", &text[..start], &text[end..])
+}
+
+/// Every path, recorded, gives what the whole rig gives when the project itself states the number.
+#[track_caller]
+fn follows_the_rig(text: &str, ranges: &[(&str, [f64; 3])]) {
+    let project = loaded(&with_uncertain(text, ranges));
+    let plant = recorded(&project).unwrap();
+    for values in points(&plant) {
+        let mut stated = project.clone();
+        stated.uncertainty.clear();
+        for (parameter, value) in plant.parameters().iter().zip(&values) {
+            stated = stated.with_number(&parameter.name, *value).unwrap();
+        }
+        let expected = linear_model_coefficients(&Rig::new(&stated).unwrap().linear);
+        let found = plant.coefficients(&values);
+        let [found, expected] = [found, expected].map(|member| {
+            let disturbance = member.disturbance.unwrap();
+            [member.command.numerator, member.command.denominator, disturbance.numerator].concat()
+        });
+        for (one, other) in found.iter().zip(&expected) {
+            assert!((one - other).abs() <= 1e-12 * other.abs(), "{values:?}: {found:?} {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn physical_paths_reach_the_model_as_through_the_rig() {
+    follows_the_rig(
+        HOSE,
+        &[
+            ("cylinder.moving_mass", [10.0, 13.1, 20.0]),
+            ("cylinder.friction.viscous", [50.0, 100.0, 3e4]),
+            ("cylinder.piston_diameter", [0.049, 0.05, 0.052]),
+            ("cylinder.rod_diameter", [0.02, 0.022, 0.024]),
+            ("cylinder.stroke", [0.3, 0.5, 0.6]),
+            ("force_sensor.stiffness", [1e7, 2e7, 1e8]),
+            ("valve.natural_frequency", [879.0, 1099.0, 1319.0]),
+            ("valve.damping_ratio", [0.7, 0.9, 1.1]),
+            ("fluid.bulk_modulus", [1e9, 1.45e9, 1.6e9]),
+            ("line.length", [0.5, 1.5, 3.0]),
+            ("line.bore", [0.01, 0.0127, 0.0159]),
+            ("line.dynamic_stiffening.nominal", [4.0, 5.0, 5.0]),
+        ],
+    );
+    let asymmetric = include_str!("project_valid/asymmetric.toml");
+    let free = asymmetric.replace("hydraulic_stiffness =", "# ").replace("flow_gain = \"3.4", "# \"");
+    follows_the_rig(
+        &free,
+        &[
+            ("fluid.entrained_air", [0.0, 0.005, 0.02]),
+            ("fluid.polytropic_exponent", [1.0, 1.0, 1.4]),
+            ("line.a.length", [0.5, 1.2, 1.5]),
+            ("line.b.length", [0.3, 0.4, 0.5]),
+            ("line.b.pipe.bore", [0.008, 0.01, 0.012]),
+            ("line.b.pipe.wall_thickness", [0.001, 0.002, 0.003]),
+            ("line.b.pipe.youngs_modulus", [7e10, 2.06e11, 2.1e11]),
+            ("line.a.dynamic_stiffening", [1.0, 4.5, 5.0]),
+        ],
+    );
+    let volumes = include_str!("project_valid/volumes.toml");
+    let free = volumes.replace("piston_area = \"15.83 cm2\"\n", "");
+    follows_the_rig(
+        &free,
+        &[
+            ("cylinder.piston_area", [1e-3, 1.583e-3, 2e-3]),
+            ("cylinder.dead_volume", [0.0, 0.0, 1e-4]),
+            ("line.volume", [1e-4, 1.9e-4, 2e-4]),
+            ("line.effective_bulk_modulus", [2e8, 2.6e8, 3e8]),
+        ],
+    );
+}
+
+// ORIGIN: written by hand, the numbers are those of examples/ybitu/hose.toml
+#[test]
+fn a_path_without_a_formula_is_refused_with_what_to_use_instead() {
+    let refused = |path: &str, value: f64| {
+        let text = with_uncertain(HOSE, &[(path, [0.9 * value, value, 1.1 * value])]);
+        recorded(&loaded(&text)).unwrap_err().to_string()
+    };
+    assert_eq!(
+        refused("supply.pressure", 70e5),
+        "[uncertainty] `supply.pressure`: it moves the operating point, whose pressures follow from no formula: \
+         give a range to `flow_gain`, `flow_pressure_coefficient`, `hydraulic_stiffness` instead"
+    );
+    assert_eq!(
+        refused("fluid.density", 870.0),
+        "[uncertainty] `fluid.density`: it does not enter the linear model"
+    );
+    assert_eq!(
+        refused("line.volumetric_expansion_slope", 2.236e-12),
+        "[uncertainty] `line.volumetric_expansion_slope`: no formula carries it into the linear model: \
+         give a range to `hydraulic_stiffness` instead"
+    );
+}
+
+/// Each field of the linear model belongs to one key, and each key has one.
+#[test]
+fn every_parameter_of_the_project_has_its_field() {
+    let mut project = loaded(HOSE);
+    let numbered = |(number, name): (u32, &'static str)| Uncertain {
+        name: name.to_string(),
+        nominal: f64::from(number),
+        ..Uncertain::default()
+    };
+    let names = LINEAR_PARAMETERS.iter().map(|parameter| parameter.key.name);
+    project.uncertainty = (1..).zip(names).map(numbered).collect();
+    let LinearParameters {
+        useful_area,
+        moving_mass,
+        viscous_friction,
+        flow_gain,
+        flow_pressure_coefficient,
+        hydraulic_stiffness,
+        sensor_stiffness,
+        valve_natural_frequency,
+        valve_damping_ratio,
+    } = Rig::new(&project).unwrap().linear;
+    let mut found = [
+        useful_area,
+        moving_mass,
+        viscous_friction,
+        flow_gain,
+        flow_pressure_coefficient,
+        hydraulic_stiffness,
+        sensor_stiffness,
+        valve_natural_frequency,
+        valve_damping_ratio,
+    ];
+    found.sort_by(f64::total_cmp);
+    assert_eq!(found, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
+}
