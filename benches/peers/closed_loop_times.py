@@ -145,7 +145,8 @@ def whole_commands():
     phea = [name for name in phea if name][-1]
     answers = BUILT / "answers"
     project = ROOT / "examples" / "benchmark" / "closed_loop.toml"
-    commands = {"phea simulate --out": [phea, "simulate", project, "--out", answers]}
+    told = [phea, "simulate", project, "--out", answers]
+    commands = {"phea simulate --no-figures --out": [*told, "--no-figures"], "phea simulate --out": told}
     for method in ("bdf_stability", "bdf", "adams"):
         commands[f"CVODE {method} 1e-6"] = [BUILT / "cvode_closed_loop", method, "1e-6", "repeats=1", f"output={BUILT / 'five.csv'}"]
     best = dict.fromkeys(commands, np.inf)

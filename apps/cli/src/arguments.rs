@@ -71,6 +71,9 @@ pub(crate) enum Command {
         /// How tables are written: csv or parquet
         #[arg(long, value_name = "FORMAT", requires = "out")]
         table: Option<TableFormat>,
+        /// Write no figures beside the tables: they take most of the time of a short run
+        #[arg(long, requires = "out")]
+        no_figures: bool,
         /// Instead of the scenarios, the machine's response to sines around its operating point, beside the linear plant
         #[arg(long)]
         frequency_response: bool,

@@ -38,6 +38,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Simulate {
             common,
             table,
+            no_figures,
             frequency_response,
             frequencies,
             amplitude,
@@ -47,7 +48,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             let options = FrequencyOptions { frequencies, amplitude, reference_amplitude };
             let request = Request::SimulateAs(SimulateRequest {
                 table: table.unwrap_or_default(),
-                figures: common.out.is_some(),
+                figures: common.out.is_some() && !no_figures,
                 frequency_response: frequency_response.then_some(options),
                 check,
             });
