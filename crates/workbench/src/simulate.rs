@@ -70,6 +70,7 @@ use crate::command::{Progress, Watch};
 use crate::control::ControlError;
 use crate::linear_loop::LoopError;
 use crate::project::{self, Project, Report};
+use crate::quantity::{FORCE, VOLTAGE, display};
 use crate::rig::RigError;
 use crate::source::{Destination, Source, WriteError};
 
@@ -128,8 +129,9 @@ pub enum SimulateError {
     },
     /// There is no rest to begin with.
     #[error(
-        "scenario \"{name}\" states no `start`, and the closed loop does not rest at its reference of {reference_n} N: where \
-         all moves least, {what} still moves by {rate:.2e} of its typical magnitude a second"
+        "scenario \"{name}\" states no `start`, and the closed loop does not rest at its reference of {}: where \
+         all moves least, {what} still moves by {rate:.2e} of its typical magnitude a second",
+        display(*reference_n, &FORCE, 6)
     )]
     NoRest {
         /// Of the scenario.
@@ -143,8 +145,8 @@ pub enum SimulateError {
     },
     /// To rest takes more than the command may be.
     #[error(
-        "scenario \"{name}\" states no `start`, and to rest at its reference of {reference_n} N takes a command of {command_v:.3} \
-         V, beyond the limit of {limit_v} V"
+        "scenario \"{name}\" states no `start`, and to rest at its reference of {} takes a command of {}, beyond the limit of {}",
+        display(*reference_n, &FORCE, 6), display(*command_v, &VOLTAGE, 4), display(*limit_v, &VOLTAGE, 6)
     )]
     RestBeyondLimit {
         /// Of the scenario.

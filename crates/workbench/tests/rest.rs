@@ -197,12 +197,13 @@ fn where_there_is_no_rest_it_is_said_why() {
     let text = still(BENCHMARK, "reference = [{ at = 0, force = \"50 kN\" }]");
     let error = run(&text, &[]).unwrap_err();
     assert!(matches!(error, SimulateError::NoRest { .. }), "{error}");
-    assert!(error.to_string().contains("does not rest at its reference of 50000 N"), "{error}");
+    assert!(error.to_string().contains("does not rest at its reference of 50 kN"), "{error}");
     // a command beyond what the controller may give
     let limited = settings(&["controller.saturation=1 mV"]);
     let error = run(&asymmetric(&still(EXAMPLES[1], "")), &limited).unwrap_err();
     let SimulateError::RestBeyondLimit { command_v, limit_v, .. } = error else { panic!("{error}") };
     assert!(command_v.abs() > limit_v && limit_v == 1e-3);
+    assert!(error.to_string().ends_with("beyond the limit of 1 mV"), "{error}");
 }
 
 /// What acts at time zero and is no reference acts from there: rest is before it.
