@@ -33,7 +33,8 @@ pub struct Range {
 }
 
 impl Range {
-    const ANY: Range = Range {
+    /// Every finite number.
+    pub const ANY: Range = Range {
         minimum: f64::MIN,
         maximum: f64::MAX,
         above_minimum: false,

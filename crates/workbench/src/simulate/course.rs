@@ -117,6 +117,7 @@ pub(crate) fn course_of(
 }
 
 impl Driven {
+    /// What stands still while the loop rests before time zero.
     fn at_start(&self) -> Standing {
         Standing {
             reference_n: self.reference.value(0.0),
@@ -124,9 +125,7 @@ impl Driven {
             external_n: self.external_force.value(0.0),
         }
     }
-}
 
-impl Driven {
     /// From a state, the ground of the load where it is in m.
     fn course(&self, bench: &Bench, ground: f64, start: Vec<f64>, waking: Waking) -> Course {
         Course {

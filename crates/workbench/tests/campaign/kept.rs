@@ -2,11 +2,17 @@
 
 use super::*;
 
+/// The table of a campaign that nothing interrupts.
+fn uninterrupted(loaded: &Loaded, asked: &CampaignRequest) -> Page {
+    let mut page = Page::default();
+    kept(loaded, asked, &mut page).unwrap();
+    page
+}
+
 #[test]
 fn parts_in_a_row_are_the_whole() {
     let loaded = load(&SHORT);
-    let mut whole = Page::default();
-    kept(&loaded, &request(30, Shard::default()), &mut whole).unwrap();
+    let whole = uninterrupted(&loaded, &request(30, Shard::default()));
     assert_eq!(whole.text.lines().count(), 31);
     let parts = ["1/3", "2/3", "3/3"].map(|text| {
         let mut page = Page::default();
@@ -75,13 +81,11 @@ impl Ledger for Pages {
 fn rows_that_waited_are_not_driven_again() {
     let loaded = load(&SHORT);
     let asked = request(30, Shard::default());
-    let mut whole = Page::default();
-    kept(&loaded, &asked, &mut whole).unwrap();
+    let whole = uninterrupted(&loaded, &asked);
     let lines: Vec<&str> = whole.text.split_inclusive('\n').collect();
     // runs 0 to 3 in the table; 2 again, 6 to 8, half of 9, and 20 of another campaign ahead of it
     let other = CampaignRequest { seed: 2, ..asked };
-    let mut strange = Page::default();
-    kept(&loaded, &other, &mut strange).unwrap();
+    let strange = uninterrupted(&loaded, &other);
     let foreign = strange.text.split_inclusive('\n').nth(21).unwrap();
     let half = &lines[10][..lines[10].len() / 2];
     let ahead = [lines[3], lines[8], lines[7], lines[9], foreign, half].concat();
@@ -112,8 +116,7 @@ fn stopping_leaves_whole_rows() {
     let told: Value = serde_json::from_str(&answer.json).unwrap();
     assert_eq!((&told["complete"], &told["runs"]["rows"]), (&Value::from(false), &Value::from(rows)));
     kept(&loaded, &asked, &mut page).unwrap();
-    let mut whole = Page::default();
-    kept(&loaded, &asked, &mut whole).unwrap();
+    let whole = uninterrupted(&loaded, &asked);
     assert!(page.text == whole.text && whole.text.lines().count() == 601);
 }
 
@@ -152,8 +155,7 @@ fn refusal(result: Result<String, CommandError>) -> CampaignError {
 fn damaged_rows_are_refused_with_their_line() {
     let loaded = load(&SHORT);
     let asked = request(6, Shard::default());
-    let mut whole = Page::default();
-    kept(&loaded, &asked, &mut whole).unwrap();
+    let whole = uninterrupted(&loaded, &asked);
     let lines: Vec<&str> = whole.text.split_inclusive('\n').collect();
     let with_third = |third: &str| [&lines[..3].concat(), third, &lines[4..].concat()].concat();
     let cells: Vec<&str> = lines[3].split(',').collect();
