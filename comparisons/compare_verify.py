@@ -9,6 +9,9 @@ phea: what it reports for a plant and a frequency is true there; it found nothin
 verdicts, exit status and frequencies agree. `--alone` leaves phea out and holds the search to published numbers only.
 """
 
+import concurrent.futures
+import contextlib
+import io
 import json
 import os
 import pathlib
@@ -190,8 +193,22 @@ def compare(program, search, mine, findings):
         compare_specification(search, specification, entry, ours, findings)
 
 
-def main(arguments):
+def judge_loop(loop, program):
+    """One loop in a process of its own: what is to be printed, and what was found wrong."""
+    path, settings, stable, margins, at_design = loop
     warnings.filterwarnings("ignore", category=RuntimeWarning)  # infinities at poles on the axis are discarded
+    findings, told = Findings(), io.StringIO()
+    with contextlib.redirect_stdout(told):
+        began = time.process_time()
+        print(path, *(f"{place}={value}" for place, value in settings.items()))
+        search, *mine = recomputed(Project(EXAMPLES / path, settings), (stable, margins), at_design, findings)
+        print(f"  {time.process_time() - began:.1f} s")
+        if program is not None:
+            compare(program, search, mine, findings)
+    return told.getvalue(), findings.wrong
+
+
+def main(arguments):
     alone = "--alone" in arguments
     named = [argument for argument in arguments if argument != "--alone"]
     built = [os.environ["PHEA"]] if "PHEA" in os.environ else None
@@ -200,13 +217,11 @@ def main(arguments):
     for name in measured_plants.PLANTS:
         same = (measured_plants.FOLDER / f"{name}.csv").read_text() == measured_plants.text(name)
         findings.demand(same, f"{name}.csv is not what measured_plants.py writes")
-    for path, settings, stable, margins, at_design in LOOPS:
-        began = time.process_time()
-        print(path, *(f"{place}={value}" for place, value in settings.items()), flush=True)
-        search, *mine = recomputed(Project(EXAMPLES / path, settings), (stable, margins), at_design, findings)
-        print(f"  {time.process_time() - began:.1f} s", flush=True)
-        if not alone:
-            compare(program, search, mine, findings)
+    with concurrent.futures.ProcessPoolExecutor() as processes:
+        judged = [processes.submit(judge_loop, loop, None if alone else program) for loop in LOOPS]
+        for told, wrong in (each.result() for each in judged):
+            print(told, end="", flush=True)
+            findings.wrong.extend(wrong)
     print(f"{len(LOOPS)} loops, {len(findings.wrong)} wrong")
     return 1 if findings.wrong else 0
 

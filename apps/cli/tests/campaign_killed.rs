@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 const PROJECT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/benchmark/campaign.toml");
 const KILLS: usize = 12;
-const RUNS: usize = 1000;
+const RUNS: usize = 400;
 
 fn folder() -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("campaign_killed");
