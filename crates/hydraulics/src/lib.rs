@@ -19,6 +19,7 @@ pub mod machine;
 pub mod operating_point;
 pub mod orifice;
 pub mod parameter;
+pub mod plant;
 pub mod reference_rig;
 pub mod servovalve;
 pub mod stiffness;

@@ -11,6 +11,7 @@ mod machine_equations;
 mod machine_lines;
 mod machine_robustness;
 mod operating_point;
+mod plant;
 mod servovalve;
 mod stiffness;
 mod two_pressure;

@@ -1,0 +1,223 @@
+//! The linear plant: what the controller commands, at an operating point, with lumped lines and with the load that is there.
+//!
+//! ```text
+//! U_sp = w^2/(s^2 + 2 xi w s + w^2) U_C                                  spool, thesis (4.1)
+//! D F_h = N_u U_sp - N_v s X                                             chambers: ChamberDynamics
+//! (M s^2 + f_v s) X = F_h - F_e,       F_e = K_S (X - X_L)               piston and force sensor, thesis (4.29)
+//! X_L = X_0,   or   (m s^2 + c s + k) X_L = F_e + (c s + k) X_0          load: LinearLoad
+//! ```
+//!
+//! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v and the supply at a constant pressure.
+
+use phea_dynamics::scalar::Scalar;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+
+use crate::linear::LinearParameters;
+use crate::linear::polynomial::{product, scaled, shifted, sum};
+use crate::two_pressure::TwoPressureLinearParameters;
+
+/// Everything that the linear plant depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plant<S = f64> {
+    /// Natural frequency w of the spool in rad/s.
+    pub valve_natural_frequency: S,
+    /// Damping ratio xi of the spool.
+    pub valve_damping_ratio: S,
+    /// From spool position and piston velocity to the force of the pressures.
+    pub chambers: ChamberDynamics<S>,
+    /// Leakage G across the piston in m3/(s Pa).
+    pub internal_leakage: S,
+    /// Moving mass M in kg.
+    pub moving_mass: S,
+    /// Slope f_v of the friction in N s/m.
+    pub viscous_friction: S,
+    /// Stiffness K_S of the force sensor in N/m; with a prescribed load, of sensor and environment.
+    pub sensor_stiffness: S,
+    /// What the force sensor pushes on.
+    pub load: LinearLoad<S>,
+}
+
+/// How pressures build up. Units: m2, m3/(s V), m3/(s Pa), N/m, m3/Pa.
+///
+/// ```text
+/// load pressure    D = A^2 s + (K_c + G) K_H,   N_u = A K_H K_qU,   N_v = A^2 K_H             thesis (6.7)
+/// two pressures    Y_A = C_A s + K_cA,   Y_B = C_B s + K_cB,   D = Y_A Y_B + G (Y_A + Y_B)
+///                  N_u = A_A K_qA Y_B + A_B K_qB Y_A + G (A_A - A_B) (K_qA - K_qB)
+///                  N_v = A_A^2 Y_B + A_B^2 Y_A + G (A_A - A_B)^2
+/// ```
+///
+/// Both are the same where both chambers are: equal areas, compliances and flow-pressure coefficients.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ChamberDynamics<S = f64> {
+    /// One load pressure, of a cylinder whose chambers are equal.
+    LoadPressure {
+        /// Useful area A.
+        useful_area: S,
+        /// Flow gain K_qU.
+        flow_gain: S,
+        /// Flow-pressure coefficient K_c of the valve.
+        flow_pressure_coefficient: S,
+        /// Hydraulic stiffness K_H.
+        hydraulic_stiffness: S,
+    },
+    /// A pressure a chamber.
+    TwoPressures {
+        /// Areas A_A and A_B.
+        areas: [S; 2],
+        /// Compliances C_A and C_B.
+        compliances: [S; 2],
+        /// Flow gains K_qA and K_qB.
+        flow_gains: [S; 2],
+        /// Flow-pressure coefficients K_cA and K_cB.
+        flow_pressures: [S; 2],
+    },
+}
+
+/// What the force sensor pushes on, as linear as it is at the operating point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LinearLoad<S = f64> {
+    /// It moves as it is told, whatever the force.
+    Prescribed,
+    /// A mass that yields, held to its ground by a spring and a damper; a wall that is touched is the spring.
+    Yielding {
+        /// Mass m in kg.
+        mass: S,
+        /// Damping c in N s/m.
+        damping: S,
+        /// Stiffness k in N/m; zero for a free mass.
+        stiffness: S,
+    },
+}
+
+/// D, N_u and N_v, highest power first.
+struct Chambers<S> {
+    own: Vec<S>,
+    driven: Vec<S>,
+    displaced: Vec<S>,
+}
+
+impl<S: Scalar> ChamberDynamics<S> {
+    fn polynomials(&self, leakage: S) -> Chambers<S> {
+        match *self {
+            ChamberDynamics::LoadPressure {
+                useful_area: area,
+                flow_gain,
+                flow_pressure_coefficient,
+                hydraulic_stiffness: stiffness,
+            } => Chambers {
+                own: vec![area.squared(), (flow_pressure_coefficient + leakage) * stiffness],
+                driven: vec![area * stiffness * flow_gain],
+                displaced: vec![area.squared() * stiffness],
+            },
+            ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } => {
+                let [area_a, area_b] = areas;
+                let [gain_a, gain_b] = flow_gains;
+                let [a, b] = [0, 1].map(|side| [compliances[side], flow_pressures[side]]);
+                let across = |value: S| [leakage * value];
+                let both = sum(&scaled(area_a * gain_a, &b), &scaled(area_b * gain_b, &a));
+                let squares = sum(&scaled(area_a.squared(), &b), &scaled(area_b.squared(), &a));
+                Chambers {
+                    own: sum(&product(&a, &b), &scaled(leakage, &sum(&a, &b))),
+                    driven: sum(&both, &across((area_a - area_b) * (gain_a - gain_b))),
+                    displaced: sum(&squares, &across((area_a - area_b).squared())),
+                }
+            }
+        }
+    }
+}
+
+impl<S: Scalar> Plant<S> {
+    /// The plant of these parameters of the fifth-order model, with what that model leaves out.
+    pub fn of_load_pressure(parameters: &LinearParameters<S>, leakage: S, load: LinearLoad<S>) -> Plant<S> {
+        Plant {
+            valve_natural_frequency: parameters.valve_natural_frequency,
+            valve_damping_ratio: parameters.valve_damping_ratio,
+            chambers: ChamberDynamics::LoadPressure {
+                useful_area: parameters.useful_area,
+                flow_gain: parameters.flow_gain,
+                flow_pressure_coefficient: parameters.flow_pressure_coefficient,
+                hydraulic_stiffness: parameters.hydraulic_stiffness,
+            },
+            internal_leakage: leakage,
+            moving_mass: parameters.moving_mass,
+            viscous_friction: parameters.viscous_friction,
+            sensor_stiffness: parameters.sensor_stiffness,
+            load,
+        }
+    }
+
+    /// The plant of these parameters of the two-pressure model, with what that model leaves out.
+    pub fn of_two_pressures(
+        parameters: &TwoPressureLinearParameters<S>,
+        leakage: S,
+        load: LinearLoad<S>,
+    ) -> Plant<S> {
+        let chambers = &parameters.chambers;
+        Plant {
+            valve_natural_frequency: parameters.valve_natural_frequency,
+            valve_damping_ratio: parameters.valve_damping_ratio,
+            chambers: ChamberDynamics::TwoPressures {
+                areas: parameters.areas,
+                compliances: parameters.compliances,
+                flow_gains: [chambers.flow_gain_a, chambers.flow_gain_b],
+                flow_pressures: [chambers.flow_pressure_a, chambers.flow_pressure_b],
+            },
+            internal_leakage: leakage,
+            moving_mass: parameters.moving_mass,
+            viscous_friction: parameters.viscous_friction,
+            sensor_stiffness: parameters.sensor_stiffness,
+            load,
+        }
+    }
+
+    /// F_e/U_C in N/V and F_e/X_0 in N/m, X_0 the motion of the load or of its ground.
+    ///
+    /// ```text
+    /// Q = (M s^2 + f_v s) D + N_v s,     Z = m s^2 + c s + k,     V = s^2 + 2 xi w s + w^2
+    /// prescribed    F_e = K_S (w^2 N_u U_C - V Q X_0)/(V (Q + K_S D))
+    /// yielding      F_e = K_S (Z w^2 N_u U_C - (c s + k) V Q X_0)/(V (Q (Z + K_S) + K_S Z D))
+    /// ```
+    ///
+    /// # Example
+    /// What the load adds: with a mass as heavy as the earth it does not move.
+    /// ```
+    /// # use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
+    /// use phea_hydraulics::plant::{LinearLoad, Plant};
+    /// # let parameters = LinearParameters {
+    /// #     useful_area: 1.58e-3, moving_mass: 13.1, viscous_friction: 100.0, flow_gain: 5.4e-5,
+    /// #     flow_pressure_coefficient: 6.4e-13, hydraulic_stiffness: 2.24e6, sensor_stiffness: 2e7,
+    /// #     valve_natural_frequency: 1099.0, valve_damping_ratio: 0.9,
+    /// # };
+    /// let plant = |load| Plant::of_load_pressure(&parameters, 0.0, load).coefficients().command.at_frequency(500.0);
+    /// let heavy = LinearLoad::Yielding { mass: 6e24, damping: 500.0, stiffness: 2e5 };
+    /// let light = LinearLoad::Yielding { mass: 100.0, damping: 500.0, stiffness: 2e5 };
+    /// let prescribed = plant(LinearLoad::Prescribed);
+    /// assert!((plant(heavy) / prescribed - 1.0).norm_sqr() < 1e-24);
+    /// assert!((plant(light) / prescribed - 1.0).norm_sqr() > 1e-3);
+    /// ```
+    pub fn coefficients(&self) -> PlantCoefficients<S> {
+        let (one, square) = (S::from(1.0), self.valve_natural_frequency.squared());
+        let damping = S::from(2.0) * self.valve_damping_ratio * self.valve_natural_frequency;
+        let spool = [one, damping, square];
+        let sensor = self.sensor_stiffness;
+        let Chambers { own, driven, displaced } = self.chambers.polynomials(self.internal_leakage);
+        let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], &own), &displaced));
+        let (driven, moved_by_ground, sensed) = match self.load {
+            LinearLoad::Prescribed => (driven, moved.clone(), sum(&moved, &scaled(sensor, &own))),
+            LinearLoad::Yielding { mass, damping, stiffness } => {
+                let load = [mass, damping, stiffness];
+                let before_sensor = product(&moved, &[mass, damping, stiffness + sensor]);
+                let sensed = sum(&before_sensor, &scaled(sensor, &product(&load, &own)));
+                (product(&load, &driven), product(&moved, &[damping, stiffness]), sensed)
+            }
+        };
+        let denominator = product(&spool, &sensed);
+        let command = scaled(sensor * square, &driven);
+        let disturbance = scaled(-sensor, &product(&spool, &moved_by_ground));
+        PlantCoefficients {
+            command: RationalCoefficients { numerator: command, denominator: denominator.clone() },
+            disturbance: Some(RationalCoefficients { numerator: disturbance, denominator }),
+            dead_time_s: S::from(0.0),
+        }
+    }
+}

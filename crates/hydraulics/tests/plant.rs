@@ -1,0 +1,203 @@
+//! The linear plant against the machine's own derivatives, and against the models it grew from.
+
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+use num_complex::Complex64;
+use phea_dynamics::random::{share, stream};
+use phea_dynamics::scalar::Scalar;
+use phea_dynamics::simulation::{Plant as _, System, small_signal};
+use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::fluid::{EntrainedAir, Fluid};
+use phea_hydraulics::force_sensor::ForceSensor;
+use phea_hydraulics::friction::Friction;
+use phea_hydraulics::line::Member;
+use phea_hydraulics::linear::linear_model_coefficients;
+use phea_hydraulics::machine::{Beginning, Contact, LoadModel, Machine, MachineOptions};
+use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
+use phea_hydraulics::plant::{LinearLoad, Plant};
+use phea_hydraulics::reference_rig::{components, cylinder, hose_line, nominal_plant, pipe_line};
+use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::stiffness::StiffnessModel;
+use phea_hydraulics::two_pressure::{
+    TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
+};
+
+/// A machine whose first input is its command.
+struct Commanded(Machine);
+
+impl System<f64> for Commanded {
+    fn states(&self) -> usize {
+        self.0.states()
+    }
+    fn inputs(&self) -> usize {
+        1 + self.0.inputs()
+    }
+    fn scales(&self) -> Vec<f64> {
+        self.0.scales()
+    }
+    fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
+        self.0.rates(state, inputs[0], &inputs[1..], rates);
+    }
+}
+
+/// A rig of its own for every number, with everything that lumped lines let the plant have.
+struct Drawn {
+    actuator: Actuator,
+    machine: Machine,
+    rest: Beginning,
+    friction: f64,
+    leakage: f64,
+    load: LinearLoad,
+}
+
+fn drawn(number: u64) -> Drawn {
+    let mut state = stream(11, number);
+    let mut spread = |low: f64, high: f64| low * (high / low).powf(share(&mut state));
+    let friction = spread(50.0, 2e4);
+    let air = (number % 3 == 0)
+        .then(|| EntrainedAir { volume_fraction: spread(1e-3, 3e-2), polytropic_index: spread(1.0, 1.4) });
+    let rods = [0.022, spread(0.01, 0.036)];
+    let [area_a, area_b] = areas_from_diameters(0.05, rods).unwrap();
+    let line_b = if number % 2 == 0 { hose_line() } else { pipe_line() };
+    let model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
+    let reference = components(hose_line(), model);
+    let actuator = Actuator::new(Components {
+        fluid: Fluid { entrained_air: air, ..reference.fluid },
+        cylinder: Cylinder { area_a, area_b, moving_mass: spread(2.0, 80.0), ..cylinder() },
+        line_b,
+        friction: Friction::Viscous { viscous: friction },
+        force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
+        ..reference
+    })
+    .unwrap();
+    let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
+    let leakage = if number % 4 == 1 { 0.0 } else { spread(1e-14, 1e-10) };
+    let contact = Contact { stiffness, relative_damping: spread(0.01, 1.0) };
+    let load = match number % 3 {
+        0 => LoadModel::Prescribed,
+        1 => LoadModel::SpringMassDamper { mass, stiffness, damping },
+        _ => LoadModel::Wall { mass, damping, gap: 1e-3, contact },
+    };
+    let internal_leakage = (leakage > 0.0).then_some(leakage);
+    let options = MachineOptions { load, internal_leakage, ..MachineOptions::default() };
+    let machine = Machine::new(&actuator, &options).unwrap();
+    let (position, command) = (spread(0.05, 0.45), spread(0.01, 2.0));
+    // a wall takes no pull: the next command pushes harder
+    let rests = (0..20).map(|step| {
+        let condition = Condition::Command(command + 0.4 * f64::from(step));
+        machine.rest(&operating_point(&actuator, position, condition).unwrap())
+    });
+    let rest = rests.flatten().next().unwrap();
+    // the wall is pressed by K d_0, and its damping grows with that
+    let pressed = rest.state[4] * actuator.components().force_sensor.stiffness / stiffness;
+    let load = match load {
+        LoadModel::Prescribed => LinearLoad::Prescribed,
+        LoadModel::SpringMassDamper { .. } => LinearLoad::Yielding { mass, damping, stiffness },
+        LoadModel::Wall { .. } => {
+            let damping = damping + contact.stiffness * contact.relative_damping * pressed;
+            LinearLoad::Yielding { mass, damping, stiffness }
+        }
+    };
+    Drawn { actuator, machine, rest, friction, leakage, load }
+}
+
+impl Drawn {
+    /// The plant where the machine rests.
+    fn plant(&self) -> Plant {
+        let state = &self.rest.state;
+        let pressures = [state[2], state[3]];
+        let model = TwoPressureModel::new(&self.actuator, pressures, Member::Nominal, self.friction);
+        let yielding = if self.machine.states() > 6 { state[6] } else { 0.0 };
+        let point = OperatingPoint {
+            position: self.rest.inputs[0] + yielding + state[4],
+            command: state[0],
+            pressure_a: pressures[0],
+            pressure_b: pressures[1],
+            velocity: 0.0,
+            hydraulic_force: 0.0,
+            net_flow_a: 0.0,
+            net_flow_b: 0.0,
+        };
+        let parameters = two_pressure_linear_parameters(&model, &point, Direction::Extending);
+        Plant::of_two_pressures(&parameters, self.leakage, self.load)
+    }
+
+    /// F_e/U_C and F_e/X_0 of the machine's own derivatives.
+    fn small_signal(&self, frequency: f64) -> [Complex64; 2] {
+        let inputs = [&[self.rest.command], &self.rest.inputs[..]].concat();
+        let (zero, one) = (Complex64::ZERO, Complex64::ONE);
+        let ground = [zero, one, Complex64::new(0.0, frequency)];
+        [[one, zero, zero], ground].map(|drive| {
+            let system = Commanded(self.machine);
+            let amplitudes = small_signal(&system, &self.rest.state, &inputs, &drive, frequency).unwrap();
+            amplitudes[4] * self.actuator.components().force_sensor.stiffness
+        })
+    }
+}
+
+/// 300 rigs at 20 frequencies, from a hundredth of a slow pole to ten times the valve's.
+#[test]
+fn it_is_the_machine_for_small_motions() {
+    for number in 0..300 {
+        let rig = drawn(number);
+        let coefficients = rig.plant().coefficients();
+        let disturbance = coefficients.disturbance.unwrap();
+        for step in 0..20 {
+            let frequency = 1e-3 * 1e7_f64.powf(f64::from(step) / 19.0);
+            let [command, ground] = rig.small_signal(frequency);
+            for (told, own) in [(&coefficients.command, command), (&disturbance, ground)] {
+                let error = (told.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
+                assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");
+            }
+        }
+    }
+}
+
+/// Without leakage and with a prescribed load it is the model it is made of, coefficient by coefficient.
+#[test]
+fn without_load_and_leakage_it_is_the_known_models() {
+    let of_load_pressure = Plant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
+    let rig = drawn(0);
+    let state = &rig.rest.state;
+    let model = TwoPressureModel::new(&rig.actuator, [state[2], state[3]], Member::Nominal, rig.friction);
+    let point = operating_point(&rig.actuator, 0.2, Condition::Command(0.3)).unwrap();
+    let parameters = two_pressure_linear_parameters(&model, &point, Direction::Extending);
+    let of_two_pressures = Plant::of_two_pressures(&parameters, 0.0, LinearLoad::Prescribed);
+    for (plant, known) in [
+        (of_load_pressure.coefficients(), linear_model_coefficients(&nominal_plant())),
+        (of_two_pressures.coefficients(), two_pressure_coefficients(&parameters)),
+    ] {
+        let (load, known_load) = (plant.disturbance.unwrap(), known.disturbance.unwrap());
+        for (own, known) in [
+            (&plant.command.numerator, &known.command.numerator),
+            (&plant.command.denominator, &known.command.denominator),
+            (&load.numerator, &known_load.numerator),
+            (&load.denominator, &known_load.denominator),
+        ] {
+            let scale = own[0] / known[0];
+            assert_eq!(own.len(), known.len());
+            assert!(own.iter().zip(known).all(|(own, known)| (own - scale * known).abs() <= 1e-12 * own.abs()));
+        }
+    }
+}
+
+/// Equal chambers: one load pressure tells all, leakage included.
+#[test]
+fn equal_chambers_need_one_pressure() {
+    let actuator = Actuator::new(Components {
+        valve: phea_hydraulics::reference_rig::valve_with_equal_edges(),
+        ..components(hose_line(), StiffnessModel::ByVolume)
+    })
+    .unwrap();
+    let point = operating_point(&actuator, 0.25, Condition::Command(0.0)).unwrap();
+    let model = TwoPressureModel::new(&actuator, [point.pressure_a, point.pressure_b], Member::Nominal, 100.0);
+    let parameters = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+    let load = LinearLoad::Yielding { mass: 100.0, damping: 500.0, stiffness: 2e5 };
+    let reduced = phea_hydraulics::two_pressure::reduce(&parameters);
+    let one = Plant::of_load_pressure(&reduced, 1e-11, load).coefficients().command;
+    let two = Plant::of_two_pressures(&parameters, 1e-11, load).coefficients().command;
+    for frequency in [1e-3, 0.1, 5.0, 40.0, 300.0, 1300.0, 2e4] {
+        assert!((one.at_frequency(frequency) / two.at_frequency(frequency) - 1.0).norm_sqr() < 1e-24);
+    }
+}
