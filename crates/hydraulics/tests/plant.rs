@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use num_complex::Complex64;
+use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Plant as _, System, small_signal};
@@ -53,13 +54,13 @@ struct Drawn {
 
 fn drawn(number: u64) -> Drawn {
     let mut state = stream(11, number);
-    let mut spread = |low: f64, high: f64| low * (high / low).powf(share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     let friction = spread(50.0, 2e4);
-    let air = (number % 3 == 0)
+    let air = (number.is_multiple_of(3))
         .then(|| EntrainedAir { volume_fraction: spread(1e-3, 3e-2), polytropic_index: spread(1.0, 1.4) });
     let rods = [0.022, spread(0.01, 0.036)];
     let [area_a, area_b] = areas_from_diameters(0.05, rods).unwrap();
-    let line_b = if number % 2 == 0 { hose_line() } else { pipe_line() };
+    let line_b = if number.is_multiple_of(2) { hose_line() } else { pipe_line() };
     let model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
     let reference = components(hose_line(), model);
     let actuator = Actuator::new(Components {
@@ -144,7 +145,7 @@ fn it_is_the_machine_for_small_motions() {
         let coefficients = rig.plant().coefficients();
         let disturbance = coefficients.disturbance.unwrap();
         for step in 0..20 {
-            let frequency = 1e-3 * 1e7_f64.powf(f64::from(step) / 19.0);
+            let frequency = 1e-3 * pow(1e7, f64::from(step) / 19.0);
             let [command, ground] = rig.small_signal(frequency);
             for (told, own) in [(&coefficients.command, command), (&disturbance, ground)] {
                 let error = (told.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
@@ -177,7 +178,9 @@ fn without_load_and_leakage_it_is_the_known_models() {
         ] {
             let scale = own[0] / known[0];
             assert_eq!(own.len(), known.len());
-            assert!(own.iter().zip(known).all(|(own, known)| (own - scale * known).abs() <= 1e-12 * own.abs()));
+            assert!(
+                own.iter().zip(known).all(|(own, known)| (own - scale * known).abs() <= 1e-12 * own.abs())
+            );
         }
     }
 }
@@ -191,7 +194,8 @@ fn equal_chambers_need_one_pressure() {
     })
     .unwrap();
     let point = operating_point(&actuator, 0.25, Condition::Command(0.0)).unwrap();
-    let model = TwoPressureModel::new(&actuator, [point.pressure_a, point.pressure_b], Member::Nominal, 100.0);
+    let model =
+        TwoPressureModel::new(&actuator, [point.pressure_a, point.pressure_b], Member::Nominal, 100.0);
     let parameters = two_pressure_linear_parameters(&model, &point, Direction::Mean);
     let load = LinearLoad::Yielding { mass: 100.0, damping: 500.0, stiffness: 2e5 };
     let reduced = phea_hydraulics::two_pressure::reduce(&parameters);

@@ -1,11 +1,13 @@
 //! The audit of a given controller: family, loop and specifications from the project, findings from `phea_qft`, and how
 //! they are told.
 
+mod alone;
 mod answer;
 mod plant;
 mod text;
 mod words;
 
+pub(crate) use alone::outside;
 pub(crate) use answer::{Body, body};
 pub use answer::{files, json};
 pub use plant::{NamedPlant, PlantNames};
@@ -19,8 +21,9 @@ pub(crate) use words::{
 use phea_dynamics::portable;
 use phea_qft::audit::AuditRun;
 use phea_qft::family::{Extent, Family};
-use phea_qft::verification::{Audit, SpecificationFinding, TOLERANCE_DB, TrackingJudgement};
+use phea_qft::verification::{Audit, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Verdict};
 
+use crate::caveat::Caveat;
 use crate::command::{CommandError, Progress, Watch};
 use crate::project::Project;
 use crate::quantity::DisplayUnit;
@@ -112,8 +115,8 @@ pub struct ProjectAudit {
     pub sample_time_s: Option<f64>,
     /// Delay of the loop, s.
     pub delay_s: f64,
-    /// What the controller does that the audit does not include.
-    pub left_out: Option<&'static str>,
+    /// What is declared that the audit does not count.
+    pub caveats: Vec<Caveat>,
     /// What the worst plant of each specification reaches, where that is a magnitude against a limit.
     pub reached: Vec<Option<Reached>>,
 }
@@ -173,8 +176,13 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
 
 impl ProjectAudit {
     /// An audit of the loop of this problem.
-    pub(crate) fn new(problem: &RobustProblem, audit: Audit) -> ProjectAudit {
+    pub(crate) fn new(problem: &RobustProblem, mut audit: Audit) -> ProjectAudit {
         let RobustProblem { family, compensation, .. } = problem;
+        let caveats: Vec<Caveat> =
+            alone::caveat(problem).into_iter().chain(problem.caveats.clone()).collect();
+        if audit.verdict == Verdict::Met && caveats.iter().any(|caveat| caveat.unproven) {
+            audit.verdict = Verdict::NotProven;
+        }
         ProjectAudit {
             reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
             audit,
@@ -187,7 +195,7 @@ impl ProjectAudit {
             whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
-            left_out: problem.left_out,
+            caveats,
         }
     }
 

@@ -85,14 +85,6 @@ pub fn timing(project: &Project) -> Timing {
     }
 }
 
-/// What the project's controller does in a simulation and in no linear model, as a sentence; `None` where there is nothing of that kind.
-pub(crate) fn left_out(project: &Project) -> Option<&'static str> {
-    let declared = project.controller.as_ref()?.load_velocity_feed_forward?;
-    (declared.gain != Some(0.0)).then_some(
-        "warning: the load velocity that [controller] feeds forward is in no linear model: this is the loop without it, and only a simulation is of the loop with it",
-    )
-}
-
 /// What the computer of the controller rounds: nothing where the project does not say.
 ///
 /// # Errors

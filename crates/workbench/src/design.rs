@@ -61,7 +61,7 @@ pub struct ProjectDesign {
     pub options: DesignOptions,
     /// Delay beyond that of the loop that was asked for, s.
     pub minimum_delay_margin_s: f64,
-    /// Whether the designed loop bears it, whatever else it does.
+    /// Whether the designed loop tolerates it, whatever else it does.
     pub bears_its_delay: bool,
     /// Whether whoever watched it stopped it: then it is the best so far.
     pub stopped: bool,

@@ -6,6 +6,7 @@ pub mod answer;
 pub mod audit;
 pub mod campaign;
 pub mod catalogue;
+pub mod caveat;
 pub mod command;
 pub mod control;
 pub mod derived;

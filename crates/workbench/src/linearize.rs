@@ -1,6 +1,7 @@
 //! The linear models of a rig side by side: two-pressure, fifth order (6.7), decomposed (6.12), first order (6.13);
 //! what they leave out, what the load feels, and whether that is passive.
 
+mod agreement;
 mod answer;
 
 use std::f64::consts::FRAC_PI_2;
@@ -19,11 +20,14 @@ use phea_hydraulics::linear::{
     LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance,
     first_order_model, linear_model, response_difference, transfer_functions,
 };
+use phea_hydraulics::plant::ChamberDynamics;
 use phea_hydraulics::stiffness::{
     ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference,
 };
 use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
+pub use agreement::Agreement;
+pub(crate) use agreement::{WITHIN_DB, WITHIN_DEG};
 pub(crate) use answer::{
     comparisons, difference_text, located, mode_words, models, passivity_sentence, root_list,
 };
@@ -41,6 +45,10 @@ pub struct Linearization {
     pub stiffness: [StrokeStiffness; 3],
     /// Both stiffness models side by side, nominal.
     pub stiffness_models: ModelDifference,
+    /// The plant that every verdict is of: with its load, its leakage, and the parameters that hold.
+    pub plant: LinearModel,
+    /// Whether 6.7 is the plant: one load pressure, no leakage across the piston, a load whose motion is prescribed.
+    pub plant_is_fifth_order: bool,
     /// The linearised two-pressure model of the rig as declared, at its operating point.
     pub two_pressure: LinearModel,
     /// The fifth-order model of the parameters that hold, equation 6.7.
@@ -51,6 +59,8 @@ pub struct Linearization {
     pub decomposed: [TransferFunction; 2],
     /// Equation 6.13.
     pub first_order: TransferFunction,
+    /// Where each reduction is the plant.
+    pub agreement: Vec<Agreement>,
     /// What the fifth order leaves out of the two-pressure model, both with derived parameters.
     pub reduction: Comparison,
     /// Equation 6.12 as printed against 6.7.
@@ -108,6 +118,7 @@ pub fn linearize(
         Some(function) if is_continuous(&function) => Some(function.series(sensor)?),
         other => other,
     };
+    let plant = transfer_functions(&rig.plant.coefficients())?;
     let full = linear_model(&rig.linear)?;
     let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.two_pressure))?;
     let decomposed = [
@@ -124,7 +135,13 @@ pub fn linearize(
     let rational = rational && sensor.dead_time_s() == 0.0;
     let continuous = feedback.as_ref().filter(|function| rational && is_continuous(function));
     let closed_loop = continuous.map(|controller| closed_loop_view(rig, &full, controller)).transpose()?;
+    let reductions = [&two_pressure.command, &full.command, &decomposed[1], &first_order];
+    let agreement = agreement::agreement(&frequency_grid(&plant.command)?, &plant.command, reductions);
     Ok(Linearization {
+        plant_is_fifth_order: matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
+            && rig.internal_leakage == 0.0
+            && rig.load.is_none(),
+        agreement,
         stiffness: [Member::Nominal, Member::Minimum, Member::Maximum]
             .map(|member| stroke_stiffness(rig, member)),
         stiffness_models: stiffness_models(rig),
@@ -144,6 +161,7 @@ pub fn linearize(
             rig.linear.hydraulic_stiffness,
             rig.linear.moving_mass,
         ),
+        plant,
         two_pressure,
         full,
         derived_full,

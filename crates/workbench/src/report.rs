@@ -143,7 +143,7 @@ fn rig_chapters(
     let band = project.scenarios.first().map_or(SETTLING_BAND, |scenario| scenario.settling_band_percent);
     let given = controller
         .as_ref()
-        .map(|given| linear_loop(&linearization.full.command, given, &sensor, band))
+        .map(|given| linear_loop(&linearization.plant.command, given, &sensor, band))
         .transpose()?;
 
     let mut chapters = vec![

@@ -3,6 +3,7 @@
 
 mod assembly;
 mod parameters;
+mod plant;
 mod sizing;
 
 use phea_hydraulics::actuator::{Actuator, ActuatorError};
@@ -12,6 +13,7 @@ use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
     Condition, Load, OperatingPoint, OperatingPointError, operating_point,
 };
+use phea_hydraulics::plant::{LinearLoad, Plant};
 use phea_hydraulics::servovalve::Direction;
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
@@ -20,8 +22,8 @@ use phea_hydraulics::two_pressure::{
 use crate::project::{self, Project};
 
 pub(crate) use assembly::actuator;
-pub(crate) use parameters::parameter_field;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
+pub(crate) use plant::{YieldingLoad, has_one_pressure, plant, stated};
 pub use sizing::{SizingError, sizing_problem};
 
 /// A rig ready to be computed with.
@@ -43,6 +45,12 @@ pub struct Rig {
     pub parameters: Vec<ResolvedParameter>,
     /// The values that hold.
     pub linear: LinearParameters,
+    /// Leakage across the piston in m3/(s Pa).
+    pub internal_leakage: f64,
+    /// What the force sensor pushes on, where it yields.
+    pub(crate) load: Option<YieldingLoad>,
+    /// The linear plant that every verdict is of: nominal, at the operating point.
+    pub plant: Plant,
 }
 
 /// Why a project has no rig to compute with.
@@ -75,7 +83,9 @@ impl Rig {
         let condition = condition(&project.operating_point);
         let stroke = components.cylinder.stroke;
         let position = project.operating_point.position.unwrap_or(stroke / 2.0);
+        let leakage = declared.cylinder.internal_leakage;
         let point = operating_point(&actuator, position, condition)?;
+        let point = plant::with_leakage(point, &actuator, condition, leakage);
         let friction = components.friction.viscous_slope(ViscousSlope::Viscous).ok_or(RigError::Friction)?;
         let pressures = [point.pressure_a, point.pressure_b];
         let model = TwoPressureModel::new(&actuator, pressures, Member::Nominal, friction);
@@ -83,7 +93,28 @@ impl Rig {
         let derived = reduce(&two_pressure);
         let parameters = parameters::resolve(project, &derived);
         let linear = parameters::linear(&parameters, &derived);
-        Ok(Rig { actuator, point, condition, model, two_pressure, derived, parameters, linear })
+        let internal_leakage = leakage.unwrap_or(0.0);
+        let load = plant::yielding_load(&declared.load, point.hydraulic_force);
+        let plant = plant(
+            &two_pressure,
+            stated(&parameters),
+            has_one_pressure(&parameters, &two_pressure, &[]),
+            internal_leakage,
+            load.map_or(LinearLoad::Prescribed, |load| load.linear()),
+        );
+        Ok(Rig {
+            actuator,
+            point,
+            condition,
+            model,
+            two_pressure,
+            derived,
+            parameters,
+            linear,
+            internal_leakage,
+            load,
+            plant,
+        })
     }
 }
 

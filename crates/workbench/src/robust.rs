@@ -13,9 +13,10 @@ use phea_qft::specification::{LoopResponse, Specification};
 use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::PlantPoint;
 
-use crate::audit::kind_words;
+use crate::audit::{kind_words, outside};
+use crate::caveat::{Caveat, caveats};
 use crate::command::{CommandError, Progress, Watch};
-use crate::control::{compensation, left_out, prefilter, sensor, timing};
+use crate::control::{compensation, prefilter, sensor, timing};
 use crate::family::family;
 use crate::project::Project;
 use crate::source::Source;
@@ -36,8 +37,10 @@ pub struct RobustProblem {
     pub specifications: Vec<Specification>,
     /// What each of them is called: by its kind, or by what is rounded.
     pub specification_names: Vec<String>,
-    /// What the controller does that none of this includes.
-    pub left_out: Option<&'static str>,
+    /// The rig itself as a family of one, where the family does not contain it, and what of it is outside.
+    pub rig_outside: Option<(Family, String)>,
+    /// What is declared that none of this counts.
+    pub caveats: Vec<Caveat>,
 }
 
 /// Template and bounds at one design frequency.
@@ -102,7 +105,11 @@ pub fn robust_problem(source: &dyn Source, project: &Project) -> Result<RobustPr
         has_prefilter: project.prefilter.is_some(),
         specifications,
         specification_names,
-        left_out: left_out(project),
+        rig_outside: match outside(project) {
+            Some((alone, beyond)) => Some((self::family(&alone, source)?, beyond)),
+            None => None,
+        },
+        caveats: caveats(project),
     })
 }
 

@@ -4,6 +4,7 @@
 mod ask;
 mod benchmark;
 mod campaign;
+mod coupled_plant;
 mod derived_statements;
 mod design_contract;
 mod design_printing;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
+use phea_dynamics::uncertain_plant::{RationalCoefficients, UncertainParameter, UncertainPlant};
 use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
 use phea_qft::family::Family;
 use phea_workbench::family::{FamilyError, family};
@@ -43,14 +43,21 @@ fn the_recorded_rig_is_the_linear_model() {
     let project = loaded(HOSE);
     let plant = recorded(&project).unwrap();
     let rig = Rig::new(&project).unwrap();
-    assert_eq!(plant.coefficients(&plant.nominal()), linear_model_coefficients(&rig.linear));
+    assert_eq!(plant.coefficients(&plant.nominal()), rig.plant.coefficients());
     for values in points(&plant) {
         let mut stated = project.clone();
         for (uncertain, value) in stated.uncertainty.iter_mut().zip(&values) {
             uncertain.nominal = *value;
         }
-        let linear = Rig::new(&stated).unwrap().linear;
-        assert_eq!(plant.coefficients(&values), linear_model_coefficients(&linear));
+        let rig = Rig::new(&stated).unwrap();
+        assert_eq!(plant.coefficients(&values), rig.plant.coefficients());
+        // with a prescribed load and without leakage that is thesis (6.7)
+        let published = linear_model_coefficients(&rig.linear).command;
+        let own = plant.coefficients(&values).command;
+        let all = |one: &RationalCoefficients<f64>| [&one.numerator[..], &one.denominator[..]].concat();
+        for (own, published) in all(&own).iter().zip(&all(&published)) {
+            assert!((own - published).abs() <= 1e-14 * published.abs(), "{own} {published}");
+        }
     }
 }
 
@@ -78,7 +85,7 @@ fn follows_the_rig(text: &str, ranges: &[(&str, [f64; 3])]) {
         for (parameter, value) in plant.parameters().iter().zip(&values) {
             stated = stated.with_number(&parameter.name, *value).unwrap();
         }
-        let expected = linear_model_coefficients(&Rig::new(&stated).unwrap().linear);
+        let expected = Rig::new(&stated).unwrap().plant.coefficients();
         let found = plant.coefficients(&values);
         let [found, expected] = [found, expected].map(|member| {
             let disturbance = member.disturbance.unwrap();
@@ -107,6 +114,19 @@ fn physical_paths_reach_the_model_as_through_the_rig() {
             ("line.length", [0.5, 1.5, 3.0]),
             ("line.bore", [0.01, 0.0127, 0.0159]),
             ("line.dynamic_stiffening.nominal", [4.0, 5.0, 5.0]),
+        ],
+    );
+    let loaded_rig = HOSE.replace(
+        "[sizing]",
+        "[load]\nmodel = \"spring_mass_damper\"\nmass = 100\nstiffness = 2e5\ndamping = 500\n\n[sizing]",
+    );
+    follows_the_rig(
+        &loaded_rig.replace("moving_mass = ", "internal_leakage = 1e-12\nmoving_mass = "),
+        &[
+            ("load.mass", [50.0, 100.0, 200.0]),
+            ("load.stiffness", [1e5, 2e5, 1e7]),
+            ("load.damping", [0.0, 500.0, 1e4]),
+            ("cylinder.moving_mass", [10.0, 13.1, 20.0]),
         ],
     );
     let asymmetric = include_str!("project_valid/asymmetric.toml");

@@ -93,7 +93,7 @@ fn the_text_says_the_verdict_first_and_what_it_rests_on() {
 /// What a simulation adds to the command and no linear model knows of is said by every command on the linear loop.
 #[test]
 fn a_feed_forward_is_told_to_be_left_out() {
-    let words = "feeds forward is in no linear model";
+    let words = "feeds forward is not counted";
     let shape = Request::Shape { shaped: Shaped::Controller, changes: vec![] };
     for (text, request) in [(HOSE, Request::Linearize), (INTEGRATOR, Request::Verify), (INTEGRATOR, shape)] {
         for (settings, told) in [

@@ -25,7 +25,7 @@ pub(crate) struct Body<'a> {
     parameters: Vec<&'a str>,
     timing: TimingRow,
     specifications: Vec<SpecificationRow<'a>>,
-    warnings: Vec<&'static str>,
+    warnings: Vec<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -185,7 +185,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
             .zip(&view.specification_names)
             .map(|((finding, reached), name)| specification(names, name, finding, *reached))
             .collect(),
-        warnings: view.left_out.into_iter().collect(),
+        warnings: view.caveats.iter().map(|caveat| caveat.sentence.as_str()).collect(),
     }
 }
 

@@ -29,9 +29,10 @@ pub fn text(view: &ProjectAudit) -> String {
     out
 }
 
-/// Stability, delay margin and each specification, a sentence each; then what none of them includes.
+/// Stability, delay margin and each specification, a sentence each; before them what none of them counts.
 pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
-    let mut sentences = vec![stability_sentence(&view.audit.stability, &view.names)];
+    let mut sentences: Vec<String> = view.caveats.iter().map(|caveat| caveat.sentence.clone()).collect();
+    sentences.push(stability_sentence(&view.audit.stability, &view.names));
     sentences.extend(delay_sentence(view));
     let stable = view.audit.stability.verdict != Verdict::Violated;
     let findings = view.audit.specifications.iter().enumerate();
@@ -39,7 +40,6 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
         let reached = view.reached.get(index).and_then(Option::as_ref);
         finding_sentence(&view.numbered(index), finding, reached, stable)
     }));
-    sentences.extend(view.left_out.map(str::to_string));
     sentences
 }
 
@@ -66,7 +66,7 @@ fn delay_sentence(view: &ProjectAudit) -> Option<String> {
         return Some("no delay makes a plant unstable".to_string());
     }
     Some(format!(
-        "the loop bears {} ms more delay before a plant becomes unstable, {}",
+        "the loop tolerates {} ms more delay before a plant becomes unstable, {}",
         DisplayUnit::MILLISECOND.number(margin.delay_s, 3),
         place_words(margin.frequency_rad_per_s)
     ))

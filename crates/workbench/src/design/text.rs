@@ -1,6 +1,6 @@
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
 use phea_qft::design::{DesignStatus, Objective};
-use phea_qft::verification::PlantPoint;
+use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::comparison::compared;
 use super::factors::factored;
@@ -32,7 +32,11 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
     }
     out.push_str(&format!("\nController\n{}", laws(view)?));
     out.push_str(&format!("\n{}\n", side_by_side(view)));
-    let caution = if view.is_met() { "" } else { ", though it does not keep to every specification" };
+    let caution = match view.designed.view.audit.verdict {
+        _ if view.is_met() => "",
+        Verdict::NotProven => ", though it is not proven",
+        _ => ", though it does not keep to every specification",
+    };
     out.push_str(&format!(
         "\nTo be pasted into the project{caution}\n{}",
         snippet(&view.declared_controller, view.declared_prefilter.as_ref())

@@ -3,6 +3,7 @@
 use phea_dynamics::controller::Element;
 use phea_qft::design::{ControllerChoice, DesignStatus, Objective};
 use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::verification::Verdict;
 
 use super::ProjectDesign;
 use crate::answer::significant;
@@ -13,6 +14,7 @@ use crate::project::DesignObjective;
 pub(crate) fn status_key(view: &ProjectDesign) -> &'static str {
     match view.design.status {
         _ if view.stopped => "stopped",
+        DesignStatus::Met if view.designed.view.audit.verdict == Verdict::NotProven => "not_proven",
         DesignStatus::Met => "met",
         DesignStatus::Infeasible(_) => "infeasible",
         DesignStatus::NotConverged { .. } => "not_converged",
@@ -28,6 +30,10 @@ pub(crate) fn status_sentence(view: &ProjectDesign) -> String {
         return format!("stopped: this is the best controller found so far, and it {verdict}");
     }
     match &view.design.status {
+        DesignStatus::Met if view.designed.view.audit.verdict == Verdict::NotProven => {
+            "not proven: the controller satisfies every specification over the family, which does not count all that is declared"
+                .to_string()
+        }
         DesignStatus::Met => "met: the controller keeps to every specification".to_string(),
         DesignStatus::Infeasible(relaxation) => format!(
             "infeasible: no controller that was tried{} keeps to every specification; with every limit {} dB wider one does",

@@ -1,15 +1,12 @@
-//! The uncertain plant of an actuator: the fifth-order model, thesis (6.7), over parameters of the linear model and over
-//! physical numbers that reach it by a formula.
-
-use phea_dynamics::scalar::Scalar;
-use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
-use phea_hydraulics::linear::linear_model_coefficients;
-use phea_hydraulics::two_pressure::reduce;
+//! The uncertain plant of an actuator: the linear plant of its rig over parameters of the linear model and over physical numbers that
+//! reach it by a formula.
 
 use super::FamilyError;
 use super::machine::Machine;
 use crate::project::{LINEAR_PARAMETERS, Project};
-use crate::rig::{ParameterOrigin, Rig, parameter_field};
+use crate::rig::{Rig, has_one_pressure, plant, stated};
+use phea_dynamics::scalar::Scalar;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
 
 /// Records the model with the uncertain numbers open and all others at the values that hold.
 pub(super) fn uncertain_plant(
@@ -39,18 +36,12 @@ fn coefficients<S: Scalar>(
     for (name, value) in names.iter().zip(values).filter(|(name, _)| !is_linear(name)) {
         machine.set(name, *value);
     }
-    let mut linear = reduce(&machine.linear_parameters(rig));
-    for parameter in rig.parameters.iter().filter(|one| one.origin != ParameterOrigin::Derived) {
-        if let Some(slot) = parameter_field(&mut linear, parameter.name) {
-            *slot = S::from(parameter.value);
-        }
-    }
-    for (name, value) in names.iter().zip(values).filter(|(name, _)| is_linear(name)) {
-        if let Some(slot) = parameter_field(&mut linear, name) {
-            *slot = *value;
-        }
-    }
-    linear_model_coefficients(&linear)
+    let known = stated(&rig.parameters).map(|(name, value)| (name, S::from(value)));
+    let open = names.iter().map(String::as_str).zip(values.iter().copied());
+    let stated = known.chain(open.filter(|(name, _)| is_linear(name)));
+    let one_pressure = has_one_pressure(&rig.parameters, &rig.two_pressure, names);
+    let chambers = machine.linear_parameters(rig);
+    plant(&chambers, stated, one_pressure, machine.internal_leakage(), machine.load()).coefficients()
 }
 
 fn is_linear(name: &str) -> bool {

@@ -4,14 +4,15 @@ use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, bulk_modulus_with_air};
 use phea_hydraulics::line::{Line, Member, PipeWall};
+use phea_hydraulics::plant::LinearLoad;
 use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::stiffness::{chamber_compliance, compliance_at};
 use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
 use crate::project::Project;
-use crate::rig::Rig;
+use crate::rig::{Rig, YieldingLoad};
 
-/// Units: Pa, 1, m2, m, kg, m3, N s/m, N/m, rad/s.
+/// Units: Pa, 1, m2, m, kg, m3, N s/m, N/m, rad/s, m3/(s Pa).
 #[derive(Clone, Debug)]
 pub(super) struct Machine<S = f64> {
     bulk_modulus: S,
@@ -28,6 +29,9 @@ pub(super) struct Machine<S = f64> {
     sensor_stiffness: S,
     natural_frequency: S,
     damping_ratio: S,
+    internal_leakage: S,
+    /// `None` where its motion is prescribed.
+    load: Option<YieldingLoad<S>>,
 }
 
 impl Machine {
@@ -57,6 +61,8 @@ impl Machine {
             sensor_stiffness: components.force_sensor.stiffness,
             natural_frequency: components.valve.natural_frequency,
             damping_ratio: components.valve.damping_ratio,
+            internal_leakage: rig.internal_leakage,
+            load: rig.load,
         }
     }
 
@@ -75,6 +81,8 @@ impl Machine {
             sensor_stiffness: S::from(self.sensor_stiffness),
             natural_frequency: S::from(self.natural_frequency),
             damping_ratio: S::from(self.damping_ratio),
+            internal_leakage: S::from(self.internal_leakage),
+            load: self.load.map(|load| load.map()),
         }
     }
 }
@@ -105,10 +113,11 @@ impl<S: Scalar> Machine<S> {
                 &mut self.cylinder.dead_volume_a
             }
             "cylinder.friction.viscous" => &mut self.viscous_friction,
+            "cylinder.internal_leakage" => &mut self.internal_leakage,
             "force_sensor.stiffness" => &mut self.sensor_stiffness,
             "valve.natural_frequency" => &mut self.natural_frequency,
             "valve.damping_ratio" => &mut self.damping_ratio,
-            _ => return self.set_line(path, value),
+            _ => return self.set_load(path, value) || self.set_line(path, value),
         };
         *slot = value;
         true
@@ -124,6 +133,28 @@ impl<S: Scalar> Machine<S> {
         let [area_a, area_b] = rods.map(|rod| annulus_area(*piston, rod));
         (self.cylinder.area_a, self.cylinder.area_b) = (area_a, area_b);
         true
+    }
+
+    fn set_load(&mut self, path: &str, value: S) -> bool {
+        let Some(load) = &mut self.load else { return false };
+        let slot = match (path, &mut load.stiffness) {
+            ("load.mass", _) => &mut load.mass,
+            ("load.damping", _) => &mut load.damping,
+            ("load.stiffness", Some(stiffness)) => stiffness,
+            _ => return false,
+        };
+        *slot = value;
+        true
+    }
+
+    /// What the force sensor pushes on.
+    pub(super) fn load(&self) -> LinearLoad<S> {
+        self.load.as_ref().map_or(LinearLoad::Prescribed, YieldingLoad::linear)
+    }
+
+    /// Leakage across the piston in m3/(s Pa).
+    pub(super) fn internal_leakage(&self) -> S {
+        self.internal_leakage
     }
 
     /// `line.KEY` is of both sides, `line.a.KEY` and `line.b.KEY` of one.

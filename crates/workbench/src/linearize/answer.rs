@@ -5,15 +5,17 @@ use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 use phea_hydraulics::linear::{ModeShare, ResponseDifference};
 use serde::Serialize;
 
-use super::{Comparison, Linearization, PortView, stiffness_sentence};
+use super::{Agreement, Comparison, Linearization, PortView, WITHIN_DB, WITHIN_DEG, stiffness_sentence};
 use crate::answer::{self, Number, OutputFile, significant, table};
-use crate::control::left_out;
+use crate::caveat::caveats;
 use crate::project::Loaded;
 
 #[derive(Serialize)]
 struct Body<'a> {
     stiffness: StiffnessRow,
     poles: Poles,
+    plant: PlantRow,
+    agreement: Vec<AgreementRow<'a>>,
     decomposition_error: DecompositionError,
     reduction_error: Difference,
     first_order_error: Difference,
@@ -22,7 +24,7 @@ struct Body<'a> {
     passivity: Ports<'a, PassivityRow>,
     compliance_hidden_above_rad_per_s: f64,
     load_step_final_force_n: FinalForce<'a>,
-    warnings: Vec<&'static str>,
+    warnings: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -39,10 +41,34 @@ struct StiffnessRow {
 
 #[derive(Serialize)]
 struct Poles {
+    plant: Vec<[f64; 2]>,
     full: Vec<[f64; 2]>,
     decomposed: Vec<[f64; 2]>,
     first_order: Vec<[f64; 2]>,
     two_pressure: Vec<[f64; 2]>,
+}
+
+/// The plant that every verdict is of, from the command in V and from the position of the load or its ground in m, to the force in N.
+#[derive(Serialize)]
+struct PlantRow {
+    command: FactorRow,
+    load_position: FactorRow,
+}
+
+/// gain (s - zero).../((s - pole)...)
+#[derive(Serialize)]
+struct FactorRow {
+    gain: f64,
+    zeros: Vec<[f64; 2]>,
+    poles: Vec<[f64; 2]>,
+}
+
+/// Where a reduction is within 1 dB and 5 degrees of the plant.
+#[derive(Serialize)]
+struct AgreementRow<'a> {
+    model: &'a str,
+    equation: String,
+    bands_rad_per_s: &'a [[f64; 2]],
 }
 
 #[derive(Serialize)]
@@ -161,11 +187,17 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
             sentence: stiffness_sentence(models),
         },
         poles: Poles {
+            plant: pairs(linearization.plant.command.poles()),
             full: pairs(linearization.full.command.poles()),
             decomposed: pairs(linearization.decomposed[1].poles()),
             first_order: pairs(linearization.first_order.poles()),
             two_pressure: pairs(linearization.two_pressure.command.poles()),
         },
+        plant: PlantRow {
+            command: factors(&linearization.plant.command),
+            load_position: factors(&linearization.plant.load_position),
+        },
+        agreement: linearization.agreement.iter().map(agreement_row).collect(),
         decomposition_error: DecompositionError {
             corrected: difference(&linearization.corrected_decomposition),
             as_printed: difference(&linearization.printed_decomposition),
@@ -177,9 +209,18 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
         passivity: ports(linearization, |view| passivity_row(&view.passivity)),
         compliance_hidden_above_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
         load_step_final_force_n: final_force(linearization),
-        warnings: left_out(&loaded.project).into_iter().collect(),
+        warnings: caveats(&loaded.project).into_iter().map(|caveat| caveat.sentence).collect(),
     };
     answer::json("linearize", loaded, body)
+}
+
+fn factors(function: &TransferFunction) -> FactorRow {
+    FactorRow { gain: function.gain(), zeros: pairs(function.zeros()), poles: pairs(function.poles()) }
+}
+
+fn agreement_row(agreement: &Agreement) -> AgreementRow<'_> {
+    let Agreement { model, equation, bands_rad_per_s } = agreement;
+    AgreementRow { model, equation: format!("thesis {equation}"), bands_rad_per_s }
 }
 
 fn ports<Row>(linearization: &Linearization, row: impl Fn(&PortView) -> Row) -> Ports<'_, Row> {
@@ -242,12 +283,17 @@ fn passivity_row(report: &PassivityReport) -> PassivityRow {
 
 /// The tables and sentences of `linearize` for people.
 pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
-    let mut out = format!("Stiffness\n  {}\n", stiffness_sentence(&linearization.stiffness_models));
+    let mut out = String::new();
+    for caveat in caveats(&loaded.project) {
+        out.push_str(&format!("warning: {}\n", caveat.sentence));
+    }
+    out.push_str(&format!("Stiffness\n  {}\n", stiffness_sentence(&linearization.stiffness_models)));
     let mut poles = table(&["model", "equation", "poles, rad/s"]);
     for (model, equation, function) in models(linearization) {
         poles.add_row([model, equation, &root_list(function.poles())]);
     }
     out.push_str(&format!("\nPoles\n{}\n", poles.trim_fmt()));
+    out.push_str(&format!("\n{}\n{}\n", agreement_heading(), agreement_table(linearization)));
     let mut errors = table(&["comparison", "below 1000 rad/s", "everywhere"]);
     for (name, comparison) in comparisons(linearization) {
         errors.add_row([name.to_string(), difference_text(&comparison.low), located(&comparison.all)]);
@@ -269,10 +315,27 @@ pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
     }
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     out.push_str(&format!("  above {hidden} rad/s the piston's mass hides the compliance\n"));
-    if let Some(warning) = left_out(&loaded.project) {
-        out.push_str(&format!("  {warning}\n"));
-    }
     out
+}
+
+/// What the table below it tells.
+pub(crate) fn agreement_heading() -> String {
+    format!("Where a reduction is within {WITHIN_DB} dB and {WITHIN_DEG}° of the plant")
+}
+
+/// The bands of an agreement in words.
+pub(crate) fn band_words(agreement: &Agreement) -> String {
+    let band = |[from, to]: &[f64; 2]| format!("{} to {} rad/s", significant(*from, 3), significant(*to, 3));
+    let bands: Vec<String> = agreement.bands_rad_per_s.iter().map(band).collect();
+    if bands.is_empty() { "nowhere".to_string() } else { bands.join(", ") }
+}
+
+fn agreement_table(linearization: &Linearization) -> String {
+    let mut rows = table(&["model", "equation", "frequencies"]);
+    for agreement in &linearization.agreement {
+        rows.add_row([agreement.model, agreement.equation, &band_words(agreement)]);
+    }
+    rows.trim_fmt()
 }
 
 /// The poles of every model as a table for other programs.
@@ -297,8 +360,9 @@ pub(crate) fn mode_words(mode: &ModeShare) -> [String; 2] {
 }
 
 /// Every model with its equation, the fullest first; with the values that hold where nothing else is said.
-pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 6] {
+pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 7] {
     [
+        ("plant", "4.1 to 4.45", &linearization.plant.command),
         ("two-pressure, derived parameters", "4.25 to 4.29", &linearization.two_pressure.command),
         ("fifth order, derived parameters", "6.7", &linearization.derived_full.command),
         ("fifth order", "6.7", &linearization.full.command),

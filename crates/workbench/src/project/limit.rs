@@ -192,7 +192,7 @@ impl MarginWish {
         v.optional(k.at_most(std::f64::consts::PI), &mut self.phase_margin);
         let k = key("modulus_margin", &RATIO, "Least distance of L from -1.").positive().below(1.0);
         v.optional(k, &mut self.modulus_margin);
-        let k = key("delay_margin", &TIME, "Delay that the loop bears beyond its own.").positive();
+        let k = key("delay_margin", &TIME, "Delay that the loop tolerates beyond its own.").positive();
         v.optional(k, &mut self.delay_margin);
     }
 }

@@ -1,7 +1,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::typeset::prose;
-use crate::control::left_out;
+use crate::caveat::caveats;
 use crate::figure::Figure;
 use crate::project::Project;
 
@@ -60,7 +60,7 @@ pub(super) fn grouped(
 
 /// What a chapter on the linear loop leaves out of it, if there is such a thing.
 pub(super) fn without(project: &Project) -> Markup {
-    html! { @if let Some(warning) = left_out(project) { div.callout { p { (warning) "." } } } }
+    html! { @for caveat in caveats(project) { div.callout { p { (caveat.sentence) "." } } } }
 }
 
 /// A text that is not broken into lines.

@@ -73,13 +73,17 @@ fn poles(linearization: &Linearization) -> Figure {
         poles: function.poles().to_vec(),
         zeros: function.zeros().to_vec(),
     };
+    let mut all = vec![
+        series("fifth order (6.7)", &linearization.full.command),
+        series("decomposed (6.12), corrected", &linearization.decomposed[1]),
+        series("two-pressure, derived parameters", &linearization.two_pressure.command),
+        series("fifth order (6.7), derived parameters", &linearization.derived_full.command),
+    ];
+    if !linearization.plant_is_fifth_order {
+        all.insert(0, series("plant", &linearization.plant.command));
+    }
     let input = PoleMapInput {
-        series: vec![
-            series("fifth order (6.7)", &linearization.full.command),
-            series("decomposed (6.12), corrected", &linearization.decomposed[1]),
-            series("two-pressure, derived parameters", &linearization.two_pressure.command),
-            series("fifth order (6.7), derived parameters", &linearization.derived_full.command),
-        ],
+        series: all,
         scale: PoleMapScale::SignedLogarithmic,
         damping_ratios: vec![0.01, 0.1, 0.5, 0.9],
         natural_frequencies_rad_per_s: vec![1.0, 10.0, 100.0, 1000.0],
@@ -88,16 +92,23 @@ fn poles(linearization: &Linearization) -> Figure {
     pole_map(Words::new("poles", "Pole map", caption), &input)
 }
 
-/// The models with the values that hold, the fifth order first.
+/// The models with the values that hold, the plant first, which may be the fifth order.
 fn responses(linearization: &Linearization) -> Result<Figure, LinearError> {
-    let caption = "Force over command of the models with the values that hold, and how far each is from the fifth-order model.";
-    let words = Words::new("bode", "Frequency response of the models", caption);
-    let models = [
+    let mut models = vec![
         ("fifth order (6.7)", &linearization.full.command),
         ("decomposed (6.12), corrected", &linearization.decomposed[1]),
         ("first order (6.13)", &linearization.first_order),
     ];
-    diagram(words, &models, &linearization.full.command)
+    let mut first = "the fifth-order model";
+    if !linearization.plant_is_fifth_order {
+        models.insert(0, ("plant", &linearization.plant.command));
+        first = "the plant, which has load, leakage and both chambers";
+    }
+    let caption = format!(
+        "Force over command of the models with the values that hold, and how far each is from {first}."
+    );
+    let words = Words::new("bode", "Frequency response of the models", &caption);
+    diagram(words, &models, &linearization.plant.command)
 }
 
 /// What one load pressure leaves out: both models with derived parameters.

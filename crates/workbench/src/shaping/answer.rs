@@ -21,7 +21,7 @@ struct Body<'a> {
     #[serde(rename = "loop")]
     points: Vec<PointRow>,
     unreached_rad_per_s: &'a [f64],
-    warnings: Vec<&'static str>,
+    warnings: Vec<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -143,7 +143,7 @@ pub fn json(loaded: &Loaded, view: &Shaping) -> String {
         margins: margin_rows(view),
         points: view.points.iter().map(point).collect(),
         unreached_rad_per_s: &view.unreached_rad_per_s,
-        warnings: view.problem.left_out.into_iter().collect(),
+        warnings: view.problem.caveats.iter().map(|caveat| caveat.sentence.as_str()).collect(),
     };
     answer::json("shape", loaded, body)
 }

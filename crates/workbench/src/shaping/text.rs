@@ -19,7 +19,11 @@ pub fn text(view: &Shaping) -> String {
         1 => "1 element".to_string(),
         count => format!("{count} elements"),
     };
-    let mut out = format!("{what}: {count}\n");
+    let mut out = String::new();
+    for caveat in &view.problem.caveats {
+        out.push_str(&format!("warning: {}\n", caveat.sentence));
+    }
+    out.push_str(&format!("{what}: {count}\n"));
     for (index, element) in view.elements.iter().enumerate() {
         out.push_str(&format!("  {}  {}\n", index + 1, element.print()));
     }
@@ -43,9 +47,6 @@ pub fn text(view: &Shaping) -> String {
     }
     if !view.problem.specifications.is_empty() {
         out.push_str("  Nothing is said of what lies between these frequencies: `verify` looks there.\n");
-    }
-    if let Some(warning) = view.problem.left_out {
-        out.push_str(&format!("  {warning}\n"));
     }
     out
 }

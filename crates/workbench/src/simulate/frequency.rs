@@ -16,7 +16,7 @@ pub(crate) use text::text;
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::Settings;
-use phea_hydraulics::linear::linear_model;
+use phea_hydraulics::linear::transfer_functions;
 use phea_hydraulics::machine::{Beginning, Machine};
 
 use super::SimulateError;
@@ -137,7 +137,7 @@ fn rested(project: &Project) -> Result<Rested, SimulateError> {
     let components = rig.actuator.components();
     let area = 0.5 * (components.cylinder.area_a + components.cylinder.area_b);
     let push_n = area * (components.supply.pressure - components.supply.tank_pressure);
-    let plant = linear_model(&rig.linear).map_err(SimulateError::Plant)?.command;
+    let plant = transfer_functions(&rig.plant.coefficients()).map_err(SimulateError::Plant)?.command;
     Ok(Rested { machine, rest, force_n, push_n, settings: settings(project), plant, rig })
 }
 

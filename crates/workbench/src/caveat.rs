@@ -1,0 +1,92 @@
+//! What a verdict on the linear loop does not speak of, although the project declares it.
+//!
+//! A simulation is of the whole machine. What the linear plant cannot count is told before the verdict; where a specification depends
+//! on it, the verdict is not proven.
+
+use crate::project::{LineModel, LoadModel, Project, SpecificationKind, SupplyModel};
+
+/// Something declared that the linear loop does not count.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Caveat {
+    /// What it is, and where it is counted.
+    pub sentence: String,
+    /// Whether a specification may fail for it that the linear loop satisfies.
+    pub unproven: bool,
+}
+
+/// What is declared and in no linear loop.
+pub(crate) fn caveats(project: &Project) -> Vec<Caveat> {
+    [load(project), lines(project), supply(project), feed_forward(project), prefilter(project)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// A wall whose mass nobody states.
+fn load(project: &Project) -> Option<Caveat> {
+    let load = &project.actuator.as_ref()?.load;
+    (load.model == LoadModel::Wall && load.mass.is_none()).then(|| Caveat {
+        sentence: "load.model = \"wall\" is not counted without load.mass: this is the loop with a load that does not yield"
+            .to_string(),
+        unproven: true,
+    })
+}
+
+/// Lines in motion: the linear plant holds their static compliance.
+fn lines(project: &Project) -> Option<Caveat> {
+    let line = &project.actuator.as_ref()?.line;
+    let [a, b] = [&line.a, &line.b].map(|line| line.motion.model);
+    let (place, model) = match (a, b) {
+        (LineModel::Lumped, LineModel::Lumped) => return None,
+        (a, b) if a == b => ("line.model", a),
+        (LineModel::Lumped, b) => ("line.b.model", b),
+        (a, _) => ("line.a.model", a),
+    };
+    Some(Caveat {
+        sentence: format!(
+            "{place} = \"{}\" is not counted: the linear plant has lumped lines, and only a simulation shows what waves and walls do",
+            model.word()
+        ),
+        unproven: true,
+    })
+}
+
+/// A supply that yields.
+fn supply(project: &Project) -> Option<Caveat> {
+    let supply = &project.actuator.as_ref()?.supply;
+    (supply.model == SupplyModel::PumpLimited).then(|| Caveat {
+        sentence: "supply.model = \"pump_limited\" is not counted: the linear plant has a supply of constant pressure, and only a \
+                   simulation shows what the pump cannot give"
+            .to_string(),
+        unproven: true,
+    })
+}
+
+/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion.
+fn feed_forward(project: &Project) -> Option<Caveat> {
+    let declared = project.controller.as_ref()?.load_velocity_feed_forward?;
+    let yields =
+        project.actuator.as_ref().is_some_and(|actuator| actuator.load.model != LoadModel::Prescribed);
+    (declared.gain != Some(0.0)).then(|| Caveat {
+        sentence: "the load velocity that [controller] feeds forward is not counted: this is the loop without it, and only a simulation \
+                   is of the loop with it"
+            .to_string(),
+        unproven: yields || limits(project, SpecificationKind::LoadMotion),
+    })
+}
+
+/// A prefilter that acts between samples.
+fn prefilter(project: &Project) -> Option<Caveat> {
+    let sampled = project.controller.as_ref()?.sample_time.is_some();
+    let continuous = project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous);
+    (sampled && continuous).then(|| Caveat {
+        sentence: "prefilter.continuous is not counted: the linear loop samples the prefilter with the controller, and only a \
+                   simulation lets it act between samples"
+            .to_string(),
+        unproven: limits(project, SpecificationKind::Tracking),
+    })
+}
+
+fn limits(project: &Project, kind: SpecificationKind) -> bool {
+    project.specifications.iter().any(|specification| specification.kind == kind)
+}

@@ -1,0 +1,138 @@
+//! The plant of every verdict is that of the declared rig, with its load and its leakage; what it does not count is told first.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use phea_qft::verification::Verdict;
+use phea_workbench::audit::{self, ProjectAudit, audit_project};
+use phea_workbench::control::{controller, sensor};
+use phea_workbench::linear_loop::linear_loop;
+use phea_workbench::linearize::{Linearization, linearize};
+use phea_workbench::project::{self, Project};
+use phea_workbench::rig::Rig;
+use phea_workbench::simulate::simulate_project;
+use phea_workbench::source::Memory;
+
+const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+/// 100 kg between the load cell and a spring of 200 kN/m.
+const SPRUNG: [&str; 4] =
+    ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
+
+fn loaded(text: &str, settings: &[&str]) -> Project {
+    let source = Memory::default().with("rig.toml", text);
+    let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
+    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
+}
+
+fn linearized(project: &Project) -> Linearization {
+    linearize(&Rig::new(project).unwrap(), None, &sensor(project).unwrap()).unwrap()
+}
+
+/// Overshoot of a step of the reference in percent, by the linear plant.
+fn overshoot(project: &Project) -> f64 {
+    let given = controller(project).unwrap().unwrap();
+    let plant = linearized(project).plant.command;
+    let closed = linear_loop(&plant, &given, &sensor(project).unwrap(), 1.0).unwrap();
+    closed.step.unwrap().metrics.overshoot_percent
+}
+
+/// The load alone makes a loop that overshoots by nothing overshoot by a quarter, and the linear plant says so. The machine, which has
+/// friction, overshoots a little less.
+#[test]
+fn a_load_that_yields_is_in_the_loop() {
+    let [prescribed, sprung] = [loaded(HOSE, &[]), loaded(HOSE, &SPRUNG)];
+    // ORIGIN: recomputed by comparisons/recompute_plant.py
+    let expected = [0.41, 27.98];
+    for (project, expected) in [&prescribed, &sprung].into_iter().zip(expected) {
+        assert!((overshoot(project) - expected).abs() < 0.01, "{} instead of {expected}", overshoot(project));
+    }
+    let runs = simulate_project(&Memory::default(), &sprung, &mut |_| true).unwrap();
+    let machine = runs[0].windows[0].1.overshoot_percent.unwrap();
+    assert!((25.0..expected[1]).contains(&machine), "{machine}");
+}
+
+/// Leakage across the piston adds to the valve's: the slow pole is (K_c + G) times what it was over K_c.
+#[test]
+fn leakage_across_the_piston_moves_the_slow_pole() {
+    let slowest = |settings: &[&str]| {
+        let plant = linearized(&loaded(HOSE, settings)).plant.command;
+        plant.poles().iter().map(|pole| pole.norm_sqr()).fold(f64::INFINITY, f64::min).sqrt()
+    };
+    // ORIGIN: recomputed by comparisons/recompute_plant.py
+    assert!((slowest(&[]) - 0.51584).abs() < 1e-5);
+    assert!((slowest(&["cylinder.internal_leakage=1e-11"]) - 8.5508).abs() < 1e-4);
+}
+
+/// The hose with this specification alone, which the given controller satisfies over its family.
+fn satisfied(settings: &[&str]) -> Project {
+    let mut project = loaded(HOSE, settings);
+    project.specifications.truncate(1);
+    project.specifications[0].limit = Some(project::Limit::Constant(1000.0));
+    project
+}
+
+fn audited(project: &Project) -> ProjectAudit {
+    audit_project(&Memory::default(), project, &mut |_| true).unwrap()
+}
+
+/// What is declared and not in the linear loop stands above everything else that is said, and no verdict is met.
+#[test]
+fn what_is_not_counted_is_told_first() {
+    let met = audited(&satisfied(&[]));
+    assert_eq!(met.audit.verdict, Verdict::Met);
+    for (settings, key) in [
+        (&["line.model=transmission_line"][..], "line.model = \"transmission_line\" is not counted"),
+        (&["line.model=creeping", "line.relaxation_time=0.01"], "line.model = \"creeping\" is not counted"),
+        (&["line.b.model=two_wave"], "line.b.model = \"two_wave\" is not counted"),
+        (&["supply.model=pump_limited"], "supply.model = \"pump_limited\" is not counted"),
+        (
+            &[
+                "load.model=spring_mass_damper",
+                "load.mass=1",
+                "load.stiffness=1e9",
+                "load.damping=1e5",
+                "controller.load_velocity_feed_forward={}",
+            ],
+            "the load velocity that [controller] feeds forward is not counted",
+        ),
+    ] {
+        let view = audited(&satisfied(settings));
+        assert_eq!(view.audit.verdict, Verdict::NotProven, "{key}");
+        let text = audit::text(&view);
+        let first: Vec<&str> = text.lines().take(3).map(str::trim).collect();
+        assert_eq!(first[0], "Verdict: not proven");
+        assert!(first[1..].iter().any(|line| line.starts_with(key)), "{text}");
+    }
+}
+
+/// What changes no specification is told, and the verdict stays.
+#[test]
+fn a_path_that_no_specification_limits_decides_nothing() {
+    let view = audited(&satisfied(&["controller.load_velocity_feed_forward={}"]));
+    assert_eq!((view.audit.verdict, view.caveats.len()), (Verdict::Met, 2));
+}
+
+/// The box of Table 6.3 begins above the K_c that the edges of Table 5.1 make: what the loop does with that rig is told.
+#[test]
+fn a_family_that_does_not_contain_the_rig_says_so_first() {
+    let view = audited(&satisfied(&[]));
+    let [outside] = &view.caveats[..] else { panic!("{:?}", view.caveats) };
+    assert_eq!(
+        outside.sentence,
+        "the family does not contain the rig as it is derived (flow_pressure_coefficient is 5.929e-13, the box has 6.420e-13 to \
+         7.000e-11): the loop with it is stable and satisfies every specification"
+    );
+    // half the flow gain of the rig, and a limit that holds for that alone
+    let range = "uncertainty.flow_gain={ nominal = 2.5e-5, minimum = 2.4e-5, maximum = 2.6e-5 }";
+    let mut far = satisfied(&[range]);
+    far.uncertainty.retain(|uncertain| uncertain.name == "flow_gain");
+    far.specifications[0].limit = Some(project::Limit::Constant(2.0));
+    let view = audited(&far);
+    assert_eq!(view.audit.verdict, Verdict::NotProven);
+    assert_eq!(view.audit.specifications[0].verdict, Verdict::Met);
+    assert!(view.caveats[0].sentence.contains("flow_gain is 5.2"), "{:?}", view.caveats);
+    assert!(
+        view.caveats[0].sentence.ends_with("the loop with it violates 1 robust stability"),
+        "{:?}",
+        view.caveats
+    );
+}
