@@ -39,7 +39,13 @@ pub(crate) enum Command {
     /// Linear models: poles, differences, stiffness over the stroke, driving-point impedance, passivity
     Linearize(Common),
     /// Audit the given controller and prefilter: every plant of the family, every specification, its whole band
-    Verify(Common),
+    Verify {
+        #[command(flatten)]
+        common: Common,
+        /// Try the verdict on the nonlinear machine: a step of the rig, of its worst plants, and with waves in its lines
+        #[arg(long)]
+        on_machine: bool,
+    },
     /// Shape the controller by hand: change its elements in the order given, see every margin at the design frequencies
     Shape {
         #[command(flatten)]

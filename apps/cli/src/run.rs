@@ -26,7 +26,8 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Check(common) => on_project(&common, &Request::Check),
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }),
         Command::Linearize(common) => on_project(&common, &Request::Linearize),
-        Command::Verify(common) => on_project(&common, &Request::Verify),
+        Command::Verify { common, on_machine: false } => on_project(&common, &Request::Verify),
+        Command::Verify { common, on_machine: true } => on_project(&common, &Request::VerifyOnMachine),
         Command::Shape { common, changes, prefilter, save } => {
             let shaped = if prefilter { Shaped::Prefilter } else { Shaped::Controller };
             on_project_saving(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())

@@ -9,7 +9,7 @@ mod words;
 
 pub(crate) use alone::outside;
 pub(crate) use answer::{Body, body};
-pub use answer::{files, json};
+pub use answer::{files, json, json_on_machine};
 pub use plant::{NamedPlant, PlantNames};
 pub use text::text;
 pub(crate) use text::{basis, stability_sentence, summary, worst_plants};

@@ -25,11 +25,13 @@ use crate::project::{Loaded, Report as Refusal};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
+use crate::robust::robust_problem;
 use crate::shaping::{self, RequestedChange, Shaped, ShapingError, shape};
 use crate::simulate::{SimulateError, compare_projects};
 use crate::sizing::{self, Question, size};
 use crate::source::{Destination, Held, Source};
 use crate::specification::{self, specifications, wishes};
+use crate::trial::{self, Agreement, tried};
 use simulate::simulate_answer;
 
 /// What is asked of a project.
@@ -48,6 +50,8 @@ pub enum Request {
     Linearize,
     /// The audit of the given controller.
     Verify,
+    /// The same, tried on the nonlinear machine.
+    VerifyOnMachine,
     /// Shaping by hand, elements changed in order.
     Shape {
         /// What is shaped.
@@ -83,7 +87,7 @@ impl Request {
             Request::Check => "check",
             Request::Size { .. } => "size",
             Request::Linearize => "linearize",
-            Request::Verify => "verify",
+            Request::Verify | Request::VerifyOnMachine => "verify",
             Request::Shape { .. } => "shape",
             Request::Design { .. } => "design",
             Request::Simulate | Request::SimulateAs(_) => "simulate",
@@ -264,6 +268,7 @@ pub fn answer_into(
         }
         Request::Linearize => linearize_answer(loaded),
         Request::Verify => verify_answer(source, loaded, watch),
+        Request::VerifyOnMachine => verify_on_machine(source, loaded, watch),
         Request::Shape { shaped, changes } => {
             let shaping = shape(source, loaded, *shaped, changes, watch)?;
             let (text, json) = (shaping::text(&shaping), shaping::json(loaded, &shaping));
@@ -377,6 +382,20 @@ fn verify_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Resu
     })
 }
 
+fn verify_on_machine(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
+    let view = audit_project(source, &loaded.project, watch)?;
+    let problem = robust_problem(source, &loaded.project)?;
+    let Some(trial) = tried(source, &loaded.project, &problem, &view, watch)? else {
+        return Err(RigError::NoActuator.into());
+    };
+    Ok(Answer {
+        text: format!("{}{}", audit::text(&view), trial::text(&trial)),
+        json: audit::json_on_machine(loaded, &view, &trial),
+        files: audit::files(&view),
+        affirmative: view.audit.verdict == Verdict::Met && trial.agreement() != Agreement::Contradicts,
+    })
+}
+
 fn design_answer(
     source: &dyn Source,
     loaded: &Loaded,
@@ -389,7 +408,7 @@ fn design_answer(
         text: design::text(loaded, &view)?,
         json: design::json(loaded, &view)?,
         files: if stages { design::stage_files(loaded, &view, watch)? } else { design::files(loaded, &view) },
-        affirmative: view.is_met(),
+        affirmative: view.is_met() && view.agreement() != Agreement::Contradicts,
     })
 }
 

@@ -37,6 +37,7 @@ use crate::project::{self, Loaded, Project};
 use crate::quantity;
 use crate::robust::{RobustProblem, robust_problem};
 use crate::source::Source;
+use crate::trial::{Agreement, Trial, tried};
 
 /// Why nothing is designed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -75,6 +76,8 @@ pub struct ProjectDesign {
     pub explanations: Vec<Explanation>,
     /// What the computer's converters do to the designed loop; absent where nothing is rounded.
     pub rounding: Option<Rounding>,
+    /// What the nonlinear machine does under the designed controller; absent without a machine, and where the design was stopped.
+    pub trial: Option<Trial>,
     /// The designed controller as a project declares it.
     pub declared_controller: project::Controller,
     /// The designed prefilter likewise; absent where none was designed.
@@ -129,9 +132,15 @@ impl ProjectDesign {
             continuous: None,
             explanations: vec![],
             rounding,
+            trial: None,
             declared_controller,
             declared_prefilter,
         })
+    }
+
+    /// How the machine does beside the linear loop, as far as it was tried.
+    pub fn agreement(&self) -> Agreement {
+        self.trial.as_ref().map_or(Agreement::Agrees, Trial::agreement)
     }
 
     /// Whether the designed controller keeps to every specification.
@@ -179,7 +188,8 @@ pub fn design_project(
         Some(design) => {
             let told = ProjectDesign::new(project, &given, run.problem(), design, options)?;
             let continuous = if stopped { None } else { continuous_as_sampled(project, &run, &told, watch)? };
-            Ok(ProjectDesign { stopped, published, explanations, continuous, ..told })
+            let trial = if stopped { None } else { tried_design(source, project, &told, watch)? };
+            Ok(ProjectDesign { stopped, published, explanations, continuous, trial, ..told })
         }
         None if stopped => Err(CommandError::Stopped),
         None => {
@@ -187,6 +197,21 @@ pub fn design_project(
             Err(DesignError::NoController(sentences).into())
         }
     }
+}
+
+/// The machine under the designed controller, as the project would declare it.
+fn tried_design(
+    source: &dyn Source,
+    project: &Project,
+    told: &ProjectDesign,
+    watch: Watch<'_>,
+) -> Result<Option<Trial>, CommandError> {
+    let deployed = Project {
+        controller: Some(told.declared_controller.clone()),
+        prefilter: told.declared_prefilter.clone().or_else(|| project.prefilter.clone()),
+        ..project.clone()
+    };
+    tried(source, &deployed, &told.designed.problem, &told.designed.view, watch)
 }
 
 /// What a design that knows nothing of samples and delay becomes by them: made for the continuous loop, audited in the sampled one. `None`

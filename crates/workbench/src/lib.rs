@@ -26,3 +26,4 @@ pub mod sizing;
 pub mod source;
 pub mod specification;
 pub mod spelling;
+pub mod trial;

@@ -51,4 +51,5 @@ mod simulation_robustness;
 mod sizing_catalogue;
 mod sizing_laws;
 mod specification;
+mod trial;
 mod verify_contract;

@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 const PLANT: &str = include_str!("truth/plant.toml");
 
 /// Every request; the report, which draws a dozen pictures, is the last.
-fn requests() -> [Request; 7] {
+fn requests() -> [Request; 8] {
     [
         Request::Check,
         size_request(None, None),
@@ -21,6 +21,7 @@ fn requests() -> [Request; 7] {
         size_request(None, Some("1.5 m")),
         Request::Linearize,
         Request::Verify,
+        Request::VerifyOnMachine,
         Request::Report,
     ]
 }
@@ -50,7 +51,7 @@ fn everything() -> Vec<(String, Value)> {
     let mut answers = Vec::new();
     for (name, project) in [("hose", HOSE), ("pipe", PIPE)] {
         for settings in odd {
-            for request in &requests()[..6] {
+            for request in &requests()[..7] {
                 let label = format!("{} {name} {settings:?} {request:?}", request.name());
                 answers.push((label, json(project, settings, &[FICTITIOUS], request)));
             }
@@ -272,7 +273,7 @@ fn without_a_rational_loop_there_is_a_reason_instead_of_a_view() {
 
 #[test]
 fn the_same_project_gives_the_same_bytes() {
-    for request in &requests()[..6] {
+    for request in &requests()[..7] {
         let answer = || ask::answer(HOSE, &[], &[FICTITIOUS], request);
         assert_eq!(answer(), answer());
     }

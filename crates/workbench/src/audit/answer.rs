@@ -6,6 +6,7 @@ use super::words::{evidence_key, kind_key, kind_words, verdict_key};
 use super::{ProjectAudit, Reached};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
+use crate::trial::{self, Trial};
 
 #[derive(Serialize)]
 pub(crate) struct Body<'a> {
@@ -139,6 +140,18 @@ fn specification<'a>(
 /// The JSON object of `verify`.
 pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
     answer::json("verify", loaded, body(view))
+}
+
+#[derive(Serialize)]
+struct OnMachine<'a> {
+    #[serde(flatten)]
+    audit: Body<'a>,
+    machine: trial::Body<'a>,
+}
+
+/// The JSON object of `verify --on-machine`.
+pub fn json_on_machine(loaded: &Loaded, view: &ProjectAudit, trial: &Trial) -> String {
+    answer::json("verify", loaded, OnMachine { audit: body(view), machine: trial::body(trial) })
 }
 
 /// What an audit says in JSON, beside what every object carries.

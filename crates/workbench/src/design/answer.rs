@@ -13,6 +13,7 @@ use super::{Explanation, ProjectDesign};
 use crate::answer::{self, Number};
 use crate::audit::{self, NamedPlant, PlantNames};
 use crate::project::Loaded;
+use crate::trial;
 
 #[derive(Serialize)]
 struct Body<'a> {
@@ -44,6 +45,9 @@ struct Body<'a> {
     explanations: Vec<ExplanationRow<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rounding: Option<RoundingRow>,
+    machine: Option<trial::Body<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    machine_reason: Option<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -168,6 +172,11 @@ pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
         }),
         explanations: view.explanations.iter().map(|one| explanation(view, one)).collect(),
         rounding: view.rounding.as_ref().map(|rounding| rounding.row(&view.designed.view.names)),
+        machine: view.trial.as_ref().map(trial::body),
+        machine_reason: view.trial.is_none().then_some(match view.stopped {
+            true => "the design was stopped before it was tried on the machine",
+            false => "the project describes a plant and no machine",
+        }),
     };
     Ok(answer::json("design", loaded, body))
 }

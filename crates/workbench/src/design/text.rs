@@ -10,6 +10,7 @@ use crate::answer::{significant, table};
 use crate::audit::{self, frequency_number, margin_words, summary};
 use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
+use crate::trial;
 
 /// Digits of the numbers of a law, for people.
 const DIGITS: usize = 5;
@@ -29,6 +30,9 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
         let is = if view.bears_its_delay { "is" } else { "is not" };
         let asked = DisplayUnit::MILLISECOND.text(view.minimum_delay_margin_s, 3);
         out.push_str(&format!("  the delay of {asked} that was asked for {is} borne\n"));
+    }
+    if let Some(trial) = &view.trial {
+        out.push_str(&trial::text(trial));
     }
     out.push_str(&format!("\nController\n{}", laws(view)?));
     out.push_str(&format!("\n{}\n", side_by_side(view)));

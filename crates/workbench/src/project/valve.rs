@@ -66,6 +66,11 @@ pub struct EdgeCoefficients {
 }
 
 impl EdgeCoefficients {
+    /// All four, to be changed.
+    pub(crate) fn each_mut(&mut self) -> [&mut f64; 4] {
+        [&mut self.supply_to_a, &mut self.a_to_tank, &mut self.supply_to_b, &mut self.b_to_tank]
+    }
+
     /// In the order of edges 3, 4, 5, 6.
     pub fn in_order(&self) -> [f64; 4] {
         [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]

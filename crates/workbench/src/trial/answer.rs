@@ -1,0 +1,124 @@
+//! What the machine did, for people and for programs.
+
+use serde::Serialize;
+
+use super::run::percent_words;
+use super::{Agreement, Run, Step, Trial};
+use crate::answer::table;
+use crate::audit::NamedPlant;
+use crate::quantity::DisplayUnit;
+
+/// The key `machine` of an answer.
+#[derive(Serialize)]
+pub(crate) struct Body<'a> {
+    verdict: &'static str,
+    runs: Vec<RunRow<'a>>,
+    not_driven: &'a [String],
+}
+
+#[derive(Serialize)]
+struct RunRow<'a> {
+    what: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    plant: Option<&'a NamedPlant>,
+    status: &'static str,
+    agrees: bool,
+    agreement: &'static str,
+    reason: &'a str,
+    reference_n: [f64; 2],
+    linear: Option<StepRow>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    linear_reason: Option<&'static str>,
+    machine: Option<StepRow>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    machine_reason: Option<&'static str>,
+}
+
+#[derive(Serialize)]
+struct StepRow {
+    overshoot_percent: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    overshoot_percent_reason: Option<&'static str>,
+    settling_time_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    settling_time_s_reason: Option<&'static str>,
+}
+
+/// The word of an agreement.
+fn word(agreement: Agreement) -> &'static str {
+    match agreement {
+        Agreement::Agrees => "agrees",
+        Agreement::Differs => "differs",
+        Agreement::Contradicts => "contradicts",
+    }
+}
+
+fn step(step: &Step) -> StepRow {
+    StepRow {
+        overshoot_percent: step.overshoot_percent,
+        overshoot_percent_reason: step.overshoot_percent.is_none().then_some("the run ended before"),
+        settling_time_s: step.settling_time_s,
+        settling_time_s_reason: step.settling_time_s.is_none().then_some("it does not settle within the run"),
+    }
+}
+
+fn row(run: &Run) -> RunRow<'_> {
+    RunRow {
+        what: &run.what,
+        plant: run.plant.as_ref(),
+        status: run.status,
+        agrees: run.agreement == Agreement::Agrees,
+        agreement: word(run.agreement),
+        reason: &run.reason,
+        reference_n: run.reference_n,
+        linear: run.linear.as_ref().map(step),
+        linear_reason: run
+            .linear
+            .is_none()
+            .then_some("the linear loop has no step response in closed form, or grows"),
+        machine: run.machine.as_ref().map(step),
+        machine_reason: run.machine.is_none().then_some("it does not start"),
+    }
+}
+
+/// What a trial says in JSON.
+pub(crate) fn body(trial: &Trial) -> Body<'_> {
+    Body {
+        verdict: word(trial.agreement()),
+        runs: trial.runs.iter().map(row).collect(),
+        not_driven: &trial.not_driven,
+    }
+}
+
+/// The same for people.
+pub(crate) fn text(trial: &Trial) -> String {
+    let settling = |step: Option<&Step>| match step.and_then(|step| step.settling_time_s) {
+        Some(time_s) => DisplayUnit::MILLISECOND.text(time_s, 3),
+        None => "-".to_string(),
+    };
+    let overshoot = |step: Option<&Step>| match step.and_then(|step| step.overshoot_percent) {
+        Some(percent) => percent_words(percent),
+        None => "-".to_string(),
+    };
+    let headings = ["machine", "", "overshoot", "linear", "settles in", "linear"];
+    let mut rows = table(&headings);
+    for run in &trial.runs {
+        let (linear, machine) = (run.linear.as_ref(), run.machine.as_ref());
+        rows.add_row([
+            run.what.clone(),
+            word(run.agreement).to_string(),
+            overshoot(machine),
+            overshoot(linear),
+            settling(machine),
+            settling(linear),
+        ]);
+    }
+    let mut out = format!("\nOn the machine: {}\n{}\n", word(trial.agreement()), rows.trim_fmt());
+    for run in trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees) {
+        out.push_str(&format!("  {}: {}\n", run.what, run.reason));
+    }
+    for missing in &trial.not_driven {
+        out.push_str(&format!("  not driven: {missing}\n"));
+    }
+    out
+}
