@@ -13,15 +13,16 @@ use phea_qft::verification::Verdict;
 use serde::Serialize;
 
 use crate::answer::{self, Answer, OutputFile};
-use crate::audit::{self, AuditError, audit_project};
+use crate::audit::{self, AuditError, audit_project, outside};
 use crate::campaign::{CampaignError, Nowhere};
+use crate::caveat::caveats;
 use crate::control::{ControlError, controller, sensor};
 use crate::derived::{self, derive};
 use crate::design::{self, DesignError, design_project};
 use crate::family::{FamilyError, family};
 use crate::figure::FigureError;
 use crate::linearize::{self, linearize};
-use crate::project::{Loaded, Report as Refusal};
+use crate::project::{Loaded, Project, Report as Refusal};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
@@ -300,12 +301,21 @@ fn check(source: &dyn Source, loaded: &Loaded) -> Result<Answer, CommandError> {
     specifications(&loaded.project)?;
     let wishes = wishes(&loaded.project)?;
     let in_time = specification::text(&wishes);
+    let told = told_first(&loaded.project);
+    let first: String = told.iter().map(|sentence| format!("warning: {sentence}\n")).collect();
     let text = match derived.as_slice() {
-        [] => format!("{in_time}The project is valid. {}\n", without_derived(source, loaded)?),
-        derived => format!("{}\n{in_time}The project is valid.\n", derived::text(derived)),
+        [] => format!("{first}{in_time}The project is valid. {}\n", without_derived(source, loaded)?),
+        derived => format!("{first}{}\n{in_time}The project is valid.\n", derived::text(derived)),
     };
     let files = derived::files(&derived);
-    Ok(Answer { text, json: derived::json(loaded, &derived, &wishes), files, affirmative: true })
+    Ok(Answer { text, json: derived::json(loaded, &derived, &wishes, told), files, affirmative: true })
+}
+
+/// What no verdict on the linear loop counts, and what of the rig lies outside of its own family.
+fn told_first(project: &Project) -> Vec<String> {
+    let outside = outside(project)
+        .map(|(_, words)| format!("the family does not contain the rig as it is derived ({words})"));
+    outside.into_iter().chain(caveats(project).into_iter().map(|caveat| caveat.sentence)).collect()
 }
 
 /// The family is all that a project without an actuator has: it must be one.

@@ -20,6 +20,7 @@ mod simulation;
 mod sizing;
 mod specifications;
 mod stiffness;
+mod trial;
 mod typeset;
 
 use maud::{Markup, html};
@@ -44,6 +45,7 @@ use crate::rig::Rig;
 use crate::robust::robust_problem;
 use crate::sizing::{Question, Sizing, SizingProblem, size};
 use crate::source::Source;
+use crate::trial::tried;
 
 /// A report, before it is written anywhere.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,14 +117,19 @@ fn robust_chapters(
     chapters.push(bounds::chapter(&robust, &found, view.as_ref())?);
     let mut tables = bounds::files(&robust, &found);
     if let Some(view) = &view {
-        chapters.push(audit::chapter(&robust, view)?);
+        let trial = tried(source, project, &robust, view, watch)?;
+        chapters.push(audit::chapter(&robust, view, trial.as_ref())?);
         facts.push(("Audit of the controller", audit_words(view)));
+        facts.extend(trial.map(|trial| ("Controller on the machine", trial::words(&trial))));
         tables.extend(crate::audit::files(view));
     }
     if design::is_asked_for(project) {
         let designed = design::designed(source, loaded, watch)?;
         chapters.push(designed.chapter(&found)?);
         facts.push(("Designed controller", designed.words()));
+        facts.extend(
+            designed.trial().map(|trial| ("Designed controller on the machine", trial::words(trial))),
+        );
         tables.extend(designed.files(loaded));
     }
     Ok(tables)
@@ -260,8 +267,17 @@ fn heading(project: &Project, summary: &[(&'static str, String)]) -> Markup {
                 @if project.actuator.is_some() { "Hydraulic force control through added compliance: sizing, linear models, robust control" }
                 @else { "Robust control of an uncertain plant" }
             }
-            dl.facts { @for (name, value) in summary { div.fact { dt { (name) } dd { (prose(value)) } } } }
+            dl.facts { @for (name, value) in summary { div class=(fact_class(value)) { dt { (name) } dd { (prose(value)) } } } }
         }
+    }
+}
+
+/// The class of a fact: its edge tells what its first word says too.
+fn fact_class(value: &str) -> &'static str {
+    match value.split([':', ' ']).next() {
+        Some("met" | "agrees") => "fact good-edge",
+        Some("violated" | "contradicts" | "infeasible" | "unstable" | "none") => "fact bad-edge",
+        _ => "fact",
     }
 }
 

@@ -8,8 +8,8 @@ mod answer;
 mod rigs;
 mod run;
 
-pub(crate) use answer::{Body, body, text};
-pub use run::{Agreement, Run, Step};
+pub(crate) use answer::{Body, HEADINGS, agreement_word, body, cells, reasons, text};
+pub use run::{Agreement, Response, Run, Step};
 
 use crate::audit::ProjectAudit;
 use crate::command::{CommandError, Progress, Watch};

@@ -31,6 +31,7 @@ mod malformed;
 mod mutation;
 mod noise;
 mod number_table;
+mod plausible;
 mod project;
 mod project_formula;
 mod project_quantity;

@@ -305,6 +305,27 @@ fn another_plant_is_checked_and_refused_elsewhere_with_the_reason() {
     }
 }
 
+/// What the machine does under the controller stands in its chapter with a figure, and among the first facts, its edge by its word.
+#[test]
+fn controllers_are_shown_on_the_machine() {
+    // what `design` finds for the hose with lumped lines
+    let report = report_with(&[
+        "line.compliance=by_volume",
+        "controller.numerator=0.7217*(s + 23.992)*(s + 2148.5)",
+        "controller.denominator=s*(s^2 + 624.8*s + 1077500)",
+        "prefilter.numerator=479.07",
+        "prefilter.denominator=s^2 + 35.964*s + 479.07",
+    ]);
+    let fact =
+        |name: &str| report.summary.iter().find(|(known, _)| *known == name).map(|(_, text)| text.as_str());
+    assert!(fact("Audit of the controller").unwrap().starts_with("met"));
+    assert_eq!(fact("Controller on the machine"), Some("contradicts: the same with waves in its lines"));
+    assert!(report.figures.iter().any(|found| found.name == "machine_steps"));
+    for shown in ["fact good-edge", "fact bad-edge", "The machine contradicts the verdict"] {
+        assert!(report.html.contains(shown), "{shown}");
+    }
+}
+
 /// A transfer function has the robust chapters, whether its closed loop is rational or not.
 #[test]
 fn a_plant_with_specifications_has_the_robust_chapters() {

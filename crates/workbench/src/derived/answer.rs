@@ -36,8 +36,8 @@ struct DeclaredRow {
     contradicts: bool,
 }
 
-/// The JSON object of `check`.
-pub fn json(loaded: &Loaded, derived: &[Derived], wishes: &[CheckedWish]) -> String {
+/// The JSON object of `check`; `told` are warnings beside those of the reader.
+pub fn json(loaded: &Loaded, derived: &[Derived], wishes: &[CheckedWish], told: Vec<String>) -> String {
     let rows = derived.iter().map(|quantity| Row {
         name: &quantity.name,
         group: quantity.group,
@@ -56,7 +56,11 @@ pub fn json(loaded: &Loaded, derived: &[Derived], wishes: &[CheckedWish]) -> Str
     });
     let warnings = loaded.warnings.iter().map(|warning| warning.message.clone());
     let wishes = wishes.iter().map(CheckedWish::row);
-    let body = Body { derived: rows.collect(), wishes: wishes.collect(), warnings: warnings.collect() };
+    let body = Body {
+        derived: rows.collect(),
+        wishes: wishes.collect(),
+        warnings: told.into_iter().chain(warnings).collect(),
+    };
     answer::json("check", loaded, body)
 }
 

@@ -5,6 +5,7 @@ mod family;
 mod line_motion;
 mod linear_loop;
 mod measured;
+mod plausible;
 mod rig;
 mod signal;
 mod specification;
@@ -27,6 +28,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     if project.actuator.is_none() {
         wishes::without_actuator(project, &mut check);
     }
+    plausible::numbers(project, &mut check);
     wishes::uncertainty(project, &mut check);
     family::family(project, &mut check);
     linear_loop::sensor(project, &mut check);

@@ -5,19 +5,26 @@ use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use super::chapter::{Chapter, cell, place, table};
 use super::typeset::prose;
-use super::{closed_loops, family_steps};
+use super::{closed_loops, family_steps, trial};
 use crate::audit::{
     ProjectAudit, basis, closed_loop_symbol, frequency_number, frequency_words, margin_words, meaning,
     summary, verdict_words, worst_at_design, worst_plants,
 };
 use crate::command::CommandError;
 use crate::robust::RobustProblem;
+use crate::trial::Trial;
 
-pub(super) fn chapter(problem: &RobustProblem, view: &ProjectAudit) -> Result<Chapter, CommandError> {
+pub(super) fn chapter(
+    problem: &RobustProblem,
+    view: &ProjectAudit,
+    trial: Option<&Trial>,
+) -> Result<Chapter, CommandError> {
     let mut figures = closed_loops::figures(problem, &view.audit.specifications, view.audit.tolerance_db)?;
     let steps = family_steps::figure(problem, view, ["family_steps", "Step responses of the family"]);
+    let driven = trial::figure(trial, ["machine_steps", "The controller on the machine"]);
     let body = html! {
         (verdict(view))
+        (trial::section(trial, driven.as_ref()))
         h3 { "Specifications" }
         (specifications(view))
         @if violated(view) { h3 { "Where it is violated" } (violations(view)) }
@@ -37,6 +44,7 @@ pub(super) fn chapter(problem: &RobustProblem, view: &ProjectAudit) -> Result<Ch
         ul { @for sentence in basis(view) { li { (prose(&sentence)) } } }
     };
     figures.extend(steps.and_then(Result::ok));
+    figures.splice(0..0, driven);
     Ok(Chapter { anchor: "audit", title: "Audit of the controller", body, figures })
 }
 

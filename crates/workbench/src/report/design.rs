@@ -9,10 +9,12 @@ mod tables;
 
 use maud::{Markup, html};
 use phea_qft::design::DesignStatus;
+use phea_qft::verification::Verdict;
 
 use super::audit::verdict_edge;
 use super::chapter::{Chapter, place};
 use super::family_steps;
+use super::trial;
 use super::typeset::prose;
 use crate::answer::{OutputFile, significant};
 use crate::audit::{basis, summary};
@@ -24,6 +26,7 @@ use crate::figure::Figure;
 use crate::project::{Loaded, Project};
 use crate::robust::DesignFrequency;
 use crate::source::Source;
+use crate::trial::Trial;
 
 /// Whether the report of a project looks for a controller: where it says how, or gives none.
 pub(super) fn is_asked_for(project: &Project) -> bool {
@@ -77,12 +80,23 @@ impl Designed {
         };
         let order = format!("order {}{prefilter}", side.figures.order);
         match &found.view.design.status {
+            DesignStatus::Met if side.view.audit.verdict == Verdict::NotProven => {
+                format!("not proven: {order}")
+            }
             DesignStatus::Met => format!("met: {order}"),
             DesignStatus::Infeasible(relaxation) => {
                 format!("infeasible by {} dB: {order}", significant(relaxation.relaxation_db, 3))
             }
             DesignStatus::NotConverged { .. } => format!("not converged: {order}"),
             DesignStatus::NotStabilised => "none that makes every plant stable".to_string(),
+        }
+    }
+
+    /// What the machine does under the designed controller.
+    pub(super) fn trial(&self) -> Option<&Trial> {
+        match self {
+            Designed::Found(found) => found.view.trial.as_ref(),
+            Designed::Nothing(_) => None,
         }
     }
 
@@ -130,8 +144,13 @@ fn chapter(found: &FoundDesign, bounds: &[DesignFrequency]) -> Result<Chapter, C
         &side.view,
         ["design_steps", "Step responses of the family with the designed controller"],
     );
+    let driven = trial::figure(
+        view.trial.as_ref(),
+        ["design_machine_steps", "The designed controller on the machine"],
+    );
     let body = html! {
         (status(view))
+        (trial::section(view.trial.as_ref(), driven.as_ref()))
         h3 { "The laws" }
         (tables::laws(view)?)
         h3 { @if view.published.is_some() { "Given and designed side by side" } @else { "What it reaches" } }
@@ -153,7 +172,8 @@ fn chapter(found: &FoundDesign, bounds: &[DesignFrequency]) -> Result<Chapter, C
         h3 { "What this rests on" }
         ul { @for sentence in basis(&side.view) { li { (prose(&sentence)) } } }
     };
-    let mut figures: Vec<Figure> = nichols.into_iter().chain(magnitudes).chain(prefilters).collect();
+    let mut figures: Vec<Figure> =
+        driven.into_iter().chain(nichols).chain(magnitudes).chain(prefilters).collect();
     figures.extend(steps.and_then(Result::ok));
     Ok(Chapter { anchor: ANCHOR, title: TITLE, body, figures })
 }

@@ -45,7 +45,7 @@ struct StepRow {
 }
 
 /// The word of an agreement.
-fn word(agreement: Agreement) -> &'static str {
+pub(crate) fn agreement_word(agreement: Agreement) -> &'static str {
     match agreement {
         Agreement::Agrees => "agrees",
         Agreement::Differs => "differs",
@@ -68,7 +68,7 @@ fn row(run: &Run) -> RunRow<'_> {
         plant: run.plant.as_ref(),
         status: run.status,
         agrees: run.agreement == Agreement::Agrees,
-        agreement: word(run.agreement),
+        agreement: agreement_word(run.agreement),
         reason: &run.reason,
         reference_n: run.reference_n,
         linear: run.linear.as_ref().map(step),
@@ -84,14 +84,17 @@ fn row(run: &Run) -> RunRow<'_> {
 /// What a trial says in JSON.
 pub(crate) fn body(trial: &Trial) -> Body<'_> {
     Body {
-        verdict: word(trial.agreement()),
+        verdict: agreement_word(trial.agreement()),
         runs: trial.runs.iter().map(row).collect(),
         not_driven: &trial.not_driven,
     }
 }
 
-/// The same for people.
-pub(crate) fn text(trial: &Trial) -> String {
+/// What the table for people says of each machine.
+pub(crate) const HEADINGS: [&str; 6] = ["machine", "", "overshoot", "linear", "settles in", "linear"];
+
+/// A row of that table.
+pub(crate) fn cells(run: &Run) -> [String; HEADINGS.len()] {
     let settling = |step: Option<&Step>| match step.and_then(|step| step.settling_time_s) {
         Some(time_s) => DisplayUnit::MILLISECOND.text(time_s, 3),
         None => "-".to_string(),
@@ -100,25 +103,33 @@ pub(crate) fn text(trial: &Trial) -> String {
         Some(percent) => percent_words(percent),
         None => "-".to_string(),
     };
-    let headings = ["machine", "", "overshoot", "linear", "settles in", "linear"];
-    let mut rows = table(&headings);
+    let (linear, machine) = (run.linear.as_ref(), run.machine.as_ref());
+    [
+        run.what.clone(),
+        agreement_word(run.agreement).to_string(),
+        overshoot(machine),
+        overshoot(linear),
+        settling(machine),
+        settling(linear),
+    ]
+}
+
+/// Why a machine does not do what the linear loop does, and which plants were not driven.
+pub(crate) fn reasons(trial: &Trial) -> Vec<String> {
+    let others = trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees);
+    let told = others.map(|run| format!("{}: {}", run.what, run.reason));
+    told.chain(trial.not_driven.iter().map(|missing| format!("not driven: {missing}"))).collect()
+}
+
+/// The same for people.
+pub(crate) fn text(trial: &Trial) -> String {
+    let mut rows = table(&HEADINGS);
     for run in &trial.runs {
-        let (linear, machine) = (run.linear.as_ref(), run.machine.as_ref());
-        rows.add_row([
-            run.what.clone(),
-            word(run.agreement).to_string(),
-            overshoot(machine),
-            overshoot(linear),
-            settling(machine),
-            settling(linear),
-        ]);
+        rows.add_row(cells(run));
     }
-    let mut out = format!("\nOn the machine: {}\n{}\n", word(trial.agreement()), rows.trim_fmt());
-    for run in trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees) {
-        out.push_str(&format!("  {}: {}\n", run.what, run.reason));
-    }
-    for missing in &trial.not_driven {
-        out.push_str(&format!("  not driven: {missing}\n"));
+    let mut out = format!("\nOn the machine: {}\n{}\n", agreement_word(trial.agreement()), rows.trim_fmt());
+    for reason in reasons(trial) {
+        out.push_str(&format!("  {reason}\n"));
     }
     out
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use phea_dynamics::portable::exp;
-use phea_dynamics::time_response::{Settling, StepMetrics};
+use phea_dynamics::time_response::Settling;
 use phea_hydraulics::linear::transfer_functions;
 use phea_qft::specification::Requirement;
 use phea_qft::verification::Verdict;
@@ -13,7 +13,7 @@ use crate::answer::significant;
 use crate::audit::{NamedPlant, ProjectAudit};
 use crate::command::{CommandError, Watch};
 use crate::control::{controller, deployed, sensor};
-use crate::linear_loop::linear_loop;
+use crate::linear_loop::{StepView, linear_loop};
 use crate::project::{Project, Scenario, Signal};
 use crate::quantity::{DisplayUnit, FORCE};
 use crate::rig::Rig;
@@ -41,6 +41,15 @@ pub struct Step {
     pub settling_time_s: Option<f64>,
 }
 
+/// A step response from the step on: part of the step over time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Response {
+    /// s.
+    pub times_s: Vec<f64>,
+    /// 0 before, 1 at the new reference.
+    pub values: Vec<f64>,
+}
+
 /// One machine, one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
@@ -56,6 +65,10 @@ pub struct Run {
     pub linear: Option<Step>,
     /// What the machine does; `None` where it did not start.
     pub machine: Option<Step>,
+    /// The linear loop's response; empty where there is none.
+    pub linear_response: Response,
+    /// The machine's; empty where it did not start.
+    pub machine_response: Response,
     /// The judgement.
     pub agreement: Agreement,
     /// Why, in a sentence.
@@ -89,22 +102,34 @@ pub(super) fn run(
     watch: Watch<'_>,
 ) -> Result<Option<Run>, CommandError> {
     let predicted = predicted(tried)?;
-    let settling_time = |metrics: &StepMetrics| match metrics.settling {
-        Settling::Settled { time_s, .. } => Some(time_s),
-        _ => None,
-    };
-    let linear = predicted.as_ref().map(|metrics| Step {
-        overshoot_percent: Some(metrics.overshoot_percent),
-        settling_time_s: settling_time(metrics),
+    let linear = predicted.as_ref().map(|step| Step {
+        overshoot_percent: Some(step.metrics.overshoot_percent),
+        settling_time_s: match step.metrics.settling {
+            Settling::Settled { time_s, .. } => Some(time_s),
+            _ => None,
+        },
     });
+    let linear_response =
+        predicted.map(|step| Response { times_s: step.times_s, values: step.response }).unwrap_or_default();
     let [shortest, longest] = DURATION_S;
     let settles_s = linear.and_then(|step| step.settling_time_s).unwrap_or(shortest);
     let duration = BEFORE_S + (SETTLING_TIMES * settles_s).clamp(shortest, longest);
     let reference_n = reference(&tried.project)?;
     let project = stepped(&tried.project, reference_n, duration);
     let (what, plant) = (tried.what.clone(), tried.named.clone());
-    let run = |status, machine, (agreement, reason)| {
-        Some(Run { what, plant, status, reference_n, linear, machine, agreement, reason })
+    let run = |status, machine, machine_response, (agreement, reason)| {
+        Some(Run {
+            what,
+            plant,
+            status,
+            reference_n,
+            linear,
+            machine,
+            linear_response,
+            machine_response,
+            agreement,
+            reason,
+        })
     };
     match simulate_project(source, &project, watch) {
         Ok(runs) => {
@@ -119,19 +144,19 @@ pub(super) fn run(
                 ));
             }
             let status = driven.stopped().map_or("completed", |stopped| stopped.word);
-            Ok(run(status, Some(machine), judged))
+            Ok(run(status, Some(machine), response_of(driven, reference_n), judged))
         }
-        Err(error) => Ok(run("not_started", None, not_started(&error, view))),
+        Err(error) => Ok(run("not_started", None, Response::default(), not_started(&error, view))),
     }
 }
 
 /// The step response of the linear loop with this plant.
-fn predicted(tried: &Tried) -> Result<Option<StepMetrics>, CommandError> {
+fn predicted(tried: &Tried) -> Result<Option<StepView>, CommandError> {
     let Some(given) = controller(&tried.project)? else { return Ok(None) };
     let given = deployed(&tried.project, &given)?;
     let plant = transfer_functions(&tried.plant)?.command;
     let closed = linear_loop(&plant, &given, &sensor(&tried.project)?, BAND_PERCENT);
-    Ok(closed.ok().and_then(|closed| closed.step.ok()).map(|step| step.metrics))
+    Ok(closed.ok().and_then(|closed| closed.step.ok()))
 }
 
 /// From the force of the operating point, towards where there is room.
@@ -166,6 +191,15 @@ fn step_of(driven: &ScenarioRun) -> Step {
         overshoot_percent: metrics.and_then(|metrics| metrics.overshoot_percent.ok()),
         settling_time_s: metrics.and_then(|metrics| metrics.settling_time_s.ok()),
     }
+}
+
+/// The force from the step on, as part of it.
+fn response_of(driven: &ScenarioRun, [from, to]: [f64; 2]) -> Response {
+    let rows = driven.record.times_s.iter().zip(driven.record.signal("force_n"));
+    let after = rows.filter(|(time_s, _)| **time_s >= BEFORE_S);
+    let (times_s, values) =
+        after.map(|(time_s, force)| (time_s - BEFORE_S, (force - from) / (to - from))).unzip();
+    Response { times_s, values }
 }
 
 /// A machine that has no rest under its controller, or no equations.
