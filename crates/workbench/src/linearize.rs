@@ -17,10 +17,10 @@ use phea_hydraulics::impedance::{
 };
 use phea_hydraulics::line::Member;
 use phea_hydraulics::linear::{
-    LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance,
-    first_order_model, linear_model, response_difference, transfer_functions,
+    LinearModel, LinearParameters, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model,
+    dominance, first_order_model, linear_model, response_difference, transfer_functions,
 };
-use phea_hydraulics::plant::ChamberDynamics;
+use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, Plant};
 use phea_hydraulics::stiffness::{
     ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference,
 };
@@ -120,6 +120,8 @@ pub fn linearize(
     };
     let plant = transfer_functions(&rig.plant.coefficients())?;
     let full = linear_model(&rig.linear)?;
+    // What the load feels is the actuator without it.
+    let port = transfer_functions(&Plant { load: LinearLoad::Prescribed, ..rig.plant }.coefficients())?;
     let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.two_pressure))?;
     let decomposed = [
         decomposed_model(&rig.linear, MechanicalDamping::Printed)?,
@@ -134,7 +136,7 @@ pub fn linearize(
     });
     let rational = rational && sensor.dead_time_s() == 0.0;
     let continuous = feedback.as_ref().filter(|function| rational && is_continuous(function));
-    let closed_loop = continuous.map(|controller| closed_loop_view(rig, &full, controller)).transpose()?;
+    let closed_loop = continuous.map(|controller| closed_loop_view(rig, &port, controller)).transpose()?;
     let reductions = [&two_pressure.command, &full.command, &decomposed[1], &first_order];
     let agreement = agreement::agreement(&frequency_grid(&plant.command)?, &plant.command, reductions);
     Ok(Linearization {
@@ -154,7 +156,7 @@ pub fn linearize(
         corrected_decomposition: against_full(&decomposed[1]),
         truncation: against_full(&first_order),
         modes: dominance(&full.command),
-        open_loop: open_loop_view(rig, &full)?,
+        open_loop: open_loop_view(rig, &port)?,
         closed_loop_absent: absence(feedback.as_ref(), closed_loop.as_ref()),
         closed_loop,
         compliance_hidden_above_rad_per_s: compliance_hidden_above(
@@ -185,26 +187,32 @@ fn absence(controller: Option<&TransferFunction>, view: Option<&PortView>) -> Op
     Some(reason.to_string())
 }
 
-fn open_loop_view(rig: &Rig, full: &LinearModel) -> Result<PortView, LinearError> {
-    let impedance = open_loop_impedance(full)?;
+/// The parameters of 6.7, K_c with the leakage across the piston beside it.
+fn leaking(rig: &Rig) -> LinearParameters {
+    let flow_pressure_coefficient = rig.linear.flow_pressure_coefficient + rig.internal_leakage;
+    LinearParameters { flow_pressure_coefficient, ..rig.linear }
+}
+
+fn open_loop_view(rig: &Rig, port: &LinearModel) -> Result<PortView, LinearError> {
+    let impedance = open_loop_impedance(port)?;
     Ok(PortView {
         passivity: passivity(&impedance)?,
-        asymptotes: impedance_asymptotes(&rig.linear, None),
-        final_force_n: final_force_after_load_step(&full.load_position, 1e-3),
+        asymptotes: impedance_asymptotes(&leaking(rig), None),
+        final_force_n: final_force_after_load_step(&port.load_position, 1e-3),
         impedance,
     })
 }
 
 fn closed_loop_view(
     rig: &Rig,
-    full: &LinearModel,
+    port: &LinearModel,
     controller: &TransferFunction,
 ) -> Result<PortView, LinearError> {
-    let impedance = closed_loop_impedance(full, controller)?;
+    let impedance = closed_loop_impedance(port, controller)?;
     Ok(PortView {
         passivity: passivity(&impedance)?,
-        asymptotes: impedance_asymptotes(&rig.linear, Some(controller)),
-        final_force_n: final_force_after_load_step(&closed_loop_load_motion(full, controller)?, 1e-3),
+        asymptotes: impedance_asymptotes(&leaking(rig), Some(controller)),
+        final_force_n: final_force_after_load_step(&closed_loop_load_motion(port, controller)?, 1e-3),
         impedance,
     })
 }

@@ -62,6 +62,25 @@ fn leakage_across_the_piston_moves_the_slow_pole() {
     assert!((slowest(&["cylinder.internal_leakage=1e-11"]) - 8.5508).abs() < 1e-4);
 }
 
+/// The load feels the leakage too: slow motions meet a damper of A^2/(K_c + G) and the friction. The load is not in what it feels.
+#[test]
+fn the_load_feels_the_leakage_and_not_itself() {
+    let damper = |settings: &[&str]| {
+        let view = linearized(&loaded(HOSE, settings)).open_loop;
+        assert!((view.asymptotes[0].coefficient / view.impedance.dc_gain() - 1.0).abs() < 1e-9);
+        view.impedance.dc_gain()
+    };
+    let (area, coefficient) = (1.583_363e-3, 6.42e-13);
+    for leakage in [1e-12, 1e-11] {
+        let expected = area * area / (coefficient + leakage) + 100.0;
+        let setting = format!("cylinder.internal_leakage={leakage}");
+        let found = damper(&[&setting]);
+        assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
+        let sprung = [&SPRUNG[..], &[&setting]].concat();
+        assert_eq!(damper(&sprung), found);
+    }
+}
+
 /// The hose with this specification alone, which the given controller satisfies over its family.
 fn satisfied(settings: &[&str]) -> Project {
     let mut project = loaded(HOSE, settings);
