@@ -9,6 +9,10 @@
 //!
 //! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v and the supply at a constant pressure.
 
+mod in_motion;
+
+pub use in_motion::{BehindLines, PlantInMotion};
+
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 

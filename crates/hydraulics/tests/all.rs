@@ -12,6 +12,7 @@ mod machine_lines;
 mod machine_robustness;
 mod operating_point;
 mod plant;
+mod plant_in_motion;
 mod servovalve;
 mod stiffness;
 mod two_pressure;

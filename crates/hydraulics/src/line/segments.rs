@@ -1,4 +1,5 @@
 mod content;
+mod response;
 
 pub(crate) use content::Content;
 

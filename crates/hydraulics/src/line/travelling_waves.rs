@@ -1,3 +1,5 @@
+mod response;
+
 use phea_dynamics::scalar::Scalar;
 
 use super::LineError;

@@ -1,0 +1,171 @@
+use num_complex::Complex64;
+
+use super::{ChamberDynamics, LinearLoad, Plant};
+use crate::line::DynamicLine;
+
+/// The plant with lines that have dynamics of their own: what no quotient of polynomials is, but a response at every frequency.
+///
+/// ```text
+/// q_valve = K_q U_sp - K_c p_port                                              valve
+/// p_port = a p + b q,   q_valve = c p + d q                                    line: TransferMatrix
+/// q = C s p + A s X + G (p - p_other)                                          chamber behind it
+/// so each chamber of Plant has   K_q/(d + K_c b)   for K_q   and   C s + (c + K_c a)/(d + K_c b)   for C s + K_c
+/// ```
+///
+/// At every frequency it is the machine with these lines, for small motions. Where a stated number makes a chamber of the plant
+/// stiffer than its parts are, chamber and line are stiffened alike.
+///
+/// # Example
+/// Slow motion sees no waves.
+/// ```
+/// # use phea_hydraulics::reference_rig::{components, hose_line, nominal_plant};
+/// # use phea_hydraulics::stiffness::StiffnessModel;
+/// use num_complex::Complex64;
+/// use phea_hydraulics::line::{DynamicLine, END_SHARE, LineModel, Member};
+/// use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
+/// let fluid = components(hose_line(), StiffnessModel::ByVolume).fluid;
+/// let model = LineModel::TransmissionLine { end_share: END_SHARE };
+/// let line = DynamicLine::new(&hose_line(), &fluid, 35e5, Member::Nominal, &model)?;
+/// let plant = Plant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
+/// let chamber = 0.25 * 1.58e-3 / 1.45e9; // what the oil of half a stroke yields, in m3/Pa
+/// let behind = BehindLines { lines: [line; 2], chambers: [chamber; 2], lumped: [chamber + line.elastic_compliance(); 2] };
+/// let moving = PlantInMotion::new(&plant, &behind);
+/// let lumped = plant.coefficients().command;
+/// let ratio = |frequency| {
+///     let [command, _] = moving.response(Complex64::new(0.0, frequency));
+///     (command / lumped.at_frequency(frequency)).norm_sqr().sqrt()
+/// };
+/// assert!((ratio(10.0) - 1.0).abs() < 1e-3 && (ratio(1000.0) - 1.0).abs() > 0.5);
+/// # Ok::<(), phea_hydraulics::line::LineError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlantInMotion {
+    plant: Plant,
+    sides: [Side; 2],
+}
+
+/// What the chambers of a plant consist of. Units: m3/Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BehindLines {
+    /// The lines.
+    pub lines: [DynamicLine; 2],
+    /// Compliance of each chamber without its line.
+    pub chambers: [f64; 2],
+    /// Compliance of both together where the line is lumped, as it follows from the parts.
+    pub lumped: [f64; 2],
+}
+
+/// A chamber behind its line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Side {
+    area: f64,
+    /// Of the chamber with the end of the line there.
+    compliance: f64,
+    flow_gain: f64,
+    flow_pressure: f64,
+    line: DynamicLine,
+}
+
+/// Flow from the valve per volt, and flow per pascal, both at the chamber.
+struct AtChamber {
+    flow_gain: Complex64,
+    admittance: Complex64,
+}
+
+impl PlantInMotion {
+    /// The plant with these chambers and lines in place of its lumped ones.
+    pub fn new(plant: &Plant, behind: &BehindLines) -> PlantInMotion {
+        let side = |side: usize| {
+            let [area, compliance, flow_gain, flow_pressure] = chamber(&plant.chambers, side);
+            let stiffer = behind.lumped[side] / compliance;
+            let line = behind.lines[side].stiffened(stiffer);
+            let compliance = behind.chambers[side] / stiffer + line.chamber_compliance();
+            Side { area, compliance, flow_gain, flow_pressure, line }
+        };
+        PlantInMotion { plant: *plant, sides: [side(0), side(1)] }
+    }
+
+    /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, by the equations of [`Plant::coefficients`].
+    pub fn response(&self, s: Complex64) -> [Complex64; 2] {
+        let [one, other] = self.sides.map(|side| side.at_chamber(s));
+        let [area_a, area_b] = self.sides.map(|side| side.area);
+        let leakage = self.plant.internal_leakage;
+        let (a, b) = (one.admittance, other.admittance);
+        let difference = area_a - area_b;
+        let own = a * b + leakage * (a + b);
+        let driven = area_a * one.flow_gain * b
+            + area_b * other.flow_gain * a
+            + leakage * difference * (one.flow_gain - other.flow_gain);
+        let displaced = area_a * area_a * b + area_b * area_b * a + leakage * difference * difference;
+        let moved = s * ((self.plant.moving_mass * s + self.plant.viscous_friction) * own + displaced);
+        let (frequency, sensor) = (self.plant.valve_natural_frequency, self.plant.sensor_stiffness);
+        let square = frequency * frequency;
+        let spool = square / (s * s + 2.0 * self.plant.valve_damping_ratio * frequency * s + square);
+        let (load, ground) = match self.plant.load {
+            LinearLoad::Prescribed => (None, Complex64::ONE),
+            LinearLoad::Yielding { mass, damping, stiffness } => {
+                let tied = damping * s + stiffness;
+                (Some(mass * s * s + tied), tied)
+            }
+        };
+        let (free, sensed) = match load {
+            None => (Complex64::ONE, moved + sensor * own),
+            Some(load) => (load, moved * (load + sensor) + sensor * load * own),
+        };
+        [sensor * free * spool * driven / sensed, -sensor * ground * moved / sensed]
+    }
+
+    /// Whether nothing in it gives energy, so that none of its poles lies in the right half plane: its lines are passive, and so are
+    /// valve, leakage, friction and load where none of their coefficients is negative.
+    pub fn is_passive(&self) -> bool {
+        let load = match self.plant.load {
+            LinearLoad::Prescribed => [0.0; 3],
+            LinearLoad::Yielding { mass, damping, stiffness } => [mass, damping, stiffness],
+        };
+        let own = [
+            self.plant.moving_mass,
+            self.plant.viscous_friction,
+            self.plant.internal_leakage,
+            self.plant.valve_damping_ratio,
+        ];
+        let of_sides = self.sides.iter().flat_map(|side| [side.compliance, side.flow_pressure]);
+        own.into_iter().chain(load).chain(of_sides).all(|value| value >= 0.0)
+    }
+
+    /// Where the slower line is a quarter of a wave long, pi/(2 T) in rad/s; `None` where no wave travels.
+    pub fn quarter_wave_rad_per_s(&self) -> Option<f64> {
+        let delays = self.sides.iter().flat_map(|side| side.line.delays());
+        let longest = delays.fold(0.0, f64::max);
+        (longest > 0.0).then(|| std::f64::consts::FRAC_PI_2 / longest)
+    }
+}
+
+impl Side {
+    fn at_chamber(&self, s: Complex64) -> AtChamber {
+        let line = self.line.transfer_matrix(s);
+        let passed = line.flow + self.flow_pressure * line.impedance;
+        AtChamber {
+            flow_gain: self.flow_gain / passed,
+            admittance: s * self.compliance + (line.admittance + self.flow_pressure * line.pressure) / passed,
+        }
+    }
+}
+
+/// Area, compliance, flow gain and flow-pressure coefficient of a chamber. One load pressure is that of two equal chambers:
+///
+/// ```text
+/// C = 2 A^2/K_H,   K_q = K_qU,   2 K_c
+/// ```
+fn chamber(chambers: &ChamberDynamics, side: usize) -> [f64; 4] {
+    match *chambers {
+        ChamberDynamics::LoadPressure {
+            useful_area: area,
+            flow_gain,
+            flow_pressure_coefficient,
+            hydraulic_stiffness,
+        } => [area, 2.0 * area * area / hydraulic_stiffness, flow_gain, 2.0 * flow_pressure_coefficient],
+        ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } => {
+            [areas[side], compliances[side], flow_gains[side], flow_pressures[side]]
+        }
+    }
+}

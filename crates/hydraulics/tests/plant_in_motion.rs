@@ -1,0 +1,225 @@
+//! The plant behind lines in motion against the machine's own derivatives, delays included, and against lumped lines.
+
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+use num_complex::Complex64;
+use phea_dynamics::portable::pow;
+use phea_dynamics::random::{share, stream};
+use phea_dynamics::scalar::Scalar;
+use phea_dynamics::simulation::{Plant as _, System, small_signal};
+use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::fluid::{EntrainedAir, Fluid};
+use phea_hydraulics::force_sensor::ForceSensor;
+use phea_hydraulics::friction::Friction;
+use phea_hydraulics::line::{DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, Member, Segments};
+use phea_hydraulics::machine::{Chambers, LoadModel, Machine, MachineOptions};
+use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
+use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
+use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, pipe_line};
+use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::stiffness::StiffnessModel;
+use phea_hydraulics::two_pressure::{TwoPressureModel, two_pressure_linear_parameters};
+
+/// A machine whose first input is its command.
+struct Commanded(Machine);
+
+impl System<f64> for Commanded {
+    fn states(&self) -> usize {
+        self.0.states()
+    }
+    fn inputs(&self) -> usize {
+        1 + self.0.inputs()
+    }
+    fn scales(&self) -> Vec<f64> {
+        self.0.scales()
+    }
+    fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
+        self.0.rates(state, inputs[0], &inputs[1..], rates);
+    }
+    fn delays(&self) -> Vec<f64> {
+        self.0.delays()
+    }
+    fn outgoing<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
+        self.0.outgoing(state, &inputs[1..], waves);
+    }
+}
+
+fn model(number: u64, time: f64) -> LineModel {
+    let friction =
+        if number.is_multiple_of(2) { LaminarFriction::Steady } else { LaminarFriction::FrequencyDependent };
+    match number % 6 {
+        0 => LineModel::Lumped,
+        1 => LineModel::Creeping { relaxation_time: time },
+        2 | 3 => LineModel::Segments { count: 1 + (number % 7) as usize, friction, relaxation_time: None },
+        4 => LineModel::TransmissionLine { end_share: END_SHARE },
+        _ if number % 12 == 5 => LineModel::TwoWave { end_share: END_SHARE, wall: None },
+        _ => LineModel::Segments { count: 3, friction, relaxation_time: Some(time) },
+    }
+}
+
+/// Plant and machine of a rig of its own for every number, with a model of its own for every line.
+struct Drawn {
+    machine: Machine,
+    inputs: Vec<f64>,
+    state: Vec<f64>,
+    command: f64,
+    sensor: f64,
+    plant: Plant,
+    behind: BehindLines,
+}
+
+fn drawn(number: u64) -> Drawn {
+    let mut state = stream(23, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let (friction, leakage) = (spread(50.0, 2e4), spread(1e-14, 1e-10));
+    let [area_a, area_b] = areas_from_diameters(0.05, [0.022, spread(0.01, 0.036)]).unwrap();
+    let stiffness_model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
+    let reference = components(hose_line(), stiffness_model);
+    let air = EntrainedAir { volume_fraction: spread(1e-3, 1e-2), polytropic_index: 1.3 };
+    let of_length = |length| Line::Hose { hose: hose(), length };
+    let models = [model(number, spread(1e-4, 0.1)), model(number / 6, spread(1e-4, 0.1))];
+    let line_b = match models[1] {
+        LineModel::TransmissionLine { .. } | LineModel::Lumped => pipe_line(),
+        _ => of_length(spread(0.3, 3.0)),
+    };
+    let actuator = Actuator::new(Components {
+        fluid: Fluid { entrained_air: number.is_multiple_of(4).then_some(air), ..reference.fluid },
+        cylinder: Cylinder { area_a, area_b, moving_mass: spread(2.0, 80.0), ..cylinder() },
+        line_a: of_length(spread(0.3, 3.0)),
+        line_b,
+        friction: Friction::Viscous { viscous: friction },
+        force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
+        ..reference
+    })
+    .unwrap();
+    let parts = actuator.components();
+    let line = |line: &Line, model: &LineModel| {
+        DynamicLine::new(line, &parts.fluid, actuator.mean_pressure(), Member::Nominal, model).unwrap()
+    };
+    let lines = [line(&parts.line_a, &models[0]), line(&parts.line_b, &models[1])];
+    let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
+    let (load, linear_load) = match number.is_multiple_of(3) {
+        true => (LoadModel::Prescribed, LinearLoad::Prescribed),
+        false => (
+            LoadModel::SpringMassDamper { mass, stiffness, damping },
+            LinearLoad::Yielding { mass, damping, stiffness },
+        ),
+    };
+    let options = MachineOptions {
+        load,
+        internal_leakage: Some(leakage),
+        lines: Some(lines),
+        ..MachineOptions::default()
+    };
+    let machine = Machine::new(&actuator, &options).unwrap();
+    let condition = Condition::Command(spread(0.01, 2.0));
+    let rest = machine.rest(&operating_point(&actuator, spread(0.05, 0.45), condition).unwrap()).unwrap();
+    let pressures = [rest.state[2], rest.state[3]];
+    let yielding = if linear_load == LinearLoad::Prescribed { 0.0 } else { rest.state[6] };
+    let position = rest.inputs[0] + yielding + rest.state[4];
+    let point = OperatingPoint {
+        position,
+        command: rest.state[0],
+        pressure_a: pressures[0],
+        pressure_b: pressures[1],
+        velocity: 0.0,
+        hydraulic_force: 0.0,
+        net_flow_a: 0.0,
+        net_flow_b: 0.0,
+    };
+    // the leakage flows through the lines, so that the valve's ports are a little off the chambers
+    let leaking = leakage * (pressures[0] - pressures[1]);
+    let drops = lines.map(|line| line.transfer_matrix(Complex64::new(0.0, 1e-6)).impedance.re * leaking);
+    let point = OperatingPoint {
+        pressure_a: point.pressure_a + drops[0],
+        pressure_b: point.pressure_b - drops[1],
+        ..point
+    };
+    let two = TwoPressureModel::new(&actuator, pressures, Member::Nominal, friction);
+    let parameters = two_pressure_linear_parameters(&two, &point, Direction::Extending);
+    let own = Chambers::behind_lines(&actuator, Member::Nominal, [0.0; 2]);
+    let behind =
+        BehindLines { lines, chambers: own.compliance(position, pressures), lumped: parameters.compliances };
+    Drawn {
+        machine,
+        inputs: [&rest.inputs[..], &rest.waves[..]].concat(),
+        state: rest.state,
+        command: rest.command,
+        sensor: parts.force_sensor.stiffness,
+        plant: Plant::of_two_pressures(&parameters, leakage, linear_load),
+        behind,
+    }
+}
+
+impl Drawn {
+    fn small_signal(&self, frequency: f64) -> [Complex64; 2] {
+        let inputs = [&[self.command], &self.inputs[..]].concat();
+        let (zero, one) = (Complex64::ZERO, Complex64::ONE);
+        let ground = [zero, one, Complex64::new(0.0, frequency)];
+        [[one, zero, zero], ground].map(|drive| {
+            let system = Commanded(self.machine);
+            small_signal(&system, &self.state, &inputs, &drive, frequency).unwrap()[4] * self.sensor
+        })
+    }
+}
+
+/// 108 rigs, every pair of line models among them, at 14 frequencies over six decades.
+#[test]
+fn it_is_the_machine_for_small_motions() {
+    for number in 0..108 {
+        let rig = drawn(number);
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind);
+        assert!(moving.is_passive());
+        for step in 0..14 {
+            let frequency = 0.01 * pow(1e6, f64::from(step) / 13.0);
+            let own = rig.small_signal(frequency);
+            let told = moving.response(Complex64::new(0.0, frequency));
+            for (told, own) in told.into_iter().zip(own) {
+                let error = (told / own - 1.0).norm_sqr().sqrt();
+                assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");
+            }
+        }
+    }
+}
+
+/// Lumped lines make the quotient of polynomials, whatever numbers are stated.
+#[test]
+fn lumped_lines_make_the_rational_plant() {
+    for number in (0..36).step_by(6).map(|first| first * 6) {
+        let rig = drawn(number);
+        let plants = [
+            rig.plant,
+            Plant::of_load_pressure(&phea_hydraulics::reference_rig::nominal_plant(), 1e-12, rig.plant.load),
+        ];
+        let BehindLines { chambers, lumped, .. } = rig.behind;
+        let lines = [0, 1].map(|side| DynamicLine::Segments(Segments::lumped(lumped[side] - chambers[side])));
+        for plant in plants {
+            let moving = PlantInMotion::new(&plant, &BehindLines { lines, ..rig.behind });
+            let rational = plant.coefficients();
+            for frequency in [0.01, 1.0, 30.0, 400.0, 2e4] {
+                let [command, load] = moving.response(Complex64::new(0.0, frequency));
+                let known = rational.command.at_frequency(frequency);
+                let known_load = rational.disturbance.as_ref().unwrap().at_frequency(frequency);
+                assert!((command / known - 1.0).norm_sqr().sqrt() < 1e-9);
+                assert!((load / known_load - 1.0).norm_sqr().sqrt() < 1e-9);
+            }
+        }
+    }
+}
+
+/// What a line yields at once is what its lumped model yields, and a stiffer line is one with a stiffer fluid and wall.
+#[test]
+fn compliance_is_that_of_the_lumped_line() {
+    for number in 0..12 {
+        let rig = drawn(12 * number + number % 6);
+        for line in rig.behind.lines {
+            let slow = Complex64::new(0.0, 1e-3);
+            let stiff = line.stiffened(4.0);
+            assert!((stiff.elastic_compliance() * 4.0 / line.elastic_compliance() - 1.0).abs() < 1e-12);
+            let at_port =
+                |line: &DynamicLine| line.transfer_matrix(slow).admittance / slow + line.chamber_compliance();
+            assert!((at_port(&stiff) * 4.0 / at_port(&line) - 1.0).norm_sqr() < 1e-10);
+        }
+    }
+}
