@@ -16,12 +16,14 @@
 //! ```
 
 mod delayed_loop;
+mod of_frequency_response;
 mod second_order;
 mod signal;
 mod simulation;
 mod step_metrics;
 
 pub use delayed_loop::delayed_loop_step;
+pub use of_frequency_response::step_of_frequency_response;
 pub use second_order::{SecondOrder, SettlingRule, damping_ratio_from_overshoot};
 pub use signal::{Interpolation, Signal, uniform_times};
 pub use simulation::{forced_response, forced_response_of_states, step_response};

@@ -69,6 +69,32 @@ struct Drawn {
     behind: BehindLines,
 }
 
+/// Every third load is prescribed, the others are sprung.
+fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (LoadModel, LinearLoad) {
+    if number.is_multiple_of(3) {
+        return (LoadModel::Prescribed, LinearLoad::Prescribed);
+    }
+    let sprung = LoadModel::SpringMassDamper { mass, stiffness, damping };
+    (sprung, LinearLoad::Yielding { mass, damping, stiffness })
+}
+
+/// Where a machine rests, with the pressures at the valve's ports: the leakage flows through the lines, so that these are a little off
+/// the chambers.
+fn at_ports(state: &[f64], position: f64, lines: &[DynamicLine; 2], leakage: f64) -> OperatingPoint {
+    let leaking = leakage * (state[2] - state[3]);
+    let drops = lines.map(|line| line.transfer_matrix(Complex64::new(0.0, 1e-6)).impedance.re * leaking);
+    OperatingPoint {
+        position,
+        command: state[0],
+        pressure_a: state[2] + drops[0],
+        pressure_b: state[3] - drops[1],
+        velocity: 0.0,
+        hydraulic_force: 0.0,
+        net_flow_a: 0.0,
+        net_flow_b: 0.0,
+    }
+}
+
 fn drawn(number: u64) -> Drawn {
     let mut state = stream(23, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -99,13 +125,7 @@ fn drawn(number: u64) -> Drawn {
     };
     let lines = [line(&parts.line_a, &models[0]), line(&parts.line_b, &models[1])];
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
-    let (load, linear_load) = match number.is_multiple_of(3) {
-        true => (LoadModel::Prescribed, LinearLoad::Prescribed),
-        false => (
-            LoadModel::SpringMassDamper { mass, stiffness, damping },
-            LinearLoad::Yielding { mass, damping, stiffness },
-        ),
-    };
+    let (load, linear_load) = loads(number, mass, stiffness, damping);
     let options = MachineOptions {
         load,
         internal_leakage: Some(leakage),
@@ -115,27 +135,10 @@ fn drawn(number: u64) -> Drawn {
     let machine = Machine::new(&actuator, &options).unwrap();
     let condition = Condition::Command(spread(0.01, 2.0));
     let rest = machine.rest(&operating_point(&actuator, spread(0.05, 0.45), condition).unwrap()).unwrap();
-    let pressures = [rest.state[2], rest.state[3]];
     let yielding = if linear_load == LinearLoad::Prescribed { 0.0 } else { rest.state[6] };
     let position = rest.inputs[0] + yielding + rest.state[4];
-    let point = OperatingPoint {
-        position,
-        command: rest.state[0],
-        pressure_a: pressures[0],
-        pressure_b: pressures[1],
-        velocity: 0.0,
-        hydraulic_force: 0.0,
-        net_flow_a: 0.0,
-        net_flow_b: 0.0,
-    };
-    // the leakage flows through the lines, so that the valve's ports are a little off the chambers
-    let leaking = leakage * (pressures[0] - pressures[1]);
-    let drops = lines.map(|line| line.transfer_matrix(Complex64::new(0.0, 1e-6)).impedance.re * leaking);
-    let point = OperatingPoint {
-        pressure_a: point.pressure_a + drops[0],
-        pressure_b: point.pressure_b - drops[1],
-        ..point
-    };
+    let pressures = [rest.state[2], rest.state[3]];
+    let point = at_ports(&rest.state, position, &lines, leakage);
     let two = TwoPressureModel::new(&actuator, pressures, Member::Nominal, friction);
     let parameters = two_pressure_linear_parameters(&two, &point, Direction::Extending);
     let own = Chambers::behind_lines(&actuator, Member::Nominal, [0.0; 2]);

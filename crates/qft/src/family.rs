@@ -8,7 +8,7 @@ mod measured;
 mod member;
 
 pub use coordinate::{Coordinate, Spacing};
-pub use measured::{MeasuredFamily, MeasuredPlant, MeasurementError};
+pub use measured::{MeasuredFamily, MeasuredPlant, MeasurementError, ResponseOrigin};
 pub use member::{grid, random, vertices};
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
@@ -18,7 +18,7 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 pub enum Family {
     /// An uncertain plant and the members of its family.
     Uncertain(UncertainFamily),
-    /// Frequency responses that were measured: between two of them nothing can be claimed.
+    /// Frequency responses that were measured, or calculated one by one: between two of them nothing can be claimed.
     Measured(MeasuredFamily),
 }
 

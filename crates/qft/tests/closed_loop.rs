@@ -137,7 +137,14 @@ fn measured_lag_at(a: f64, points: i32) -> MeasuredPlant {
         (0..points).map(|k| 0.5 * portable::exp(f64::from(k) * 0.013)).collect();
     let lag = |frequency: &f64| a / (Complex64::new(0.0, *frequency) + a);
     let command = frequencies_rad_per_s.iter().map(lag).collect();
-    MeasuredPlant { name: "lag".into(), frequencies_rad_per_s, command, disturbance: None, unstable_poles: 0 }
+    MeasuredPlant {
+        name: "lag".into(),
+        frequencies_rad_per_s,
+        command,
+        disturbance: None,
+        unstable_poles: 0,
+        is_resolved: false,
+    }
 }
 
 /// A measured plant is the same plant where it was measured, close to it between, and nothing beyond.

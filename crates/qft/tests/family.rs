@@ -113,6 +113,7 @@ fn measured(frequencies: &[f64], command: Vec<Complex64>) -> MeasuredPlant {
         command,
         disturbance: None,
         unstable_poles: 0,
+        is_resolved: false,
     }
 }
 

@@ -293,6 +293,7 @@ fn measured_plants_are_counted_by_nyquist() {
         command,
         disturbance: None,
         unstable_poles: 0,
+        is_resolved: false,
     };
     let mut plants = SampleStability::new(&compensation, vec![compensation.measured(&measured)]);
     let mut stable = |gain| plants.is_stable(&TransferFunction::gain_only(gain)).unwrap();

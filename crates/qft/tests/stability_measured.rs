@@ -27,7 +27,14 @@ fn measured(plant: &TransferFunction, from: f64, to: f64, points: usize) -> Meas
     let frequencies_rad_per_s = logarithmic_grid(from, to, points).unwrap();
     let command: Vec<Complex64> = frequencies_rad_per_s.iter().map(|&w| plant.at_frequency(w)).collect();
     let unstable_poles = plant.poles().iter().filter(|pole| pole.re > 0.0).count();
-    MeasuredPlant { name: "bench".into(), frequencies_rad_per_s, command, disturbance: None, unstable_poles }
+    MeasuredPlant {
+        name: "bench".into(),
+        frequencies_rad_per_s,
+        command,
+        disturbance: None,
+        unstable_poles,
+        is_resolved: false,
+    }
 }
 
 fn found(plant: &MeasuredPlant, compensation: &Compensation) -> MemberStability {

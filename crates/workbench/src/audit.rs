@@ -20,7 +20,7 @@ pub(crate) use words::{
 
 use phea_dynamics::portable;
 use phea_qft::audit::AuditRun;
-use phea_qft::family::{Extent, Family};
+use phea_qft::family::{Extent, Family, ResponseOrigin};
 use phea_qft::verification::{Audit, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Verdict};
 
 use crate::caveat::Caveat;
@@ -92,9 +92,14 @@ pub(crate) fn names(family: &Family) -> PlantNames {
         Family::Uncertain(family) => PlantNames::of_parameters(
             family.plant().parameters().iter().map(|parameter| parameter.name.as_str()),
         ),
-        Family::Measured(family) => {
-            PlantNames::Measured(family.plants().iter().map(|plant| plant.name.clone()).collect())
-        }
+        Family::Measured(family) => match family.origin() {
+            ResponseOrigin::Measurement => {
+                PlantNames::Measured(family.plants().iter().map(|plant| plant.name.clone()).collect())
+            }
+            ResponseOrigin::Model { parameters, values } => {
+                PlantNames::of_responses(parameters.iter().map(String::as_str), values.clone())
+            }
+        },
     }
 }
 
@@ -212,6 +217,16 @@ impl ProjectAudit {
     fn family_sentence(&self) -> String {
         match &self.names {
             PlantNames::Measured(names) => format!("Family: {}.", counted(names.len(), "measured response")),
+            PlantNames::Responses(names, plants) => {
+                let plants = counted(plants.len(), "plant");
+                let over = match names.len() {
+                    0 => String::new(),
+                    count => format!(" over {}", counted(count, "uncertain parameter")),
+                };
+                format!(
+                    "Family: {plants}{over}, each by its response with lines in motion; what lies between them is not looked at."
+                )
+            }
             PlantNames::Parameters(names) if names.is_empty() => "Family: one plant.".to_string(),
             PlantNames::Parameters(names) if self.whole_box => format!(
                 "Family: {} plants of a box over {}, and what lies between them.",
@@ -240,7 +255,7 @@ impl ProjectAudit {
                     PlantNames::Measured(_) => {
                         " What lies beyond the measurements is taken as no larger than at their ends."
                     }
-                    PlantNames::Parameters(_) => "",
+                    PlantNames::Parameters(_) | PlantNames::Responses(..) => "",
                 };
                 format!(
                     "Loop: sampled every {} with a zero-order hold, {delay}.{images}",

@@ -3,7 +3,7 @@
 //! A simulation is of the whole machine. What the linear plant cannot count is told before the verdict; where a specification depends
 //! on it, the verdict is not proven.
 
-use crate::project::{LineModel, LoadModel, Project, SpecificationKind, SupplyModel};
+use crate::project::{self, LineModel, LoadModel, Project, SpecificationKind, SupplyModel};
 use crate::rig::Rig;
 
 /// Something declared that the linear loop does not count.
@@ -20,17 +20,21 @@ const UNMOVED: f64 = 1e-6;
 
 /// What is declared and in no linear loop.
 pub(crate) fn caveats(project: &Project) -> Vec<Caveat> {
-    [
-        load(project),
-        leakage(project),
-        lines(project),
-        supply(project),
-        feed_forward(project),
-        prefilter(project),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let mut all: Vec<Caveat> = lines(project).into_iter().collect();
+    all.extend(apart_from_lines(project));
+    all
+}
+
+/// What is declared and in no linear model, in sentences.
+pub(crate) fn of_models(project: &Project) -> Vec<String> {
+    let others = apart_from_lines(project).map(|caveat| caveat.sentence);
+    lumped(project).into_iter().chain(others).collect()
+}
+
+fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
+    [load(project), leakage(project), supply(project), feed_forward(project), prefilter(project)]
+        .into_iter()
+        .flatten()
 }
 
 /// A wall whose mass nobody states.
@@ -61,8 +65,30 @@ fn leakage(project: &Project) -> Option<Caveat> {
     })
 }
 
-/// Lines in motion: the linear plant holds their static compliance.
+/// Lines in motion over a box: their plants have no polynomials to search with between the plants that are looked at.
 fn lines(project: &Project) -> Option<Caveat> {
+    let (place, model) = moving(project)?;
+    let family = project.family.as_ref();
+    let spans = |family: &project::Family| family.grid || family.vertices || family.random.is_some();
+    let is_box = family.is_none_or(|family| family.cases.is_empty() || spans(family));
+    (is_box && !project.uncertainty.is_empty()).then(|| Caveat {
+        sentence: format!(
+            "{place} = \"{model}\" is counted at single plants of the box: what lies between them is not looked at"
+        ),
+        unproven: true,
+    })
+}
+
+/// What the models of a linearisation do not count of the lines.
+fn lumped(project: &Project) -> Option<String> {
+    let (place, model) = moving(project)?;
+    Some(format!(
+        "{place} = \"{model}\" is not counted in these models, which have lumped lines: verify, design and simulate count it"
+    ))
+}
+
+/// The key that sets lines in motion, and its word.
+fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
     let line = &project.actuator.as_ref()?.line;
     let [a, b] = [&line.a, &line.b].map(|line| line.motion.model);
     let (place, model) = match (a, b) {
@@ -71,13 +97,7 @@ fn lines(project: &Project) -> Option<Caveat> {
         (LineModel::Lumped, b) => ("line.b.model", b),
         (a, _) => ("line.a.model", a),
     };
-    Some(Caveat {
-        sentence: format!(
-            "{place} = \"{}\" is not counted: the linear plant has lumped lines, and only a simulation shows what waves and walls do",
-            model.word()
-        ),
-        unproven: true,
-    })
+    Some((place, model.word()))
 }
 
 /// A supply that yields.

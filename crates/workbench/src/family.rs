@@ -2,11 +2,13 @@
 
 mod formula;
 mod hydraulic;
+mod in_motion;
 mod machine;
 pub(crate) mod measured;
 mod uncertain;
 
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant, UncertainPlantError};
+use phea_hydraulics::line::LineError;
 use phea_qft::family::{Family, MeasurementError};
 
 use crate::project::{FormulaError, Project, Report, SpecificationKind};
@@ -53,6 +55,22 @@ pub enum FamilyError {
     /// Measured responses that are no family.
     #[error("[family] `measured`: {0}")]
     Measured(#[from] MeasurementError),
+    /// Responses from no frequency to none.
+    #[error("the plant has no response between {from_rad_per_s} and {to_rad_per_s} rad/s")]
+    Frequencies {
+        /// rad/s
+        from_rad_per_s: f64,
+        /// rad/s
+        to_rad_per_s: f64,
+    },
+    /// A line of a member that its model does not fit.
+    #[error("[line] model: {error}, at {member}")]
+    Line {
+        /// What is wrong.
+        error: LineError,
+        /// The member's parameters with their values.
+        member: String,
+    },
     /// A limit on load motion, and a measured plant without that path.
     #[error("\"load_motion\" needs the columns `load_motion_...`, which {0} lacks")]
     LoadMotion(String),
@@ -70,7 +88,8 @@ pub enum FamilyError {
 }
 
 /// The family of a project: the linear model of its actuator, or the transfer function it states, over the box of
-/// `[uncertainty]`; or the plants that were measured.
+/// `[uncertainty]`; or the plants that were measured. Where lines move there are no polynomials, and the family is the responses of its
+/// members.
 ///
 /// `[family]` says which plants of the box are looked at: its `grid`, its `vertices`, points at `random`, explicit `cases`, or several
 /// of them together; the grid where it says nothing. Where the `cases` stand alone nothing between them belongs to the family.
@@ -96,7 +115,13 @@ pub fn family(project: &Project, source: &dyn Source) -> Result<Family, FamilyEr
         Some(declared) if !declared.measured.is_empty() => {
             Family::Measured(measured::family(project, declared, source)?)
         }
-        _ => Family::Uncertain(uncertain::family(project, uncertain_plant(project)?)?),
+        _ => {
+            let lumped = uncertain::family(project, uncertain_plant(project)?)?;
+            match in_motion::family(project, &lumped)? {
+                Some(responses) => Family::Measured(responses),
+                None => Family::Uncertain(lumped),
+            }
+        }
     };
     check_second_path(project, &family)?;
     Ok(family)

@@ -2,13 +2,14 @@
 //! of the linear model with where it comes from.
 
 mod assembly;
+mod lines;
 mod parameters;
 mod plant;
 mod sizing;
 
 use phea_hydraulics::actuator::{Actuator, ActuatorError};
 use phea_hydraulics::friction::ViscousSlope;
-use phea_hydraulics::line::Member;
+use phea_hydraulics::line::{DynamicLine, LineError, Member};
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
     Condition, Load, OperatingPoint, OperatingPointError, operating_point,
@@ -22,6 +23,7 @@ use phea_hydraulics::two_pressure::{
 use crate::project::{self, Project};
 
 pub(crate) use assembly::actuator;
+pub(crate) use lines::lines;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub(crate) use plant::{YieldingLoad, has_one_pressure, plant, stated};
 pub use sizing::{SizingError, sizing_problem};
@@ -49,8 +51,10 @@ pub struct Rig {
     pub internal_leakage: f64,
     /// What the force sensor pushes on, where it yields.
     pub(crate) load: Option<YieldingLoad>,
-    /// The linear plant that every verdict is of: nominal, at the operating point.
+    /// The linear plant that every verdict is of: nominal, at the operating point, with lumped lines.
     pub plant: Plant,
+    /// The lines as they move; `None` where both are lumped.
+    pub lines: Option<[DynamicLine; 2]>,
 }
 
 /// Why a project has no rig to compute with.
@@ -65,6 +69,9 @@ pub enum RigError {
     /// No equilibrium at the declared operating point.
     #[error("[operating_point]: {0}")]
     OperatingPoint(#[from] OperatingPointError),
+    /// A line that its model does not fit.
+    #[error("[line] model: {0}")]
+    Line(#[from] LineError),
     /// The friction has no slope to linearise with.
     #[error("[cylinder.friction] has no viscous part to linearise with")]
     Friction,
@@ -94,6 +101,8 @@ impl Rig {
         let parameters = parameters::resolve(project, &derived);
         let linear = parameters::linear(&parameters, &derived);
         let internal_leakage = leakage.unwrap_or(0.0);
+        let of_rig = [&components.line_a, &components.line_b];
+        let lines = lines(&declared.line, of_rig, &components.fluid, actuator.mean_pressure())?;
         let load = plant::yielding_load(&declared.load, point.hydraulic_force);
         let plant = plant(
             &two_pressure,
@@ -114,6 +123,7 @@ impl Rig {
             internal_leakage,
             load,
             plant,
+            lines,
         })
     }
 }

@@ -5,6 +5,7 @@
 //! ```
 
 mod answer;
+mod prediction;
 mod rigs;
 mod run;
 

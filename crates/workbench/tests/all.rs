@@ -54,3 +54,4 @@ mod sizing_laws;
 mod specification;
 mod trial;
 mod verify_contract;
+mod waves_in_the_loop;

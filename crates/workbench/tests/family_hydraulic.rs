@@ -131,6 +131,7 @@ fn physical_paths_reach_the_model_as_through_the_rig() {
     );
     let asymmetric = include_str!("project_valid/asymmetric.toml");
     let free = asymmetric.replace("hydraulic_stiffness =", "# ").replace("flow_gain = \"3.4", "# \"");
+    let free = free.replace("model = \"transmission_line\"\n", "");
     follows_the_rig(
         &free,
         &[

@@ -323,7 +323,7 @@ impl StabilityAudit {
             _ => format!("{} plants", self.plants.len()),
         };
         let way = match (&record.real_part, &self.family) {
-            (_, Family::Measured(_)) => "by Nyquist's count on the measured points",
+            (_, Family::Measured(_)) => "by Nyquist's count on the points of their responses",
             (Some(_), _) => "by their closed-loop poles",
             (None, _) => "by the turns of their characteristic function",
         };

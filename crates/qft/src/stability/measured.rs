@@ -15,6 +15,8 @@ use crate::closed_loop::{Compensation, Member};
 
 /// Largest turn between two points, rad.
 const TURN_MAXIMUM: f64 = std::f64::consts::FRAC_PI_3;
+/// Points of a resolved response are no closer than this part of their frequency.
+const CLOSEST: f64 = 1e-9;
 /// |L| that is well below one.
 const SMALL_GAIN: f64 = 0.5;
 /// |L| that is well above one.
@@ -61,9 +63,31 @@ impl<'a> OpenLoop<'a> {
         let mut open_loop = OpenLoop { member, compensation, points: Vec::new(), unstable_poles: outside };
         let highest = compensation.highest_frequency_rad_per_s();
         for &frequency in plant.frequencies_rad_per_s.iter().take_while(|&&frequency| frequency <= highest) {
-            open_loop.points.extend(open_loop.at(frequency).map(|value| (frequency, value)));
+            let Some(value) = open_loop.at(frequency) else { continue };
+            if plant.is_resolved {
+                open_loop.fill_up_to((frequency, value));
+            }
+            open_loop.points.push((frequency, value));
         }
         Ok(open_loop)
+    }
+
+    /// Points between the last one and this one, as many as 1 + L needs to turn little from each to the next.
+    fn fill_up_to(&mut self, end: (f64, Complex64)) {
+        let mut ahead = vec![end];
+        while let (Some(&next), Some(&last)) = (ahead.last(), self.points.last()) {
+            let near = next.0 - last.0 <= CLOSEST * next.0 || turn(last.1, next.1).abs() <= TURN_MAXIMUM;
+            let middle = (last.0 * next.0).sqrt();
+            match self.at(middle).filter(|_| !near) {
+                Some(value) => ahead.push((middle, value)),
+                None => {
+                    ahead.pop();
+                    if !ahead.is_empty() {
+                        self.points.push(next);
+                    }
+                }
+            }
+        }
     }
 
     fn at(&self, frequency: f64) -> Option<Complex64> {
@@ -76,13 +100,8 @@ impl<'a> OpenLoop<'a> {
         let mut turned = turn_below(first, second)?;
         for pair in self.points.windows(2) {
             let &[(from, before), (to, after)] = pair else { continue };
-            let turn = portable::argument((1.0 + after) / (1.0 + before));
-            let open_turn = portable::argument(after / before).abs();
-            let widest = if portable::magnitude(before).max(portable::magnitude(after)) > SMALL_GAIN {
-                turn.abs().max(open_turn)
-            } else {
-                turn.abs()
-            };
+            let own = portable::argument((1.0 + after) / (1.0 + before));
+            let widest = turn(before, after);
             if widest.is_nan() || widest > TURN_MAXIMUM {
                 return Err(Irresolution::Coarse {
                     from_rad_per_s: from,
@@ -90,7 +109,7 @@ impl<'a> OpenLoop<'a> {
                     turn_deg: widest.to_degrees(),
                 });
             }
-            turned += turn;
+            turned += own;
         }
         let &(frequency_rad_per_s, last) = self.points.last().ok_or(Irresolution::Points)?;
         let gain = portable::magnitude(last);
@@ -139,6 +158,16 @@ impl<'a> OpenLoop<'a> {
             }
         }
         least
+    }
+}
+
+/// The angle that 1 + L turns by from one point to the next, and L itself where it is not small, whichever is wider, rad.
+fn turn(before: Complex64, after: Complex64) -> f64 {
+    let own = portable::argument((1.0 + after) / (1.0 + before)).abs();
+    if portable::magnitude(before).max(portable::magnitude(after)) > SMALL_GAIN {
+        own.max(portable::argument(after / before).abs())
+    } else {
+        own
     }
 }
 

@@ -47,7 +47,8 @@ pub(super) fn remarks(
     let measured = joining.plants.iter().any(|plant| matches!(plant.point, PlantPoint::Measured(_)));
     if measured {
         remarks.push(
-            "measured plants: between two measured frequencies the response is interpolated".to_string(),
+            "plants known by their responses: between two frequencies of them the response is interpolated"
+                .to_string(),
         );
     }
     if let Some((frequency, plant)) = unresolved {

@@ -73,6 +73,7 @@ fn frequencies_out_of_reach() {
         command: vec![Complex64::new(1.0, 0.0); 2],
         disturbance: None,
         unstable_poles: 0,
+        is_resolved: false,
     };
     let found = diagnose(&of(Family::Measured(MeasuredFamily::new(vec![measured]).unwrap())));
     assert!(matches!(found[0], Finding::OutOfReach { frequency_rad_per_s: 50.0, plant: Some(_), .. }));
@@ -96,6 +97,7 @@ fn measured_plants_have_a_water_bed_too() {
         frequencies_rad_per_s: frequencies,
         disturbance: None,
         unstable_poles: 0,
+        is_resolved: false,
     };
     let specifications = vec![
         demand(Requirement::Sensitivity(Limit::Constant(0.05)), &[], [0.0, 20.0]),

@@ -104,6 +104,7 @@ fn beyond_a_measurement_nothing_is_looked_at() {
         command,
         disturbance: None,
         unstable_poles: 0,
+        is_resolved: false,
     };
     let family = Family::Measured(MeasuredFamily::new(vec![plant]).unwrap());
     let problem = with_family(family, 1.2);

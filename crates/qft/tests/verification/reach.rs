@@ -37,6 +37,7 @@ fn measured(gains: &[f64], from: f64, to: f64) -> Family {
             .collect(),
         disturbance: None,
         unstable_poles: 0,
+        is_resolved: false,
     };
     Family::Measured(MeasuredFamily::new(gains.iter().map(plant).collect()).unwrap())
 }

@@ -13,6 +13,8 @@ pub enum PlantNames {
     Parameters(Vec<(String, &'static Dimension)>),
     /// Names of the measurements.
     Measured(Vec<String>),
+    /// Uncertain parameters likewise, and their values for each plant whose response was calculated.
+    Responses(Vec<(String, &'static Dimension)>, Vec<Vec<f64>>),
 }
 
 /// One plant with its names, as JSON shows it: an object of name to SI value.
@@ -28,66 +30,83 @@ enum NamedValue {
 impl PlantNames {
     /// Names of the parameters of an uncertain plant, with the dimension of those of the linear model.
     pub fn of_parameters<'a>(names: impl Iterator<Item = &'a str>) -> PlantNames {
-        let dimension = |name: &str| {
-            LINEAR_PARAMETERS
-                .iter()
-                .find(|parameter| parameter.key.name == name)
-                .map_or(&RATIO, |parameter| parameter.key.dimension)
+        PlantNames::Parameters(dimensioned(names))
+    }
+
+    /// The same of plants whose responses were calculated, with their values.
+    pub fn of_responses<'a>(names: impl Iterator<Item = &'a str>, values: Vec<Vec<f64>>) -> PlantNames {
+        PlantNames::Responses(dimensioned(names), values)
+    }
+
+    /// Names and values of a plant that has any.
+    pub(crate) fn numbers<'a>(
+        &'a self,
+        plant: &'a PlantPoint,
+    ) -> Option<impl Iterator<Item = (&'a str, &'static Dimension, f64)>> {
+        let (names, values) = match (self, plant) {
+            (PlantNames::Parameters(names), PlantPoint::Parameters(values)) => (names, values),
+            (PlantNames::Responses(names, plants), PlantPoint::Measured(index)) => {
+                (names, plants.get(*index)?)
+            }
+            _ => return None,
         };
-        PlantNames::Parameters(names.map(|name| (name.to_string(), dimension(name))).collect())
+        Some(names.iter().zip(values).map(|((name, dimension), value)| (name.as_str(), *dimension, *value)))
     }
 
     /// `viscous_friction 100 N.s/m, flow_gain 5.61e-5 m3/(s.V)`, or the name of the measurement.
     pub fn text(&self, plant: &PlantPoint) -> String {
-        match (self, plant) {
-            (PlantNames::Parameters(names), PlantPoint::Parameters(values)) => {
-                let parts: Vec<String> = names
-                    .iter()
-                    .zip(values)
-                    .map(|((name, dimension), &value)| format!("{name} {}", display(value, dimension, 4)))
-                    .collect();
-                if parts.is_empty() { "the nominal plant".to_string() } else { parts.join(", ") }
-            }
-            (PlantNames::Measured(names), PlantPoint::Measured(index)) => {
-                names.get(*index).cloned().unwrap_or_default()
-            }
-            _ => String::new(),
-        }
+        let Some(numbers) = self.numbers(plant) else {
+            return match (self, plant) {
+                (PlantNames::Measured(names), PlantPoint::Measured(index)) => {
+                    names.get(*index).cloned().unwrap_or_default()
+                }
+                _ => String::new(),
+            };
+        };
+        let parts: Vec<String> = numbers
+            .map(|(name, dimension, value)| format!("{name} {}", display(value, dimension, 4)))
+            .collect();
+        if parts.is_empty() { "the nominal plant".to_string() } else { parts.join(", ") }
     }
 
     /// The values of a plant one by one, as the columns of a table; in the order of [`PlantNames::headings`].
     pub fn cells(&self, plant: &PlantPoint) -> Vec<String> {
-        match (self, plant) {
-            (PlantNames::Parameters(names), PlantPoint::Parameters(values)) => names
-                .iter()
-                .zip(values)
-                .map(|((_, dimension), &value)| display(value, dimension, 4))
-                .collect(),
-            _ => vec![self.text(plant)],
+        match self.numbers(plant) {
+            Some(numbers) => numbers.map(|(_, dimension, value)| display(value, dimension, 4)).collect(),
+            None => vec![self.text(plant)],
         }
     }
 
     /// What stands above the columns of [`PlantNames::cells`].
     pub fn headings(&self) -> Vec<&str> {
         match self {
-            PlantNames::Parameters(names) => names.iter().map(|(name, _)| name.as_str()).collect(),
+            PlantNames::Parameters(names) | PlantNames::Responses(names, _) => {
+                names.iter().map(|(name, _)| name.as_str()).collect()
+            }
             PlantNames::Measured(_) => vec!["measurement"],
         }
     }
 
     /// The plant for JSON.
     pub fn named(&self, plant: &PlantPoint) -> NamedPlant {
-        match (self, plant) {
-            (PlantNames::Parameters(names), PlantPoint::Parameters(values)) => NamedPlant(
-                names
-                    .iter()
-                    .zip(values)
-                    .map(|((name, _), &value)| (name.clone(), NamedValue::Number(value)))
-                    .collect(),
+        match self.numbers(plant) {
+            Some(numbers) => NamedPlant(
+                numbers.map(|(name, _, value)| (name.to_string(), NamedValue::Number(value))).collect(),
             ),
-            _ => NamedPlant(vec![("measured".to_string(), NamedValue::Text(self.text(plant)))]),
+            None => NamedPlant(vec![("measured".to_string(), NamedValue::Text(self.text(plant)))]),
         }
     }
+}
+
+/// Names with what they measure.
+fn dimensioned<'a>(names: impl Iterator<Item = &'a str>) -> Vec<(String, &'static Dimension)> {
+    let dimension = |name: &str| {
+        LINEAR_PARAMETERS
+            .iter()
+            .find(|parameter| parameter.key.name == name)
+            .map_or(&RATIO, |parameter| parameter.key.dimension)
+    };
+    names.map(|name| (name.to_string(), dimension(name))).collect()
 }
 
 impl Serialize for NamedPlant {

@@ -6,7 +6,9 @@ use super::machine::Machine;
 use crate::project::{LINEAR_PARAMETERS, Project};
 use crate::rig::{Rig, has_one_pressure, plant, stated};
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
+use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
+use phea_hydraulics::line::LineError;
+use phea_hydraulics::plant::{Plant, PlantInMotion};
 
 /// Records the model with the uncertain numbers open and all others at the values that hold.
 pub(super) fn uncertain_plant(
@@ -22,16 +24,27 @@ pub(super) fn uncertain_plant(
             return Err(FamilyError::Path { path: name.clone(), reason: reason(name) });
         }
     }
-    Ok(UncertainPlant::record(parameters, |values| coefficients(project, rig, &names, values))?)
+    Ok(UncertainPlant::record(parameters, |values| member(project, rig, &names, values).1.coefficients())?)
 }
 
-/// Physical numbers first; what `[linear]` and `[uncertainty]` state of the linear model goes before what follows from them.
-fn coefficients<S: Scalar>(
+/// The plant of one member behind lines in motion; `None` where both lines are lumped.
+///
+/// # Errors
+/// A line that its model does not fit.
+pub(super) fn in_motion(
     project: &Project,
     rig: &Rig,
     names: &[String],
-    values: &[S],
-) -> PlantCoefficients<S> {
+    values: &[f64],
+) -> Result<Option<PlantInMotion>, LineError> {
+    let Some(declared) = &project.actuator else { return Ok(None) };
+    let (machine, plant) = member(project, rig, names, values);
+    let behind = machine.behind_lines(&declared.line, rig)?;
+    Ok(behind.map(|behind| PlantInMotion::new(&plant, &behind)))
+}
+
+/// Physical numbers first; what `[linear]` and `[uncertainty]` state of the linear model goes before what follows from them.
+fn member<S: Scalar>(project: &Project, rig: &Rig, names: &[String], values: &[S]) -> (Machine<S>, Plant<S>) {
     let mut machine = Machine::new(project, rig).map();
     for (name, value) in names.iter().zip(values).filter(|(name, _)| !is_linear(name)) {
         machine.set(name, *value);
@@ -41,7 +54,8 @@ fn coefficients<S: Scalar>(
     let stated = known.chain(open.filter(|(name, _)| is_linear(name)));
     let one_pressure = has_one_pressure(&rig.parameters, &rig.two_pressure, names);
     let chambers = machine.linear_parameters(rig);
-    plant(&chambers, stated, one_pressure, machine.internal_leakage(), machine.load()).coefficients()
+    let plant = plant(&chambers, stated, one_pressure, machine.internal_leakage(), machine.load());
+    (machine, plant)
 }
 
 fn is_linear(name: &str) -> bool {

@@ -2,15 +2,15 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
-use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, bulk_modulus_with_air};
-use phea_hydraulics::line::{Line, Member, PipeWall};
-use phea_hydraulics::plant::LinearLoad;
+use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid, bulk_modulus_with_air};
+use phea_hydraulics::line::{Line, LineError, Member, PipeWall, Stiffening};
+use phea_hydraulics::plant::{BehindLines, LinearLoad};
 use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::stiffness::{chamber_compliance, compliance_at};
 use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
-use crate::project::Project;
-use crate::rig::{Rig, YieldingLoad};
+use crate::project::{self, Project};
+use crate::rig::{Rig, YieldingLoad, lines};
 
 /// Units: Pa, 1, m2, m, kg, m3, N s/m, N/m, rad/s, m3/(s Pa).
 #[derive(Clone, Debug)]
@@ -64,6 +64,36 @@ impl Machine {
             internal_leakage: rig.internal_leakage,
             load: rig.load,
         }
+    }
+
+    /// What the chambers consist of where lines move; `None` where both are lumped.
+    ///
+    /// # Errors
+    /// A line that its model does not fit.
+    pub(super) fn behind_lines(
+        &self,
+        declared: &project::Lines,
+        rig: &Rig,
+    ) -> Result<Option<BehindLines>, LineError> {
+        let fluid = Fluid {
+            bulk_modulus: self.bulk_modulus,
+            entrained_air: self.air.map(|(volume_fraction, polytropic_index)| EntrainedAir {
+                volume_fraction,
+                polytropic_index,
+            }),
+            ..rig.actuator.components().fluid
+        };
+        let of_member = self.lines.map(stiffened_alike);
+        let [line_a, line_b] = &of_member;
+        let Some(lines) = lines(declared, [line_a, line_b], &fluid, rig.actuator.mean_pressure())? else {
+            return Ok(None);
+        };
+        let lumped = self.linear_parameters(rig).compliances;
+        let [modulus_a, modulus_b] = self.moduli(rig);
+        let of_lines =
+            [line_a.compliance(modulus_a, Member::Nominal), line_b.compliance(modulus_b, Member::Nominal)];
+        let chambers = [lumped[0] - of_lines[0], lumped[1] - of_lines[1]];
+        Ok(Some(BehindLines { lines, chambers, lumped }))
     }
 
     /// The same numbers as constants of another scalar.
@@ -168,16 +198,21 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The linearised two-pressure model, the edges as they are at the operating point of the rig, which none of these
-    /// numbers moves.
-    pub(super) fn linear_parameters(&self, rig: &Rig) -> TwoPressureLinearParameters<S> {
-        let moduli = [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| match self.air {
+    /// Bulk modulus of the fluid in both chambers.
+    fn moduli(&self, rig: &Rig) -> [S; 2] {
+        [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| match self.air {
             None => self.bulk_modulus,
             Some((fraction, index)) => {
                 let absolute = S::from(pressure + ATMOSPHERIC_PRESSURE_ABSOLUTE);
                 bulk_modulus_with_air(self.bulk_modulus, fraction, index, absolute)
             }
-        });
+        })
+    }
+
+    /// The linearised two-pressure model, the edges as they are at the operating point of the rig, which none of these
+    /// numbers moves.
+    pub(super) fn linear_parameters(&self, rig: &Rig) -> TwoPressureLinearParameters<S> {
+        let moduli = self.moduli(rig);
         let model = rig.actuator.components().stiffness_model;
         let [line_a, line_b] = &self.lines;
         let chambers = chamber_compliance(model, moduli, &self.cylinder, [line_a, line_b], Member::Nominal);
@@ -199,6 +234,18 @@ impl<S: Scalar> Machine<S> {
             valve_natural_frequency: self.natural_frequency,
             valve_damping_ratio: self.damping_ratio,
         }
+    }
+}
+
+/// A hose of one stiffening: what a member has for it is its own, and need not lie in the declared interval.
+fn stiffened_alike(line: Line) -> Line {
+    match line {
+        Line::Hose { mut hose, length } => {
+            let nominal = hose.dynamic_stiffening.nominal;
+            hose.dynamic_stiffening = Stiffening { nominal, minimum: nominal, maximum: nominal };
+            Line::Hose { hose, length }
+        }
+        Line::Pipe { .. } | Line::Volume { .. } => line,
     }
 }
 

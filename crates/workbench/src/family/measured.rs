@@ -61,6 +61,7 @@ fn plant(
         command: Vec::with_capacity(table.rows.len()),
         disturbance: columns.load_motion.map(|_| Vec::with_capacity(table.rows.len())),
         unstable_poles,
+        is_resolved: false,
     };
     let before = findings.error_count();
     for row in &table.rows {

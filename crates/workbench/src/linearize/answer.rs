@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{Agreement, Comparison, Linearization, PortView, WITHIN_DB, WITHIN_DEG, stiffness_sentence};
 use crate::answer::{self, Number, OutputFile, significant, table};
-use crate::caveat::caveats;
+use crate::caveat::of_models;
 use crate::project::Loaded;
 
 #[derive(Serialize)]
@@ -209,7 +209,7 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
         passivity: ports(linearization, |view| passivity_row(&view.passivity)),
         compliance_hidden_above_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
         load_step_final_force_n: final_force(linearization),
-        warnings: caveats(&loaded.project).into_iter().map(|caveat| caveat.sentence).collect(),
+        warnings: of_models(&loaded.project),
     };
     answer::json("linearize", loaded, body)
 }
@@ -284,8 +284,8 @@ fn passivity_row(report: &PassivityReport) -> PassivityRow {
 /// The tables and sentences of `linearize` for people.
 pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
     let mut out = String::new();
-    for caveat in caveats(&loaded.project) {
-        out.push_str(&format!("warning: {}\n", caveat.sentence));
+    for sentence in of_models(&loaded.project) {
+        out.push_str(&format!("warning: {sentence}\n"));
     }
     out.push_str(&format!("Stiffness\n  {}\n", stiffness_sentence(&linearization.stiffness_models)));
     let mut poles = table(&["model", "equation", "poles, rad/s"]);

@@ -4,9 +4,7 @@ use phea_dynamics::controller::{Controller, SampledController};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Method, Sensed, Settings};
 use phea_hydraulics::actuator::Actuator;
-use phea_hydraulics::line::{
-    BraidedWall, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Member,
-};
+use phea_hydraulics::line::Member;
 use phea_hydraulics::machine::{
     Accumulator, Contact, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited,
 };
@@ -15,8 +13,8 @@ use phea_qft::design::quantisation::Quantisation;
 
 use super::SimulateError;
 use crate::control::{controller, deployed, quantisation, sensor};
-use crate::project::{self, LineFriction, LineMotion, LineWall, Project, Scenario, StepMethod, SupplyModel};
-use crate::rig::Rig;
+use crate::project::{self, Project, Scenario, StepMethod, SupplyModel};
+use crate::rig::{Rig, lines};
 
 /// A machine with its controller.
 #[derive(Clone, Debug)]
@@ -216,61 +214,13 @@ pub(crate) fn options(project: &Project, actuator: &Actuator) -> Result<MachineO
         external_force: false,
         vapour_pressure_absolute: declared.fluid.vapour_pressure,
         member: Member::Nominal,
-        lines: lines(&declared.line, actuator)?,
+        lines: lines(
+            &declared.line,
+            [&actuator.components().line_a, &actuator.components().line_b],
+            &actuator.components().fluid,
+            actuator.mean_pressure(),
+        )?,
     })
-}
-
-/// The lines as they move; `None` where both are lumped, and nothing of them moves.
-fn lines(declared: &project::Lines, actuator: &Actuator) -> Result<Option<[DynamicLine; 2]>, LineError> {
-    let [a, b] = [&declared.a.motion, &declared.b.motion];
-    if [a.model, b.model] == [project::LineModel::Lumped; 2] {
-        return Ok(None);
-    }
-    let components = actuator.components();
-    let of = |line: &Line, motion: &LineMotion| {
-        let model = line_model(motion, line);
-        DynamicLine::new(line, &components.fluid, actuator.mean_pressure(), Member::Nominal, &model)
-    };
-    Ok(Some([of(&components.line_a, a)?, of(&components.line_b, b)?]))
-}
-
-fn line_model(motion: &LineMotion, line: &Line) -> LineModel {
-    let end_share = motion.end_share.unwrap_or(END_SHARE);
-    match motion.model {
-        project::LineModel::Lumped => LineModel::Lumped,
-        // a validated project states the relaxation time of a wall that creeps
-        project::LineModel::Creeping => {
-            LineModel::Creeping { relaxation_time: motion.relaxation_time.unwrap_or(f64::NAN) }
-        }
-        project::LineModel::Segments => LineModel::Segments {
-            count: motion.segments.unwrap_or(LineMotion::SEGMENTS) as usize,
-            friction: match motion.friction {
-                Some(LineFriction::Steady) => LaminarFriction::Steady,
-                Some(LineFriction::FrequencyDependent) | None => LaminarFriction::FrequencyDependent,
-            },
-            relaxation_time: motion.relaxation_time,
-        },
-        project::LineModel::TransmissionLine => LineModel::TransmissionLine { end_share },
-        project::LineModel::TwoWave => {
-            let hose = if let Line::Hose { hose, .. } = line { Some(hose) } else { None };
-            let wall = motion.wall.as_ref().zip(hose).map(|(wall, hose)| braided_wall(wall, hose));
-            LineModel::TwoWave { end_share, wall }
-        }
-    }
-}
-
-/// What is not stated is assumed, but for what follows from the rest: a braid at its neutral angle, and the catalogue's expansion.
-fn braided_wall(declared: &LineWall, hose: &Hose) -> BraidedWall {
-    let assumed = BraidedWall::assumed(hose, Member::Nominal);
-    let axial_compliance = declared.axial_compliance.unwrap_or(assumed.axial_compliance);
-    let coupling_compliance = declared.coupling_compliance.unwrap_or(-axial_compliance);
-    let mass_per_length = declared.mass_per_length.unwrap_or(assumed.mass_per_length);
-    let member = Member::Nominal;
-    let wall = BraidedWall::of_hose(hose, member, axial_compliance, coupling_compliance, mass_per_length);
-    BraidedWall {
-        pressure_compliance: declared.pressure_compliance.unwrap_or(wall.pressure_compliance),
-        ..wall
-    }
 }
 
 fn power_unit(declared: &project::Actuator) -> PowerUnit {

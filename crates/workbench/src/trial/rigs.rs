@@ -4,13 +4,15 @@ use std::f64::consts::FRAC_PI_2;
 
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_hydraulics::line::{Conduit, Member};
-use phea_qft::family::Family;
+use phea_qft::family::{Family, MeasuredPlant};
 use phea_qft::verification::PlantPoint;
 
 use crate::audit::{NamedPlant, ProjectAudit};
+use crate::family::family;
 use crate::project::{Actuator, Component, EdgeCoefficients, LINEAR_PARAMETERS, Line, LineModel, Project};
 use crate::rig::Rig;
 use crate::robust::RobustProblem;
+use crate::source::Memory;
 
 /// A machine and the plant that the linear loop has for it.
 #[derive(Clone, Debug)]
@@ -21,7 +23,18 @@ pub(super) struct Tried {
     /// Where the lines of a rig with waves begin to oscillate, rad/s.
     pub(super) quarter_wave_rad_per_s: Option<f64>,
     pub(super) project: Project,
-    pub(super) plant: PlantCoefficients<f64>,
+    pub(super) plant: LinearPlant,
+}
+
+/// A plant of the linear loop.
+#[derive(Clone, Debug)]
+pub(super) enum LinearPlant {
+    /// With lumped lines.
+    Rational(PlantCoefficients<f64>),
+    /// With lines in motion.
+    Responses(MeasuredPlant),
+    /// None is known.
+    Unknown,
 }
 
 /// Part by which a parameter of the linear model may miss that of a plant.
@@ -39,7 +52,10 @@ pub(super) fn rigs(
 ) -> (Vec<Tried>, Vec<String>) {
     let (mut rigs, mut missing) = (Vec::new(), Vec::new());
     if let Ok(rig) = Rig::new(project) {
-        let plant = rig.plant.coefficients();
+        let plant = match &rig.lines {
+            None => LinearPlant::Rational(rig.plant.coefficients()),
+            Some(_) => alone(project).map_or(LinearPlant::Unknown, LinearPlant::Responses),
+        };
         let of = |what: &str, project: Project, quarter_wave_rad_per_s| Tried {
             what: what.to_string(),
             named: None,
@@ -51,29 +67,47 @@ pub(super) fn rigs(
         let waves = with_waves(project);
         rigs.extend(waves.map(|project| of("the same with waves in its lines", project, quarter_wave(&rig))));
     }
-    let Family::Uncertain(family) = &problem.family else { return (rigs, missing) };
-    let names: Vec<&str> = family.plant().parameters().iter().map(|one| one.name.as_str()).collect();
     let mut known: Vec<&PlantPoint> = Vec::new();
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         let Some(worst) = &finding.worst else { continue };
-        let PlantPoint::Parameters(values) = &worst.plant else { continue };
+        let Some(numbers) = view.names.numbers(&worst.plant) else { continue };
         if known.contains(&&worst.plant) {
             continue;
         }
         known.push(&worst.plant);
+        let (names, values): (Vec<&str>, Vec<f64>) = numbers.map(|(name, _, value)| (name, value)).unzip();
         let what = format!("the worst plant of {}", view.numbered(index));
-        match made(project, &names, values) {
+        match made(project, &names, &values) {
             Ok(project) => rigs.push(Tried {
                 what,
                 named: Some(view.names.named(&worst.plant)),
                 quarter_wave_rad_per_s: None,
                 project,
-                plant: family.plant().coefficients(values),
+                plant: match (&problem.family, &worst.plant) {
+                    (Family::Uncertain(family), _) => {
+                        LinearPlant::Rational(family.plant().coefficients(&values))
+                    }
+                    (Family::Measured(family), PlantPoint::Measured(index)) => family
+                        .plants()
+                        .get(*index)
+                        .cloned()
+                        .map_or(LinearPlant::Unknown, LinearPlant::Responses),
+                    _ => LinearPlant::Unknown,
+                },
             }),
             Err(reason) => missing.push(format!("{what} ({}): {reason}", view.names.text(&worst.plant))),
         }
     }
     (rigs, missing)
+}
+
+/// The response of the rig itself, its lines in motion.
+fn alone(project: &Project) -> Option<MeasuredPlant> {
+    let alone = Project { uncertainty: Vec::new(), family: None, ..project.clone() };
+    match family(&alone, &Memory::default()).ok()? {
+        Family::Measured(family) => family.plants().first().cloned(),
+        Family::Uncertain(_) => None,
+    }
 }
 
 /// The same rig, its lumped lines as transmission lines; `None` where nothing of them is lumped or long.

@@ -3,17 +3,14 @@
 use std::f64::consts::PI;
 
 use phea_dynamics::portable::exp;
-use phea_dynamics::time_response::Settling;
-use phea_hydraulics::linear::transfer_functions;
 use phea_qft::specification::Requirement;
 use phea_qft::verification::Verdict;
 
+use super::prediction::{Prediction, predicted};
 use super::rigs::Tried;
 use crate::answer::significant;
 use crate::audit::{NamedPlant, ProjectAudit};
 use crate::command::{CommandError, Watch};
-use crate::control::{controller, deployed, sensor};
-use crate::linear_loop::{StepView, linear_loop};
 use crate::project::{Project, Scenario, Signal};
 use crate::quantity::{DisplayUnit, FORCE};
 use crate::rig::Rig;
@@ -80,7 +77,7 @@ const STEP_SHARE: f64 = 0.1;
 /// The reference stays within this part of that.
 const REACH: f64 = 0.8;
 /// Percent of the step within which the force counts as settled.
-const BAND_PERCENT: f64 = 2.0;
+pub(super) const BAND_PERCENT: f64 = 2.0;
 /// s, before the step.
 const BEFORE_S: f64 = 0.05;
 /// So many settling times of the linear loop are driven, within these bounds in s.
@@ -101,16 +98,15 @@ pub(super) fn run(
     view: &ProjectAudit,
     watch: Watch<'_>,
 ) -> Result<Option<Run>, CommandError> {
-    let predicted = predicted(tried)?;
-    let linear = predicted.as_ref().map(|step| Step {
-        overshoot_percent: Some(step.metrics.overshoot_percent),
-        settling_time_s: match step.metrics.settling {
-            Settling::Settled { time_s, .. } => Some(time_s),
-            _ => None,
-        },
-    });
-    let linear_response =
-        predicted.map(|step| Response { times_s: step.times_s, values: step.response }).unwrap_or_default();
+    let predicted = predicted(tried, problem)?;
+    let grows = matches!(predicted, Prediction::Grows);
+    let (linear, linear_response) = match predicted {
+        Prediction::Step(metrics, response) => {
+            let settling_time_s = metrics.settling.time_s();
+            (Some(Step { overshoot_percent: Some(metrics.overshoot_percent), settling_time_s }), response)
+        }
+        Prediction::Grows | Prediction::Unknown => (None, Response::default()),
+    };
     let [shortest, longest] = DURATION_S;
     let settles_s = linear.and_then(|step| step.settling_time_s).unwrap_or(shortest);
     let duration = BEFORE_S + (SETTLING_TIMES * settles_s).clamp(shortest, longest);
@@ -135,7 +131,7 @@ pub(super) fn run(
         Ok(runs) => {
             let Some(driven) = runs.first().filter(|driven| !driven.was_cancelled()) else { return Ok(None) };
             let machine = step_of(driven);
-            let mut judged = judge((driven, reference_n), linear.as_ref(), &machine, problem, view);
+            let mut judged = judge((driven, reference_n), (linear.as_ref(), grows), &machine, problem, view);
             if let (Some(quarter), true) = (tried.quarter_wave_rad_per_s, judged.0 != Agreement::Agrees) {
                 judged.1.push_str(&format!(
                     ". The lines are a quarter wave long at {} rad/s: a shorter line, a wall that damps (line.relaxation_time) or a loop \
@@ -148,15 +144,6 @@ pub(super) fn run(
         }
         Err(error) => Ok(run("not_started", None, Response::default(), not_started(&error, view))),
     }
-}
-
-/// The step response of the linear loop with this plant.
-fn predicted(tried: &Tried) -> Result<Option<StepView>, CommandError> {
-    let Some(given) = controller(&tried.project)? else { return Ok(None) };
-    let given = deployed(&tried.project, &given)?;
-    let plant = transfer_functions(&tried.plant)?.command;
-    let closed = linear_loop(&plant, &given, &sensor(&tried.project)?, BAND_PERCENT);
-    Ok(closed.ok().and_then(|closed| closed.step.ok()))
 }
 
 /// From the force of the operating point, towards where there is room.
@@ -211,7 +198,7 @@ fn not_started(error: &SimulateError, view: &ProjectAudit) -> (Agreement, String
 
 fn judge(
     (driven, reference_n): (&ScenarioRun, [f64; 2]),
-    linear: Option<&Step>,
+    (linear, grows): (Option<&Step>, bool),
     machine: &Step,
     problem: &RobustProblem,
     view: &ProjectAudit,
@@ -223,7 +210,7 @@ fn judge(
         let time = DisplayUnit::MILLISECOND.text(stopped.time_s, 3);
         return (broken, format!("the run ended after {time} as {}", stopped.word));
     }
-    let settles = linear.is_none_or(|step| step.settling_time_s.is_some());
+    let settles = !grows && linear.is_none_or(|step| step.settling_time_s.is_some());
     if machine.settling_time_s.is_none() && settles {
         let words = swing(driven).map_or(String::new(), |swing| format!(": {}", swing_words(swing)));
         return (broken, format!("the force does not settle{words}"));

@@ -26,7 +26,7 @@ const PEAKS_MAXIMUM: usize = 80;
 ///
 /// A band from 0 begins a factor 30 below the slowest root of a plant or a limit and the least design frequency, one to infinity
 /// ends as far above the fastest; between 5 times those and there, the grid is four times as coarse. A sampled loop ends at pi/T.
-/// Of peaks that crowd, some are left out.
+/// Of peaks that crowd, some are left out. Where plants are known by their responses, the grid keeps to what all of them reach.
 ///
 /// # Errors
 /// A point that is no plant of the family; a loop that cannot be formed.
@@ -54,9 +54,24 @@ pub fn search_frequencies(
     grid.retain(|frequency| {
         *frequency > 0.0 && bands.iter().any(|[from, to]| from <= frequency && frequency <= to)
     });
+    let [first, last] = measured_by_all(problem, plants)?;
+    grid.retain(|frequency| (first..=last).contains(frequency));
     grid.sort_by(f64::total_cmp);
     grid.dedup();
     Ok(grid)
+}
+
+/// Between which frequencies every measured plant has a response; everywhere where none is measured.
+fn measured_by_all(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<[f64; 2], SamplesError> {
+    let mut common = [0.0, f64::INFINITY];
+    for plant in plants {
+        if let Plant::Measured(plant) = plant_at(&problem.family, plant)? {
+            let frequencies = &plant.frequencies_rad_per_s;
+            common[0] = frequencies.first().copied().unwrap_or(0.0).max(common[0]);
+            common[1] = frequencies.last().copied().unwrap_or(0.0).min(common[1]);
+        }
+    }
+    Ok(common)
 }
 
 /// The magnitudes of the roots of plants and limits with the design frequencies, and the frequencies of peaks.
