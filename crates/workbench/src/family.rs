@@ -55,6 +55,15 @@ pub enum FamilyError {
     /// Measured responses that are no family.
     #[error("[family] `measured`: {0}")]
     Measured(#[from] MeasurementError),
+    /// A member with lines in motion and a coefficient that gives energy: how many of its own poles grow is not known.
+    #[error(
+        "with lines in motion every coefficient of friction, leakage, valve and load must be zero or more, or the plant's own stability \
+         is not known: {member}"
+    )]
+    NotPassive {
+        /// The member's parameters with their values.
+        member: String,
+    },
     /// Responses from no frequency to none.
     #[error("the plant has no response between {from_rad_per_s} and {to_rad_per_s} rad/s")]
     Frequencies {

@@ -7,14 +7,16 @@ mod parameters;
 mod plant;
 mod sizing;
 
+use num_complex::Complex64;
 use phea_hydraulics::actuator::{Actuator, ActuatorError};
 use phea_hydraulics::friction::ViscousSlope;
-use phea_hydraulics::line::{DynamicLine, LineError, Member};
+use phea_hydraulics::line::{LineError, Member};
 use phea_hydraulics::linear::LinearParameters;
+use phea_hydraulics::machine::Chambers;
 use phea_hydraulics::operating_point::{
     Condition, Load, OperatingPoint, OperatingPointError, operating_point,
 };
-use phea_hydraulics::plant::{LinearLoad, Plant};
+use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
 use phea_hydraulics::servovalve::Direction;
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
@@ -53,8 +55,8 @@ pub struct Rig {
     pub(crate) load: Option<YieldingLoad>,
     /// The linear plant that every verdict is of: nominal, at the operating point, with lumped lines.
     pub plant: Plant,
-    /// The lines as they move; `None` where both are lumped.
-    pub lines: Option<[DynamicLine; 2]>,
+    /// The same with its lines in motion, which is then what every verdict is of; `None` where both are lumped.
+    pub in_motion: Option<PlantInMotion>,
 }
 
 /// Why a project has no rig to compute with.
@@ -78,6 +80,14 @@ pub enum RigError {
 }
 
 impl Rig {
+    /// F_e/U_C in N/V at a frequency in rad/s: of the plant that every verdict is of.
+    pub fn response(&self, frequency_rad_per_s: f64) -> Complex64 {
+        match &self.in_motion {
+            Some(plant) => plant.response(Complex64::new(0.0, frequency_rad_per_s))[0],
+            None => self.plant.coefficients().command.at_frequency(frequency_rad_per_s),
+        }
+    }
+
     /// Assembles the rig of a project and linearises it.
     ///
     /// # Errors
@@ -101,8 +111,6 @@ impl Rig {
         let parameters = parameters::resolve(project, &derived);
         let linear = parameters::linear(&parameters, &derived);
         let internal_leakage = leakage.unwrap_or(0.0);
-        let of_rig = [&components.line_a, &components.line_b];
-        let lines = lines(&declared.line, of_rig, &components.fluid, actuator.mean_pressure())?;
         let load = plant::yielding_load(&declared.load, point.hydraulic_force);
         let plant = plant(
             &two_pressure,
@@ -111,6 +119,13 @@ impl Rig {
             internal_leakage,
             load.map_or(LinearLoad::Prescribed, |load| load.linear()),
         );
+        let of_rig = [&components.line_a, &components.line_b];
+        let lines = lines(&declared.line, of_rig, &components.fluid, actuator.mean_pressure())?;
+        let bare = Chambers::behind_lines(&actuator, Member::Nominal, [0.0; 2]);
+        let chambers = bare.compliance(position, pressures);
+        let lumped = two_pressure.compliances;
+        let in_motion =
+            lines.map(|lines| PlantInMotion::new(&plant, &BehindLines { lines, chambers, lumped }));
         Ok(Rig {
             actuator,
             point,
@@ -123,7 +138,7 @@ impl Rig {
             internal_leakage,
             load,
             plant,
-            lines,
+            in_motion,
         })
     }
 }

@@ -43,7 +43,7 @@ pub(super) fn family(
         return Ok(None);
     }
     let rig = Rig::new(project)?;
-    if rig.lines.is_none() {
+    if rig.in_motion.is_none() {
         return Ok(None);
     }
     let names: Vec<String> = lumped.plant().parameters().iter().map(|one| one.name.clone()).collect();
@@ -55,6 +55,9 @@ pub(super) fn family(
         let plant = hydraulic::in_motion(project, &rig, &names, values)
             .map_err(|error| FamilyError::Line { error, member: named() })?;
         let Some(plant) = plant else { return Ok(None) };
+        if !plant.is_passive() {
+            return Err(FamilyError::NotPassive { member: named() });
+        }
         let first = match grid.take() {
             Some(grid) => grid,
             None => coarse(project, &rig, &plant)?,
@@ -133,7 +136,7 @@ fn points(plant: &PlantInMotion, grid: &[f64], name: String) -> MeasuredPlant {
         frequencies_rad_per_s: found.iter().map(|point| point.0).collect(),
         command: found.iter().map(|point| point.1[0]).collect(),
         disturbance: Some(found.iter().map(|point| point.1[1]).collect()),
-        // lines, valve and load give no energy: a family with a coefficient that does is refused where the rig is lowered
+        // nothing in a passive plant grows
         unstable_poles: 0,
         is_resolved: true,
     }

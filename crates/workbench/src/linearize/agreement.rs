@@ -1,5 +1,6 @@
 //! Over which frequencies a reduced model says what the plant says.
 
+use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 
@@ -30,7 +31,7 @@ const REDUCTIONS: [[&str; 2]; 4] = [
 /// Where the reductions, in this order, are the plant on a grid of frequencies in rad/s.
 pub(super) fn agreement(
     grid: &[f64],
-    plant: &TransferFunction,
+    plant: impl Fn(f64) -> Complex64 + Copy,
     reductions: [&TransferFunction; REDUCTIONS.len()],
 ) -> Vec<Agreement> {
     let one = |([model, equation], function): (&[&'static str; 2], &TransferFunction)| Agreement {
@@ -41,12 +42,21 @@ pub(super) fn agreement(
     REDUCTIONS.iter().zip(reductions).map(one).collect()
 }
 
+/// Where the plant with lumped lines is the one whose lines move.
+pub(super) fn of_lumped(
+    grid: &[f64],
+    plant: impl Fn(f64) -> Complex64 + Copy,
+    lumped: &TransferFunction,
+) -> Agreement {
+    Agreement { model: "lumped lines", equation: "plant", bands_rad_per_s: bands(grid, plant, lumped) }
+}
+
 /// The bands of a grid in which two responses differ by no more than that; a single frequency is none.
-fn bands(grid: &[f64], plant: &TransferFunction, model: &TransferFunction) -> Vec<[f64; 2]> {
+fn bands(grid: &[f64], plant: impl Fn(f64) -> Complex64, model: &TransferFunction) -> Vec<[f64; 2]> {
     let mut bands: Vec<[f64; 2]> = Vec::new();
     let mut inside = false;
     for &frequency in grid {
-        let ratio = model.at_frequency(frequency) / plant.at_frequency(frequency);
+        let ratio = model.at_frequency(frequency) / plant(frequency);
         let magnitude_db = 20.0 * portable::ln(portable::magnitude(ratio)) / std::f64::consts::LN_10;
         let phase_deg = portable::argument(ratio).to_degrees();
         let agrees = magnitude_db.abs() <= WITHIN_DB && phase_deg.abs() <= WITHIN_DEG;

@@ -1,7 +1,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::typeset::prose;
-use crate::caveat::caveats;
+use crate::caveat::of_models;
 use crate::figure::Figure;
 use crate::project::Project;
 
@@ -60,7 +60,7 @@ pub(super) fn grouped(
 
 /// What a chapter on the linear loop leaves out of it, if there is such a thing.
 pub(super) fn without(project: &Project) -> Markup {
-    html! { @for caveat in caveats(project) { div.callout { p { (caveat.sentence) "." } } } }
+    html! { @for sentence in of_models(project) { div.callout { p { (sentence) "." } } } }
 }
 
 /// A text that is not broken into lines.

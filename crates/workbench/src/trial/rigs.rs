@@ -52,7 +52,7 @@ pub(super) fn rigs(
 ) -> (Vec<Tried>, Vec<String>) {
     let (mut rigs, mut missing) = (Vec::new(), Vec::new());
     if let Ok(rig) = Rig::new(project) {
-        let plant = match &rig.lines {
+        let plant = match &rig.in_motion {
             None => LinearPlant::Rational(rig.plant.coefficients()),
             Some(_) => alone(project).map_or(LinearPlant::Unknown, LinearPlant::Responses),
         };

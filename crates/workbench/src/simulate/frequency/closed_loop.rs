@@ -16,6 +16,7 @@ use super::{FrequencyRequest, Response, Rested, USUAL_AMPLITUDE, curve};
 use crate::control::{controller, deployed, sensor};
 use crate::linear_loop::{LinearLoop, linear_loop};
 use crate::project::Project;
+use crate::rig::Rig;
 use crate::simulate::SimulateError;
 use crate::simulate::bench::{Bench, Control, Sampled};
 use crate::simulate::course::under_way;
@@ -191,10 +192,11 @@ fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
 ///
 /// ```text
 /// T = F G P e^(-s d)/(1 + G P H e^(-s d))
-/// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of what is between the samples
+/// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of what is between the samples.
+/// L in z has lumped lines
 /// ```
 struct Model {
-    plant: TransferFunction,
+    rig: Rig,
     sensor: TransferFunction,
     delay_s: f64,
     feedback: TransferFunction,
@@ -216,7 +218,7 @@ impl Model {
         let prefilter = given.prefilter.transfer_function()?;
         let between = project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous);
         Ok(Model {
-            plant: rested.plant.clone(),
+            rig: rested.rig.clone(),
             sensor,
             delay_s: given.timing.delay_s,
             feedback: given.feedback.transfer_function()?,
@@ -232,7 +234,7 @@ impl Model {
 
     fn at(&self, frequency: f64) -> Complex64 {
         let late = portable::exp_complex(Complex64::new(0.0, -frequency * self.delay_s));
-        let plant = self.plant.at_frequency(frequency) * late;
+        let plant = self.rig.response(frequency) * late;
         let prefilter = self.prefilter.at_frequency(frequency);
         match &self.sampled {
             None => {

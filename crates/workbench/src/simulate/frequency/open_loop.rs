@@ -24,7 +24,7 @@ pub(super) fn measured(
         }
         let orbit = orbit(&held, rested, *frequency);
         let linearised = orbit.as_deref().map(|orbit| force_amplitude(&rested.machine, orbit));
-        let plant = rested.plant.at_frequency(*frequency);
+        let plant = rested.rig.response(*frequency);
         let amplitude =
             request.command_amplitude_v.unwrap_or_else(|| usual(rested, linearised.unwrap_or(plant)));
         let sine = Profile::sine(0.0, amplitude, *frequency).map_err(profile)?.shifted(rested.rest.command);
@@ -52,7 +52,7 @@ pub(super) fn measured(
         |frequency: &f64| Some(force_amplitude(&rested.machine, &orbit(&held, rested, *frequency)?));
     Ok(Response {
         points,
-        linear_plant: curve_rad_per_s.iter().map(|frequency| rested.plant.at_frequency(*frequency)).collect(),
+        linear_plant: curve_rad_per_s.iter().map(|frequency| rested.rig.response(*frequency)).collect(),
         linearised_machine: curve_rad_per_s.iter().map(of_machine).collect::<Option<_>>().unwrap_or_default(),
         curve_rad_per_s,
     })
