@@ -55,3 +55,4 @@ mod specification;
 mod trial;
 mod verify_contract;
 mod waves_in_the_loop;
+mod what_moves_what;

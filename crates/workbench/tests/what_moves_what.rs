@@ -1,0 +1,266 @@
+//! Which key of the project moves which part: every key changed on several rigs, and the table of the guide that says so.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use num_complex::Complex64;
+use phea_workbench::catalogue::Catalogue;
+use phea_workbench::control::{compensation, prefilter, sensor};
+use phea_workbench::project::{self, KeyEntry, Project};
+use phea_workbench::rig::{Rig, sizing_problem};
+use phea_workbench::simulate::Bench;
+use phea_workbench::sizing::{Question, size};
+use phea_workbench::source::Memory;
+
+const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
+/// Tables that declare the rig and its loop; the others state what is asked of it.
+const TABLES: [&str; 11] = [
+    "fluid",
+    "supply",
+    "valve",
+    "cylinder",
+    "line",
+    "load",
+    "force_sensor",
+    "operating_point",
+    "linear",
+    "controller",
+    "prefilter",
+];
+/// What a key may move, in the order of the columns.
+const PARTS: [&str; 5] = ["sizing", "plant", "loop", "sensor", "machine"];
+
+/// Rigs that together have every key: examples, the projects of other tests, and the same with other words.
+fn rigs() -> Vec<(String, Vec<&'static str>)> {
+    let hose = || without_family(include_str!("../../../examples/ybitu/hose.toml"));
+    let pipe = || without_family(include_str!("../../../examples/ybitu/pipe.toml"));
+    let volumes = include_str!("project_valid/volumes.toml");
+    let two_wave = ["line.model=two_wave", "line.wall={ mass_per_length = 0.21, axial_compliance = 1e-5 }"];
+    let wall_of_two =
+        ["line.wall.coupling_compliance=-1e-5", "line.wall.pressure_compliance=3e-9", "line.end_share=0.02"];
+    let converters = [
+        "controller.sample_time=1 ms",
+        "controller.quantization={ command_bits = 10, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 10, measurement_range = [\"-10 kN\", \"10 kN\"] }",
+    ];
+    let factored = hose()
+        .replace(
+            "numerator = \"0.001*s + 0.008\"\ndenominator = \"s\"",
+            "gain = 0.001\nzeros = [-8]\npoles = [0]",
+        )
+        .replace(
+            "numerator = \"910\"\ndenominator = \"s^2 + 83*s + 910\"",
+            "gain = 910\npoles = [-12.9, -70.1]",
+        );
+    let sampled = [
+        "controller.sample_time=1 ms",
+        "controller.delay=0.5 ms",
+        "controller.load_velocity_feed_forward={ gain = 20 }",
+    ];
+    let sprung = ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
+    let wall = ["load.model=wall", "load.mass=10", "load.stiffness=1e6", "load.damping=10", "load.gap=0.001"];
+    vec![
+        (hose(), vec![]),
+        (hose(), [&sprung[..], &["line.compliance=by_volume"]].concat()),
+        (hose(), [&two_wave[..], &wall_of_two].concat()),
+        (
+            hose(),
+            vec![
+                "line.model=segments",
+                "line.segments=3",
+                "line.relaxation_time=1 ms",
+                "line.friction=steady",
+            ],
+        ),
+        (hose(), sampled.to_vec()),
+        (hose(), converters.to_vec()),
+        (factored, vec![]),
+        (pipe(), [&wall[..], &["load.relative_damping=0.1"]].concat()),
+        (
+            pipe(),
+            vec!["line.compliance=by_volume", "operating_point.command=0.5", "fluid.entrained_air=0.01"],
+        ),
+        (include_str!("project_valid/simulation.toml").to_string(), vec![]),
+        (
+            include_str!("project_valid/asymmetric.toml").to_string(),
+            vec!["cylinder.friction.regular_velocity=1 mm/s"],
+        ),
+        (volumes.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),
+        (
+            pipe(),
+            vec![
+                "line.pipe={ bore = \"10.5 mm\", wall_thickness = \"2.75 mm\", youngs_modulus = \"206 GPa\" }",
+            ],
+        ),
+    ]
+}
+
+/// The same rig with nothing that is stated of its linear model.
+fn without_family(text: &str) -> String {
+    let (before, rest) = text.split_once("[uncertainty]").unwrap();
+    let (_, after) = rest.split_once("[[specification]]").unwrap();
+    format!("{before}[[specification]]{after}")
+}
+
+/// Values of what may be absent, or is no number.
+const STATED: [(&str, &str); 42] = [
+    ("operating_point.position", "200 mm"),
+    ("operating_point.command", "1 V"),
+    ("operating_point.load_pressure", "10 bar"),
+    ("controller.numerator", "0.002*s + 0.01"),
+    ("controller.denominator", "s*(0.001*s + 1)"),
+    ("controller.gain", "0.002"),
+    ("controller.zeros", "[-9]"),
+    ("controller.poles", "[0, -900]"),
+    ("controller.saturation", "9 V"),
+    ("controller.sample_time", "2 ms"),
+    ("controller.delay", "1 ms"),
+    ("controller.load_velocity_feed_forward.gain", "21"),
+    ("controller.quantization.command_bits", "9"),
+    ("controller.quantization.command_range", "[\"-9 V\", \"9 V\"]"),
+    ("controller.quantization.measurement_bits", "9"),
+    ("controller.quantization.measurement_range", "[\"-9 kN\", \"9 kN\"]"),
+    ("prefilter.numerator", "900"),
+    ("prefilter.denominator", "s^2 + 80*s + 900"),
+    ("prefilter.gain", "900"),
+    ("prefilter.zeros", "[-100]"),
+    ("prefilter.poles", "[-10, -80]"),
+    ("cylinder.internal_leakage", "1e-12"),
+    ("fluid.kinematic_viscosity", "30 mm2/s"),
+    ("valve.rate_limit", "100 V/s"),
+    ("line.segments", "4"),
+    ("line.dynamic_stiffening", "4.8"),
+    ("line.pipe.wall_thickness", "3 mm"),
+    ("line.pipe.youngs_modulus", "190 GPa"),
+    ("line.volume", "2e-4"),
+    ("line.effective_bulk_modulus", "8e8"),
+    ("line.minimum_bend_radius", "150 mm"),
+    ("line.working_pressure", "260 bar"),
+    ("line.burst_pressure", "1200 bar"),
+    ("linear.viscous_friction", "150"),
+    ("linear.flow_gain", "5e-5"),
+    ("linear.flow_pressure_coefficient", "6e-13"),
+    ("linear.hydraulic_stiffness", "3e6"),
+    ("linear.valve_natural_frequency", "1000"),
+    ("linear.valve_damping_ratio", "0.8"),
+    ("linear.moving_mass", "15"),
+    ("linear.piston_area", "1.6e-3"),
+    ("linear.sensor_stiffness", "1.5e7"),
+];
+
+fn loaded(text: &str, settings: &[String]) -> Option<Project> {
+    let source = Memory::default().with("rig.toml", text);
+    project::read(&source, "rig.toml", settings, &[]).ok().map(|loaded| loaded.project)
+}
+
+/// What is computed of a project, one text for each part; `None` for a part that it does not have.
+fn computed(project: &Project) -> [Option<String>; PARTS.len()] {
+    let rig = Rig::new(project).ok();
+    let sizing = rig.as_ref().and_then(|rig| sizing_problem(project, rig, &Catalogue::default()).ok());
+    let plant = rig.as_ref().map(|rig| {
+        let load = |w: f64| match &rig.in_motion {
+            Some(plant) => plant.response(Complex64::new(0.0, w))[1],
+            None => rig.plant.coefficients().disturbance.unwrap().at_frequency(w),
+        };
+        let at = |w: f64| format!("{:?} {:?}", rig.response(w), load(w));
+        [0.3, 20.0, 400.0, 1000.0, 3000.0].map(at).concat()
+    });
+    // the machine of a bench stands behind its rig, and before what a scenario adds
+    let machine = Bench::new(project).ok().map(|bench| {
+        let all = format!("{bench:?}");
+        all[all.find(", machine: ").unwrap()..].to_string()
+    });
+    [
+        sizing.map(|problem| format!("{:?}", size(&problem, Question::Both))),
+        plant,
+        compensation(project).ok().flatten().map(|loop_| format!("{loop_:?} {:?}", prefilter(project))),
+        sensor(project).ok().map(|sensor| format!("{sensor:?}")),
+        machine,
+    ]
+}
+
+/// Other values of a key where the rig states one: a number a hundredth larger, or each other word.
+fn others(entry: &KeyEntry, project: &Project) -> Vec<String> {
+    if let Some(words) = entry.takes.strip_prefix("one of ") {
+        return words.split(", ").map(|word| word.trim_matches('"').to_string()).collect();
+    }
+    if entry.takes == "true or false" {
+        return vec!["true".to_string(), "false".to_string()];
+    }
+    let of_one_side = entry.path.replace("line.", "line.a.");
+    match project.number(&entry.path).or(project.number(&of_one_side)) {
+        Some(0.0) => vec!["1e-3".to_string()],
+        Some(value) => vec![format!("{:?}", value * 1.01), format!("{:?}", value * 0.99)],
+        None => {
+            let stated = STATED.iter().filter(|(path, _)| *path == entry.path);
+            stated.map(|(_, value)| (*value).to_string()).collect()
+        }
+    }
+}
+
+/// The keys of the tables above that can be changed, with what they move, and the others.
+fn moved() -> (BTreeMap<String, BTreeSet<&'static str>>, BTreeSet<String>) {
+    let mut moved: BTreeMap<String, BTreeSet<&'static str>> = BTreeMap::new();
+    let keys: Vec<KeyEntry> = project::keys()
+        .into_iter()
+        .filter(|entry| TABLES.iter().any(|table| entry.path.starts_with(&format!("{table}."))))
+        .filter(|entry| !entry.path.contains("[]") && !entry.path.contains("NAME"))
+        .collect();
+    for (text, settings) in rigs() {
+        let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
+        let Some(own) = loaded(&text, &settings) else { panic!("{settings:?}") };
+        let before = computed(&own);
+        for entry in &keys {
+            for other in others(entry, &own) {
+                let changed = [&settings[..], &[format!("{}={other}", entry.path)]].concat();
+                let Some(project) = loaded(&text, &changed).filter(|project| *project != own) else {
+                    continue;
+                };
+                let row = moved.entry(entry.path.clone()).or_default();
+                for ((part, before), after) in PARTS.iter().zip(&before).zip(computed(&project)) {
+                    if before.is_some() && after.is_some() && *before != after {
+                        row.insert(part);
+                    }
+                }
+            }
+        }
+    }
+    let untried = keys.into_iter().map(|entry| entry.path).filter(|path| !moved.contains_key(path)).collect();
+    (moved, untried)
+}
+
+/// The row of a key, without the reason.
+fn row(key: &str, moves: &BTreeSet<&str>) -> String {
+    let cells: Vec<&str> = PARTS.iter().map(|part| if moves.contains(part) { "x" } else { "" }).collect();
+    format!("| `{key}` | {} |", cells.join(" | "))
+}
+
+/// The guide's table is what happens, key by key; a key that moves nothing has its reason there.
+#[test]
+fn the_table_of_the_guide_is_what_happens() {
+    let (moved, untried) = moved();
+    let apart: BTreeSet<String> = GUIDE
+        .lines()
+        .filter(|line| line.starts_with("- `"))
+        .flat_map(|line| line.split('`').skip(1).step_by(2).map(str::to_string))
+        .collect();
+    assert_eq!(untried, apart, "keys that are not changed one by one");
+    let told: BTreeMap<&str, &str> = GUIDE
+        .lines()
+        .filter(|line| line.starts_with("| `"))
+        .map(|line| (line.split('`').nth(1).unwrap(), line))
+        .collect();
+    let mut wrong: Vec<String> = Vec::new();
+    for (key, moves) in &moved {
+        let expected = row(key, moves);
+        match told.get(key.as_str()).and_then(|line| line.strip_prefix(&expected)) {
+            None => wrong.push(expected),
+            Some(reason) if moves.is_empty() && reason.trim_matches([' ', '|']).is_empty() => {
+                wrong.push(format!("{expected} why?"));
+            }
+            Some(_) => {}
+        }
+    }
+    let gone: Vec<&&str> = told.keys().filter(|key| !moved.contains_key(**key)).collect();
+    assert!(wrong.is_empty() && gone.is_empty(), "{}\nnot tried: {gone:?}", wrong.join("\n"));
+}
