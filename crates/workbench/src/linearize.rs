@@ -138,11 +138,7 @@ pub fn linearize(
     let continuous = feedback.as_ref().filter(|function| rational && is_continuous(function));
     let closed_loop = continuous.map(|controller| closed_loop_view(rig, &port, controller)).transpose()?;
     let reductions = [&two_pressure.command, &full.command, &decomposed[1], &first_order];
-    let grid_of_plant = frequency_grid(&plant.command)?;
-    let mut agreement = agreement::agreement(&grid_of_plant, |w| rig.response(w), reductions);
-    if rig.in_motion.is_some() {
-        agreement.insert(0, agreement::of_lumped(&grid_of_plant, |w| rig.response(w), &plant.command));
-    }
+    let agreement = agreement::agreement(rig, &frequency_grid(&plant.command)?, &plant.command, reductions);
     Ok(Linearization {
         plant_is_fifth_order: matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
             && rig.internal_leakage == 0.0

@@ -4,6 +4,8 @@ use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 
+use crate::rig::Rig;
+
 /// Difference within which a reduction counts as the plant, dB.
 pub(crate) const WITHIN_DB: f64 = 1.0;
 /// The same of the phase, degrees.
@@ -28,27 +30,22 @@ const REDUCTIONS: [[&str; 2]; 4] = [
     ["first order", "6.13"],
 ];
 
-/// Where the reductions, in this order, are the plant on a grid of frequencies in rad/s.
+/// Where the reductions, in this order, are the plant on a grid of frequencies in rad/s; before them, where lines move, the plant with
+/// lumped lines.
 pub(super) fn agreement(
+    rig: &Rig,
     grid: &[f64],
-    plant: impl Fn(f64) -> Complex64 + Copy,
+    lumped: &TransferFunction,
     reductions: [&TransferFunction; REDUCTIONS.len()],
 ) -> Vec<Agreement> {
-    let one = |([model, equation], function): (&[&'static str; 2], &TransferFunction)| Agreement {
+    let one = |[model, equation]: [&'static str; 2], function: &TransferFunction| Agreement {
         model,
         equation,
-        bands_rad_per_s: bands(grid, plant, function),
+        bands_rad_per_s: bands(grid, |frequency| rig.response(frequency), function),
     };
-    REDUCTIONS.iter().zip(reductions).map(one).collect()
-}
-
-/// Where the plant with lumped lines is the one whose lines move.
-pub(super) fn of_lumped(
-    grid: &[f64],
-    plant: impl Fn(f64) -> Complex64 + Copy,
-    lumped: &TransferFunction,
-) -> Agreement {
-    Agreement { model: "lumped lines", equation: "plant", bands_rad_per_s: bands(grid, plant, lumped) }
+    let lines = rig.in_motion.map(|_| one(["lumped lines", "plant"], lumped));
+    let of_reductions = REDUCTIONS.into_iter().zip(reductions).map(|(name, function)| one(name, function));
+    lines.into_iter().chain(of_reductions).collect()
 }
 
 /// The bands of a grid in which two responses differ by no more than that; a single frequency is none.
