@@ -1,7 +1,7 @@
 //! Recorded expressions: a model equation run once with [`Recorded`] numbers becomes data.
 //!
 //! An [`Expression`] is a list of operations over named parameters with one or more results. It is evaluated over any
-//! [`Scalar`] (numbers, dual numbers, later intervals), printed, and turned into code, without the function it came
+//! [`Scalar`] (numbers, dual numbers, intervals), printed, and turned into code, without the function it came
 //! from. Equal sub-expressions are recorded once; operations on constants are done while recording.
 
 mod node;
@@ -10,7 +10,7 @@ mod recording;
 pub use node::{Binary, Node, NodeIndex, Unary};
 pub use recording::Recorded;
 
-use crate::scalar::Scalar;
+use crate::scalar::{Interval, Scalar};
 
 /// Operations over named parameters, in an order in which each uses only earlier ones, and the results they give.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +51,29 @@ impl Expression {
     /// Number of results.
     pub fn result_count(&self) -> usize {
         self.results.len()
+    }
+
+    /// Intervals that hold every result while the parameters run through theirs. An operation on twice the same number is known as such:
+    /// a square is not negative, x - x is zero.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::expression::Expression;
+    /// use phea_dynamics::scalar::Interval;
+    /// let distance = Expression::record(&["x"], |p| vec![(p[0] - 2.0.into()) * (p[0] - 2.0.into())]);
+    /// assert_eq!(distance.enclosures(&[Interval::new(1.0, 5.0)]), vec![Interval::new(0.0, 9.0)]);
+    /// ```
+    pub fn enclosures(&self, parameters: &[Interval]) -> Vec<Interval> {
+        let mut values: Vec<Interval> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let value = match *node {
+                Node::Binary(Binary::Multiply, x, y) if x == y => values[x].square(),
+                Node::Binary(Binary::Subtract, x, y) if x == y => Interval::from(0.0),
+                _ => node.evaluate(parameters, &values),
+            };
+            values.push(value);
+        }
+        self.results.iter().map(|&index| values[index]).collect()
     }
 
     /// All results for these values of the parameters. A missing value counts as NaN, a surplus one is not used.

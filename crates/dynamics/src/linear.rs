@@ -24,6 +24,7 @@ mod discretization;
 pub(crate) mod double_double;
 mod eigenvalues;
 pub(crate) mod even_part;
+mod held;
 mod interconnection;
 pub(crate) mod matrix_exponential;
 mod polynomial;
@@ -87,6 +88,14 @@ pub enum LinearError {
     #[error("the eigenvalues of a matrix of order {order} did not converge")]
     EigenvaluesNotConverged {
         /// Order of the matrix.
+        order: usize,
+    },
+    /// The zeros of a sampled plant that were found do not give its response.
+    #[error(
+        "the zeros of a sampled plant of order {order} could not be found to the accuracy of its response"
+    )]
+    SampledZeros {
+        /// Order of the sampled plant.
         order: usize,
     },
     /// A matrix does not have the shape that the others ask for.

@@ -3,8 +3,8 @@
 //! A model equation is one generic function over [`Scalar`] and never branches on a value: a choice between two
 //! formulas is [`Scalar::less_than`] followed by [`Scalar::select`]. So the same text serves plain numbers
 //! (simulation), [`Lanes`] (ensembles), [`Dual`] numbers (exact Jacobians), [`Dependence`] (their pattern) and
-//! [`crate::expression::Recorded`] expressions (uncertain plants, generated code), and leaves room for intervals, whose
-//! comparison is not a `bool`.
+//! [`crate::expression::Recorded`] expressions (uncertain plants, generated code) and [`Interval`]s, whose comparison is not
+//! a `bool`.
 //!
 //! # Example
 //! One equation, three users:
@@ -24,6 +24,7 @@
 mod dependence;
 mod dual;
 mod exponential;
+mod interval;
 mod lanes;
 
 use std::fmt::Debug;
@@ -31,6 +32,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 pub use dependence::Dependence;
 pub use dual::Dual;
+pub use interval::Interval;
 pub use lanes::Lanes;
 
 use crate::portable;

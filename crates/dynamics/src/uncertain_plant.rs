@@ -9,7 +9,7 @@ use num_complex::Complex64;
 
 use crate::expression::{Expression, Recorded};
 use crate::portable;
-use crate::scalar::Scalar;
+use crate::scalar::{Interval, Scalar};
 
 /// One uncertain parameter: `minimum <= nominal <= maximum`, in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -140,7 +140,31 @@ impl UncertainPlant {
 
     /// The member at these parameter values, over any scalar.
     pub fn coefficients<S: Scalar>(&self, values: &[S]) -> PlantCoefficients<S> {
-        let mut flat = self.coefficients.evaluate(values).into_iter();
+        self.sorted(self.coefficients.evaluate(values))
+    }
+
+    /// Intervals that hold the coefficients of every member while the parameters run through theirs.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::scalar::Interval;
+    /// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+    /// let mass = UncertainParameter { name: "m".into(), nominal: 1.0, minimum: 0.0, maximum: 2.0 };
+    /// let plant = UncertainPlant::record(vec![mass], |p| PlantCoefficients {
+    ///     command: RationalCoefficients { numerator: vec![1.0.into()], denominator: vec![p[0] - 0.5.into(), 1.0.into()] },
+    ///     disturbance: None,
+    ///     dead_time_s: 0.0.into(),
+    /// })?;
+    /// let leading = plant.enclosures(&[Interval::new(0.0, 2.0)]).command.denominator[0];
+    /// assert!(leading.has_both_signs()); // in between, a pole passes through infinity
+    /// # Ok::<(), phea_dynamics::uncertain_plant::UncertainPlantError>(())
+    /// ```
+    pub fn enclosures(&self, parameters: &[Interval]) -> PlantCoefficients<Interval> {
+        self.sorted(self.coefficients.enclosures(parameters))
+    }
+
+    fn sorted<S: Scalar>(&self, flat: Vec<S>) -> PlantCoefficients<S> {
+        let mut flat = flat.into_iter();
         let mut rational = |(numerator, denominator): (usize, usize)| RationalCoefficients {
             numerator: flat.by_ref().take(numerator).collect(),
             denominator: flat.by_ref().take(denominator).collect(),

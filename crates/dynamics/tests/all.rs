@@ -4,6 +4,7 @@
 mod controller;
 mod discretization;
 mod frequency;
+mod held_plants;
 mod linear_roots;
 mod linear_systems;
 mod simulation;

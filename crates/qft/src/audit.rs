@@ -6,11 +6,22 @@ use crate::sampled::SampledPlants;
 use crate::specification::{Requirement, Specification};
 use crate::stability::StabilityAudit;
 use crate::verification::{
-    Audit, Evidence, SpecificationAudit, SpecificationFinding, StabilityFinding, TrackingJudgement, Verdict,
+    Audit, Evidence, PlantPoint, SpecificationAudit, SpecificationFinding, StabilityFinding,
+    TrackingJudgement, Verdict,
 };
 
 /// Share of the work that stability takes, for the progress.
 const STABILITY_SHARE: f64 = 0.4;
+
+/// What an audit is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    Stability,
+    Specifications,
+    /// Stability once more, of the worst plants of each specification.
+    Suspects,
+    Done,
+}
 
 /// An audit stepped by its owner, who may show its progress or stop it at any step.
 ///
@@ -51,7 +62,7 @@ const STABILITY_SHARE: f64 = 0.4;
 #[derive(Clone, Debug)]
 pub struct AuditRun {
     stability: StabilityAudit,
-    stability_done: bool,
+    stage: Stage,
     specifications: SpecificationAudit,
     tolerance_db: f64,
 }
@@ -67,7 +78,7 @@ impl AuditRun {
     ) -> AuditRun {
         AuditRun {
             stability: StabilityAudit::new(family, compensation),
-            stability_done: false,
+            stage: Stage::Stability,
             specifications: SpecificationAudit::new(
                 family,
                 compensation,
@@ -96,21 +107,51 @@ impl AuditRun {
     }
 
     /// Does a small part of the work; whether there is more to do.
+    ///
+    /// Both audits share their plants: those that the audit of stability looked at between members and corners, and the nearest to
+    /// instability, are looked at for every specification, and the worst of each specification is judged for its stability.
     pub fn step(&mut self) -> bool {
-        if !self.stability_done {
-            self.stability_done = !self.stability.step();
-            if self.stability_done {
-                self.specifications.take_over(self.stability.take_sampled());
+        match self.stage {
+            Stage::Stability => {
+                if !self.stability.step() {
+                    self.specifications.take_over(self.stability.take_sampled());
+                    if self.stability.searched() {
+                        self.specifications.add(self.stability.plants_between());
+                    }
+                    self.stage = Stage::Specifications;
+                }
             }
-            return true;
+            Stage::Specifications => {
+                if !self.specifications.step() {
+                    let worst = suspects(self.specifications.findings());
+                    self.stability.take_over(self.specifications.take_sampled());
+                    if self.stability.searched() {
+                        self.stability.look_at(worst);
+                    }
+                    self.stage = Stage::Suspects;
+                }
+            }
+            Stage::Suspects => {
+                if !self.stability.step() {
+                    self.specifications.take_over(self.stability.take_sampled());
+                    self.stage = Stage::Done;
+                }
+            }
+            Stage::Done => return false,
         }
-        self.specifications.step()
+        self.stage != Stage::Done
     }
 
     /// The share of the work that is done, 0 to 1.
     pub fn progress(&self) -> f64 {
-        let stability = if self.stability_done { 1.0 } else { self.stability.progress() };
-        STABILITY_SHARE * stability + (1.0 - STABILITY_SHARE) * self.specifications.progress()
+        match self.stage {
+            Stage::Stability => STABILITY_SHARE * self.stability.progress(),
+            Stage::Specifications => {
+                STABILITY_SHARE + (0.98 - STABILITY_SHARE) * self.specifications.progress()
+            }
+            Stage::Suspects => 0.98,
+            Stage::Done => 1.0,
+        }
     }
 
     /// What was found; complete once [`AuditRun::step`] has answered that there is nothing left.
@@ -133,6 +174,21 @@ impl AuditRun {
             specifications,
         }
     }
+}
+
+/// The plants at which specifications are worst, each once.
+fn suspects(findings: &[SpecificationFinding]) -> Vec<PlantPoint> {
+    let mut plants: Vec<PlantPoint> = Vec::new();
+    for finding in findings {
+        let cases = finding.worst.iter().chain(&finding.interior);
+        let cases = cases.chain(finding.violations.iter().map(|band| &band.worst));
+        for plant in cases.flat_map(|case| std::iter::once(&case.plant).chain(&case.other)) {
+            if !plants.contains(plant) {
+                plants.push(plant.clone());
+            }
+        }
+    }
+    plants
 }
 
 /// A violation outweighs what is not proven, and that what is met.

@@ -6,6 +6,7 @@
 //! argument:          turns of c + n e^(-s T) on the boundary of stability                   every loop, dead time included
 //! Nyquist:           turns of 1 + L                                                         measured plants
 //! zero exclusion:    min |1 + L| over box and frequency: while it is not zero, no pole crosses from one plant to the next
+//! leading coefficient:   enclosed over the box: while it is not zero, no pole passes through infinity
 //! ```
 //!
 //! Nothing is cancelled: an unstable mode of plant, controller or sensor that the loop does not move counts. Prefilter and load-motion
@@ -15,8 +16,11 @@ mod characteristic;
 mod crossover;
 mod encirclement;
 mod family;
+mod folding;
+mod infinity;
 mod measured;
 mod poles;
+mod product;
 mod record;
 mod resampled;
 mod search;
@@ -88,6 +92,19 @@ pub enum Irresolution {
         "with dead time and a gain of one at infinite frequency, poles approach the boundary of stability"
     )]
     GainAtInfinity,
+    /// Plants of the box between which a pole passes through infinity, and none of which was found to be unstable.
+    #[error(
+        "the leading coefficient of the characteristic equation changes its sign inside the box, so that a pole passes through infinity"
+    )]
+    PoleThroughInfinity,
+    /// Modes beyond half of the sampling rate pass through the band more often than plants between them can be looked at.
+    #[error(
+        "modes beyond half of the sampling rate pass through the band while parameters move, too often to be followed"
+    )]
+    Folding,
+    /// The enclosures of what must not vanish for no pole to pass through infinity still hold zero.
+    #[error("it could not be shown that no pole passes through infinity inside the box")]
+    InfinityOpen,
     /// A controller or sensor with undamped poles beside the origin, in a loop that is known by measured points only.
     #[error(
         "controller or sensor has poles on the boundary of stability, which measured points cannot go around"

@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod audit_plants;
+mod audit_truths;
 mod bound;
 mod closed_loop;
 mod design;

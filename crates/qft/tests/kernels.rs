@@ -32,6 +32,8 @@ mod minimum_of_a_margin;
 mod plane;
 #[path = "../src/bound/power_of_two.rs"]
 mod power_of_two;
+#[path = "../src/stability/product.rs"]
+mod product;
 #[path = "../src/bound/quadratic.rs"]
 mod quadratic;
 #[path = "../src/stability/search.rs"]

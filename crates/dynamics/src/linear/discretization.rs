@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
+use super::held::Held;
 use super::matrix_exponential::ExactStep;
 use super::realization::delay_states;
 use super::structure::{Resolvent, widened};
@@ -100,12 +101,25 @@ impl TransferFunction {
 
     fn held(&self, sample_time_s: f64) -> Result<Self, LinearError> {
         let (whole, fraction) = split_dead_time(self.dead_time_s(), sample_time_s);
-        let rational = self.clone().with_dead_time(0.0)?;
-        let sampled = held_with_fraction(&realization::cascade(&rational)?, sample_time_s, fraction)?;
-        let mut poles: Vec<Complex64> =
+        let held = Held::new(realization::chain_of(self)?, self.poles(), sample_time_s, fraction)?;
+        let own: Vec<Complex64> =
             self.poles().iter().map(|pole| exponential_of(pole * sample_time_s)).collect();
-        poles.resize(sampled.order(), Complex64::new(0.0, 0.0));
-        let (gain, zeros) = zeros::of_channel(&sampled, &poles)?;
+        let mut poles = own.clone();
+        poles.extend((fraction != 0.0).then_some(Complex64::new(0.0, 0.0)));
+        let factors = match held.factors(&own)? {
+            _ if self.gain() == 0.0 => (0.0, Vec::new()),
+            Some(factors) => factors,
+            None => {
+                let states = realization::cascade(&self.clone().with_dead_time(0.0)?)?;
+                let system = held_with_fraction(&states, sample_time_s, fraction)?;
+                let (gain, zeros) = zeros::of_channel(&system, &poles)?;
+                if !held.agrees_with(gain, &zeros, &own) {
+                    return Err(LinearError::SampledZeros { order: poles.len() });
+                }
+                (gain, zeros)
+            }
+        };
+        let (gain, zeros) = factors;
         TransferFunction::assembled(gain, zeros, poles, TimeDomain::Discrete { sample_time_s })
             .with_dead_time(whole * sample_time_s)
     }

@@ -50,6 +50,11 @@ impl DoubleDouble {
         DoubleDouble::normalised(first, rest.value() / divisor.high)
     }
 
+    /// The number times a power of two.
+    pub(crate) fn scaled(self, power_of_two: f64) -> Self {
+        DoubleDouble { high: self.high * power_of_two, low: self.low * power_of_two }
+    }
+
     fn normalised(high: f64, low: f64) -> Self {
         let sum = high + low;
         DoubleDouble { high: sum, low: low - (sum - high) }
@@ -113,14 +118,16 @@ impl ComplexDoubleDouble {
 
     /// The number times a power of two.
     pub(crate) fn scaled(self, power_of_two: f64) -> Self {
-        let scaled =
-            |x: DoubleDouble| DoubleDouble { high: x.high * power_of_two, low: x.low * power_of_two };
-        ComplexDoubleDouble { re: scaled(self.re), im: scaled(self.im) }
+        ComplexDoubleDouble { re: self.re.scaled(power_of_two), im: self.im.scaled(power_of_two) }
     }
 
     /// The number times a real one: the same digits as the complex product, for half of its work.
     pub(crate) fn times_real(self, factor: f64) -> Self {
-        let factor = DoubleDouble::from(factor);
+        self.times_wide(DoubleDouble::from(factor))
+    }
+
+    /// The same with a real number of twice the working precision.
+    pub(crate) fn times_wide(self, factor: DoubleDouble) -> Self {
         ComplexDoubleDouble { re: factor * self.re, im: factor * self.im }
     }
 

@@ -10,7 +10,7 @@ use num_complex::Complex64;
 use super::LinearError;
 use super::double_double::ComplexDoubleDouble;
 use super::refinement::{converge, sort, symmetrise};
-use super::structure::irreducible_blocks;
+use super::structure::{balance, irreducible_blocks};
 use crate::portable::magnitude;
 
 /// All eigenvalues, sorted, in exact conjugate pairs; that of an irreducible block which is singular to rounding is zero.
@@ -43,7 +43,7 @@ pub(crate) fn working_eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Comple
             let entry = |i, j| matrix[(i, j)];
             return Some(of_two_by_two(entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)).to_vec());
         }
-        _ => nalgebra::linalg::balancing::balance_parlett_reinsch(&mut matrix),
+        _ => balance(&mut matrix),
     };
     let (_, triangular) = Schur::try_new(matrix, f64::EPSILON, 100 * order)?.unpack();
     Some(of_quasi_triangular(&triangular))
@@ -79,7 +79,7 @@ fn of_block(
         _ => {}
     }
     let order = block.nrows();
-    nalgebra::linalg::balancing::balance_parlett_reinsch(&mut block);
+    balance(&mut block);
     let schur = Schur::try_new(block.clone(), f64::EPSILON, 100 * order)
         .ok_or(LinearError::EigenvaluesNotConverged { order })?;
     let (_, triangular) = schur.unpack();

@@ -7,6 +7,7 @@
 use nalgebra::DMatrix;
 
 use super::double_double::DoubleDouble;
+use super::structure::balance;
 
 const TAYLOR_TERMS: i32 = 18;
 
@@ -14,12 +15,18 @@ const TAYLOR_TERMS: i32 = 18;
 /// where the result overflows.
 pub(crate) fn exponential_less_identity(matrix: &DMatrix<f64>, time: f64) -> DMatrix<f64> {
     let order = matrix.nrows();
+    let result = exponential(matrix, time);
+    DMatrix::from_fn(order, order, |i, j| {
+        let identity = DoubleDouble::from(if i == j { 1.0 } else { 0.0 });
+        (result.entry(i, j) - identity).value()
+    })
+}
+
+/// exp(A t) in twice the working precision.
+pub(super) fn exponential(matrix: &DMatrix<f64>, time: f64) -> Wide {
+    let order = matrix.nrows();
     let mut balanced = matrix.clone();
-    let scales = if matrix.iter().all(|entry| entry.is_finite()) {
-        nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced)
-    } else {
-        nalgebra::DVector::from_element(order, 1.0)
-    };
+    let scales = balance(&mut balanced);
     // halve until the norm is at most 1/16: 18 terms then leave 1e-37
     let norm = balanced.row_iter().map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max);
     let (_, exponent) = libm::frexp(norm * time.abs() * 16.0);
@@ -34,20 +41,18 @@ pub(crate) fn exponential_less_identity(matrix: &DMatrix<f64>, time: f64) -> DMa
     for _ in 0..halvings {
         result = result.times(&result);
     }
-    DMatrix::from_fn(order, order, |i, j| {
-        let identity = DoubleDouble::from(if i == j { 1.0 } else { 0.0 });
-        (result.entry(i, j) - identity).value() * scales[i] / scales[j]
-    })
+    // the scales are powers of two
+    Wide::from_fn(order, |i, j| result.entry(i, j).scaled(scales[i]).scaled(1.0 / scales[j]))
 }
 
 /// A square matrix of twice the working precision.
-struct Wide {
+pub(super) struct Wide {
     order: usize,
     entries: Vec<DoubleDouble>,
 }
 
 impl Wide {
-    fn from_fn(order: usize, entry: impl Fn(usize, usize) -> DoubleDouble) -> Self {
+    pub(super) fn from_fn(order: usize, entry: impl Fn(usize, usize) -> DoubleDouble) -> Self {
         let entries = (0..order * order).map(|index| entry(index / order, index % order)).collect();
         Wide { order, entries }
     }
@@ -56,7 +61,7 @@ impl Wide {
         Wide::from_fn(order, |i, j| if i == j { 1.0.into() } else { DoubleDouble::ZERO })
     }
 
-    fn entry(&self, row: usize, column: usize) -> DoubleDouble {
+    pub(super) fn entry(&self, row: usize, column: usize) -> DoubleDouble {
         self.entries[row * self.order + column]
     }
 
@@ -67,6 +72,18 @@ impl Wide {
                 if left.high == 0.0 || right.high == 0.0 { sum } else { sum + left * right }
             })
         })
+    }
+
+    pub(super) fn times_column(&self, column: &[DoubleDouble]) -> Vec<DoubleDouble> {
+        let row = |i: usize| {
+            let terms = column.iter().enumerate().map(|(j, &entry)| self.entry(i, j) * entry);
+            terms.fold(DoubleDouble::ZERO, |sum, term| sum + term)
+        };
+        (0..self.order).map(row).collect()
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        self.entries.iter().all(|entry| entry.value().is_finite())
     }
 
     fn divided_by(mut self, divisor: f64) -> Self {

@@ -23,6 +23,32 @@ pub(crate) fn cascade(system: &TransferFunction) -> Result<StateSpace, LinearErr
         TimeDomain::Continuous => return Err(LinearError::NotRational { operation: "a state space" }),
         TimeDomain::Discrete { sample_time_s } => delay_states(system.dead_time_s() / sample_time_s)?,
     };
+    let chain = chain_of(system)?;
+    let result = StateSpace::new(
+        chain.a,
+        chain.b,
+        DMatrix::from_fn(1, chain.taps.len(), |_, state| chain.taps[state].value()),
+        DMatrix::from_element(1, 1, chain.feedthrough),
+        system.domain(),
+    )?;
+    let sample = |entries: [f64; 4]| {
+        let [a, b, c, d] = entries.map(|entry| DMatrix::from_element(1, 1, entry));
+        StateSpace::new(a, b, c, d, system.domain())
+    };
+    (0..delay).try_fold(result, |result, _| result.series(&sample([0.0, 1.0, 1.0, 0.0])?))
+}
+
+/// The matrices of a chain, block upper triangular, its taps in twice the working precision: where zeros lie far below the poles, they
+/// cancel in the response.
+pub(super) struct Chain {
+    pub(super) a: DMatrix<f64>,
+    pub(super) b: DMatrix<f64>,
+    pub(super) taps: Vec<DoubleDouble>,
+    pub(super) feedthrough: f64,
+}
+
+/// The chain of a transfer function, whose dead time is left out.
+pub(super) fn chain_of(system: &TransferFunction) -> Result<Chain, LinearError> {
     let (zeros, poles) = (system.zeros(), system.poles());
     if zeros.len() > poles.len() {
         return Err(LinearError::Improper { zeros: zeros.len(), poles: poles.len() });
@@ -35,12 +61,7 @@ pub(crate) fn cascade(system: &TransferFunction) -> Result<StateSpace, LinearErr
         chain.push(Section { pole, remainder, exponent: exponent_of(pole) });
     }
     let feedthrough = if zeros.len() == poles.len() { system.gain() } else { 0.0 };
-    let result = states_of(&chain, poles.len(), feedthrough, system.domain())?;
-    let sample = |entries: [f64; 4]| {
-        let [a, b, c, d] = entries.map(|entry| DMatrix::from_element(1, 1, entry));
-        StateSpace::new(a, b, c, d, system.domain())
-    };
-    (0..delay).try_fold(result, |result, _| result.series(&sample([0.0, 1.0, 1.0, 0.0])?))
+    Ok(states_of(&chain, poles.len(), feedthrough))
 }
 
 /// The number of states for this many samples of dead time, a whole number up to rounding.
@@ -92,19 +113,14 @@ fn divided(dividend: &[DoubleDouble], divisor: &[DoubleDouble]) -> (Vec<DoubleDo
     (rest, [padding, remainder].concat())
 }
 
-/// The state space of a chain whose slowest section comes first in the list and last in the signal's way.
+/// The states of a chain whose slowest section comes first in the list and last in the signal's way.
 ///
 /// With w = 2^exponent a section with input v has the state x = w v/(s - p), or the two states x_1 = w^2 v/d and
 /// x_2 = w (s - sigma) v/d; x or x_1 is its output.
-fn states_of(
-    chain: &[Section],
-    order: usize,
-    feedthrough: f64,
-    domain: TimeDomain,
-) -> Result<StateSpace, LinearError> {
+fn states_of(chain: &[Section], order: usize, feedthrough: f64) -> Chain {
     let mut a = DMatrix::zeros(order, order);
     let mut b = DMatrix::zeros(order, 1);
-    let mut c = DMatrix::zeros(1, order);
+    let mut taps = vec![DoubleDouble::ZERO; order];
     // exponent of the product of all w that a signal has met before the section, from the fastest on
     let mut before = 0;
     // where the signal comes from: a state, or (at first) the input
@@ -128,13 +144,13 @@ fn states_of(
                 a[(output, entry)] = unit;
                 a[(entry, output)] = -omega * (omega / unit);
                 // slope s + constant = slope (s - sigma) + (constant + slope sigma)
-                let at_centre = (constant + slope * sigma.into()).value();
-                c[(0, output)] = libm::ldexp(at_centre, -before - 2 * section.exponent);
-                c[(0, entry)] = libm::ldexp(slope.value(), -before - section.exponent);
+                let at_centre = constant + slope * sigma.into();
+                taps[output] = scaled(at_centre, -before - 2 * section.exponent);
+                taps[entry] = scaled(slope, -before - section.exponent);
                 before += 2 * section.exponent;
             }
             [constant] => {
-                c[(0, output)] = libm::ldexp(constant.value(), -before - section.exponent);
+                taps[output] = scaled(constant, -before - section.exponent);
                 before += section.exponent;
             }
             _ => {}
@@ -142,7 +158,11 @@ fn states_of(
         source = Some(output);
         end = output;
     }
-    StateSpace::new(a, b, c, DMatrix::from_element(1, 1, feedthrough), domain)
+    Chain { a, b, taps, feedthrough }
+}
+
+fn scaled(number: DoubleDouble, exponent: i32) -> DoubleDouble {
+    DoubleDouble { high: libm::ldexp(number.high, exponent), low: libm::ldexp(number.low, exponent) }
 }
 
 /// Exponent of a power of two near the magnitude of a pole; zero for one at the origin.

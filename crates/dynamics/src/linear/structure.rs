@@ -36,6 +36,19 @@ pub(crate) fn irreducible_blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
     blocks
 }
 
+/// The squares of larger entries leave the range of numbers.
+const BALANCED_MAXIMUM: f64 = 1e140;
+
+/// Scales states so that rows and columns have like norms (Parlett and Reinsch 1969); the units, powers of two. A matrix with entries
+/// whose squares leave the range of numbers, on which the iteration would not end, is left as it is.
+pub(crate) fn balance(matrix: &mut DMatrix<f64>) -> DVector<f64> {
+    if matrix.iter().all(|entry| entry.abs() <= BALANCED_MAXIMUM) {
+        balance_parlett_reinsch(matrix)
+    } else {
+        DVector::from_element(matrix.nrows(), 1.0)
+    }
+}
+
 /// A column of numbers in twice the working precision.
 pub(crate) type WideVector = Vec<ComplexDoubleDouble>;
 
@@ -62,7 +75,7 @@ impl<'a> Resolvent<'a> {
         let block = |states: Vec<usize>| {
             let size = states.len();
             let mut balanced = DMatrix::from_fn(size, size, |i, j| matrix[(states[i], states[j])]);
-            let units = balance_parlett_reinsch(&mut balanced);
+            let units = balance(&mut balanced);
             let shifted = DMatrix::from_diagonal_element(size, size, s)
                 - balanced.map(|entry| Complex64::new(entry, 0.0));
             Block { states, units, factors: shifted.lu() }

@@ -3,6 +3,7 @@ use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunctio
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
+use super::product::{Product, products};
 use super::{Compensation, Irresolution};
 
 /// What leads from the output back to the plant, as polynomials: G H of a continuous loop, G of a sampled one (there the
@@ -11,6 +12,8 @@ use super::{Compensation, Irresolution};
 pub(crate) struct FeedbackPath {
     numerator: Polynomial,
     denominator: Polynomial,
+    /// The same of a sampled loop.
+    products: Option<[Product; 2]>,
     dead_time_s: f64,
     domain: TimeDomain,
 }
@@ -23,11 +26,14 @@ pub(crate) struct FeedbackPath {
 /// ```
 ///
 /// Around z = 1, where slow poles crowd, v keeps the digits that z has lost. `delay` is T in s or k in samples; the boundary of
-/// stability is run through by an angle, w in rad/s or w T in rad.
+/// stability is run through by an angle, w in rad/s or w T in rad. A sampled loop is judged by its products; its polynomials are where
+/// searches for roots begin.
 #[derive(Clone, Debug)]
 pub(super) struct Characteristic {
     pub(super) denominator: Polynomial,
     pub(super) numerator: Polynomial,
+    /// Numerator and denominator of a sampled loop.
+    pub(super) products: Option<[Product; 2]>,
     pub(super) delay: f64,
     pub(super) domain: TimeDomain,
 }
@@ -38,12 +44,15 @@ impl FeedbackPath {
         let domain = feedback.domain();
         let (numerator, denominator) = polynomials(feedback)?;
         if domain != TimeDomain::Continuous {
-            return Ok(FeedbackPath { numerator, denominator, dead_time_s: feedback.dead_time_s(), domain });
+            let products = Some(products(feedback));
+            let dead_time_s = feedback.dead_time_s();
+            return Ok(FeedbackPath { numerator, denominator, products, dead_time_s, domain });
         }
         let (sensor_numerator, sensor_denominator) = polynomials(sensor)?;
         Ok(FeedbackPath {
             numerator: numerator.product(&sensor_numerator),
             denominator: denominator.product(&sensor_denominator),
+            products: None,
             dead_time_s: feedback.dead_time_s() + sensor.dead_time_s(),
             domain,
         })
@@ -69,7 +78,11 @@ impl FeedbackPath {
         }
         let (numerator, denominator) = polynomials(plant)?;
         let samples = ((plant.dead_time_s() + self.dead_time_s) / sample_time_s).round();
-        self.closed(numerator.product(&self.numerator), denominator.product(&self.denominator), samples)
+        let closed =
+            self.closed(numerator.product(&self.numerator), denominator.product(&self.denominator), samples)?;
+        let own = products(plant);
+        let joined = self.products.as_ref().map(|[n, c]| [own[0].times(n), own[1].times(c)]);
+        Ok(Characteristic { products: joined, ..closed })
     }
 
     fn closed(
@@ -85,7 +98,7 @@ impl FeedbackPath {
             let dead_time_s = delay * time_unit(self.domain);
             return Err(Irresolution::Linear(LinearError::DeadTime { dead_time_s }));
         }
-        Ok(Characteristic { denominator, numerator, delay, domain: self.domain })
+        Ok(Characteristic { denominator, numerator, products: None, delay, domain: self.domain })
     }
 }
 
@@ -125,7 +138,11 @@ impl Characteristic {
     /// c and n with its delay, on the boundary of stability.
     pub(super) fn at(&self, angle: f64) -> (Complex64, Complex64) {
         let point = self.boundary_point(angle);
-        (evaluate(&self.denominator, point), evaluate(&self.numerator, point) * self.lag(angle))
+        let (denominator, numerator) = match &self.products {
+            Some([numerator, denominator]) => (denominator.at(point), numerator.at(point)),
+            None => (evaluate(&self.denominator, point), evaluate(&self.numerator, point)),
+        };
+        (denominator, numerator * self.lag(angle))
     }
 
     /// rad/s
@@ -149,6 +166,13 @@ impl Characteristic {
         }
     }
 
+    /// Degree of f in z, what the delay takes of it counted with its sign.
+    pub(super) fn sampled_degree(&self) -> f64 {
+        let numerator = self.numerator.degree() as f64 - self.delay;
+        let numerator = if self.numerator.is_zero() { 0.0 } else { numerator };
+        (self.denominator.degree() as f64).max(numerator)
+    }
+
     /// Whether a dead time makes infinitely many poles unstable.
     pub(super) fn has_gain_above_one_at_infinity(&self) -> bool {
         self.domain == TimeDomain::Continuous
@@ -169,10 +193,17 @@ impl Characteristic {
             TimeDomain::Continuous => (real_part, 1.0),
             TimeDomain::Discrete { .. } => (portable::expm1(growth), portable::exp(growth)),
         };
+        let products = self.products.as_ref().map(|[numerator, denominator]| {
+            let excess = numerator.roots.len() as f64 - denominator.roots.len() as f64 - self.delay;
+            let moved = numerator.moved(shift);
+            let gain = moved.gain * portable::exp(growth * excess);
+            [Product { gain, ..moved }, denominator.moved(shift)]
+        });
         Characteristic {
             denominator: substituted(&self.denominator, shift, scale),
             numerator: substituted(&self.numerator, shift, scale)
                 .scaled(portable::exp(-real_part * self.delay * self.time_unit())),
+            products,
             ..*self
         }
     }

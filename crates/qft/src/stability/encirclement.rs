@@ -14,6 +14,7 @@ use phea_dynamics::portable;
 
 use super::Irresolution;
 use super::characteristic::Characteristic;
+use super::product::Product;
 
 /// Expansions that one loop may take.
 const STEPS_MAXIMUM: usize = 50_000;
@@ -133,7 +134,7 @@ struct Walk<'a> {
     end: f64,
 }
 
-/// f around one point of the boundary, f(s + u) = sum a_k u^k + e^(-u T) sum b_k u^k: the sizes of a_k and b_k.
+/// f around one point of the boundary, f(s + u) = sum a_k u^k + e^(-u T) sum b_k u^k: the sizes of a_k and b_k, or more.
 struct Expansion {
     value: Complex64,
     rounding: f64,
@@ -143,7 +144,7 @@ struct Expansion {
 
 impl<'a> Walk<'a> {
     fn new(characteristic: &'a Characteristic) -> Result<Walk<'a>, Irresolution> {
-        let Characteristic { denominator, numerator, delay, domain } = characteristic;
+        let Characteristic { denominator, numerator, delay, domain, .. } = characteristic;
         let (prompt, delayed) = if *delay > 0.0 {
             (denominator.clone(), numerator.clone())
         } else {
@@ -158,6 +159,9 @@ impl<'a> Walk<'a> {
 
     fn expanded(&self, angle: f64) -> Expansion {
         let point = self.characteristic.boundary_point(angle);
+        if let Some([numerator, denominator]) = &self.characteristic.products {
+            return self.expanded_products(angle, numerator, denominator);
+        }
         let (prompt, delayed) = (taylor(&self.prompt, point), taylor(&self.delayed, point));
         let first = |terms: &[Complex64]| terms.first().copied().unwrap_or_default();
         let radius = portable::magnitude(point);
@@ -176,6 +180,21 @@ impl<'a> Walk<'a> {
         }
     }
 
+    /// A sampled loop by its roots.
+    fn expanded_products(&self, angle: f64, numerator: &Product, denominator: &Product) -> Expansion {
+        let point = self.characteristic.boundary_point(angle);
+        let (c, n) = (denominator.at(point), numerator.at(point));
+        let (size_c, size_n) = (portable::magnitude(c), portable::magnitude(n));
+        let factors = (denominator.roots.len() + numerator.roots.len()) as f64;
+        let turn = angle * self.characteristic.delay;
+        Expansion {
+            value: c + n * self.characteristic.lag(angle),
+            rounding: f64::EPSILON * (4.0 * (factors + 1.0) * (size_c + size_n) + turn * size_n),
+            prompt: denominator.majorant(point),
+            delayed: numerator.majorant(point),
+        }
+    }
+
     /// Z, from the change of arg f along the upper half of the boundary.
     fn unstable_poles(&self, turned: f64, last: Complex64, end: f64) -> Result<usize, Irresolution> {
         let pi = std::f64::consts::PI;
@@ -188,11 +207,7 @@ impl<'a> Walk<'a> {
                 }
                 self.prompt.degree() as f64 / 2.0 + (portable::argument(last / direction) - turned) / pi
             }
-            TimeDomain::Discrete { .. } => {
-                let delayed = self.delayed.degree() as f64 - self.characteristic.delay;
-                let delayed = if self.delayed.is_zero() { 0.0 } else { delayed };
-                (self.prompt.degree() as f64).max(delayed) - turned / pi
-            }
+            TimeDomain::Discrete { .. } => self.characteristic.sampled_degree() - turned / pi,
         };
         let whole = count.round();
         if (count - whole).abs() > 1e-6 || whole < 0.0 {
@@ -308,6 +323,7 @@ mod tests {
             let continuous = Characteristic {
                 denominator: part(&|index| index <= trial % 5),
                 numerator: part(&|index| index > trial % 5),
+                products: None,
                 delay: 0.0,
                 domain: TimeDomain::Continuous,
             };
@@ -319,6 +335,7 @@ mod tests {
             let sampled = Characteristic {
                 denominator: Polynomial::from_roots(1.0, &shifted).unwrap(),
                 numerator: Polynomial::new(vec![0.0]),
+                products: Some([Product { gain: 0.0, roots: vec![] }, Product { gain: 1.0, roots: shifted }]),
                 delay: 0.0,
                 domain: TimeDomain::Discrete { sample_time_s: 1.0 },
             };

@@ -3,6 +3,8 @@
 use phea_dynamics::linear::LinearError;
 
 use super::characteristic::{Characteristic, FeedbackPath};
+use super::folding::{self, Folded};
+use super::infinity::{self, Infinity};
 use super::record::Record;
 use super::search::climb;
 use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_member, resampled};
@@ -15,8 +17,6 @@ use crate::verification::{
 
 /// Starts of the search for each worst case.
 const STARTS: usize = 4;
-/// Two starts lie farther apart than this, as a share of at least one coordinate.
-const START_DISTANCE: f64 = 0.3;
 /// A smallest |1 + L| below which it is not told from zero.
 const ZERO: f64 = 1e-6;
 
@@ -79,14 +79,18 @@ pub struct StabilityAudit {
     family: Family,
     compensation: Compensation,
     path: Result<FeedbackPath, Irresolution>,
-    /// The members, and the corners of the box.
+    /// The members, the corners of the box, and plants between them whose modes fold.
     plants: Vec<PlantPoint>,
+    /// The last of them, once the others were looked at.
+    folded: Option<Folded>,
     /// Real part, closeness and delay sensitivity of each plant, as far as it was looked at.
     badness: Vec<[f64; 3]>,
     /// What is left to do after the plants, the last first; `None` before.
     tasks: Option<Vec<Task>>,
     /// Plants of a sampled loop whose critical delay is still an estimate.
     estimated: Vec<Vec<f64>>,
+    /// Whether the delay margin of a sampled loop is one already, and not an estimate.
+    resampled: bool,
     /// The plants that were judged, within a sampled loop.
     sampled: SampledPlants,
     record: Record,
@@ -95,6 +99,10 @@ pub struct StabilityAudit {
 /// What is done once every member was looked at.
 #[derive(Clone, Debug)]
 enum Task {
+    /// Whether a pole passes through infinity inside the box.
+    Infinity,
+    /// A plant that was the worst of something else, and a search from there if it is worse than what was found here.
+    Suspect(PlantPoint),
     /// Searches one after the other for the worst plant, the first from these shares of the box.
     Search(&'static [Badness], Vec<f64>),
     /// The worst delays of a sampled loop, sampled anew.
@@ -126,9 +134,11 @@ impl StabilityAudit {
             compensation: compensation.clone(),
             path: FeedbackPath::new(compensation),
             plants,
+            folded: None,
             badness: Vec::new(),
             tasks: None,
             estimated: Vec::new(),
+            resampled: false,
             sampled: SampledPlants::default(),
             record: Record::default(),
         }
@@ -142,6 +152,12 @@ impl StabilityAudit {
             self.badness.push(badness_of(&found));
             return true;
         }
+        if self.folded.is_none() {
+            let folded = self.fold();
+            self.plants.extend(folded.plants.iter().cloned().map(PlantPoint::Parameters));
+            self.folded = Some(folded);
+            return true;
+        }
         let mut tasks = self.tasks.take().unwrap_or_else(|| self.tasks_after_plants());
         let next = tasks.pop();
         self.tasks = Some(tasks);
@@ -149,6 +165,8 @@ impl StabilityAudit {
             None => return false,
             Some(Task::Search(searches, start)) => self.search(searches, start),
             Some(Task::Resample) => self.resample(),
+            Some(Task::Infinity) => self.through_infinity(),
+            Some(Task::Suspect(plant)) => self.suspect(plant),
         }
         true
     }
@@ -166,9 +184,13 @@ impl StabilityAudit {
 
     /// The share of the work that is done, as far as it can be foreseen; 1 when all is.
     pub fn progress(&self) -> f64 {
-        match &self.tasks {
-            None => 0.8 * self.badness.len() as f64 / self.plants.len() as f64,
-            Some(left) => 1.0 - 0.2 * (left.len() as f64 / (4 * STARTS + 1) as f64),
+        let between = self.folded.as_ref().map_or(0, |folded| folded.plants.len());
+        let first = self.plants.len() - between;
+        let share = |done: usize, all: usize| done as f64 / all.max(1) as f64;
+        match (&self.tasks, &self.folded) {
+            (None, None) => 0.3 * share(self.badness.len(), first),
+            (None, Some(_)) => 0.3 + 0.5 * share(self.badness.len() - first, between),
+            (Some(left), _) => 1.0 - 0.2 * share(left.len(), 4 * STARTS + 2).min(1.0),
         }
     }
 
@@ -204,6 +226,12 @@ impl StabilityAudit {
         }
         let plant = PlantPoint::Parameters(values);
         let found = self.judged(&plant);
+        self.take(plant, found);
+    }
+
+    /// Records a plant; an estimate of its delay no longer counts once the worst were sampled anew.
+    fn take(&mut self, plant: PlantPoint, mut found: MemberStability) {
+        found.critical_delay = found.critical_delay.filter(|_| !self.resampled);
         self.record.take(plant, &found);
     }
 
@@ -225,6 +253,7 @@ impl StabilityAudit {
             }
         }
         self.record.delay = least.or(self.record.delay.take());
+        self.resampled = true;
     }
 
     fn tasks_after_plants(&self) -> Vec<Task> {
@@ -234,6 +263,7 @@ impl StabilityAudit {
             tasks.push(Task::Resample);
         }
         if family.extent() == Extent::Box {
+            tasks.push(Task::Infinity);
             let searches: [(Badness, &'static [Badness]); 4] = [
                 (Badness::Closeness, &[Badness::Peak, Badness::DelaySensitivity]),
                 (Badness::DelaySensitivity, &[Badness::DelaySensitivity]),
@@ -258,7 +288,7 @@ impl StabilityAudit {
         for (_, plant) in order {
             let PlantPoint::Parameters(values) = plant else { continue };
             let shares = family.shares(values);
-            if chosen.iter().all(|earlier| apart(earlier, &shares)) {
+            if chosen.iter().all(|earlier| self.apart(earlier, &shares)) {
                 chosen.push(shares);
             }
             if chosen.len() == STARTS {
@@ -266,6 +296,75 @@ impl StabilityAudit {
             }
         }
         chosen
+    }
+
+    /// Whether two plants lie so far apart, along one coordinate at least, that searches from both may find different things.
+    fn apart(&self, one: &[f64], other: &[f64]) -> bool {
+        let distances = self.folded.as_ref().map_or(&[][..], |folded| &folded.apart);
+        one.iter().zip(other).zip(distances).any(|((a, b), distance)| (a - b).abs() > *distance)
+    }
+
+    /// The plants between members and corners that modes beyond half of the sampling rate call for, around the worst so far.
+    fn fold(&mut self) -> Folded {
+        let Family::Uncertain(family) = &self.family else { return Folded::none(0) };
+        let dimension = family.coordinates().len();
+        let Some(sample_time_s) = self.compensation.sample_time_s().filter(|_| self.searched()) else {
+            return Folded::none(dimension);
+        };
+        let mut bases = vec![vec![0.5; dimension]];
+        for badness in [Badness::Closeness, Badness::RealPart] {
+            bases.extend(self.starts(family, badness).into_iter().take(1));
+        }
+        let folded = folding::plants(family, sample_time_s, &bases);
+        if !folded.complete {
+            self.record.doubt(Irresolution::Folding, self.nominal());
+        }
+        folded
+    }
+
+    /// The plants that were found to be of interest to other audits: those that fold, and the nearest to instability.
+    pub(crate) fn plants_between(&self) -> Vec<Vec<f64>> {
+        let folded = self.folded.iter().flat_map(|folded| folded.plants.iter().cloned());
+        folded.chain(self.record.worst()).collect()
+    }
+
+    /// Looks at plants that were the worst of something else; the steps that follow do so.
+    pub(crate) fn look_at(&mut self, plants: impl IntoIterator<Item = PlantPoint>) {
+        self.tasks.get_or_insert_default().extend(plants.into_iter().map(Task::Suspect));
+    }
+
+    fn suspect(&mut self, plant: PlantPoint) {
+        let found = self.judged(&plant);
+        let worse = self.record.is_worse(&found);
+        self.take(plant.clone(), found);
+        if let (true, Family::Uncertain(family), PlantPoint::Parameters(values)) =
+            (worse, &self.family, plant)
+            && family.extent() == Extent::Box
+        {
+            let shares = family.shares(&values);
+            let searches: [&'static [Badness]; 2] = [&[Badness::RealPart], &[Badness::Closeness]];
+            let more = searches.map(|searches| Task::Search(searches, shares.clone()));
+            self.tasks.get_or_insert_default().extend(more);
+        }
+    }
+
+    /// Judges plants on either side of a pole at infinity.
+    fn through_infinity(&mut self) {
+        let Family::Uncertain(family) = &self.family else { return };
+        match infinity::search(family, &self.compensation) {
+            Infinity::Kept => {}
+            Infinity::Open => self.record.doubt(Irresolution::InfinityOpen, self.nominal()),
+            Infinity::Changed(shares) => {
+                let values: Vec<Vec<f64>> = shares.iter().map(|shares| family.values(shares)).collect();
+                let changed = values.first().cloned().map(PlantPoint::Parameters);
+                for plant in values.into_iter().map(PlantPoint::Parameters) {
+                    let found = self.judged(&plant);
+                    self.record.take(plant, &found);
+                }
+                let changed = changed.unwrap_or_else(|| self.nominal());
+                self.record.doubt(Irresolution::PoleThroughInfinity, changed);
+            }
+        }
     }
 
     fn badness_at(&self, badness: Badness, values: Vec<f64>) -> f64 {
@@ -315,10 +414,15 @@ impl StabilityAudit {
             let reason = Irresolution::NearBoundary { frequency_rad_per_s: closest.frequency_rad_per_s };
             return (Verdict::NotProven, closest.plant.clone(), reason.to_string());
         }
+        let between = self.folded.as_ref().map_or(0, |folded| folded.plants.len());
+        let folding = match between {
+            0 => String::new(),
+            _ => format!(" and {between} plants between them, through which modes fold,"),
+        };
         let which = match &self.family {
             Family::Uncertain(family) if self.plants.len() > family.members().len() => {
-                let corners = self.plants.len() - family.members().len();
-                format!("{} members and {corners} corners of the box", family.members().len())
+                let corners = self.plants.len() - family.members().len() - between;
+                format!("{} members and {corners} corners of the box{folding}", family.members().len())
             }
             _ => format!("{} plants", self.plants.len()),
         };
@@ -346,7 +450,8 @@ impl StabilityAudit {
         self.plants.first().cloned().unwrap_or(PlantPoint::Measured(0))
     }
 
-    fn searched(&self) -> bool {
+    /// Whether what lies between the members belongs to the family.
+    pub(crate) fn searched(&self) -> bool {
         match &self.family {
             Family::Uncertain(family) => family.extent() == Extent::Box,
             Family::Measured(_) => false,
@@ -385,8 +490,4 @@ fn badness_of(found: &MemberStability) -> [f64; 3] {
         found.closest_approach.map_or(f64::NAN, |closest| -closest.distance),
         found.critical_delay.map_or(f64::NAN, |critical| -critical.delay_s),
     ]
-}
-
-fn apart(one: &[f64], other: &[f64]) -> bool {
-    one.iter().zip(other).any(|(a, b)| (a - b).abs() > START_DISTANCE)
 }

@@ -4,17 +4,25 @@ use phea_dynamics::portable;
 
 use super::Irresolution;
 use super::characteristic::Characteristic;
+use super::product::Product;
 
 /// Highest degree at which the poles of a sampled loop with whole samples of delay are computed: beyond it the powers of z lose too
 /// many digits.
 const HIGHEST_SAMPLED_DEGREE: usize = 24;
+
+/// Sweeps over the roots of a sampled loop, and the share of itself by which one may move at once.
+const SWEEPS_MAXIMUM: usize = 20;
+const STEP_MAXIMUM: f64 = 0.1;
 
 impl Characteristic {
     /// The largest real part of a closed-loop pole in 1/s, ln|z|/T in a sampled loop; minus infinity for a loop without poles.
     /// `None` where a delay leaves no polynomial.
     pub(super) fn largest_real_part(&self) -> Result<Option<f64>, Irresolution> {
         let Some(polynomial) = self.closed_loop_polynomial()? else { return Ok(None) };
-        let roots = polynomial.roots().map_err(Irresolution::Linear)?;
+        let mut roots = polynomial.roots().map_err(Irresolution::Linear)?;
+        if let Some([numerator, denominator]) = &self.products {
+            polish(&mut roots, |v| self.closed_product(numerator, denominator, v));
+        }
         let real_part = |root: &Complex64| match self.domain {
             TimeDomain::Continuous => root.re,
             // ln|1 + v|
@@ -23,6 +31,19 @@ impl Characteristic {
             }
         };
         Ok(Some(roots.iter().map(real_part).fold(f64::NEG_INFINITY, f64::max)))
+    }
+
+    /// f = c z^k + n by their roots, and its derivative.
+    fn closed_product(&self, n: &Product, c: &Product, v: Complex64) -> (Complex64, Complex64) {
+        let (mut value, mut slope) = c.with_slope(v);
+        let z = v + 1.0;
+        let mut samples = 0.0;
+        while samples < self.delay {
+            (value, slope) = (value * z, slope * z + value);
+            samples += 1.0;
+        }
+        let (numerator, numerator_slope) = n.with_slope(v);
+        (value + numerator, slope + numerator_slope)
     }
 
     /// c + n, or c z^k + n.
@@ -45,5 +66,30 @@ impl Characteristic {
             return Err(Irresolution::Linear(LinearError::IllPosedLoop));
         }
         Ok(Some(closed))
+    }
+}
+
+/// Moves roots of an expanded polynomial to those of the function it stands for, all at once by the iteration of Ehrlich and Aberth; a
+/// root whose steps do not shrink is left where it is.
+fn polish(roots: &mut [Complex64], function: impl Fn(Complex64) -> (Complex64, Complex64)) {
+    let mut last = vec![Some(f64::INFINITY); roots.len()];
+    for _ in 0..SWEEPS_MAXIMUM {
+        for (index, last) in last.iter_mut().enumerate() {
+            let (Some(&root), Some(before)) = (roots.get(index), *last) else { continue };
+            let (value, slope) = function(root);
+            let newton = value / slope;
+            let others = roots.iter().enumerate().filter(|(other, _)| *other != index);
+            let repulsion: Complex64 = others.map(|(_, other)| (root - other).inv()).sum();
+            let step = newton / (1.0 - newton * repulsion);
+            let (size, scale) = (portable::magnitude(step), portable::magnitude(root));
+            let moves = step.is_finite() && size <= STEP_MAXIMUM * scale && size < 0.5 * before;
+            if let (true, Some(slot)) = (moves, roots.get_mut(index)) {
+                *slot = root - step;
+            }
+            *last = (moves && size > 4.0 * f64::EPSILON * scale).then_some(size);
+        }
+        if last.iter().all(Option::is_none) {
+            return;
+        }
     }
 }

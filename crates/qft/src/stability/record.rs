@@ -1,6 +1,6 @@
 //! The worst that was found of a family.
 
-use super::{MemberStability, StabilityStatus};
+use super::{Irresolution, MemberStability, StabilityStatus};
 use crate::verification::{ClosestApproach, DelayMargin, PlantPoint};
 
 /// The worst found so far.
@@ -14,6 +14,36 @@ pub(super) struct Record {
 }
 
 impl Record {
+    /// What keeps the verdict open, unless a plant does already.
+    pub(super) fn doubt(&mut self, reason: Irresolution, plant: PlantPoint) {
+        if self.unresolved.is_none() {
+            self.unresolved = Some((reason.to_string(), plant));
+        }
+    }
+
+    /// Whether a plant is nearer to instability than the nearest so far.
+    pub(super) fn is_worse(&self, found: &MemberStability) -> bool {
+        let real_part = found.largest_real_part.zip(self.real_part.as_ref());
+        let distance = found.closest_approach.zip(self.closest.as_ref());
+        real_part.is_some_and(|(own, (largest, _))| own > *largest)
+            || distance.is_some_and(|(own, nearest)| own.distance < nearest.distance)
+    }
+
+    /// The values of the plants nearest to instability.
+    pub(super) fn worst(&self) -> Vec<Vec<f64>> {
+        let points = [
+            self.unstable.as_ref().map(|(_, _, plant)| plant),
+            self.real_part.as_ref().map(|(_, plant)| plant),
+            self.closest.as_ref().map(|closest| &closest.plant),
+            self.delay.as_ref().map(|delay| &delay.plant),
+        ];
+        let values = points.into_iter().flatten().filter_map(|point| match point {
+            PlantPoint::Parameters(values) => Some(values.clone()),
+            PlantPoint::Measured(_) => None,
+        });
+        values.collect()
+    }
+
     pub(super) fn take(&mut self, plant: PlantPoint, found: &MemberStability) {
         let real_part = found.largest_real_part.filter(|real_part| real_part.is_finite());
         if let Some(real_part) = real_part

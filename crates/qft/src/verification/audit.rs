@@ -169,6 +169,15 @@ impl SpecificationAudit {
         self.evaluator.sampled = sampled;
     }
 
+    /// Looks at these plants too, which another audit of the same box found to be worth it. Before the first step.
+    pub(crate) fn add(&mut self, plants: Vec<Vec<f64>>) {
+        for values in plants {
+            if matches!(self.family, Family::Uncertain(_)) && !self.values.contains(&values) {
+                self.values.push(values);
+            }
+        }
+    }
+
     /// Hands over the plants that were sampled.
     pub(crate) fn take_sampled(&mut self) -> SampledPlants {
         std::mem::take(&mut self.evaluator.sampled)

@@ -87,7 +87,10 @@ pub(super) fn features(evaluator: &Evaluator, member: &Member) -> Features {
             Features::of_roots(&roots.unwrap_or_default().concat(), complete, dead_time_s)
         }
         Member::Sampled { command, with_sensor, .. } => {
-            let roots = [roots_of(command), roots_of(with_sensor)].concat();
+            let mut roots = roots_of(with_sensor);
+            if command != with_sensor {
+                roots.extend(roots_of(command));
+            }
             let own = Features::of_roots(&roots, false, 0.0);
             let crossing = asymptote::crossing(&evaluator.compensation, member);
             let crossing = crossing.map(|frequency| [frequency, frequency]);

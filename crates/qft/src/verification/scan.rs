@@ -142,6 +142,8 @@ impl Scan {
             }
         }
         samples.sort_by(|left, right| left.frequency.total_cmp(&right.frequency));
+        // a frequency that stands there twice would hide one side of a peak
+        samples.dedup_by(|next, kept| next.frequency == kept.frequency);
         if !plant.features.complete {
             samples = self.with_resonances(evaluator, plant, index, samples);
         }

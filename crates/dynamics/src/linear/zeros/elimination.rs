@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::super::StateSpace;
 use super::super::double_double::DoubleDouble;
+use super::super::structure::balance;
 
 /// A number in twice the working precision, with what rounding every input by one unit could change in it: `scale`
 /// times the working precision, to first order.
@@ -53,7 +54,7 @@ impl Traced {
 /// The leading coefficient, and the matrix whose eigenvalues are the zeros; none when the channel is zero everywhere.
 pub(super) fn reduce(system: &StateSpace, roundings: f64) -> (f64, Option<DMatrix<f64>>) {
     let mut balanced = system.a().clone();
-    let units = nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced);
+    let units = balance(&mut balanced);
     let mut a = balanced.map(Traced::of);
     let mut b = DVector::from_fn(system.order(), |i, _| Traced::of(system.b()[(i, 0)] / units[i]));
     let mut c = RowDVector::from_fn(system.order(), |_, j| Traced::of(system.c()[(0, j)] * units[j]));

@@ -1,0 +1,149 @@
+//! Plants between those of a sampled family whose modes beyond half of the sampling rate move.
+//!
+//! ```text
+//! z = e^(pT):   while Im p moves by 2 pi/T, the sampled mode passes through the whole band, up and down
+//! ```
+//!
+//! Between two plants that a search over the box compares, such a mode may have been at every frequency. So the coordinates that move it
+//! are run through in steps over which its phase turns no further than its damping spreads it. Where that takes more plants than can be
+//! looked at, nothing is claimed of what lies between.
+
+use num_complex::Complex64;
+use phea_dynamics::linear::Polynomial;
+use phea_dynamics::portable;
+
+use crate::family::UncertainFamily;
+
+/// A mode that has decayed to less than this after a sample leaves nothing to fold.
+const ALIVE: f64 = 0.01;
+/// Angles by which a mode may turn from one plant to the next, rad: the first for one without damping, the second at most.
+const TURNS: [f64; 2] = [0.04, 0.7];
+/// Points of a line on which the roots are followed.
+const POINTS: usize = 48;
+/// Plants that may be added.
+pub(super) const PLANTS_MAXIMUM: usize = 4000;
+
+/// Half a pass of a mode through the band, by a share of a coordinate: two plants that lie farther apart are of different passes.
+const PASS: f64 = std::f64::consts::FRAC_PI_2;
+/// Shares of an unmoved coordinate beyond which two plants count as apart.
+const APART: f64 = 0.3;
+
+/// Plants to be looked at besides, and whether they are as many as the modes need.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Folded {
+    pub(super) plants: Vec<Vec<f64>>,
+    pub(super) complete: bool,
+    /// By coordinate: how far two shares lie apart at least for searches from both to find different things.
+    pub(super) apart: Vec<f64>,
+}
+
+/// How a mode beyond half of the sampling rate moves along one coordinate.
+#[derive(Clone, Copy, Debug, Default)]
+struct Movement {
+    /// Even steps that are short enough.
+    steps: usize,
+    /// rad
+    turn: f64,
+}
+
+impl Folded {
+    /// Of a family without modes that fold.
+    pub(super) fn none(dimension: usize) -> Folded {
+        Folded { plants: Vec::new(), complete: true, apart: vec![APART; dimension] }
+    }
+}
+
+/// Plants of a family on the grid of those coordinates that move a mode beyond pi/T, for each of these shares of the others.
+pub(super) fn plants(family: &UncertainFamily, sample_time_s: f64, bases: &[Vec<f64>]) -> Folded {
+    let dimension = family.coordinates().len();
+    let movement = |coordinate: usize| {
+        let along = bases.iter().map(|base| movement(family, sample_time_s, base, coordinate));
+        along.max_by_key(|movement| movement.steps).unwrap_or_default()
+    };
+    let movements: Vec<Movement> = (0..dimension).map(movement).collect();
+    let steps = |index: &usize| movements.get(*index).map_or(0, |movement| movement.steps);
+    let moving: Vec<usize> = (0..dimension).filter(|index| steps(index) > 1).collect();
+    if moving.is_empty() {
+        return Folded::none(dimension);
+    }
+    let count = |index: &usize| steps(index) + 1;
+    let grid = moving.iter().map(count).fold(1_usize, usize::saturating_mul);
+    let mut shares = Vec::new();
+    if grid <= PLANTS_MAXIMUM {
+        for base in bases.iter().take((PLANTS_MAXIMUM / grid).max(1)) {
+            let start = vec![base.clone()];
+            shares.extend(moving.iter().fold(start, |plants, &index| along(&plants, index, count(&index))));
+        }
+    } else {
+        let each = PLANTS_MAXIMUM / (moving.len() * bases.len().max(1));
+        for base in bases {
+            for &index in &moving {
+                shares.extend(along(std::slice::from_ref(base), index, count(&index).min(each)));
+            }
+        }
+    }
+    let mut plants: Vec<Vec<f64>> = shares.iter().map(|shares| family.values(shares)).collect();
+    plants.sort_by(|one, other| one.partial_cmp(other).unwrap_or(std::cmp::Ordering::Equal));
+    plants.dedup();
+    let apart = movements.iter().map(|one| if one.steps > 1 { (PASS / one.turn).min(APART) } else { APART });
+    Folded { plants, complete: grid <= PLANTS_MAXIMUM, apart: apart.collect() }
+}
+
+/// Each of these at so many shares of one coordinate.
+fn along(plants: &[Vec<f64>], coordinate: usize, count: usize) -> Vec<Vec<f64>> {
+    let last = count.saturating_sub(1).max(1) as f64;
+    let mut all = Vec::with_capacity(plants.len() * count);
+    for plant in plants {
+        for step in 0..count {
+            let mut shares = plant.clone();
+            if let Some(share) = shares.get_mut(coordinate) {
+                *share = step as f64 / last;
+            }
+            all.push(shares);
+        }
+    }
+    all
+}
+
+/// Along one coordinate, of the mode that needs most steps.
+fn movement(family: &UncertainFamily, sample_time_s: f64, base: &[f64], coordinate: usize) -> Movement {
+    let modes = |point: usize| {
+        let mut shares = base.to_vec();
+        if let Some(share) = shares.get_mut(coordinate) {
+            *share = point as f64 / POINTS as f64;
+        }
+        modes(family, sample_time_s, &shares)
+    };
+    let (mut total, mut turn) = (0.0, 0.0);
+    let mut largest: f64 = 0.0;
+    let mut before = modes(0);
+    for point in 1..=POINTS {
+        let here = modes(point);
+        let turns = before.iter().filter_map(|from| {
+            let distance = |mode: &Complex64| portable::magnitude(mode - from);
+            let to = here.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)))?;
+            let beyond = from.im.abs().max(to.im.abs()) > std::f64::consts::PI;
+            let radius = portable::exp(from.re.max(to.re).min(0.0));
+            let allowed = (1.0 - radius).clamp(TURNS[0], TURNS[1]);
+            let turned = (from.im - to.im).abs();
+            (beyond && radius > ALIVE).then_some((turned / allowed, turned))
+        });
+        let (steps, turned) =
+            turns.fold((0.0, 0.0), |most: (f64, f64), next| if next.0 > most.0 { next } else { most });
+        total += steps;
+        turn += turned;
+        largest = largest.max(steps);
+        before = here;
+    }
+    // the steps are even: where the mode turns fastest, they must be short enough too
+    let even = (largest * POINTS as f64).max(total).ceil();
+    Movement { steps: if total > 1.0 { even.min(1e9) as usize } else { 0 }, turn }
+}
+
+/// The upper members of the pairs of poles, times T.
+fn modes(family: &UncertainFamily, sample_time_s: f64, shares: &[f64]) -> Vec<Complex64> {
+    let plant = family.plant().coefficients(&family.values(shares));
+    let roots = Polynomial::new(plant.command.denominator).roots().unwrap_or_default();
+    let upper = roots.into_iter().filter(|root| root.im > 0.0).map(|root| root * sample_time_s);
+    upper.filter(|mode| mode.is_finite()).collect()
+}

@@ -1,0 +1,62 @@
+//! A sampled polynomial kept as its roots: expanded in z it would lose what fast poles, near z = 0, leave of the slow ones.
+
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable;
+
+/// gain (v - v_1) (v - v_2) ... with v = z - 1.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Product {
+    pub(super) gain: f64,
+    pub(super) roots: Vec<Complex64>,
+}
+
+/// Numerator and denominator of a sampled function, its dead time left out.
+pub(super) fn products(function: &TransferFunction) -> [Product; 2] {
+    let shifted = |roots: &[Complex64]| roots.iter().map(|root| root - 1.0).collect();
+    [
+        Product { gain: function.gain(), roots: shifted(function.zeros()) },
+        Product { gain: 1.0, roots: shifted(function.poles()) },
+    ]
+}
+
+impl Product {
+    pub(super) fn times(&self, other: &Product) -> Product {
+        Product { gain: self.gain * other.gain, roots: [&self.roots[..], &other.roots[..]].concat() }
+    }
+
+    pub(super) fn at(&self, v: Complex64) -> Complex64 {
+        self.roots.iter().fold(Complex64::new(self.gain, 0.0), |product, root| product * (v - root))
+    }
+
+    /// Value and derivative.
+    pub(super) fn with_slope(&self, v: Complex64) -> (Complex64, Complex64) {
+        let start = (Complex64::new(self.gain, 0.0), Complex64::new(0.0, 0.0));
+        self.roots.iter().fold(start, |(value, slope), root| {
+            let factor = v - root;
+            (value * factor, slope * factor + value)
+        })
+    }
+
+    /// Coefficients of |gain| (|v - v_1| + u) (|v - v_2| + u) ..., lowest power of u first: no Taylor coefficient of the product at v is
+    /// larger.
+    pub(super) fn majorant(&self, v: Complex64) -> Vec<f64> {
+        let mut terms = Vec::with_capacity(self.roots.len() + 1);
+        terms.push(self.gain.abs());
+        for root in &self.roots {
+            let distance = portable::magnitude(v - root);
+            let mut below = 0.0;
+            for term in &mut terms {
+                (*term, below) = (*term * distance + below, *term);
+            }
+            terms.push(below);
+        }
+        terms
+    }
+
+    /// With z = r z': the product over r to its degree, where `shift` is r - 1.
+    pub(super) fn moved(&self, shift: f64) -> Product {
+        let roots = self.roots.iter().map(|root| (root - shift) / (1.0 + shift)).collect();
+        Product { gain: self.gain, roots }
+    }
+}
