@@ -9,7 +9,7 @@ import numpy as np
 
 AREA = math.pi / 4 * (0.05**2 - 0.022**2)
 STROKE, MASS = 0.5, 13.1
-BORE, EXPANSION, SLOPE = 12.7e-3, 1.56e-5, 2.236e-12
+BORE, EXPANSION, SLOPE = 12.7e-3, 1.56e-5, 2.236e-12  # the expansion at 70 bar
 BETA_0, STIFFENING = 1.45e9, 5.0
 OMEGA, XI = 1099.0, 0.9
 GALLON_PER_MINUTE = 3.785411784e-3 / 60
@@ -142,22 +142,40 @@ def moduli():
     effective = BETA_0 * wall / (BETA_0 + wall)
     expect("beta_e", effective, 2.609e8, 0.5e5)
     line = bore_area * 1.5
-    for name, chamber, centre, ends in [
-        ("uniform", effective, 2.233e6, 4.109e6),
-        ("by volume", BETA_0, 5.01e6, 5.41e6),
+    metre = by_sheet(bore_area)
+    found = {}
+    for name, chamber, compliance, centre, ends in [
+        ("uniform", effective, line / effective, 2.233e6, 4.109e6),
+        ("by volume", BETA_0, 1.5 * metre, 4.63e6, 4.94e6),
+        ("6.24 on the unexpanded bore", BETA_0, line / effective, 5.008e6, 5.410e6),
+        ("unexpanded bore's oil", BETA_0, 1.5 * SLOPE / STIFFENING + line / BETA_0, 4.665e6, 4.987e6),
     ]:
-        stiffness = lambda x: sum(AREA**2 / (AREA * y / chamber + line / effective) for y in (x, STROKE - x))
-        digits = 0.5e3 if name == "uniform" else 0.5e4
-        expect(f"K_H {name}, centre", stiffness(STROKE / 2), centre, digits)
+        stiffness = lambda x: sum(AREA**2 / (AREA * y / chamber + compliance) for y in (x, STROKE - x))
+        digits = 0.5e4 if name == "by volume" else 0.5e3
+        found[name] = stiffness(STROKE / 2)
+        expect(f"K_H {name}, centre", found[name], centre, digits)
         expect(f"K_H {name}, ends", stiffness(0.0), ends, digits)
-    length = (2 * AREA**2 / 2.24e6 - AREA * STROKE / (2 * BETA_0)) * 4 * effective / (math.pi * BORE**2)
-    expect("length for 2.24e6 N/m by volume", length, 4.05, 5e-3)
-    expect("E over A_ho in percent", 100 * EXPANSION / bore_area, 12.3, 0.05)
+    printed = found["6.24 on the unexpanded bore"]
+    expect("6.24 too stiff by, percent", 100 * (printed / found["by volume"] - 1), 8.1, 0.05)
+    expect("of the wall alone, percent", 100 * (printed / found["unexpanded bore's oil"] - 1), 7.3, 0.05)
+    length = (2 * AREA**2 / 2.24e6 - AREA * STROKE / (2 * BETA_0)) / metre
+    expect("length for 2.24e6 N/m by volume", length, 3.64, 5e-3)
+    expect("A_ho over A_ho + E", bore_area / (bore_area + EXPANSION), 0.89, 5e-3)
+    held = bore_area + EXPANSION - SLOPE * 35e5
+    expect("oil of a metre at 35 bar in mL", 1e6 * held, 134.5, 0.05)
+    expect("of the bore at rest in mL", 1e6 * bore_area, 126.7, 0.05)
+    ten_bar = [AREA * STROKE / 2 / BETA_0 + 1.5 * (metre + shift * SLOPE * 10e5 / BETA_0) for shift in (0, 1)]
+    expect("10 bar more: K_H falls by percent", 100 * (1 - ten_bar[0] / ten_bar[1]), 0.21, 5e-3)
     for ratio, quoted in [(1, 0.52e6), (4, 1.85e6), (5, 2.23e6)]:
         softened = BETA_0 * ratio * static / (BETA_0 + ratio * static)
         uniform = 4 * softened * AREA**2 / (AREA * STROKE + 2 * line)
         expect(f"uniform K_H with r_beta {ratio}", uniform, quoted, 0.5e4)
     return effective, bore_area
+
+
+def by_sheet(bore_area):
+    """dV/dp of a metre of hose: epsilon/r_beta of its wall, and the oil that its bore holds at 35 bar."""
+    return SLOPE / STIFFENING + (bore_area + EXPANSION - SLOPE * 35e5) / BETA_0
 
 
 def sizing(effective, bore_area):
@@ -265,10 +283,9 @@ def linear_models():
 
 def two_pressures(effective, bore_area):
     omegas = np.geomspace(0.01, 5000, 200001)
-    line = bore_area * 1.5 / effective
-    for model, modulus, quoted in [
-        ("uniform", effective, [(0.1, 0.70, 2.3), (0.0, 2.1, 7.0)]),
-        ("by volume", BETA_0, [(0.1, 0.10, 0.34), (0.0, 0.29, 0.96)]),
+    for model, modulus, line, quoted in [
+        ("uniform", effective, bore_area * 1.5 / effective, [(0.1, 0.70, 2.3), (0.0, 2.1, 7.0)]),
+        ("by volume", BETA_0, 1.5 * by_sheet(bore_area), [(0.1, 0.09, 0.30), (0.0, 0.25, 0.83)]),
     ]:
         for position, decibels, degrees in quoted:
             chambers = [AREA * y / modulus + line for y in (position, STROKE - position)]
@@ -356,9 +373,13 @@ def sources_of_constants():
         inlet, outlet = edges
         gain = inlet * outlet / math.hypot(inlet, outlet) * math.sqrt(7e6) / 10
         expect(f"no-load flow gain of edges {edges}", gain, quoted, 0.5e-7)
-    expect("wave speed in the hose", math.sqrt(2.609e8 / 870), 548, 0.5)
-    expect("delay of 1.5 m in ms", 1e3 * 1.5 / math.sqrt(2.609e8 / 870), 2.74, 5e-3)
-    expect("quarter wave in 1.5 m, rad/s", math.pi * math.sqrt(2.609e8 / 870) / (2 * 1.5), 573, 0.5)
+    bore_area = math.pi / 4 * BORE**2
+    held = bore_area + EXPANSION - SLOPE * 35e5
+    speed = math.sqrt(held / by_sheet(bore_area) / 870)
+    expect("modulus of the oil in the hose, its wall included", held / by_sheet(bore_area), 2.490e8, 0.5e5)
+    expect("wave speed in the hose", speed, 535, 0.5)
+    expect("delay of 1.5 m in ms", 1e3 * 1.5 / speed, 2.80, 5e-3)
+    expect("quarter wave in 1.5 m, rad/s", math.pi * speed / (2 * 1.5), 560, 0.5)
     expect("1099 rad/s in Hz", 1099 / (2 * math.pi), 175, 0.5)
 
 

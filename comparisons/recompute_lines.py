@@ -129,8 +129,11 @@ def friction():
 
 
 def exact_line():
-    """The hose of the thesis with fluid and dynamic wall: 1.5 m, 12.7 mm, 870 kg/m3, 46 cSt, 2.609e8 Pa."""
-    length, radius, density, viscosity, modulus = 1.5, 6.35e-3, 870.0, 46e-6, 2.609e8
+    """1.5 m of the thesis' hose at 35 bar: the oil its bore then holds, its dynamic wall, 870 kg/m3, 46 cSt."""
+    length, density, viscosity = 1.5, 870.0, 46e-6
+    held = np.pi / 4 * 0.0127**2 + 1.56e-5 - 2.236e-12 * 35e5
+    radius, modulus = np.sqrt(held / np.pi), 1 / (1 / 1.45e9 + 2.236e-12 / 5 / held)
+    print(f"modulus {modulus:.8g} bore {2 * radius:.8g}")
     speed, area = np.sqrt(modulus / density), np.pi * radius**2
     delay, impedance = length / speed, density * speed / area
     print(f"speed {speed:.6g} delay {delay:.6g} impedance {impedance:.6g} dissipation {viscosity * delay / radius**2:.6g}")

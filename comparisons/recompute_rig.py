@@ -13,8 +13,9 @@ from scipy.optimize import brentq, minimize_scalar
 AREA = np.pi / 4 * (0.05**2 - 0.022**2)
 MASS, STROKE, SUPPLY, NOMINAL_VOLTAGE = 13.1, 0.5, 70e5, 10.0
 VALVE_FREQUENCY, VALVE_DAMPING = 1099.0, 0.9
-FLUID_MODULUS = 1.45e9
+FLUID_MODULUS, DENSITY = 1.45e9, 870.0
 BORE, EXPANSION, EXPANSION_SLOPE, STIFFENING, LENGTH = 12.7e-3, 1.56e-5, 2.236e-12, 5.0, 1.5
+OPERATING = SUPPLY / 2
 EDGES = {"3": 3.2e-7, "4": 2.5e-7, "5": 2.0e-7, "6": 3.85e-7}
 LEAKS = {"3": 2.35e-9, "4": 2.2e-9, "5": 1.7e-9, "6": 2.35e-9}
 
@@ -83,17 +84,39 @@ def stiffness_chain():
         modulus = 1 / (1 / FLUID_MODULUS + 1 / (ratio * static))
         show(f"uniform K_H at mid stroke, stiffening {ratio:g}", 4 * modulus * AREA**2 / (AREA * STROKE + 2 * volume))
 
-    def total(x, chamber_modulus):
-        ca = AREA * x / chamber_modulus + volume / effective
-        cb = AREA * (STROKE - x) / chamber_modulus + volume / effective
+    def total(x, chamber_modulus, line):
+        ca = AREA * x / chamber_modulus + line
+        cb = AREA * (STROKE - x) / chamber_modulus + line
         return AREA**2 / ca + AREA**2 / cb
 
-    show("uniform K_H at centre, end", total(STROKE / 2, effective), total(0, effective))
-    show("by volume K_H at centre, end", total(STROKE / 2, FLUID_MODULUS), total(0, FLUID_MODULUS))
+    def by_sheet(length, pressure, ratio=STIFFENING):
+        """dV/dp = epsilon L/r_beta of the wall, and the oil that the bore holds at this pressure."""
+        held = hose_area + EXPANSION + EXPANSION_SLOPE * (pressure - SUPPLY)
+        return EXPANSION_SLOPE * length / ratio + held * length / FLUID_MODULUS
+
+    line = by_sheet(LENGTH, OPERATING)
+    printed = volume / effective
+    unexpanded = EXPANSION_SLOPE * LENGTH / STIFFENING + volume / FLUID_MODULUS
+    show("hose by its sheet at 35 bar: dV/dp per metre", by_sheet(1.0, OPERATING))
+    show("uniform K_H at centre, end", total(STROKE / 2, effective, printed), total(0, effective, printed))
+    show("by volume K_H at centre, end", total(STROKE / 2, FLUID_MODULUS, line), total(0, FLUID_MODULUS, line))
+    for ratio in (4.0, 5.0):
+        soft = by_sheet(LENGTH, OPERATING, ratio)
+        show(f"by volume, stiffening {ratio:g}: K_H at centre, end", *(total(x, FLUID_MODULUS, soft) for x in (STROKE / 2, 0)))
+    known = (line, 4.630e6), (unexpanded, 4.665e6), (by_sheet(LENGTH, SUPPLY), 4.596e6), (printed, 5.008e6)
+    for compliance, stiffness in known:
+        assert abs(total(STROKE / 2, FLUID_MODULUS, compliance) - stiffness) < 0.5e3
+    show("the same with the unexpanded bore's oil", total(STROKE / 2, FLUID_MODULUS, unexpanded))
+    show("the same with the bore at 70 bar", total(STROKE / 2, FLUID_MODULUS, by_sheet(LENGTH, SUPPLY)))
+    old = total(STROKE / 2, FLUID_MODULUS, printed), total(0, FLUID_MODULUS, printed)
+    show("modulus of 6.24 on the unexpanded bore: centre, end", *old)
+    show("6.24 too stiff by %", 100 * (old[0] / total(STROKE / 2, FLUID_MODULUS, line) - 1))
+    held = hose_area + EXPANSION + EXPANSION_SLOPE * (OPERATING - SUPPLY)
+    speed = np.sqrt(held / (by_sheet(1.0, OPERATING) * DENSITY))
+    show("wave speed, delay, quarter wave at 35 bar", speed, LENGTH / speed, np.pi * speed / (2 * LENGTH))
 
     def by_volume(length):
-        half = AREA * STROKE / 2 / FLUID_MODULUS + hose_area * length / effective
-        return 2 * AREA**2 / half
+        return 2 * AREA**2 / (AREA * STROKE / 2 / FLUID_MODULUS + by_sheet(length, OPERATING))
 
     show("by volume length for 2.24e6 N/m", brentq(lambda l: by_volume(l) - 2.24e6, 0.1, 100))
     pipe = np.pi / 4 * 0.0105**2 * 0.35
@@ -218,9 +241,9 @@ def nonlinear_rates():
     q5 = (EDGES["5"] * back + LEAKS["5"] * leak) * root(SUPPLY - p_b)
     q6 = (EDGES["6"] * ahead + LEAKS["6"] * leak) * root(p_b)
     hose_area = np.pi / 4 * BORE**2
-    effective = 1 / (1 / FLUID_MODULUS + 1 / (STIFFENING * (hose_area + EXPANSION) / EXPANSION_SLOPE))
+    held = hose_area + EXPANSION + EXPANSION_SLOPE * (OPERATING - SUPPLY)
     x = load_position + deflection
-    line = hose_area * LENGTH / effective
+    line = EXPANSION_SLOPE * LENGTH / STIFFENING + held * LENGTH / FLUID_MODULUS
     c_a, c_b = AREA * x / FLUID_MODULUS + line, AREA * (STROKE - x) / FLUID_MODULUS + line
     show(
         "nonlinear rates, by volume",
@@ -264,7 +287,7 @@ HOSES = {
     "stubborn": (9.5e-3, 8e-6 + 2.5e-12 * 35e5, 2.5e-12),
     "slow": (15.9e-3, 3e-12 * SUPPLY, 3e-12),
 }
-FLOW, DENSITY = 9.8e-3 / 60, 870.0
+FLOW = 9.8e-3 / 60
 SIZING = {"gain": 5.62e-5, "leak": 6.42e-13, "sensor": 2e7, "tau": 0.05}
 
 
@@ -273,7 +296,10 @@ def least_and_greatest(hose, length, model, areas):
     bore, expansion, slope = hose
     section = np.pi / 4 * bore**2
     wall = STIFFENING * (section + expansion) / slope
+    held = section + expansion + slope * (OPERATING - SUPPLY)
     line = section * length / FLUID_MODULUS + section * length / wall
+    if model == "by_volume":
+        line = slope * length / STIFFENING + held * length / FLUID_MODULUS
     oil = 1 / FLUID_MODULUS + (1 / wall if model == "uniform" else 0.0)
 
     def total(x):
@@ -301,7 +327,8 @@ def sizing_of_hoses():
     show("bore at 4.6 and 2.1 m/s", *(brentq(lambda d, v=v: velocity(d) - v, 1e-4, 1) for v in (4.6, 2.1)))
     full = np.pi / 4 * 0.05**2
     for name, hose in HOSES.items():
-        wall = STIFFENING * (np.pi / 4 * hose[0] ** 2 + hose[1]) / hose[2]
+        held = np.pi / 4 * hose[0] ** 2 + hose[1] + hose[2] * (OPERATING - SUPPLY)
+        wall = STIFFENING * held / hose[2]
         sound = np.sqrt(1 / (1 / FLUID_MODULUS + 1 / wall) / DENSITY)
         show(f"hose {name}: velocity m/s, surge Pa", velocity(hose[0]), DENSITY * sound * velocity(hose[0]))
         for kind, areas in (("two rods", (AREA, AREA)), ("one rod", (AREA, full))):

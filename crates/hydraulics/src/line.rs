@@ -113,6 +113,15 @@ impl Line {
 }
 
 impl<S: Scalar> Line<S> {
+    /// The line as it stands at the operating pressure: a hose with the bore that it has there, [`Hose::filled`]. Pipes and
+    /// plain volumes stay as they are.
+    pub fn filled(&self) -> Line<S> {
+        match *self {
+            Line::Hose { hose, length } => Line::Hose { hose: hose.filled(), length },
+            Line::Pipe { .. } | Line::Volume { .. } => *self,
+        }
+    }
+
     /// Volume of the fluid in the unexpanded line, V_ho, in m3.
     pub fn volume(&self) -> S {
         match *self {
@@ -122,7 +131,8 @@ impl<S: Scalar> Line<S> {
         }
     }
 
-    /// Effective bulk modulus beta_e of fluid and wall together, in Pa, for a fluid of this modulus: thesis (6.20).
+    /// Effective bulk modulus beta_e of fluid and wall together, in Pa, for a fluid of this modulus: thesis (6.20), a hose's wall
+    /// with the modulus of thesis (6.24). That of the oil a hose holds is `filled().effective_modulus(..)`.
     ///
     /// # Example
     /// ```
@@ -130,6 +140,7 @@ impl<S: Scalar> Line<S> {
     /// let hose = Hose {
     ///     bore: 12.7e-3,
     ///     volumetric_expansion: 1.56e-5,
+    ///     operating_expansion: 7.774e-6,
     ///     expansion_slope: 2.236e-12,
     ///     dynamic_stiffening: Stiffening { nominal: 5.0, minimum: 4.0, maximum: 5.0 },
     /// };
@@ -147,8 +158,22 @@ impl<S: Scalar> Line<S> {
         }
     }
 
-    /// Compliance dV/dp = V_ho/beta_e in m3/Pa: what the line takes up per pascal.
+    /// Compliance dV/dp in m3/Pa: what the line takes up per pascal; a hose as its sheet says.
+    ///
+    /// ```text
+    /// dV/dp = V/beta_e          hose: epsilon L/r_beta + (A_ho + E(p)) L/beta_0         p the operating pressure
+    /// ```
     pub fn compliance(&self, fluid_modulus: S, member: Member) -> S {
+        match *self {
+            Line::Hose { hose, length } => length * hose.compliance_per_length(fluid_modulus, member),
+            Line::Pipe { .. } | Line::Volume { .. } => {
+                self.volume() / self.effective_modulus(fluid_modulus, member)
+            }
+        }
+    }
+
+    /// Compliance of the line in the thesis' model, V_ho/beta_e in m3/Pa: the unexpanded volume over the modulus of 6.20.
+    pub fn compliance_of_unexpanded(&self, fluid_modulus: S, member: Member) -> S {
         self.volume() / self.effective_modulus(fluid_modulus, member)
     }
 }

@@ -17,11 +17,12 @@ use crate::stiffness::StiffnessModel;
 /// Useful piston area of a 50 mm piston with 22 mm rods, in m2.
 pub const USEFUL_AREA: f64 = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
 
-/// Eaton Synflex 3130-08 at 70 bar: 12.7 mm, E = 1.56e-5 m3/m.
+/// Eaton Synflex 3130-08: 12.7 mm, E = 1.56e-5 m3/m at 70 bar and less by the slope times 35 bar at 35 bar.
 pub fn hose() -> Hose {
     Hose {
         bore: 12.7e-3,
         volumetric_expansion: 1.56e-5,
+        operating_expansion: 1.56e-5 - 2.236e-12 * 35e5,
         expansion_slope: 2.236e-12,
         dynamic_stiffening: Stiffening { nominal: 5.0, minimum: 4.0, maximum: 5.0 },
     }

@@ -192,9 +192,8 @@ fn full_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 12] {
     let to_t = [edge(2.5e-7, -opening, 2.2e-9) * root(p_a), edge(3.85e-7, opening, 2.35e-9) * root(p_b)];
     let across = 3e-13 * (p_a - p_b);
     let x = inputs[0] + way + d;
-    let bore = std::f64::consts::PI * 12.7e-3 * 12.7e-3;
-    let wall = 5.0 * (bore + 4.0 * 1.56e-5) / (4.0 * 2.236e-12);
-    let hose = bore / 4.0 * 1.5 * (1.0 / wall + 1.0 / 1.45e9);
+    let oil = std::f64::consts::FRAC_PI_4 * 12.7e-3 * 12.7e-3 + 1.56e-5 - 2.236e-12 * 35e5;
+    let hose = 1.5 * (2.236e-12 / 5.0 + oil / 1.45e9);
     let area = std::f64::consts::PI / 4.0 * (0.05 * 0.05 - 0.022 * 0.022);
     let compliance = |length: f64| hose + area * length / 1.45e9;
     let slide = 120.0 + 40.0 * expm1(-v * v / 1e-4);

@@ -165,7 +165,7 @@ fn nothing_is_felt_before_the_wave_arrives() {
     )
     .unwrap();
     let delay = machine.delays()[0];
-    assert!(delay > 2.5e-3 && delay < 2.74e-3);
+    assert!(delay > 2.6e-3 && delay < 2.80e-3);
     for (time, state) in result.trajectory.times_s.iter().zip(&result.trajectory.states) {
         let force = machine.measurement(state, &rest.all_inputs());
         if *time < delay {

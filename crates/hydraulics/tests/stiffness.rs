@@ -41,8 +41,8 @@ fn stiffness_of_hose_and_pipe_in_both_models() {
     check("uniform centre, thesis", uniform.minimum, 2.24e6, 2.0 * 1e4);
     check("uniform ends, thesis", uniform.maximum, 4.11e6, 2.0 * 1e4);
     let by_volume = over_stroke(StiffnessModel::ByVolume, &hose_line(), Member::Nominal);
-    check("by volume centre", by_volume.minimum, 5.01e6, 1e4);
-    check("by volume ends", by_volume.maximum, 5.41e6, 1e4);
+    check("by volume centre", by_volume.minimum, 4_630_311.5, 0.1);
+    check("by volume ends", by_volume.maximum, 4_944_558.5, 0.1);
     let pipe = over_stroke(StiffnessModel::Uniform, &pipe_line(), Member::Nominal);
     check("pipe centre", pipe.minimum, 1.71e7, 1e5);
     check("pipe ends", pipe.maximum, 1.24e8, 1e6);
@@ -82,7 +82,7 @@ fn models_agree_when_the_line_is_as_stiff_as_the_fluid() {
     assert!((difference.maximum_ratio - 1.0).abs() < 1e-14);
     let hose =
         model_difference([FLUID_MODULUS; 2], &cylinder(), [&hose_line(), &hose_line()], Member::Nominal);
-    assert!(hose.minimum_ratio > 2.2 && hose.maximum_ratio > 1.3 && hose.line_compliance_share > 0.7);
+    assert!(hose.minimum_ratio > 2.0 && hose.maximum_ratio > 1.2 && hose.line_compliance_share > 0.7);
 }
 
 fn asymmetric() -> Cylinder {
@@ -127,6 +127,7 @@ fn softest_position_leaves_the_stroke_when_one_line_is_long() {
 #[test]
 fn lengths_undo_stiffnesses_in_both_models() {
     let effective = hose_line().effective_modulus(FLUID_MODULUS, Member::Nominal);
+    let metre = hose().compliance_per_length(FLUID_MODULUS, Member::Nominal);
     let (bore, stroke) = (12.7e-3, 0.5);
     for length in [0.3, 1.5, 12.0] {
         let line = Line::Hose { hose: hose(), length };
@@ -137,7 +138,7 @@ fn lengths_undo_stiffnesses_in_both_models() {
                     hose_length_uniform(stiffness, USEFUL_AREA, stroke, bore, effective)
                 }
                 StiffnessModel::ByVolume => {
-                    hose_length_by_volume(stiffness, USEFUL_AREA, stroke, bore, effective, FLUID_MODULUS)
+                    hose_length_by_volume(stiffness, USEFUL_AREA, stroke, metre, FLUID_MODULUS)
                 }
             };
             assert!((closed / length - 1.0).abs() < 1e-12);
@@ -158,8 +159,8 @@ fn lengths_undo_stiffnesses_in_both_models() {
         assert!((back / length - 1.0).abs() < 1e-12);
     }
     // ORIGIN: recomputed by comparisons/recompute_rig.py
-    let length = hose_length_by_volume(2.24e6, USEFUL_AREA, stroke, bore, effective, FLUID_MODULUS);
-    check("by volume, 2.24e6 N/m", length, 4.05, 0.01);
+    let length = hose_length_by_volume(2.24e6, USEFUL_AREA, stroke, metre, FLUID_MODULUS);
+    check("by volume, 2.24e6 N/m", length, 3.64, 0.01);
 }
 
 /// ORIGIN: analytic, thesis (6.25) and (6.26) exactly as printed, with E, epsilon and r_beta.

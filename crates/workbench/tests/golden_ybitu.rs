@@ -47,8 +47,8 @@ fn areas_and_moduli_of_the_hose_rig() {
     within(derived(&check, "line.effective_modulus"), 2.6090434e8, 5.0);
     within(derived(&check, "stiffness.uniform.minimum"), 2_232_961.6, 0.05);
     within(derived(&check, "stiffness.uniform.maximum"), 4_108_630.5, 0.05);
-    within(derived(&check, "stiffness.by_volume.minimum"), 5_007_622.6, 0.05);
-    within(derived(&check, "stiffness.by_volume.maximum"), 5_409_749.9, 0.05);
+    within(derived(&check, "stiffness.by_volume.minimum"), 4_630_311.5, 0.05);
+    within(derived(&check, "stiffness.by_volume.maximum"), 4_944_558.5, 0.05);
     // The project declares `uniform`, least stiffening 4, greatest 5.
     assert_eq!(derived(&check, "stiffness.minimum"), derived(&check, "stiffness.uniform.minimum"));
     within(derived(&check, "stiffness.minimum_softest_wall"), 1_853_054.8, 0.05);
@@ -84,8 +84,8 @@ fn stiffness_of_the_hose_rig() {
         ("maximum_n_per_m", 4_108_630.5),
         ("uniform.0", 2_232_961.6),
         ("uniform.1", 4_108_630.5),
-        ("by_volume.0", 5_007_622.6),
-        ("by_volume.1", 5_409_749.9),
+        ("by_volume.0", 4_630_311.5),
+        ("by_volume.1", 4_944_558.5),
         ("minimum_softest_wall_n_per_m", 1_853_054.8),
         ("maximum_stiffest_wall_n_per_m", 4_108_630.5),
     ];
@@ -94,7 +94,7 @@ fn stiffness_of_the_hose_rig() {
     }
     // The other model on demand.
     let other = linearize(HOSE, &["line.compliance=by_volume"]);
-    within(number(&other, "stiffness.minimum_n_per_m"), 5_007_622.6, 0.05);
+    within(number(&other, "stiffness.minimum_n_per_m"), 4_630_311.5, 0.05);
 }
 
 /// K_p as it is given to the command, K_H and L_ho of Table 6.2.
@@ -145,7 +145,7 @@ fn the_gain_for_the_hose_that_was_bought() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py
     within(gain(&[], "uniform"), 2.7330293e-4, 5e-12);
     within(gain(&["sizing.flow_gain=5.4e-5"], "uniform"), 2.844375e-4, 5e-11);
-    within(gain(&[], "by_volume"), 1.3348232e-4, 5e-12);
+    within(gain(&[], "by_volume"), 1.4265153e-4, 5e-12);
     // ORIGIN: thesis section 6.4.1
     within(gain(&[], "uniform"), 2.7e-4, 0.1e-4);
 }
@@ -209,7 +209,7 @@ fn bores_and_velocities() {
     assert!(sizes.is_sorted(), "{sizes:?}");
     // ORIGIN: recomputed by comparisons/recompute_rig.py
     near(derived(&check(HOSE, &[]), "line.oil_velocity"), 1.2893698, 5e-8);
-    near(number(&size, "candidates.0.surge_pressure_pa"), 614_296.13, 5e-8);
+    near(number(&size, "candidates.0.surge_pressure_pa"), 600_139.65, 5e-8);
 }
 
 #[test]

@@ -30,10 +30,13 @@ fn stiffness(x: f64, lengths: [f64; 2], uniform: bool) -> f64 {
     let section = quarter * 0.0127_f64.powi(2);
     let effective = 1.0 / (1.0 / 1.45e9 + 2.236e-12 / (5.0 * (section + 1.56e-5)));
     let chamber = if uniform { effective } else { 1.45e9 };
+    // by volume a hose gives what its sheet says, and holds the oil of its bore at half the supply pressure
+    let held = section + 1.56e-5 - 2.236e-12 * 35e5;
     let volumes = [areas[0] * x + 20e-6, areas[1] * (0.5 - x) + 5e-6];
     (0..2)
         .map(|side| {
-            let compliance = volumes[side] / chamber + section * lengths[side] / effective;
+            let line = if uniform { section / effective } else { 2.236e-12 / 5.0 + held / 1.45e9 };
+            let compliance = volumes[side] / chamber + line * lengths[side];
             areas[side] * areas[side] / compliance
         })
         .sum()

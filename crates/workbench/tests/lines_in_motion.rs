@@ -58,15 +58,13 @@ fn segments_tend_to_the_transmission_line() {
         force(&["line.model=segments", &segments])
     };
     let lumped = largest(&waves, &force(&[]));
-    let [four, eight, sixteen] = [of("4"), of("8"), of("16")];
-    let between = [largest(&four, &eight), largest(&eight, &sixteen)];
-    assert!((between[0] / between[1] - 4.0).abs() < 1.0, "{between:?} N");
+    let [eight, twelve, many] = [of("8"), of("12"), of("16")];
+    let between = [largest(&eight, &twelve), largest(&twelve, &many)];
+    // ORIGIN: analytic, (1/8^2 - 1/12^2) / (1/12^2 - 1/16^2)
+    assert!((between[0] / between[1] - 2.857).abs() < 0.5, "{between:?} N");
     let peak = waves.iter().fold(0.0, |peak: f64, force| peak.max(force.abs()));
-    let found = [largest(&waves, &four), largest(&waves, &sixteen)];
-    assert!(
-        found[0] < 0.2 * lumped && found[1] < 0.1 * lumped && found[1] < 3e-3 * peak,
-        "{found:?}, {lumped} N"
-    );
+    let found = [largest(&waves, &eight), largest(&waves, &many)];
+    assert!(found.iter().all(|apart| *apart < 0.1 * lumped && *apart < 3e-3 * peak), "{found:?}, {lumped} N");
 }
 
 /// What may be written can be simulated, and the next whole number is refused.
@@ -154,11 +152,18 @@ fn the_wall_of_two_waves_is_assumed_or_stated() {
     assert!(written < 1e-3, "{written} N");
     let heavy = largest(&assumed, &of(&["line.wall.mass_per_length=1 kg/m"]));
     assert!(heavy > 0.1, "{heavy} N");
-    // a wall without coupling has one wave, whose compliance is that of a lumped line
-    let uncoupled = ["line.wall.coupling_compliance=1e-12", "line.wall.axial_compliance=1e-9"];
+    // a wall without coupling has one wave, whose compliance is that of a lumped line; its own is as fast, for the steady
+    // resistance lags as the faster of both does
+    // ORIGIN: analytic, 1/(535.002^2 1e-9) kg/m
+    let uncoupled = [
+        "line.wall.coupling_compliance=1e-12",
+        "line.wall.axial_compliance=1e-9",
+        "line.wall.mass_per_length=3493.74 kg/m",
+    ];
     let one = force(&["line.model=transmission_line"]);
     let same = largest(&one, &of(&uncoupled));
-    assert!(same < 0.05 * largest(&assumed, &one), "{same} N");
+    let apart = largest(&assumed, &one);
+    assert!(same < 0.05 * apart, "{same} N of {apart} N");
 }
 
 #[test]

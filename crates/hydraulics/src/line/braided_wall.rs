@@ -46,7 +46,7 @@ impl BraidedWall {
     /// Free ends do not move, and take up what the catalogue says.
     /// ```
     /// use phea_hydraulics::line::{BraidedWall, Member};
-    /// let hose = phea_hydraulics::reference_rig::hose();
+    /// let hose = phea_hydraulics::reference_rig::hose().filled();
     /// let wall = BraidedWall::neutral(&hose, Member::Nominal, 5e4, 0.2);
     /// let area = std::f64::consts::FRAC_PI_4 * hose.bore * hose.bore;
     /// assert_eq!(wall.coupling_compliance + wall.axial_compliance, 0.0);
@@ -58,7 +58,8 @@ impl BraidedWall {
         BraidedWall::of_hose(hose, member, axial_compliance, -axial_compliance, mass_per_length)
     }
 
-    /// The wall of these compliances in 1/N that swells as the catalogue says where its ends are closed and free.
+    /// The wall of these compliances in 1/N that swells as the catalogue says where its ends are closed and free, around the
+    /// bore that the hose has at the operating pressure.
     ///
     /// ```text
     /// C_pp = 1/beta_free - 2 A C_pF - A C_FF
@@ -67,7 +68,7 @@ impl BraidedWall {
     /// # Example
     /// ```
     /// use phea_hydraulics::line::{BraidedWall, Member};
-    /// let hose = phea_hydraulics::reference_rig::hose();
+    /// let hose = phea_hydraulics::reference_rig::hose().filled();
     /// let stiff_braid = BraidedWall::of_hose(&hose, Member::Nominal, 2e-5, -1e-5, 0.2);
     /// assert_eq!(stiff_braid.pressure_compliance, 1.0 / hose.wall_modulus(Member::Nominal));
     /// ```
@@ -78,6 +79,7 @@ impl BraidedWall {
         coupling_compliance: f64,
         mass_per_length: f64,
     ) -> BraidedWall {
+        let hose = hose.filled();
         let area = std::f64::consts::FRAC_PI_4 * hose.bore * hose.bore;
         let pulled = area * (2.0 * coupling_compliance + axial_compliance);
         let pressure_compliance = 1.0 / hose.wall_modulus(member) - pulled;

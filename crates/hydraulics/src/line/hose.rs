@@ -10,8 +10,11 @@ use crate::parameter::{ParameterError, Problems};
 pub struct Hose<S = f64> {
     /// Bore D_ho in m.
     pub bore: S,
-    /// Volumetric expansion per length at the working pressure, E, in m3/m (ISO 6801).
+    /// Volumetric expansion per length at the working pressure, E, in m3/m (ISO 6801): what the thesis' modulus refers to.
     pub volumetric_expansion: S,
+    /// The same at the operating pressure, in m3/m: how much more oil a metre holds than its bore. Below zero only where the
+    /// straight line through a measured point of the catalogue misses the origin.
+    pub operating_expansion: S,
     /// Slope of the volumetric expansion over pressure, epsilon = dE/dp, in m3/(m Pa).
     pub expansion_slope: S,
     /// Dynamic over static wall modulus, r_beta.
@@ -62,6 +65,13 @@ impl Hose {
         let mut problems = Problems::default();
         problems.positive("bore", self.bore);
         problems.not_negative("volumetric_expansion", self.volumetric_expansion);
+        let oil = FRAC_PI_4 * self.bore * self.bore + self.operating_expansion;
+        problems.require(
+            "operating_expansion",
+            self.operating_expansion,
+            oil > 0.0,
+            "such that the hose holds oil at the operating pressure",
+        );
         problems.positive("expansion_slope", self.expansion_slope);
         let Stiffening { nominal, minimum, maximum } = self.dynamic_stiffening;
         let at_least_one = "at least 1: a hose is softest when it is slow";
@@ -71,20 +81,12 @@ impl Hose {
         problems.into_vec()
     }
 
-    /// Compliance per length counted in the expanded bore throughout, in m2/Pa: epsilon/r_beta + (A_ho + E)/beta_0.
-    ///
-    /// The thesis refers beta_hoSS to the expanded bore (6.24) but multiplies it with the unexpanded volume (6.25),
-    /// which understates this by the factor A_ho/(A_ho + E).
-    pub fn expanded_compliance_per_length(&self, fluid_modulus: f64, member: Member) -> f64 {
-        let area = FRAC_PI_4 * self.bore * self.bore + self.volumetric_expansion;
-        self.expansion_slope / self.dynamic_stiffening.member(member) + area / fluid_modulus
-    }
-
     /// The same numbers as constants of another scalar.
     pub fn map<S: Scalar>(&self) -> Hose<S> {
         Hose {
             bore: S::from(self.bore),
             volumetric_expansion: S::from(self.volumetric_expansion),
+            operating_expansion: S::from(self.operating_expansion),
             expansion_slope: S::from(self.expansion_slope),
             dynamic_stiffening: self.dynamic_stiffening.map(),
         }
@@ -92,6 +94,51 @@ impl Hose {
 }
 
 impl<S: Scalar> Hose<S> {
+    /// Compliance of a metre by its sheet, in m2/Pa: what the wall gives, and the oil that the bore holds at the operating
+    /// pressure p.
+    ///
+    /// ```text
+    /// dV/dp / L = epsilon/r_beta + (A_ho + E(p))/beta_0
+    /// ```
+    ///
+    /// The thesis refers beta_hoSS to the bore expanded at the working pressure (6.24) but multiplies it with the unexpanded
+    /// volume (6.25): of what the wall gives that leaves A_ho/(A_ho + E).
+    ///
+    /// # Example
+    /// Eaton Synflex 3130-08 at 35 bar
+    /// ```
+    /// # use phea_hydraulics::{line::Member, reference_rig::hose};
+    /// let compliance = hose().compliance_per_length(1.45e9, Member::Nominal);
+    /// assert!((compliance - 5.3992e-13).abs() < 0.5e-17); // ORIGIN: recomputed by comparisons/recompute_rig.py
+    /// ```
+    pub fn compliance_per_length(&self, fluid_modulus: S, member: Member) -> S {
+        let area = S::from(FRAC_PI_4) * self.bore.squared() + self.operating_expansion;
+        self.expansion_slope / self.dynamic_stiffening.member(member) + area / fluid_modulus
+    }
+
+    /// The same hose with the bore that it has at the operating pressure, its expansion counted from there: its moduli refer
+    /// to the oil that it holds.
+    ///
+    /// # Example
+    /// ```
+    /// # use phea_hydraulics::{line::Member, reference_rig::hose};
+    /// let filled = hose().filled();
+    /// assert!((filled.bore - 13.084e-3).abs() < 0.5e-6); // ORIGIN: analytic, sqrt(D^2 + 4 E/pi)
+    /// let wall = filled.bore * filled.bore * std::f64::consts::FRAC_PI_4 / filled.wall_modulus(Member::Nominal);
+    /// assert!((wall * 5.0 / hose().expansion_slope - 1.0).abs() < 1e-12);
+    /// ```
+    pub fn filled(&self) -> Hose<S> {
+        let squared_bore = self.bore.squared() + S::from(1.0 / FRAC_PI_4) * self.operating_expansion;
+        let zero = S::from(0.0);
+        Hose {
+            bore: squared_bore.sqrt(),
+            volumetric_expansion: zero,
+            operating_expansion: zero,
+            expansion_slope: self.expansion_slope,
+            dynamic_stiffening: self.dynamic_stiffening,
+        }
+    }
+
     /// Static wall modulus beta_hoSS in Pa: [`static_hose_modulus`].
     pub fn static_modulus(&self) -> S {
         static_hose_modulus(self.bore, self.volumetric_expansion, self.expansion_slope)

@@ -23,19 +23,21 @@ pub struct StandardLinearSolid<S = f64> {
 }
 
 impl StandardLinearSolid {
-    /// The wall of a hose: beta_hoSS at rest, r_beta times that at high frequency.
+    /// The wall of a hose: its modulus at rest, of the bore it has at the operating pressure, and r_beta times that at high
+    /// frequency.
     ///
     /// # Example
     /// ```
     /// use num_complex::Complex64;
     /// use phea_hydraulics::line::{Member, StandardLinearSolid};
-    /// let hose = phea_hydraulics::reference_rig::hose();
+    /// let hose = phea_hydraulics::reference_rig::hose().filled();
     /// let wall = StandardLinearSolid::of_hose(&hose, Member::Nominal, 0.1);
     /// let compliance = |frequency| wall.compliance(Complex64::new(0.0, frequency));
     /// assert!((compliance(1e-6).re * hose.static_modulus() - 1.0).abs() < 1e-9);
     /// assert!((compliance(1e6).re * hose.wall_modulus(Member::Nominal) - 1.0).abs() < 1e-9);
     /// ```
     pub fn of_hose(hose: &Hose, member: Member, relaxation_time: f64) -> StandardLinearSolid {
+        let hose = hose.filled();
         StandardLinearSolid {
             static_modulus: hose.static_modulus(),
             dynamic_modulus: hose.wall_modulus(member),

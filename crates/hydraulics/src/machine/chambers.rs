@@ -107,6 +107,11 @@ fn aerated_side(
     line: &Line,
     member: Member,
 ) -> AeratedSide<f64> {
+    let filled = line.filled();
+    let line = match model {
+        StiffnessModel::Uniform => line,
+        StiffnessModel::ByVolume => &filled,
+    };
     let (fluid, wall) = match line {
         Line::Hose { hose, .. } => (1.0, 1.0 / hose.wall_modulus(member)),
         Line::Pipe { pipe, .. } => (1.0, pipe.wall_compliance()),

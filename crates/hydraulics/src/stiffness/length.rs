@@ -37,28 +37,29 @@ pub fn hose_length_uniform<S: Scalar>(stiffness: S, area: S, stroke: S, bore: S,
 /// Hose length L_ho of each line for a wanted least stiffness K_H, the chamber keeping the fluid's modulus, in m.
 ///
 /// ```text
-/// L_ho = (2 A^2/K_H - A L/(2 beta_0)) 4 beta_e/(pi D^2)                           thesis (6.25), corrected
+/// L_ho = (2 A^2/K_H - A L/(2 beta_0)) / (epsilon/r_beta + (A_ho + E(p))/beta_0)      thesis (6.25), corrected
 /// ```
 ///
-/// For a symmetric cylinder, as [`hose_length_uniform`]; a negative length means that no hose is needed.
+/// For a symmetric cylinder, as [`hose_length_uniform`]; the divisor is [`crate::line::Hose::compliance_per_length`]; a negative
+/// length means that no hose is needed.
 ///
 /// # Example
-/// The thesis' 2.24e6 N/m takes 4.05 m of its hose and not 1.5 m.
+/// The thesis' 2.24e6 N/m takes 3.64 m of its hose and not 1.5 m.
 /// ```
-/// use phea_hydraulics::stiffness::hose_length_by_volume;
-/// let length = hose_length_by_volume(2.24e6, 1.58336e-3, 0.5, 12.7e-3, 2.609e8, 1.45e9);
-/// assert!((length - 4.05_f64).abs() < 0.005);
+/// use phea_hydraulics::{line::Member, reference_rig::hose, stiffness::hose_length_by_volume};
+/// let metre = hose().compliance_per_length(1.45e9, Member::Nominal);
+/// let length = hose_length_by_volume(2.24e6, 1.58336e-3, 0.5, metre, 1.45e9);
+/// assert!((length - 3.64_f64).abs() < 0.005);
 /// ```
 pub fn hose_length_by_volume<S: Scalar>(
     stiffness: S,
     area: S,
     stroke: S,
-    bore: S,
-    effective_modulus: S,
+    compliance_per_length: S,
     fluid_modulus: S,
 ) -> S {
     let needed = S::from(2.0) * area.squared() / stiffness - area * stroke / (S::from(2.0) * fluid_modulus);
-    needed * S::from(4.0 / PI) * effective_modulus / bore.squared()
+    needed / compliance_per_length
 }
 
 /// Least stiffness K_H over the stroke from the hose length of each line, one modulus for hose and chamber, in N/m.

@@ -107,10 +107,11 @@ pub struct ModelDifference {
 /// # let cylinder = Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: 0.5, moving_mass: 13.1,
 /// #     dead_volume_a: 0.0, dead_volume_b: 0.0 };
 /// # let dynamic_stiffening = Stiffening::certain(5.0);
-/// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, expansion_slope: 2.236e-12, dynamic_stiffening };
+/// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, operating_expansion: 7.774e-6,
+/// #     expansion_slope: 2.236e-12, dynamic_stiffening };
 /// # let line = Line::Hose { hose, length: 1.5 };
 /// let difference = model_difference([1.45e9; 2], &cylinder, [&line, &line], Member::Nominal);
-/// assert!((difference.minimum_ratio - 2.24).abs() < 0.005);
+/// assert!((difference.minimum_ratio - 2.07).abs() < 0.005);
 /// ```
 pub fn model_difference(
     fluid_moduli: [f64; 2],

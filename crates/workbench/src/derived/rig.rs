@@ -81,8 +81,16 @@ fn lines(rig: &Rig, list: &mut List) {
                 "β_e at the greatest stiffening r_β",
             );
         }
-        let wave_speed = (effective / components.fluid.density).sqrt();
-        list.add(name("wave_speed"), "c", wave_speed, "m/s", "c = sqrt(β_e/ρ)");
+        let compliance = line.compliance(modulus, Member::Nominal);
+        let equation = match line {
+            Line::Hose { .. } => "C_{ho} = ε L_{ho}/r_β + (A_{ho} + E(p)) L_{ho}/β_0",
+            Line::Pipe { .. } | Line::Volume { .. } => "C_{ho} = V_{ho}/β_e",
+        };
+        list.add(name("compliance"), "C_ho", compliance, "m3/Pa", equation);
+        // a wave runs in the oil that the bore holds
+        let filled = line.filled().effective_modulus(modulus, Member::Nominal);
+        let wave_speed = (filled / components.fluid.density).sqrt();
+        list.add(name("wave_speed"), "c", wave_speed, "m/s", "c = sqrt(β_e(p)/ρ)");
         if let Line::Hose { length, .. } | Line::Pipe { length, .. } = line {
             list.add(name("wave_travel_time"), "T", length / wave_speed, "s", "T = L_{ho}/c");
         }
@@ -96,6 +104,13 @@ fn hose_wall(hose: Hose, name: &impl Fn(&str) -> String, list: &mut List) {
         hose.volumetric_expansion,
         "m3/m",
         "E(p_S) = E_1 + ε (p_S - p_1)",
+    );
+    list.add(
+        name("operating_expansion"),
+        "E(p)",
+        hose.operating_expansion,
+        "m3/m",
+        "E(p) = E_1 + ε (p - p_1), p = (p_S + p_T)/2",
     );
     list.add(name("static_modulus"), "β_hoSS", hose.static_modulus(), "Pa", "β_{hoSS} = (A_{ho} + E)/ε");
     list.add(
@@ -120,7 +135,7 @@ fn stiffness(rig: &Rig, list: &mut List) {
     let uniform = "C_A = (V_{ho} + V_{A0} + A_A x)/β_e";
     list.add("stiffness.uniform.minimum", "K_H", models.uniform.minimum, "N/m", uniform);
     list.add("stiffness.uniform.maximum", "K_H", models.uniform.maximum, "N/m", uniform);
-    let by_volume = "C_A = V_{ho}/β_e + (V_{A0} + A_A x)/β_0";
+    let by_volume = "C_A = C_{ho} + (V_{A0} + A_A x)/β_0";
     list.add("stiffness.by_volume.minimum", "K_H", models.by_volume.minimum, "N/m", by_volume);
     list.add("stiffness.by_volume.maximum", "K_H", models.by_volume.maximum, "N/m", by_volume);
     if let Line::Hose { .. } = components.line_a {

@@ -88,12 +88,9 @@ impl Machine {
         let Some(lines) = lines(declared, [line_a, line_b], &fluid, rig.actuator.mean_pressure())? else {
             return Ok(None);
         };
-        let lumped = self.linear_parameters(rig).compliances;
-        let [modulus_a, modulus_b] = self.moduli(rig);
-        let of_lines =
-            [line_a.compliance(modulus_a, Member::Nominal), line_b.compliance(modulus_b, Member::Nominal)];
-        let chambers = [lumped[0] - of_lines[0], lumped[1] - of_lines[1]];
-        Ok(Some(BehindLines { lines, chambers, lumped }))
+        let compliances = |machine: &Machine| machine.linear_parameters(rig).compliances;
+        let bare = Machine { lines: self.lines.map(without_volume), ..self.clone() };
+        Ok(Some(BehindLines { lines, chambers: compliances(&bare), lumped: compliances(self) }))
     }
 
     /// The same numbers as constants of another scalar.
@@ -247,6 +244,15 @@ fn stiffened_alike(line: Line) -> Line {
         }
         Line::Pipe { .. } | Line::Volume { .. } => line,
     }
+}
+
+/// The same line, holding nothing.
+fn without_volume(mut line: Line) -> Line {
+    match &mut line {
+        Line::Hose { length, .. } | Line::Pipe { length, .. } => *length = 0.0,
+        Line::Volume { volume, .. } => *volume = 0.0,
+    }
+    line
 }
 
 fn set_of_line<S: Scalar>(line: &mut Line<S>, key: &str, value: S) -> bool {

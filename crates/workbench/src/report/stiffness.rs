@@ -21,7 +21,7 @@ pub(super) fn chapter(rig: &Rig, linearization: &Linearization) -> Chapter {
         p { (prose(&stiffness_sentence(&linearization.stiffness_models))) }
         p {
             "This project declares " code { (declared) } ". The thesis' tables are made with " code { "uniform" }
-            "; a steel chamber does not become softer because a hose is screwed to it, so " code { "by_volume" } " is what a rig will show."
+            "; a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its sheet says, so " code { "by_volume" } " is what a rig will show."
         }
         (place(&figures[0]))
     };

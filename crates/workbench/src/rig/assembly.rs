@@ -19,13 +19,14 @@ pub(super) const KINEMATIC_VISCOSITY: f64 = 46e-6;
 /// # Errors
 /// Every parameter that is impossible as physics.
 pub(crate) fn actuator(declared: &project::Actuator) -> Result<Actuator, ActuatorError> {
-    let pressure = declared.supply.pressure;
+    let [pressure, tank_pressure] = [declared.supply.pressure, declared.supply.tank_pressure];
+    let pressures = ExpansionPressures::of(&declared.supply);
     Actuator::new(Components {
         fluid: fluid(&declared.fluid),
-        supply: Supply { pressure, tank_pressure: declared.supply.tank_pressure },
+        supply: Supply { pressure, tank_pressure },
         valve: valve(&declared.valve),
-        line_a: line(&declared.line.a, pressure),
-        line_b: line(&declared.line.b, pressure),
+        line_a: line(&declared.line.a, pressures),
+        line_b: line(&declared.line.b, pressures),
         cylinder: cylinder(&declared.cylinder),
         friction: friction(declared.cylinder.friction.as_ref()),
         force_sensor: ForceSensor { stiffness: declared.force_sensor.stiffness },
@@ -75,44 +76,72 @@ fn valve(declared: &project::Valve) -> Servovalve {
     }
 }
 
-/// The line as physics; the volumetric expansion is taken at the working pressure, the supply's.
-fn line(declared: &project::Line, working_pressure: f64) -> Line {
+/// The line as physics.
+fn line(declared: &project::Line, pressures: ExpansionPressures) -> Line {
     match declared.component() {
         Some(Component::Volume { volume, effective_bulk_modulus }) => {
             Line::Volume { volume, effective_bulk_modulus }
         }
         Some(Component::Pipe { pipe, length }) => Line::Pipe { pipe: self::pipe(pipe), length },
         Some(Component::Hose { bore, expansion, expansion_pressure, expansion_slope, length, .. }) => {
-            let hose = hose(
-                bore,
-                expansion_at(working_pressure, expansion, expansion_pressure, expansion_slope),
-                expansion_slope,
-                declared.dynamic_stiffening,
-            );
-            Line::Hose { hose, length }
+            let expansion = Expansion { measured: expansion, at: expansion_pressure, slope: expansion_slope };
+            Line::Hose { hose: hose(bore, expansion, pressures, declared.dynamic_stiffening), length }
         }
         // A project that was read without error has a component; refused as physics otherwise.
         None => Line::Volume { volume: f64::NAN, effective_bulk_modulus: f64::NAN },
     }
 }
 
+/// Pressures in Pa at which a hose's expansion is wanted.
+#[derive(Clone, Copy)]
+pub(super) struct ExpansionPressures {
+    /// The supply's: the thesis refers the wall's modulus to it.
+    working: f64,
+    /// Midway between supply and tank, where the chambers of an idle actuator stand.
+    operating: f64,
+}
+
+impl ExpansionPressures {
+    pub(super) fn of(supply: &project::Supply) -> ExpansionPressures {
+        let operating = 0.5 * (supply.pressure + supply.tank_pressure);
+        ExpansionPressures { working: supply.pressure, operating }
+    }
+}
+
+/// What a catalogue says of a hose's volumetric expansion, m3/m, Pa and m3/(m Pa).
+#[derive(Clone, Copy)]
+pub(super) struct Expansion {
+    pub(super) measured: Option<f64>,
+    pub(super) at: Option<f64>,
+    pub(super) slope: f64,
+}
+
+impl Expansion {
+    /// The declared point and the slope from there, or the slope from zero, m3/m; a point without a pressure is taken as that of
+    /// the working pressure.
+    fn at(self, pressure: f64, working_pressure: f64) -> f64 {
+        match self.measured {
+            Some(measured) => measured + self.slope * (pressure - self.at.unwrap_or(working_pressure)),
+            None => self.slope * pressure,
+        }
+    }
+}
+
 pub(super) fn hose(
     bore: f64,
-    volumetric_expansion: f64,
-    expansion_slope: f64,
+    expansion: Expansion,
+    pressures: ExpansionPressures,
     stiffening: Option<Interval>,
 ) -> Hose {
     let Interval { nominal, minimum, maximum } = stiffening.unwrap_or(Interval::exactly(1.0));
     let dynamic_stiffening = Stiffening { nominal, minimum, maximum };
-    Hose { bore, volumetric_expansion, expansion_slope, dynamic_stiffening }
-}
-
-/// Volumetric expansion at a pressure: the declared point and the slope from there, or the slope from zero, m3/m.
-pub(super) fn expansion_at(pressure: f64, expansion: Option<f64>, at: Option<f64>, slope: f64) -> f64 {
-    match (expansion, at) {
-        (Some(expansion), Some(at)) => expansion + slope * (pressure - at),
-        (Some(expansion), None) => expansion,
-        (None, _) => slope * pressure,
+    let ExpansionPressures { working, operating } = pressures;
+    Hose {
+        bore,
+        volumetric_expansion: expansion.at(working, working),
+        operating_expansion: expansion.at(operating, working),
+        expansion_slope: expansion.slope,
+        dynamic_stiffening,
     }
 }
 

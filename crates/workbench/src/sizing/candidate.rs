@@ -94,7 +94,7 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
 
 /// Pressure surge of a flow stopped at once, Pa: rho c v = v sqrt(rho beta_e), Joukowsky (1898).
 fn surge_pressure(problem: &SizingProblem, option: &HoseOption, velocity: f64) -> f64 {
-    let wall = option.hose.wall_modulus(Member::Maximum);
+    let wall = option.hose.filled().wall_modulus(Member::Maximum);
     let modulus = series_modulus(problem.fluid_modulus, wall);
     velocity * (problem.density * modulus).sqrt()
 }

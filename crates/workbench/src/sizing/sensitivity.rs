@@ -72,8 +72,11 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
             around(hose.volumetric_expansion),
             &|value| {
                 let share = value / hose.volumetric_expansion;
-                let expansion_slope = hose.expansion_slope * share;
-                (problem.clone(), Hose { volumetric_expansion: value, expansion_slope, ..hose })
+                let [operating_expansion, expansion_slope] =
+                    [hose.operating_expansion, hose.expansion_slope].map(|number| number * share);
+                let volumetric_expansion = value;
+                let hose = Hose { volumetric_expansion, operating_expansion, expansion_slope, ..hose };
+                (problem.clone(), hose)
             },
         ),
     ]

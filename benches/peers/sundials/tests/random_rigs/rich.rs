@@ -41,6 +41,7 @@ fn hose(chance: &mut Chance, bore: f64, length: f64, pressure: f64) -> Line {
     let hose = Hose {
         bore,
         volumetric_expansion: pressure * expansion_slope,
+        operating_expansion: 0.5 * pressure * expansion_slope,
         expansion_slope,
         dynamic_stiffening: Stiffening::certain(chance.between(1.0, 5.0)),
     };
