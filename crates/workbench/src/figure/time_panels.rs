@@ -22,6 +22,8 @@ pub struct TimePanel {
     pub reference: Option<TimeSeries>,
     /// What was wished of the curves: lines that they should not cross.
     pub wished: Vec<TimeSeries>,
+    /// Least and greatest value that are shown, SI; absent, what holds all curves.
+    pub shown: Option<[f64; 2]>,
     /// Height of the frame in view box units.
     pub height: f64,
 }
@@ -81,7 +83,11 @@ fn drawn(panel: &TimePanel, span_s: [f64; 2]) -> Panel {
     let reference = panel.reference.as_ref().map(points);
     let wished: Vec<Vec<(f64, f64)>> = panel.wished.iter().map(points).collect();
     let values = curves.iter().chain(&reference).chain(&wished).flatten().map(|point| point.1);
-    let y = Axis::fit_linear(panel.unit.title(&panel.quantity), values);
+    let title = panel.unit.title(&panel.quantity);
+    let y = match panel.shown {
+        Some([least, most]) => Axis::linear(title, panel.unit.of(least), panel.unit.of(most)),
+        None => Axis::fit_linear(title, values),
+    };
     let mut marks: Vec<Mark> = Vec::new();
     marks.extend(reference.map(|points| Mark::Line { points, stroke: reference_stroke() }));
     marks.extend(wished.into_iter().map(|points| Mark::Line { points, stroke: wished_stroke() }));

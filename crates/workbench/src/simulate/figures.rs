@@ -202,7 +202,15 @@ pub(super) fn around(window: &Window, end_s: f64) -> [f64; 2] {
 }
 
 pub(super) fn panel(quantity: &str, unit: DisplayUnit, height: f64, series: Vec<TimeSeries>) -> TimePanel {
-    TimePanel { quantity: quantity.to_string(), unit, series, reference: None, wished: vec![], height }
+    TimePanel {
+        quantity: quantity.to_string(),
+        unit,
+        series,
+        reference: None,
+        wished: vec![],
+        shown: None,
+        height,
+    }
 }
 
 pub(super) fn over_time(record: &Record, values: Vec<f64>) -> TimeSeries {

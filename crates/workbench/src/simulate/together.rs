@@ -3,7 +3,7 @@
 use super::figures::{
     AFTER_S, BEFORE_S, around, asked_for, close_up, enlarged, instant, moves_load, over_time, panel,
 };
-use super::{Record, ScenarioRun, Window, Wish, cause_words};
+use super::{Cause, Record, ScenarioRun, Window, Wish, cause_words};
 use crate::figure::{DisplayUnit, Figure, TimePanel, TimePanelsInput, TimeSeries, Words, time_panels};
 
 /// A run with the name of its controller.
@@ -31,7 +31,7 @@ pub(crate) fn together(runs: &[Named<'_>], number: usize, wish: Option<&Wish>) -
             format!("Enlarged: {}", cause_words(window)),
             format!("What the event does to force, command and load pressure, {}.", whose(runs)),
         );
-        let shown = ([210.0, 110.0], moves_load(window));
+        let shown = ([190.0, 110.0], moves_load(window));
         figures.push(drawn(words, runs, around(window, end), shown, wish));
     }
     figures
@@ -47,10 +47,9 @@ pub(crate) fn at_a_glance(name: &str, runs: &[Named<'_>], wish: Option<&Wish>) -
     let span = if from < end { [(from - BEFORE_S).max(0.0), until.min(end)] } else { [0.0, end] };
     let title = format!("Force over time: {}", first.run.name);
     let caption = format!("The nonlinear machine, {}{}.", whose(runs), of_wish(wish));
-    let input = TimePanelsInput {
-        panels: vec![forces(runs, 300.0, span, wish), commands(runs, 120.0)],
-        ..input(runs, span)
-    };
+    let mut input =
+        TimePanelsInput { panels: forces_enlarged(runs, [220.0, 110.0], span, wish), ..input(runs, span) };
+    input.panels.push(commands(runs, 90.0));
     Some(time_panels(Words::new(name, title, caption), &input))
 }
 
@@ -128,11 +127,13 @@ fn drawn(
         let (one, other) = (record.signal("pressure_a_pa"), record.signal("pressure_b_pa"));
         one.iter().zip(&other).map(|(one, other)| one - other).collect()
     };
-    let mut panels = vec![
-        forces(runs, tall, span_s, wish),
-        commands(runs, low),
-        panel("p_A - p_B", DisplayUnit::BAR, low, each(runs, load_pressure)),
-    ];
+    // a step is held against its wish; what moves the load, and the whole, show the piston
+    let mut panels = match positions {
+        true => vec![forces(runs, tall, span_s, wish)],
+        false => forces_enlarged(runs, [tall, low], span_s, wish),
+    };
+    panels.push(commands(runs, low));
+    panels.push(panel("p_A - p_B", DisplayUnit::BAR, low, each(runs, load_pressure)));
     if positions {
         let piston = each(runs, |record| record.signal("position_m"));
         panels.push(panel("Piston", DisplayUnit::MILLIMETRE, 90.0, piston));
@@ -179,6 +180,48 @@ fn forces(runs: &[Named<'_>], height: f64, span_s: [f64; 2], wish: Option<&Wish>
     }
 }
 
+/// The force, and below it enlarged what lies around the reference of the one step that is seen, where something was wished of it.
+fn forces_enlarged(
+    runs: &[Named<'_>],
+    [tall, low]: [f64; 2],
+    span_s: [f64; 2],
+    wish: Option<&Wish>,
+) -> Vec<TimePanel> {
+    let whole = forces(runs, tall, span_s, wish);
+    let near = near_reference(runs, span_s).filter(|_| !whole.wished.is_empty());
+    let enlarged = near.map(|shown| TimePanel {
+        quantity: "F_e enlarged".to_string(),
+        shown: Some(shown),
+        height: low,
+        ..whole.clone()
+    });
+    std::iter::once(whole).chain(enlarged).collect()
+}
+
+/// Parts of the step that are shown enlarged, below and above its reference; more where the force overshoots by more.
+const BELOW: f64 = 0.06;
+const ABOVE: f64 = 0.04;
+const OVERSHOOTS: f64 = 1.2;
+
+/// Around the reference after the one step that begins in a span; `None` where none does, or several.
+fn near_reference(runs: &[Named<'_>], span_s: [f64; 2]) -> Option<[f64; 2]> {
+    let [start_s, end_s] = span_s;
+    let seen = |window: &Window| (start_s..end_s).contains(&window.start_s);
+    let first = runs.first()?.run;
+    let mut steps = first.windows.iter().enumerate().filter_map(|(index, (window, _))| match window.cause {
+        Cause::ReferenceStep { from_n, to_n } if seen(window) => Some((index, to_n, to_n - from_n)),
+        _ => None,
+    });
+    let ((index, to_n, step_n), None) = (steps.next()?, steps.next()) else { return None };
+    let metrics = runs.iter().filter_map(|named| named.run.windows.get(index));
+    let overshoots = metrics.filter_map(|(_, metrics)| metrics.overshoot_percent.ok());
+    let above = overshoots.fold(ABOVE, |most, percent| most.max(0.01 * OVERSHOOTS * percent));
+    let ends = [to_n - BELOW * step_n, to_n + above * step_n];
+    (above.is_finite() && above < 1.0).then(|| [ends[0].min(ends[1]), ends[0].max(ends[1])])
+}
+
 fn commands(runs: &[Named<'_>], height: f64) -> TimePanel {
-    panel("Command U_C", DisplayUnit::VOLT, height, each(runs, |record| record.control_v.clone()))
+    // the longer title does not fit beside a low frame
+    let title = if height < 100.0 { "U_C" } else { "Command U_C" };
+    panel(title, DisplayUnit::VOLT, height, each(runs, |record| record.control_v.clone()))
 }
