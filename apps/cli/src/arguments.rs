@@ -37,7 +37,16 @@ pub(crate) enum Command {
         length: Option<String>,
     },
     /// Linear models: poles, differences, stiffness over the stroke, driving-point impedance, passivity
-    Linearize(Common),
+    Linearize {
+        #[command(flatten)]
+        common: Common,
+        /// A number of the project that goes from one end to another, such as "line.length=0.5 m..3 m": poles, K_H and bandwidth over it
+        #[arg(long, value_name = "KEY=FROM..TO", allow_hyphen_values = true)]
+        sweep: Option<String>,
+        /// Values of the sweep, both ends among them (11)
+        #[arg(long, value_name = "N", requires = "sweep")]
+        points: Option<usize>,
+    },
     /// Audit the given controller and prefilter: every plant of the family, every specification, its whole band
     Verify {
         #[command(flatten)]

@@ -9,6 +9,7 @@ use phea_workbench::command::{
     self, CampaignRequest, CommandError, FrequencyOptions, Request, SimulateRequest,
 };
 use phea_workbench::design::DESIGNED_PROJECT;
+use phea_workbench::linearize::SweepRequest;
 use phea_workbench::project::{self, Loaded, STARTER};
 use phea_workbench::shaping::{SHAPED_PROJECT, Shaped};
 use phea_workbench::source::Destination;
@@ -25,7 +26,10 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::New { folder } => new(&folder),
         Command::Check(common) => on_project(&common, &Request::Check),
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }),
-        Command::Linearize(common) => on_project(&common, &Request::Linearize),
+        Command::Linearize { common, sweep: None, .. } => on_project(&common, &Request::Linearize),
+        Command::Linearize { common, sweep: Some(range), points } => {
+            on_project(&common, &Request::LinearizeSwept(SweepRequest { range, points }))
+        }
         Command::Verify { common, on_machine: false } => on_project(&common, &Request::Verify),
         Command::Verify { common, on_machine: true } => on_project(&common, &Request::VerifyOnMachine),
         Command::Shape { common, changes, prefilter, save } => {

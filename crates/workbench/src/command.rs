@@ -1,6 +1,7 @@
 //! The commands on a project: what is asked, and the answer that a shell prints and writes.
 
 mod campaign;
+mod linearize;
 mod refusal;
 mod simulate;
 
@@ -21,10 +22,10 @@ use crate::derived::{self, derive};
 use crate::design::{self, DesignError, design_project};
 use crate::family::{FamilyError, family};
 use crate::figure::FigureError;
-use crate::linearize::{self, linearize};
+use crate::linearize::SweepRequest;
 use crate::project::{Loaded, Project, Report as Refusal};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
-use crate::report::{Report, report};
+use crate::report::{Decision, Report, report};
 use crate::rig::{Rig, RigError, sizing_problem};
 use crate::robust::robust_problem;
 use crate::shaping::{self, RequestedChange, Shaped, ShapingError, shape};
@@ -33,6 +34,7 @@ use crate::sizing::{self, Question, size};
 use crate::source::{Destination, Held, Source};
 use crate::specification::{self, specifications, wishes};
 use crate::trial::{self, Agreement, tried};
+use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
 
 /// What is asked of a project.
@@ -49,6 +51,8 @@ pub enum Request {
     },
     /// Linear models.
     Linearize,
+    /// The same while a number of the project goes from one end to another.
+    LinearizeSwept(SweepRequest),
     /// The audit of the given controller.
     Verify,
     /// The same, tried on the nonlinear machine.
@@ -87,7 +91,7 @@ impl Request {
         match self {
             Request::Check => "check",
             Request::Size { .. } => "size",
-            Request::Linearize => "linearize",
+            Request::Linearize | Request::LinearizeSwept(_) => "linearize",
             Request::Verify | Request::VerifyOnMachine => "verify",
             Request::Shape { .. } => "shape",
             Request::Design { .. } => "design",
@@ -268,6 +272,7 @@ pub fn answer_into(
             size_answer(source, loaded, catalogues, question)
         }
         Request::Linearize => linearize_answer(loaded),
+        Request::LinearizeSwept(asked) => swept_answer(source, loaded, catalogues, asked),
         Request::Verify => verify_answer(source, loaded, watch),
         Request::VerifyOnMachine => verify_on_machine(source, loaded, watch),
         Request::Shape { shaped, changes } => {
@@ -370,18 +375,6 @@ fn size_answer(
     })
 }
 
-fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
-    let rig = Rig::new(&loaded.project)?;
-    let given = controller(&loaded.project)?;
-    let linearization = linearize(&rig, given.as_ref(), &sensor(&loaded.project)?)?;
-    Ok(Answer {
-        text: linearize::text(loaded, &linearization),
-        json: linearize::json(loaded, &linearization),
-        files: linearize::files(&linearization),
-        affirmative: true,
-    })
-}
-
 fn verify_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
     let view = audit_project(source, &loaded.project, watch)?;
     Ok(Answer {
@@ -448,6 +441,7 @@ pub fn compare_watched(
 struct ReportBody {
     summary: Vec<SummaryRow>,
     figures: Vec<String>,
+    decision: Decision,
 }
 
 #[derive(Serialize)]
@@ -476,6 +470,7 @@ fn report_answer(
     let body = ReportBody {
         summary: report.summary.iter().map(|(name, text)| SummaryRow { name, text: text.clone() }).collect(),
         figures: report.figures.iter().map(|figure| figure.name.clone()).collect(),
+        decision: report.decision.clone(),
     };
     Ok(Answer { text, json: answer::json("report", loaded, body), files: files(&report)?, affirmative: true })
 }

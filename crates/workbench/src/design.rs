@@ -138,6 +138,15 @@ impl ProjectDesign {
         })
     }
 
+    /// The project with the designed laws in place of its own.
+    pub fn deployed(&self, project: &Project) -> Project {
+        Project {
+            controller: Some(self.declared_controller.clone()),
+            prefilter: self.declared_prefilter.clone().or_else(|| project.prefilter.clone()),
+            ..project.clone()
+        }
+    }
+
     /// How the machine does beside the linear loop, as far as it was tried.
     pub fn agreement(&self) -> Agreement {
         self.trial.as_ref().map_or(Agreement::Agrees, Trial::agreement)
@@ -206,12 +215,7 @@ fn tried_design(
     told: &ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Option<Trial>, CommandError> {
-    let deployed = Project {
-        controller: Some(told.declared_controller.clone()),
-        prefilter: told.declared_prefilter.clone().or_else(|| project.prefilter.clone()),
-        ..project.clone()
-    };
-    tried(source, &deployed, &told.designed.problem, &told.designed.view, watch)
+    tried(source, &told.deployed(project), &told.designed.problem, &told.designed.view, watch)
 }
 
 /// What a design that knows nothing of samples and delay becomes by them: made for the continuous loop, audited in the sampled one. `None`

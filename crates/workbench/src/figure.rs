@@ -29,6 +29,7 @@ pub mod placement;
 pub mod plot;
 pub mod png;
 pub mod pole_map;
+pub mod pole_sweep;
 pub mod prefilter_band;
 pub mod scene;
 pub mod schematic;
@@ -56,6 +57,7 @@ pub use measured_response::{MeasuredResponseInput, ResponseCurve, measured_respo
 pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, nichols};
 pub use nomograph::{NomographBore, NomographInput, nomograph};
 pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
+pub use pole_sweep::{PoleSweepInput, PoleSweepPoint, pole_sweep};
 pub use prefilter_band::{PrefilterPanel, PrefilterPoint, prefilter_band};
 pub use schematic::{
     ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, schematic,

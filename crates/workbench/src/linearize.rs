@@ -3,6 +3,8 @@
 
 mod agreement;
 mod answer;
+mod sweep;
+mod sweep_answer;
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -31,7 +33,10 @@ pub(crate) use agreement::{WITHIN_DB, WITHIN_DEG};
 pub(crate) use answer::{
     comparisons, difference_text, located, mode_words, models, passivity_sentence, root_list,
 };
-pub use answer::{files, json, text};
+pub use answer::{files, json, json_swept, text};
+pub use sweep::{MOST_POINTS, POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
+pub use sweep_answer::sweep_text;
+pub(crate) use sweep_answer::{sweep_figure, sweep_files};
 
 use crate::rig::Rig;
 

@@ -1,21 +1,26 @@
 //! The report: everything this workbench can say of a rig, as one page that needs nothing else.
 
 mod audit;
+mod badge;
 mod bounds;
 mod campaign;
 mod chapter;
 mod closed_loops;
 mod derived;
 mod design;
+mod driven;
 mod driving;
 mod family_steps;
 mod impedance;
+mod judged;
 mod load_motion;
 mod models;
+mod opening;
 mod page;
 mod provenance;
 mod response;
 mod rig;
+mod sensitivity;
 mod simulation;
 mod sizing;
 mod specifications;
@@ -27,12 +32,13 @@ use maud::{Markup, html};
 
 pub(crate) use bounds::files as bound_files;
 pub use chapter::Chapter;
+pub use opening::{Decided, Decision};
 pub use typeset::{prose, typeset};
 
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use crate::answer::{OutputFile, significant};
-use crate::audit::{ProjectAudit, audit_problem, verdict_words};
+use crate::audit::{ProjectAudit, verdict_words};
 use crate::command::{CommandError, Watch};
 use crate::control::{controller, sensor};
 use crate::derived::derive;
@@ -42,10 +48,13 @@ use crate::linearize::{Linearization, linearize};
 use crate::project::{Actuator, Loaded, Project, Signal};
 use crate::quantity::DisplayUnit;
 use crate::rig::Rig;
-use crate::robust::robust_problem;
 use crate::sizing::{Question, Sizing, SizingProblem, size};
 use crate::source::Source;
-use crate::trial::tried;
+
+use driven::Driven;
+use judged::Judged;
+use opening::{Contents, opening};
+use page::Page;
 
 /// A report, before it is written anywhere.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +67,12 @@ pub struct Report {
     pub tables: Vec<OutputFile>,
     /// What it says in a few numbers.
     pub summary: Vec<(&'static str, String)>,
+    /// What its first page says.
+    pub decision: Decision,
 }
+
+/// The fact on the linear step, which the first page tells of the machine instead.
+const NOMINAL_LOOP: &str = "Nominal linear loop";
 
 /// Band of the settling time where no scenario states one, percent.
 const SETTLING_BAND: f64 = 1.0;
@@ -66,9 +80,10 @@ const SETTLING_BAND: f64 = 1.0;
 /// Scale of the figures as PNG: 1120 pixels of width.
 const PNG_SCALE: f64 = 2.0;
 
-/// The report of a project: rig, derived quantities, stiffness, sizing, linear models, impedance, response, simulation, campaign, specifications, templates
-/// and bounds, the audit of the given controller, provenance; of a plant given as a transfer function, the robust part of it. Where the
-/// project has `[design]`, or gives no controller, one is designed and shown beside the given one.
+/// The report of a project: the page that decides, then rig, sizing, simulation, campaign, specifications, audit and design; in the appendix derived
+/// quantities, stiffness, linear models, impedance, the linear step, what happens inside the machine, its sensitivity, templates and bounds,
+/// provenance. Of a plant given as a transfer function, the robust part of it. Where the project has `[design]`, or gives no controller, one is
+/// designed, and everything is shown of both.
 ///
 /// # Errors
 /// [`CommandError`] if there is nothing to report on or something in it cannot be computed.
@@ -79,68 +94,130 @@ pub fn report(
     watch: Watch<'_>,
 ) -> Result<Report, CommandError> {
     let project = &loaded.project;
-    let (mut chapters, mut facts) = match &project.actuator {
-        Some(actuator) => rig_chapters(project, actuator, problem)?,
-        None if project.specifications.is_empty() => return Err(CommandError::NothingToReport),
-        None => (vec![], vec![]),
-    };
-    chapters.extend(simulation::chapter(source, project, watch)?);
-    chapters.extend(campaign::chapter(source, loaded, watch)?);
-    let mut tables = Vec::new();
-    if !project.specifications.is_empty() {
-        tables = robust_chapters(source, loaded, watch, (&mut chapters, &mut facts))?;
+    if project.actuator.is_none() && project.specifications.is_empty() {
+        return Err(CommandError::NothingToReport);
     }
-    chapters.push(provenance::chapter(loaded));
-    let html = page::page(&project.title, &heading(project, &facts), &chapters, &footer(loaded));
-    let figures = chapters.into_iter().flat_map(|chapter| chapter.figures).collect();
-    Ok(Report { html, figures, tables, summary: facts })
+    let mut rig =
+        project.actuator.as_ref().map(|actuator| rig_part(project, actuator, problem)).transpose()?;
+    let judged = judged::judged(source, loaded, watch)?;
+    let deployed = judged.as_ref().and_then(Judged::found).map(|view| view.deployed(project));
+    let driven = driven::driven(source, project, deployed.as_ref(), watch)?;
+    let campaign = campaign::driven(source, loaded, watch)?;
+
+    let mut facts = rig.as_ref().map(|rig| rig.facts.clone()).unwrap_or_default();
+    let mut results: Facts = driven.iter().flat_map(Driven::facts).collect();
+    results.extend(campaign.as_ref().and_then(|campaign| campaign.fact.clone()));
+    let contents = Contents {
+        project,
+        judged: judged.as_ref(),
+        driven: driven.as_ref(),
+        facts: &facts,
+        results: &results,
+        no_hose_fits: rig.as_ref().is_some_and(|rig| rig.no_hose_fits),
+    };
+    let charts = judged.as_ref().map(charts).transpose()?.unwrap_or_default();
+    let (first, decision) = opening(&contents, charts.opening);
+    facts.extend(results);
+    facts.extend(judged.iter().flat_map(verdict_facts));
+
+    let mut chapters: Vec<Chapter> =
+        rig.as_mut().map(|rig| std::mem::take(&mut rig.chapters)).unwrap_or_default();
+    let mut appendix: Vec<Chapter> = rig.map(|rig| rig.appendix).unwrap_or_default();
+    if let Some(driven) = &driven {
+        chapters.push(simulation::chapter(project, driven));
+        appendix.extend(simulation::inside(project, driven));
+        let has_given = driven.sides.first().is_some_and(|side| side.name == driven::GIVEN);
+        let varied = deployed.as_ref().filter(|_| !has_given).unwrap_or(project);
+        appendix.extend(sensitivity::chapter(source, varied, driven, watch)?);
+    }
+    chapters.extend(campaign.map(|campaign| campaign.chapter));
+    let mut tables = Vec::new();
+    if let Some(judged) = &judged {
+        chapters.extend(robust_chapters(project, judged)?);
+        appendix.push(bounds::chapter(&judged.problem, &judged.bounds, charts.appendix));
+        tables = robust_tables(loaded, judged);
+    }
+    appendix.push(provenance::chapter(loaded));
+    let page = Page {
+        title: &project.title,
+        subtitle: subtitle(project),
+        opening: &first,
+        chapters: &chapters,
+        appendix: &appendix,
+    };
+    let html = page.html(&footer(loaded));
+    let all = std::iter::once(first).chain(chapters).chain(appendix);
+    let figures = all.flat_map(|chapter| chapter.figures).collect();
+    Ok(Report { html, figures, tables, summary: facts, decision })
 }
 
 /// What the report says in a few numbers: name and text.
 type Facts = Vec<(&'static str, String)>;
 
-/// Adds the chapters on the robust method with their facts, and gives their tables.
-fn robust_chapters(
-    source: &dyn Source,
-    loaded: &Loaded,
-    watch: Watch<'_>,
-    (chapters, facts): (&mut Vec<Chapter>, &mut Facts),
-) -> Result<Vec<OutputFile>, CommandError> {
-    let project = &loaded.project;
-    let robust = robust_problem(source, project)?;
-    chapters.push(specifications::chapter(project, &robust)?);
-    let view = match robust.has_controller {
-        true => Some(audit_problem(&robust, watch)?),
-        false => None,
-    };
-    let found = robust.at_design_frequencies(watch)?;
-    chapters.push(bounds::chapter(&robust, &found, view.as_ref())?);
-    let mut tables = bounds::files(&robust, &found);
-    if let Some(view) = &view {
-        let trial = tried(source, project, &robust, view, watch)?;
-        chapters.push(audit::chapter(&robust, view, trial.as_ref())?);
-        facts.push(("Audit of the controller", audit_words(view)));
-        facts.extend(trial.map(|trial| ("Controller on the machine", trial::words(&trial))));
-        tables.extend(crate::audit::files(view));
+/// Nichols charts: the one that decides, and the one of the given loop alone where that is another.
+#[derive(Default)]
+struct Charts {
+    opening: Option<Figure>,
+    appendix: Option<Figure>,
+}
+
+fn charts(judged: &Judged) -> Result<Charts, CommandError> {
+    let Judged { problem, bounds, given, designed, .. } = judged;
+    let given = bounds::chart(problem, bounds, given.as_ref())?;
+    let both = designed.as_ref().map(|designed| designed.nichols(bounds)).transpose()?.flatten();
+    Ok(match both {
+        Some(both) => Charts { opening: Some(both), appendix: Some(given) },
+        None => Charts { opening: Some(given), appendix: None },
+    })
+}
+
+/// The chapters on specifications, audit and design.
+fn robust_chapters(project: &Project, judged: &Judged) -> Result<Vec<Chapter>, CommandError> {
+    let mut chapters = vec![specifications::chapter(project, &judged.problem)?];
+    if let Some(view) = &judged.given {
+        chapters.push(audit::chapter(&judged.problem, view, judged.given_trial.as_ref())?);
     }
-    if design::is_asked_for(project) {
-        let designed = design::designed(source, loaded, watch)?;
-        chapters.push(designed.chapter(&found)?);
+    if let Some(designed) = &judged.designed {
+        chapters.push(designed.chapter()?);
+    }
+    Ok(chapters)
+}
+
+/// Bounds, margins and the designed project as files.
+fn robust_tables(loaded: &Loaded, judged: &Judged) -> Vec<OutputFile> {
+    let mut tables = bounds::files(&judged.problem, &judged.bounds);
+    tables.extend(judged.given.iter().flat_map(crate::audit::files));
+    tables.extend(judged.designed.iter().flat_map(|designed| designed.files(loaded)));
+    tables
+}
+
+/// The verdicts in a few words.
+fn verdict_facts(judged: &Judged) -> Facts {
+    let mut facts = Vec::new();
+    facts.extend(judged.given.as_ref().map(|view| ("Audit of the controller", audit_words(view))));
+    facts.extend(judged.given_trial.as_ref().map(|trial| ("Controller on the machine", trial::words(trial))));
+    if let Some(designed) = &judged.designed {
         facts.push(("Designed controller", designed.words()));
         facts.extend(
             designed.trial().map(|trial| ("Designed controller on the machine", trial::words(trial))),
         );
-        tables.extend(designed.files(loaded));
     }
-    Ok(tables)
+    facts
 }
 
-/// The chapters on an actuator, and its facts.
-fn rig_chapters(
+/// What is said of an actuator, whatever its controller does.
+struct RigPart {
+    chapters: Vec<Chapter>,
+    appendix: Vec<Chapter>,
+    facts: Facts,
+    no_hose_fits: bool,
+}
+
+fn rig_part(
     project: &Project,
     actuator: &Actuator,
     problem: Option<&SizingProblem>,
-) -> Result<(Vec<Chapter>, Facts), CommandError> {
+) -> Result<RigPart, CommandError> {
     let rig = Rig::new(project)?;
     let controller = controller(project)?;
     let sensor = sensor(project)?;
@@ -153,19 +230,21 @@ fn rig_chapters(
         .map(|given| linear_loop(&linearization.plant.command, given, &sensor, band))
         .transpose()?;
 
-    let mut chapters = vec![
-        rig::chapter(project, actuator, &rig),
-        derived::chapter(&derived),
-        stiffness::chapter(&rig, &linearization),
-    ];
+    let mut chapters = vec![rig::chapter(project, actuator, &rig)];
     if let (Some(problem), Some(sizing)) = (problem, &sizing) {
         chapters.push(sizing::chapter(problem, sizing));
     }
-    chapters.push(models::chapter(&linearization)?);
-    chapters.push(impedance::chapter(project, &linearization)?);
-    chapters.push(response::chapter(project, given.as_ref(), reference(project)));
-    let facts = summary(&linearization, sizing.as_ref(), problem, given.as_ref());
-    Ok((chapters, facts))
+    let appendix = vec![
+        stiffness::chapter(&rig, &linearization),
+        derived::chapter(&derived),
+        models::chapter(&linearization)?,
+        impedance::chapter(project, &linearization)?,
+        response::chapter(project, given.as_ref(), reference(project)),
+    ];
+    let mut facts = vec![("Load", rig::load_words(actuator)), ("Lines", rig::lines_words(actuator))];
+    facts.extend(summary(&linearization, sizing.as_ref(), problem, given.as_ref()));
+    let no_hose_fits = sizing.is_some_and(|sizing| sizing.best().is_none());
+    Ok(RigPart { chapters, appendix, facts, no_hose_fits })
 }
 
 /// The verdict of the audit in a few words.
@@ -231,7 +310,8 @@ fn summary(
     });
     if let Some(best) = best {
         let gain = significant(best.branch.gain_v_per_n, 3);
-        facts.push(("Hose", format!("{} m a line at K_p = {gain} V/N", significant(best.length_m(), 3))));
+        let length = significant(best.length_m(), 3);
+        facts.push(("Hose", format!("{}, {length} m a line at K_p = {gain} V/N", best.option.name)));
     } else if sizing.is_some() {
         facts.push(("Hose", "none of the catalogue fits".to_string()));
     }
@@ -242,7 +322,7 @@ fn summary(
         passive.push_str(&format!(", closed loop {}", port(view)));
     }
     facts.push(("Towards the load", passive));
-    facts.extend(given.map(|given| ("Nominal linear loop", loop_words(given))));
+    facts.extend(given.map(|given| (NOMINAL_LOOP, loop_words(given))));
     facts
 }
 
@@ -259,25 +339,10 @@ fn loop_words(given: &LinearLoop) -> String {
     }
 }
 
-fn heading(project: &Project, summary: &[(&'static str, String)]) -> Markup {
-    html! {
-        header {
-            h1 { (project.title) }
-            p.subtitle {
-                @if project.actuator.is_some() { "Hydraulic force control through added compliance: sizing, linear models, robust control" }
-                @else { "Robust control of an uncertain plant" }
-            }
-            dl.facts { @for (name, value) in summary { div class=(fact_class(value)) { dt { (name) } dd { (prose(value)) } } } }
-        }
-    }
-}
-
-/// The class of a fact: its edge tells what its first word says too.
-fn fact_class(value: &str) -> &'static str {
-    match value.split([':', ' ']).next() {
-        Some("met" | "agrees") => "fact good-edge",
-        Some("violated" | "contradicts" | "infeasible" | "unstable" | "none") => "fact bad-edge",
-        _ => "fact",
+fn subtitle(project: &Project) -> &'static str {
+    match project.actuator {
+        Some(_) => "Hydraulic force control through added compliance: sizing, linear models, robust control",
+        None => "Robust control of an uncertain plant",
     }
 }
 

@@ -28,6 +28,8 @@ mod sum;
 mod sums;
 mod tally;
 mod text;
+mod together;
+mod wish;
 
 pub use bench::Bench;
 pub use check::{Check, Difference, MetricDifferences, simulate_checked};
@@ -58,6 +60,8 @@ pub(crate) use text::{
     ABSENT, MEASURED, METRICS, cause_words, cells_of, coarse_sentence, compare_text, headline,
     measured_cells, occurrence_sentences, small_as_zero, text,
 };
+pub(crate) use together::{Named, at_a_glance, close_ups, measured_together, together};
+pub(crate) use wish::{Held, Wish};
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::simulation::{EquilibriumError, ProfileError, SimulationError};

@@ -20,6 +20,10 @@ pub struct TimePanel {
     pub series: Vec<TimeSeries>,
     /// What is commanded, drawn apart from the others.
     pub reference: Option<TimeSeries>,
+    /// What was wished of the curves: lines that they should not cross.
+    pub wished: Vec<TimeSeries>,
+    /// Least and greatest value that are shown, SI; absent, what holds all curves.
+    pub shown: Option<[f64; 2]>,
     /// Height of the frame in view box units.
     pub height: f64,
 }
@@ -58,6 +62,9 @@ pub fn time_panels(words: Words, input: &TimePanelsInput) -> Figure {
     if input.panels.iter().any(|panel| panel.reference.is_some()) {
         legend.push(LegendEntry::line(&input.reference, reference_stroke()));
     }
+    if input.panels.iter().any(|panel| !panel.wished.is_empty()) {
+        legend.push(LegendEntry::line("wished in time", wished_stroke()));
+    }
     let x = Axis::linear("Time (s)", start, end);
     words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
 }
@@ -66,14 +73,24 @@ fn reference_stroke() -> Stroke {
     Stroke::solid(Role::Muted, 1.6)
 }
 
+fn wished_stroke() -> Stroke {
+    Stroke::solid(Role::Bad, 1.4).dashed(Dash::LongDash)
+}
+
 fn drawn(panel: &TimePanel, span_s: [f64; 2]) -> Panel {
     let points = |series: &TimeSeries| within(series, panel.unit, span_s);
     let curves: Vec<Vec<(f64, f64)>> = panel.series.iter().map(points).collect();
     let reference = panel.reference.as_ref().map(points);
-    let values = curves.iter().chain(&reference).flatten().map(|point| point.1);
-    let y = Axis::fit_linear(panel.unit.title(&panel.quantity), values);
+    let wished: Vec<Vec<(f64, f64)>> = panel.wished.iter().map(points).collect();
+    let values = curves.iter().chain(&reference).chain(&wished).flatten().map(|point| point.1);
+    let title = panel.unit.title(&panel.quantity);
+    let y = match panel.shown {
+        Some([least, most]) => Axis::linear(title, panel.unit.of(least), panel.unit.of(most)),
+        None => Axis::fit_linear(title, values),
+    };
     let mut marks: Vec<Mark> = Vec::new();
     marks.extend(reference.map(|points| Mark::Line { points, stroke: reference_stroke() }));
+    marks.extend(wished.into_iter().map(|points| Mark::Line { points, stroke: wished_stroke() }));
     let lines = curves.into_iter().enumerate();
     marks.extend(lines.map(|(i, points)| Mark::Line { points, stroke: series_stroke(i) }));
     Panel { y, height: panel.height, marks }

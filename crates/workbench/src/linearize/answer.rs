@@ -5,7 +5,10 @@ use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 use phea_hydraulics::linear::{ModeShare, ResponseDifference};
 use serde::Serialize;
 
-use super::{Agreement, Comparison, Linearization, PortView, WITHIN_DB, WITHIN_DEG, stiffness_sentence};
+use super::sweep_answer::{SweepRow, SweptRow, head, rows};
+use super::{
+    Agreement, Comparison, Linearization, PortView, Sweep, WITHIN_DB, WITHIN_DEG, stiffness_sentence,
+};
 use crate::answer::{self, Number, OutputFile, significant, table};
 use crate::caveat::of_models;
 use crate::project::Loaded;
@@ -25,6 +28,10 @@ struct Body<'a> {
     compliance_hidden_above_rad_per_s: f64,
     load_step_final_force_n: FinalForce<'a>,
     warnings: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    swept: Option<SweptRow<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    sweep: Vec<SweepRow>,
 }
 
 #[derive(Serialize)]
@@ -167,6 +174,16 @@ fn difference(comparison: &Comparison) -> Difference {
 
 /// The JSON object of `linearize`.
 pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
+    answer::json("linearize", loaded, body(loaded, linearization))
+}
+
+/// The same with what a sweep found.
+pub fn json_swept(loaded: &Loaded, linearization: &Linearization, sweep: &Sweep) -> String {
+    let body = Body { swept: Some(head(sweep)), sweep: rows(sweep), ..body(loaded, linearization) };
+    answer::json("linearize", loaded, body)
+}
+
+fn body<'a>(loaded: &Loaded, linearization: &'a Linearization) -> Body<'a> {
     let [nominal, softest, stiffest] = linearization.stiffness;
     let models = &linearization.stiffness_models;
     let modes = linearization.modes.iter().map(|mode| Mode {
@@ -175,7 +192,7 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
         decay_ratio: Number(mode.decay_ratio),
         reason: mode.absence.map(|absence| absence.to_string()),
     });
-    let body = Body {
+    Body {
         stiffness: StiffnessRow {
             minimum_n_per_m: nominal.minimum,
             maximum_n_per_m: nominal.maximum,
@@ -210,8 +227,9 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
         compliance_hidden_above_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
         load_step_final_force_n: final_force(linearization),
         warnings: of_models(&loaded.project),
-    };
-    answer::json("linearize", loaded, body)
+        swept: None,
+        sweep: vec![],
+    }
 }
 
 fn factors(function: &TransferFunction) -> FactorRow {

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
-use super::chapter::{Chapter, cell, place, table};
+use super::chapter::{Chapter, cell, place, table, wide};
 use super::typeset::prose;
 use super::{closed_loops, family_steps, trial};
 use crate::audit::{
@@ -116,7 +116,7 @@ fn violations(view: &ProjectAudit) -> Markup {
             ]);
         }
     }
-    table(&["specification", "band", "worst margin", "plant"], 9, &rows)
+    wide(&table(&["specification", "band", "worst margin", "plant"], 9, &rows))
 }
 
 /// The worst plant of each specification, a column each.

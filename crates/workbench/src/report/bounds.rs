@@ -17,16 +17,12 @@ use crate::figure::{
 };
 use crate::robust::{DesignFrequency, RobustProblem};
 
-pub(super) fn chapter(
-    problem: &RobustProblem,
-    found: &[DesignFrequency],
-    view: Option<&ProjectAudit>,
-) -> Result<Chapter, CommandError> {
+/// The chapter; `chart` is the Nichols chart of the given loop where that stands nowhere else.
+pub(super) fn chapter(problem: &RobustProblem, found: &[DesignFrequency], chart: Option<Figure>) -> Chapter {
     let templates: Vec<Template> = found.iter().map(|one| one.template.template.clone()).collect();
-    let nominal = nominal_loop(problem)?;
     let mut figures = vec![template_figure(&templates)];
     figures.extend(specification_figures(problem, found));
-    figures.push(combined_figure(problem, found, nominal, view));
+    figures.extend(chart);
     let given = problem.has_controller;
     let body = html! {
         p { "What the robust method works with: the plants at each design frequency (templates), and the gains and phases that the nominal open loop must keep out of there (bounds), so that every plant keeps to the specifications. Bounds count the interior of a template as plants, where that is known to be filled." }
@@ -41,7 +37,7 @@ pub(super) fn chapter(
         }
         @for sentence in feasibility(problem, found) { div.callout.bad-edge { p { (sentence) } } }
     };
-    Ok(Chapter { anchor: "bounds", title: "Templates and bounds", body, figures })
+    Chapter { anchor: "bounds", title: "Templates and bounds", body, figures }
 }
 
 fn template_row(one: &DesignFrequency) -> Vec<Markup> {
@@ -115,12 +111,16 @@ pub(super) fn nominal_loop(problem: &RobustProblem) -> Result<Option<FrequencySe
     Ok(Some(series))
 }
 
-fn combined_figure(
+/// The Nichols chart of the given loop, or of the bounds alone.
+///
+/// # Errors
+/// A loop that cannot be computed.
+pub(super) fn chart(
     problem: &RobustProblem,
     found: &[DesignFrequency],
-    nominal: Option<FrequencySeries>,
     view: Option<&ProjectAudit>,
-) -> Figure {
+) -> Result<Figure, CommandError> {
+    let nominal = nominal_loop(problem)?;
     let bounds: Vec<Bound> = found.iter().map(|one| one.bounds.union.clone()).collect();
     let input = NicholsInput {
         loops: nominal.into_iter().collect(),
@@ -131,7 +131,7 @@ fn combined_figure(
         contours_db: vec![],
     };
     let caption = "The bounds of all specifications together, the nominal loop with its design frequencies, and the plants that violate a specification most: a loop above a bound that is open upwards, and outside of closed ones, keeps to all of them at that frequency.";
-    nichols(Words::new("nichols", "Nichols chart of the loop", caption), &input)
+    Ok(nichols(Words::new("nichols", "Nichols chart of the loop", caption), &input))
 }
 
 /// The open loop of each worst plant, where it violates.

@@ -26,15 +26,21 @@ const WORST: usize = 4;
 /// Significant digits of the numbers in the tables: an answer has all of them.
 const DIGITS: usize = 3;
 
-/// The chapter; `None` for a project without `[campaign]`.
+/// The chapter, and what it says in a few words.
+pub(super) struct Campaign {
+    pub(super) chapter: Chapter,
+    pub(super) fact: Option<(&'static str, String)>,
+}
+
+/// The campaign of a report; `None` for a project without `[campaign]`.
 ///
 /// # Errors
 /// [`CommandError::Stopped`] where the watch stops it.
-pub(super) fn chapter(
+pub(super) fn driven(
     source: &dyn Source,
     loaded: &Loaded,
     watch: Watch<'_>,
-) -> Result<Option<Chapter>, CommandError> {
+) -> Result<Option<Campaign>, CommandError> {
     if loaded.project.campaign.is_none() {
         return Ok(None);
     }
@@ -47,12 +53,37 @@ pub(super) fn chapter(
         let figures = pictures(&plan, &summary)?;
         Ok((plan, rows.len() as u64, summary, figures))
     };
-    let (body, figures) = match told() {
-        Err(error) => (html! { div.callout.bad-edge { p { "Not driven: " (error) "." } } }, vec![]),
+    let (body, figures, fact) = match told() {
+        Err(error) => (html! { div.callout.bad-edge { p { "Not driven: " (error) "." } } }, vec![], None),
         Ok((_, count, _, _)) if count < RUNS => return Err(CommandError::Stopped),
-        Ok((plan, _, summary, figures)) => (body(&plan, &summary, &figures), figures),
+        Ok((plan, _, summary, figures)) => {
+            (body(&plan, &summary, &figures), figures, Some(("Campaign", words(&plan, &summary))))
+        }
     };
-    Ok(Some(Chapter { anchor, title, body, figures }))
+    Ok(Some(Campaign { chapter: Chapter { anchor, title, body, figures }, fact }))
+}
+
+/// Metrics of an event that a reader wants first, the best of those that it has.
+const TOLD_FIRST: [&str; 4] =
+    ["disturbance_peak_n", "settling_time_s", "tracking_error_peak_n", "force_peak_n"];
+/// Events that are told in a few words.
+const TOLD_EVENTS: usize = 2;
+
+/// How many ran to their end, and between what most of them lie in the first events.
+fn words(plan: &Plan, summary: &Summary) -> String {
+    let mut told = vec![format!("{} of {RUNS} runs to their end", summary.statuses[0])];
+    let windows = plan.windows().iter().zip(&summary.metrics);
+    let of_window = |(window, spreads): (&Window, &[Option<Spread>; METRIC_NAMES.len()])| {
+        let place = |name: &&str| METRIC_NAMES.iter().position(|known| known == name);
+        let metric = TOLD_FIRST.iter().filter_map(place).find(|metric| spreads[*metric].is_some())?;
+        let [low, .., high] = spreads[metric]?.quantiles.map(|value| significant(value, DIGITS));
+        let (name, unit) = metric_words(metric).split_once(" (").unwrap_or_default();
+        let unit = unit.trim_end_matches(')');
+        Some(format!("{}: {name} {low} to {high} {unit}", cause_words(window)))
+    };
+    told.extend(windows.filter_map(of_window).take(TOLD_EVENTS));
+    let [least, .., most] = QUANTILES;
+    format!("{} ({least} to {most} %)", told.join("; "))
 }
 
 fn body(plan: &Plan, summary: &Summary, figures: &[Figure]) -> Markup {

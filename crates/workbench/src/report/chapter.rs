@@ -27,11 +27,23 @@ pub(super) fn place(figure: &Figure) -> Markup {
     }
 }
 
+/// Columns from which a table takes the whole width of the paper.
+const WIDE: usize = 5;
+
+fn table_class(headings: &[&str]) -> &'static str {
+    if headings.len() >= WIDE { "table wide" } else { "table" }
+}
+
+/// What takes the whole width of the paper, however few its columns are.
+pub(super) fn wide(content: &Markup) -> Markup {
+    html! { div.wide { (content) } }
+}
+
 /// A table with these headings; the columns from `numbers_from` on hold numbers.
 pub(super) fn table(headings: &[&str], numbers_from: usize, rows: &[Vec<Markup>]) -> Markup {
     let class = |column: usize| if column >= numbers_from { "number" } else { "" };
     html! {
-        div.table { table {
+        div class=(table_class(headings)) { table {
             thead { tr { @for (column, heading) in headings.iter().enumerate() { th class=(class(column)) { (prose(heading)) } } } }
             tbody { @for row in rows { tr { @for (column, cell) in row.iter().enumerate() { td class=(class(column)) { (cell) } } } } }
         } }
@@ -46,7 +58,7 @@ pub(super) fn grouped(
 ) -> Markup {
     let class = |column: usize| if column >= numbers_from { "number" } else { "" };
     html! {
-        div.table { table {
+        div class=(table_class(headings)) { table {
             thead { tr { @for (column, heading) in headings.iter().enumerate() { th class=(class(column)) { (prose(heading)) } } } }
             @for (name, rows) in groups {
                 tbody.group {

@@ -70,6 +70,22 @@ pub(super) fn designed(
 }
 
 impl Designed {
+    /// The design, where one was found.
+    pub(super) fn found(&self) -> Option<&ProjectDesign> {
+        match self {
+            Designed::Found(found) => Some(&found.view),
+            Designed::Nothing(_) => None,
+        }
+    }
+
+    /// The chart of both loops among the bounds; `None` without a design or a nominal plant.
+    ///
+    /// # Errors
+    /// A loop that cannot be computed.
+    pub(super) fn nichols(&self, bounds: &[DesignFrequency]) -> Result<Option<Figure>, CommandError> {
+        self.found().map_or(Ok(None), |view| Ok(loops::figure(view, bounds)?))
+    }
+
     /// In a few words.
     pub(super) fn words(&self) -> String {
         let Designed::Found(found) = self else { return "none found".to_string() };
@@ -108,13 +124,13 @@ impl Designed {
         }
     }
 
-    /// The chapter; `found` are the bounds at the design frequencies.
+    /// The chapter.
     ///
     /// # Errors
     /// A loop that cannot be computed.
-    pub(super) fn chapter(&self, found: &[DesignFrequency]) -> Result<Chapter, CommandError> {
+    pub(super) fn chapter(&self) -> Result<Chapter, CommandError> {
         match self {
-            Designed::Found(design) => chapter(design, found),
+            Designed::Found(design) => chapter(design),
             Designed::Nothing(sentences) => Ok(Chapter {
                 anchor: ANCHOR,
                 title: TITLE,
@@ -133,10 +149,9 @@ impl Designed {
 const ANCHOR: &str = "design";
 const TITLE: &str = "Design of the controller";
 
-fn chapter(found: &FoundDesign, bounds: &[DesignFrequency]) -> Result<Chapter, CommandError> {
+fn chapter(found: &FoundDesign) -> Result<Chapter, CommandError> {
     let view = &found.view;
     let side = &view.designed;
-    let nichols = loops::figure(view, bounds)?;
     let magnitudes = magnitudes::figures(view)?;
     let prefilters = prefilter::figures(view)?;
     let steps = family_steps::figure(
@@ -156,7 +171,7 @@ fn chapter(found: &FoundDesign, bounds: &[DesignFrequency]) -> Result<Chapter, C
         h3 { @if view.published.is_some() { "Given and designed side by side" } @else { "What it reaches" } }
         (tables::comparison(view))
         @if let Some(continuous) = &view.continuous { p { (sampling::sentence(side, continuous)) } }
-        (opened("The loops among the bounds", &nichols.iter().collect::<Vec<_>>()))
+        p { "The first page has the Nichols chart." }
         (opened("The closed loops of the family", &magnitudes.iter().collect::<Vec<_>>()))
         (opened("The prefilter", &prefilters.iter().collect::<Vec<_>>()))
         @match &steps {
@@ -172,8 +187,7 @@ fn chapter(found: &FoundDesign, bounds: &[DesignFrequency]) -> Result<Chapter, C
         h3 { "What this rests on" }
         ul { @for sentence in basis(&side.view) { li { (prose(&sentence)) } } }
     };
-    let mut figures: Vec<Figure> =
-        driven.into_iter().chain(nichols).chain(magnitudes).chain(prefilters).collect();
+    let mut figures: Vec<Figure> = driven.into_iter().chain(magnitudes).chain(prefilters).collect();
     figures.extend(steps.and_then(Result::ok));
     Ok(Chapter { anchor: ANCHOR, title: TITLE, body, figures })
 }

@@ -28,8 +28,6 @@ pub(super) fn chapter(
         }
         (without(project))
         (place(&figures[0]))
-        h3 { "Asymptotes" }
-        (asymptotes(linearization))
         h3 { "Passivity" }
         p { "A passive port stays stable against every passive load (poles not in the right half plane, simple ones with positive residue on the axis, Re Z not negative)." }
         ul {
@@ -49,6 +47,8 @@ pub(super) fn chapter(
             @if let Some(view) = &linearization.closed_loop { ", closed loop " (remains(view)) }
             "."
         }
+        h3 { "Asymptotes" }
+        (asymptotes(linearization))
     };
     Ok(Chapter { anchor: "impedance", title: "What the load feels", body, figures })
 }

@@ -5,29 +5,56 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::chapter::Chapter;
 use crate::figure::style_sheet;
 
-/// The whole page from its heading, the chapters and the footer.
-pub(super) fn page(title: &str, heading: &Markup, chapters: &[Chapter], footer: &Markup) -> String {
-    let style = format!("{}{}", include_str!("style.css"), style_sheet());
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (title) }
-                style { (PreEscaped(style)) }
-            }
-            body {
-                (heading)
-                nav aria-label="Contents" { ol { @for chapter in chapters { li { a href=(format!("#{}", chapter.anchor)) { (chapter.title) } } } } }
-                main {
-                    @for chapter in chapters {
-                        section id=(chapter.anchor) { h2 { (chapter.title) } (chapter.body) }
-                    }
+/// The whole page before it is written.
+pub(super) struct Page<'a> {
+    pub(super) title: &'a str,
+    pub(super) subtitle: &'a str,
+    /// The first sheet of paper: what decides.
+    pub(super) opening: &'a Chapter,
+    pub(super) chapters: &'a [Chapter],
+    pub(super) appendix: &'a [Chapter],
+}
+
+impl Page<'_> {
+    /// The file.
+    pub(super) fn html(&self, footer: &Markup) -> String {
+        let style = format!("{}{}", include_str!("style.css"), style_sheet());
+        html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    title { (self.title) }
+                    style { (PreEscaped(style)) }
                 }
-                footer { (footer) }
+                body {
+                    header { h1 { (self.title) } p.subtitle { (self.subtitle) } }
+                    main {
+                        section.opening id=(self.opening.anchor) { h2 { (self.opening.title) } (self.opening.body) }
+                        (self.contents())
+                        @for chapter in self.chapters { (section(chapter)) }
+                        @if !self.appendix.is_empty() { p.part { "Appendix" } }
+                        @for chapter in self.appendix { (section(chapter)) }
+                    }
+                    footer { (footer) }
+                }
+            }
+        }
+        .into_string()
+    }
+
+    fn contents(&self) -> Markup {
+        let links = |chapters: &[Chapter]| html! { @for chapter in chapters { li { a href=(format!("#{}", chapter.anchor)) { (chapter.title) } } } };
+        html! {
+            nav aria-label="Contents" {
+                ol { (links(self.chapters)) }
+                @if !self.appendix.is_empty() { p { "Appendix" } ol { (links(self.appendix)) } }
             }
         }
     }
-    .into_string()
+}
+
+fn section(chapter: &Chapter) -> Markup {
+    html! { section id=(chapter.anchor) { h2 { (chapter.title) } div.columns { (chapter.body) } } }
 }

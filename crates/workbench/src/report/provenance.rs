@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::chapter::{Chapter, cell, table};
-use crate::project::{Loaded, Origin, Project};
+use super::chapter::{Chapter, cell, table, wide};
+use crate::project::{LoadModel, Loaded, Origin, Project};
 
 pub(super) fn chapter(loaded: &Loaded) -> Chapter {
     let catalogue: Vec<Vec<Markup>> = loaded
@@ -30,7 +30,7 @@ pub(super) fn chapter(loaded: &Loaded) -> Chapter {
         }
         @if !catalogue.is_empty() {
             h3 { "From the catalogue" }
-            (table(&["value", "entry", "source"], 9, &catalogue))
+            (wide(&table(&["value", "entry", "source"], 9, &catalogue)))
         }
         @if !defaults.is_empty() {
             h3 { "Defaults" }
@@ -53,11 +53,11 @@ fn not_proven(project: &Project) -> &'static str {
     let law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
     match (law && !project.specifications.is_empty(), project.actuator.is_some()) {
         (true, true) => {
-            "The audit searched for the worst plant and frequency of the linear models; a search is no proof. How the nonlinear machine behaves is not said here."
+            "The audit searched for the worst plant and frequency of the linear models; a search is no proof. What the nonlinear machine does is shown for the steps and scenarios that were driven, and for no others."
         }
         (true, false) => "The audit searched for the worst plant and frequency; a search is no proof.",
         (false, true) => {
-            "This report computes nominal linear models and a sizing. It does not say that a controller holds for every plant of the declared uncertainty, nor how the nonlinear machine behaves."
+            "This report computes nominal linear models and a sizing. It does not say that a controller holds for every plant of the declared uncertainty; what the nonlinear machine does is shown for the scenarios that were driven, and for no others."
         }
         (false, false) => "No controller was given, and none was judged.",
     }
@@ -75,7 +75,10 @@ fn assumptions(project: &Project) -> Vec<String> {
         "Volumetric expansion and wall modulus of a hose are taken at the supply pressure; between the catalogue's point and another pressure the expansion follows the catalogue's slope; a supply beyond the point is warned of.".to_string(),
         "The hose wall has its dynamic modulus at every frequency; at rest it is softer by the stiffening ratio.".to_string(),
         "Friction enters the linear models by its viscous part alone.".to_string(),
-        "The load moves as prescribed; the force sensor's stiffness includes what it stands on.".to_string(),
+        match project.actuator.as_ref().map(|actuator| actuator.load.model) {
+            Some(LoadModel::Prescribed) => "The load moves as prescribed; the force sensor's stiffness includes what it stands on.".to_string(),
+            _ => "The load is the declared one; the force sensor's stiffness includes what it stands on.".to_string(),
+        },
         "A settling time of four time constants is the 2 % rule (1 % takes 4.6).".to_string(),
     ];
     let air = project.actuator.as_ref().and_then(|actuator| actuator.fluid.entrained_air);

@@ -105,6 +105,36 @@ fn line(declared: &project::Line) -> LineSymbol {
     }
 }
 
+/// The load in a few words.
+pub(super) fn load_words(actuator: &project::Actuator) -> String {
+    let load = &actuator.load;
+    let parts = [
+        load.mass.map(|mass| shown(mass, &MASS)),
+        load.stiffness.map(|stiffness| shown(stiffness, &STIFFNESS)),
+        load.damping.map(|damping| shown(damping, &quantity::DAMPING)),
+        load.gap.map(|gap| format!("gap {}", shown(gap, &LENGTH))),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    let stated = if parts.is_empty() { String::new() } else { format!(": {}", parts.join(", ")) };
+    match load.model {
+        LoadModel::Prescribed => {
+            format!("moves as prescribed, behind {}", shown(actuator.force_sensor.stiffness, &STIFFNESS))
+        }
+        LoadModel::SpringMassDamper => format!("spring, mass and damper{stated}"),
+        LoadModel::Wall => format!("a wall{stated}"),
+    }
+}
+
+/// The declared lines in a few words.
+pub(super) fn lines_words(actuator: &project::Actuator) -> String {
+    let words = |line: &project::Line| {
+        let name = line.hose.clone().map(|name| format!("{name}, "));
+        format!("{}{}", name.unwrap_or_default(), self::line(line).rows.join(", "))
+    };
+    let (a, b) = (words(&actuator.line.a), words(&actuator.line.b));
+    if a == b { format!("{a} each") } else { format!("A {a}; B {b}") }
+}
+
 fn controller_words(project: &Project, controller: &project::Controller) -> Vec<String> {
     let words =
         |letter: &str, transfer: &project::Transfer| match (&transfer.numerator, &transfer.denominator) {

@@ -1,103 +1,211 @@
-//! The chapter on the nonlinear machine: each scenario over time, what is read off it, and what changes with what is not known.
+//! The chapter on the nonlinear machine: each scenario over time under each controller, and what is read off it beside what was wished,
+//! published and measured.
 
 use maud::{Markup, html};
 
+use super::badge::{Mark, badge};
 use super::chapter::{Chapter, cell, grouped, place, table, unbroken};
+use super::driven::Driven;
 use super::driving;
-use super::typeset::prose;
 use crate::answer::significant;
-use crate::command::{CommandError, Watch};
-use crate::figure::{DisplayUnit, Figure};
-use crate::project::{FrictionModel, Project, Scenario};
+use crate::figure::Figure;
+use crate::project::{Project, Scenario};
 use crate::simulate::{
-    ABSENT, Cause, MEASURED, METRICS, Metrics, ScenarioRun, SimulateError, Window, cause_words, cells_of,
-    coarse_sentence, headline, measured_cells, occurrence_sentences, pictures, simulate_project,
+    ABSENT, Cause, Held, MEASURED, METRICS, Metrics, Named, ScenarioRun, SimulateError, Window, Wish,
+    cause_words, cells_of, close_ups, coarse_sentence, headline, measured_cells, measured_together,
+    occurrence_sentences, pictures, together,
 };
-use crate::source::Source;
 
-/// Factors of the sensitivity.
-const STIFFNESS_FACTORS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
-const FRICTION_FACTORS: [(f64, &str); 4] = [(0.0, "none"), (0.5, "half"), (1.0, "all of it"), (2.0, "twice")];
+/// Places of two metrics among all of them.
+const OVERSHOOT: usize = 0;
+const SETTLING: usize = 2;
 
-/// The chapter; `None` for a project without scenarios.
-///
-/// # Errors
-/// [`CommandError::Stopped`] where the watch stops it.
-pub(super) fn chapter(
-    source: &dyn Source,
-    project: &Project,
-    watch: Watch<'_>,
-) -> Result<Option<Chapter>, CommandError> {
-    if project.scenarios.is_empty() {
-        return Ok(None);
-    }
-    let (anchor, title) = ("simulation", "Simulation of the nonlinear machine");
-    let runs = match simulate_project(source, project, watch) {
-        Ok(runs) => runs,
-        Err(error) => return Ok(Some(Chapter { anchor, title, body: refused(&error), figures: vec![] })),
-    };
-    if runs.iter().any(ScenarioRun::was_cancelled) {
-        return Err(CommandError::Stopped);
-    }
-    let sensitivity = sensitivity(source, project, watch)?;
+/// The chapter.
+pub(super) fn chapter(project: &Project, driven: &Driven) -> Chapter {
     let mut figures = Vec::new();
     let mut parts = Vec::new();
-    for (number, (run, declared)) in runs.iter().zip(&project.scenarios).enumerate() {
-        let drawn = pictures(run, number + 1);
-        parts.push(scenario(run, declared, &drawn));
+    for (index, declared) in project.scenarios.iter().enumerate() {
+        let runs = driven.of_scenario(index);
+        if runs.is_empty() {
+            continue;
+        }
+        let drawn = drawn(&driven.drawn(index), index + 1, driven.wish.as_ref());
+        parts.push(scenario(&runs, declared, driven.wish.as_ref(), &drawn));
         figures.extend(drawn);
     }
+    let refused = driven.sides.iter().filter_map(|side| Some((side.name, side.runs.as_ref().err()?)));
     let body = html! {
-        p { "The machine as a whole: spool with saturation, the flow of each edge, chambers that grow and shrink, friction as declared, load cell and load, under the controller as it is deployed. Peaks and settling times are those of the solution over each step of the integration, so that they do not depend on the rows of the table." }
+        @for (name, error) in refused { (not_simulated(name, error, driven.sides.len())) }
+        @if !parts.is_empty() {
+            p { "The machine as a whole: spool with saturation, the flow of each edge, chambers that grow and shrink, friction as declared, load cell and load, under the controller as it is deployed. Peaks and settling times are those of the solution over each step of the integration, so that they do not depend on the rows of the table." }
+        }
         @for part in &parts { (part) }
-        (sensitivity_table(&sensitivity))
     };
-    Ok(Some(Chapter { anchor, title, body, figures }))
+    Chapter { anchor: "simulation", title: "Simulation of the nonlinear machine", body, figures }
 }
 
-fn refused(error: &SimulateError) -> Markup {
-    html! { div.callout.bad-edge { p { "Not simulated: " (error) "." } } }
+/// The appendix: what happens inside the machine at each event, for each of several controllers.
+pub(super) fn inside(project: &Project, driven: &Driven) -> Option<Chapter> {
+    let scenarios = 0..project.scenarios.len();
+    let several =
+        scenarios.map(|index| (index, driven.of_scenario(index))).filter(|(_, runs)| runs.len() > 1);
+    let figures: Vec<Figure> = several
+        .flat_map(|(index, runs)| runs.into_iter().flat_map(move |named| close_ups(named, index + 1)))
+        .collect();
+    let body = html! {
+        p { "What the figures of both controllers leave out: the spool beside the command, both chambers, and hydraulic beside measured force, between which lie the friction and the acceleration of the piston; in the order of Figure 6.17 of Ledezma (2019)." }
+        @for figure in &figures { (place(figure)) }
+    };
+    let (anchor, title) = ("inside", "Inside the machine at each event");
+    (!figures.is_empty()).then_some(Chapter { anchor, title, body, figures })
 }
 
-fn scenario(run: &ScenarioRun, declared: &Scenario, figures: &[Figure]) -> Markup {
-    let told = told(run.windows.iter());
-    let mut heads = vec!["event"];
-    heads.extend(told.iter().map(|metric| METRICS[*metric]));
-    let mut rows: Vec<Vec<Markup>> = Vec::new();
-    for (window, metrics) in &run.windows {
-        let of = |cells: [String; METRICS.len()]| {
-            told.iter().map(|metric| cell(&cells[*metric])).collect::<Vec<_>>()
-        };
-        rows.push([vec![unbroken(&cause_words(window))], of(cells_of(metrics))].concat());
-        let published = published(declared, window);
-        rows.extend(published.map(|(source, cells)| [vec![unbroken(source)], of(cells)].concat()));
+/// All controllers in one figure; of one alone, everything of it.
+fn drawn(runs: &[Named<'_>], number: usize, wish: Option<&Wish>) -> Vec<Figure> {
+    match runs {
+        [alone] => pictures(alone.run, number),
+        several => {
+            let mut figures = together(several, number, wish);
+            figures.extend(measured_together(several, number));
+            figures
+        }
     }
-    let cells = |overlay| measured_cells(overlay).iter().map(cell).collect::<Vec<_>>();
-    let measured: Vec<Vec<Markup>> = run.measured.iter().map(cells).collect();
-    let remarks = declared.reference.iter().filter_map(|step| step.published.as_ref()?.remark.as_ref());
+}
+
+fn not_simulated(name: &str, error: &SimulateError, sides: usize) -> Markup {
     html! {
-        h3 { (run.name) }
-        p { (headline(run)) "." }
+        div.callout.bad-edge {
+            p { "Not simulated" @if sides > 1 { " with the " (name) " controller" } ": " (error) "." }
+        }
+    }
+}
+
+fn scenario(runs: &[Named<'_>], declared: &Scenario, wish: Option<&Wish>, figures: &[Figure]) -> Markup {
+    let remarks = declared.reference.iter().filter_map(|step| step.published.as_ref()?.remark.as_ref());
+    let name = runs.first().map(|named| named.run.name.as_str()).unwrap_or_default();
+    html! {
+        h3 { (name) }
+        @for named in runs { p { (of(named, runs)) (headline(named.run)) "." } }
         @for sentence in driving::sentences(declared) { p { (sentence) } }
         @for figure in figures { (place(figure)) }
-        @if !rows.is_empty() {
-            (table(&heads, 1, &rows))
-            p { "Settling is to " (run.settling_band_percent) " % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less force, averaged over the last tenth of the window; the rise is from 10 to 90 % of the step." }
-        }
-        @if !run.measured.is_empty() {
-            (table(&MEASURED, 2, &measured))
-            p { "NRMSE is the root mean square of measured less simulated, over the range of what was measured." }
-        }
+        (metrics(runs, declared, wish))
+        (measured(runs))
         @for remark in remarks { p { (remark) } }
-        @if let Some(sentence) = coarse_sentence(run) { p { (sentence) "." } }
-        @for sentence in occurrence_sentences(run) { p { (sentence) "." } }
+        @for named in runs {
+            @if let Some(sentence) = coarse_sentence(named.run) { p { (of(named, runs)) (sentence) "." } }
+            @for sentence in occurrence_sentences(named.run) { p { (of(named, runs)) (sentence) "." } }
+        }
     }
+}
+
+/// Whose run a sentence is about, where there are several.
+fn of(named: &Named<'_>, runs: &[Named<'_>]) -> String {
+    if runs.len() > 1 { format!("{}: ", capital(named.name)) } else { String::new() }
+}
+
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or(String::new(), |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
+}
+
+/// What is read off each event: a row of each controller, beside what was published of it.
+fn metrics(runs: &[Named<'_>], declared: &Scenario, wish: Option<&Wish>) -> Markup {
+    let Some(first) = runs.first().map(|named| named.run) else { return html! {} };
+    if first.windows.is_empty() {
+        return html! {};
+    }
+    let told = told(runs.iter().flat_map(|named| &named.run.windows));
+    let mut heads = vec!["event"];
+    heads.extend(told.iter().map(|metric| METRICS[*metric]));
+    let body = if runs.len() > 1 {
+        let group = |(index, (window, _)): (usize, &(Window, Metrics))| {
+            let row = |named: &Named<'_>| {
+                let (_, metrics) = named.run.windows.get(index)?;
+                Some(row(cell(named.name), &told, metrics, wish))
+            };
+            let mut rows: Vec<Vec<Markup>> = runs.iter().filter_map(row).collect();
+            rows.extend(published_row(declared, window, &told));
+            (cause_words(window), rows)
+        };
+        grouped(&heads, 1, &first.windows.iter().enumerate().map(group).collect::<Vec<_>>())
+    } else {
+        let rows = first.windows.iter().flat_map(|(window, metrics)| {
+            let own = row(unbroken(&cause_words(window)), &told, metrics, wish);
+            [Some(own), published_row(declared, window, &told)].into_iter().flatten()
+        });
+        table(&heads, 1, &rows.collect::<Vec<_>>())
+    };
+    html! {
+        (body)
+        p {
+            "Settling is to " (first.settling_band_percent) " % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less force, averaged over the last tenth of the window; the rise is from 10 to 90 % of the step."
+            @if let Some(words) = wish.and_then(wished) { " Wished of every step: " (words) "; a disc with a tick keeps to it, a square with a cross does not." }
+        }
+    }
+}
+
+/// What was wished, in words.
+fn wished(wish: &Wish) -> Option<String> {
+    let words: Vec<String> = [wish.overshoot_words(), wish.settling_words()].into_iter().flatten().collect();
+    (!words.is_empty()).then(|| words.join(", "))
+}
+
+/// A row of metrics, those that were wished something of with a mark.
+fn row(name: Markup, told: &[usize], metrics: &Metrics, wish: Option<&Wish>) -> Vec<Markup> {
+    let cells = cells_of(metrics);
+    let held = |metric: usize| -> Option<Held> {
+        match metric {
+            OVERSHOOT => wish?.overshoot(metrics),
+            SETTLING => wish?.settling(metrics),
+            _ => None,
+        }
+    };
+    let shown = |metric: &usize| {
+        let text = cells[*metric].as_str();
+        match Mark::of_kept(held(*metric).and_then(|held| held.kept)) {
+            Some(mark) => badge(mark, text),
+            None => cell(text),
+        }
+    };
+    std::iter::once(name).chain(told.iter().map(shown)).collect()
+}
+
+fn published_row(declared: &Scenario, window: &Window, told: &[usize]) -> Option<Vec<Markup>> {
+    let (source, cells) = published(declared, window)?;
+    Some(std::iter::once(unbroken(source)).chain(told.iter().map(|metric| cell(&cells[*metric]))).collect())
 }
 
 /// The metrics that some of these windows can have.
-fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> Vec<usize> {
+pub(super) fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> Vec<usize> {
     let cells: Vec<[String; METRICS.len()]> = windows.map(|(_, metrics)| cells_of(metrics)).collect();
     (0..METRICS.len()).filter(|metric| cells.iter().any(|cells| cells[*metric] != ABSENT)).collect()
+}
+
+/// What was measured beside what each controller makes of the machine.
+fn measured(runs: &[Named<'_>]) -> Markup {
+    let several = runs.len() > 1;
+    let mut rows: Vec<Vec<Markup>> = Vec::new();
+    let signals = runs.first().map_or(0, |named| named.run.measured.len());
+    for index in 0..signals {
+        for named in runs {
+            let Some(overlay) = named.run.measured.get(index) else { continue };
+            let mut row: Vec<Markup> = measured_cells(overlay).iter().map(cell).collect();
+            if several {
+                row.insert(2, cell(named.name));
+            }
+            rows.push(row);
+        }
+    }
+    let mut heads = MEASURED.to_vec();
+    if several {
+        heads.insert(2, "simulated with");
+    }
+    html! {
+        @if !rows.is_empty() {
+            (table(&heads, if several { 3 } else { 2 }, &rows))
+            p { "NRMSE is the root mean square of measured less simulated, over the range of what was measured." }
+        }
+    }
 }
 
 /// What was published of the step that begins this window, and where; `None` where that are no numbers.
@@ -110,10 +218,10 @@ fn published<'a>(declared: &'a Scenario, window: &Window) -> Option<(&'a str, [S
     if overshoot.is_none() && settling.is_none() {
         return None;
     }
-    let cells = METRICS.map(|metric| {
+    let cells = std::array::from_fn(|metric| {
         let known = match metric {
-            "overshoot" => &overshoot,
-            "settling" => &settling,
+            OVERSHOOT => &overshoot,
+            SETTLING => &settling,
             _ => &None,
         };
         known.clone().unwrap_or_else(|| ABSENT.to_string())
@@ -121,98 +229,14 @@ fn published<'a>(declared: &'a Scenario, window: &Window) -> Option<(&'a str, [S
     Some((published.source.as_deref().unwrap_or("published"), cells))
 }
 
-/// A quantity multiplied by a factor, and what comes of the first scenario.
-struct Varied {
-    quantity: &'static str,
-    factor: f64,
-    value: String,
-    run: Result<ScenarioRun, String>,
-}
-
-/// The first scenario with the stiffness of the load cell and with the friction multiplied.
-fn sensitivity(
-    source: &dyn Source,
-    project: &Project,
-    watch: Watch<'_>,
-) -> Result<Vec<Varied>, CommandError> {
-    let mut first = project.clone();
-    first.scenarios.truncate(1);
-    let mut varied = Vec::new();
-    for factor in STIFFNESS_FACTORS {
-        let mut project = first.clone();
-        if let Some(actuator) = &mut project.actuator {
-            actuator.force_sensor.stiffness *= factor;
-            let shown = DisplayUnit::MEGANEWTON_PER_METRE.text(actuator.force_sensor.stiffness, 3);
-            varied.push(vary(source, &project, ("Load stiffness K_S", factor, shown), watch)?);
-        }
-    }
-    for (factor, word) in FRICTION_FACTORS {
-        let mut project = first.clone();
-        let Some(friction) =
-            project.actuator.as_mut().and_then(|actuator| actuator.cylinder.friction.as_mut())
-        else {
-            break;
-        };
-        friction.viscous *= factor;
-        friction.coulomb = friction.coulomb.map(|force| force * factor);
-        friction.static_friction = friction.static_friction.map(|force| force * factor);
-        if factor == 0.0 {
-            friction.model = FrictionModel::Viscous;
-        }
-        varied.push(vary(source, &project, ("Friction", factor, word.to_string()), watch)?);
-    }
-    Ok(varied)
-}
-
-fn vary(
-    source: &dyn Source,
-    project: &Project,
-    (quantity, factor, value): (&'static str, f64, String),
-    watch: Watch<'_>,
-) -> Result<Varied, CommandError> {
-    let run = match simulate_project(source, project, watch) {
-        Ok(runs) if runs.iter().any(ScenarioRun::was_cancelled) => return Err(CommandError::Stopped),
-        Ok(runs) => runs.into_iter().next().ok_or_else(|| "no scenario".to_string()),
-        Err(error) => Err(error.to_string()),
-    };
-    Ok(Varied { quantity, factor, value, run })
-}
-
-/// One table for each event, in which a column is read downwards.
-fn sensitivity_table(varied: &[Varied]) -> Markup {
-    let events =
-        varied.iter().filter_map(|varied| varied.run.as_ref().ok()).map(|run| run.windows.len()).max();
-    let refused = varied.iter().filter_map(|varied| Some((varied, varied.run.as_ref().err()?)));
-    let tables = (0..events.unwrap_or(0)).filter_map(|event| event_table(varied, event));
-    html! {
-        @if !varied.is_empty() {
-            h3 { "Sensitivity" }
-            p { (prose("The first scenario again with one quantity changed: the stiffness K_S of load cell and environment, and all friction. Neither is known well of a real rig, and the overshoot follows both.")) }
-            @for (varied, reason) in refused { p { (prose(varied.quantity)) ", " (varied.value) ": " (reason) "." } }
-            @for table in tables { (table) }
-        }
-    }
-}
-
-/// What comes of one event, quantity by quantity.
-fn event_table(varied: &[Varied], event: usize) -> Option<Markup> {
-    let seen = |varied: &Varied| Some(*varied.run.as_ref().ok()?.windows.get(event)?);
-    let windows: Vec<(Window, Metrics)> = varied.iter().filter_map(seen).collect();
-    let told = told(windows.iter());
-    let event = cause_words(&windows.first()?.0);
-    let mut heads = vec![event.as_str()];
-    heads.extend(told.iter().map(|metric| METRICS[*metric]));
-    let mut groups: Vec<(String, Vec<Vec<Markup>>)> = Vec::new();
-    for varied in varied {
-        let Some((_, metrics)) = seen(varied) else { continue };
-        let as_declared = if varied.factor == 1.0 { ", as declared" } else { "" };
-        let cells = cells_of(&metrics);
-        let mut row = vec![unbroken(&format!("{}{as_declared}", varied.value))];
-        row.extend(told.iter().map(|metric| cell(&cells[*metric])));
-        match groups.last_mut().filter(|(quantity, _)| quantity == varied.quantity) {
-            Some((_, rows)) => rows.push(row),
-            None => groups.push((varied.quantity.to_string(), vec![row])),
-        }
-    }
-    Some(grouped(&heads, 1, &groups))
+/// The worst of all steps of some runs beside a wish: `None` where there is none to judge.
+pub(super) fn worst(
+    runs: &[ScenarioRun],
+    reached: impl Fn(&Metrics) -> Option<(f64, Held)>,
+) -> Option<(Held, usize)> {
+    let windows = runs.iter().flat_map(|run| &run.windows);
+    let held: Vec<(f64, Held)> = windows.filter_map(|(_, metrics)| reached(metrics)).collect();
+    let count = held.len();
+    let worst = held.into_iter().max_by(|one, other| one.0.total_cmp(&other.0))?;
+    Some((worst.1, count))
 }

@@ -121,7 +121,7 @@ fn candidates(sizing: &Sizing) -> Markup {
     let headings =
         ["", "hose", "compliance", "branch", "length, m", "K_H, MN/m", "K_p, V/N", "τ over the stroke, ms"];
     html! {
-        div.table { table {
+        div.table.wide { table {
             thead { tr { @for (column, heading) in headings.iter().enumerate() { th.number[column >= 4] { (prose(heading)) } } } }
             @for group in alike(&sizing.candidates) { tbody.candidate {
                 @for candidate in &group { (candidate_row(candidate)) }

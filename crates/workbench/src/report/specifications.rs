@@ -52,7 +52,7 @@ fn row(index: usize, name: &str, specification: &Specification) -> Vec<Markup> {
     ]
 }
 
-fn demand(requirement: &Requirement) -> String {
+pub(super) fn demand(requirement: &Requirement) -> String {
     let (lower, upper) = requirement.limits();
     let above = lower.map_or(String::new(), |lower| format!("{} ≤ ", limit_text(lower)));
     format!("{above}{} ≤ {}", closed_loop_symbol(requirement), limit_text(upper))

@@ -24,8 +24,8 @@ pub(super) fn section(trial: Option<&Trial>, figure: Option<&Figure>) -> Markup 
             @let reasons = reasons(trial);
             @if !reasons.is_empty() { ul { @for reason in &reasons { li { (prose(reason)) } } } }
         }
-        (table(&HEADINGS, 2, &rows))
         @if let Some(figure) = figure { (place(figure)) }
+        (table(&HEADINGS, 2, &rows))
     }
 }
 

@@ -73,6 +73,16 @@ pub fn prose(sentence: &str) -> Markup {
     html! { (PreEscaped(inside)) }
 }
 
+/// The same, what stands between back ticks as code.
+pub(super) fn coded(sentence: &str) -> Markup {
+    let parts = sentence.split('`').enumerate();
+    html! {
+        @for (index, part) in parts {
+            @if index % 2 == 1 { code { (part) } } @else { (prose(part)) }
+        }
+    }
+}
+
 /// `2.2e6` as 2.2·10^6; `None` for anything else.
 fn number(word: &str) -> Option<String> {
     let (mantissa, exponent) = word.split_once('e')?;

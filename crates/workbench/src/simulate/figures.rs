@@ -8,8 +8,8 @@ use crate::figure::{
 };
 
 /// How much of a run is drawn before and after what begins a window, s.
-const BEFORE_S: f64 = 0.02;
-const AFTER_S: f64 = 0.5;
+pub(super) const BEFORE_S: f64 = 0.02;
+pub(super) const AFTER_S: f64 = 0.5;
 
 /// Most events that are enlarged each; of more, all that is no step, and the greatest step.
 const ENLARGED: usize = 3;
@@ -83,7 +83,7 @@ fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
 }
 
 /// What happens between command and force, in the order of Figure 6.17 of Ledezma (2019); with positions where the load moves.
-fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s: [f64; 2]) -> Figure {
+pub(super) fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
     let forces = ["force_n", "hydraulic_force_n"].map(|name| over_time(record, record.signal(name)));
     let forces = panel("Forces F_e, F_H", DisplayUnit::KILONEWTON, 150.0, forces.into());
@@ -115,12 +115,12 @@ fn measured(record: &Record, height: f64) -> TimePanel {
 }
 
 /// The reference; none in an open loop.
-fn asked_for(record: &Record) -> Option<TimeSeries> {
+pub(super) fn asked_for(record: &Record) -> Option<TimeSeries> {
     (!record.reference_n.is_empty()).then(|| over_time(record, record.reference_n.clone()))
 }
 
 /// Whether what begins a window moves the load.
-fn moves_load(window: &Window) -> bool {
+pub(super) fn moves_load(window: &Window) -> bool {
     matches!(window.cause, Cause::LoadMotion | Cause::ExternalForce)
 }
 
@@ -165,7 +165,7 @@ fn drawn(
 }
 
 /// The events that are worth a figure of their own, with their places among all.
-fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize, &Window)> {
+pub(super) fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize, &Window)> {
     let begun = windows.iter().map(|(window, _)| window).enumerate();
     let begun: Vec<(usize, &Window)> = begun.filter(|(_, window)| window.start_s < end_s).collect();
     if begun.len() <= ENLARGED {
@@ -191,21 +191,29 @@ fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize, &Window)> 
 }
 
 /// What begins a window, where it is seen.
-fn instant(window: &Window, [start, end]: [f64; 2]) -> Option<TimeEvent> {
+pub(super) fn instant(window: &Window, [start, end]: [f64; 2]) -> Option<TimeEvent> {
     let seen = window.start_s >= start && window.start_s < end;
     seen.then(|| TimeEvent { time_s: window.start_s, label: window.cause.label().to_string() })
 }
 
 /// From a little before what begins a window to half a second later, within the run.
-fn around(window: &Window, end_s: f64) -> [f64; 2] {
+pub(super) fn around(window: &Window, end_s: f64) -> [f64; 2] {
     [(window.start_s - BEFORE_S).max(0.0), (window.start_s + AFTER_S).min(end_s)]
 }
 
-fn panel(quantity: &str, unit: DisplayUnit, height: f64, series: Vec<TimeSeries>) -> TimePanel {
-    TimePanel { quantity: quantity.to_string(), unit, series, reference: None, height }
+pub(super) fn panel(quantity: &str, unit: DisplayUnit, height: f64, series: Vec<TimeSeries>) -> TimePanel {
+    TimePanel {
+        quantity: quantity.to_string(),
+        unit,
+        series,
+        reference: None,
+        wished: vec![],
+        shown: None,
+        height,
+    }
 }
 
-fn over_time(record: &Record, values: Vec<f64>) -> TimeSeries {
+pub(super) fn over_time(record: &Record, values: Vec<f64>) -> TimeSeries {
     TimeSeries { name: String::new(), times_s: record.times_s.clone(), values }
 }
 

@@ -70,6 +70,8 @@ pub struct Run {
     pub agreement: Agreement,
     /// Why, in a sentence.
     pub reason: String,
+    /// Where the lines of a machine with waves begin to oscillate, rad/s; `None` of one without.
+    pub quarter_wave_rad_per_s: Option<f64>,
 }
 
 /// The step over what the supply can push with.
@@ -125,6 +127,7 @@ pub(super) fn run(
             machine_response,
             agreement,
             reason,
+            quarter_wave_rad_per_s: tried.quarter_wave_rad_per_s,
         })
     };
     match simulate_project(source, &project, watch) {

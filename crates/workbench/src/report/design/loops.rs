@@ -36,7 +36,7 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
         false => ("Nichols chart of both loops", "loops"),
     };
     let caption = format!(
-        "The nominal {whose} among the bounds of all specifications. At a crossed-out frequency the loop lies where its bound forbids it. Bounds speak of their own frequency alone; the tables say what holds between them."
+        "The nominal {whose} among the bounds of all specifications; crossed out where a bound forbids it."
     );
     Ok(Some(nichols(Words::new("design_nichols", title, caption), &input)))
 }

@@ -1,0 +1,45 @@
+//! `linearize`: the linear models, at one value or over a sweep.
+
+use super::CommandError;
+use crate::answer::Answer;
+use crate::control::{controller, sensor};
+use crate::linearize::{self, Linearization, SweepRequest, linearize, sweep};
+use crate::project::Loaded;
+use crate::rig::Rig;
+use crate::simulate::picture_files;
+use crate::source::Source;
+
+fn linearized(loaded: &Loaded) -> Result<Linearization, CommandError> {
+    let rig = Rig::new(&loaded.project)?;
+    let given = controller(&loaded.project)?;
+    Ok(linearize(&rig, given.as_ref(), &sensor(&loaded.project)?)?)
+}
+
+pub(super) fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
+    let linearization = linearized(loaded)?;
+    Ok(Answer {
+        text: linearize::text(loaded, &linearization),
+        json: linearize::json(loaded, &linearization),
+        files: linearize::files(&linearization),
+        affirmative: true,
+    })
+}
+
+pub(super) fn swept_answer(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    asked: &SweepRequest,
+) -> Result<Answer, CommandError> {
+    let linearization = linearized(loaded)?;
+    let swept = sweep(source, loaded, catalogues, asked)?;
+    let mut files = linearize::files(&linearization);
+    files.extend(linearize::sweep_files(&swept));
+    files.extend(picture_files(&[linearize::sweep_figure(&swept)])?);
+    Ok(Answer {
+        text: linearize::sweep_text(loaded, &swept),
+        json: linearize::json_swept(loaded, &linearization, &swept),
+        files,
+        affirmative: true,
+    })
+}

@@ -1,0 +1,116 @@
+//! The scenarios of a project, driven under each controller that the report speaks of.
+
+use crate::answer::significant;
+use crate::command::{CommandError, Watch};
+use crate::project::Project;
+use crate::quantity::DisplayUnit;
+use crate::simulate::{
+    Cause, Named, ScenarioRun, SimulateError, Window, Wish, cause_words, cells_of, simulate_project,
+};
+use crate::source::Source;
+use crate::specification::wishes;
+
+/// Name of the controller that the project gives.
+pub(super) const GIVEN: &str = "given";
+/// Name of the one that was designed.
+pub(super) const DESIGNED: &str = "designed";
+
+/// What the machine does in every scenario.
+pub(super) struct Driven {
+    /// Given and designed, as far as there are any.
+    pub(super) sides: Vec<DrivenSide>,
+    /// What was wished of a step in time.
+    pub(super) wish: Option<Wish>,
+}
+
+/// The same under one controller.
+pub(super) struct DrivenSide {
+    /// [`GIVEN`] or [`DESIGNED`].
+    pub(super) name: &'static str,
+    /// In file order, or why there are none.
+    pub(super) runs: Result<Vec<ScenarioRun>, SimulateError>,
+}
+
+/// Drives the scenarios under the given controller, and under the `designed` one where there is one; `None` without scenarios.
+///
+/// # Errors
+/// [`CommandError::Stopped`] where the watch stops it, and a wish in time that is none.
+pub(super) fn driven(
+    source: &dyn Source,
+    project: &Project,
+    designed: Option<&Project>,
+    watch: Watch<'_>,
+) -> Result<Option<Driven>, CommandError> {
+    if project.scenarios.is_empty() {
+        return Ok(None);
+    }
+    let has_law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
+    let given = (has_law || designed.is_none()).then_some((GIVEN, project));
+    let designed = designed.map(|project| (DESIGNED, project));
+    let mut sides = Vec::new();
+    for (name, project) in given.into_iter().chain(designed) {
+        let runs = simulate_project(source, project, watch);
+        if runs.iter().flatten().any(ScenarioRun::was_cancelled) {
+            return Err(CommandError::Stopped);
+        }
+        sides.push(DrivenSide { name, runs });
+    }
+    Ok(Some(Driven { sides, wish: Wish::of(&wishes(project)?) }))
+}
+
+impl Driven {
+    /// The runs of a scenario by its place in the file. Where a stated command drives the valve, no controller does: one run tells all.
+    pub(super) fn of_scenario<'a>(&'a self, index: usize) -> Vec<Named<'a>> {
+        let named = |side: &'a DrivenSide| Some(Named { name: side.name, run: run_of(side, index)? });
+        let mut named: Vec<Named<'a>> = self.sides.iter().filter_map(named).collect();
+        if named.iter().any(|named| named.run.open_loop) {
+            named.truncate(1);
+        }
+        named
+    }
+
+    /// The same in the order of the figures that compare both, whose first colour is the designed one's.
+    pub(super) fn drawn(&self, index: usize) -> Vec<Named<'_>> {
+        let mut named = self.of_scenario(index);
+        named.reverse();
+        named
+    }
+
+    /// The runs of one controller; `None` where it was not driven.
+    pub(super) fn runs_of(&self, name: &str) -> Option<&[ScenarioRun]> {
+        let side = self.sides.iter().find(|side| side.name == name)?;
+        side.runs.as_deref().ok()
+    }
+
+    /// The first reference step and the first motion of the load or force on it, in a few words each, of the controller that a reader
+    /// would take first.
+    pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
+        let names = [(GIVEN, "Simulated, given controller"), (DESIGNED, "Simulated, designed controller")];
+        let fact = |(side, name): (&str, &'static str)| Some((name, told(self.runs_of(side)?)?));
+        names.into_iter().filter_map(fact).collect()
+    }
+}
+
+fn run_of(side: &DrivenSide, index: usize) -> Option<&ScenarioRun> {
+    side.runs.as_ref().ok()?.get(index)
+}
+
+/// The first step and the first disturbance of these runs.
+fn told(runs: &[ScenarioRun]) -> Option<String> {
+    if let Some((run, stopped)) = runs.iter().find_map(|run| Some((run, run.stopped()?))) {
+        let word = stopped.word.replace('_', " ");
+        return Some(format!("{} ended at {} s: {word}", run.name, significant(stopped.time_s, 3)));
+    }
+    let windows = || runs.iter().flat_map(|run| &run.windows);
+    let is_step = |window: &Window| matches!(window.cause, Cause::ReferenceStep { .. });
+    let step = windows().find(|(window, _)| is_step(window)).map(|(window, metrics)| {
+        let cells = cells_of(metrics);
+        format!("{}: {} overshoot, settling {}", cause_words(window), cells[0], cells[2])
+    });
+    let disturbed = windows().find_map(|(window, metrics)| {
+        let peak = DisplayUnit::KILONEWTON.text(metrics.disturbance_peak_n.ok()?, 3);
+        Some(format!("{}: {peak} of disturbance", cause_words(window)))
+    });
+    let told: Vec<String> = step.into_iter().chain(disturbed).collect();
+    (!told.is_empty()).then(|| told.join("; "))
+}

@@ -1,0 +1,61 @@
+//! The verdicts of a report: the audit of the given controller, the design, and what the machine did with both.
+
+use super::design::{self, Designed};
+use crate::audit::{ProjectAudit, audit_problem};
+use crate::command::{CommandError, Watch};
+use crate::design::ProjectDesign;
+use crate::project::Loaded;
+use crate::robust::{DesignFrequency, RobustProblem, robust_problem};
+use crate::source::Source;
+use crate::trial::{Trial, tried};
+
+/// What the robust method says of a project with specifications.
+pub(super) struct Judged {
+    /// The family in the loop of the project.
+    pub(super) problem: RobustProblem,
+    /// Templates and bounds.
+    pub(super) bounds: Vec<DesignFrequency>,
+    /// The audit of the given controller; `None` without one.
+    pub(super) given: Option<ProjectAudit>,
+    /// What the machine does under it.
+    pub(super) given_trial: Option<Trial>,
+    /// What came of looking for a controller; `None` where nobody asked for one.
+    pub(super) designed: Option<Designed>,
+}
+
+/// Judges a project; `None` without specifications.
+///
+/// # Errors
+/// [`CommandError`] for a family or a law that cannot be computed with, and where the watch stops it.
+pub(super) fn judged(
+    source: &dyn Source,
+    loaded: &Loaded,
+    watch: Watch<'_>,
+) -> Result<Option<Judged>, CommandError> {
+    let project = &loaded.project;
+    if project.specifications.is_empty() {
+        return Ok(None);
+    }
+    let problem = robust_problem(source, project)?;
+    let given = match problem.has_controller {
+        true => Some(audit_problem(&problem, watch)?),
+        false => None,
+    };
+    let bounds = problem.at_design_frequencies(watch)?;
+    let given_trial = match &given {
+        Some(view) => tried(source, project, &problem, view, watch)?,
+        None => None,
+    };
+    let designed = match design::is_asked_for(project) {
+        true => Some(design::designed(source, loaded, watch)?),
+        false => None,
+    };
+    Ok(Some(Judged { problem, bounds, given, given_trial, designed }))
+}
+
+impl Judged {
+    /// The design, where one was found.
+    pub(super) fn found(&self) -> Option<&ProjectDesign> {
+        self.designed.as_ref()?.found()
+    }
+}

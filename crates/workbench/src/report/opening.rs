@@ -1,0 +1,145 @@
+//! The page that decides: what was asked, what the given and the designed controller make of it, the numbers that matter, force over
+//! time, the loop in its Nichols chart, and what to do next.
+
+mod next;
+mod side;
+mod verdicts;
+
+use maud::{Markup, PreEscaped, html};
+use serde::Serialize;
+
+use super::chapter::{Chapter, place};
+use super::driven::{DESIGNED, Driven, GIVEN};
+use super::judged::Judged;
+use super::typeset::{coded, prose};
+use super::{Facts, NOMINAL_LOOP};
+use crate::audit::verdict_key;
+use crate::design::explanation_words;
+use crate::figure::Figure;
+use crate::project::Project;
+use crate::simulate::at_a_glance;
+use crate::trial::agreement_word;
+use next::next_steps;
+use side::{Side, sides};
+
+/// What the page is made of.
+pub(super) struct Contents<'a> {
+    pub(super) project: &'a Project,
+    pub(super) judged: Option<&'a Judged>,
+    pub(super) driven: Option<&'a Driven>,
+    /// Of the rig and its load: shown as cards.
+    pub(super) facts: &'a Facts,
+    /// Of what was driven, once and many times: shown as wider ones.
+    pub(super) results: &'a Facts,
+    /// Whether the sizing asked for a hose and none fits.
+    pub(super) no_hose_fits: bool,
+}
+
+/// What the page says, for programs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Decision {
+    /// The controller that the project gives; absent where it gives none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub given: Option<Decided>,
+    /// The one that was designed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub designed: Option<Decided>,
+    /// What to do next, a sentence each.
+    pub next: Vec<String>,
+}
+
+/// What is known of one controller; absent is what nobody asked for.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Decided {
+    /// Of the family: `met`, `violated`, `not_proven`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<&'static str>,
+    /// The same of each specification, in file order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub specifications: Vec<&'static str>,
+    /// What the machine did with the verdict: `agrees`, `differs`, `contradicts`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub machine: Option<&'static str>,
+    /// Whether every step on the machine kept to what was wished in time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wishes_kept: Option<bool>,
+}
+
+/// The page as the first chapter, and what it says.
+pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chapter, Decision) {
+    let sides = sides(contents.judged, contents.driven);
+    let next = next_steps(contents, &sides);
+    let mut figures: Vec<Figure> = contents.driven.and_then(over_time).into_iter().collect();
+    figures.extend(nichols);
+    let body = html! {
+        (cards("facts", contents.facts))
+        (cards("facts results", contents.results))
+        (verdicts::table(contents, &sides))
+        (hindrances(contents))
+        @if !figures.is_empty() {
+            div.pair {
+                @for figure in &figures { (place(figure)) }
+                // beside a figure that stands alone
+                @if figures.len() == 1 { (steps(&next)) }
+            }
+        }
+        @if figures.len() != 1 { (steps(&next)) }
+    };
+    let decided =
+        |name: &str| sides.iter().find(|side| side.name == name).map(|side| decided(contents, side));
+    let decision = Decision { given: decided(GIVEN), designed: decided(DESIGNED), next };
+    (Chapter { anchor: "decision", title: "What was asked, and what came of it", body, figures }, decision)
+}
+
+/// What to do next.
+fn steps(next: &[String]) -> Markup {
+    html! {
+        @if !next.is_empty() {
+            div {
+                h3 { "What to do next" }
+                ol.next { @for step in next { li { (coded(step)) } } }
+            }
+        }
+    }
+}
+
+/// The first scenario that is drawn, of both controllers.
+fn over_time(driven: &Driven) -> Option<Figure> {
+    let first = driven.drawn(0);
+    at_a_glance("opening_force", &first, driven.wish.as_ref())
+}
+
+fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
+    let findings = side.view.map(|view| view.audit.specifications.as_slice()).unwrap_or_default();
+    let wish = contents.driven.and_then(|driven| driven.wish.as_ref());
+    Decided {
+        verdict: side.view.map(|view| verdict_key(view.audit.verdict)),
+        specifications: findings.iter().map(|finding| verdict_key(finding.verdict)).collect(),
+        machine: side.trial.map(|trial| agreement_word(trial.agreement())),
+        wishes_kept: wish.and_then(|wish| side.keeps(wish)),
+    }
+}
+
+/// What stands in the way of any controller, told before anything else.
+fn hindrances(contents: &Contents<'_>) -> Markup {
+    let Some(judged) = contents.judged else { return html! {} };
+    let found = judged.found();
+    let explained = found.into_iter().flat_map(|view| view.explanations.iter().map(move |one| (view, one)));
+    let explained = explained.filter(|(_, explanation)| explanation.is_impossible);
+    let sentences: Vec<String> =
+        explained.map(|(view, explanation)| explanation_words(view, explanation)).take(2).collect();
+    html! { @for sentence in &sentences { div.callout.bad-edge { p { (prose(sentence)) } } } }
+}
+
+/// The words of a card, whose long names may be broken where they are joined.
+fn card(value: &str) -> Markup {
+    PreEscaped(prose(value).into_string().replace('_', "_<wbr>"))
+}
+
+fn cards(class: &str, facts: &Facts) -> Markup {
+    html! {
+        @if !facts.is_empty() {
+            dl class=(class) { @for (name, value) in facts.iter().filter(|(name, _)| *name != NOMINAL_LOOP) { div.fact { dt { (name) } dd { (card(value)) } } } }
+        }
+    }
+}

@@ -1,0 +1,282 @@
+//! What to do next, a sentence each, as it follows from the results: which controller to take, what the machine objects, what no verdict
+//! counts, what was wished and missed, and what nobody has declared yet.
+
+use phea_qft::design::{DesignStatus, Relaxation};
+use phea_qft::verification::Verdict;
+
+use super::Contents;
+use super::side::Side;
+use crate::answer::significant;
+use crate::audit::{ProjectAudit, frequency_words, outside};
+use crate::caveat::caveats;
+use crate::design::{DESIGNED_PROJECT, ProjectDesign};
+use crate::project::Project;
+use crate::quantity::DisplayUnit;
+use crate::report::design::Designed;
+use crate::report::driven::{DESIGNED, GIVEN};
+use crate::simulate::Wish;
+use crate::trial::{Agreement, Run};
+
+/// Sentences that a reader still reads.
+const MOST: usize = 6;
+/// A loop that tolerates less delay than a computer with a sample each millisecond brings must know of it, s.
+const SHORT_DELAY_S: f64 = 2e-3;
+/// Part of its range by which a simulated signal may miss the measured one and still be called near.
+const NEAR: f64 = 0.1;
+
+/// The sentences, what decides first.
+pub(super) fn next_steps(contents: &Contents<'_>, sides: &[Side<'_>]) -> Vec<String> {
+    let taken = taken(sides);
+    let mut steps = Vec::new();
+    steps.extend(controller(contents, sides));
+    steps.extend(taken.iter().flat_map(|side| machine(side)));
+    steps.extend(taken.and_then(|side| wishes(contents, side)));
+    steps.extend(uncounted(contents.project));
+    steps.extend(taken.and_then(|side| delay(contents.project, side)));
+    steps.extend(undeclared(contents, taken));
+    steps.truncate(MOST);
+    steps
+}
+
+/// The controller that the reader is told to take: the designed one, unless the given one alone is met or nothing was designed.
+fn taken<'a, 's>(sides: &'s [Side<'a>]) -> Option<&'s Side<'a>> {
+    let of = |name: &str| sides.iter().find(|side| side.name == name);
+    match (of(GIVEN), of(DESIGNED)) {
+        (Some(given), Some(designed)) if given.is_met() && !designed.is_met() => Some(given),
+        (given, designed) => designed.or(given),
+    }
+}
+
+fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
+    let Some(judged) = contents.judged else {
+        let commands = "state what the loop has to do in `[[specification]]`: nothing was asked of it yet, and so nothing is judged";
+        return Some(capital(commands));
+    };
+    let given = sides.iter().find(|side| side.name == GIVEN);
+    let found = judged.found();
+    let given_words = given.and_then(|side| side.view).map(given_words);
+    let designed = match (&judged.designed, found) {
+        (_, Some(view)) => designed_words(view, given.is_some_and(Side::is_met)),
+        (Some(Designed::Nothing(sentences)), None) => {
+            let why = sentences.last().map(String::as_str).unwrap_or_default();
+            format!("ease the specifications or shrink the family, no controller was found: {why}")
+        }
+        _ if given.is_some_and(|side| side.view.is_some_and(is_violated)) => {
+            "add `[design]` to the project, and `phea design` looks for one that holds".to_string()
+        }
+        _ if given.is_some_and(Side::is_met) => "keep it".to_string(),
+        _ => "remove what leaves the verdict open".to_string(),
+    };
+    Some(match given_words {
+        Some(given) => format!("{}: {designed}.", capital(&given)),
+        None => format!("{}.", capital(&designed)),
+    })
+}
+
+fn is_violated(view: &ProjectAudit) -> bool {
+    view.audit.verdict == Verdict::Violated
+}
+
+/// `the given controller violates 1 robust stability by 19.2 dB at 1304 rad/s, and 2 more specifications`
+fn given_words(view: &ProjectAudit) -> String {
+    match view.audit.verdict {
+        Verdict::Met => return "the given controller keeps to every specification".to_string(),
+        Verdict::NotProven => {
+            return "the given controller is not proven to keep to the specifications".to_string();
+        }
+        Verdict::Violated => {}
+    }
+    if view.audit.stability.verdict == Verdict::Violated {
+        let plant = plant_words(view, &view.audit.stability.plant);
+        return format!("the given controller makes a plant of the family unstable{plant}");
+    }
+    let findings = view.audit.specifications.iter().enumerate();
+    let mut violated: Vec<_> = findings
+        .filter(|(_, finding)| finding.verdict == Verdict::Violated)
+        .filter_map(|(index, finding)| Some((index, finding.worst.as_ref()?)))
+        .collect();
+    violated.sort_by(|one, other| one.1.margin_db.total_cmp(&other.1.margin_db));
+    let Some((index, worst)) = violated.first() else {
+        return "the given controller does not keep to every specification".to_string();
+    };
+    let more = match violated.len() - 1 {
+        0 => String::new(),
+        1 => ", and one more".to_string(),
+        more => format!(", and {more} more"),
+    };
+    format!(
+        "the given controller violates {} by {} dB {}{}{more}",
+        view.numbered(*index),
+        significant(worst.margin_db.abs(), 3),
+        frequency_words(worst.frequency_rad_per_s),
+        plant_words(view, &worst.plant)
+    )
+}
+
+/// The plant where it is told in a few words; of one with many parameters where it stands.
+fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) -> String {
+    match view.names.headings().len() {
+        0 => String::new(),
+        1 | 2 => format!(" (plant {})", view.names.text(plant)),
+        _ => " (its plant stands in the audit)".to_string(),
+    }
+}
+
+fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
+    match &view.design.status {
+        DesignStatus::Met if given_is_met => {
+            format!("keep it, or take the designed one of `{DESIGNED_PROJECT}` where its numbers are better")
+        }
+        DesignStatus::Met if view.designed.view.audit.verdict == Verdict::NotProven => format!(
+            "the designed one of `{DESIGNED_PROJECT}` satisfies every specification over the family, but what is not counted leaves the verdict open"
+        ),
+        DesignStatus::Met => {
+            format!("use the designed one (`{DESIGNED_PROJECT}`), which keeps to every specification")
+        }
+        DesignStatus::Infeasible(relaxation) => infeasible_words(view, relaxation),
+        DesignStatus::NotConverged { .. } => {
+            "give the search more room (`design.maximum_order`) or another `design.seed`, it has not converged".to_string()
+        }
+        DesignStatus::NotStabilised => {
+            "raise `design.maximum_order` or shrink the family, no controller that was tried makes every plant stable".to_string()
+        }
+    }
+}
+
+fn infeasible_words(view: &ProjectDesign, relaxation: &Relaxation) -> String {
+    let mut names: Vec<String> = Vec::new();
+    for conflict in &relaxation.conflicts {
+        let name = view.designed.view.numbered(conflict.specification);
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let which = if names.is_empty() { "the specifications".to_string() } else { names.join(" or ") };
+    format!(
+        "ease {which} by {} dB, or shrink the family: no controller that was tried keeps to all of them at once",
+        significant(relaxation.relaxation_db, 3)
+    )
+}
+
+/// What the machine objects to a controller: of each kind of machine one sentence, the worst first.
+fn machine(side: &Side<'_>) -> Vec<String> {
+    let Some(trial) = side.trial else { return vec![] };
+    let mut others: Vec<&Run> = trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees).collect();
+    others.sort_by_key(|run| std::cmp::Reverse(run.agreement));
+    let with_waves = others.iter().find(|run| run.quarter_wave_rad_per_s.is_some());
+    let of_plant = others.iter().find(|run| run.plant.is_some());
+    let declared = others.iter().find(|run| run.plant.is_none() && run.quarter_wave_rad_per_s.is_none());
+    let mut told: Vec<&Run> = [declared, with_waves, of_plant].into_iter().flatten().copied().collect();
+    told.sort_by_key(|run| std::cmp::Reverse(run.agreement));
+    told.into_iter().map(|run| machine_words(side, run)).collect()
+}
+
+fn machine_words(side: &Side<'_>, run: &Run) -> String {
+    // the machine's chapter has the rest: where the force swings, and how long a wave takes
+    let why = run.reason.split(". The lines are").next().unwrap_or_default();
+    let why = why.split(": at the end it swings").next().unwrap_or_default();
+    let verdict = match run.agreement {
+        Agreement::Contradicts => "the machine contradicts the verdict, ",
+        Agreement::Differs | Agreement::Agrees => "",
+    };
+    match run.quarter_wave_rad_per_s {
+        Some(quarter) => format!(
+            "Shorten the hose, state how its wall damps (`line.relaxation_time`), or ask for less gain from {} rad/s on: with waves in the lines, under the {} controller, {verdict}{why}.",
+            significant(quarter, 3),
+            side.name
+        ),
+        None if run.plant.is_some() => format!(
+            "Narrow `[uncertainty]`, or take care near {}: made into a machine, under the {} controller, {verdict}{why}.",
+            run.what, side.name
+        ),
+        None => format!(
+            "Do not trust the verdict on this rig yet: driven under the {} controller {verdict}{why}.",
+            side.name
+        ),
+    }
+}
+
+/// A step of the machine that misses what was wished, and what the limits of tracking themselves do.
+fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
+    let wish: &Wish = contents.driven?.wish.as_ref()?;
+    let missed = |held: Option<(crate::simulate::Held, usize)>| {
+        held.filter(|(held, _)| held.kept == Some(false)).map(|(held, _)| held.words)
+    };
+    let overshoot = missed(side.overshoot(wish)).map(|words| format!("overshoots by {words}"));
+    let settling = missed(side.settling(wish)).map(|words| match words.as_str() {
+        "not settled" => "does not settle".to_string(),
+        words => format!("takes {words} to settle"),
+    });
+    let told: Vec<String> = overshoot.into_iter().chain(settling).collect();
+    (!told.is_empty()).then(|| {
+        format!(
+            "Tighten the limits of tracking if the wish in time is meant to the letter: on the machine a step under the {} controller {}.",
+            side.name,
+            told.join(" and ")
+        )
+    })
+}
+
+/// What no verdict counts, and a rig outside of its own family.
+fn uncounted(project: &Project) -> Vec<String> {
+    let mut steps = Vec::new();
+    if let Some((_, words)) = outside(project).filter(|_| !project.specifications.is_empty()) {
+        steps.push(format!("Widen `[uncertainty]` until it holds the rig as it is derived: {words}."));
+    }
+    let open = caveats(project).into_iter().filter(|caveat| caveat.unproven);
+    steps.extend(open.map(|caveat| {
+        format!("Judge this by simulation, no verdict on the linear loop counts it: {}.", caveat.sentence)
+    }));
+    steps
+}
+
+/// A continuous loop that no computer can run as it is.
+fn delay(project: &Project, side: &Side<'_>) -> Option<String> {
+    let controller = project.controller.clone().unwrap_or_default();
+    let margin_s = side.delay_margin_s().filter(|margin_s| *margin_s < SHORT_DELAY_S)?;
+    let continuous = controller.sample_time.is_none() && controller.delay == 0.0;
+    (continuous && project.actuator.is_some()).then(|| {
+        format!(
+            "State `controller.sample_time` and `controller.delay` of the computer, and design again: the {} loop is continuous and tolerates {} of delay.",
+            side.name,
+            DisplayUnit::MILLISECOND.text(margin_s, 3)
+        )
+    })
+}
+
+/// What would tell more.
+fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> {
+    let project = contents.project;
+    let mut steps = Vec::new();
+    if contents.no_hose_fits {
+        steps.push("Change the gain, the time constant or the stock length in `[sizing]`: no hose of the catalogue fits.".to_string());
+    }
+    if project.actuator.is_none() {
+        return steps;
+    }
+    if project.scenarios.is_empty() {
+        steps.push("Add a `[[scenario]]` with the steps and the motions of the load that the rig will meet: none was driven.".to_string());
+        return steps;
+    }
+    let runs = taken.and_then(|side| side.runs).unwrap_or_default();
+    let overlays: Vec<_> = runs.iter().flat_map(|run| &run.measured).collect();
+    let farthest = overlays.iter().filter_map(|overlay| Some((overlay.nrmse.ok()?, overlay)));
+    match farthest.max_by(|one, other| one.0.total_cmp(&other.0)) {
+        Some((nrmse, overlay)) if nrmse > NEAR => steps.push(format!(
+            "Bring the model nearer to the rig before its numbers are believed: {} lies {} % of its range from what was measured; friction, leakage and the stiffness of the load cell are the first to look at.",
+            overlay.quantity(),
+            significant(100.0 * nrmse, 3)
+        )),
+        Some(_) => {}
+        None => steps.push("Lay a measurement over a scenario (`[[scenario.measured]]`): nothing here has been held against the rig.".to_string()),
+    }
+    if project.campaign.is_none() {
+        steps.push("Add `[campaign]` with the numbers that are not known well: every run here has the declared ones.".to_string());
+    }
+    steps
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
+}

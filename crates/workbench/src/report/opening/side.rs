@@ -1,0 +1,78 @@
+//! One controller with all that is known of it.
+
+use phea_qft::verification::Verdict;
+
+use crate::audit::ProjectAudit;
+use crate::design::LoopFigures;
+use crate::report::driven::{DESIGNED, Driven, GIVEN};
+use crate::report::judged::Judged;
+use crate::report::simulation::worst;
+use crate::simulate::{Held, Metrics, ScenarioRun, Wish};
+use crate::trial::Trial;
+
+/// A controller.
+pub(super) struct Side<'a> {
+    /// [`GIVEN`] or [`DESIGNED`].
+    pub(super) name: &'static str,
+    /// The audit of its family.
+    pub(super) view: Option<&'a ProjectAudit>,
+    /// The verdict tried on the machine.
+    pub(super) trial: Option<&'a Trial>,
+    /// The scenarios.
+    pub(super) runs: Option<&'a [ScenarioRun]>,
+    /// What controllers are compared by, where both are known.
+    pub(super) figures: Option<LoopFigures>,
+}
+
+/// Given and designed, as far as something is known of them.
+pub(super) fn sides<'a>(judged: Option<&'a Judged>, driven: Option<&'a Driven>) -> Vec<Side<'a>> {
+    let found = judged.and_then(Judged::found);
+    let given = Side {
+        name: GIVEN,
+        view: judged.and_then(|judged| judged.given.as_ref()),
+        trial: judged.and_then(|judged| judged.given_trial.as_ref()),
+        runs: driven.and_then(|driven| driven.runs_of(GIVEN)),
+        figures: found.and_then(|view| view.published.as_ref()).map(|side| side.figures),
+    };
+    let designed = Side {
+        name: DESIGNED,
+        view: found.map(|view| &view.designed.view),
+        trial: found.and_then(|view| view.trial.as_ref()),
+        runs: driven.and_then(|driven| driven.runs_of(DESIGNED)),
+        figures: found.map(|view| view.designed.figures),
+    };
+    [given, designed].into_iter().filter(|side| side.view.is_some() || side.runs.is_some()).collect()
+}
+
+impl Side<'_> {
+    /// Whether every specification is met.
+    pub(super) fn is_met(&self) -> bool {
+        self.view.is_some_and(|view| view.audit.verdict == Verdict::Met)
+    }
+
+    /// The step that overshoots most, and of how many; `None` where nothing was wished or driven.
+    pub(super) fn overshoot(&self, wish: &Wish) -> Option<(Held, usize)> {
+        let reached = |metrics: &Metrics| Some((metrics.overshoot_percent.ok()?, wish.overshoot(metrics)?));
+        worst(self.runs?, reached)
+    }
+
+    /// The step that settles last, likewise.
+    pub(super) fn settling(&self, wish: &Wish) -> Option<(Held, usize)> {
+        let reached = |metrics: &Metrics| {
+            let held = wish.settling(metrics)?;
+            Some((metrics.settling_time_s.unwrap_or(f64::INFINITY), held))
+        };
+        worst(self.runs?, reached)
+    }
+
+    /// Whether all steps keep to the wish; `None` where none can be judged.
+    pub(super) fn keeps(&self, wish: &Wish) -> Option<bool> {
+        let held = [self.overshoot(wish), self.settling(wish)].into_iter().flatten();
+        held.filter_map(|(held, _)| held.kept).reduce(|one, other| one && other)
+    }
+
+    /// Seconds of delay that its family still tolerates.
+    pub(super) fn delay_margin_s(&self) -> Option<f64> {
+        Some(self.view?.audit.delay_margin.as_ref()?.delay_s)
+    }
+}

@@ -1,0 +1,129 @@
+//! The appendix on what is not known well: the first scenario with the load cell and the friction multiplied.
+
+use maud::{Markup, html};
+
+use super::chapter::{Chapter, cell, grouped, unbroken};
+use super::driven::Driven;
+use super::simulation::told;
+use super::typeset::prose;
+use crate::command::{CommandError, Watch};
+use crate::figure::DisplayUnit;
+use crate::project::{FrictionModel, Project};
+use crate::simulate::{METRICS, Metrics, ScenarioRun, Window, cause_words, cells_of, simulate_project};
+use crate::source::Source;
+
+/// Factors of the sensitivity.
+const STIFFNESS_FACTORS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
+const FRICTION_FACTORS: [(f64, &str); 4] = [(0.0, "none"), (0.5, "half"), (1.0, "all of it"), (2.0, "twice")];
+
+/// The chapter, of the first controller that was driven, whose project this is; `None` where none was.
+///
+/// # Errors
+/// [`CommandError::Stopped`] where the watch stops it.
+pub(super) fn chapter(
+    source: &dyn Source,
+    project: &Project,
+    driven: &Driven,
+    watch: Watch<'_>,
+) -> Result<Option<Chapter>, CommandError> {
+    let Some(side) = driven.sides.first().filter(|side| side.runs.is_ok()) else { return Ok(None) };
+    let varied = sensitivity(source, project, watch)?;
+    let body = html! {
+        p { (prose("The first scenario again with one quantity changed: the stiffness K_S of load cell and environment, and all friction. Neither is known well of a real rig, and the overshoot follows both.")) " The controller is the " (side.name) " one." }
+        (tables(&varied))
+    };
+    let (anchor, title) = ("sensitivity", "Sensitivity of the first scenario");
+    Ok((!varied.is_empty()).then(|| Chapter { anchor, title, body, figures: vec![] }))
+}
+
+/// A quantity multiplied by a factor, and what comes of the first scenario.
+struct Varied {
+    quantity: &'static str,
+    factor: f64,
+    value: String,
+    run: Result<ScenarioRun, String>,
+}
+
+/// The first scenario with the stiffness of the load cell and with the friction multiplied.
+fn sensitivity(
+    source: &dyn Source,
+    project: &Project,
+    watch: Watch<'_>,
+) -> Result<Vec<Varied>, CommandError> {
+    let mut first = project.clone();
+    first.scenarios.truncate(1);
+    let mut varied = Vec::new();
+    for factor in STIFFNESS_FACTORS {
+        let mut project = first.clone();
+        if let Some(actuator) = &mut project.actuator {
+            actuator.force_sensor.stiffness *= factor;
+            let shown = DisplayUnit::MEGANEWTON_PER_METRE.text(actuator.force_sensor.stiffness, 3);
+            varied.push(vary(source, &project, ("Load stiffness K_S", factor, shown), watch)?);
+        }
+    }
+    for (factor, word) in FRICTION_FACTORS {
+        let mut project = first.clone();
+        let Some(friction) =
+            project.actuator.as_mut().and_then(|actuator| actuator.cylinder.friction.as_mut())
+        else {
+            break;
+        };
+        friction.viscous *= factor;
+        friction.coulomb = friction.coulomb.map(|force| force * factor);
+        friction.static_friction = friction.static_friction.map(|force| force * factor);
+        if factor == 0.0 {
+            friction.model = FrictionModel::Viscous;
+        }
+        varied.push(vary(source, &project, ("Friction", factor, word.to_string()), watch)?);
+    }
+    Ok(varied)
+}
+
+fn vary(
+    source: &dyn Source,
+    project: &Project,
+    (quantity, factor, value): (&'static str, f64, String),
+    watch: Watch<'_>,
+) -> Result<Varied, CommandError> {
+    let run = match simulate_project(source, project, watch) {
+        Ok(runs) if runs.iter().any(ScenarioRun::was_cancelled) => return Err(CommandError::Stopped),
+        Ok(runs) => runs.into_iter().next().ok_or_else(|| "no scenario".to_string()),
+        Err(error) => Err(error.to_string()),
+    };
+    Ok(Varied { quantity, factor, value, run })
+}
+
+/// One table for each event, in which a column is read downwards.
+fn tables(varied: &[Varied]) -> Markup {
+    let events =
+        varied.iter().filter_map(|varied| varied.run.as_ref().ok()).map(|run| run.windows.len()).max();
+    let refused = varied.iter().filter_map(|varied| Some((varied, varied.run.as_ref().err()?)));
+    let tables = (0..events.unwrap_or(0)).filter_map(|event| event_table(varied, event));
+    html! {
+        @for (varied, reason) in refused { p { (prose(varied.quantity)) ", " (varied.value) ": " (reason) "." } }
+        @for table in tables { (table) }
+    }
+}
+
+/// What comes of one event, quantity by quantity.
+fn event_table(varied: &[Varied], event: usize) -> Option<Markup> {
+    let seen = |varied: &Varied| Some(*varied.run.as_ref().ok()?.windows.get(event)?);
+    let windows: Vec<(Window, Metrics)> = varied.iter().filter_map(seen).collect();
+    let told = told(windows.iter());
+    let event = cause_words(&windows.first()?.0);
+    let mut heads = vec![event.as_str()];
+    heads.extend(told.iter().map(|metric| METRICS[*metric]));
+    let mut groups: Vec<(String, Vec<Vec<Markup>>)> = Vec::new();
+    for varied in varied {
+        let Some((_, metrics)) = seen(varied) else { continue };
+        let as_declared = if varied.factor == 1.0 { ", as declared" } else { "" };
+        let cells = cells_of(&metrics);
+        let mut row = vec![unbroken(&format!("{}{as_declared}", varied.value))];
+        row.extend(told.iter().map(|metric| cell(&cells[*metric])));
+        match groups.last_mut().filter(|(quantity, _)| quantity == varied.quantity) {
+            Some((_, rows)) => rows.push(row),
+            None => groups.push((varied.quantity.to_string(), vec![row])),
+        }
+    }
+    Some(grouped(&heads, 1, &groups))
+}
