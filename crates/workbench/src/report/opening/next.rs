@@ -64,6 +64,9 @@ fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
         _ if given.is_some_and(|side| side.view.is_some_and(is_violated)) => {
             "add `[design]` to the project, and `phea design` looks for one that holds".to_string()
         }
+        _ if given.is_some_and(contradicted) => {
+            "do not rely on it before the machine agrees, which contradicts the verdict".to_string()
+        }
         _ if given.is_some_and(Side::is_met) => "keep it".to_string(),
         _ => "remove what leaves the verdict open".to_string(),
     };
@@ -71,6 +74,11 @@ fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
         Some(given) => format!("{}: {designed}.", capital(&given)),
         None => format!("{}.", capital(&designed)),
     })
+}
+
+/// Whether the machine does not do what the verdict promises.
+fn contradicted(side: &Side<'_>) -> bool {
+    side.trial.is_some_and(|trial| trial.agreement() == Agreement::Contradicts)
 }
 
 fn is_violated(view: &ProjectAudit) -> bool {
@@ -124,6 +132,9 @@ fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) 
 
 fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
     match &view.design.status {
+        DesignStatus::Met if view.agreement() == Agreement::Contradicts => format!(
+            "do not use the designed one (`{DESIGNED_PROJECT}`) before the machine agrees: it keeps to every specification over the family, and the machine contradicts it"
+        ),
         DesignStatus::Met if given_is_met => {
             format!("keep it, or take the designed one of `{DESIGNED_PROJECT}` where its numbers are better")
         }
