@@ -184,6 +184,30 @@ fn a_mode_that_folds_is_unstable_in_a_hundredth_of_the_box() {
     assert!(found.stability.largest_real_part.unwrap() > 0.00415);
 }
 
+/// Three modes that fold by themselves pass through the band in more combinations than can be looked at.
+#[test]
+fn modes_that_fold_too_often_leave_the_verdict_open() {
+    let ranges = [("u", 10.0, 10.0, 40.0), ("v", 50.0, 50.0, 90.0), ("w", 100.0, 100.0, 150.0)];
+    let plant = family(&ranges, Spacing::Linear, |p| {
+        let start = vec![Recorded::from(1.0)];
+        let denominator = p.iter().fold(start, |product, &w| {
+            let factor = [1.0.into(), w.times(0.02), w * w];
+            let mut next = vec![Recorded::from(0.0); product.len() + 2];
+            for (i, &a) in product.iter().enumerate() {
+                for (j, &b) in factor.iter().enumerate() {
+                    next[i + j] = next[i + j] + a * b;
+                }
+            }
+            next
+        });
+        rational(vec![p[0] * p[0] * p[1] * p[1] * p[2] * p[2]], denominator, 0.0)
+    });
+    let found = audit(&plant, &sampled_integrator(0.01, 1.0), &[sensitivity(40.0)]);
+    assert_eq!(found.verdict, Verdict::NotProven);
+    assert!(found.stability.reason.contains("too often to be followed"), "{}", found.stability.reason);
+    assert_eq!(found.specifications[0].verdict, Verdict::NotProven);
+}
+
 fn leading<'t>(p: &[Recorded<'t>]) -> Recorded<'t> {
     let from = p[0] - 0.37.into();
     from * from - 0.001.into()
@@ -209,6 +233,24 @@ fn a_pole_that_passes_through_infinity_is_met() {
     let found = audit(&plant, &sampled(4.0, &[1.0], &[1.0], 0.01), &specifications);
     assert_eq!(found.stability.verdict, Verdict::Violated);
     assert!((value(&found.stability.plant) - 0.37).abs() < 0.001_f64.sqrt());
+}
+
+/// (x - 0.5)^2 s^2 + s loses its highest power for one plant, without a change of sign: its pole is at -1/(x - 0.5)^2. Multiplied out the
+/// square can be told from a change of sign by no enclosure.
+#[test]
+fn a_pole_that_touches_infinity_is_told_where_the_square_is_recorded() {
+    let build = |expanded: bool| {
+        family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, move |p| {
+            let from = p[0] - 0.5.into();
+            let square = if expanded { p[0] * p[0] - p[0] + 0.25.into() } else { from * from };
+            rational(vec![1.0.into()], vec![square, 1.0.into(), 0.0.into()], 0.0)
+        })
+    };
+    let controller = Controller::default();
+    assert_eq!(audit(&build(false), &controller, &[sensitivity(3.0)]).verdict, Verdict::Met);
+    let found = audit(&build(true), &controller, &[sensitivity(3.0)]);
+    assert_eq!(found.verdict, Verdict::NotProven);
+    assert!(found.stability.reason.contains("infinity"), "{}", found.stability.reason);
 }
 
 /// |L(inf)| = 1.001 - (x - 0.37)^2 exceeds one for |x - 0.37| < 0.0316: with dead time infinitely many poles are unstable there.

@@ -65,13 +65,24 @@ impl Wide {
         self.entries[row * self.order + column]
     }
 
+    /// The product; zeros, of which a block triangular matrix is half made, cost nothing.
     fn times(&self, other: &Wide) -> Self {
-        Wide::from_fn(self.order, |i, j| {
-            (0..self.order).fold(DoubleDouble::ZERO, |sum, k| {
-                let (left, right) = (self.entry(i, k), other.entry(k, j));
-                if left.high == 0.0 || right.high == 0.0 { sum } else { sum + left * right }
-            })
-        })
+        let order = self.order;
+        let mut entries = vec![DoubleDouble::ZERO; order * order];
+        for (row, sums) in entries.chunks_exact_mut(order.max(1)).enumerate() {
+            for k in 0..order {
+                let left = self.entry(row, k);
+                if left.high == 0.0 {
+                    continue;
+                }
+                for (sum, &right) in sums.iter_mut().zip(&other.entries[k * order..(k + 1) * order]) {
+                    if right.high != 0.0 {
+                        *sum = *sum + left * right;
+                    }
+                }
+            }
+        }
+        Wide { order, entries }
     }
 
     pub(super) fn times_column(&self, column: &[DoubleDouble]) -> Vec<DoubleDouble> {
