@@ -53,4 +53,5 @@ mod sizing_catalogue;
 mod sizing_laws;
 mod specification;
 mod trial;
+mod trusted_data;
 mod verify_contract;
