@@ -133,3 +133,17 @@ fn the_gap_counts_from_the_equilibrium() {
     assert!((load[400] - start).abs() < 1e-6, "{} m", load[400] - start);
     within(end - start, 2e-3 + 500.0 / 20e6, 3e-6);
 }
+
+/// Return and suction lines have a velocity of their own.
+#[test]
+fn return_and_suction_lines_get_their_bores() {
+    let said =
+        |text: &str| crate::ask::answer(text, &[], &[], &Request::Size { gain: None, length: None }).text;
+    // ORIGIN: analytic, D = sqrt(4 q/(pi v)) with 9.8 L/min at 1.2 and 0.6 m/s
+    assert!(said(HOSE).contains(
+        "bores of 13.2 to 18.6 mm for the return line of 9.800 L/min, of 13.2 to 18.6 mm for suction"
+    ));
+    // ORIGIN: analytic, the same with 50^2/(50^2 - 22^2) of the flow
+    let one_rod = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"0 mm\"]");
+    assert!(said(&one_rod).contains("bores of 14.7 to 20.7 mm for the return line of 12.15 L/min"));
+}
