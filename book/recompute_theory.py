@@ -73,10 +73,22 @@ def valve():
     for total, quoted in [(0.40, 1.37e-9), (0.61, 3.43e-9)]:
         leakage = (total - 0.26) * GALLON_PER_MINUTE / math.sqrt(2 * pressure)
         expect(f"4.13 at {total} gpm, tare off", leakage, quoted, 0.5e-11)
+    total, tare = 0.40 * GALLON_PER_MINUTE, 7.55e-6 * math.sqrt(pressure / 70e5)
+    expect("the measured tare at 3000 psi", tare, 1.30e-5, 0.5e-7)
+    expect("4.13 with the tare at its own pressure", (total - tare) / math.sqrt(2 * pressure), 1.906e-9, 0.5e-12)
+    expect("4.13 with it as it stands", (total - 7.55e-6) / math.sqrt(2 * pressure), 2.750e-9, 0.5e-12)
+    expect("the catalogue's tare at 70 bar", 0.26 * GALLON_PER_MINUTE * math.sqrt(70e5 / pressure), 9.5e-6, 0.5e-7)
+    for what, share, quoted in [
+        ("0.61 gpm", 0.26 / 0.61, 42.6),
+        ("0.40 gpm", 0.26 / 0.40, 65.0),
+        ("measured, of the total", 7.55e-6 / (7.55e-6 + 9.31e-6), 44.8),
+        ("measured, over q_vin", 7.55e-6 / 9.31e-6, 81.1),
+    ]:
+        expect(f"tare share, {what}, percent", 100 * share, quoted, 0.05)
     expect("tare flow of 0.26 gpm", 0.26 * GALLON_PER_MINUTE, 1.64e-5, 0.5e-7)
     expect("leak peak of 5.2.1", 0.0167 * rated, 9.3e-6, 0.05e-6)
     for name, flow, leak, excess, place in [
-        ("equal edges", [2.88e-7] * 4, [2.15e-9] * 4, 10.8, 0.34),
+        ("equal edges", [2.8875e-7] * 4, [2.15e-9] * 4, 10.8, 0.34),
         (
             "edges of Table 5.1",
             [3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7],
@@ -95,9 +107,15 @@ def valve():
     expect(
         "leakage's share of 4.21 at 25 bar in percent",
         leakage_share_of_gain(2.97e-7, 2.402e-9, 100.0, 7e6, 25e5),
-        11,
-        0.5,
+        11.5,
+        0.05,
     )
+    expect("4.21 at 25 bar as printed", 2.97e-8 * math.sqrt((7e6 - 25e5) / 2), 4.455e-5, 0.5e-8)
+    share = leakage_share_of_gain(2.97e-7, 2.402e-9, 100.0, 7e6, 25e5) / 100
+    expect("4.21 at 25 bar with the leakage", 2.97e-8 * math.sqrt((7e6 - 25e5) / 2) * (1 + share), 4.967e-5, 0.5e-8)
+    for line, stiffness, quoted in [("hose", 2.24e6, 1.69), ("pipe", 1.71e7, 1.65)]:
+        lag = 2 * XI / OMEGA + 100.0 / stiffness + 6.42e-13 * MASS / AREA**2
+        expect(f"tau of the feed-forward, {line}, ms", 1e3 * lag, quoted, 5e-3)
     corner = 2.97e-7 / math.sqrt(8 * 7e6 / 3)
     expect("4.22 at full opening, 2/3 p_S", corner, 6.9e-11, 0.5e-12)
     demand = 2.97e-7 * math.sqrt(7e6 / 6)
@@ -179,17 +197,27 @@ def by_sheet(bore_area):
 
 
 def sizing(effective, bore_area):
-    sensor, gain, leak, constant = 2e7, 5.62e-5, 6.42e-13, 0.05
+    sensor, gain, leak, constant = 2e7, 5.625e-5, 6.42e-13, 0.05
     for proportional, stiffness, length, digits in [
-        (0.01, 5.65e4, 180, 0.5),
-        (0.001, 5.76e5, 14.84, 5e-3),
-        (0.0005, 1.175e6, 5.66, 5e-3),
-        (0.00025, 2.46e6, 1.07, 5e-3),
+        # a unit of the last digit: no one K_qU rounds to all eight
+        (0.01, 5.65e4, 180, 1),
+        (0.001, 5.76e5, 14.84, 1e-2),
+        (0.0005, 1.175e6, 5.66, 1e-2),
+        (0.00025, 2.46e6, 1.07, 1e-2),
     ]:
+        last_digit = 1e2 if stiffness < 1e5 else 1e3 if stiffness in (5.76e5, 1.175e6) else 1e4
         needed = sensor * AREA**2 / (sensor * constant * (leak + AREA * proportional * gain) - AREA**2)
-        expect(f"Table 6.2 K_H at {proportional}", needed / stiffness, 1, 0.002)
+        expect(f"Table 6.2 K_H at {proportional}", needed, stiffness, last_digit)
         metres = (4 * effective * AREA**2 / needed - AREA * STROKE) / 2 / bore_area
-        expect(f"Table 6.2 L_ho at {proportional}", metres, length, 0.01 * length)
+        expect(f"Table 6.2 L_ho at {proportional}", metres, length, digits)
+    settling = lambda band: 1e3 * 0.2 / math.log(100 / band)
+    expect("tau_d of 0.2 s to 1 % in ms", settling(1), 43.4, 0.05)
+    expect("time constants to 2 %", math.log(50), 3.9, 0.05)
+    needed = sensor * AREA**2 / (sensor * constant * (leak + AREA * 0.0005 * 5.62e-5) - AREA**2)
+    expect("Table 6.2 with K_qU 5.62e-5, 0.0005: K_H", needed, 1.176e6, 0.5e3)
+    expect("and L_ho", (4 * effective * AREA**2 / needed - AREA * STROKE) / 2 / bore_area, 5.655, 5e-4)
+    needed = sensor * AREA**2 / (sensor * constant * (leak + AREA * 0.001 * 5.62e-5) - AREA**2)
+    expect("0.001: L_ho", (4 * effective * AREA**2 / needed - AREA * STROKE) / 2 / bore_area, 14.82, 5e-3)
     limit = (AREA / (constant * sensor) - leak / AREA) / gain
     expect("gain with infinite stiffness", limit, 2.1e-5, 0.05e-5)
     for flow_gain, quoted in [(5.62e-5, 2.73e-4), (5.4e-5, 2.84e-4)]:

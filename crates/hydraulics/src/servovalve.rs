@@ -191,19 +191,28 @@ pub fn flow_coefficient_from_rating<S: Scalar>(rated_flow: S, rated_drop: S) -> 
 /// Leakage coefficient of one edge from the leakage at null, in m3/(s Pa^0.5).
 ///
 /// ```text
-/// K_vinp = (q_total - q_tare) / sqrt(2 p_in)                           thesis (4.13), the tare flow subtracted
+/// K_vinp = (q_total - q_tare sqrt(p_in/p_tare)) / sqrt(2 p_in)         thesis (4.13), the tare flow subtracted
 /// ```
 ///
 /// Catalogues state the whole leakage, the amplifier's tare flow included; what is left runs through two paths of two
-/// edges. Flows in m3/s at the pressure p_in in Pa.
+/// edges. Flows in m3/s, the leakage at the pressure p_in and the tare flow, which goes with the root of the pressure, at
+/// p_tare, both in Pa.
 ///
 /// # Example
-/// 0.61 gpm less 0.26 gpm at 3000 psi
+/// 0.61 gpm less 0.26 gpm, both at 3000 psi; 0.40 gpm at 3000 psi less what was measured at 70 bar
 /// ```
 /// use phea_hydraulics::servovalve::leakage_coefficient_from_rating;
-/// let coefficient: f64 = leakage_coefficient_from_rating(3.84e-5, 1.64e-5, 2.068e7);
+/// let coefficient: f64 = leakage_coefficient_from_rating(3.84e-5, 1.64e-5, 2.068e7, 2.068e7);
 /// assert!((coefficient - 3.42e-9).abs() < 0.5e-11);
+/// let measured: f64 = leakage_coefficient_from_rating(2.5236e-5, 7.55e-6, 70e5, 2.0684e7);
+/// assert!((measured - 1.906e-9).abs() < 0.5e-12); // ORIGIN: recomputed by comparisons/recompute_rig.py
 /// ```
-pub fn leakage_coefficient_from_rating<S: Scalar>(total_leakage: S, tare_flow: S, pressure: S) -> S {
-    (total_leakage - tare_flow) / (S::from(2.0) * pressure).sqrt()
+pub fn leakage_coefficient_from_rating<S: Scalar>(
+    total_leakage: S,
+    tare_flow: S,
+    tare_pressure: S,
+    pressure: S,
+) -> S {
+    let tare = tare_flow * (pressure / tare_pressure).sqrt();
+    (total_leakage - tare) / (S::from(2.0) * pressure).sqrt()
 }

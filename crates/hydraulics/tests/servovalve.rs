@@ -32,8 +32,11 @@ fn coefficients_from_a_data_sheet() {
     assert_eq!(through(35e5), 0.0);
     assert!((coefficient * 35e5_f64.sqrt() / 6e-4 - 1.0).abs() < 1e-15);
     // ORIGIN: analytic, two paths of two edges leak the rated leakage less the tare flow
-    let leak: f64 = leakage_coefficient_from_rating(3.0e-5, 1.64e-5, 2.068e7);
+    let leak: f64 = leakage_coefficient_from_rating(3.0e-5, 1.64e-5, 2.068e7, 2.068e7);
     assert!((2.0 * leak * (2.068e7_f64 / 2.0).sqrt() / (3.0e-5 - 1.64e-5) - 1.0).abs() < 1e-14);
+    // ORIGIN: analytic, a tare flow stated at a quarter of the pressure is twice as large
+    let quarter: f64 = leakage_coefficient_from_rating(3.0e-5, 0.82e-5, 2.068e7 / 4.0, 2.068e7);
+    assert!((quarter / leak - 1.0).abs() < 1e-14);
 }
 
 /// ORIGIN: analytic, thesis (4.21) and (4.22) corrected, with plain square roots and the derivative of the leakage.

@@ -19,8 +19,8 @@ use phea_hydraulics::impedance::{
 };
 use phea_hydraulics::line::Member;
 use phea_hydraulics::linear::{
-    LinearModel, LinearParameters, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model,
-    dominance, first_order_model, linear_model, response_difference, transfer_functions,
+    LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance,
+    first_order_model, linear_model, response_difference, transfer_functions,
 };
 use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, Plant};
 use phea_hydraulics::stiffness::{
@@ -56,7 +56,7 @@ pub struct Linearization {
     pub plant_is_fifth_order: bool,
     /// The linearised two-pressure model of the rig as declared, at its operating point.
     pub two_pressure: LinearModel,
-    /// The fifth-order model of the parameters that hold, equation 6.7.
+    /// The fifth-order model of the parameters that hold, equation 6.7, K_c with the leakage across the piston beside it.
     pub full: LinearModel,
     /// The same of the derived parameters: what the two-pressure model is compared with.
     pub derived_full: LinearModel,
@@ -124,15 +124,16 @@ pub fn linearize(
         other => other,
     };
     let plant = transfer_functions(&rig.plant.coefficients())?;
-    let full = linear_model(&rig.linear)?;
+    let leaking = rig.leaking();
+    let full = linear_model(&leaking)?;
     // What the load feels is the actuator without it.
     let port = transfer_functions(&Plant { load: LinearLoad::Prescribed, ..rig.plant }.coefficients())?;
     let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.two_pressure))?;
     let decomposed = [
-        decomposed_model(&rig.linear, MechanicalDamping::Printed)?,
-        decomposed_model(&rig.linear, MechanicalDamping::Corrected)?,
+        decomposed_model(&leaking, MechanicalDamping::Printed)?,
+        decomposed_model(&leaking, MechanicalDamping::Corrected)?,
     ];
-    let first_order = first_order_model(&rig.linear)?;
+    let first_order = first_order_model(&leaking)?;
     let derived_full = linear_model(&rig.derived)?;
     let grid = frequency_grid(&full.command)?;
     let against_full = |other: &TransferFunction| compare(&grid, &full.command, other);
@@ -192,17 +193,11 @@ fn absence(controller: Option<&TransferFunction>, view: Option<&PortView>) -> Op
     Some(reason.to_string())
 }
 
-/// The parameters of 6.7, K_c with the leakage across the piston beside it.
-fn leaking(rig: &Rig) -> LinearParameters {
-    let flow_pressure_coefficient = rig.linear.flow_pressure_coefficient + rig.internal_leakage;
-    LinearParameters { flow_pressure_coefficient, ..rig.linear }
-}
-
 fn open_loop_view(rig: &Rig, port: &LinearModel) -> Result<PortView, LinearError> {
     let impedance = open_loop_impedance(port)?;
     Ok(PortView {
         passivity: passivity(&impedance)?,
-        asymptotes: impedance_asymptotes(&leaking(rig), None),
+        asymptotes: impedance_asymptotes(&rig.leaking(), None),
         final_force_n: final_force_after_load_step(&port.load_position, 1e-3),
         impedance,
     })
@@ -216,7 +211,7 @@ fn closed_loop_view(
     let impedance = closed_loop_impedance(port, controller)?;
     Ok(PortView {
         passivity: passivity(&impedance)?,
-        asymptotes: impedance_asymptotes(&leaking(rig), Some(controller)),
+        asymptotes: impedance_asymptotes(&rig.leaking(), Some(controller)),
         final_force_n: final_force_after_load_step(&closed_loop_load_motion(port, controller)?, 1e-3),
         impedance,
     })

@@ -88,6 +88,12 @@ impl Rig {
         }
     }
 
+    /// The linear parameters that hold, the leakage across the piston beside K_c: with one load pressure it is the same.
+    pub fn leaking(&self) -> LinearParameters {
+        let flow_pressure_coefficient = self.linear.flow_pressure_coefficient + self.internal_leakage;
+        LinearParameters { flow_pressure_coefficient, ..self.linear }
+    }
+
     /// Assembles the rig of a project and linearises it.
     ///
     /// # Errors

@@ -55,6 +55,7 @@ mod sizing_laws;
 mod specification;
 mod sweep;
 mod trial;
+mod trusted_data;
 mod verify_contract;
 mod waves_in_the_loop;
 mod what_moves_what;

@@ -67,6 +67,10 @@ fn a_met_verdict_that_waves_contradict_is_no() {
     assert!(overshoot(waves, "machine") > 100.0, "{waves}");
     // ORIGIN: analytic, pi c/(2 L) with the wave's speed in the hose at 35 bar
     assert!(waves["reason"].as_str().unwrap().contains("a quarter wave long at 560 rad/s"), "{waves}");
+    // what a transmission line does not take is not recommended for it
+    assert!(
+        waves["reason"].as_str().unwrap().contains("(line.model = \"segments\" with line.relaxation_time)")
+    );
     // the rig with lumped lines, which is what was promised
     assert_eq!(run(&object, "the rig as declared")["agrees"], Value::from(true));
 }

@@ -205,7 +205,7 @@ fn linear_parameters(rig: &Rig, list: &mut List) {
 }
 
 fn dynamics(rig: &Rig, list: &mut List) {
-    let linear = &rig.linear;
+    let linear = &rig.leaking();
     let factors = decompose(linear, MechanicalDamping::Corrected);
     list.group("Dynamics, with the values that hold");
     list.add(
@@ -215,7 +215,13 @@ fn dynamics(rig: &Rig, list: &mut List) {
         "N/m",
         "K_{eq} = K_H K_S/(K_H + K_S)",
     );
-    list.add("dynamics.hydraulic_pole", "s_1", -factors.hydraulic_rate, "rad/s", "s_1 = -K_c K_{eq}/A_u^2");
+    list.add(
+        "dynamics.hydraulic_pole",
+        "s_1",
+        -factors.hydraulic_rate,
+        "rad/s",
+        "s_1 = -(K_c + G) K_{eq}/A_u^2",
+    );
     list.add(
         "dynamics.mechanical_frequency",
         "ω_m",
@@ -229,7 +235,7 @@ fn dynamics(rig: &Rig, list: &mut List) {
         "ξ_m",
         damping_ratio,
         "1",
-        "2 ξ_m ω_m = f_v/M + K_c K_H^2/(A_u^2 (K_H + K_S))",
+        "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S))",
     );
     list.add(
         "dynamics.force_rate_gain",

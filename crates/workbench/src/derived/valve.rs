@@ -22,7 +22,7 @@ const EDGES: [(&str, &str, &str); 4] = [
 
 /// Equations of the coefficients from a data sheet, thesis (4.12) corrected and (4.13).
 const FROM_RATING: &str = "K_{vp} = q_{vn}/sqrt(Δp_{tn}/2)";
-const FROM_LEAKAGE: &str = "K_{vinp} = (q_0 - q_{tare})/sqrt(2 p_{in})";
+const FROM_LEAKAGE: &str = "K_{vinp} = (q_0 - q_{tare} sqrt(p_{in}/p_{tare}))/sqrt(2 p_{in})";
 
 /// What follows for the servovalve: edges, flow gains, slopes.
 pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
@@ -31,7 +31,7 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
     let areas = [cylinder.area_a, cylinder.area_b];
     list.group("Servovalve");
     if let Some(actuator) = &project.actuator {
-        edges(&actuator.valve, rig, list);
+        edges(&actuator.valve, &actuator.supply, rig, list);
     }
     for (name, direction, area, equation) in [
         (
@@ -106,7 +106,7 @@ fn chamber_slopes(rig: &Rig, list: &mut List) {
 }
 
 /// The coefficients of the edges, and beside what the data sheet says the mean of those declared.
-fn edges(declared: &project::Valve, rig: &Rig, list: &mut List) {
+fn edges(declared: &project::Valve, supply: &project::Supply, rig: &Rig, list: &mut List) {
     let valve = &rig.actuator.components().valve;
     let origin = |is_declared, equation| if is_declared { "declared" } else { equation };
     let flow_origin = origin(declared.flow_coefficients.is_some(), FROM_RATING);
@@ -128,8 +128,24 @@ fn edges(declared: &project::Valve, rig: &Rig, list: &mut List) {
     if let (Some(edges), Some(leakage), Some(pressure)) =
         (declared.leakage_coefficients, declared.null_leakage, declared.null_leakage_pressure)
     {
-        let rated = leakage_coefficient_from_rating(leakage, declared.tare_flow, pressure);
+        let rated = leakage_coefficient_from_rating(
+            leakage,
+            declared.tare_flow,
+            declared.tare_drop(supply),
+            pressure,
+        );
         list.add("valve.leakage_coefficient_rated", "K_vinp", rated, COEFFICIENT, FROM_LEAKAGE);
         list.stated(mean(edges.in_order()), "[valve.leakage_coefficients], the mean of its edges", None);
+    }
+    if declared.tare_flow > 0.0 {
+        let (tare, supply) = (declared.tare_drop(supply), &rig.actuator.components().supply);
+        let flow = phea_hydraulics::servovalve::tare_flow(valve, supply, tare);
+        list.add(
+            "valve.tare_flow",
+            "q_tare",
+            flow,
+            "m3/s",
+            "q_{tare}(p_S) = q_{tare} sqrt((p_S - p_T)/p_{tare})",
+        );
     }
 }

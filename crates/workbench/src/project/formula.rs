@@ -110,7 +110,23 @@ impl Formula {
     /// # Ok::<(), phea_workbench::project::FormulaError>(())
     /// ```
     pub fn parse(text: &str) -> Result<Formula, FormulaError> {
-        parse::formula(text)
+        parse::formula(text, true)
+    }
+
+    /// Reads a formula in `s` in which `z` is a parameter, as it may be where nothing is sampled.
+    ///
+    /// # Errors
+    /// As [`Formula::parse`].
+    ///
+    /// # Example
+    /// ```
+    /// use phea_workbench::project::Formula;
+    /// let formula = Formula::parse_continuous("s^2 + 2*z*s + 1")?;
+    /// assert_eq!(formula.parameters(), [("z", 8..9)]);
+    /// # Ok::<(), phea_workbench::project::FormulaError>(())
+    /// ```
+    pub fn parse_continuous(text: &str) -> Result<Formula, FormulaError> {
+        parse::formula(text, false)
     }
 
     /// A number as a formula.

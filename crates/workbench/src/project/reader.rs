@@ -176,6 +176,20 @@ impl<'a> Reader<'a> {
         Some(hit)
     }
 
+    /// How to write a name with dots in it, where it was taken for tables in each other.
+    fn quoted(&self, key: Key, entry: &Entry) -> Option<String> {
+        let (mut name, mut node) = (entry.key.clone(), &entry.node);
+        while !self.named.contains_key(&name) {
+            let [inner] = node.entries() else { return None };
+            name = format!("{name}.{}", inner.key);
+            node = &inner.node;
+        }
+        Some(format!(
+            "`{name}` is one name: write it in quotes, {0}.\"{name}\" (on a command line --set '{0}.\"{name}\"=...')",
+            key.name
+        ))
+    }
+
     fn origin(&self, key: Key, hit: Hit<'a>) -> Origin {
         match hit.entry {
             Some(entry) => Origin::Catalogue { name: entry.name.clone(), source: entry.source_of(key.name) },

@@ -1,5 +1,6 @@
 //! `[valve]`.
 
+use super::Supply;
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use crate::catalogue::Kind;
@@ -89,6 +90,11 @@ impl EdgeCoefficients {
 }
 
 impl Valve {
+    /// Pa, drop from supply to tank at which the tare flow is stated.
+    pub fn tare_drop(&self, supply: &Supply) -> f64 {
+        self.tare_pressure.unwrap_or(supply.pressure - supply.tank_pressure)
+    }
+
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.catalogue(plain("model", "Name of a valve of the catalogue."), Kind::Valve, &mut self.model);
         let k = key("nominal_voltage", &VOLTAGE, "Command of full opening.").positive().or(10.0);

@@ -24,7 +24,7 @@ pub(crate) fn actuator(declared: &project::Actuator) -> Result<Actuator, Actuato
     Actuator::new(Components {
         fluid: fluid(&declared.fluid),
         supply: Supply { pressure, tank_pressure },
-        valve: valve(&declared.valve),
+        valve: valve(&declared.valve, &declared.supply),
         line_a: line(&declared.line.a, pressures),
         line_b: line(&declared.line.b, pressures),
         cylinder: cylinder(&declared.cylinder),
@@ -55,15 +55,19 @@ fn fluid(declared: &project::Fluid) -> Fluid {
 }
 
 /// Coefficients as declared; without them, those of the data sheet, equal for all edges.
-fn valve(declared: &project::Valve) -> Servovalve {
+fn valve(declared: &project::Valve, supply: &project::Supply) -> Servovalve {
     let edges = |coefficients: project::EdgeCoefficients| Edges::from_array(coefficients.in_order());
     let rated_flow = declared.nominal_flow.unwrap_or(f64::NAN);
     let rated_drop = declared.nominal_pressure_drop.unwrap_or(f64::NAN);
     let leakage = declared.null_leakage.unwrap_or(f64::NAN);
     let leakage_pressure = declared.null_leakage_pressure.unwrap_or(f64::NAN);
     let from_rating = Edges::equal(flow_coefficient_from_rating(rated_flow, rated_drop));
-    let from_leakage =
-        Edges::equal(leakage_coefficient_from_rating(leakage, declared.tare_flow, leakage_pressure));
+    let from_leakage = Edges::equal(leakage_coefficient_from_rating(
+        leakage,
+        declared.tare_flow,
+        declared.tare_drop(supply),
+        leakage_pressure,
+    ));
     Servovalve {
         flow_coefficients: declared.flow_coefficients.map_or(from_rating, edges),
         leakage_coefficients: declared.leakage_coefficients.map_or(from_leakage, edges),

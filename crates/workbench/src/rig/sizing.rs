@@ -61,16 +61,18 @@ pub fn sizing_problem(
         cylinder: components.cylinder,
         linear: LinearParameters {
             flow_gain: wish.flow_gain.unwrap_or(outright("flow_gain", rig.derived.flow_gain)),
-            flow_pressure_coefficient: wish
-                .flow_pressure_coefficient
-                .unwrap_or(outright("flow_pressure_coefficient", rig.derived.flow_pressure_coefficient)),
+            flow_pressure_coefficient: rig.internal_leakage
+                + wish
+                    .flow_pressure_coefficient
+                    .unwrap_or(outright("flow_pressure_coefficient", rig.derived.flow_pressure_coefficient)),
             ..rig.linear
         },
         fluid_modulus: components.fluid.modulus_at(rig.actuator.mean_pressure()),
         density: components.fluid.density,
         flow_pressure_coefficient_maximum: leakage
             .and_then(|parameter| parameter.bounds)
-            .map(|bounds| bounds[1]),
+            .map(|bounds| bounds[1] + rig.internal_leakage),
+        internal_leakage: rig.internal_leakage,
         time_constant,
         time_constant_origin,
         maximum_flow,
@@ -95,7 +97,7 @@ fn time_constant(wish: &project::Sizing) -> Result<(f64, String), SizingError> {
         (None, Some(settling_time), Some(band)) => {
             let constants = ln(100.0 / band);
             let origin = format!(
-                "{} s to {band} % is {} time constants of a first-order response",
+                "{} s to {band} % is {} time constants of a first-order response (the thesis takes four whatever the band: for its numbers state `time_constant`)",
                 significant(settling_time, 4),
                 significant(constants, 3)
             );

@@ -50,6 +50,30 @@ pub(super) fn range(problem: &SizingProblem) -> [f64; 2] {
     [fastest, slowest].map(|velocity| (4.0 * problem.maximum_flow / (PI * velocity)).sqrt())
 }
 
+/// Recommended oil velocity of return and suction lines, m/s (Rabie 2009, quoted in Ledezma 2019, section 6.3.1.1).
+const LOW_PRESSURE_VELOCITY: [f64; 2] = [0.6, 1.2];
+
+/// Bores of the lines without pressure: a return line carries more than the valve takes where the areas differ.
+fn low_pressure_lines(problem: &SizingProblem) -> Decision {
+    let [slowest, fastest] = LOW_PRESSURE_VELOCITY;
+    let areas = [problem.cylinder.area_a, problem.cylinder.area_b];
+    let ratio = (areas[0] / areas[1]).max(areas[1] / areas[0]);
+    let bores = |flow: f64| {
+        let [small, large] = [fastest, slowest].map(|velocity| (4.0 * flow / (PI * velocity)).sqrt());
+        let [small, large] = [small, large].map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
+        format!("{small} to {large} mm")
+    };
+    Decision {
+        step: "c.2",
+        text: format!(
+            "Return and suction lines carry oil at {slowest} to {fastest} m/s: bores of {} for the return line of {} L/min, of {} for suction.",
+            bores(ratio * problem.maximum_flow),
+            DisplayUnit::LITRE_PER_MINUTE.number(ratio * problem.maximum_flow, 4),
+            bores(problem.maximum_flow)
+        ),
+    }
+}
+
 /// Every bore of market and catalogue, smallest first, and the record of steps c.2 to c.4.
 pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<Decision>) -> Vec<CommercialBore> {
     let offered = problem.hoses.iter().map(|option| (option.name.clone(), option.hose.bore));
@@ -77,6 +101,7 @@ pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<Decision>) -> 
         step: "c.2",
         text: format!("Oil velocity {slowest} to {fastest} m/s: above rejects a bore, below only warns."),
     });
+    decisions.push(low_pressure_lines(problem));
     decisions.push(Decision {
         step: "c.3",
         text: format!(

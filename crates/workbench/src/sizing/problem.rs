@@ -13,7 +13,9 @@ use crate::quantity::{DisplayUnit, significant};
 pub struct SizingProblem {
     /// The cylinder.
     pub cylinder: Cylinder,
-    /// Parameters of the linear model; the hydraulic stiffness is what is looked for, its value is not used.
+    /// Leakage across the piston, which K_c of the linear model counts, m3/(s Pa).
+    pub internal_leakage: f64,
+    /// Parameters of the linear model, K_c with the leakage across the piston; the hydraulic stiffness is what is looked for, its value is not used.
     pub linear: LinearParameters,
     /// Bulk modulus of the fluid beta_0, Pa.
     pub fluid_modulus: f64,
@@ -108,13 +110,17 @@ impl SizingProblem {
             Decision {
                 step: "a",
                 text: format!(
-                    "System data: A_u = {} cm2, stroke {} mm, β_0 = {} GPa, K_S = {} MN/m, K_qU = {} m3/(s.V), K_c0 = {} m3/(s.Pa); both lines alike.",
+                    "System data: A_u = {} cm2, stroke {} mm, β_0 = {} GPa, K_S = {} MN/m, K_qU = {} m3/(s.V), K_c0 = {} m3/(s.Pa){}; both lines alike.",
                     DisplayUnit::SQUARE_CENTIMETRE.number(self.linear.useful_area, 4),
                     DisplayUnit::MILLIMETRE.number(self.cylinder.stroke, 4),
                     DisplayUnit::GIGAPASCAL.number(self.fluid_modulus, 4),
                     DisplayUnit::MEGANEWTON_PER_METRE.number(self.linear.sensor_stiffness, 4),
                     number(self.linear.flow_gain),
-                    number(self.linear.flow_pressure_coefficient)
+                    number(self.linear.flow_pressure_coefficient),
+                    match self.internal_leakage {
+                        0.0 => String::new(),
+                        leakage => format!(" with {} m3/(s.Pa) across the piston", number(leakage)),
+                    }
                 ),
             },
             Decision {

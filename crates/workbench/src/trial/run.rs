@@ -11,7 +11,7 @@ use super::rigs::Tried;
 use crate::answer::significant;
 use crate::audit::{NamedPlant, ProjectAudit};
 use crate::command::{CommandError, Watch};
-use crate::project::{Project, Scenario, Signal};
+use crate::project::{Component, LineModel, Project, Scenario, Signal};
 use crate::quantity::{DisplayUnit, FORCE};
 use crate::rig::Rig;
 use crate::robust::RobustProblem;
@@ -137,9 +137,9 @@ pub(super) fn run(
             let mut judged = judge((driven, reference_n), (linear.as_ref(), grows), &machine, problem, view);
             if let (Some(quarter), true) = (tried.quarter_wave_rad_per_s, judged.0 != Agreement::Agrees) {
                 judged.1.push_str(&format!(
-                    ". The lines are a quarter wave long at {} rad/s: a shorter line, a wall that damps (line.relaxation_time) or a loop \
-                     with less gain from there on",
-                    significant(quarter, 3)
+                    ". The lines are a quarter wave long at {} rad/s: a shorter line,{} or a loop with less gain from there on",
+                    significant(quarter, 3),
+                    damping_wall(&project)
                 ));
             }
             let status = driven.stopped().map_or("completed", |stopped| stopped.word);
@@ -286,4 +286,21 @@ fn most_overshoot_percent(problem: &RobustProblem) -> Option<f64> {
     let damping_squared = 0.5 * (1.0 - cosine_of_twice);
     let ratio = (damping_squared / (1.0 - damping_squared)).sqrt();
     Some(100.0 * exp(-PI * ratio))
+}
+
+/// The wall that may damp a wave in these lines, by what their models take; pipes have none.
+fn damping_wall(project: &Project) -> &'static str {
+    let Some(line) = project.actuator.as_ref().map(|actuator| &actuator.line) else { return "" };
+    let mut models = [&line.a, &line.b]
+        .into_iter()
+        .filter(|side| matches!(side.component(), Some(Component::Hose { .. })))
+        .map(|side| side.motion.model)
+        .peekable();
+    if models.peek().is_none() {
+        ""
+    } else if models.all(|model| matches!(model, LineModel::Segments | LineModel::Creeping)) {
+        " a wall that damps (line.relaxation_time)"
+    } else {
+        " a wall that damps (line.model = \"segments\" with line.relaxation_time)"
+    }
 }

@@ -9,11 +9,12 @@ const MAXIMUM_DEPTH: usize = 32;
 /// Highest power.
 pub(super) const MAXIMUM_POWER: usize = 50;
 
-pub(super) fn formula(text: &str) -> Result<Formula, FormulaError> {
+/// `sampled`: whether `z` is the variable of a sampled system, and no parameter.
+pub(super) fn formula(text: &str, sampled: bool) -> Result<Formula, FormulaError> {
     if text.len() > MAXIMUM_LENGTH {
         return Err(FormulaError::new("too long for a formula", 0..text.len()));
     }
-    let mut reader = Reader { text, at: 0, nodes: Vec::new(), depth: 0, variable: None };
+    let mut reader = Reader { text, sampled, at: 0, nodes: Vec::new(), depth: 0, variable: None };
     reader.skip_spaces();
     if reader.rest().is_empty() {
         return Err(FormulaError::new("an empty formula", 0..text.len()));
@@ -28,6 +29,7 @@ pub(super) fn formula(text: &str) -> Result<Formula, FormulaError> {
 /// Reads from left to right; each method returns the index of its node.
 struct Reader<'a> {
     text: &'a str,
+    sampled: bool,
     at: usize,
     nodes: Vec<Node>,
     depth: usize,
@@ -184,7 +186,7 @@ impl<'a> Reader<'a> {
         let name = &self.text[start..self.at];
         let variable = match name {
             "s" => Some(Variable::S),
-            "z" => Some(Variable::Z),
+            "z" if self.sampled => Some(Variable::Z),
             _ => None,
         };
         if let (Some(now), Some(before)) = (variable, self.variable)

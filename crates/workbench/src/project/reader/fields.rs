@@ -161,7 +161,10 @@ impl Visitor for Reader<'_> {
                 self.catalogue_files.push(entry.file.clone());
             }
             if let Some(frame) = self.frames.last_mut() {
-                frame.layers.push(Layer { node: &entry.values, hidden: Vec::new(), entry: Some(entry) });
+                // a pressure belongs to the flow that it was stated with
+                let own = frame.layers.first().is_some_and(|table| table.node.get("tare_flow").is_some());
+                let hidden = if own { vec!["tare_pressure"] } else { Vec::new() };
+                frame.layers.push(Layer { node: &entry.values, hidden, entry: Some(entry) });
             }
             return;
         }
@@ -252,7 +255,9 @@ impl Visitor for Reader<'_> {
             let Some(number) = self.named.get(&entry.key).copied() else {
                 let near = nearest(&entry.key, self.named.keys().map(String::as_str));
                 let is_count = self.counts.contains(&entry.key);
-                let help = near.filter(|_| !is_count).map(|name| format!("did you mean `{name}`?"));
+                let quoted = self.quoted(key, entry);
+                let help =
+                    quoted.or(near.filter(|_| !is_count).map(|name| format!("did you mean `{name}`?")));
                 let message = if is_count {
                     format!("`{}` is a whole number: only quantities vary", entry.key)
                 } else {

@@ -65,7 +65,13 @@ impl Reader<'_> {
     /// A formula of that shape; a number is one too.
     pub(super) fn read_formula(&mut self, key: Key, shape: Shape, node: &Node) -> Option<Formula> {
         let (formula, text) = match &node.value {
-            Value::Text(text) => (Formula::parse(text), text.as_str()),
+            Value::Text(text) => {
+                let parametric = matches!(shape, Shape::Parametric | Shape::Coefficient);
+                let named = parametric && self.parameters.iter().any(|parameter| parameter == "z");
+                let parse =
+                    if named && !self.is_sampled() { Formula::parse_continuous } else { Formula::parse };
+                (parse(text), text.as_str())
+            }
             Value::Number(value) if value.is_finite() => (Ok(Formula::number(*value)), ""),
             _ => {
                 let message = format!("`{}` must be a formula in text, not {}", key.name, node.kind());
@@ -98,6 +104,13 @@ impl Reader<'_> {
                 None
             }
         }
+    }
+
+    /// Whether the loop has a computer in it, so that `z` has a meaning of its own.
+    fn is_sampled(&self) -> bool {
+        let sampled =
+            |table| self.root_entry(table).is_some_and(|entry| entry.node.get("sample_time").is_some());
+        sampled("controller") || sampled("prefilter")
     }
 
     /// Whether a text is meant as a formula rather than as a number with a unit.

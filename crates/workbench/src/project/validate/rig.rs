@@ -2,13 +2,14 @@
 
 use super::{Check, line_motion};
 use crate::project::{
-    Actuator, Cylinder, Friction, FrictionModel, Interval, Line, Lines, Load, LoadModel, SupplyModel, Valve,
+    Actuator, Cylinder, Friction, FrictionModel, Interval, Line, Lines, Load, LoadModel, Supply, SupplyModel,
+    Valve,
 };
 use crate::quantity::{self, PRESSURE};
 
 pub(super) fn actuator(actuator: &Actuator, check: &mut Check<'_, '_>) {
     supply(actuator, check);
-    valve(&actuator.valve, check);
+    valve(&actuator.valve, &actuator.supply, check);
     cylinder(&actuator.cylinder, check);
     lines(actuator, &actuator.line, check);
     load(&actuator.load, check);
@@ -46,7 +47,7 @@ fn imperfections(valve: &Valve, check: &mut Check<'_, '_>) {
     }
 }
 
-fn valve(valve: &Valve, check: &mut Check<'_, '_>) {
+fn valve(valve: &Valve, supply: &Supply, check: &mut Check<'_, '_>) {
     imperfections(valve, check);
     if valve.flow_coefficients.is_none()
         && valve.nominal_flow.is_none()
@@ -66,8 +67,12 @@ fn valve(valve: &Valve, check: &mut Check<'_, '_>) {
     if valve.null_leakage_pressure.is_none() {
         check.missing("valve", "null_leakage_pressure", "`null_leakage` needs its `null_leakage_pressure`");
     }
-    if leakage < valve.tare_flow {
-        check.error("valve.null_leakage", "`null_leakage` includes `tare_flow`, so it cannot be below it");
+    let pressure = valve.null_leakage_pressure.unwrap_or(f64::NAN);
+    if leakage < valve.tare_flow * (pressure / valve.tare_drop(supply)).sqrt() {
+        check.error(
+            "valve.null_leakage",
+            "`null_leakage` includes `tare_flow`, so it cannot be below it, each at its own pressure",
+        );
     }
     if valve.null_leakage_maximum.is_some_and(|maximum| maximum < leakage) {
         check.error("valve.null_leakage_maximum", "`null_leakage_maximum` is below `null_leakage`");
@@ -77,7 +82,11 @@ fn valve(valve: &Valve, check: &mut Check<'_, '_>) {
 fn cylinder(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
     piston(cylinder, check);
     let rods = [cylinder.rod_diameter.is_some(), cylinder.rod_diameters.is_some()];
-    check.one_of("cylinder", ["rod_diameter", "rod_diameters"], rods);
+    // an area has its rods subtracted already
+    let by_area = cylinder.piston_area.is_some() || cylinder.piston_areas.is_some();
+    if !by_area || rods.contains(&true) {
+        check.one_of("cylinder", ["rod_diameter", "rod_diameters"], rods);
+    }
     if cylinder.dead_volume.is_some() && cylinder.dead_volumes.is_some() {
         check.error("cylinder.dead_volumes", "both `dead_volume` and `dead_volumes`: one says it all");
     }

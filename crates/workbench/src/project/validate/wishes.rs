@@ -273,14 +273,23 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
                 "one point cannot span a range: give `points` of 2 or more",
             );
         }
-        if ["s", "z"].contains(&uncertain.name.as_str()) {
-            check.error(&path, format!("`{}` is the variable of transfer functions", uncertain.name));
+        if uncertain.name == "s" {
+            check.error(&path, "`s` is the variable of transfer functions: give the parameter another name");
+        }
+        if uncertain.name == "z" && is_sampled(project) {
+            let message = "`z` is the variable of sampled transfer functions, and this loop samples: give the parameter another name";
+            check.error(&path, message);
         }
         depends(uncertain, project, check);
         let names: Vec<&str> = project.uncertainty.iter().map(|other| other.name.as_str()).collect();
         both_sides("uncertainty", "uncertain", &uncertain.name, &names, check);
         stated_elsewhere(uncertain, project, check);
     }
+}
+
+fn is_sampled(project: &Project) -> bool {
+    let controller = project.controller.as_ref().and_then(|controller| controller.sample_time);
+    controller.or(project.prefilter.as_ref().and_then(|prefilter| prefilter.sample_time)).is_some()
 }
 
 /// A number of both lines beside the same of one line would be set twice.
