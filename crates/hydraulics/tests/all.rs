@@ -13,5 +13,6 @@ mod machine_robustness;
 mod operating_point;
 mod plant;
 mod servovalve;
+mod settling;
 mod stiffness;
 mod two_pressure;

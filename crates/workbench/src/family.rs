@@ -2,16 +2,20 @@
 
 mod formula;
 mod hydraulic;
-mod machine;
 pub(crate) mod measured;
+mod region;
 mod uncertain;
+mod visited;
+mod visited_box;
 
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant, UncertainPlantError};
 use phea_qft::family::{Family, MeasurementError};
 
 use crate::project::{FormulaError, Project, Report, SpecificationKind};
-use crate::rig::{Rig, RigError};
+use crate::rig::RigError;
 use crate::source::Source;
+
+pub use visited_box::{Extreme, VisitedRange, visited_box};
 
 /// Why a project has no uncertain plant.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -59,6 +63,17 @@ pub enum FamilyError {
     /// The plant's text is no ratio of polynomials.
     #[error("[plant]: {message}", message = .0.message)]
     Formula(FormulaError),
+    /// No operating point at a plant of the box, or none that is known to be the rig's.
+    #[error("no operating point at {member}: {reason}")]
+    OperatingPoint {
+        /// The parameters that move it, with their values.
+        member: String,
+        /// Why there is none.
+        reason: String,
+    },
+    /// A region that the pump does not reach.
+    #[error("[family.operating_region] `velocity`: {0}")]
+    Region(String),
     /// An uncertain path without a formula that carries it into the linear model.
     #[error("[uncertainty] `{path}`: {reason}")]
     Path {
@@ -96,7 +111,11 @@ pub fn family(project: &Project, source: &dyn Source) -> Result<Family, FamilyEr
         Some(declared) if !declared.measured.is_empty() => {
             Family::Measured(measured::family(project, declared, source)?)
         }
-        _ => Family::Uncertain(uncertain::family(project, uncertain_plant(project)?)?),
+        _ => {
+            let family = uncertain::family(project, uncertain_plant(project)?)?;
+            visited::check(project, &family)?;
+            Family::Uncertain(family)
+        }
     };
     check_second_path(project, &family)?;
     Ok(family)
@@ -116,7 +135,7 @@ fn check_second_path(project: &Project, family: &Family) -> Result<(), FamilyErr
 
 /// The plant over the box of its uncertain parameters.
 fn uncertain_plant(project: &Project) -> Result<UncertainPlant, FamilyError> {
-    let parameters = uncertain::parameters(project);
+    let parameters = uncertain::parameters(project)?;
     let is_outside = |one: &&UncertainParameter| {
         let set = project.linear.get(&one.name);
         set.is_some_and(|value| value < one.minimum || value > one.maximum)
@@ -127,6 +146,6 @@ fn uncertain_plant(project: &Project) -> Result<UncertainPlant, FamilyError> {
     }
     match &project.plant {
         Some(plant) => formula::uncertain_plant(plant, parameters),
-        None => hydraulic::uncertain_plant(project, &Rig::new(project)?, parameters),
+        None => hydraulic::uncertain_plant(project, parameters),
     }
 }

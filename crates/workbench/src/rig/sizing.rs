@@ -1,8 +1,10 @@
 use phea_dynamics::portable::ln;
+use phea_hydraulics::line::Hose;
 use phea_hydraulics::linear::LinearParameters;
 
 use super::Rig;
-use super::assembly::{expansion_at, hose};
+use super::assembly::{expansion_at, stiffening};
+use super::numbers::Numbers;
 use crate::answer::significant;
 use crate::catalogue::{Catalogue, DASH_SIZES, Kind};
 use crate::project::{self, HoseProperties, Project};
@@ -131,7 +133,12 @@ fn hoses(actuator: &project::Actuator, catalogue: &Catalogue) -> Vec<HoseOption>
         );
         Some(HoseOption {
             name: name.to_string(),
-            hose: hose(properties.bore?, expansion, slope, line.dynamic_stiffening),
+            hose: Hose {
+                bore: properties.bore?,
+                volumetric_expansion: expansion,
+                expansion_slope: slope,
+                dynamic_stiffening: stiffening(line.dynamic_stiffening, &Numbers::declared()),
+            },
             working_pressure: properties.working_pressure,
             minimum_bend_radius: properties.minimum_bend_radius,
         })
