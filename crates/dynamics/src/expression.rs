@@ -21,7 +21,7 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// Runs `equations` once on the named parameters and keeps what it did.
+    /// Runs `equations` once on the named parameters and keeps what it did, as far as a result needs it.
     ///
     /// # Example
     /// ```
@@ -46,6 +46,18 @@ impl Expression {
     /// The operations; each refers only to earlier ones.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
+    }
+
+    /// Whether any result is computed from the parameter with this index.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::expression::Expression;
+    /// let first = Expression::record(&["a", "b"], |p| vec![p[0].into()]);
+    /// assert!(first.depends_on(0) && !first.depends_on(1));
+    /// ```
+    pub fn depends_on(&self, parameter: usize) -> bool {
+        self.nodes.contains(&Node::Parameter(parameter))
     }
 
     /// Number of results.

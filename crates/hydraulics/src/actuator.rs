@@ -1,5 +1,7 @@
 //! The actuator: valve, lines, cylinder, friction and force sensor assembled, and refused if any is impossible.
 
+use phea_dynamics::scalar::Scalar;
+
 use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
 use crate::force_sensor::ForceSensor;
@@ -9,27 +11,36 @@ use crate::parameter::{ParameterError, Problems};
 use crate::servovalve::{Servovalve, Supply};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance};
 
-/// The components of an actuator, not yet checked.
+/// The components of an actuator, not yet checked: each lies here and nowhere else, over any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Components {
+pub struct Components<S = f64> {
     /// The fluid throughout.
-    pub fluid: Fluid,
+    pub fluid: Fluid<S>,
     /// Supply and tank pressures.
-    pub supply: Supply,
+    pub supply: Supply<S>,
     /// The servovalve.
-    pub valve: Servovalve,
+    pub valve: Servovalve<S>,
     /// The line between port A and chamber A.
-    pub line_a: Line,
+    pub line_a: Line<S>,
     /// The line between port B and chamber B.
-    pub line_b: Line,
+    pub line_b: Line<S>,
     /// The cylinder.
-    pub cylinder: Cylinder,
+    pub cylinder: Cylinder<S>,
     /// Its friction.
-    pub friction: Friction,
+    pub friction: Friction<S>,
     /// The sensor between rod and load.
-    pub force_sensor: ForceSensor,
+    pub force_sensor: ForceSensor<S>,
     /// Which modulus the chambers have.
     pub stiffness_model: StiffnessModel,
+}
+
+impl<S: Scalar> Components<S> {
+    /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with entrained air alone).
+    pub fn chamber_compliance(&self, pressures: [S; 2], member: Member) -> ChamberCompliance<S> {
+        let Components { fluid, line_a, line_b, cylinder, stiffness_model, .. } = self;
+        let moduli = pressures.map(|pressure| fluid.modulus_at(pressure));
+        chamber_compliance(*stiffness_model, moduli, cylinder, [line_a, line_b], member)
+    }
 }
 
 /// Why components do not make an actuator: every impossible parameter.
@@ -86,8 +97,6 @@ impl Actuator {
 
     /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with entrained air alone).
     pub fn chamber_compliance(&self, pressures: [f64; 2], member: Member) -> ChamberCompliance {
-        let Components { fluid, line_a, line_b, cylinder, stiffness_model, .. } = &self.0;
-        let moduli = pressures.map(|pressure| fluid.modulus_at(pressure));
-        chamber_compliance(*stiffness_model, moduli, cylinder, [line_a, line_b], member)
+        self.0.chamber_compliance(pressures, member)
     }
 }

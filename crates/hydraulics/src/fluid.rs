@@ -10,24 +10,24 @@ pub const ATMOSPHERIC_PRESSURE_ABSOLUTE: f64 = 101_325.0;
 
 /// A hydraulic fluid. Units: Pa, kg/m3, m2/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fluid {
+pub struct Fluid<S = f64> {
     /// Bulk modulus of the fluid free of air, beta_0, in Pa.
-    pub bulk_modulus: f64,
+    pub bulk_modulus: S,
     /// Density in kg/m3.
-    pub density: f64,
+    pub density: S,
     /// Kinematic viscosity in m2/s.
-    pub kinematic_viscosity: f64,
+    pub kinematic_viscosity: S,
     /// Bubbles, absent by default.
-    pub entrained_air: Option<EntrainedAir>,
+    pub entrained_air: Option<EntrainedAir<S>>,
 }
 
 /// Free air carried as bubbles (air in solution does not soften the fluid and does not count).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EntrainedAir {
+pub struct EntrainedAir<S = f64> {
     /// Volume of air over volume of the mixture at atmospheric pressure, in [0, 1).
-    pub volume_fraction: f64,
+    pub volume_fraction: S,
     /// Polytropic index of its compression: 1 isothermal, 1.4 adiabatic.
-    pub polytropic_index: f64,
+    pub polytropic_index: S,
 }
 
 impl Fluid {
@@ -51,6 +51,18 @@ impl Fluid {
         problems.into_vec()
     }
 
+    /// Dynamic viscosity in Pa s.
+    pub fn dynamic_viscosity(&self) -> f64 {
+        self.density * self.kinematic_viscosity
+    }
+
+    /// Speed of sound in the unconfined fluid at a gauge pressure, sqrt(beta/rho), in m/s.
+    pub fn speed_of_sound(&self, pressure: f64) -> f64 {
+        (self.modulus_at(pressure) / self.density).sqrt()
+    }
+}
+
+impl<S: Scalar> Fluid<S> {
     /// Bulk modulus in Pa at a gauge pressure: the fluid's own without air, [`bulk_modulus_with_air`] with.
     ///
     /// # Example
@@ -62,26 +74,16 @@ impl Fluid {
     /// let foamy = Fluid { entrained_air: Some(air), ..clean };
     /// assert!(foamy.modulus_at(35e5) < 1.3e9 && foamy.modulus_at(5e5) < 0.3e9);
     /// ```
-    pub fn modulus_at(&self, pressure: f64) -> f64 {
+    pub fn modulus_at(&self, pressure: S) -> S {
         match self.entrained_air {
             None => self.bulk_modulus,
             Some(air) => bulk_modulus_with_air(
                 self.bulk_modulus,
                 air.volume_fraction,
                 air.polytropic_index,
-                pressure + ATMOSPHERIC_PRESSURE_ABSOLUTE,
+                pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE),
             ),
         }
-    }
-
-    /// Dynamic viscosity in Pa s.
-    pub fn dynamic_viscosity(&self) -> f64 {
-        self.density * self.kinematic_viscosity
-    }
-
-    /// Speed of sound in the unconfined fluid at a gauge pressure, sqrt(beta/rho), in m/s.
-    pub fn speed_of_sound(&self, pressure: f64) -> f64 {
-        (self.modulus_at(pressure) / self.density).sqrt()
     }
 }
 

@@ -6,9 +6,9 @@ use crate::parameter::{ParameterError, Problems};
 
 /// A load cell, in series with what it stands on when the load is a prescribed motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ForceSensor {
+pub struct ForceSensor<S = f64> {
     /// Stiffness K_S in N/m.
-    pub stiffness: f64,
+    pub stiffness: S,
 }
 
 impl ForceSensor {

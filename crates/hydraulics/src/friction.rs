@@ -14,16 +14,16 @@ use crate::parameter::{ParameterError, Problems};
 
 /// A friction force that opposes the motion. Units: N, N s/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Friction {
+pub enum Friction<S = f64> {
     /// F = f_v v.
     Viscous {
         /// Viscous coefficient f_v in N s/m.
-        viscous: f64,
+        viscous: S,
     },
     /// The steady curve alone, a jump at zero velocity included.
-    Stribeck(Stribeck),
+    Stribeck(Stribeck<S>),
     /// Bristles: the steady curve with a spring-like start.
-    LuGre(LuGre),
+    LuGre(LuGre<S>),
 }
 
 /// Which slope dF/dv stands for the friction in a linear model. Friction has none at zero velocity that is right for every
@@ -38,6 +38,17 @@ pub enum ViscousSlope {
     Tangent(f64),
     /// Bristles stuck: sigma_1 + sigma_2 (LuGre alone; their spring sigma_0 has no place in a viscous coefficient).
     Sticking,
+}
+
+impl<S: Copy> Friction<S> {
+    /// Viscous coefficient f_v in N s/m: the slope of the curve where it no longer falls.
+    pub fn viscous(&self) -> S {
+        match self {
+            Friction::Viscous { viscous } => *viscous,
+            Friction::Stribeck(curve) => curve.viscous,
+            Friction::LuGre(lugre) => lugre.curve.viscous,
+        }
+    }
 }
 
 impl Friction {
@@ -79,9 +90,7 @@ impl Friction {
     /// ```
     pub fn viscous_slope(&self, choice: ViscousSlope) -> Option<f64> {
         match (choice, self) {
-            (ViscousSlope::Viscous, Friction::Viscous { viscous }) => Some(*viscous),
-            (ViscousSlope::Viscous, Friction::Stribeck(curve)) => Some(curve.viscous),
-            (ViscousSlope::Viscous, Friction::LuGre(lugre)) => Some(lugre.curve.viscous),
+            (ViscousSlope::Viscous, _) => Some(self.viscous()),
             (ViscousSlope::Secant(speed), _) => (speed != 0.0).then(|| self.steady_force(speed) / speed),
             (ViscousSlope::Tangent(speed), _) => {
                 Some(self.steady_force(Dual::<1>::variable(speed, 0)).gradient()[0])

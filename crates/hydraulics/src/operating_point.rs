@@ -6,17 +6,21 @@
 //! q_A(U, p_A) = A_A v        q_B(U, p_B) = -A_B v        F = A_A p_A - A_B p_B
 //! ```
 //!
-//! q_A falls strictly with p_A and q_B with p_B, so each pressure is unique. At standstill p_A rises and p_B falls with
-//! U, and in motion both move so that F falls with v: every unknown is found by bisection, to the last bit.
+//! Leakage across the piston, G (p_A - p_B), is taken from A and given to B. q_A falls strictly with p_A and q_B with p_B, so each pressure is unique. At standstill p_A rises and p_B falls with
+//! U, and in motion both move so that F falls with v: every unknown is found by bisection, to the last bit. The same balance over any
+//! scalar, recorded expressions among them, is [`Balance::settle`].
 
+mod balance;
 mod bisection;
+mod settling;
 
 use phea_dynamics::scalar::Scalar;
 
+pub use balance::Balance;
+pub use settling::{Settled, Steady};
+
 use crate::actuator::Actuator;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
-use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
-use bisection::{falling_root, falling_root_within};
 
 /// What is known of an operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +31,8 @@ pub enum Condition {
     Load(Load),
     /// Steady motion at this command in V under this load; the velocity is found.
     Motion(f64, Load),
+    /// Steady motion at this velocity in m/s under this load; the command that keeps it is found.
+    Moving(f64, Load),
     /// This command in V and load pressure in Pa with both edges of each path taking half the drop, as thesis (4.18)
     /// assumes: p_A, p_B = (p_S + p_T +- p_L)/2. Steady for equal edges and areas alone; see the net flows.
     Matched(f64, f64),
@@ -34,32 +40,32 @@ pub enum Condition {
 
 /// A load held by the pressures, friction left aside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Load {
+pub enum Load<S = f64> {
     /// A_A p_A - A_B p_B in N.
-    Force(f64),
+    Force(S),
     /// p_A - p_B in Pa.
-    Pressure(f64),
+    Pressure(S),
 }
 
 /// An operating point. Units: m, V, Pa, m/s, N, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OperatingPoint {
+pub struct OperatingPoint<S = f64> {
     /// Piston position x in m.
-    pub position: f64,
+    pub position: S,
     /// Spool position U_Csp in V, equal to the command.
-    pub command: f64,
+    pub command: S,
     /// Chamber pressure p_A in Pa.
-    pub pressure_a: f64,
+    pub pressure_a: S,
     /// Chamber pressure p_B in Pa.
-    pub pressure_b: f64,
+    pub pressure_b: S,
     /// Piston velocity in m/s.
-    pub velocity: f64,
+    pub velocity: S,
     /// Force of the pressures on the piston, A_A p_A - A_B p_B, in N.
-    pub hydraulic_force: f64,
+    pub hydraulic_force: S,
     /// What flows into chamber A beyond what the piston takes, in m3/s: zero but for [`Condition::Matched`].
-    pub net_flow_a: f64,
+    pub net_flow_a: S,
     /// What flows into chamber B beyond what the piston takes, in m3/s: zero but for [`Condition::Matched`].
-    pub net_flow_b: f64,
+    pub net_flow_b: S,
 }
 
 /// Why there is no such operating point.
@@ -146,7 +152,34 @@ pub fn operating_point(
     position: f64,
     condition: Condition,
 ) -> Result<OperatingPoint, OperatingPointError> {
-    let balance = Balance::of(actuator);
+    leaking_operating_point(actuator, None, position, condition)
+}
+
+/// As [`operating_point`], with leakage across the piston in m3/(s Pa).
+///
+/// # Errors
+/// As [`operating_point`].
+///
+/// # Example
+/// What leaks from A to B takes the same flow from what the null valve gives A:
+/// ```
+/// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
+/// # use phea_hydraulics::reference_rig::{components, hose_line, valve};
+/// use phea_hydraulics::operating_point::{Condition, leaking_operating_point};
+/// use phea_hydraulics::servovalve::chamber_flows;
+/// let actuator = Actuator::new(components(hose_line(), StiffnessModel::Uniform))?;
+/// let point = leaking_operating_point(&actuator, Some(1e-12), 0.25, Condition::Command(0.0))?;
+/// let into = chamber_flows(&valve(), &actuator.components().supply, 0.0, point.pressure_a, point.pressure_b);
+/// assert!((into.into_a - 1e-12 * point.load_pressure()).abs() < 1e-15 && point.load_pressure() > 1e5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn leaking_operating_point(
+    actuator: &Actuator,
+    leakage: Option<f64>,
+    position: f64,
+    condition: Condition,
+) -> Result<OperatingPoint, OperatingPointError> {
+    let balance = Balance::of(actuator.components(), leakage);
     let stroke = actuator.components().cylinder.stroke;
     if !(0.0..=stroke).contains(&position) {
         return Err(OperatingPointError::PositionOutsideStroke { position, stroke });
@@ -162,16 +195,20 @@ pub fn operating_point(
     let (command, [pressure_a, pressure_b], velocity) = match condition {
         Condition::Command(command) => (command, balance.pressures(command, 0.0)?, 0.0),
         Condition::Load(load) => {
-            let command = balance.holding_command(load)?;
+            let command = balance.holding_command(load, 0.0)?;
             (command, balance.pressures(command, 0.0)?, 0.0)
+        }
+        Condition::Moving(velocity, load) => {
+            let command = balance.holding_command(load, velocity)?;
+            (command, balance.pressures(command, velocity)?, velocity)
         }
         Condition::Motion(command, load) => {
             let velocity = balance.velocity(command, load)?;
             (command, balance.pressures(command, velocity)?, velocity)
         }
         Condition::Matched(command, load_pressure) => {
-            let mean = balance.supply.pressure + balance.supply.tank_pressure;
-            (command, [0.5 * (mean + load_pressure), 0.5 * (mean - load_pressure)], 0.0)
+            let settled = balance.settle(Steady::Matched(command, load_pressure));
+            (command, settled.pressures, 0.0)
         }
     };
     let point = balance.point(position, command, [pressure_a, pressure_b], velocity);
@@ -182,91 +219,14 @@ pub fn operating_point(
     }
 }
 
-/// What the balance of flows and forces depends on.
-struct Balance {
-    valve: Servovalve,
-    supply: Supply,
-    area_a: f64,
-    area_b: f64,
-}
-
-impl Balance {
-    fn of(actuator: &Actuator) -> Balance {
-        let components = actuator.components();
-        Balance {
-            valve: components.valve,
-            supply: components.supply,
-            area_a: components.cylinder.area_a,
-            area_b: components.cylinder.area_b,
+impl From<Steady> for Condition {
+    fn from(steady: Steady) -> Condition {
+        match steady {
+            Steady::Command(command) => Condition::Command(command),
+            Steady::Moving { velocity: 0.0, load } => Condition::Load(load),
+            Steady::Moving { velocity, load } => Condition::Moving(velocity, load),
+            Steady::Matched(command, load_pressure) => Condition::Matched(command, load_pressure),
         }
-    }
-
-    /// Pressures at which the chambers take the flow of a piston at this velocity.
-    fn pressures(&self, command: f64, velocity: f64) -> Result<[f64; 2], OperatingPointError> {
-        let Supply { pressure, tank_pressure } = self.supply;
-        let into = |p: f64| chamber_flows(&self.valve, &self.supply, command, p, p);
-        let surplus_a = |p: f64| into(p).into_a - self.area_a * velocity;
-        let surplus_b = |p: f64| into(p).into_b + self.area_b * velocity;
-        let pressure_a = falling_root(surplus_a, tank_pressure, pressure);
-        let pressure_b = falling_root(surplus_b, tank_pressure, pressure);
-        match (pressure_a, pressure_b) {
-            (Some(pressure_a), Some(pressure_b)) => Ok([pressure_a, pressure_b]),
-            _ => Err(OperatingPointError::NotFound),
-        }
-    }
-
-    /// What these pressures hold, in the load's own unit.
-    fn held(&self, load: Load, [pressure_a, pressure_b]: [f64; 2]) -> f64 {
-        match load {
-            Load::Force(_) => self.area_a * pressure_a - self.area_b * pressure_b,
-            Load::Pressure(_) => pressure_a - pressure_b,
-        }
-    }
-
-    /// The command that holds a load at standstill.
-    fn holding_command(&self, load: Load) -> Result<f64, OperatingPointError> {
-        let wanted = wanted(load);
-        let nominal = self.valve.nominal_voltage;
-        let held = |command: f64| self.pressures(command, 0.0).map(|p| self.held(load, p));
-        let (minimum, maximum) = (held(-nominal)?, held(nominal)?);
-        if !(minimum..=maximum).contains(&wanted) {
-            return Err(OperatingPointError::LoadOutOfReach { load: wanted, minimum, maximum });
-        }
-        let shortfall = |command: f64| held(command).map_or(f64::NAN, |held| wanted - held);
-        falling_root_within(shortfall, -nominal, nominal).ok_or(OperatingPointError::NotFound)
-    }
-
-    /// The steady velocity at a command under a load.
-    fn velocity(&self, command: f64, load: Load) -> Result<f64, OperatingPointError> {
-        let wanted = wanted(load);
-        let excess = |velocity: f64| {
-            self.pressures(command, velocity).map_or(f64::NAN, |p| self.held(load, p) - wanted)
-        };
-        let flow = self.valve.flow_coefficients.supply_to_a * self.supply.pressure.abs().sqrt();
-        let scale = flow / self.area_a;
-        falling_root(excess, -scale, scale).ok_or(OperatingPointError::NotFound)
-    }
-
-    fn point(&self, position: f64, command: f64, pressures: [f64; 2], velocity: f64) -> OperatingPoint {
-        let [pressure_a, pressure_b] = pressures;
-        let ChamberFlows { into_a, into_b } =
-            chamber_flows(&self.valve, &self.supply, command, pressure_a, pressure_b);
-        OperatingPoint {
-            position,
-            command,
-            pressure_a,
-            pressure_b,
-            velocity,
-            hydraulic_force: hydraulic_force([self.area_a, self.area_b], pressures),
-            net_flow_a: into_a - self.area_a * velocity,
-            net_flow_b: into_b + self.area_b * velocity,
-        }
-    }
-}
-
-fn wanted(load: Load) -> f64 {
-    match load {
-        Load::Force(wanted) | Load::Pressure(wanted) => wanted,
     }
 }
 

@@ -22,7 +22,7 @@ pub use reduction::{Reduction, reduce, reduction};
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::actuator::Actuator;
+use crate::actuator::{Actuator, Components};
 use crate::force_sensor;
 use crate::line::Member;
 use crate::operating_point::{OperatingPoint, hydraulic_force};
@@ -86,6 +86,25 @@ impl<S: Copy> TwoPressureState<S> {
     }
 }
 
+impl<S: Scalar> TwoPressureModel<S> {
+    /// As [`TwoPressureModel::new`], of components over any scalar.
+    pub fn of(
+        components: &Components<S>,
+        pressures: [S; 2],
+        member: Member,
+        viscous_friction: S,
+    ) -> TwoPressureModel<S> {
+        TwoPressureModel {
+            valve: components.valve,
+            supply: components.supply,
+            chambers: components.chamber_compliance(pressures, member),
+            moving_mass: components.cylinder.moving_mass,
+            viscous_friction,
+            sensor_stiffness: components.force_sensor.stiffness,
+        }
+    }
+}
+
 impl TwoPressureModel {
     /// The model of an actuator, its friction replaced by a viscous one in N s/m, the fluid's modulus taken at these
     /// chamber pressures in Pa (they matter with entrained air alone).
@@ -95,15 +114,7 @@ impl TwoPressureModel {
         member: Member,
         viscous_friction: f64,
     ) -> TwoPressureModel {
-        let components = actuator.components();
-        TwoPressureModel {
-            valve: components.valve,
-            supply: components.supply,
-            chambers: actuator.chamber_compliance(pressures, member),
-            moving_mass: components.cylinder.moving_mass,
-            viscous_friction,
-            sensor_stiffness: components.force_sensor.stiffness,
-        }
+        TwoPressureModel::of(actuator.components(), pressures, member, viscous_friction)
     }
 
     /// The same numbers as constants of another scalar.

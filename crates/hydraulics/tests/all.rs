@@ -14,5 +14,6 @@ mod operating_point;
 mod plant;
 mod plant_in_motion;
 mod servovalve;
+mod settling;
 mod stiffness;
 mod two_pressure;

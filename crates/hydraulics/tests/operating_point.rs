@@ -55,6 +55,8 @@ fn every_equilibrium_balances() {
             Condition::Motion(1.0, Load::Force(2000.0)),
             Condition::Motion(-4.0, Load::Force(2000.0)),
             Condition::Motion(2.0, Load::Pressure(-15e5)),
+            Condition::Moving(0.05, Load::Force(3000.0)),
+            Condition::Moving(-0.02, Load::Pressure(15e5)),
         ];
         for condition in conditions {
             let point = operating_point(&actuator, 0.2, condition).unwrap();
@@ -64,11 +66,14 @@ fn every_equilibrium_balances() {
             assert!((flows.into_a - cylinder.area_a * point.velocity).abs() < scale, "{condition:?}");
             assert!((flows.into_b + cylinder.area_b * point.velocity).abs() < scale, "{condition:?}");
             match condition {
-                Condition::Load(Load::Force(force)) | Condition::Motion(_, Load::Force(force)) => {
+                Condition::Load(Load::Force(force))
+                | Condition::Motion(_, Load::Force(force))
+                | Condition::Moving(_, Load::Force(force)) => {
                     assert!((point.hydraulic_force - force).abs() < 1e-5)
                 }
                 Condition::Load(Load::Pressure(pressure))
-                | Condition::Motion(_, Load::Pressure(pressure)) => {
+                | Condition::Motion(_, Load::Pressure(pressure))
+                | Condition::Moving(_, Load::Pressure(pressure)) => {
                     assert!((point.load_pressure() - pressure).abs() < 1e-2)
                 }
                 Condition::Command(_) | Condition::Matched(..) => assert_eq!(point.velocity, 0.0),

@@ -4,7 +4,6 @@
 //! on it, the verdict is not proven.
 
 use crate::project::{self, LineModel, LoadModel, Project, SpecificationKind, SupplyModel};
-use crate::rig::Rig;
 
 /// Something declared that the linear loop does not count.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,9 +13,6 @@ pub struct Caveat {
     /// Whether a specification may fail for it that the linear loop satisfies.
     pub unproven: bool,
 }
-
-/// Load pressures below this part of the supply's drive no leakage to speak of.
-const UNMOVED: f64 = 1e-6;
 
 /// What is declared and in no linear loop.
 pub(crate) fn caveats(project: &Project) -> Vec<Caveat> {
@@ -32,9 +28,7 @@ pub(crate) fn of_models(project: &Project) -> Vec<String> {
 }
 
 fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
-    [load(project), leakage(project), supply(project), feed_forward(project), prefilter(project)]
-        .into_iter()
-        .flatten()
+    [load(project), supply(project), feed_forward(project), prefilter(project)].into_iter().flatten()
 }
 
 /// A wall whose mass nobody states.
@@ -42,24 +36,6 @@ fn load(project: &Project) -> Option<Caveat> {
     let load = &project.actuator.as_ref()?.load;
     (load.model == LoadModel::Wall && load.mass.is_none()).then(|| Caveat {
         sentence: "load.model = \"wall\" is not counted without load.mass: this is the loop with a load that does not yield"
-            .to_string(),
-        unproven: true,
-    })
-}
-
-/// A range of leakage where it moves the pressures: these stay those of the declared leakage.
-fn leakage(project: &Project) -> Option<Caveat> {
-    let named = |name: &str| name == "cylinder.internal_leakage";
-    let cases = project.family.iter().flat_map(|family| &family.cases).flat_map(|case| &case.parameters);
-    let ranges = project.uncertainty.iter().map(|uncertain| uncertain.name.as_str());
-    if !ranges.chain(cases.map(|(name, _)| name.as_str())).any(named) {
-        return None;
-    }
-    let rig = Rig::new(project).ok()?;
-    let moved = rig.point.load_pressure().abs() > UNMOVED * rig.actuator.components().supply.pressure;
-    moved.then(|| Caveat {
-        sentence: "the pressures that cylinder.internal_leakage moves over its range are not counted: they stay those of the declared \
-                   leakage"
             .to_string(),
         unproven: true,
     })

@@ -20,7 +20,7 @@ use crate::caveat::caveats;
 use crate::control::{ControlError, controller, sensor};
 use crate::derived::{self, derive};
 use crate::design::{self, DesignError, design_project};
-use crate::family::{FamilyError, family};
+use crate::family::{FamilyError, family, visited_box};
 use crate::figure::FigureError;
 use crate::linearize::SweepRequest;
 use crate::project::{Loaded, Project, Report as Refusal};
@@ -306,14 +306,18 @@ fn check(source: &dyn Source, loaded: &Loaded) -> Result<Answer, CommandError> {
     specifications(&loaded.project)?;
     let wishes = wishes(&loaded.project)?;
     let in_time = specification::text(&wishes);
+    let visited = visited_box(&loaded.project)?;
+    let in_words = |ranges: &Vec<_>| format!("{}\n", derived::visited_text(&loaded.project, ranges));
+    let boxed = visited.as_ref().map_or(String::new(), in_words);
     let told = told_first(&loaded.project);
     let first: String = told.iter().map(|sentence| format!("warning: {sentence}\n")).collect();
     let text = match derived.as_slice() {
         [] => format!("{first}{in_time}The project is valid. {}\n", without_derived(source, loaded)?),
-        derived => format!("{first}{}\n{in_time}The project is valid.\n", derived::text(derived)),
+        derived => format!("{first}{}\n{boxed}{in_time}The project is valid.\n", derived::text(derived)),
     };
     let files = derived::files(&derived);
-    Ok(Answer { text, json: derived::json(loaded, &derived, &wishes, told), files, affirmative: true })
+    let json = derived::json(loaded, &derived, visited.as_deref(), &wishes, told);
+    Ok(Answer { text, json, files, affirmative: true })
 }
 
 /// What no verdict on the linear loop counts, and what of the rig lies outside of its own family.

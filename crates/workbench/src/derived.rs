@@ -5,7 +5,7 @@ mod list;
 mod rig;
 mod valve;
 
-pub use answer::{files, json, text};
+pub use answer::{files, json, text, visited_text};
 pub(crate) use answer::{sentence, stated};
 pub use rig::derive;
 

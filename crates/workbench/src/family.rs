@@ -3,17 +3,21 @@
 mod formula;
 mod hydraulic;
 mod in_motion;
-mod machine;
 pub(crate) mod measured;
+mod region;
 mod uncertain;
+mod visited;
+mod visited_box;
 
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant, UncertainPlantError};
 use phea_hydraulics::line::LineError;
 use phea_qft::family::{Family, MeasurementError};
 
 use crate::project::{FormulaError, Project, Report, SpecificationKind};
-use crate::rig::{Rig, RigError};
+use crate::rig::RigError;
 use crate::source::Source;
+
+pub use visited_box::{Extreme, VisitedRange, visited_box};
 
 /// Why a project has no uncertain plant.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -86,6 +90,17 @@ pub enum FamilyError {
     /// The plant's text is no ratio of polynomials.
     #[error("[plant]: {message}", message = .0.message)]
     Formula(FormulaError),
+    /// No operating point at a plant of the box, or none that is known to be the rig's.
+    #[error("no operating point at {member}: {reason}")]
+    OperatingPoint {
+        /// The parameters that move it, with their values.
+        member: String,
+        /// Why there is none.
+        reason: String,
+    },
+    /// A region that the pump does not reach.
+    #[error("[family.operating_region] `velocity`: {0}")]
+    Region(String),
     /// An uncertain path without a formula that carries it into the linear model.
     #[error("[uncertainty] `{path}`: {reason}")]
     Path {
@@ -126,6 +141,7 @@ pub fn family(project: &Project, source: &dyn Source) -> Result<Family, FamilyEr
         }
         _ => {
             let lumped = uncertain::family(project, uncertain_plant(project)?)?;
+            visited::check(project, &lumped)?;
             match in_motion::family(project, &lumped)? {
                 Some(responses) => Family::Measured(responses),
                 None => Family::Uncertain(lumped),
@@ -150,7 +166,7 @@ fn check_second_path(project: &Project, family: &Family) -> Result<(), FamilyErr
 
 /// The plant over the box of its uncertain parameters.
 fn uncertain_plant(project: &Project) -> Result<UncertainPlant, FamilyError> {
-    let parameters = uncertain::parameters(project);
+    let parameters = uncertain::parameters(project)?;
     let is_outside = |one: &&UncertainParameter| {
         let set = project.linear.get(&one.name);
         set.is_some_and(|value| value < one.minimum || value > one.maximum)
@@ -161,6 +177,6 @@ fn uncertain_plant(project: &Project) -> Result<UncertainPlant, FamilyError> {
     }
     match &project.plant {
         Some(plant) => formula::uncertain_plant(plant, parameters),
-        None => hydraulic::uncertain_plant(project, &Rig::new(project)?, parameters),
+        None => hydraulic::uncertain_plant(project, parameters),
     }
 }

@@ -3,31 +3,35 @@
 
 mod assembly;
 mod lines;
+mod numbers;
 mod parameters;
+mod place;
 mod plant;
 mod sizing;
 
 use num_complex::Complex64;
 use phea_hydraulics::actuator::{Actuator, ActuatorError};
-use phea_hydraulics::friction::ViscousSlope;
 use phea_hydraulics::line::{LineError, Member};
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::machine::Chambers;
 use phea_hydraulics::operating_point::{
-    Condition, Load, OperatingPoint, OperatingPointError, operating_point,
+    Condition, OperatingPoint, OperatingPointError, leaking_operating_point,
 };
-use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
+use phea_hydraulics::plant::{LinearLoad, Plant, PlantInMotion};
 use phea_hydraulics::servovalve::Direction;
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
 };
 
-use crate::project::{self, Project};
+use crate::project::Project;
 
-pub(crate) use assembly::actuator;
-pub(crate) use lines::lines;
+pub(crate) use assembly::{actuator, components};
+pub(crate) use lines::{in_motion, lines};
+pub(crate) use numbers::Numbers;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
-pub(crate) use plant::{YieldingLoad, has_one_pressure, plant, stated};
+pub(crate) use place::place;
+pub(crate) use plant::{
+    YieldingLoad, are_equal, linear, plant, sides, stated, states_one_pressure, yielding_load,
+};
 pub use sizing::{SizingError, sizing_problem};
 
 /// A rig ready to be computed with.
@@ -74,9 +78,6 @@ pub enum RigError {
     /// A line that its model does not fit.
     #[error("[line] model: {0}")]
     Line(#[from] LineError),
-    /// The friction has no slope to linearise with.
-    #[error("[cylinder.friction] has no viscous part to linearise with")]
-    Friction,
 }
 
 impl Rig {
@@ -103,35 +104,24 @@ impl Rig {
         let declared = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
         let actuator = assembly::actuator(declared)?;
         let components = actuator.components();
-        let condition = condition(&project.operating_point);
-        let stroke = components.cylinder.stroke;
-        let position = project.operating_point.position.unwrap_or(stroke / 2.0);
+        let numbers = Numbers::declared();
+        let (position, steady) = place(project, components.cylinder.stroke, &numbers);
+        let condition = Condition::from(steady);
         let leakage = declared.cylinder.internal_leakage;
-        let point = operating_point(&actuator, position, condition)?;
-        let point = plant::with_leakage(point, &actuator, condition, leakage);
-        let friction = components.friction.viscous_slope(ViscousSlope::Viscous).ok_or(RigError::Friction)?;
+        let point = leaking_operating_point(&actuator, leakage, position, condition)?;
         let pressures = [point.pressure_a, point.pressure_b];
+        let friction = components.friction.viscous();
         let model = TwoPressureModel::new(&actuator, pressures, Member::Nominal, friction);
         let two_pressure = two_pressure_linear_parameters(&model, &point, Direction::Mean);
         let derived = reduce(&two_pressure);
         let parameters = parameters::resolve(project, &derived);
-        let linear = parameters::linear(&parameters, &derived);
+        let linear = linear(&two_pressure, stated(&parameters));
         let internal_leakage = leakage.unwrap_or(0.0);
-        let load = plant::yielding_load(&declared.load, point.hydraulic_force);
-        let plant = plant(
-            &two_pressure,
-            stated(&parameters),
-            has_one_pressure(&parameters, &two_pressure, &[]),
-            internal_leakage,
-            load.map_or(LinearLoad::Prescribed, |load| load.linear()),
-        );
-        let of_rig = [&components.line_a, &components.line_b];
-        let lines = lines(&declared.line, of_rig, &components.fluid, actuator.mean_pressure())?;
-        let bare = Chambers::behind_lines(&actuator, Member::Nominal, [0.0; 2]);
-        let chambers = bare.compliance(position, pressures);
-        let lumped = two_pressure.compliances;
-        let in_motion =
-            lines.map(|lines| PlantInMotion::new(&plant, &BehindLines { lines, chambers, lumped }));
+        let load = yielding_load(&declared.load, &numbers, point.hydraulic_force);
+        let one_pressure = states_one_pressure(&parameters, &[]) || are_equal(sides(&two_pressure));
+        let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
+        let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
+        let in_motion = in_motion(&declared.line, components, &point, &two_pressure, &plant)?;
         Ok(Rig {
             actuator,
             point,
@@ -146,15 +136,5 @@ impl Rig {
             plant,
             in_motion,
         })
-    }
-}
-
-/// Null blocks the piston; a command moves it, with no load pressure where none is declared, thesis (4.18).
-fn condition(declared: &project::OperatingPoint) -> Condition {
-    match (declared.command, declared.load_pressure) {
-        (Some(command), Some(load_pressure)) => Condition::Matched(command, load_pressure),
-        (Some(command), None) if command != 0.0 => Condition::Matched(command, 0.0),
-        (None, Some(load_pressure)) => Condition::Load(Load::Pressure(load_pressure)),
-        (Some(_) | None, None) => Condition::Command(0.0),
     }
 }

@@ -31,6 +31,7 @@ mod malformed;
 mod mutation;
 mod noise;
 mod number_table;
+mod operating_region;
 mod plausible;
 mod project;
 mod project_formula;

@@ -128,24 +128,6 @@ fn what_is_not_counted_is_told_first() {
     }
 }
 
-/// Leakage over a range moves the pressures of unequal edges, and those of equal ones not at all.
-#[test]
-fn a_range_of_leakage_is_told_where_it_moves_the_pressures() {
-    let text = HOSE
-        .replace("[uncertainty] ", "[uncertainty]\n\"cylinder.internal_leakage\" = { nominal = 1e-13, minimum = 1e-14, maximum = 1e-12 }\n# ")
-        .replace("moving_mass = \"13.1 kg\"", "moving_mass = \"13.1 kg\"\ninternal_leakage = 1e-13");
-    let caveats = |settings: &[&str]| {
-        let mut project = loaded(&text, settings);
-        project.specifications.truncate(1);
-        project.uncertainty.retain(|uncertain| uncertain.name == "cylinder.internal_leakage");
-        audited(&project).caveats.into_iter().filter(|one| one.sentence.contains("internal_leakage")).count()
-    };
-    assert_eq!(caveats(&[]), 1);
-    let equal = "valve.flow_coefficients={ supply_to_a = 3e-7, a_to_tank = 3e-7, supply_to_b = 3e-7, b_to_tank = 3e-7 }";
-    let closed = "valve.leakage_coefficients={ supply_to_a = 2.4e-9, a_to_tank = 2.4e-9, supply_to_b = 2.4e-9, b_to_tank = 2.4e-9 }";
-    assert_eq!(caveats(&[equal, closed]), 0);
-}
-
 /// What changes no specification is told, and the verdict stays.
 #[test]
 fn a_path_that_no_specification_limits_decides_nothing() {

@@ -60,6 +60,30 @@ impl Node {
     }
 }
 
+impl Node {
+    /// The earlier nodes that this one is computed from.
+    pub(super) fn operands(&self) -> [Option<NodeIndex>; 4] {
+        match *self {
+            Node::Parameter(_) | Node::Constant(_) => [None; 4],
+            Node::Unary(_, x) => [Some(x), None, None, None],
+            Node::Binary(_, x, y) => [Some(x), Some(y), None, None],
+            Node::Select(x, y, if_less, otherwise) => [x, y, if_less, otherwise].map(Some),
+        }
+    }
+
+    /// The same operation, its operands being where `places` says.
+    pub(super) fn moved(&self, places: &[NodeIndex]) -> Node {
+        match *self {
+            Node::Parameter(_) | Node::Constant(_) => *self,
+            Node::Unary(operation, x) => Node::Unary(operation, places[x]),
+            Node::Binary(operation, x, y) => Node::Binary(operation, places[x], places[y]),
+            Node::Select(x, y, if_less, otherwise) => {
+                Node::Select(places[x], places[y], places[if_less], places[otherwise])
+            }
+        }
+    }
+}
+
 impl Unary {
     pub(super) fn apply<S: Scalar>(self, x: S) -> S {
         match self {

@@ -59,7 +59,27 @@ where
         .map(|index| Recorded::Node(Entry { tape: &tape, index: tape.index(Node::Parameter(index)) }))
         .collect();
     let results = equations(&parameters).into_iter().map(|result| result.index_on(&tape)).collect();
-    (tape.nodes.take(), results)
+    needed(&tape.nodes.take(), results)
+}
+
+/// The nodes that some result is computed from, in their order, and where the results are among them.
+fn needed(nodes: &[Node], results: Vec<NodeIndex>) -> (Vec<Node>, Vec<NodeIndex>) {
+    let mut wanted = vec![false; nodes.len()];
+    for &result in &results {
+        wanted[result] = true;
+    }
+    for index in (0..nodes.len()).rev() {
+        if wanted[index] {
+            nodes[index].operands().into_iter().flatten().for_each(|operand| wanted[operand] = true);
+        }
+    }
+    let mut places = vec![0; nodes.len()];
+    let mut kept = Vec::new();
+    for (index, node) in nodes.iter().enumerate().filter(|(index, _)| wanted[*index]) {
+        places[index] = kept.len();
+        kept.push(node.moved(&places));
+    }
+    (kept, results.into_iter().map(|result| places[result]).collect())
 }
 
 impl<'tape> Recorded<'tape> {

@@ -35,11 +35,11 @@ pub struct TwoPressureLinearParameters<S = f64> {
 ///
 /// The compliances are those of the position, held there: what else depends on the position is the net flow into the
 /// chambers, which vanishes at an equilibrium.
-pub fn two_pressure_linear_parameters(
-    model: &TwoPressureModel,
-    point: &OperatingPoint,
+pub fn two_pressure_linear_parameters<S: Scalar>(
+    model: &TwoPressureModel<S>,
+    point: &OperatingPoint<S>,
     direction: Direction,
-) -> TwoPressureLinearParameters {
+) -> TwoPressureLinearParameters<S> {
     let OperatingPoint { position, command, pressure_a, pressure_b, .. } = *point;
     TwoPressureLinearParameters {
         areas: [model.chambers.area_a, model.chambers.area_b],

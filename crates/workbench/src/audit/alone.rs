@@ -35,7 +35,8 @@ pub(crate) fn outside(project: &Project) -> Option<(Project, String)> {
             project.number(&one.name).filter(|value| *value < one.minimum || *value > one.maximum)?;
         Some(words(&one.name, declared, [one.minimum, one.maximum]))
     }));
-    let alone = || Project { uncertainty: Vec::new(), family: None, ..project.clone() };
+    let operating_point = project.resolved_operating_point();
+    let alone = || Project { uncertainty: Vec::new(), family: None, operating_point, ..project.clone() };
     (!outside.is_empty()).then(|| (alone(), outside.join("; ")))
 }
 

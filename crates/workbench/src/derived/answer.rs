@@ -1,13 +1,18 @@
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::Derived;
 use crate::answer::{self, Number, OutputFile, significant, table};
-use crate::project::Loaded;
+use crate::family::{Extreme, VisitedRange};
+use crate::project::{Loaded, Project};
 use crate::specification::{CheckedWish, WishRow};
 
 #[derive(Serialize)]
 struct Body<'a> {
     derived: Vec<Row<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    visited_box: Option<Vec<RangeRow<'a>>>,
     wishes: Vec<WishRow>,
     warnings: Vec<String>,
 }
@@ -27,6 +32,21 @@ struct Row<'a> {
 }
 
 #[derive(Serialize)]
+struct RangeRow<'a> {
+    name: &'a str,
+    symbol: &'a str,
+    unit: &'a str,
+    minimum: ExtremeRow<'a>,
+    maximum: ExtremeRow<'a>,
+}
+
+#[derive(Serialize)]
+struct ExtremeRow<'a> {
+    value: Number,
+    at: BTreeMap<&'a str, f64>,
+}
+
+#[derive(Serialize)]
 struct DeclaredRow {
     value: Number,
     place: &'static str,
@@ -36,8 +56,28 @@ struct DeclaredRow {
     contradicts: bool,
 }
 
+impl<'a> From<&'a VisitedRange> for RangeRow<'a> {
+    fn from(range: &'a VisitedRange) -> RangeRow<'a> {
+        let VisitedRange { name, symbol, unit, minimum, maximum } = range;
+        RangeRow { name, symbol, unit, minimum: minimum.into(), maximum: maximum.into() }
+    }
+}
+
+impl<'a> From<&'a Extreme> for ExtremeRow<'a> {
+    fn from(extreme: &'a Extreme) -> ExtremeRow<'a> {
+        let at = extreme.at.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        ExtremeRow { value: Number(extreme.value), at }
+    }
+}
+
 /// The JSON object of `check`; `told` are warnings beside those of the reader.
-pub fn json(loaded: &Loaded, derived: &[Derived], wishes: &[CheckedWish], told: Vec<String>) -> String {
+pub fn json(
+    loaded: &Loaded,
+    derived: &[Derived],
+    visited: Option<&[VisitedRange]>,
+    wishes: &[CheckedWish],
+    told: Vec<String>,
+) -> String {
     let rows = derived.iter().map(|quantity| Row {
         name: &quantity.name,
         group: quantity.group,
@@ -58,6 +98,7 @@ pub fn json(loaded: &Loaded, derived: &[Derived], wishes: &[CheckedWish], told: 
     let wishes = wishes.iter().map(CheckedWish::row);
     let body = Body {
         derived: rows.collect(),
+        visited_box: visited.map(|ranges| ranges.iter().map(RangeRow::from).collect()),
         wishes: wishes.collect(),
         warnings: told.into_iter().chain(warnings).collect(),
     };
@@ -89,6 +130,31 @@ pub fn text(derived: &[Derived]) -> String {
         out.push_str(&format!("  {}\n", sentence(quantity)));
     }
     out
+}
+
+/// The box of linear parameters that the family visits, for people.
+pub fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String {
+    let mut rows = table(&["quantity", "least", "most", "unit"]);
+    for range in ranges {
+        let [least, most] = [&range.minimum, &range.maximum].map(|end| significant(end.value, 4));
+        rows.add_row([range.symbol, &least, &most, range.unit]);
+    }
+    let place = |of: &str, symbol: &str, end: &Extreme| {
+        let at: Vec<String> = end
+            .at
+            .iter()
+            .map(|(name, value)| format!("{name} = {}", project.in_words(name, *value)))
+            .collect();
+        (!at.is_empty()).then(|| format!("  {of} {symbol} at {}\n", at.join(", ")))
+    };
+    let ends = ranges.iter().flat_map(|range| {
+        [place("least", range.symbol, &range.minimum), place("most", range.symbol, &range.maximum)]
+    });
+    let places: String = ends.flatten().collect();
+    format!(
+        "The box of the family: what its operating points and numbers make of the linear model\n{}\n{places}",
+        rows.trim_fmt()
+    )
 }
 
 /// Difference in percent below which a stated value is unremarkable: it prints as zero.

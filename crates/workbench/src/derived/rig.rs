@@ -170,10 +170,14 @@ fn equilibrium(rig: &Rig, list: &mut List) {
             "q_B(U, p_B) = 0, holding the load",
         ],
         Condition::Motion(..) => ["declared", "q_A(U, p_A) = A_A v", "q_B(U, p_B) = -A_B v"],
+        Condition::Moving(..) => {
+            ["the command that keeps the velocity", "q_A(U, p_A) = A_A v", "q_B(U, p_B) = -A_B v"]
+        }
         Condition::Matched(..) => ["declared", "p_A = (p_S + p_T + p_L)/2", "p_B = (p_S + p_T - p_L)/2"],
     };
     list.group("Operating point");
     list.add("operating_point.position", "x_p", point.position, "m", "declared, or mid stroke");
+    list.add("operating_point.velocity", "v", point.velocity, "m/s", "declared, or standstill");
     list.add("operating_point.command", "U_C", point.command, "V", command);
     list.add("operating_point.pressure_a", "p_A", point.pressure_a, "Pa", pressure_a);
     list.add("operating_point.pressure_b", "p_B", point.pressure_b, "Pa", pressure_b);

@@ -1,30 +1,41 @@
-//! The uncertain plant of an actuator: the linear plant of its rig over parameters of the linear model and over physical numbers that
-//! reach it by a formula.
+//! The uncertain plant of an actuator: the linear plant of its rig over parameters of the linear model and over numbers of the project.
+//!
+//! There is one chain from the project to the plant, and it is that of [`Rig`]: here it runs over recorded numbers. Pressures that an
+//! uncertain number moves are recorded with it, see [`phea_hydraulics::operating_point::Balance::settle`].
 
-use super::FamilyError;
-use super::machine::Machine;
-use crate::project::{LINEAR_PARAMETERS, Project};
-use crate::rig::{Rig, has_one_pressure, plant, stated};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
-use phea_hydraulics::line::LineError;
-use phea_hydraulics::plant::{Plant, PlantInMotion};
+use phea_hydraulics::line::{LineError, Member};
+use phea_hydraulics::linear::LinearParameters;
+use phea_hydraulics::operating_point::{Balance, OperatingPoint, Settled, Steady, hydraulic_force};
+use phea_hydraulics::plant::{LinearLoad, Plant, PlantInMotion};
+use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::two_pressure::{
+    TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
+};
 
-/// Records the model with the uncertain numbers open and all others at the values that hold.
+use super::FamilyError;
+use super::visited::Visited;
+use crate::project::{Actuator, LINEAR_PARAMETERS, Project};
+use crate::rig::{self, Numbers, Rig, components, linear, place, plant, stated, yielding_load};
+
+/// Records the plant with the uncertain numbers open and all others at the values that hold.
 pub(super) fn uncertain_plant(
     project: &Project,
-    rig: &Rig,
     parameters: Vec<UncertainParameter>,
 ) -> Result<UncertainPlant, FamilyError> {
-    let names: Vec<String> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
-    // A trial with numbers finds every path without a formula before the recording, which cannot fail, begins.
-    let mut trial = Machine::new(project, rig);
-    for name in names.iter().filter(|name| !is_linear(name)) {
-        if !trial.set(name, 1.0) {
-            return Err(FamilyError::Path { path: name.clone(), reason: reason(name) });
-        }
+    let visited = Visited::new(project, &parameters)?;
+    let Visited { rig, names, moved, one_pressure, .. } = &visited;
+    let Some(declared) = &project.actuator else { return Err(crate::rig::RigError::NoActuator.into()) };
+    let recorded = UncertainPlant::record(parameters, |values| {
+        let open = Open { project, declared, rig, names };
+        open.plant(values, *moved, *one_pressure).1.coefficients()
+    })?;
+    let idle = (0..names.len()).find(|index| !recorded.expression().depends_on(*index));
+    match idle.and_then(|index| names.get(index)) {
+        Some(path) => Err(FamilyError::Path { path: path.clone(), reason: reason(path) }),
+        None => Ok(recorded),
     }
-    Ok(UncertainPlant::record(parameters, |values| member(project, rig, &names, values).1.coefficients())?)
 }
 
 /// The plant of one member behind lines in motion; `None` where both lines are lumped.
@@ -33,45 +44,98 @@ pub(super) fn uncertain_plant(
 /// A line that its model does not fit.
 pub(super) fn in_motion(
     project: &Project,
-    rig: &Rig,
-    names: &[String],
+    visited: &Visited,
     values: &[f64],
 ) -> Result<Option<PlantInMotion>, LineError> {
+    let Visited { rig, names, moved, one_pressure, .. } = visited;
     let Some(declared) = &project.actuator else { return Ok(None) };
-    let (machine, plant) = member(project, rig, names, values);
-    let behind = machine.behind_lines(&declared.line, rig)?;
-    Ok(behind.map(|behind| PlantInMotion::new(&plant, &behind)))
+    let open = Open { project, declared, rig, names };
+    let (place, plant) = open.plant(values, *moved, *one_pressure);
+    let components = components(declared, &Numbers::open(names, values));
+    rig::in_motion(&declared.line, &components, &place.point, &place.chambers, &plant)
 }
 
-/// Physical numbers first; what `[linear]` and `[uncertainty]` state of the linear model goes before what follows from them.
-fn member<S: Scalar>(project: &Project, rig: &Rig, names: &[String], values: &[S]) -> (Machine<S>, Plant<S>) {
-    let mut machine = Machine::new(project, rig).map();
-    for (name, value) in names.iter().zip(values).filter(|(name, _)| !is_linear(name)) {
-        machine.set(name, *value);
+/// A rig with some of its numbers open.
+pub(super) struct Open<'a> {
+    pub(super) project: &'a Project,
+    pub(super) declared: &'a Actuator,
+    pub(super) rig: &'a Rig,
+    pub(super) names: &'a [String],
+}
+
+/// A rig at its operating point.
+pub(super) struct Place<S> {
+    pub(super) point: OperatingPoint<S>,
+    pub(super) chambers: TwoPressureLinearParameters<S>,
+    /// With what `[linear]` and `[uncertainty]` state of the linear model in its place.
+    pub(super) linear: LinearParameters<S>,
+    pub(super) leakage: S,
+}
+
+impl Open<'_> {
+    /// What decides the pressures.
+    pub(super) fn balance<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
+        let numbers = Numbers::open(self.names, values);
+        let components = components(self.declared, &numbers);
+        let (position, steady) = place(self.project, components.cylinder.stroke, &numbers);
+        let leakage = self.declared.cylinder.internal_leakage;
+        let leakage = leakage.map(|value| numbers.at("cylinder.internal_leakage", value));
+        (position, steady, Balance::of(&components, leakage))
     }
-    let known = stated(&rig.parameters).map(|(name, value)| (name, S::from(value)));
-    let open = names.iter().map(String::as_str).zip(values.iter().copied());
-    let stated = known.chain(open.filter(|(name, _)| is_linear(name)));
-    let one_pressure = has_one_pressure(&rig.parameters, &rig.two_pressure, names);
-    let chambers = machine.linear_parameters(rig);
-    let plant = plant(&chambers, stated, one_pressure, machine.internal_leakage(), machine.load());
-    (machine, plant)
+
+    /// The rig with these values, and its plant with lumped lines.
+    fn plant<S: Scalar>(&self, values: &[S], moved: bool, one_pressure: bool) -> (Place<S>, Plant<S>) {
+        let place = self.place(values, moved);
+        let numbers = Numbers::open(self.names, values);
+        let load = yielding_load(&self.declared.load, &numbers, place.point.hydraulic_force);
+        let load = load.map_or(LinearLoad::Prescribed, |load| load.linear());
+        let plant = plant(&place.chambers, &place.linear, one_pressure, place.leakage, load);
+        (place, plant)
+    }
+
+    /// The rig with these values; its pressures are those of the declared rig where nothing moves them.
+    pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> Place<S> {
+        let numbers = Numbers::open(self.names, values);
+        let components = components(self.declared, &numbers);
+        let (position, steady, balance) = self.balance(values);
+        let known = &self.rig.point;
+        let Settled { command, pressures } = match moved {
+            true => balance.settle(steady),
+            false => Settled {
+                command: S::from(known.command),
+                pressures: [known.pressure_a, known.pressure_b].map(S::from),
+            },
+        };
+        let none = S::from(0.0);
+        let [pressure_a, pressure_b] = pressures;
+        let point = OperatingPoint {
+            position,
+            command,
+            pressure_a,
+            pressure_b,
+            velocity: if let Steady::Moving { velocity, .. } = steady { velocity } else { none },
+            hydraulic_force: hydraulic_force(balance.areas, pressures),
+            net_flow_a: none,
+            net_flow_b: none,
+        };
+        let friction = components.friction.viscous();
+        let model = TwoPressureModel::of(&components, pressures, Member::Nominal, friction);
+        let chambers = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+        let known = stated(&self.rig.parameters).map(|(name, value)| (name, S::from(value)));
+        let open = self.names.iter().map(String::as_str).zip(values.iter().copied());
+        let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));
+        Place { point, chambers, linear, leakage: balance.leakage.unwrap_or(none) }
+    }
 }
 
-fn is_linear(name: &str) -> bool {
+pub(super) fn is_linear(name: &str) -> bool {
     LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name)
 }
 
-/// Why no formula carries a path into the linear model, and what to use instead.
+/// Why a number does not move the plant.
 fn reason(path: &str) -> String {
-    let reached = LINEAR_PARAMETERS.iter().filter(|parameter| parameter.follows_from(path));
-    let names: Vec<String> = reached.map(|parameter| format!("`{}`", parameter.key.name)).collect();
-    let instead = format!("give a range to {} instead", names.join(", "));
-    match names.is_empty() {
-        true => "it does not enter the linear model".to_string(),
-        false if path.starts_with("supply.") || path.starts_with("valve.") => {
-            format!("it moves the operating point, whose pressures follow from no formula: {instead}")
-        }
-        false => format!("no formula carries it into the linear model: {instead}"),
+    match LINEAR_PARAMETERS.iter().any(|parameter| parameter.follows_from(path)) {
+        true => "what the project states goes before what would follow from it".to_string(),
+        false => "it does not enter the linear model".to_string(),
     }
 }

@@ -13,6 +13,7 @@ use phea_qft::family::{Extent, MeasuredFamily, MeasuredPlant, UncertainFamily, v
 
 use super::FamilyError;
 use super::hydraulic;
+use super::visited::Visited;
 use crate::project::Project;
 use crate::rig::Rig;
 
@@ -46,13 +47,13 @@ pub(super) fn family(
     if rig.in_motion.is_none() {
         return Ok(None);
     }
-    let names: Vec<String> = lumped.plant().parameters().iter().map(|one| one.name.clone()).collect();
+    let visited = Visited::new(project, lumped.plant().parameters())?;
     let members = members(lumped)?;
     let mut grid: Option<Vec<f64>> = None;
     let mut plants = Vec::with_capacity(members.len());
     for (index, values) in members.iter().enumerate() {
         let named = || named(lumped.plant().parameters(), values);
-        let plant = hydraulic::in_motion(project, &rig, &names, values)
+        let plant = hydraulic::in_motion(project, &visited, values)
             .map_err(|error| FamilyError::Line { error, member: named() })?;
         let Some(plant) = plant else { return Ok(None) };
         if !plant.is_passive() {
@@ -66,7 +67,7 @@ pub(super) fn family(
         grid = Some(if index == 0 { measured.frequencies_rad_per_s.clone() } else { first });
         plants.push(measured);
     }
-    Ok(Some(MeasuredFamily::new(plants)?.of_model(names, members)))
+    Ok(Some(MeasuredFamily::new(plants)?.of_model(visited.names, members)))
 }
 
 /// The nominal plant, the corners of a box where they are few, and as many of the other members as are looked at, spread over all.

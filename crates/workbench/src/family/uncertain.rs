@@ -6,13 +6,15 @@ use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 use phea_qft::family::{self, Coordinate, Extent, UncertainFamily};
 
 use super::FamilyError;
+use super::region::within_reach;
 use crate::project::{Case, Project, Spacing, Uncertain};
 
 /// The uncertain parameters: those of `[uncertainty]`, then those that only explicit cases give values to.
 ///
 /// What `[linear]` sets outright goes before the nominal of `[uncertainty]`, as everywhere, and that before the first case.
-pub(super) fn parameters(project: &Project) -> Vec<UncertainParameter> {
-    let declared = project.uncertainty.iter().map(|uncertain| UncertainParameter {
+pub(super) fn parameters(project: &Project) -> Result<Vec<UncertainParameter>, FamilyError> {
+    let numbers = within_reach(project)?;
+    let declared = numbers.iter().map(|uncertain| UncertainParameter {
         name: uncertain.name.clone(),
         nominal: project.linear.get(&uncertain.name).unwrap_or(uncertain.nominal),
         minimum: uncertain.minimum,
@@ -20,7 +22,7 @@ pub(super) fn parameters(project: &Project) -> Vec<UncertainParameter> {
     });
     let mut parameters: Vec<UncertainParameter> = declared.collect();
     for (name, value) in cases(project).iter().flat_map(|case| &case.parameters) {
-        let stated = project.uncertainty.iter().any(|uncertain| uncertain.name == *name);
+        let stated = numbers.iter().any(|uncertain| uncertain.name == *name);
         match parameters.iter_mut().find(|parameter| parameter.name == *name) {
             Some(parameter) if !stated => {
                 parameter.minimum = parameter.minimum.min(*value);
@@ -38,7 +40,7 @@ pub(super) fn parameters(project: &Project) -> Vec<UncertainParameter> {
             }
         }
     }
-    parameters
+    Ok(parameters)
 }
 
 /// The family of a plant: the grid over its box, or what `[family]` chooses instead.
@@ -46,9 +48,11 @@ pub(super) fn family(project: &Project, plant: UncertainPlant) -> Result<Uncerta
     let coordinates = coordinates(project, &plant);
     let chosen = project.family.clone().unwrap_or_default();
     let mut members: Vec<Vec<f64>> = chosen.cases.iter().map(|case| member(case, &plant)).collect();
-    let spans = chosen.grid || chosen.vertices || chosen.random.is_some();
+    let region = chosen.operating_region.is_some();
+    let spans = chosen.grid || chosen.vertices || chosen.random.is_some() || region;
     let extent = if spans || members.is_empty() { Extent::Box } else { Extent::Members };
-    if chosen.grid || (extent == Extent::Box && !spans) {
+    let alone = !chosen.vertices && chosen.random.is_none();
+    if chosen.grid || (extent == Extent::Box && alone) {
         members.extend(family::grid(&plant, &coordinates)?);
     }
     if chosen.vertices {
@@ -102,12 +106,13 @@ fn coordinates(project: &Project, plant: &UncertainPlant) -> Vec<Coordinate> {
     let groups = project.family.as_ref().map_or(&[][..], |family| &family.correlation);
     let group_of =
         |name: &str| groups.iter().position(|group| group.parameters.iter().any(|one| one == name));
+    let numbers = project.uncertain_numbers();
     let mut coordinates: Vec<(Option<usize>, Coordinate)> = Vec::new();
     for (index, parameter) in plant.parameters().iter().enumerate() {
         if parameter.minimum >= parameter.maximum {
             continue;
         }
-        let uncertain = project.uncertainty.iter().find(|uncertain| uncertain.name == parameter.name);
+        let uncertain = numbers.iter().find(|uncertain| uncertain.name == parameter.name);
         let group = group_of(&parameter.name);
         let opposed = group
             .and_then(|group| groups.get(group))

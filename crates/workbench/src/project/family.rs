@@ -2,7 +2,7 @@
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
-use crate::quantity::RATIO;
+use crate::quantity::{FORCE, LENGTH, RATIO, VELOCITY};
 
 /// The members of the family. Without any of them it is the grid of `[uncertainty]`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,10 +17,25 @@ pub struct Family {
     pub cases: Vec<Case>,
     /// Groups of parameters that run through their ranges together.
     pub correlation: Vec<Correlation>,
+    /// The operating points that the rig visits, with what the pump can give.
+    pub operating_region: Option<OperatingRegion>,
     /// Files with measured frequency responses, the nominal plant first; paths are relative to the project file.
     pub measured: Vec<String>,
     /// Open-loop poles of each measured plant in the right half plane.
     pub unstable_poles: u32,
+}
+
+/// Ranges of the operating point: their plants are correlated through the pressures that follow.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OperatingRegion {
+    /// m, of the piston.
+    pub position: Option<[f64; 2]>,
+    /// N, that the pressures hold.
+    pub load_force: Option<[f64; 2]>,
+    /// m/s; what the pump cannot give is cut off.
+    pub velocity: Option<[f64; 2]>,
+    /// Points of the grid over each.
+    pub points: u32,
 }
 
 /// Points of the box drawn at random.
@@ -56,6 +71,8 @@ impl Family {
         v.tables(plain("cases", "Plants by their parameters."), &mut self.cases, Case::visit);
         let k = plain("correlation", "Groups of parameters that run through their ranges together.");
         v.tables(k, &mut self.correlation, Correlation::visit);
+        let k = plain("operating_region", "The operating points that the rig visits.");
+        v.table(k, &mut self.operating_region, OperatingRegion::visit);
         let k = plain("measured", "Files with measured frequency responses, the nominal plant first.");
         v.texts(k, &mut self.measured);
         let doc = "Open-loop poles of each measured plant in the right half plane.";
@@ -63,6 +80,21 @@ impl Family {
             key("unstable_poles", &RATIO, doc).not_negative().at_most(1000.0).or(0.0),
             &mut self.unstable_poles,
         );
+    }
+}
+
+impl OperatingRegion {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("position", &LENGTH, "Least and greatest position of the piston.").not_negative();
+        v.pair(k, &mut self.position);
+        v.pair(
+            key("load_force", &FORCE, "Least and greatest force that the pressures hold."),
+            &mut self.load_force,
+        );
+        let k = key("velocity", &VELOCITY, "Least and greatest velocity, before `supply.flow` limits them.");
+        v.pair(k, &mut self.velocity);
+        let k = key("points", &RATIO, "Points of the grid over each of them.").at_least(2.0).at_most(1000.0);
+        v.count(k.or(3.0), &mut self.points);
     }
 }
 

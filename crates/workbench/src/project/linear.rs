@@ -1,40 +1,11 @@
-//! `[operating_point]` and `[linear]`: the linear model's place and parameters.
+//! `[linear]`: the linear model's parameters.
 
 use super::key::{Key, key};
 use super::line_motion::LineMotion;
 use super::visitor::Visitor;
 use crate::quantity::{
-    ANGULAR_FREQUENCY, AREA, DAMPING, FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, LENGTH, MASS, PRESSURE, RATIO,
-    STIFFNESS, VOLTAGE,
+    ANGULAR_FREQUENCY, AREA, DAMPING, FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, MASS, RATIO, STIFFNESS,
 };
-
-/// Where the linear model is taken; absent parts are mid stroke and null.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct OperatingPoint {
-    /// m, from the end of chamber A.
-    pub position: Option<f64>,
-    /// Pa, p_A - p_B.
-    pub load_pressure: Option<f64>,
-    /// V.
-    pub command: Option<f64>,
-}
-
-impl OperatingPoint {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("position", &LENGTH, "Position of the piston; absent: mid stroke.").not_negative();
-        v.optional(k, &mut self.position);
-        let k = key(
-            "load_pressure",
-            &PRESSURE,
-            "p_A - p_B; absent: zero with a command, else what the edges settle at.",
-        );
-        v.optional(k, &mut self.load_pressure);
-        v.optional(
-            key("command", &VOLTAGE, "Command of the valve; absent: null, or what holds the load pressure."),
-            &mut self.command,
-        );
-    }
-}
 
 /// Parameters of the linear model that are set outright.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -94,6 +65,8 @@ const VALVE: &[&str] = &[
     "supply.pressure",
     "supply.tank_pressure",
     "operating_point.load_pressure",
+    "operating_point.load_force",
+    "operating_point.velocity",
     "operating_point.command",
 ];
 

@@ -8,13 +8,14 @@ use super::diagnostic::{Report, Severity};
 use super::key::{Key, key};
 use super::linear::LINEAR_PARAMETERS;
 use super::listing::{KeyEntry, Listing};
+use super::operating_point::operating_numbers;
 use super::printer::Printer;
 use super::reader::Reader;
 use super::text::{Findings, Found, Place};
 use super::tree::{self, Node};
 use super::{Actuator, Loaded, Project, setting, validate};
 use crate::catalogue::Catalogue;
-use crate::quantity::RATIO;
+use crate::quantity::{RATIO, display};
 use crate::source::Source;
 
 /// Reads a project file, applies `path=value` settings, and looks names up in the catalogue, to which the given files
@@ -168,6 +169,7 @@ fn numbers(project: &mut Project) -> (BTreeMap<String, Key>, Vec<String>) {
             LINEAR_PARAMETERS.iter().map(|parameter| (parameter.key.name.to_string(), parameter.key)),
         );
         named.extend(super::scenario::start_numbers());
+        named.extend(operating_numbers());
     }
     (named, listing.counts)
 }
@@ -215,12 +217,21 @@ impl Project {
 
     /// The number at a dotted path such as `supply.pressure`, in SI.
     pub fn number(&self, path: &str) -> Option<f64> {
+        if let Some(number) = self.operating_point.clone().at_path(path) {
+            return *number;
+        }
         let mut listing = Listing::default();
         self.clone().visit_system(&mut listing);
         listing.numbers.get(path).map(|(_, value)| *value)
     }
 
-    /// The same project with another number at a path; `None` if there is no number.
+    /// A value of the number at a path, in a unit of its dimension.
+    pub(crate) fn in_words(&self, path: &str, value: f64) -> String {
+        let (named, _) = numbers(&mut self.clone());
+        named.get(path).map_or_else(|| value.to_string(), |key| display(value, key.dimension, 4))
+    }
+
+    /// The same project with another number at a path; `None` if there is no number. Those of the operating point always are.
     #[must_use]
     pub fn with_number(&self, path: &str, value: f64) -> Option<Project> {
         self.with_numbers(&[(path, value)])
@@ -240,11 +251,16 @@ impl Project {
     /// ```
     #[must_use]
     pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Option<Project> {
-        let assign: BTreeMap<String, f64> =
-            numbers.iter().map(|(path, value)| ((*path).to_string(), *value)).collect();
+        let mut project = self.clone();
+        let mut assign: BTreeMap<String, f64> = BTreeMap::new();
+        for (path, value) in numbers {
+            match project.operating_point.at_path(path) {
+                Some(number) => *number = Some(*value),
+                None => drop(assign.insert((*path).to_string(), *value)),
+            }
+        }
         let wanted = assign.len();
         let mut listing = Listing::assigning(assign);
-        let mut project = self.clone();
         if wanted > 0 {
             project.visit_system(&mut listing);
         }

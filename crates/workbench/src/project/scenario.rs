@@ -15,7 +15,7 @@ pub struct Scenario {
     pub duration: f64,
     /// s, between rows of the result.
     pub output_step: f64,
-    /// The state at the start; absent: the closed loop at rest at mid stroke.
+    /// The state at the start; absent: the closed loop at rest at the position of the operating point, mid stroke by default.
     pub start: Option<Start>,
     /// The reference force, the sum of these.
     pub reference: Vec<Signal>,

@@ -1,11 +1,63 @@
 //! The lines of a rig in motion, as they are declared.
 
+use phea_hydraulics::actuator::Components;
 use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::line::{
     BraidedWall, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Member,
+    Stiffening,
 };
+use phea_hydraulics::operating_point::OperatingPoint;
+use phea_hydraulics::plant::{BehindLines, Plant, PlantInMotion};
+use phea_hydraulics::servovalve::Supply;
+use phea_hydraulics::stiffness::compliance_at;
+use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
 use crate::project::{self, LineFriction, LineMotion, LineWall};
+
+/// The plant with lines as they move, in place of its lumped ones; `None` where both are lumped.
+///
+/// # Errors
+/// A line that its model does not fit.
+pub(crate) fn in_motion(
+    declared: &project::Lines,
+    components: &Components,
+    point: &OperatingPoint,
+    chambers: &TwoPressureLinearParameters,
+    plant: &Plant,
+) -> Result<Option<PlantInMotion>, LineError> {
+    let [line_a, line_b] = [components.line_a, components.line_b].map(stiffened_alike);
+    let Supply { pressure, tank_pressure } = components.supply;
+    let moving = lines(declared, [&line_a, &line_b], &components.fluid, 0.5 * (pressure + tank_pressure))?;
+    let [line_a, line_b] = [line_a, line_b].map(without_volume);
+    let bare = Components { line_a, line_b, ..*components };
+    let bare = bare.chamber_compliance([point.pressure_a, point.pressure_b], Member::Nominal);
+    let chambers_alone = compliance_at(&bare, point.position);
+    Ok(moving.map(|lines| {
+        let behind = BehindLines { lines, chambers: chambers_alone, lumped: chambers.compliances };
+        PlantInMotion::new(plant, &behind)
+    }))
+}
+
+/// A hose of one stiffening: what a member of a family has for it is its own, and need not lie in the declared interval.
+fn stiffened_alike(line: Line) -> Line {
+    match line {
+        Line::Hose { mut hose, length } => {
+            let nominal = hose.dynamic_stiffening.nominal;
+            hose.dynamic_stiffening = Stiffening { nominal, minimum: nominal, maximum: nominal };
+            Line::Hose { hose, length }
+        }
+        Line::Pipe { .. } | Line::Volume { .. } => line,
+    }
+}
+
+/// The same line, holding nothing.
+fn without_volume(mut line: Line) -> Line {
+    match &mut line {
+        Line::Hose { length, .. } | Line::Pipe { length, .. } => *length = 0.0,
+        Line::Volume { volume, .. } => *volume = 0.0,
+    }
+    line
+}
 
 /// These lines as the project says that they move, filled with a fluid at a mean pressure in Pa; `None` where both are lumped, and
 /// nothing of them moves.

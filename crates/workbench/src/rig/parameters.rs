@@ -71,13 +71,3 @@ pub(super) fn resolve(project: &Project, derived: &LinearParameters) -> Vec<Reso
         })
         .collect()
 }
-
-pub(super) fn linear(parameters: &[ResolvedParameter], derived: &LinearParameters) -> LinearParameters {
-    let mut linear = *derived;
-    for parameter in parameters {
-        if let Some(slot) = parameter_field(&mut linear, parameter.name) {
-            *slot = parameter.value;
-        }
-    }
-    linear
-}

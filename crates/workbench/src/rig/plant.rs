@@ -1,13 +1,12 @@
 //! The linear plant of a rig: at its operating point, with its load and its leakage, and with what the project states of it.
 
 use phea_dynamics::scalar::Scalar;
-use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::friction::Friction;
-use phea_hydraulics::machine::{Machine, MachineOptions};
-use phea_hydraulics::operating_point::{Condition, OperatingPoint};
+use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::plant::{LinearLoad, Plant};
+use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
 
+use super::numbers::Numbers;
 use super::parameters::{ParameterOrigin, ResolvedParameter, parameter_field};
 use crate::project;
 
@@ -22,8 +21,8 @@ const EQUAL: f64 = 1e-9;
 pub(crate) struct YieldingLoad<S = f64> {
     pub(crate) mass: S,
     pub(crate) damping: S,
-    /// `None` where the load touches no wall.
-    pub(crate) stiffness: Option<S>,
+    /// Zero where the load touches no wall.
+    pub(crate) stiffness: S,
     /// What the touch of a wall damps.
     pub(crate) contact_damping: S,
 }
@@ -33,103 +32,80 @@ impl<S: Scalar> YieldingLoad<S> {
         LinearLoad::Yielding {
             mass: self.mass,
             damping: self.damping + self.contact_damping,
-            stiffness: self.stiffness.unwrap_or(S::from(0.0)),
-        }
-    }
-}
-
-impl YieldingLoad {
-    pub(crate) fn map<S: Scalar>(&self) -> YieldingLoad<S> {
-        YieldingLoad {
-            mass: S::from(self.mass),
-            damping: S::from(self.damping),
-            stiffness: self.stiffness.map(S::from),
-            contact_damping: S::from(self.contact_damping),
+            stiffness: self.stiffness,
         }
     }
 }
 
 /// The load at a force on it in N; `None` where its motion is prescribed. A wall is touched where the force presses on it, or where
 /// there is no gap. Hunt and Crossley's damping K c d of a wall pressed by d = F/K is c F.
-pub(super) fn yielding_load(declared: &project::Load, force: f64) -> Option<YieldingLoad> {
-    let damping = declared.damping.unwrap_or(0.0);
-    let mass = declared.mass?;
+pub(crate) fn yielding_load<S: Scalar>(
+    declared: &project::Load,
+    numbers: &Numbers<'_, S>,
+    force: S,
+) -> Option<YieldingLoad<S>> {
+    let none = S::from(0.0);
+    let stated = |path: &str, value: Option<f64>| value.map(|value| numbers.at(path, value));
+    let mass = stated("load.mass", declared.mass)?;
+    let damping = stated("load.damping", declared.damping).unwrap_or(none);
+    let stiffness = stated("load.stiffness", declared.stiffness).unwrap_or(none);
     match declared.model {
         project::LoadModel::Prescribed => None,
         project::LoadModel::SpringMassDamper => {
-            Some(YieldingLoad { mass, damping, stiffness: declared.stiffness, contact_damping: 0.0 })
+            Some(YieldingLoad { mass, damping, stiffness, contact_damping: none })
         }
         project::LoadModel::Wall => {
-            let touched = force > 0.0 || declared.gap.unwrap_or(0.0) == 0.0;
-            let contact_damping = declared.relative_damping * force.max(0.0);
-            let stiffness = declared.stiffness.filter(|_| touched);
+            let relative_damping = numbers.at("load.relative_damping", declared.relative_damping);
+            let touched = S::select(none.less_than(force), stiffness, none);
+            let stiffness = if declared.gap.unwrap_or(0.0) == 0.0 { stiffness } else { touched };
+            let contact_damping = relative_damping * force.maximum(none);
             Some(YieldingLoad { mass, damping, stiffness, contact_damping })
         }
     }
 }
 
-/// The operating point with leakage across the piston: the pressures at which all flows balance, under the same command or load.
-/// One without balance, as [`Condition::Matched`] states it, stays as it is.
-pub(super) fn with_leakage(
-    point: OperatingPoint,
-    actuator: &Actuator,
-    condition: Condition,
-    leakage: Option<f64>,
-) -> OperatingPoint {
-    let balanced = || -> Option<OperatingPoint> {
-        // Nothing but valve and piston decides the balance.
-        let components =
-            Components { friction: Friction::Viscous { viscous: 0.0 }, ..*actuator.components() };
-        let options = MachineOptions { internal_leakage: leakage, ..MachineOptions::default() };
-        let machine = Machine::new(&Actuator::new(components).ok()?, &options).ok()?;
-        let rest = match condition {
-            Condition::Matched(..) => return None,
-            Condition::Command(_) => machine.rest(&point),
-            Condition::Load(_) | Condition::Motion(..) => machine.rest_under_load(&point),
-        };
-        let state = rest.ok()?.state;
-        let &[command, _, pressure_a, pressure_b, deflection, velocity] = state.first_chunk()?;
-        let hydraulic_force = deflection * components.force_sensor.stiffness;
-        Some(OperatingPoint { command, pressure_a, pressure_b, hydraulic_force, velocity, ..point })
-    };
-    if leakage.is_some() { balanced().unwrap_or(point) } else { point }
-}
-
-/// Whether one load pressure tells all of the plant: where the project states a parameter that speaks of one, or where both chambers
-/// are equal and stay so over what is uncertain.
-pub(crate) fn has_one_pressure(
-    parameters: &[ResolvedParameter],
-    chambers: &TwoPressureLinearParameters,
-    uncertain: &[String],
-) -> bool {
+/// Whether the project states a parameter of the linear model that speaks of one load pressure; `uncertain` are names of its numbers.
+pub(crate) fn states_one_pressure(parameters: &[ResolvedParameter], uncertain: &[String]) -> bool {
     let speaks = |name: &str| OF_LOAD_PRESSURE.contains(&name);
     let stated = |one: &ResolvedParameter| one.origin != ParameterOrigin::Derived && speaks(one.name);
-    let of_one_side =
-        |name: &str| ["line.a.", "line.b.", "operating_point."].iter().any(|side| name.starts_with(side));
-    let equal = |[a, b]: [f64; 2]| (a - b).abs() <= EQUAL * a.abs();
-    let pressures = [chambers.chambers.flow_pressure_a, chambers.chambers.flow_pressure_b];
-    parameters.iter().any(stated)
-        || uncertain.iter().any(|name| speaks(name))
-        || ([chambers.areas, chambers.compliances, pressures].into_iter().all(equal)
-            && !uncertain.iter().any(|name| of_one_side(name) || name == "cylinder.stroke"))
+    parameters.iter().any(stated) || uncertain.iter().any(|name| speaks(name))
 }
 
-/// The plant of these chambers, each stated parameter of the linear model in its place, in their order.
-pub(crate) fn plant<'n, S: Scalar>(
+/// Whether numbers of both chambers are equal, so that one load pressure tells all of them.
+pub(crate) fn are_equal(sides: impl IntoIterator<Item = [f64; 2]>) -> bool {
+    sides.into_iter().all(|[a, b]| (a - b).abs() <= EQUAL * a.abs())
+}
+
+/// Areas, compliances and flow-pressure coefficients of both chambers.
+pub(crate) fn sides<S: Scalar>(chambers: &TwoPressureLinearParameters<S>) -> [[S; 2]; 3] {
+    let ChamberCoefficients { flow_pressure_a, flow_pressure_b, .. } = chambers.chambers;
+    [chambers.areas, chambers.compliances, [flow_pressure_a, flow_pressure_b]]
+}
+
+/// The parameters of the fifth-order model as these chambers have them, each stated one in its place, in their order.
+pub(crate) fn linear<'n, S: Scalar>(
     chambers: &TwoPressureLinearParameters<S>,
     stated: impl Iterator<Item = (&'n str, S)>,
-    one_pressure: bool,
-    leakage: S,
-    load: LinearLoad<S>,
-) -> Plant<S> {
+) -> LinearParameters<S> {
     let mut linear = reduce(chambers);
     for (name, value) in stated {
         if let Some(slot) = parameter_field(&mut linear, name) {
             *slot = value;
         }
     }
+    linear
+}
+
+/// The plant of these chambers with what is stated of it.
+pub(crate) fn plant<S: Scalar>(
+    chambers: &TwoPressureLinearParameters<S>,
+    linear: &LinearParameters<S>,
+    one_pressure: bool,
+    leakage: S,
+    load: LinearLoad<S>,
+) -> Plant<S> {
     if one_pressure {
-        return Plant::of_load_pressure(&linear, leakage, load);
+        return Plant::of_load_pressure(linear, leakage, load);
     }
     let stated = TwoPressureLinearParameters {
         moving_mass: linear.moving_mass,

@@ -2,7 +2,8 @@ use phea_dynamics::portable::ln;
 use phea_hydraulics::linear::LinearParameters;
 
 use super::Rig;
-use super::assembly::{Expansion, ExpansionPressures, hose};
+use super::assembly::{Expansion, ExpansionPressures, hose, stiffening};
+use super::numbers::Numbers;
 use crate::answer::significant;
 use crate::catalogue::{Catalogue, DASH_SIZES, Kind};
 use crate::project::{self, HoseProperties, Project};
@@ -122,14 +123,19 @@ fn maximum_flow(actuator: &project::Actuator) -> Result<(f64, String), SizingErr
 /// The hoses of the catalogue, with what the project says of one by the same name; its own hose if it has no name.
 fn hoses(actuator: &project::Actuator, catalogue: &Catalogue) -> Vec<HoseOption> {
     let line = &actuator.line.a;
-    let pressures = ExpansionPressures::of(&actuator.supply);
+    let pressures = ExpansionPressures::of(actuator.supply.pressure, actuator.supply.tank_pressure);
     let option = |name: &str, properties: &HoseProperties| {
         let slope = properties.expansion_slope()?;
         let (measured, at) = (properties.volumetric_expansion, properties.volumetric_expansion_pressure);
         let expansion = Expansion { measured, at, slope };
         Some(HoseOption {
             name: name.to_string(),
-            hose: hose(properties.bore?, expansion, pressures, line.dynamic_stiffening),
+            hose: hose(
+                properties.bore?,
+                expansion,
+                pressures,
+                stiffening(line.dynamic_stiffening, &Numbers::declared()),
+            ),
             working_pressure: properties.working_pressure,
             minimum_bend_radius: properties.minimum_bend_radius,
         })

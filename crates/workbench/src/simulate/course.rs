@@ -165,12 +165,12 @@ fn motion(declared: &LoadMotion) -> Result<Profile, ProfileError> {
     }
 }
 
-/// Where the search for a rest begins: the machine at mid stroke under the force of the reference, or without force where there is
+/// Where the search for a rest begins: the machine at the position of its operating point under the force of the reference, or without force where there is
 /// no such operating point.
 fn near_rest(bench: &Bench, scenario: &Scenario, reference_n: f64) -> Result<Beginning, SimulateError> {
-    let stroke = bench.rig.actuator.components().cylinder.stroke;
+    let position = bench.rig.point.position;
     let near = |force: f64| -> Result<Beginning, SimulateError> {
-        let point = operating_point(&bench.rig.actuator, stroke / 2.0, Condition::Load(Load::Force(force)))
+        let point = operating_point(&bench.rig.actuator, position, Condition::Load(Load::Force(force)))
             .map_err(|error| SimulateError::Equilibrium { name: scenario.name.clone(), error })?;
         let start = Start {
             position: point.position,

@@ -135,34 +135,37 @@ fn quarter_wave(rig: &Rig) -> Option<f64> {
     (longest > 0.0).then(|| FRAC_PI_2 / longest)
 }
 
-/// A project whose rig has these parameters: numbers of the project at their places, those of the linear model by what they follow from.
+/// A project whose rig has these parameters: numbers of the project and of its operating point at their places, those of the linear
+/// model by what they follow from.
 fn made(project: &Project, names: &[&str], values: &[f64]) -> Result<Project, String> {
     let is_linear = |name: &str| LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name);
     let mut rig = project.clone();
     rig.uncertainty.clear();
     rig.family = None;
-    for (name, value) in names.iter().zip(values).filter(|(name, _)| !is_linear(name)) {
-        rig =
-            rig.with_number(name, *value).ok_or_else(|| format!("no rig is known with another `{name}`"))?;
+    let stated = names.iter().copied().zip(values.iter().copied()).filter(|(name, _)| !is_linear(name));
+    for (name, value) in stated {
+        if name == "operating_point.velocity" && value != 0.0 {
+            return Err("a machine is tried from rest, and this plant is one in motion".to_string());
+        }
+        rig = rig.with_number(name, value).ok_or_else(|| format!("no rig is known with another `{name}`"))?;
     }
     let wanted: Vec<(&str, f64)> =
         names.iter().copied().zip(values.iter().copied()).filter(|(name, _)| is_linear(name)).collect();
+    let mut missed = Vec::new();
     for _ in 0..PASSES {
-        let mut missed = None;
+        missed.clear();
         for (name, value) in &wanted {
             let now = derived(&rig, name)?;
             if (now - value).abs() > CLOSE * value.abs() {
-                missed = Some(format!("{name} comes to {now:.4e} and not to {value:.4e}"));
+                missed.push(format!("{name} comes to {now:.4e} and not to {value:.4e}"));
                 rig = towards(&rig, name, now, *value)?;
             }
         }
-        match missed {
-            None => return Ok(rig),
-            Some(reason) if wanted.is_empty() => return Err(reason),
-            Some(_) => {}
+        if missed.is_empty() {
+            return Ok(rig);
         }
     }
-    Err("no rig was found whose linear model has these parameters".to_string())
+    Err(format!("no rig was found whose linear model has these parameters: {}", missed.join("; ")))
 }
 
 /// A parameter of the linear model as it follows from the rig.

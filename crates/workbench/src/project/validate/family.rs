@@ -1,7 +1,7 @@
 //! `[family]`.
 
 use super::Check;
-use crate::project::{Correlation, Family, Project, Uncertain};
+use crate::project::{Correlation, Family, OperatingRegion, Project, Uncertain};
 
 pub(super) fn family(project: &Project, check: &mut Check<'_, '_>) {
     let Some(family) = &project.family else { return };
@@ -13,6 +13,9 @@ pub(super) fn family(project: &Project, check: &mut Check<'_, '_>) {
     }
     if family.unstable_poles > 0 {
         check.warning("family.unstable_poles", "`unstable_poles` has no effect without `measured`");
+    }
+    if let Some(region) = &family.operating_region {
+        operating_region(project, region, check);
     }
     cases(project, family, check);
     let mut seen = Vec::new();
@@ -26,7 +29,8 @@ pub(super) fn family(project: &Project, check: &mut Check<'_, '_>) {
             seen.push(name);
         }
     }
-    let spans = family.grid || family.vertices || family.random.is_some();
+    let spans =
+        family.grid || family.vertices || family.random.is_some() || family.operating_region.is_some();
     if !family.correlation.is_empty() && !family.cases.is_empty() && !spans {
         let message = "`correlation` has no effect: the family is its `cases` alone";
         check.warning("family.correlation", message);
@@ -40,6 +44,7 @@ fn measured(family: &Family, check: &mut Check<'_, '_>) {
         ("random", family.random.is_some()),
         ("cases", !family.cases.is_empty() || check.declared("family.cases")),
         ("correlation", !family.correlation.is_empty()),
+        ("operating_region", family.operating_region.is_some()),
     ];
     for (name, present) in others {
         if present {
@@ -51,6 +56,43 @@ fn measured(family: &Family, check: &mut Check<'_, '_>) {
         if family.measured.iter().take(index).any(|earlier| earlier == file) {
             check.error("family.measured", format!("\"{file}\" is listed twice"));
         }
+    }
+}
+
+/// Ranges in order that hold what is declared, each number uncertain in one place.
+fn operating_region(project: &Project, region: &OperatingRegion, check: &mut Check<'_, '_>) {
+    let path = "family.operating_region";
+    let Some(actuator) = &project.actuator else {
+        return check.error(path, "`operating_region` needs an actuator, but this project has a [plant]");
+    };
+    let point = &project.operating_point;
+    let ranges = [
+        ("position", region.position, point.position),
+        ("load_force", region.load_force, point.load_force),
+        ("velocity", region.velocity, point.velocity),
+    ];
+    if ranges.iter().all(|(_, range, _)| range.is_none()) {
+        return check.error(
+            path,
+            "`operating_region` is empty: give ranges of `position`, `load_force` or `velocity`",
+        );
+    }
+    for (name, range, declared) in ranges {
+        let key = format!("{path}.{name}");
+        check.ascending(&key, range);
+        let outside = |[low, high]: [f64; 2]| declared.is_some_and(|value| value < low || value > high);
+        if range.is_some_and(outside) {
+            check.error(&key, format!("`{name}` of [operating_point] lies outside of this range"));
+        }
+        let both = format!("operating_point.{name}");
+        if range.is_some() && project.uncertainty.iter().any(|uncertain| uncertain.name == both) {
+            let message = format!("[uncertainty] has a range of `{both}` too");
+            check.error_with_help(&key, message, "list one of the two");
+        }
+    }
+    let stroke = actuator.cylinder.stroke;
+    if region.position.is_some_and(|[_, high]| high > stroke && stroke > 0.0) {
+        check.error(&format!("{path}.position"), "`position` goes beyond the stroke");
     }
 }
 
@@ -71,7 +113,7 @@ fn cases(project: &Project, family: &Family, check: &mut Check<'_, '_>) {
         }
         for (name, value) in &case.parameters {
             let Some(Uncertain { minimum, maximum, .. }) = uncertain(project, name) else { continue };
-            if value < minimum || value > maximum {
+            if *value < minimum || *value > maximum {
                 let message = format!(
                     "`{name}` = {value} lies outside of {minimum} to {maximum}, its range in [uncertainty]"
                 );
@@ -94,6 +136,6 @@ fn correlation(project: &Project, group: &Correlation, path: &str, check: &mut C
     }
 }
 
-fn uncertain<'a>(project: &'a Project, name: &str) -> Option<&'a Uncertain> {
-    project.uncertainty.iter().find(|uncertain| uncertain.name == *name)
+fn uncertain(project: &Project, name: &str) -> Option<Uncertain> {
+    project.uncertain_numbers().into_iter().find(|uncertain| uncertain.name == *name)
 }

@@ -55,6 +55,20 @@ fn sizing(sizing: &Sizing, check: &mut Check<'_, '_>) {
 
 fn operating_point(project: &Project, actuator: &Actuator, check: &mut Check<'_, '_>) {
     let point = &project.operating_point;
+    let known = project.resolved_operating_point();
+    let moved = known.load_force.is_some() || known.velocity.is_some();
+    if known.command.is_some() && moved {
+        let message = "a `command` has pressures of its own, thesis (4.18): no `load_force` and no `velocity` stands beside it";
+        check.error_with_help(
+            "operating_point.command",
+            message,
+            "leave out the `command`: it follows from the others",
+        );
+    }
+    if known.load_pressure.is_some() && known.load_force.is_some() {
+        let message = "both `load_pressure` and `load_force`: one says it all";
+        check.error("operating_point.load_pressure", message);
+    }
     let stroke = actuator.cylinder.stroke;
     if point.position.is_some_and(|position| position > stroke && stroke > 0.0) {
         check.error("operating_point.position", "`position` is beyond the stroke");
@@ -192,6 +206,10 @@ fn campaign(project: &Project, campaign: &Campaign, check: &mut Check<'_, '_>) {
             (None, Some(_), Some(_)) => check.error(&path, "`minimum` must be below `maximum`"),
             _ => check.error(&path, format!("`{}` takes `spread`, or `minimum` and `maximum`", varied.path)),
         }
+        if varied.path.starts_with("operating_point.") {
+            let message = format!("`{}` is of the linear model, and the machine finds its own", varied.path);
+            check.error_with_help(&path, message, "vary `start.position` and its like");
+        }
         if linear_parameter(&varied.path).is_some() {
             let message = format!("`{}` does not exist in the nonlinear machine", varied.path);
             check.error_with_help(&path, message, "vary the physical numbers it depends on");
@@ -324,11 +342,19 @@ fn depends(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) 
     let Some(parameter) = linear_parameter(&uncertain.name) else {
         return hidden(&uncertain.name, project, check);
     };
-    for other in &project.uncertainty {
+    for other in project.uncertain_numbers() {
         if parameter.follows_from(&other.name) {
             let message =
                 format!("`{}` depends on `{}`: both cannot be uncertain", uncertain.name, other.name);
-            check.error_with_help(&format!("uncertainty.{}", other.name), message, "list one of the two");
+            let of_region = other
+                .name
+                .strip_prefix("operating_point.")
+                .filter(|_| !project.uncertainty.iter().any(|declared| declared.name == other.name));
+            let path = match of_region {
+                Some(name) => format!("family.operating_region.{name}"),
+                None => format!("uncertainty.{}", other.name),
+            };
+            check.error_with_help(&path, message, "list one of the two");
         }
     }
 }

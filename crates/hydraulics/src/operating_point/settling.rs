@@ -1,0 +1,298 @@
+//! The balance of an operating point over any scalar: recorded, it is right over a whole box of parameters.
+//!
+//! A `Scalar` never branches on a value, so nothing here stops early. Closed forms of plain square roots bracket the unknown,
+//! halvings of the bracket come near it from anywhere, and a fixed number of Newton steps on the regular equations of
+//! [`crate::servovalve`] does the rest; [`Balance::error`] measures what is left.
+
+use phea_dynamics::scalar::Scalar;
+
+use super::{Balance, Load};
+use crate::servovalve::{
+    ChamberCoefficients, ChamberFlows, Direction, Openings, chamber_coefficients, chamber_flows,
+};
+
+/// What is known of an operating point, over any scalar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Steady<S = f64> {
+    /// Standstill at this spool command in V.
+    Command(S),
+    /// Steady motion at a velocity in m/s under a load; the command that keeps it is found. Zero velocity is standstill.
+    Moving {
+        /// Velocity v in m/s.
+        velocity: S,
+        /// What the pressures hold.
+        load: Load<S>,
+    },
+    /// As [`super::Condition::Matched`].
+    Matched(S, S),
+}
+
+/// Where the valve and both chambers settle. Units: V, Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settled<S = f64> {
+    /// Spool position U_Csp.
+    pub command: S,
+    /// Chamber pressures p_A and p_B.
+    pub pressures: [S; 2],
+}
+
+/// Halvings of the spool's travel: to 4e-6 of it, where the leakage of the edges takes a hundredth to fall.
+const HALVINGS_OF_TRAVEL: usize = 18;
+/// Halvings of the load pressure that leakage across the piston leaves.
+const HALVINGS_OF_LEAKAGE: usize = 12;
+/// How often the load pressure of unequal areas is taken anew.
+const ROUNDS: usize = 3;
+/// Newton steps without and with leakage across the piston.
+const STEPS: [usize; 2] = [5, 9];
+/// Part of the nominal voltage within which a spool stands at null: nearer than rounding tells.
+pub(super) const AT_NULL: f64 = 1e-12;
+
+/// What each side of the piston takes, and how the pressures are bound to each other.
+#[derive(Clone, Copy)]
+struct Hold<S> {
+    velocity: S,
+    /// w_A p_A - w_B p_B is wanted.
+    weights: [S; 2],
+    wanted: S,
+}
+
+impl<S: Scalar> Balance<S> {
+    /// Where the valve and the chambers settle.
+    ///
+    /// # Example
+    /// The pressures of a recorded supply are those that are found for a number:
+    /// ```
+    /// use phea_dynamics::expression::Expression;
+    /// use phea_hydraulics::operating_point::{Balance, Load, Steady};
+    /// use phea_hydraulics::reference_rig::{USEFUL_AREA, valve};
+    /// use phea_hydraulics::servovalve::Supply;
+    /// let recorded = Expression::record(&["pressure", "force"], |p| {
+    ///     let supply = Supply { pressure: p[0], tank_pressure: 0.0.into() };
+    ///     let balance = Balance { valve: valve().map(), supply, areas: [USEFUL_AREA.into(); 2], leakage: None };
+    ///     let settled = balance.settle(Steady::Moving { velocity: 0.0.into(), load: Load::Force(p[1]) });
+    ///     vec![settled.command, settled.pressures[0], settled.pressures[1]]
+    /// });
+    /// let [command, pressure_a, pressure_b] = recorded.evaluate(&[80e5, 3e3])[..] else { panic!("three results") };
+    /// assert!(((pressure_a - pressure_b) * USEFUL_AREA - 3e3_f64).abs() < 1e-6 && command.abs() < 0.1);
+    /// ```
+    pub fn settle(&self, steady: Steady<S>) -> Settled<S> {
+        match steady {
+            Steady::Command(command) => {
+                Settled { command, pressures: self.settle_at(command, S::from(0.0), HALVINGS_OF_LEAKAGE) }
+            }
+            Steady::Moving { velocity, load } => self.settle_moving(velocity, load),
+            Steady::Matched(command, load_pressure) => {
+                let mean = self.supply.pressure + self.supply.tank_pressure;
+                let half = S::from(0.5);
+                Settled { command, pressures: [half * (mean + load_pressure), half * (mean - load_pressure)] }
+            }
+        }
+    }
+
+    /// The pressures at a spool position in V and a velocity in m/s.
+    pub(super) fn settle_at(&self, command: S, velocity: S, halvings: usize) -> [S; 2] {
+        let conductances = self.conductances(command);
+        let at = |load_pressure: S| self.near(&conductances, velocity, load_pressure);
+        let still = at(S::from(0.0));
+        let mut pressures = match self.leakage {
+            None => still,
+            Some(_) => {
+                // leakage leaves a share of the load pressure: p_A falls with it and p_B rises
+                let [a, b] = still;
+                let whole = a - b;
+                let falls = |share: S| {
+                    let [a, b] = at(share * whole);
+                    (a - b - share * whole) * whole
+                };
+                at(halved([S::from(0.0), S::from(1.0)], halvings, falls) * whole)
+            }
+        };
+        for _ in 0..STEPS[usize::from(self.leakage.is_some())] {
+            let [step_a, step_b] = self.step_at(command, velocity, pressures);
+            pressures = [pressures[0] + step_a, pressures[1] + step_b];
+        }
+        pressures
+    }
+
+    fn settle_moving(&self, velocity: S, load: Load<S>) -> Settled<S> {
+        let hold = self.hold(velocity, load);
+        let one = S::from(1.0);
+        let [area_a, area_b] = self.areas;
+        let (mut load_pressure, rounds) = match (load, self.leakage) {
+            (Load::Force(force), Some(_)) => (force * S::from(2.0) / (area_a + area_b), ROUNDS),
+            (Load::Force(_), None) => (S::from(0.0), 1),
+            (Load::Pressure(pressure), _) => (pressure, 1),
+        };
+        let full = self.valve.nominal_voltage;
+        let [weight_a, weight_b] = hold.weights;
+        let (mut command, mut pressure_a) = (S::from(0.0), S::from(0.0));
+        for _ in 0..rounds {
+            let at = |relative: S| self.near(&self.conductances(relative * full), velocity, load_pressure);
+            let shortfall = |relative: S| {
+                let [a, b] = at(relative);
+                hold.wanted - (weight_a * a - weight_b * b)
+            };
+            let relative = halved([-one, one], HALVINGS_OF_TRAVEL, shortfall);
+            let [a, b] = at(relative);
+            (command, pressure_a, load_pressure) = (relative * full, a, a - b);
+        }
+        for _ in 0..STEPS[usize::from(self.leakage.is_some())] {
+            let [step, step_a] = self.step_moving(&hold, command, pressure_a);
+            (command, pressure_a) = (command + step, pressure_a + step_a);
+        }
+        let at_null = command.abs().less_than(full.times(AT_NULL));
+        Settled {
+            command: S::select(at_null, S::from(0.0), command),
+            pressures: [pressure_a, hold.other(pressure_a)],
+        }
+    }
+
+    fn hold(&self, velocity: S, load: Load<S>) -> Hold<S> {
+        match load {
+            Load::Force(wanted) => Hold { velocity, weights: self.areas, wanted },
+            Load::Pressure(wanted) => Hold { velocity, weights: [S::from(1.0); 2], wanted },
+        }
+    }
+
+    /// Of each chamber, the conductances of its edge from supply and of its edge to tank.
+    fn conductances(&self, command: S) -> [[S; 2]; 2] {
+        let (flow, leak) = (&self.valve.flow_coefficients, &self.valve.leakage_coefficients);
+        let Openings { forward, backward, leakage } = Openings::at(&self.valve, command);
+        [
+            [
+                flow.supply_to_a * forward + leak.supply_to_a * leakage,
+                flow.a_to_tank * backward + leak.a_to_tank * leakage,
+            ],
+            [
+                flow.supply_to_b * backward + leak.supply_to_b * leakage,
+                flow.b_to_tank * forward + leak.b_to_tank * leakage,
+            ],
+        ]
+    }
+
+    /// Both pressures by plain square roots, the leakage across the piston being that of a stated load pressure.
+    fn near(&self, [edges_a, edges_b]: &[[S; 2]; 2], velocity: S, load_pressure: S) -> [S; 2] {
+        let across = self.leakage.map_or(S::from(0.0), |leakage| leakage * load_pressure);
+        let [area_a, area_b] = self.areas;
+        [
+            self.between(edges_a, area_a * velocity + across),
+            self.between(edges_b, -area_b * velocity - across),
+        ]
+    }
+
+    /// The pressure between an edge from supply and one to tank, of conductances a and b, that gives the flow Q into the chamber.
+    ///
+    /// ```text
+    /// a s(p_S - p) - b s(p - p_T) = Q,      s(d) = sign(d) sqrt|d|,      D = p_S - p_T
+    /// sqrt(p_S - p) = (a Q + b sqrt((a^2 + b^2) D - Q^2))/(a^2 + b^2)                 between tank and supply
+    /// sqrt(p_S - p) = (Q^2 + b^2 D)/(a Q + b sqrt(Q^2 + (b^2 - a^2) D))               below tank, Q > a sqrt(D)
+    /// sqrt(p - p_T) = (Q^2 + a^2 D)/(-b Q + a sqrt(Q^2 + (a^2 - b^2) D))              above supply, Q < -b sqrt(D)
+    /// ```
+    fn between(&self, &[from_supply, to_tank]: &[S; 2], flow: S) -> S {
+        let drop = self.supply.pressure - self.supply.tank_pressure;
+        let root = drop.sqrt();
+        let [supply, tank, square] = [from_supply, to_tank, flow].map(S::squared);
+        let (sum, difference) = (supply + tank, supply - tank);
+        let within = (from_supply * flow + to_tank * (sum * drop - square).sqrt()) / sum;
+        let below =
+            (square + tank * drop) / (from_supply * flow + to_tank * (square - difference * drop).sqrt());
+        let above =
+            (square + supply * drop) / (from_supply * (square + difference * drop).sqrt() - to_tank * flow);
+        let is_below = (from_supply * root).less_than(flow);
+        let is_above = flow.less_than(-to_tank * root);
+        let not_above = self.supply.pressure - S::select(is_below, below, within).squared();
+        S::select(is_above, self.supply.tank_pressure + above.squared(), not_above)
+    }
+
+    /// What flows into each chamber beyond what the piston and the leakage across it take, and the leakage's conductance.
+    fn surplus(&self, command: S, velocity: S, [pressure_a, pressure_b]: [S; 2]) -> ([S; 2], S) {
+        let ChamberFlows { into_a, into_b } =
+            chamber_flows(&self.valve, &self.supply, command, pressure_a, pressure_b);
+        let conductance = self.leakage.unwrap_or(S::from(0.0));
+        let across = conductance * (pressure_a - pressure_b);
+        let [area_a, area_b] = self.areas;
+        ([into_a - area_a * velocity - across, into_b + area_b * velocity + across], conductance)
+    }
+
+    fn slopes(&self, command: S, [pressure_a, pressure_b]: [S; 2]) -> ChamberCoefficients<S> {
+        chamber_coefficients(&self.valve, &self.supply, command, pressure_a, pressure_b, Direction::Mean)
+    }
+
+    /// The Newton step of both pressures at a fixed spool.
+    pub(super) fn step_at(&self, command: S, velocity: S, pressures: [S; 2]) -> [S; 2] {
+        let ([surplus_a, surplus_b], across) = self.surplus(command, velocity, pressures);
+        let ChamberCoefficients { flow_pressure_a: a, flow_pressure_b: b, .. } =
+            self.slopes(command, pressures);
+        let determinant = a * b + across * (a + b);
+        [
+            ((b + across) * surplus_a + across * surplus_b) / determinant,
+            (across * surplus_a + (a + across) * surplus_b) / determinant,
+        ]
+    }
+
+    /// The Newton step of the spool and of p_A, p_B being bound to p_A by the load.
+    fn step_moving(&self, hold: &Hold<S>, command: S, pressure_a: S) -> [S; 2] {
+        let pressures = [pressure_a, hold.other(pressure_a)];
+        let ([surplus_a, surplus_b], across) = self.surplus(command, hold.velocity, pressures);
+        let slopes = self.slopes(command, pressures);
+        let bound = hold.weights[0] / hold.weights[1];
+        let a_by_pressure = across * bound - across - slopes.flow_pressure_a;
+        let b_by_pressure = across - (slopes.flow_pressure_b + across) * bound;
+        let determinant = slopes.flow_gain_a * b_by_pressure + slopes.flow_gain_b * a_by_pressure;
+        [
+            (surplus_b * a_by_pressure - surplus_a * b_by_pressure) / determinant,
+            -(slopes.flow_gain_a * surplus_b + slopes.flow_gain_b * surplus_a) / determinant,
+        ]
+    }
+}
+
+impl Balance {
+    /// How far a settled point is from balance: one more Newton step, relative to the nominal voltage and to the supply's drop; NaN where
+    /// there is no balance. Where the balance is unique a small step is a small error, see [`Balance::is_unique`].
+    pub fn error(&self, steady: Steady, settled: &Settled) -> f64 {
+        let drop = self.supply.pressure - self.supply.tank_pressure;
+        let steps = match steady {
+            Steady::Matched(..) => return 0.0,
+            Steady::Command(command) => {
+                self.step_at(command, 0.0, settled.pressures).map(|step| step.abs() / drop)
+            }
+            Steady::Moving { velocity, load } => {
+                let hold = self.hold(velocity, load);
+                let [step, step_a] = self.step_moving(&hold, settled.command, settled.pressures[0]);
+                [step.abs() / self.valve.nominal_voltage, step_a.abs() / drop]
+            }
+        };
+        steps[0] + steps[1]
+    }
+}
+
+impl Balance {
+    /// Whether the pressures are unique whatever is known: so they are without leakage across the piston, with equal areas, at a stated
+    /// command, and under a stated load pressure. Under a force, leakage across unequal areas may leave several.
+    ///
+    /// ```text
+    /// dF/dU ~ A_A K_qA K_cB + A_B K_qB K_cA + G (A_A - A_B) (K_qA - K_qB)              may change its sign with much leakage
+    /// ```
+    pub fn is_unique(&self, steady: Steady) -> bool {
+        let by_force = matches!(steady, Steady::Moving { load: Load::Force(_), .. });
+        !by_force || self.leakage.is_none() || self.areas[0] == self.areas[1]
+    }
+}
+
+impl<S: Scalar> Hold<S> {
+    /// p_B with this p_A.
+    fn other(&self, pressure_a: S) -> S {
+        let [weight_a, weight_b] = self.weights;
+        (weight_a * pressure_a - self.wanted) / weight_b
+    }
+}
+
+/// Where a falling function crosses zero between two ends, after so many halvings of what is between them.
+fn halved<S: Scalar>([mut low, mut high]: [S; 2], halvings: usize, falls: impl Fn(S) -> S) -> S {
+    for _ in 0..halvings {
+        let middle = S::from(0.5) * (low + high);
+        let later = S::from(0.0).less_than(falls(middle));
+        (low, high) = (S::select(later, middle, low), S::select(later, high, middle));
+    }
+    S::from(0.5) * (low + high)
+}

@@ -1,0 +1,233 @@
+//! The balance over any scalar against bisection, the machine, and closed forms.
+
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+use phea_dynamics::expression::Expression;
+use phea_dynamics::random::share;
+use phea_dynamics::scalar::Dual;
+use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
+use phea_hydraulics::machine::{Machine, MachineOptions};
+use phea_hydraulics::operating_point::{
+    Balance, Load, OperatingPoint, Settled, Steady, leaking_operating_point, operating_point,
+};
+use phea_hydraulics::reference_rig::{components, cylinder, hose_line, valve};
+use phea_hydraulics::servovalve::{Edges, Servovalve, Supply};
+use phea_hydraulics::stiffness::StiffnessModel;
+
+/// A number between two ends, evenly or by a factor.
+struct Draw(u64);
+
+impl Draw {
+    fn even(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * share(&mut self.0)
+    }
+
+    fn factor(&mut self, low: f64, high: f64) -> f64 {
+        low * phea_dynamics::portable::pow(high / low, share(&mut self.0))
+    }
+
+    fn edges(&mut self, low: f64, high: f64) -> Edges {
+        Edges::from_array([0; 4].map(|_| self.factor(low, high)))
+    }
+
+    /// Edges that differ threefold, any leakage of them, one rod or two, and a supply from 30 to 300 bar.
+    fn rig(&mut self) -> Actuator {
+        let rods = [self.even(0.0, 0.036), self.even(0.0, 0.036)];
+        let [area_a, area_b] = rods.map(|rod| annulus_area(0.05, rod));
+        let tank_pressure = self.even(0.0, 5e5);
+        let supply = Supply { pressure: tank_pressure + self.factor(30e5, 300e5), tank_pressure };
+        let valve = Servovalve {
+            flow_coefficients: self.edges(1e-7, 3e-7),
+            leakage_coefficients: self.edges(1e-9, 3e-9),
+            leakage_shape: self.even(0.0, 200.0),
+            transition_pressure: self.factor(1e2, 1e4),
+            ..valve()
+        };
+        let rig = components(hose_line(), StiffnessModel::Uniform);
+        let cylinder = Cylinder { area_a, area_b, ..cylinder() };
+        Actuator::new(Components { supply, valve, cylinder, ..rig }).unwrap()
+    }
+
+    /// A load that the supply can hold, and a velocity within what the valve lets through.
+    fn steady(&mut self, actuator: &Actuator) -> Steady {
+        let Components { supply, cylinder, .. } = actuator.components();
+        let drop = supply.pressure - supply.tank_pressure;
+        let pressure = self.even(-0.8, 0.8) * drop;
+        let load = match share(&mut self.0) < 0.5 {
+            true => Load::Pressure(pressure),
+            false => Load::Force(pressure * cylinder.area_a.min(cylinder.area_b)),
+        };
+        let reach = 1e-7 * (0.1 * drop).sqrt() / cylinder.area_a.max(cylinder.area_b);
+        match share(&mut self.0) {
+            kind if kind < 0.2 => Steady::Command(self.even(-10.0, 10.0)),
+            kind if kind < 0.4 => Steady::Command(self.even(-0.3, 0.3)),
+            kind if kind < 0.7 => Steady::Moving { velocity: 0.0, load },
+            _ => Steady::Moving { velocity: self.even(-reach, reach), load },
+        }
+    }
+}
+
+fn error(actuator: &Actuator, settled: &Settled, found: &OperatingPoint) -> f64 {
+    let Components { supply, valve, .. } = actuator.components();
+    let drop = supply.pressure - supply.tank_pressure;
+    let [a, b] = settled.pressures;
+    ((settled.command - found.command) / valve.nominal_voltage).abs()
+        + ((a - found.pressure_a) / drop).abs()
+        + ((b - found.pressure_b) / drop).abs()
+}
+
+/// Without leakage across the piston every point is that of the bisection, wherever it lies.
+#[test]
+fn settled_points_are_those_of_bisection() {
+    let mut draw = Draw(7);
+    let mut found = 0;
+    for _ in 0..10_000 {
+        let actuator = draw.rig();
+        let steady = draw.steady(&actuator);
+        let Ok(point) = operating_point(&actuator, 0.25, steady.into()) else { continue };
+        let balance = Balance::of(actuator.components(), None);
+        let settled = balance.settle(steady);
+        assert!(error(&actuator, &settled, &point) < 1e-13, "{steady:?} {actuator:?} {settled:?} {point:?}");
+        assert!(balance.error(steady, &settled) < 1e-13, "{steady:?}");
+        found += 1;
+    }
+    assert!(found > 9_500, "{found}");
+}
+
+/// Whether the force at standstill rises with the command all over its range: with unequal areas and edges much leakage undoes that, and
+/// one load has several commands.
+fn rises(actuator: &Actuator, leakage: f64) -> bool {
+    let balance = Balance::of(actuator.components(), Some(leakage));
+    let force = |command: f64| {
+        let [a, b] = balance.settle(Steady::Command(command)).pressures;
+        balance.areas[0] * a - balance.areas[1] * b
+    };
+    let commands: Vec<f64> =
+        (-60..=60).map(|step| f64::from(step) / 60.0).map(|part| 10.0 * part * part * part).collect();
+    commands.windows(2).all(|pair| force(pair[0]) < force(pair[1]))
+}
+
+/// With leakage across the piston every point is where the machine rests, found by its own equations from the point without leakage.
+#[test]
+fn leaking_points_are_where_the_machine_rests() {
+    let mut draw = Draw(11);
+    let mut found = [0; 2];
+    for _ in 0..4000 {
+        let actuator = draw.rig();
+        let steady = draw.steady(&actuator);
+        if let Steady::Moving { load: Load::Pressure(_), .. } = steady {
+            continue; // the machine keeps a force
+        }
+        let leakage = draw.factor(1e-14, 1e-10);
+        if !rises(&actuator, leakage) {
+            continue; // the machine may rest at another balance
+        }
+        let Ok(tight) = operating_point(&actuator, 0.25, steady.into()) else { continue };
+        let options = MachineOptions { internal_leakage: Some(leakage), ..MachineOptions::default() };
+        let machine = Machine::new(&actuator, &options).unwrap();
+        let (kind, rest) = match steady {
+            Steady::Command(_) => (0, machine.rest(&tight)),
+            _ => (1, machine.rest_under_load(&tight)),
+        };
+        let Ok(rest) = rest else { continue };
+        let &[command, _, pressure_a, pressure_b] = rest.state.first_chunk().unwrap();
+        if pressure_a.min(pressure_b) < -1e5 {
+            continue; // a chamber without oil
+        }
+        let rested = OperatingPoint { command, pressure_a, pressure_b, ..tight };
+        let balance = Balance::of(actuator.components(), Some(leakage));
+        let settled = balance.settle(steady);
+        assert!(error(&actuator, &settled, &rested) < 1e-9, "{steady:?} {leakage} {settled:?} {rested:?}");
+        assert!(balance.error(steady, &settled) < 1e-12, "{steady:?}");
+        found[kind] += 1;
+        if command.abs() < 10.0 {
+            let leaking = leaking_operating_point(&actuator, Some(leakage), 0.25, steady.into()).unwrap();
+            assert!(error(&actuator, &settled, &leaking) < 1e-12, "{steady:?} {leaking:?}");
+        }
+    }
+    assert!(found.iter().all(|count| *count > 500), "{found:?}");
+}
+
+/// Edges, pressures, areas, leakage, velocity and force, in this order, and where they settle.
+fn settle<S: phea_dynamics::scalar::Scalar>(p: &[S]) -> Vec<S> {
+    let balance = Balance {
+        valve: Servovalve {
+            flow_coefficients: Edges::from_array([p[0], p[1], p[2], p[3]]),
+            leakage_coefficients: Edges::from_array([p[4], p[5], p[6], p[7]]),
+            ..valve().map()
+        },
+        supply: Supply { pressure: p[8], tank_pressure: p[9] },
+        areas: [p[10], p[11]],
+        leakage: Some(p[12]),
+    };
+    let settled = balance.settle(Steady::Moving { velocity: p[13], load: Load::Force(p[14]) });
+    vec![settled.command, settled.pressures[0], settled.pressures[1]]
+}
+
+const NAMES: [&str; 15] =
+    ["K3", "K4", "K5", "K6", "L3", "L4", "L5", "L6", "p_S", "p_T", "A_A", "A_B", "G", "v", "F"];
+
+/// One recording serves every point of a box that brings the spool through null, and differentiating it gives the derivatives of the
+/// point itself, by the theorem of implicit functions.
+#[test]
+fn a_recorded_point_is_right_everywhere_with_its_derivatives() {
+    let recorded = Expression::record(&NAMES, |p| settle(p));
+    let mut draw = Draw(3);
+    let mut sides = [0; 2];
+    for _ in 0..300 {
+        let mut values: Vec<f64> = draw.edges(1.5e-7, 4e-7).to_array().to_vec();
+        values.extend(draw.edges(1e-9, 3e-9).to_array());
+        values.extend([draw.even(60e5, 90e5), draw.even(0.0, 5e5)]);
+        values.extend([draw.even(1.2e-3, 1.6e-3), draw.even(1.4e-3, 2e-3), draw.factor(1e-14, 1e-11)]);
+        values.extend([draw.even(-0.03, 0.03), draw.even(-4000.0, 4000.0)]);
+        let point = settle(&values);
+        assert_eq!(recorded.evaluate(&values), point);
+        sides[usize::from(point[0] > 0.0)] += 1;
+        for index in 0..values.len() {
+            let duals: Vec<Dual<1>> = values
+                .iter()
+                .enumerate()
+                .map(
+                    |(at, &value)| if at == index { Dual::variable(value, 0) } else { Dual::constant(value) },
+                )
+                .collect();
+            let slopes = recorded.evaluate(&duals);
+            let scale = if values[index] == 0.0 { 1.0 } else { values[index].abs() };
+            let moved = |step: f64| {
+                let mut other = values.clone();
+                other[index] += step * scale;
+                settle(&other)
+            };
+            let (before, after) = (moved(-1e-6), moved(1e-6));
+            if before[0] * after[0] < 0.0 {
+                continue; // the slopes of both sides of null differ
+            }
+            for (result, whole) in [10.0, 70e5, 70e5].into_iter().enumerate() {
+                let difference = (after[result] - before[result]) / 2e-6;
+                let slope = slopes[result].gradient()[0] * scale;
+                let allowed = 1e-8 * whole + 2e-5 * slope.abs();
+                assert!((slope - difference).abs() < allowed, "{index} {result}: {slope} {difference}");
+            }
+        }
+    }
+    assert!(sides.iter().all(|count| *count > 50), "{sides:?}");
+}
+
+/// The leakage that leaves the operating point is that of equal pressures: none.
+#[test]
+fn leakage_leaves_equal_pressures_alone() {
+    let balance = |leakage| Balance {
+        valve: phea_hydraulics::reference_rig::valve_with_equal_edges(),
+        supply: Supply { pressure: 70e5, tank_pressure: 0.0 },
+        areas: [1.58e-3; 2],
+        leakage,
+    };
+    let settled = balance(Some(1e-11)).settle(Steady::Command(0.0));
+    assert_eq!(settled.pressures, [35e5; 2]);
+    let moving = Steady::Moving { velocity: 0.0, load: Load::Force(0.0) };
+    assert_eq!(balance(Some(1e-11)).settle(moving).command, 0.0);
+    // ORIGIN: analytic, all of the load pressure gone through a piston that leaks without end
+    let open = Balance { valve: valve(), ..balance(Some(1e-4)) }.settle(Steady::Command(0.0));
+    assert!((open.pressures[0] - open.pressures[1]).abs() < 1.0);
+}

@@ -1,0 +1,228 @@
+//! The box of linear parameters that a family visits: what a table such as Table 6.3 of the thesis states without saying where it is from.
+
+use phea_dynamics::expression::Expression;
+use phea_dynamics::random;
+use phea_qft::family::{Coordinate, Extent, Family, UncertainFamily};
+
+use super::hydraulic::{Open, is_linear};
+use super::visited::Visited;
+use super::{FamilyError, family, uncertain};
+use crate::project::Project;
+use crate::source::Memory;
+
+/// A parameter of the linear model over a family.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VisitedRange {
+    /// Its key in `[linear]`.
+    pub name: &'static str,
+    /// Its symbol, such as `K_H`.
+    pub symbol: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// The least it is.
+    pub minimum: Extreme,
+    /// The most it is.
+    pub maximum: Extreme,
+}
+
+/// A value and where it occurs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extreme {
+    /// SI.
+    pub value: f64,
+    /// The uncertain numbers that the parameter follows from: name, and value in SI. One that makes no difference there is left out.
+    pub at: Vec<(String, f64)>,
+}
+
+/// Name, symbol and unit of each, in the order of the results.
+const PARAMETERS: [(&str, &str, &str); 4] = [
+    ("flow_gain", "K_qU", "m3/(s.V)"),
+    ("flow_pressure_coefficient", "K_c", "m3/(s.Pa)"),
+    ("hydraulic_stiffness", "K_H", "N/m"),
+    ("viscous_friction", "f_v", "N.s/m"),
+];
+/// What moves the spool most.
+const VELOCITY: &str = "operating_point.velocity";
+/// First step of the search for an extreme, as a share of each range, and its least.
+const STEPS: [f64; 2] = [0.25, 1e-5];
+/// Least distance within which the crest of a coefficient is looked for, points of a scan to either side, and thirds from there on.
+const NEAR: f64 = 0.02;
+const SCANNED: f64 = 8.0;
+const THIRDS: usize = 25;
+/// Relative difference that is rounding.
+const SAME: f64 = 1e-9;
+/// Plants from which the search for an extreme starts, and how many are drawn beside the members to choose them from.
+const STARTS: usize = 4;
+const DRAWN: usize = 500;
+/// What the draws begin with.
+const SEED: u64 = 1;
+
+/// The box of K_qU, K_c, K_H and f_v that encloses the family; `None` where no number of the project moves one of them.
+///
+/// The members are looked at first; from the most extreme of them a search goes on inside of the box.
+///
+/// # Errors
+/// Those of [`family`].
+pub fn visited_box(project: &Project) -> Result<Option<Vec<VisitedRange>>, FamilyError> {
+    let Some(declared) = &project.actuator else { return Ok(None) };
+    let parameters = uncertain::parameters(project)?;
+    if parameters.iter().all(|parameter| is_linear(&parameter.name)) {
+        return Ok(None);
+    }
+    let Family::Uncertain(family) = family(project, &Memory::default())? else { return Ok(None) };
+    let visited = Visited::new(project, &parameters)?;
+    let open = Open { project, declared, rig: &visited.rig, names: &visited.names };
+    let names: Vec<&str> = visited.names.iter().map(String::as_str).collect();
+    let of = |result: usize| {
+        Expression::record(&names, |values| {
+            let linear = open.place(values, visited.moved).linear;
+            let all = [
+                linear.flow_gain,
+                linear.flow_pressure_coefficient,
+                linear.hydraulic_stiffness,
+                linear.viscous_friction,
+            ];
+            all.get(result).copied().into_iter().collect()
+        })
+    };
+    let expressions: Vec<Expression> = (0..PARAMETERS.len()).map(of).collect();
+    let physical = |expression: &Expression| {
+        names.iter().enumerate().any(|(index, name)| !is_linear(name) && expression.depends_on(index))
+    };
+    if !expressions.iter().any(physical) {
+        return Ok(None);
+    }
+    let range =
+        |((name, symbol, unit), expression): (&(&'static str, &'static str, &'static str), &Expression)| {
+            let extreme = |sign: f64| extreme(&family, expression, sign);
+            VisitedRange { name, symbol, unit, minimum: extreme(-1.0), maximum: extreme(1.0) }
+        };
+    Ok(Some(PARAMETERS.iter().zip(&expressions).map(range).collect()))
+}
+
+/// The most of a result over a family with sign 1, the least with sign -1.
+fn extreme(family: &UncertainFamily, expression: &Expression, sign: f64) -> Extreme {
+    let value = |values: &[f64]| sign * expression.evaluate(values).first().copied().unwrap_or(f64::NAN);
+    // of plants that differ by rounding alone the first is kept, the nearest to nominal
+    let unit = SAME * value(&family.plant().nominal()).abs();
+    let rounded = |values: &[f64]| (value(values) / unit).round();
+    let names = |coordinate: &Coordinate| {
+        let name = |index: &usize| family.plant().parameters().get(*index).map(|one| one.name.as_str());
+        coordinate
+            .parameters
+            .iter()
+            .any(|index| expression.depends_on(*index) && name(index) == Some(VELOCITY))
+    };
+    let along = family.coordinates().iter().position(names);
+    let drawn = match family.extent() {
+        Extent::Box => drawn(family),
+        Extent::Members => Vec::new(),
+    };
+    let all = family.members().iter().chain(&drawn);
+    let mut starts: Vec<(f64, &Vec<f64>)> = all.map(|values| (rounded(values), values)).collect();
+    starts.sort_by(|one, other| other.0.total_cmp(&one.0));
+    starts.dedup_by_key(|start| start.0);
+    starts.truncate(if family.extent() == Extent::Box { STARTS } else { 1 });
+    let climbed = starts.into_iter().map(|(_, values)| match family.extent() {
+        Extent::Box => {
+            let height = |shares: &[f64]| value(&family.values(shares));
+            family.values(&climb(family.shares(values), along, height))
+        }
+        Extent::Members => values.clone(),
+    });
+    let best = climbed.reduce(|one, other| if rounded(&other) > rounded(&one) { other } else { one });
+    let best = best.unwrap_or_else(|| family.plant().nominal());
+    let matters = |index: usize, nominal: f64| {
+        let mut other = best.clone();
+        other[index] = nominal;
+        expression.depends_on(index) && rounded(&other) != rounded(&best)
+    };
+    let parameters = family.plant().parameters().iter().zip(&best).enumerate();
+    let named = parameters.filter(|(index, (parameter, value))| {
+        parameter.nominal == **value && expression.depends_on(*index) || matters(*index, parameter.nominal)
+    });
+    Extreme {
+        value: sign * value(&best),
+        at: named.map(|(_, (parameter, value))| (parameter.name.clone(), *value)).collect(),
+    }
+}
+
+/// Points of the box drawn at random.
+fn drawn(family: &UncertainFamily) -> Vec<Vec<f64>> {
+    let mut state = random::stream(SEED, 0);
+    let mut point = |_| {
+        let shares: Vec<f64> = family.coordinates().iter().map(|_| random::share(&mut state)).collect();
+        family.values(&shares)
+    };
+    (0..DRAWN).map(&mut point).collect()
+}
+
+/// Steps along each coordinate, and across all of them, while they lead up; ever smaller ones. After each step the coordinate `along`
+/// goes to the best place near: a coefficient has a crest where the spool stands at null, and steps that leave it lead down.
+fn climb(shares: Vec<f64>, along: Option<usize>, height: impl Fn(&[f64]) -> f64) -> Vec<f64> {
+    let [mut step, least] = STEPS;
+    let at_crest = |shares: Vec<f64>, step: f64| match along {
+        None => shares,
+        Some(axis) => crest(shares, axis, step.max(NEAR), &height),
+    };
+    let mut shares = at_crest(shares, 1.0);
+    let mut best = height(&shares);
+    let mut state = random::stream(SEED, 1);
+    while step > least {
+        let mut higher = false;
+        let axes = shares.len();
+        for direction in 0..2 * axes {
+            let course: Vec<f64> = (0..axes)
+                .map(|axis| match direction < axes {
+                    true => f64::from(u8::from(axis == direction)),
+                    false => 2.0 * random::share(&mut state) - 1.0,
+                })
+                .collect();
+            for side in [-step, step] {
+                let moved = shares.iter().zip(&course);
+                let next = moved.map(|(share, course)| (share + side * course).clamp(0.0, 1.0)).collect();
+                let next = at_crest(next, step);
+                let found = height(&next);
+                if found > best + SAME * best.abs() {
+                    (best, shares, higher) = (found, next, true);
+                }
+            }
+        }
+        if !higher {
+            step *= 0.5;
+        }
+    }
+    shares
+}
+
+/// The best place along one coordinate within a distance: by scanning it, then by thirds around the best.
+fn crest(mut shares: Vec<f64>, axis: usize, within: f64, height: &impl Fn(&[f64]) -> f64) -> Vec<f64> {
+    let Some(middle) = shares.get(axis).copied() else { return shares };
+    let mut at = |share: f64| {
+        shares[axis] = share.clamp(0.0, 1.0);
+        height(&shares)
+    };
+    let mut best = (at(middle), middle);
+    let spacing = within / SCANNED;
+    let mut place = middle - within;
+    while place <= middle + within {
+        let found = at(place);
+        if found > best.0 {
+            best = (found, place);
+        }
+        place += spacing;
+    }
+    let [mut low, mut high] = [best.1 - spacing, best.1 + spacing];
+    for _ in 0..THIRDS {
+        let (first, second) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if at(first) < at(second) {
+            low = first;
+        } else {
+            high = second;
+        }
+    }
+    let found = 0.5 * (low + high);
+    let found = if at(found) > best.0 { found } else { best.1 };
+    shares[axis] = found.clamp(0.0, 1.0);
+    shares
+}
