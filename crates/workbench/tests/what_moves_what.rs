@@ -103,10 +103,12 @@ fn without_family(text: &str) -> String {
 }
 
 /// Values of what may be absent, or is no number.
-const STATED: [(&str, &str); 42] = [
+const STATED: [(&str, &str); 44] = [
     ("operating_point.position", "200 mm"),
     ("operating_point.command", "1 V"),
     ("operating_point.load_pressure", "10 bar"),
+    ("operating_point.load_force", "2 kN"),
+    ("operating_point.velocity", "20 mm/s"),
     ("controller.numerator", "0.002*s + 0.01"),
     ("controller.denominator", "s*(0.001*s + 1)"),
     ("controller.gain", "0.002"),

@@ -101,7 +101,7 @@ impl Project {
     /// use phea_workbench::project::{STARTER, read};
     /// use phea_workbench::source::Memory;
     /// let text = format!("{STARTER}\n[family.operating_region]\nload_force = [\"-2 kN\", \"5 kN\"]\n");
-    /// let project = read(&Memory::default().with("p.toml", &text), "p.toml", &[], &[])?.project;
+    /// let project = read(&Memory::default().with("p.toml", text.as_str()), "p.toml", &[], &[])?.project;
     /// let force = project.uncertain_numbers().pop().filter(|last| last.name == "operating_point.load_force");
     /// assert_eq!(force.map(|one| (one.minimum, one.nominal, one.maximum)), Some((-2000.0, 0.0, 5000.0)));
     /// # Ok::<(), phea_workbench::project::Report>(())
