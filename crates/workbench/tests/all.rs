@@ -9,6 +9,7 @@ mod derived_statements;
 mod design_contract;
 mod design_printing;
 mod design_truth;
+mod exceeded_limits;
 mod family;
 mod family_hydraulic;
 mod family_measured;

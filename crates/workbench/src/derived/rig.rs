@@ -37,6 +37,8 @@ fn cylinder(rig: &Rig, list: &mut List) {
     let supply = &rig.actuator.components().supply;
     let stall = cylinder.area_a * supply.pressure - cylinder.area_b * supply.tank_pressure;
     list.add("cylinder.stall_force", "F_max", stall, "N", "F_{max} = A_A p_S - A_B p_T");
+    let pull = cylinder.area_a * supply.tank_pressure - cylinder.area_b * supply.pressure;
+    list.add("cylinder.stall_force_retracting", "F_min", pull, "N", "F_{min} = A_A p_T - A_B p_S");
 }
 
 fn lines(rig: &Rig, list: &mut List) {

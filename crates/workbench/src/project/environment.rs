@@ -11,6 +11,8 @@ pub struct ForceSensor {
     pub stiffness: f64,
     /// N, root mean square of the white noise that a sampled controller sees.
     pub noise: f64,
+    /// N, the force that it survives, in both directions.
+    pub capacity: Option<f64>,
 }
 
 impl ForceSensor {
@@ -20,6 +22,8 @@ impl ForceSensor {
         let k =
             key("noise", &FORCE, "Root mean square of the white noise in what a sampled controller sees.");
         v.quantity(k.not_negative().or(0.0), &mut self.noise);
+        let k = key("capacity", &FORCE, "The force that it survives, in both directions.").positive();
+        v.optional(k, &mut self.capacity);
     }
 }
 

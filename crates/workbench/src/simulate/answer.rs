@@ -6,7 +6,9 @@ use super::check::{self, CheckRow};
 use super::file_names::state_names;
 use super::frequency::{self, FrequencyResponse};
 use super::metrics::Measured;
-use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, Overlay, ScenarioRun, Window};
+use super::{
+    BeyondExpansion, Cause, Comparison, Exceeded, Metrics, Occurrence, Overlay, ScenarioRun, Window,
+};
 use crate::answer;
 use crate::project::Loaded;
 
@@ -42,6 +44,17 @@ struct ScenarioRow<'a> {
     check_reason: Option<&'static str>,
     /// Chambers above the pressure that the expansion of their hose is stated at.
     beyond_expansion: Vec<BeyondRow>,
+    /// Limits of the rig that the run goes beyond.
+    exceeded: Vec<ExceededRow>,
+}
+
+#[derive(Serialize)]
+struct ExceededRow {
+    what: &'static str,
+    limit: f64,
+    peak: f64,
+    peak_time_s: f64,
+    first_time_s: f64,
 }
 
 #[derive(Serialize)]
@@ -209,7 +222,13 @@ fn scenario(run: &ScenarioRun, state_file: String) -> ScenarioRow<'_> {
         check: run.check.as_ref().map(check::row),
         check_reason: run.check.is_none().then_some("it was not checked"),
         beyond_expansion: run.beyond_expansion.iter().map(beyond).collect(),
+        exceeded: run.exceeded.iter().map(exceeded).collect(),
     }
+}
+
+fn exceeded(exceeded: &Exceeded) -> ExceededRow {
+    let Exceeded { limit, limit_value, peak, peak_time_s, first_time_s } = *exceeded;
+    ExceededRow { what: limit.word(), limit: limit_value, peak, peak_time_s, first_time_s }
 }
 
 fn beyond(beyond: &BeyondExpansion) -> BeyondRow {

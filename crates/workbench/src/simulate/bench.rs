@@ -28,6 +28,8 @@ pub struct Bench {
     pub(crate) feed_forward: f64,
     /// Pressures in Pa up to which the expansions of hoses A and B were measured, where they are stated.
     pub(crate) expansion_stated_at: [Option<f64>; 2],
+    /// What the force sensor survives, N, where it is stated.
+    pub(crate) force_capacity_n: Option<f64>,
 }
 
 /// A machine under its controller.
@@ -88,7 +90,15 @@ impl Bench {
             }
         };
         let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
-        Ok(Bench { rig, machine, control, settings, feed_forward, expansion_stated_at })
+        Ok(Bench {
+            rig,
+            machine,
+            control,
+            settings,
+            feed_forward,
+            expansion_stated_at,
+            force_capacity_n: capacity(project),
+        })
     }
 
     /// The machine alone, for a command that is stated: limits, samples and delays of a controller do not act on it.
@@ -97,7 +107,15 @@ impl Bench {
         let machine = *sensed.plant();
         let control = Control::Open(Box::new(HeldPlant::new(sensed, &TransferFunction::gain_only(1.0))?));
         let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
-        Ok(Bench { rig, machine, control, settings, feed_forward: 0.0, expansion_stated_at })
+        Ok(Bench {
+            rig,
+            machine,
+            control,
+            settings,
+            feed_forward: 0.0,
+            expansion_stated_at,
+            force_capacity_n: capacity(project),
+        })
     }
 
     /// The same controller around another machine, made of this actuator.
@@ -129,6 +147,10 @@ fn rig_and_machine(project: &Project, external_force: bool) -> Result<(Rig, Sens
     let options = MachineOptions { external_force, ..options(project, &rig.actuator)? };
     let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
     Ok((rig, Sensed::new(machine, &sensor(project)?)?))
+}
+
+fn capacity(project: &Project) -> Option<f64> {
+    project.actuator.as_ref().and_then(|actuator| actuator.force_sensor.capacity)
 }
 
 fn expansion_stated_at(project: &Project) -> [Option<f64>; 2] {

@@ -10,6 +10,7 @@ use phea_hydraulics::machine::INDICATORS;
 use super::bench::{Bench, Control};
 use super::course::Course;
 use super::digital::{Digital, Memory};
+use super::exceeded::{Exceeded, exceeded};
 use super::look::{Looking, Sighted};
 use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
@@ -57,6 +58,8 @@ pub struct ScenarioRun {
     pub open_loop: bool,
     /// Chambers whose pressure went beyond what the expansion of their hose was measured at.
     pub beyond_expansion: Vec<BeyondExpansion>,
+    /// Limits of the rig that it goes beyond.
+    pub exceeded: Vec<Exceeded>,
     /// Its end, to go on from, or why it is not saved.
     pub end: Result<SavedState, &'static str>,
 }
@@ -176,6 +179,7 @@ pub(super) fn run(
     let memory = memory.into_inner();
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
     let end = saved::of_end(bench, course, (outcome.status, &outcome.end, scenario.duration), memory);
+    let exceeded = exceeded(bench, &record);
     Ok(ScenarioRun {
         name: scenario.name.clone(),
         status: outcome.status,
@@ -190,6 +194,7 @@ pub(super) fn run(
         measured,
         open_loop: scenario.is_open_loop(),
         beyond_expansion: beyond_expansion(bench, peak_pressures_pa),
+        exceeded,
         end,
         check: None,
     })

@@ -1,6 +1,7 @@
 //! What `simulate` and `compare` say to people.
 
 use super::check;
+use super::exceeded;
 use super::metrics::{Measured, NOT_SETTLED};
 use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, Overlay, ScenarioRun, Stopped, Window};
 use crate::answer::{significant, table};
@@ -195,6 +196,7 @@ pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
         sentences.push(format!("and {} more changes of this kind, listed in the JSON", found.len() - TOLD));
     }
     sentences.extend(run.beyond_expansion.iter().map(beyond_words));
+    sentences.extend(run.exceeded.iter().map(exceeded::words));
     sentences.extend(run.outside_model_s.map(|time_s| {
         let from = DisplayUnit::SECOND.number(time_s, 5);
         format!("from {from} s on the equations do not hold: what follows is theirs, not that of a machine")

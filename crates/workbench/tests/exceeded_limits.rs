@@ -1,0 +1,58 @@
+//! Limits of the rig that a simulation goes beyond, told with their times.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use phea_workbench::command::Request;
+use serde_json::Value;
+
+use super::ask::answer;
+
+const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+
+/// What the first scenario, a step to 4 kN at 2 s, exceeds; and the text.
+fn exceeded(text: &str, settings: &[&str]) -> (Vec<Value>, String) {
+    let said = answer(text, settings, &[], &Request::Simulate);
+    let object: Value = serde_json::from_str(&said.json).unwrap();
+    (object["scenarios"][0]["exceeded"].as_array().unwrap().clone(), said.text)
+}
+
+#[test]
+fn a_rig_within_its_limits_exceeds_none() {
+    assert!(exceeded(HOSE, &["force_sensor.capacity=10 kN"]).0.is_empty());
+}
+
+#[test]
+fn an_overloaded_sensor_is_told_from_when_on() {
+    let (found, text) = exceeded(HOSE, &["force_sensor.capacity=3 kN"]);
+    assert_eq!(found[0]["what"], "force_sensor_capacity");
+    assert_eq!(found[0]["limit"], Value::from(3000.0));
+    assert!(found[0]["peak"].as_f64().unwrap() > 4000.0);
+    let first = found[0]["first_time_s"].as_f64().unwrap();
+    assert!(first > 2.0 && first < 2.3 && first <= found[0]["peak_time_s"].as_f64().unwrap());
+    assert!(text.contains("the force sensor is overloaded: its capacity is 3 kN"), "{text}");
+}
+
+/// Rods of 22 mm in a cylinder of 50 mm, 70 bar against the tank: A p_S = 11.08 kN, either way.
+#[test]
+fn a_reference_that_no_supply_reaches_is_told() {
+    let area = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
+    for (reference, sign) in [("15 kN", 1.0), ("-15 kN", -1.0)] {
+        let (found, text) = exceeded(HOSE, &[&format!("scenario.0.reference.0.force={reference}")]);
+        let stall = found.iter().find(|one| one["what"] == "stall_force").unwrap();
+        assert!((stall["limit"].as_f64().unwrap() - sign * area * 70e5).abs() < 1.0, "{stall}");
+        assert_eq!((&stall["peak"], &stall["first_time_s"]), (&Value::from(sign * 15e3), &Value::from(2.0)));
+        assert!(text.contains("the piston stalls at"), "{text}");
+    }
+}
+
+#[test]
+fn a_command_that_nothing_limits_is_told() {
+    let unlimited = HOSE.replace("saturation = \"10 V\"\n", "");
+    // 0.01 V/N on 4 kN, which no prefilter softens, are 40 V at once
+    let settings = ["controller.numerator=0.01*s + 0.08", "prefilter.numerator=1", "prefilter.denominator=1"];
+    let (found, _) = exceeded(&unlimited, &settings);
+    let command = found.iter().find(|one| one["what"] == "nominal_voltage").unwrap();
+    assert_eq!(command["limit"], Value::from(10.0));
+    assert_eq!(command["first_time_s"], Value::from(2.0));
+    assert!((40.0..41.0).contains(&command["peak"].as_f64().unwrap()), "{command}");
+}
