@@ -88,7 +88,12 @@ pub enum OperatingPointError {
         nominal: f64,
     },
     /// No command within the nominal voltage holds this load (force in N, or load pressure in Pa).
-    #[error("a load of {load} cannot be held: from {minimum} to {maximum} can")]
+    #[error(
+        "a load of {} cannot be held: from {} to {} can (N, or Pa of a load pressure)",
+        whole(*load),
+        whole(*minimum),
+        whole(*maximum)
+    )]
     LoadOutOfReach {
         /// The load asked for.
         load: f64,
@@ -106,6 +111,11 @@ pub enum OperatingPointError {
     /// A value asked for is not a number, or no balance was found.
     #[error("no balance was found")]
     NotFound,
+}
+
+/// A load in words: whole newtons or pascals say enough.
+fn whole(value: f64) -> f64 {
+    value.round()
 }
 
 impl OperatingPoint {

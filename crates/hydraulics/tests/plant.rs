@@ -5,8 +5,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
-use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Plant as _, System, small_signal};
+use phea_dynamics::simulation::{Plant as _, small_signal};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
@@ -24,23 +23,7 @@ use phea_hydraulics::two_pressure::{
     TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
 };
 
-/// A machine whose first input is its command.
-struct Commanded(Machine);
-
-impl System<f64> for Commanded {
-    fn states(&self) -> usize {
-        self.0.states()
-    }
-    fn inputs(&self) -> usize {
-        1 + self.0.inputs()
-    }
-    fn scales(&self) -> Vec<f64> {
-        self.0.scales()
-    }
-    fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
-        self.0.rates(state, inputs[0], &inputs[1..], rates);
-    }
-}
+use super::commanded::Commanded;
 
 /// A rig of its own for every number, with everything that lumped lines let the plant have.
 struct Drawn {

@@ -47,7 +47,7 @@ fn lines(project: &Project) -> Option<Caveat> {
     let family = project.family.as_ref();
     let spans = |family: &project::Family| family.grid || family.vertices || family.random.is_some();
     let is_box = family.is_none_or(|family| family.cases.is_empty() || spans(family));
-    (is_box && !project.uncertainty.is_empty()).then(|| Caveat {
+    (is_box && !project.uncertain_numbers().is_empty()).then(|| Caveat {
         sentence: format!(
             "{place} = \"{model}\" is counted at single plants of the box: what lies between them is not looked at"
         ),

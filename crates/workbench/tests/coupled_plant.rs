@@ -128,6 +128,23 @@ fn what_is_not_counted_is_told_first() {
     }
 }
 
+/// A region of operating points is a box as well, although nothing stands in `[uncertainty]`.
+#[test]
+fn a_region_with_lines_in_motion_is_looked_at_in_single_plants() {
+    let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
+    let (_, specifications) = rest.split_once("[[specification]]").unwrap();
+    let certain = format!("{start}[[specification]]{specifications}");
+    let creeping = ["line.model=creeping", "line.relaxation_time=0.01"];
+    let region = "family.operating_region={ position = [0.2, 0.3] }";
+    for (settings, told) in
+        [(&creeping[..], false), (&[creeping[0], creeping[1], region], true), (&[region], false)]
+    {
+        let view = audited(&loaded(&certain, settings));
+        let single = view.caveats.iter().any(|caveat| caveat.sentence.contains("single plants of the box"));
+        assert_eq!(single, told, "{settings:?}");
+    }
+}
+
 /// What changes no specification is told, and the verdict stays.
 #[test]
 fn a_path_that_no_specification_limits_decides_nothing() {
