@@ -3,12 +3,14 @@
 //!
 //! SI units inside, angles in radians, frequencies in rad/s, polynomials with the highest power first.
 
+pub mod analytic;
 pub mod controller;
 pub mod expression;
 pub mod frequency;
 pub mod linear;
 pub mod portable;
 pub mod random;
+pub mod responding;
 pub mod scalar;
 pub mod simulation;
 pub mod time_response;

@@ -72,6 +72,9 @@ pub enum LinearError {
     /// A polynomial that is zero everywhere stands where roots or a denominator are needed.
     #[error("the polynomial is zero everywhere")]
     ZeroPolynomial,
+    /// Values at which an uncertain plant has no plant.
+    #[error("there is no plant with these parameters")]
+    NoPlant,
     /// A complex zero or pole without its conjugate: the system would not be real.
     #[error("the root {root} has no conjugate partner")]
     MissingConjugate {

@@ -1,14 +1,17 @@
 //! The bridge from any plant to robust design: a rational function of s whose coefficients are recorded expressions of
-//! named, bounded parameters.
+//! named, bounded parameters, or where waves travel, a response for every value of them.
 //!
 //! Whatever the plant is made of (valve, hose and cylinder, or a formula in a file), robust design sees only this value:
 //! it can evaluate a plant at any point of the parameter box, over numbers, dual numbers or intervals, and so search and
 //! prove between the grid points.
 
+use std::sync::Arc;
+
 use num_complex::Complex64;
 
 use crate::expression::{Expression, Recorded};
 use crate::portable;
+use crate::responding::{RespondingPlant, RespondingPlants};
 use crate::scalar::{Interval, Scalar};
 
 /// One uncertain parameter: `minimum <= nominal <= maximum`, in SI units.
@@ -67,10 +70,20 @@ pub enum UncertainPlantError {
     Empty(&'static str),
 }
 
-/// A rational plant with dead time over a box of named parameters.
+/// One member of an uncertain plant.
+#[derive(Clone, Debug)]
+pub enum PlantMember {
+    /// A quotient of polynomials with dead time.
+    Rational(PlantCoefficients<f64>),
+    /// A plant without polynomials.
+    Responding(Arc<dyn RespondingPlant>),
+}
+
+/// A plant over a box of named parameters: rational with dead time, or known by its responses.
 ///
 /// ```text
 /// P(s, p) = (n_0(p) s^k + ... + n_k(p)) / (d_0(p) s^m + ... + d_m(p)) e^(-s T(p)),     p in the box
+/// P(jw, p) = what a [`RespondingPlant`] says                                           p in the box
 /// ```
 ///
 /// # Example
@@ -83,17 +96,44 @@ pub enum UncertainPlantError {
 ///     disturbance: None,
 ///     dead_time_s: 0.0.into(),
 /// })?;
-/// assert_eq!(plant.coefficients(&[2.0, 5.0]).command.denominator, vec![1.0, 5.0, 0.0]);
+/// let member = plant.coefficients(&[2.0, 5.0]).ok_or("a rational plant")?;
+/// assert_eq!(member.command.denominator, vec![1.0, 5.0, 0.0]);
 /// // |P(j 1)| = 2 * 5 / |j (j + 5)|
-/// assert!((plant.response(&[2.0, 5.0], 1.0).norm_sqr() - 100.0 / 26.0).abs() < 1e-14);
-/// # Ok::<(), phea_dynamics::uncertain_plant::UncertainPlantError>(())
+/// let response = plant.response(&[2.0, 5.0], 1.0).ok_or("a response")?;
+/// assert!((response.norm_sqr() - 100.0 / 26.0).abs() < 1e-14);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct UncertainPlant {
     parameters: Vec<UncertainParameter>,
+    equations: Equations,
+}
+
+/// What a plant is made of.
+#[derive(Clone, Debug)]
+enum Equations {
+    Rational(RecordedPlant),
+    Responding(Arc<dyn RespondingPlants>),
+}
+
+/// Recorded coefficients: command numerator, command denominator, the same of the disturbance path, dead time.
+#[derive(Clone, Debug, PartialEq)]
+struct RecordedPlant {
     coefficients: Expression,
     command: (usize, usize),
     disturbance: Option<(usize, usize)>,
+}
+
+impl PartialEq for UncertainPlant {
+    /// Plants without polynomials are equal where they are the same.
+    fn eq(&self, other: &UncertainPlant) -> bool {
+        self.parameters == other.parameters
+            && match (&self.equations, &other.equations) {
+                (Equations::Rational(one), Equations::Rational(other)) => one == other,
+                (Equations::Responding(one), Equations::Responding(other)) => Arc::ptr_eq(one, other),
+                _ => false,
+            }
+    }
 }
 
 impl UncertainPlant {
@@ -120,7 +160,20 @@ impl UncertainPlant {
         });
         check_lengths(command)?;
         disturbance.map_or(Ok(()), check_lengths)?;
-        Ok(UncertainPlant { parameters, coefficients, command, disturbance })
+        let recorded = RecordedPlant { coefficients, command, disturbance };
+        Ok(UncertainPlant { parameters, equations: Equations::Rational(recorded) })
+    }
+
+    /// A plant without polynomials.
+    ///
+    /// # Errors
+    /// A parameter whose bounds do not enclose its nominal value or is listed twice.
+    pub fn responding(
+        parameters: Vec<UncertainParameter>,
+        plants: Arc<dyn RespondingPlants>,
+    ) -> Result<UncertainPlant, UncertainPlantError> {
+        check_parameters(&parameters)?;
+        Ok(UncertainPlant { parameters, equations: Equations::Responding(plants) })
     }
 
     /// The parameters, in the order in which values are taken.
@@ -128,9 +181,22 @@ impl UncertainPlant {
         &self.parameters
     }
 
-    /// The recorded coefficients: command numerator, command denominator, the same of the disturbance path, dead time.
-    pub fn expression(&self) -> &Expression {
-        &self.coefficients
+    /// Whether it has polynomials.
+    pub fn is_rational(&self) -> bool {
+        matches!(self.equations, Equations::Rational(_))
+    }
+
+    fn recorded(&self) -> Option<&RecordedPlant> {
+        match &self.equations {
+            Equations::Rational(recorded) => Some(recorded),
+            Equations::Responding(_) => None,
+        }
+    }
+
+    /// The recorded coefficients: command numerator, command denominator, the same of the disturbance path, dead time. `None` of a plant
+    /// without polynomials.
+    pub fn expression(&self) -> Option<&Expression> {
+        self.recorded().map(|recorded| &recorded.coefficients)
     }
 
     /// The nominal values, plant 0 of every family.
@@ -138,12 +204,21 @@ impl UncertainPlant {
         self.parameters.iter().map(|parameter| parameter.nominal).collect()
     }
 
-    /// The member at these parameter values, over any scalar.
-    pub fn coefficients<S: Scalar>(&self, values: &[S]) -> PlantCoefficients<S> {
-        self.sorted(self.coefficients.evaluate(values))
+    /// The member at these parameter values; `None` where there is none, which a rational plant always has.
+    pub fn member(&self, values: &[f64]) -> Option<PlantMember> {
+        match &self.equations {
+            Equations::Rational(recorded) => Some(PlantMember::Rational(recorded.at(values))),
+            Equations::Responding(plants) => plants.at(values).map(PlantMember::Responding),
+        }
     }
 
-    /// Intervals that hold the coefficients of every member while the parameters run through theirs.
+    /// The member at these parameter values, over any scalar; `None` of a plant without polynomials.
+    pub fn coefficients<S: Scalar>(&self, values: &[S]) -> Option<PlantCoefficients<S>> {
+        self.recorded().map(|recorded| recorded.at(values))
+    }
+
+    /// Intervals that hold the coefficients of every member while the parameters run through theirs; `None` of a plant without
+    /// polynomials.
     ///
     /// # Example
     /// ```
@@ -155,12 +230,30 @@ impl UncertainPlant {
     ///     disturbance: None,
     ///     dead_time_s: 0.0.into(),
     /// })?;
-    /// let leading = plant.enclosures(&[Interval::new(0.0, 2.0)]).command.denominator[0];
-    /// assert!(leading.has_both_signs()); // in between, a pole passes through infinity
-    /// # Ok::<(), phea_dynamics::uncertain_plant::UncertainPlantError>(())
+    /// let enclosed = plant.enclosures(&[Interval::new(0.0, 2.0)]).ok_or("a rational plant")?;
+    /// assert!(enclosed.command.denominator[0].has_both_signs()); // in between, a pole passes through infinity
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn enclosures(&self, parameters: &[Interval]) -> PlantCoefficients<Interval> {
-        self.sorted(self.coefficients.enclosures(parameters))
+    pub fn enclosures(&self, parameters: &[Interval]) -> Option<PlantCoefficients<Interval>> {
+        self.recorded().map(|recorded| recorded.sorted(recorded.coefficients.enclosures(parameters)))
+    }
+
+    /// P(j w) of the member at these parameter values, dead time included; `None` where there is no plant.
+    pub fn response(&self, values: &[f64], frequency_rad_per_s: f64) -> Option<Complex64> {
+        Some(match self.member(values)? {
+            PlantMember::Responding(plant) => plant.response(frequency_rad_per_s)[0],
+            PlantMember::Rational(plant) => {
+                let angle = -frequency_rad_per_s * plant.dead_time_s;
+                let delay = portable::exp_complex(Complex64::new(0.0, angle));
+                plant.command.at_frequency(frequency_rad_per_s) * delay
+            }
+        })
+    }
+}
+
+impl RecordedPlant {
+    fn at<S: Scalar>(&self, values: &[S]) -> PlantCoefficients<S> {
+        self.sorted(self.coefficients.evaluate(values))
     }
 
     fn sorted<S: Scalar>(&self, flat: Vec<S>) -> PlantCoefficients<S> {
@@ -173,12 +266,15 @@ impl UncertainPlant {
         let disturbance = self.disturbance.map(&mut rational);
         PlantCoefficients { command, disturbance, dead_time_s: flat.next().unwrap_or(S::from(0.0)) }
     }
+}
 
-    /// P(j w) of the member at these parameter values, dead time included.
-    pub fn response(&self, values: &[f64], frequency_rad_per_s: f64) -> Complex64 {
-        let plant = self.coefficients(values);
-        let delay = portable::exp_complex(Complex64::new(0.0, -frequency_rad_per_s * plant.dead_time_s));
-        plant.command.at_frequency(frequency_rad_per_s) * delay
+impl PlantMember {
+    /// The plant itself, or the rational one that it tends to towards zero frequency.
+    pub fn slow(&self) -> PlantCoefficients<f64> {
+        match self {
+            PlantMember::Rational(plant) => plant.clone(),
+            PlantMember::Responding(plant) => plant.slow(),
+        }
     }
 }
 
@@ -256,7 +352,7 @@ mod tests {
     #[test]
     fn both_paths_and_the_dead_time_come_back() {
         let plant = UncertainPlant::record(vec![parameter(1.0, 2.0, 3.0)], integrator).unwrap();
-        let member = plant.coefficients(&[3.0]);
+        let member = plant.coefficients(&[3.0]).unwrap();
         assert_eq!(
             member.command,
             RationalCoefficients { numerator: vec![3.0], denominator: vec![1.0, 0.0] }
@@ -266,7 +362,7 @@ mod tests {
             Some(RationalCoefficients { numerator: vec![-3.0], denominator: vec![2.0] })
         );
         // ORIGIN: analytic, 3/(j pi) e^(-j pi/2) = -3/pi
-        let response = plant.response(&[3.0], std::f64::consts::PI);
+        let response = plant.response(&[3.0], std::f64::consts::PI).unwrap();
         assert!((response - Complex64::new(-3.0 / std::f64::consts::PI, 0.0)).norm_sqr() < 1e-30);
     }
 

@@ -121,10 +121,10 @@ pub struct LinearModel {
 ///     })
 /// })?;
 /// // static force per volt A K_qU/K_c, whatever the stiffness
-/// let member = plant.coefficients(&[3e6]).command;
+/// let member = plant.coefficients(&[3e6]).ok_or("a rational plant")?.command;
 /// let static_gain: f64 = member.numerator[0] / member.denominator[5];
 /// assert!((static_gain / (1.58336e-3 * 5.4e-5 / 6.42e-13) - 1.0).abs() < 1e-12);
-/// # Ok::<(), phea_dynamics::uncertain_plant::UncertainPlantError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn linear_model_coefficients<S: Scalar>(parameters: &LinearParameters<S>) -> PlantCoefficients<S> {
     let LinearParameters {

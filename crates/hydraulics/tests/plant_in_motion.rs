@@ -5,6 +5,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
+use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::simulation::small_signal;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
@@ -200,6 +201,55 @@ fn compliance_is_that_of_the_lumped_line() {
             let at_port =
                 |line: &DynamicLine| line.transfer_matrix(slow).admittance / slow + line.chamber_compliance();
             assert!((at_port(&stiff) * 4.0 / at_port(&line) - 1.0).norm_sqr() < 1e-10);
+        }
+    }
+}
+
+/// Whatever lies between two frequencies lies in the disc of both, which shrinks onto the response; and the response stays below its
+/// roll-off from wherever that begins.
+#[test]
+fn what_bounds_it_holds_it() {
+    let mut state = 8;
+    for number in 0..108 {
+        let rig = drawn(number);
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind);
+        let [from, to] = moving.range_rad_per_s();
+        for _ in 0..30 {
+            let low = from * pow(to / from, share(&mut state));
+            let high = low * (1.0 + 0.02 * share(&mut state));
+            let held = moving.enclosure([low, high]);
+            for part in [0.0, 0.2, 0.7, 1.0] {
+                let [command, _] = RespondingPlant::response(&moving, low + part * (high - low));
+                assert!(held.contains(command), "rig {number}: {low} to {high}");
+            }
+            let narrow = moving.enclosure([low, low * (1.0 + 1e-7)]);
+            assert!(narrow.radius() < 1e-2 * narrow.distance(), "rig {number} at {low}: {narrow:?}");
+        }
+        let begins = [1.0, 2.0, 5.0, 10.0, 30.0, 100.0, 1e4].map(|factor| 600.0 * factor);
+        let begins = begins.into_iter().find(|frequency| moving.roll_off(*frequency).is_some()).unwrap();
+        let bound = moving.roll_off(begins).unwrap();
+        for step in 0..400 {
+            let beyond = begins * pow(1e3, f64::from(step) / 400.0);
+            let [command, _] = RespondingPlant::response(&moving, beyond);
+            let fallen = bound * pow(begins / beyond, 3.0);
+            assert!(command.norm_sqr().sqrt() <= fallen, "rig {number} at {beyond}");
+        }
+    }
+}
+
+/// Towards zero frequency both paths are those of the slow plant: lines are resistances there, and have crept all they ever do.
+#[test]
+fn slowly_it_is_a_quotient_of_polynomials() {
+    for number in 0..108 {
+        let rig = drawn(number);
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind);
+        let (slow, [from, _]) = (moving.slow(), moving.range_rad_per_s());
+        let frequency = 1e-4 * from;
+        let [command, load] = RespondingPlant::response(&moving, frequency);
+        let known = slow.command.at_frequency(frequency);
+        let known_load = slow.disturbance.as_ref().unwrap().at_frequency(frequency);
+        for (told, known) in [(command, known), (load, known_load)] {
+            assert!((told / known - 1.0).norm_sqr().sqrt() < 1e-4, "rig {number}: {told} {known}");
         }
     }
 }

@@ -1,14 +1,20 @@
 //! The loop around a plant: controller, prefilter, sensor, delay and sampling, and what they make of one member.
 
+mod images;
+
+use std::sync::Arc;
+
 use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::{
     Discretization, LinearError, Polynomial, StateSpace, TimeDomain, TransferFunction,
 };
 use phea_dynamics::portable;
-use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients, UncertainPlant};
 
 use crate::family::MeasuredPlant;
+use images::Images;
 
 /// What is the same for every plant: G, F, H, the delay of the loop, and when it samples.
 ///
@@ -35,7 +41,7 @@ pub struct CompensationResponse {
 }
 
 /// One plant within a loop, ready to be evaluated.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum Member {
     /// A rational plant with dead time in a continuous loop.
     Continuous {
@@ -52,6 +58,17 @@ pub enum Member {
         with_sensor: TransferFunction,
         /// Pd, continuous: the motion acts on the plant itself.
         disturbance: Option<RationalCoefficients<f64>>,
+    },
+    /// A plant without polynomials, with the delay of the loop; sampling adds the lag of its hold.
+    Responding {
+        /// The plant.
+        plant: Arc<dyn RespondingPlant>,
+        /// H
+        sensor: TransferFunction,
+        /// Delay of the loop and, when it samples, half a sample, s.
+        delay_s: f64,
+        /// For the magnitude of the hold.
+        sample_time_s: Option<f64>,
     },
     /// A measured plant, with the delay of the loop; sampling adds the lag of its hold.
     Measured {
@@ -172,6 +189,11 @@ impl Compensation {
         Ok(Compensation { feedback, ..self.clone() })
     }
 
+    /// Whether a root of its controller stands at zero frequency: s = 0, or z = 1.
+    pub(crate) fn is_at_zero_frequency(&self, root: Complex64) -> bool {
+        root == Complex64::new(if self.sample_time_s.is_some() { 1.0 } else { 0.0 }, 0.0)
+    }
+
     /// The highest frequency that has a meaning, rad/s: pi/T, or infinity.
     pub fn highest_frequency_rad_per_s(&self) -> f64 {
         self.sample_time_s.map_or(f64::INFINITY, |sample_time_s| std::f64::consts::PI / sample_time_s)
@@ -211,6 +233,45 @@ impl Compensation {
             held(rational.series(&self.sensor)?)?
         };
         Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance })
+    }
+
+    /// The plant of a family with these parameter values within this loop.
+    ///
+    /// # Errors
+    /// Those of [`Compensation::member`], and [`LinearError::NoPlant`].
+    pub fn member_of(&self, plant: &UncertainPlant, values: &[f64]) -> Result<Member, LinearError> {
+        match plant.member(values).ok_or(LinearError::NoPlant)? {
+            PlantMember::Rational(coefficients) => self.member(coefficients),
+            PlantMember::Responding(plant) => Ok(self.responding(plant)),
+        }
+    }
+
+    /// P, Pd and H of the plant of a family with these parameter values at one frequency.
+    ///
+    /// # Errors
+    /// Those of [`Compensation::member_of`].
+    pub fn response_of(
+        &self,
+        plant: &UncertainPlant,
+        values: &[f64],
+        frequency_rad_per_s: f64,
+    ) -> Result<MemberResponse, LinearError> {
+        match plant.member(values).ok_or(LinearError::NoPlant)? {
+            PlantMember::Rational(coefficients) => self.plant_response(coefficients, frequency_rad_per_s),
+            PlantMember::Responding(plant) => {
+                self.responding(plant).response(frequency_rad_per_s).ok_or(LinearError::NoPlant)
+            }
+        }
+    }
+
+    /// A plant without polynomials within this loop.
+    pub fn responding(&self, plant: Arc<dyn RespondingPlant>) -> Member {
+        Member::Responding {
+            plant,
+            sensor: self.sensor.clone(),
+            delay_s: self.delay_s + self.sample_time_s.unwrap_or(0.0) / 2.0,
+            sample_time_s: self.sample_time_s,
+        }
     }
 
     /// P, Pd and H of a plant at one frequency: what its [`Compensation::member`] gives there, for a tenth of the work in a sampled
@@ -299,73 +360,15 @@ impl Member {
                     sensor: with_sensor.at_frequency(frequency_rad_per_s) / plant,
                 })
             }
+            Member::Responding { plant, sensor, delay_s, sample_time_s } => {
+                let images = Images { sensor, delay_s: *delay_s, sample_time_s: *sample_time_s };
+                images.of_model(plant.as_ref(), frequency_rad_per_s)
+            }
             Member::Measured { plant, sensor, delay_s, sample_time_s } => {
-                let (command, disturbance) = plant.response(frequency_rad_per_s)?;
-                let load_motion = disturbance.unwrap_or(Complex64::new(0.0, 0.0));
-                let own = sensor.at_frequency(frequency_rad_per_s);
-                let Some(sample_time_s) = *sample_time_s else {
-                    let plant = command * turned(frequency_rad_per_s, *delay_s);
-                    return Some(MemberResponse { plant, load_motion, sensor: own });
-                };
-                let images = Images { plant, sensor, delay_s: *delay_s, sample_time_s };
-                let [plant, with_sensor] = images.sum(frequency_rad_per_s)?;
-                Some(MemberResponse { plant, load_motion, sensor: with_sensor / plant })
+                let images = Images { sensor, delay_s: *delay_s, sample_time_s: *sample_time_s };
+                images.of_measurement(plant, frequency_rad_per_s)
             }
         }
-    }
-}
-
-/// A measured response behind a zero-order hold, sampled.
-///
-/// ```text
-/// Z{hold P}(e^(jwT)) = sum over k of P(j v) e^(-j v T_d) e^(-j v T/2) sin(v T/2)/(v T/2),     v = w + 2 pi k/T
-/// ```
-struct Images<'a> {
-    plant: &'a MeasuredPlant,
-    sensor: &'a TransferFunction,
-    /// T_d + T/2
-    delay_s: f64,
-    sample_time_s: f64,
-}
-
-/// What lies beyond a measurement may count for this share of its sampled response.
-const UNKNOWN_SHARE: f64 = 0.01;
-
-impl Images<'_> {
-    /// Of P and of P H.
-    fn sum(&self, frequency_rad_per_s: f64) -> Option<[Complex64; 2]> {
-        let spacing = 2.0 * std::f64::consts::PI / self.sample_time_s;
-        let reach = *self.plant.frequencies_rad_per_s.last()?;
-        let mut sum = self.image(frequency_rad_per_s)?;
-        for sign in [1.0, -1.0] {
-            let mut v = frequency_rad_per_s + sign * spacing;
-            while v.abs() <= reach {
-                let image = self.image(v)?;
-                sum = [sum[0] + image[0], sum[1] + image[1]];
-                v += sign * spacing;
-            }
-            let (last, _) = self.plant.response(reach)?;
-            let unknown = 2.0 * portable::magnitude(last) * self.hold(v).abs();
-            if unknown > UNKNOWN_SHARE * portable::magnitude(sum[0]) {
-                return None;
-            }
-        }
-        Some(sum)
-    }
-
-    /// The term of one k; a response at a negative frequency is the conjugate of that at the positive one.
-    fn image(&self, v: f64) -> Option<[Complex64; 2]> {
-        let (response, _) = self.plant.response(v.abs())?;
-        let sensor = self.sensor.at_frequency(v.abs());
-        let signed = |value: Complex64| if v < 0.0 { value.conj() } else { value };
-        let held = signed(response) * turned(v, self.delay_s) * self.hold(v);
-        Some([held, held * signed(sensor)])
-    }
-
-    /// sin(v T/2)/(v T/2)
-    fn hold(&self, v: f64) -> f64 {
-        let half = v * self.sample_time_s / 2.0;
-        if half == 0.0 { 1.0 } else { portable::sin(half) / half }
     }
 }
 

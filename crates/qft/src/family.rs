@@ -6,10 +6,12 @@
 mod coordinate;
 mod measured;
 mod member;
+mod tabulated;
 
 pub use coordinate::{Coordinate, Spacing};
-pub use measured::{MeasuredFamily, MeasuredPlant, MeasurementError, ResponseOrigin};
+pub use measured::{MeasuredFamily, MeasuredPlant, MeasurementError};
 pub use member::{grid, random, vertices};
+pub use tabulated::tabulated;
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
@@ -18,7 +20,7 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 pub enum Family {
     /// An uncertain plant and the members of its family.
     Uncertain(UncertainFamily),
-    /// Frequency responses that were measured, or calculated one by one: between two of them nothing can be claimed.
+    /// Frequency responses that were measured: between two of them nothing can be claimed.
     Measured(MeasuredFamily),
 }
 

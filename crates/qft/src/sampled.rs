@@ -24,7 +24,7 @@ impl SampledPlants {
         plant: &UncertainPlant,
         values: &[f64],
     ) -> Result<Member, LinearError> {
-        let build = || compensation.member(plant.coefficients(values));
+        let build = || compensation.member_of(plant, values);
         if compensation.sample_time_s().is_none() {
             return build();
         }

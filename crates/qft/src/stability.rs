@@ -4,7 +4,8 @@
 //! ```text
 //! poles:             zeros of c + n, of c z^k + n: their largest real part                  no dead time, or whole samples
 //! argument:          turns of c + n e^(-s T) on the boundary of stability                   every loop, dead time included
-//! Nyquist:           turns of 1 + L                                                         measured plants
+//! Nyquist:           turns of 1 + L                                                         measured plants, and those without
+//!                    polynomials, whose 1 + L is enclosed from each frequency to the next
 //! zero exclusion:    min |1 + L| over box and frequency: while it is not zero, no pole crosses from one plant to the next
 //! leading coefficient:   enclosed over the box: while it is not zero, no pole passes through infinity
 //! ```
@@ -12,9 +13,11 @@
 //! Nothing is cancelled: an unstable mode of plant, controller or sensor that the loop does not move counts. Prefilter and load-motion
 //! path lie outside of the loop; of the prefilter the audit of the family asks that it be stable by itself.
 
+mod badness;
 mod characteristic;
 mod crossover;
 mod encirclement;
+mod enclosed;
 mod family;
 mod folding;
 mod infinity;
@@ -23,6 +26,7 @@ mod poles;
 mod product;
 mod record;
 mod resampled;
+mod responding;
 mod search;
 
 use phea_dynamics::linear::LinearError;
@@ -34,6 +38,7 @@ use crate::closed_loop::{Compensation, Member};
 use crate::verification::rounded;
 use characteristic::Characteristic;
 pub(crate) use characteristic::FeedbackPath;
+use responding::Count;
 
 /// Stability of one loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,6 +107,11 @@ pub enum Irresolution {
         "modes beyond half of the sampling rate pass through the band while parameters move, too often to be followed"
     )]
     Folding,
+    /// Plants without polynomials in a sampled loop, between which modes may fold.
+    #[error(
+        "which modes beyond half of the sampling rate fold into the band between one plant and the next is not known where lines move"
+    )]
+    FoldingUnknown,
     /// The enclosures of what must not vanish for no pole to pass through infinity still hold zero.
     #[error("it could not be shown that no pole passes through infinity inside the box")]
     InfinityOpen,
@@ -219,16 +229,19 @@ fn of_member(member: &Member, compensation: &Compensation, path: &FeedbackPath) 
     match characteristic(member, path) {
         Some(Ok(characteristic)) => of_characteristic(&characteristic),
         Some(Err(reason)) => MemberStability::not_resolved(reason),
+        None if matches!(member, Member::Responding { .. }) => {
+            responding::stability(member, compensation, Count::Enclosed)
+        }
         None => measured::stability(member, compensation),
     }
 }
 
-/// `None` for a plant that is known by measured points only.
+/// `None` for a plant without polynomials.
 fn characteristic(member: &Member, path: &FeedbackPath) -> Option<Result<Characteristic, Irresolution>> {
     match member {
         Member::Continuous { plant, .. } => Some(path.around(plant)),
         Member::Sampled { with_sensor, .. } => Some(path.around_sampled(with_sensor)),
-        Member::Measured { .. } => None,
+        Member::Responding { .. } | Member::Measured { .. } => None,
     }
 }
 

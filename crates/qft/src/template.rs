@@ -180,7 +180,7 @@ impl Iterator for Templates<'_> {
 /// # let along = |index| Coordinate { parameters: vec![index], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
 /// # let coordinates = vec![along(0), along(1)];
 /// # let members = vertices(&plant, &coordinates)?;
-/// # let middle = plant.response(&[2_f64.sqrt(), 0.55], 5.0);
+/// # let middle = plant.response(&[2_f64.sqrt(), 0.55], 5.0).ok_or("a response")?;
 /// # let family = Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box)?);
 /// # let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
 /// let strip = template(&family, &compensation, 5.0, &TemplateOptions::default())?.template;

@@ -16,6 +16,7 @@ mod start;
 pub(crate) use asymptote::{End, tracking_ratio};
 pub(crate) use audit::corners;
 pub use audit::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Work};
+pub(crate) use minimum::between;
 pub(crate) use remark::rounded;
 
 use crate::specification::Requirement;

@@ -12,6 +12,7 @@ mod kernels;
 mod manual_shaping;
 mod prefilter;
 mod quantisation;
+mod responding;
 mod rig;
 mod sample_stability;
 mod search;

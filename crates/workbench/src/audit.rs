@@ -20,7 +20,7 @@ pub(crate) use words::{
 
 use phea_dynamics::portable;
 use phea_qft::audit::AuditRun;
-use phea_qft::family::{Extent, Family, ResponseOrigin};
+use phea_qft::family::{Extent, Family};
 use phea_qft::verification::{Audit, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Verdict};
 
 use crate::caveat::Caveat;
@@ -92,14 +92,9 @@ pub(crate) fn names(family: &Family) -> PlantNames {
         Family::Uncertain(family) => PlantNames::of_parameters(
             family.plant().parameters().iter().map(|parameter| parameter.name.as_str()),
         ),
-        Family::Measured(family) => match family.origin() {
-            ResponseOrigin::Measurement => {
-                PlantNames::Measured(family.plants().iter().map(|plant| plant.name.clone()).collect())
-            }
-            ResponseOrigin::Model { parameters, values } => {
-                PlantNames::of_responses(parameters.iter().map(String::as_str), values.clone())
-            }
-        },
+        Family::Measured(family) => {
+            PlantNames::Measured(family.plants().iter().map(|plant| plant.name.clone()).collect())
+        }
     }
 }
 
@@ -116,6 +111,8 @@ pub struct ProjectAudit {
     pub members: usize,
     /// Whether everything between them belongs to the family.
     pub whole_box: bool,
+    /// Whether its plants have no polynomials, their lines being in motion.
+    pub in_motion: bool,
     /// s; `None` for a continuous controller.
     pub sample_time_s: Option<f64>,
     /// Delay of the loop, s.
@@ -197,6 +194,7 @@ impl ProjectAudit {
                 Family::Uncertain(family) => family.members().len(),
                 Family::Measured(family) => family.plants().len(),
             },
+            in_motion: matches!(family, Family::Uncertain(family) if !family.plant().is_rational()),
             whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
@@ -215,27 +213,18 @@ impl ProjectAudit {
     }
 
     fn family_sentence(&self) -> String {
+        let moving = if self.in_motion { ", every plant by its response with lines in motion" } else { "" };
         match &self.names {
             PlantNames::Measured(names) => format!("Family: {}.", counted(names.len(), "measured response")),
-            PlantNames::Responses(names, plants) => {
-                let plants = counted(plants.len(), "plant");
-                let over = match names.len() {
-                    0 => String::new(),
-                    count => format!(" over {}", counted(count, "uncertain parameter")),
-                };
-                format!(
-                    "Family: {plants}{over}, each by its response with lines in motion; what lies between them is not looked at."
-                )
-            }
-            PlantNames::Parameters(names) if names.is_empty() => "Family: one plant.".to_string(),
+            PlantNames::Parameters(names) if names.is_empty() => format!("Family: one plant{moving}."),
             PlantNames::Parameters(names) if self.whole_box => format!(
-                "Family: {} plants of a box over {}, and what lies between them.",
+                "Family: {} plants of a box over {}, and what lies between them{moving}.",
                 self.members,
                 counted(names.len(), "uncertain parameter")
             ),
             PlantNames::Parameters(names) => {
                 format!(
-                    "Family: {} with {}.",
+                    "Family: {} with {}{moving}.",
                     counted(self.members, "given plant"),
                     counted(names.len(), "uncertain parameter")
                 )
@@ -255,7 +244,7 @@ impl ProjectAudit {
                     PlantNames::Measured(_) => {
                         " What lies beyond the measurements is taken as no larger than at their ends."
                     }
-                    PlantNames::Parameters(_) | PlantNames::Responses(..) => "",
+                    PlantNames::Parameters(_) => "",
                 };
                 format!(
                     "Loop: sampled every {} with a zero-order hold, {delay}.{images}",

@@ -3,7 +3,7 @@
 //! A simulation is of the whole machine. What the linear plant cannot count is told before the verdict; where a specification depends
 //! on it, the verdict is not proven.
 
-use crate::project::{self, LineModel, LoadModel, Project, SpecificationKind, SupplyModel};
+use crate::project::{LineModel, LoadModel, Project, SpecificationKind, SupplyModel};
 
 /// Something declared that the linear loop does not count.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,19 +16,16 @@ pub struct Caveat {
 
 /// What is declared and in no linear loop.
 pub(crate) fn caveats(project: &Project) -> Vec<Caveat> {
-    let mut all: Vec<Caveat> = lines(project).into_iter().collect();
-    all.extend(apart_from_lines(project));
-    all
+    [load(project), supply(project), feed_forward(project), prefilter(project)]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// What is declared and in no linear model, in sentences.
 pub(crate) fn of_models(project: &Project) -> Vec<String> {
-    let others = apart_from_lines(project).map(|caveat| caveat.sentence);
+    let others = caveats(project).into_iter().map(|caveat| caveat.sentence);
     lumped(project).into_iter().chain(others).collect()
-}
-
-fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
-    [load(project), supply(project), feed_forward(project), prefilter(project)].into_iter().flatten()
 }
 
 /// A wall whose mass nobody states.
@@ -37,20 +34,6 @@ fn load(project: &Project) -> Option<Caveat> {
     (load.model == LoadModel::Wall && load.mass.is_none()).then(|| Caveat {
         sentence: "load.model = \"wall\" is not counted without load.mass: this is the loop with a load that does not yield"
             .to_string(),
-        unproven: true,
-    })
-}
-
-/// Lines in motion over a box: their plants have no polynomials to search with between the plants that are looked at.
-fn lines(project: &Project) -> Option<Caveat> {
-    let (place, model) = moving(project)?;
-    let family = project.family.as_ref();
-    let spans = |family: &project::Family| family.grid || family.vertices || family.random.is_some();
-    let is_box = family.is_none_or(|family| family.cases.is_empty() || spans(family));
-    (is_box && !project.uncertain_numbers().is_empty()).then(|| Caveat {
-        sentence: format!(
-            "{place} = \"{model}\" is counted at single plants of the box: what lies between them is not looked at"
-        ),
         unproven: true,
     })
 }

@@ -68,14 +68,6 @@ pub enum FamilyError {
         /// The member's parameters with their values.
         member: String,
     },
-    /// Responses from no frequency to none.
-    #[error("the plant has no response between {from_rad_per_s} and {to_rad_per_s} rad/s")]
-    Frequencies {
-        /// rad/s
-        from_rad_per_s: f64,
-        /// rad/s
-        to_rad_per_s: f64,
-    },
     /// A line of a member that its model does not fit.
     #[error("[line] model: {error}, at {member}")]
     Line {
@@ -112,8 +104,7 @@ pub enum FamilyError {
 }
 
 /// The family of a project: the linear model of its actuator, or the transfer function it states, over the box of
-/// `[uncertainty]`; or the plants that were measured. Where lines move there are no polynomials, and the family is the responses of its
-/// members.
+/// `[uncertainty]`; or the plants that were measured. Where lines move its plants have no polynomials.
 ///
 /// `[family]` says which plants of the box are looked at: its `grid`, its `vertices`, points at `random`, explicit `cases`, or several
 /// of them together; the grid where it says nothing. Where the `cases` stand alone nothing between them belongs to the family.
@@ -142,10 +133,7 @@ pub fn family(project: &Project, source: &dyn Source) -> Result<Family, FamilyEr
         _ => {
             let lumped = uncertain::family(project, uncertain_plant(project)?)?;
             visited::check(project, &lumped)?;
-            match in_motion::family(project, &lumped)? {
-                Some(responses) => Family::Measured(responses),
-                None => Family::Uncertain(lumped),
-            }
+            Family::Uncertain(in_motion::family(project, &lumped)?.unwrap_or(lumped))
         }
     };
     check_second_path(project, &family)?;

@@ -198,7 +198,7 @@ impl RobustProblem {
     pub fn nominal(&self) -> Result<Option<Member>, LinearError> {
         match &self.family {
             Family::Uncertain(family) => {
-                self.compensation.member(family.plant().coefficients(&family.plant().nominal())).map(Some)
+                self.compensation.member_of(family.plant(), &family.plant().nominal()).map(Some)
             }
             Family::Measured(family) => {
                 Ok(family.plants().first().map(|plant| self.compensation.measured(plant)))
@@ -213,8 +213,8 @@ impl RobustProblem {
     pub fn members(&self) -> Result<Vec<Member>, LinearError> {
         match &self.family {
             Family::Uncertain(family) => {
-                let plants = family.members().iter().map(|values| family.plant().coefficients(values));
-                plants.map(|plant| self.compensation.member(plant)).collect()
+                let plants = family.members().iter();
+                plants.map(|values| self.compensation.member_of(family.plant(), values)).collect()
             }
             Family::Measured(family) => {
                 Ok(family.plants().iter().map(|plant| self.compensation.measured(plant)).collect())
@@ -226,7 +226,7 @@ impl RobustProblem {
     pub fn member(&self, plant: &PlantPoint) -> Option<Member> {
         match (&self.family, plant) {
             (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
-                self.compensation.member(family.plant().coefficients(values)).ok()
+                self.compensation.member_of(family.plant(), values).ok()
             }
             (Family::Measured(family), PlantPoint::Measured(index)) => {
                 family.plants().get(*index).map(|plant| self.compensation.measured(plant))
@@ -281,7 +281,8 @@ const ROOT_POINTS: i32 = 20;
 const ROOT_WIDTHS: f64 = 12.0;
 
 fn nominal_roots(family: &UncertainFamily) -> Vec<Complex64> {
-    let plant = family.plant().coefficients(&family.plant().nominal()).command;
+    let Some(plant) = family.plant().member(&family.plant().nominal()) else { return Vec::new() };
+    let plant = plant.slow().command;
     let function = TransferFunction::from_polynomials(
         &Polynomial::new(plant.numerator),
         &Polynomial::new(plant.denominator),

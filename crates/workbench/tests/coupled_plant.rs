@@ -99,15 +99,7 @@ fn what_is_not_counted_is_told_first() {
     let met = audited(&satisfied(&[]));
     assert_eq!(met.audit.verdict, Verdict::Met);
     for (settings, key) in [
-        (
-            &["line.model=creeping", "line.relaxation_time=0.01"][..],
-            "line.model = \"creeping\" is counted at single plants of the box",
-        ),
-        (
-            &["line.b.model=creeping", "line.b.relaxation_time=0.01"],
-            "line.b.model = \"creeping\" is counted at",
-        ),
-        (&["supply.model=pump_limited"], "supply.model = \"pump_limited\" is not counted"),
+        (&["supply.model=pump_limited"][..], "supply.model = \"pump_limited\" is not counted"),
         (
             &[
                 "load.model=spring_mass_damper",
@@ -125,23 +117,6 @@ fn what_is_not_counted_is_told_first() {
         let first: Vec<&str> = text.lines().take(3).map(str::trim).collect();
         assert_eq!(first[0], "Verdict: not proven");
         assert!(first[1..].iter().any(|line| line.starts_with(key)), "{text}");
-    }
-}
-
-/// A region of operating points is a box as well, although nothing stands in `[uncertainty]`.
-#[test]
-fn a_region_with_lines_in_motion_is_looked_at_in_single_plants() {
-    let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
-    let (_, specifications) = rest.split_once("[[specification]]").unwrap();
-    let certain = format!("{start}[[specification]]{specifications}");
-    let creeping = ["line.model=creeping", "line.relaxation_time=0.01"];
-    let region = "family.operating_region={ position = [0.2, 0.3] }";
-    for (settings, told) in
-        [(&creeping[..], false), (&[creeping[0], creeping[1], region], true), (&[region], false)]
-    {
-        let view = audited(&loaded(&certain, settings));
-        let single = view.caveats.iter().any(|caveat| caveat.sentence.contains("single plants of the box"));
-        assert_eq!(single, told, "{settings:?}");
     }
 }
 

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use phea_dynamics::random::share;
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -69,7 +70,7 @@ fn the_step_that_is_predicted_is_the_machines() {
     assert_eq!(first["agrees"], Value::from(true));
 }
 
-/// A family of responses names its plants by their parameters, as every other family does.
+/// A family with lines in motion names its plants by their parameters, as every other family does.
 #[test]
 fn worst_plants_have_their_parameters() {
     let text = include_str!("../../../examples/ybitu/hose.toml");
@@ -79,5 +80,43 @@ fn worst_plants_have_their_parameters() {
     let worst = &object["specifications"][1]["plant"];
     let flow_gain = worst["flow_gain"].as_f64().unwrap();
     assert!((3.23e-5..=5.61e-5).contains(&flow_gain), "{worst}");
-    assert!(said.text.contains("each by its response with lines in motion"), "{}", said.text);
+    assert!(said.text.contains("every plant by its response with lines in motion"), "{}", said.text);
+}
+
+/// With lines in motion a box is searched between its members too: no rig that is declared anywhere in it is worse than what was found,
+/// and what was found is worse than any corner.
+#[test]
+fn a_box_is_searched_between_its_members() {
+    let (start, specifications) = {
+        let text = one_rig();
+        let (start, specifications) = text.split_once("[[specification]]").unwrap();
+        (start.to_string(), specifications.to_string())
+    };
+    let range = "[uncertainty]\n\"operating_point.position\" = { nominal = 0.25, minimum = 0.05, maximum = 0.45, points = 2 }\n\
+                 \"line.length\" = { nominal = 1.5, minimum = 0.8, maximum = 2.2, points = 2 }\n";
+    let text = format!("{start}{range}[[specification]]{specifications}");
+    let moving = ["line.model=segments", "line.segments=6", "line.relaxation_time=0.5 ms"];
+    let margin = |text: &str, settings: &[&str]| {
+        let said = answer(text, settings, &[], &Request::Verify);
+        let object: Value = serde_json::from_str(&said.json).unwrap();
+        assert_eq!(object["stability"]["verdict"], Value::from("met"), "{}", said.text);
+        object["specifications"][0]["worst_margin_db"].as_f64().unwrap()
+    };
+    let found = margin(&text, &moving);
+    let mut state = 3;
+    let declared = |position: f64, length: f64| {
+        let stated = [format!("operating_point.position={position}"), format!("line.length={length}")];
+        let settings: Vec<&str> = moving.into_iter().chain(stated.iter().map(String::as_str)).collect();
+        margin(&one_rig(), &settings)
+    };
+    for _ in 0..20 {
+        let position = 0.05 + 0.4 * share(&mut state);
+        let length = 0.8 + 1.4 * share(&mut state);
+        let own = declared(position, length);
+        assert!(own > found - 2e-3, "{own} dB at {position} m, {length} m; found {found} dB");
+    }
+    let corners = [[0.05, 0.8], [0.05, 2.2], [0.45, 0.8], [0.45, 2.2]];
+    let corners = corners.map(|[position, length]| declared(position, length));
+    let worst = corners.into_iter().fold(f64::INFINITY, f64::min);
+    assert!(found < worst - 0.02, "{found} dB, corners {corners:?}");
 }

@@ -1,4 +1,5 @@
 use num_complex::Complex64;
+use phea_dynamics::analytic::Analytic;
 
 use super::DynamicLine;
 
@@ -11,57 +12,36 @@ use super::DynamicLine;
 ///
 /// Flows count from the valve to the chamber. Units: 1, Pa s/m3, m3/(s Pa), 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TransferMatrix {
+pub struct TransferMatrix<A = Complex64> {
     /// a
-    pub pressure: Complex64,
+    pub pressure: A,
     /// b
-    pub impedance: Complex64,
+    pub impedance: A,
     /// c
-    pub admittance: Complex64,
+    pub admittance: A,
     /// d
-    pub flow: Complex64,
+    pub flow: A,
 }
 
-impl TransferMatrix {
+impl<A: Analytic> TransferMatrix<A> {
     /// No line.
-    pub const IDENTITY: TransferMatrix = TransferMatrix {
-        pressure: Complex64::ONE,
-        impedance: Complex64::ZERO,
-        admittance: Complex64::ZERO,
-        flow: Complex64::ONE,
-    };
+    pub fn identity() -> TransferMatrix<A> {
+        let (one, zero) = (A::from(1.0), A::from(0.0));
+        TransferMatrix { pressure: one, impedance: zero, admittance: zero, flow: one }
+    }
 
     /// This line, and at its chamber's end what takes up flow.
-    pub(super) fn across(&self, admittance: Complex64) -> TransferMatrix {
+    pub(super) fn across(&self, admittance: A) -> TransferMatrix<A> {
         TransferMatrix {
             pressure: self.pressure + self.impedance * admittance,
             admittance: self.admittance + self.flow * admittance,
             ..*self
         }
     }
-
-    /// This line, and at its chamber's end what takes up pressure.
-    pub(super) fn along(&self, impedance: Complex64) -> TransferMatrix {
-        TransferMatrix {
-            impedance: self.impedance + self.pressure * impedance,
-            flow: self.flow + self.admittance * impedance,
-            ..*self
-        }
-    }
-
-    /// This line, and then another.
-    pub(super) fn then(&self, [[a, b], [c, d]]: &[[Complex64; 2]; 2]) -> TransferMatrix {
-        TransferMatrix {
-            pressure: self.pressure * a + self.impedance * c,
-            impedance: self.pressure * b + self.impedance * d,
-            admittance: self.admittance * a + self.flow * c,
-            flow: self.admittance * b + self.flow * d,
-        }
-    }
 }
 
 impl DynamicLine {
-    /// The line at s in rad/s: its equations in time, transformed. The end that it adds to the chamber
+    /// The line at s in rad/s, or over a set of such: its equations in time, transformed. The end that it adds to the chamber
     /// ([`DynamicLine::chamber_compliance`]) belongs to the chamber.
     ///
     /// # Example
@@ -70,13 +50,22 @@ impl DynamicLine {
     /// use num_complex::Complex64;
     /// use phea_hydraulics::line::{DynamicLine, Segments, TransferMatrix};
     /// let line = DynamicLine::Segments(Segments::lumped(1e-12));
-    /// assert_eq!(line.transfer_matrix(Complex64::new(0.0, 100.0)), TransferMatrix::IDENTITY);
+    /// assert_eq!(line.transfer_matrix(Complex64::new(0.0, 100.0)), TransferMatrix::identity());
     /// ```
-    pub fn transfer_matrix(&self, s: Complex64) -> TransferMatrix {
+    pub fn transfer_matrix<A: Analytic>(&self, s: A) -> TransferMatrix<A> {
         match self {
             DynamicLine::Segments(line) => line.transfer_matrix(s),
             DynamicLine::TransmissionLine(line) => line.transfer_matrix(s),
             DynamicLine::TwoWave(line) => line.transfer_matrix(s),
+        }
+    }
+
+    /// Resistance to steady flow, Pa s/m3.
+    pub fn resistance(&self) -> f64 {
+        match self {
+            DynamicLine::Segments(line) => line.resistance(),
+            DynamicLine::TransmissionLine(line) => line.resistance(),
+            DynamicLine::TwoWave(line) => line.resistance(),
         }
     }
 
@@ -87,6 +76,22 @@ impl DynamicLine {
             DynamicLine::Segments(line) => line.elastic_compliance(),
             DynamicLine::TransmissionLine(line) => line.elastic_compliance(),
             DynamicLine::TwoWave(line) => line.elastic_compliance(),
+        }
+    }
+
+    /// A frequency above all modes of a line that has finitely many, rad/s; 0 where waves travel.
+    pub fn fastest_rad_per_s(&self) -> f64 {
+        match self {
+            DynamicLine::Segments(line) => line.fastest_rad_per_s(),
+            DynamicLine::TransmissionLine(_) | DynamicLine::TwoWave(_) => 0.0,
+        }
+    }
+
+    /// What fluid and wall yield in the end, in m3/Pa: at once, and what the wall creeps.
+    pub fn static_compliance(&self) -> f64 {
+        match self {
+            DynamicLine::Segments(line) => line.elastic_compliance() + line.creep_compliance(),
+            DynamicLine::TransmissionLine(_) | DynamicLine::TwoWave(_) => self.elastic_compliance(),
         }
     }
 

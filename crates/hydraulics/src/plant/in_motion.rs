@@ -1,4 +1,6 @@
-use num_complex::Complex64;
+mod responding;
+
+use phea_dynamics::analytic::Analytic;
 
 use super::{ChamberDynamics, LinearLoad, Plant};
 use crate::line::DynamicLine;
@@ -66,10 +68,10 @@ struct Side {
     line: DynamicLine,
 }
 
-/// Flow from the valve per volt, and flow per pascal, both at the chamber.
-struct AtChamber {
-    flow_gain: Complex64,
-    admittance: Complex64,
+/// A chamber at s: flow per pascal there is `admittance/passed`, flow from the valve per volt its flow gain over `passed`.
+struct AtChamber<A> {
+    admittance: A,
+    passed: A,
 }
 
 impl PlantInMotion {
@@ -85,34 +87,41 @@ impl PlantInMotion {
         PlantInMotion { plant: *plant, sides: [side(0), side(1)] }
     }
 
-    /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, by the equations of [`Plant::coefficients`].
-    pub fn response(&self, s: Complex64) -> [Complex64; 2] {
+    /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of [`Plant::coefficients`].
+    pub fn response<A: Analytic>(&self, s: A) -> [A; 2] {
         let [one, other] = self.sides.map(|side| side.at_chamber(s));
         let [area_a, area_b] = self.sides.map(|side| side.area);
+        let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
         let leakage = self.plant.internal_leakage;
-        let (a, b) = (one.admittance, other.admittance);
         let difference = area_a - area_b;
-        let own = a * b + leakage * (a + b);
-        let driven = area_a * one.flow_gain * b
-            + area_b * other.flow_gain * a
-            + leakage * difference * (one.flow_gain - other.flow_gain);
-        let displaced = area_a * area_a * b + area_b * area_b * a + leakage * difference * difference;
-        let moved = s * ((self.plant.moving_mass * s + self.plant.viscous_friction) * own + displaced);
+        // everything times what both lines pass, so that nothing is divided by what vanishes at a resonance
+        let (a, b) = (one.admittance, other.admittance);
+        let passed = one.passed * other.passed;
+        let own = a * b + (a * other.passed + b * one.passed).scaled(leakage);
+        let driven = b.scaled(area_a * gain_a)
+            + a.scaled(area_b * gain_b)
+            + (other.passed.scaled(gain_a) - one.passed.scaled(gain_b)).scaled(leakage * difference);
+        let displaced = (b * one.passed).scaled(area_a * area_a)
+            + (a * other.passed).scaled(area_b * area_b)
+            + passed.scaled(leakage * difference * difference);
+        let rubbed = s.scaled(self.plant.moving_mass) + A::from(self.plant.viscous_friction);
+        let moved = s * (rubbed * own + displaced);
         let (frequency, sensor) = (self.plant.valve_natural_frequency, self.plant.sensor_stiffness);
         let square = frequency * frequency;
-        let spool = square / (s * s + 2.0 * self.plant.valve_damping_ratio * frequency * s + square);
+        let turned = s.scaled(2.0 * self.plant.valve_damping_ratio * frequency);
+        let spool = A::from(square) / (s * s + turned + A::from(square));
         let (load, ground) = match self.plant.load {
-            LinearLoad::Prescribed => (None, Complex64::ONE),
+            LinearLoad::Prescribed => (None, A::from(1.0)),
             LinearLoad::Yielding { mass, damping, stiffness } => {
-                let tied = damping * s + stiffness;
-                (Some(mass * s * s + tied), tied)
+                let tied = s.scaled(damping) + A::from(stiffness);
+                (Some((s * s).scaled(mass) + tied), tied)
             }
         };
         let (free, sensed) = match load {
-            None => (Complex64::ONE, moved + sensor * own),
-            Some(load) => (load, moved * (load + sensor) + sensor * load * own),
+            None => (A::from(1.0), moved + own.scaled(sensor)),
+            Some(load) => (load, moved * (load + A::from(sensor)) + (load * own).scaled(sensor)),
         };
-        [sensor * free * spool * driven / sensed, -sensor * ground * moved / sensed]
+        [(free * spool * driven).scaled(sensor) / sensed, -(ground * moved).scaled(sensor) / sensed]
     }
 
     /// Whether nothing in it gives energy, so that none of its poles lies in the right half plane: its lines are passive, and so are
@@ -141,13 +150,11 @@ impl PlantInMotion {
 }
 
 impl Side {
-    fn at_chamber(&self, s: Complex64) -> AtChamber {
+    fn at_chamber<A: Analytic>(&self, s: A) -> AtChamber<A> {
         let line = self.line.transfer_matrix(s);
-        let passed = line.flow + self.flow_pressure * line.impedance;
-        AtChamber {
-            flow_gain: self.flow_gain / passed,
-            admittance: s * self.compliance + (line.admittance + self.flow_pressure * line.pressure) / passed,
-        }
+        let passed = line.flow + line.impedance.scaled(self.flow_pressure);
+        let taken = line.admittance + line.pressure.scaled(self.flow_pressure);
+        AtChamber { admittance: s.scaled(self.compliance) * passed + taken, passed }
     }
 }
 

@@ -209,9 +209,10 @@ impl LowFrequency {
                 let nominal = family.plant().nominal();
                 let corners = corners(family);
                 let values = std::iter::once(&nominal).chain(&corners);
-                let types = values.map(|values| plant_type(&family.plant().coefficients(values).command));
-                let command = family.plant().coefficients(&nominal).command;
-                LowFrequency { plant_type: types.min().unwrap_or(0), sign: opposing_sign(&command) }
+                let slow = |values: &Vec<f64>| Some(family.plant().member(values)?.slow().command);
+                let types = values.filter_map(|values| slow(values).map(|command| plant_type(&command)));
+                let sign = slow(&nominal).map_or(1.0, |command| opposing_sign(&command));
+                LowFrequency { plant_type: types.min().unwrap_or(0), sign }
             }
             Family::Measured(family) => {
                 let first = family.plants().first();
@@ -229,7 +230,7 @@ impl LowFrequency {
     fn response(&self, problem: &DesignProblem, frequency: f64) -> Option<Complex64> {
         match &problem.family {
             Family::Uncertain(family) => {
-                let command = family.plant().coefficients(&family.plant().nominal()).command;
+                let command = family.plant().member(&family.plant().nominal())?.slow().command;
                 Some(command.at_frequency(frequency))
             }
             Family::Measured(family) => Some(family.plants().first()?.response(frequency)?.0),

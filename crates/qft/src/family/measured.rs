@@ -1,4 +1,4 @@
-//! Families of frequency responses: measured, or calculated where a plant has no polynomials.
+//! Families of measured frequency responses.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -16,8 +16,8 @@ pub struct MeasuredPlant {
     pub disturbance: Option<Vec<Complex64>>,
     /// Open-loop poles in the right half plane, which a response cannot tell.
     pub unstable_poles: usize,
-    /// Whether between two points the response is what is interpolated there, as that of a model is whose points are chosen so. What a
-    /// measurement does not show is not assumed.
+    /// Whether between two points the response is what is interpolated there, as that of [`super::tabulated`] is. What a measurement does
+    /// not show is not assumed.
     pub is_resolved: bool,
 }
 
@@ -25,21 +25,6 @@ pub struct MeasuredPlant {
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredFamily {
     plants: Vec<MeasuredPlant>,
-    origin: ResponseOrigin,
-}
-
-/// Where the responses of a family come from.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ResponseOrigin {
-    /// A rig.
-    Measurement,
-    /// A model without polynomials, such as one with waves: its uncertain parameters, and their values for each plant.
-    Model {
-        /// Names of the parameters.
-        parameters: Vec<String>,
-        /// One list for each plant, in their order.
-        values: Vec<Vec<f64>>,
-    },
 }
 
 /// Why measurements are no family.
@@ -74,17 +59,7 @@ impl MeasuredFamily {
                 return Err(MeasurementError::Point { plant: plant.name.clone(), point });
             }
         }
-        Ok(MeasuredFamily { plants, origin: ResponseOrigin::Measurement })
-    }
-
-    /// The same responses as those of a model at these values of its parameters.
-    pub fn of_model(self, parameters: Vec<String>, values: Vec<Vec<f64>>) -> MeasuredFamily {
-        MeasuredFamily { origin: ResponseOrigin::Model { parameters, values }, ..self }
-    }
-
-    /// Where the responses come from.
-    pub fn origin(&self) -> &ResponseOrigin {
-        &self.origin
+        Ok(MeasuredFamily { plants })
     }
 
     /// The plants, the nominal one first.

@@ -169,7 +169,9 @@ impl Question {
                 *undecided_tables += 1;
                 self.is_shown_stable(&plant.member)
             }
-            None if matches!(plant.member, Member::Measured { .. }) => self.is_shown_stable(&plant.member),
+            None if !matches!(plant.member, Member::Continuous { .. } | Member::Sampled { .. }) => {
+                self.is_shown_stable(&plant.member)
+            }
             None => self.delayed_poles_lie_below(&plant.member, 0.0) == Ok(true),
         }
     }

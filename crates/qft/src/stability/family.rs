@@ -2,12 +2,14 @@
 
 use phea_dynamics::linear::LinearError;
 
-use super::characteristic::{Characteristic, FeedbackPath};
+use super::badness::{Badness, badness_of};
+use super::characteristic::FeedbackPath;
 use super::folding::{self, Folded};
 use super::infinity::{self, Infinity};
 use super::record::Record;
+use super::responding::Count;
 use super::search::climb;
-use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_member, resampled};
+use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_member, resampled, responding};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::sampled::SampledPlants;
@@ -109,16 +111,6 @@ enum Task {
     Resample,
 }
 
-/// What the search makes as large as it can.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Badness {
-    RealPart,
-    Closeness,
-    DelaySensitivity,
-    /// The largest |L| of a resonance: where it reaches one there is a further crossover, which may bear much less delay.
-    Peak,
-}
-
 impl StabilityAudit {
     /// An audit that has not begun.
     pub fn new(family: &Family, compensation: &Compensation) -> StabilityAudit {
@@ -196,6 +188,9 @@ impl StabilityAudit {
 
     fn judged(&self, plant: &PlantPoint) -> MemberStability {
         match (&self.path, self.member(plant)) {
+            (Ok(_), Ok(member @ Member::Responding { .. })) if self.plants.first() != Some(plant) => {
+                responding::stability(&member, &self.compensation, Count::OnPoints)
+            }
             (Ok(path), Ok(member)) => of_member(&member, &self.compensation, path),
             (Err(reason), _) => MemberStability::not_resolved(reason.clone()),
             (_, Err(error)) => MemberStability::not_resolved(Irresolution::Linear(error)),
@@ -244,7 +239,7 @@ impl StabilityAudit {
         }
         let mut least: Option<DelayMargin> = None;
         for values in self.estimated.drain(..) {
-            let plant = family.plant().coefficients(&values);
+            let Some(plant) = family.plant().coefficients(&values) else { continue };
             let Some(found) = resampled::critical_delay(&plant, &self.compensation, path) else { continue };
             if least.as_ref().is_none_or(|least| found.delay_s < least.delay_s) {
                 let CriticalDelay { delay_s, frequency_rad_per_s } = found;
@@ -311,6 +306,10 @@ impl StabilityAudit {
         let Some(sample_time_s) = self.compensation.sample_time_s().filter(|_| self.searched()) else {
             return Folded::none(dimension);
         };
+        if !family.plant().is_rational() {
+            self.record.doubt(Irresolution::FoldingUnknown, self.nominal());
+            return Folded::none(dimension);
+        }
         let mut bases = vec![vec![0.5; dimension]];
         for badness in [Badness::Closeness, Badness::RealPart] {
             bases.extend(self.starts(family, badness).into_iter().take(1));
@@ -375,7 +374,10 @@ impl StabilityAudit {
         };
         match characteristic(&member, path) {
             Some(Ok(characteristic)) => badness.of(&characteristic).unwrap_or(f64::NAN),
-            _ => f64::NAN,
+            Some(Err(_)) => f64::NAN,
+            None => responding::first_look(&member, &self.compensation)
+                .and_then(|open_loop| badness.of_response(&open_loop))
+                .unwrap_or(f64::NAN),
         }
     }
 
@@ -428,6 +430,14 @@ impl StabilityAudit {
         };
         let way = match (&record.real_part, &self.family) {
             (_, Family::Measured(_)) => "by Nyquist's count on the points of their responses",
+            (None, Family::Uncertain(family)) if !family.plant().is_rational() => {
+                match self.compensation.sample_time_s() {
+                    None => {
+                        "by Nyquist's count, 1 + L of the nominal plant enclosed from each frequency to the next"
+                    }
+                    Some(_) => "by Nyquist's count on points of their responses",
+                }
+            }
             (Some(_), _) => "by their closed-loop poles",
             (None, _) => "by the turns of their characteristic function",
         };
@@ -457,37 +467,4 @@ impl StabilityAudit {
             Family::Measured(_) => false,
         }
     }
-}
-
-impl Badness {
-    fn of(self, characteristic: &Characteristic) -> Option<f64> {
-        match self {
-            Badness::RealPart => characteristic.largest_real_part().ok()?,
-            Badness::Closeness => {
-                let found = characteristic.encirclement().ok()?;
-                Some(if found.unstable_poles > 0 { f64::INFINITY } else { -found.closest.0 })
-            }
-            Badness::DelaySensitivity => Some(-characteristic.critical_delay().ok()?.delay_s),
-            Badness::Peak => characteristic.largest_peak(),
-        }
-    }
-
-    /// What was kept of a plant.
-    fn among(self, plant: &[f64; 3]) -> f64 {
-        let &[real_part, closeness, delay_sensitivity] = plant;
-        match self {
-            Badness::RealPart => real_part,
-            Badness::Closeness => closeness,
-            Badness::DelaySensitivity => delay_sensitivity,
-            Badness::Peak => f64::NAN,
-        }
-    }
-}
-
-fn badness_of(found: &MemberStability) -> [f64; 3] {
-    [
-        found.largest_real_part.unwrap_or(f64::NAN),
-        found.closest_approach.map_or(f64::NAN, |closest| -closest.distance),
-        found.critical_delay.map_or(f64::NAN, |critical| -critical.delay_s),
-    ]
 }

@@ -142,7 +142,7 @@ fn movement(family: &UncertainFamily, sample_time_s: f64, base: &[f64], coordina
 
 /// The upper members of the pairs of poles, times T.
 fn modes(family: &UncertainFamily, sample_time_s: f64, shares: &[f64]) -> Vec<Complex64> {
-    let plant = family.plant().coefficients(&family.values(shares));
+    let Some(plant) = family.plant().coefficients(&family.values(shares)) else { return Vec::new() };
     let roots = Polynomial::new(plant.command.denominator).roots().unwrap_or_default();
     let upper = roots.into_iter().filter(|root| root.im > 0.0).map(|root| root * sample_time_s);
     upper.filter(|mode| mode.is_finite()).collect()

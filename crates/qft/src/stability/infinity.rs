@@ -50,6 +50,10 @@ struct Around {
 
 /// Looks for a change of sign over the whole box.
 pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> Infinity {
+    if !family.plant().is_rational() {
+        // its gain falls towards infinite frequency, which the count of every member asks for
+        return Infinity::Kept;
+    }
     let around = Around::new(compensation);
     let dimension = family.coordinates().len();
     let signs = |low: &[f64], high: &[f64]| around.leading(family, low, high);
@@ -181,7 +185,10 @@ impl Around {
         let (from, to) = (family.values(low), family.values(high));
         let parameters: Vec<Interval> =
             from.iter().zip(&to).map(|(&from, &to)| Interval::new(from, to)).collect();
-        let PlantCoefficients { command, dead_time_s, .. } = family.plant().enclosures(&parameters);
+        let Some(PlantCoefficients { command, dead_time_s, .. }) = family.plant().enclosures(&parameters)
+        else {
+            return vec![Interval::WHOLE];
+        };
         let zero = Interval::from(0.0);
         // a coefficient that is zero for every plant is none
         let kept = |coefficients: Vec<Interval>| -> (Interval, i64) {

@@ -1,4 +1,4 @@
-//! Nyquist's count on measured points.
+//! Nyquist's count on the points of a response, and what else is read from them.
 //!
 //! ```text
 //! Z = P - (1/pi) (change of arg(1 + L), w = 0 .. infinity)        P: open-loop poles in the right half plane, stated with the measurement
@@ -12,6 +12,7 @@ use phea_dynamics::portable;
 
 use super::{Approach, CriticalDelay, Instability, Irresolution, MemberStability, StabilityStatus};
 use crate::closed_loop::{Compensation, Member};
+use crate::verification::between;
 
 /// Largest turn between two points, rad.
 const TURN_MAXIMUM: f64 = std::f64::consts::FRAC_PI_3;
@@ -21,55 +22,63 @@ const CLOSEST: f64 = 1e-9;
 const SMALL_GAIN: f64 = 0.5;
 /// |L| that is well above one.
 const LARGE_GAIN: f64 = 2.0;
+/// The frequency of the least |1 + L| is found to this part of itself.
+const POLISHED: f64 = 1e-7;
 /// How near to a whole number of integrators the slope of ln|L| must be at the low end.
 const SLOPE_TOLERANCE: f64 = 0.3;
 
-/// L at the frequencies of the measurement, up to half the sampling rate.
-struct OpenLoop<'a> {
+/// L at these frequencies, up to half the sampling rate.
+pub(super) struct OpenLoop<'a> {
     member: &'a Member,
     compensation: &'a Compensation,
     points: Vec<(f64, Complex64)>,
-    unstable_poles: usize,
 }
 
 pub(super) fn stability(member: &Member, compensation: &Compensation) -> MemberStability {
-    let count = OpenLoop::new(member, compensation).and_then(|open_loop| {
-        let unstable = open_loop.unstable_closed_loop_poles()?;
-        Ok((open_loop, unstable))
-    });
-    let (open_loop, unstable) = match count {
-        Ok(counted) => counted,
-        Err(reason) => return MemberStability::not_resolved(reason),
+    let Member::Measured { plant, sensor, .. } = member else {
+        return MemberStability::not_resolved(Irresolution::Points);
     };
-    let stable = unstable == 0;
-    MemberStability {
-        status: if stable {
-            StabilityStatus::Stable
-        } else {
-            StabilityStatus::Unstable(Instability::Poles { count: unstable })
-        },
-        largest_real_part: None,
-        closest_approach: stable.then(|| open_loop.closest_approach()),
-        critical_delay: stable.then(|| open_loop.critical_delay()),
+    let open_loop = OpenLoop::new(member, compensation, &plant.frequencies_rad_per_s, plant.is_resolved);
+    match open_loop.unstable_closed_loop_poles(plant.unstable_poles, sensor) {
+        Ok(unstable) => open_loop.stability(unstable),
+        Err(reason) => MemberStability::not_resolved(reason),
     }
 }
 
 impl<'a> OpenLoop<'a> {
-    fn new(member: &'a Member, compensation: &'a Compensation) -> Result<OpenLoop<'a>, Irresolution> {
-        let Member::Measured { plant, sensor, .. } = member else { return Err(Irresolution::Points) };
-        let outside = outside_of_stable_region(compensation.feedback())?
-            + outside_of_stable_region(sensor)?
-            + plant.unstable_poles;
-        let mut open_loop = OpenLoop { member, compensation, points: Vec::new(), unstable_poles: outside };
+    /// At these frequencies in rad/s; where the response is known between them, at as many more as 1 + L needs to turn little from each
+    /// to the next.
+    pub(super) fn new(
+        member: &'a Member,
+        compensation: &'a Compensation,
+        frequencies_rad_per_s: &[f64],
+        is_known_between: bool,
+    ) -> OpenLoop<'a> {
+        let mut open_loop = OpenLoop { member, compensation, points: Vec::new() };
         let highest = compensation.highest_frequency_rad_per_s();
-        for &frequency in plant.frequencies_rad_per_s.iter().take_while(|&&frequency| frequency <= highest) {
+        for &frequency in frequencies_rad_per_s.iter().take_while(|&&frequency| frequency <= highest) {
             let Some(value) = open_loop.at(frequency) else { continue };
-            if plant.is_resolved {
+            if is_known_between {
                 open_loop.fill_up_to((frequency, value));
             }
             open_loop.points.push((frequency, value));
         }
-        Ok(open_loop)
+        open_loop
+    }
+
+    /// What is known of a loop with so many unstable poles.
+    pub(super) fn stability(&self, unstable: usize) -> MemberStability {
+        let stable = unstable == 0;
+        MemberStability {
+            status: if stable {
+                StabilityStatus::Stable
+            } else {
+                StabilityStatus::Unstable(Instability::Poles { count: unstable })
+            },
+            largest_real_part: None,
+            closest_approach: stable.then(|| self.closest_approach()),
+            critical_delay: stable.then(|| self.critical_delay()),
+        }
     }
 
     /// Points between the last one and this one, as many as 1 + L needs to turn little from each to the next.
@@ -95,7 +104,15 @@ impl<'a> OpenLoop<'a> {
         Some(response.plant * response.sensor * self.compensation.feedback().at_frequency(frequency))
     }
 
-    fn unstable_closed_loop_poles(&self) -> Result<usize, Irresolution> {
+    /// Poles of the closed loop outside of the stable region, around a plant with so many of its own.
+    pub(super) fn unstable_closed_loop_poles(
+        &self,
+        of_plant: usize,
+        sensor: &TransferFunction,
+    ) -> Result<usize, Irresolution> {
+        let own = outside_of_stable_region(self.compensation.feedback())?
+            + outside_of_stable_region(sensor)?
+            + of_plant;
         let &[first, second, ..] = self.points.as_slice() else { return Err(Irresolution::Points) };
         let mut turned = turn_below(first, second)?;
         for pair in self.points.windows(2) {
@@ -117,24 +134,42 @@ impl<'a> OpenLoop<'a> {
             return Err(Irresolution::HighEnd { frequency_rad_per_s, gain });
         }
         turned -= portable::argument(1.0 + last);
-        let count = self.unstable_poles as f64 - turned / std::f64::consts::PI;
+        let count = own as f64 - turned / std::f64::consts::PI;
         if (count - count.round()).abs() > 1e-6 || count.round() < 0.0 {
             return Err(Irresolution::Count { count });
         }
         Ok(count.round() as usize)
     }
 
-    fn closest_approach(&self) -> Approach {
-        let distances = self.points.iter().map(|&(frequency_rad_per_s, value)| Approach {
-            distance: portable::magnitude(1.0 + value),
-            frequency_rad_per_s,
-        });
+    /// The least |1 + L|: that of the points, or beside the least of them where the response is known there.
+    pub(super) fn closest_approach(&self) -> Approach {
+        let distance = |value: Complex64| portable::magnitude(1.0 + value);
+        let order = |one: &&[(f64, Complex64)], other: &&[(f64, Complex64)]| {
+            distance(one[1].1).total_cmp(&distance(other[1].1))
+        };
+        let ends = self
+            .points
+            .iter()
+            .map(|&(frequency_rad_per_s, value)| Approach { distance: distance(value), frequency_rad_per_s });
         let none = Approach { distance: f64::INFINITY, frequency_rad_per_s: f64::INFINITY };
-        distances.fold(none, |nearest, next| if next.distance < nearest.distance { next } else { nearest })
+        let least =
+            ends.fold(none, |nearest, next| if next.distance < nearest.distance { next } else { nearest });
+        let Some(&[before, nearest, after]) =
+            self.points.windows(3).min_by(order).and_then(|points| points.first_chunk())
+        else {
+            return least;
+        };
+        if nearest.0 != least.frequency_rad_per_s {
+            return least;
+        }
+        let at = |frequency: f64| self.at(frequency).map_or(f64::INFINITY, distance);
+        let start = (nearest.0, least.distance);
+        let (frequency_rad_per_s, found) = between(at, [before.0, after.0], start, POLISHED * nearest.0);
+        if found < least.distance { Approach { distance: found, frequency_rad_per_s } } else { least }
     }
 
     /// Crossovers lie where the line between two points crosses one.
-    fn critical_delay(&self) -> CriticalDelay {
+    pub(super) fn critical_delay(&self) -> CriticalDelay {
         let above = |value: Complex64| portable::magnitude(value) >= 1.0;
         let mut least = CriticalDelay::NONE;
         for pair in self.points.windows(2) {
@@ -172,7 +207,7 @@ fn turn(before: Complex64, after: Complex64) -> f64 {
 }
 
 /// Poles outside of the stable region; those at zero frequency show in the measured loop.
-fn outside_of_stable_region(function: &TransferFunction) -> Result<usize, Irresolution> {
+pub(super) fn outside_of_stable_region(function: &TransferFunction) -> Result<usize, Irresolution> {
     let continuous = function.domain() == TimeDomain::Continuous;
     let excess = |pole: &Complex64| if continuous { pole.re } else { portable::magnitude(*pole) - 1.0 };
     let at_zero_frequency = if continuous { Complex64::new(0.0, 0.0) } else { Complex64::new(1.0, 0.0) };

@@ -125,8 +125,8 @@ impl<'a> Plants<'a> {
     /// P, Pd and H at these parameter values.
     pub(super) fn response(&mut self, values: &[f64]) -> Result<MemberResponse, TemplateError> {
         self.evaluations += 1;
-        let coefficients = self.family.plant().coefficients(values);
-        let response = self.compensation.plant_response(coefficients, self.frequency_rad_per_s);
+        let plant = self.family.plant();
+        let response = self.compensation.response_of(plant, values, self.frequency_rad_per_s);
         response.map_err(|reason| TemplateError::Plant { values: values.to_vec(), reason })
     }
 

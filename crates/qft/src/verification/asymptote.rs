@@ -2,6 +2,8 @@
 
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
+use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::uncertain_plant::RationalCoefficients;
 
 use num_complex::Complex64;
 
@@ -120,6 +122,10 @@ pub(super) fn margin(
     with_prefilter: bool,
     end: End,
 ) -> Option<EndMargin> {
+    if criterion.side == Side::Above && end == End::Infinity && matches!(member, Member::Responding { .. }) {
+        // a bound from above says nothing of what must not fall
+        return None;
+    }
     let parts = parts(compensation, member, with_prefilter, end)?;
     let numerator = match criterion.quantity {
         Quantity::Complementary => parts.open_loop,
@@ -207,17 +213,28 @@ fn parts(
     let rational = |numerator: &[f64], denominator: &[f64]| {
         Asymptote::of_polynomial(numerator, end).over(Asymptote::of_polynomial(denominator, end))
     };
-    let (plant, load, with_sensor, dead_time) = match member {
+    let path = |path: &Option<RationalCoefficients<f64>>| {
+        path.as_ref().map_or(zero, |path| rational(&path.numerator, &path.denominator))
+    };
+    let (plant, load_motion, with_sensor, turns) = match member {
         Member::Continuous { plant, sensor } => {
             let command = rational(&plant.command.numerator, &plant.command.denominator);
-            (command, &plant.disturbance, command.times(of(sensor)?), plant.dead_time_s)
+            (command, path(&plant.disturbance), command.times(of(sensor)?), plant.dead_time_s > 0.0)
         }
         Member::Sampled { command, with_sensor, disturbance } => {
-            (of(command)?, disturbance, of(with_sensor)?, 0.0)
+            (of(command)?, path(disturbance), of(with_sensor)?, false)
+        }
+        Member::Responding { plant, sensor, .. } => {
+            // its load-motion path has the ends of the slow plant
+            let slow = plant.slow();
+            let command = match end {
+                End::Zero => rational(&slow.command.numerator, &slow.command.denominator),
+                End::Infinity => rolled_off(plant.as_ref())?,
+            };
+            (command, path(&slow.disturbance), command.times(of(sensor)?), true)
         }
         Member::Measured { .. } => return None,
     };
-    let load_motion = load.as_ref().map_or(zero, |path| rational(&path.numerator, &path.denominator));
     let feedback = of(compensation.feedback())?;
     Some(LoopAsymptotes {
         plant,
@@ -225,6 +242,12 @@ fn parts(
         feedback,
         prefilter: if with_prefilter { of(compensation.prefilter())? } else { Asymptote::ONE },
         open_loop: with_sensor.times(feedback),
-        spun: dead_time > 0.0 && end == End::Infinity,
+        spun: turns && end == End::Infinity,
     })
+}
+
+/// What bounds the gain of a plant without polynomials towards infinite frequency.
+fn rolled_off(plant: &dyn RespondingPlant) -> Option<Asymptote> {
+    let [_, from] = plant.range_rad_per_s();
+    Some(Asymptote { coefficient: plant.roll_off(from)? * from * from * from, power: -3 })
 }

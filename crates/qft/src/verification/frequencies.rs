@@ -9,6 +9,7 @@ use super::asymptote;
 use super::criterion::Quantity;
 use super::evaluator::Evaluator;
 use crate::closed_loop::Member;
+use crate::family::tabulated;
 use crate::specification::Limit;
 
 /// Points in a decade where roots are, and beyond them.
@@ -95,6 +96,16 @@ pub(super) fn features(evaluator: &Evaluator, member: &Member) -> Features {
             let crossing = asymptote::crossing(&evaluator.compensation, member);
             let crossing = crossing.map(|frequency| [frequency, frequency]);
             Features { range: [own.range, crossing].into_iter().flatten().reduce(joined), ..own }
+        }
+        Member::Responding { plant, delay_s, .. } => {
+            let range = plant.range_rad_per_s();
+            let bends = tabulated(plant.as_ref(), range, String::new());
+            Features {
+                frequencies: bends.frequencies_rad_per_s,
+                range: Some(range),
+                complete: false,
+                dead_time_s: delay_s + plant.echo_s() + evaluator.compensator_dead_time_s,
+            }
         }
         Member::Measured { plant, delay_s, .. } => {
             let ends = plant.frequencies_rad_per_s.first().zip(plant.frequencies_rad_per_s.last());

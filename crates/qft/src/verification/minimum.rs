@@ -5,11 +5,11 @@ const GOLDEN: f64 = 0.381_966_011_250_105_1;
 const STEPS_MAXIMUM: usize = 80;
 
 /// A point and the value there.
-pub(super) type At = (f64, f64);
+pub(crate) type At = (f64, f64);
 
 /// A local minimum between two ends, from a point between them: parabolas through the last points, golden sections where they
 /// fail (Brent 1973, chapter 5). NaN counts as infinite.
-pub(super) fn between<F: FnMut(f64) -> f64>(mut f: F, ends: [f64; 2], start: At, tolerance: f64) -> At {
+pub(crate) fn between<F: FnMut(f64) -> f64>(mut f: F, ends: [f64; 2], start: At, tolerance: f64) -> At {
     let [mut low, mut high] = ends;
     let (mut best, mut second, mut third) = (start, start, start);
     let (mut step, mut before_last): (f64, f64) = (0.0, 0.0);

@@ -47,7 +47,7 @@ pub(super) fn remarks(
     let measured = joining.plants.iter().any(|plant| matches!(plant.point, PlantPoint::Measured(_)));
     if measured {
         remarks.push(
-            "plants known by their responses: between two frequencies of them the response is interpolated"
+            "measured plants: between two frequencies of the measurement the response is interpolated"
                 .to_string(),
         );
     }

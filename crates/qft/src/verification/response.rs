@@ -154,7 +154,7 @@ impl LoopAt {
                 };
                 (numerator, around, load(disturbance))
             }
-            Member::Measured { .. } => {
+            Member::Responding { .. } | Member::Measured { .. } => {
                 let response = member.response(frequency)?;
                 let around = Fraction::of_value(response.plant * response.sensor);
                 (response.plant, around, Fraction::of_value(response.load_motion))

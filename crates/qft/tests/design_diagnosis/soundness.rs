@@ -55,7 +55,7 @@ fn responses(family: &Family, gains: &[f64], around: &Compensation) -> Vec<(f64,
         let controller = around.response(frequency).feedback;
         let member = |gain: &f64| {
             let MemberResponse { plant, load_motion, sensor } =
-                around.plant_response(uncertain.plant().coefficients(&[*gain]), frequency).unwrap();
+                around.plant_response(uncertain.plant().coefficients(&[*gain]).unwrap(), frequency).unwrap();
             LoopResponse { plant, load_motion, controller, prefilter: one, sensor }
         };
         (frequency, gains.iter().map(member).collect())

@@ -41,7 +41,7 @@ pub(crate) fn tracking(lower: Limit, upper: Limit, band: [f64; 2]) -> Specificat
 pub(crate) fn servo() -> (Compensation, Vec<Member>, Specification) {
     let compensation = around(servo_controller());
     let Family::Uncertain(family) = servo_family() else { panic!("it is a box") };
-    let coefficients = family.members().iter().map(|values| family.plant().coefficients(values));
+    let coefficients = family.members().iter().map(|values| family.plant().coefficients(values).unwrap());
     let members = coefficients.map(|plant| compensation.member(plant).unwrap()).collect();
     let upper = Limit::Rational(rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]));
     let lower = Limit::Rational(rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]));

@@ -28,7 +28,7 @@ fn sampling_delay_and_sensor_are_within_the_points() {
     let built = template(&Family::Uncertain(motor.clone()), &sampled, 3.0, &options).unwrap();
     assert!(matches!(built.template.resolution, Resolution::Resolved { .. }));
     for point in &built.template.points {
-        let plant = motor.plant().response(&point.values, 3.0);
+        let plant = motor.plant().response(&point.values, 3.0).unwrap();
         let lag = polar(1.0, -3.0 * 5.5e-3) / Complex64::new(1.0, 0.3);
         assert!(magnitude(point.response / (plant * lag) - 1.0) < 1e-5);
         assert!(magnitude(point.sensor * Complex64::new(1.0, 0.3) - 1.0) < 1e-2);
@@ -47,7 +47,7 @@ fn a_response_needs_no_factors() {
                 let timing = Timing { sample_time_s, delay_s, ..Timing::default() };
                 let controller = Controller { timing, ..Controller::default() };
                 let compensation = Compensation::new(&controller, sensor.clone()).unwrap();
-                let mut plant = motor.plant().coefficients(&[3.0, 1.5]);
+                let mut plant = motor.plant().coefficients(&[3.0, 1.5]).unwrap();
                 plant.disturbance = Some(plant.command.clone());
                 for frequency in [0.01, 1.0, 10.0, 55.0] {
                     let member = compensation.member(plant.clone()).unwrap().response(frequency).unwrap();

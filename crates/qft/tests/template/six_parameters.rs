@@ -36,7 +36,7 @@ fn an_actuator_is_resolved_with_little_work() {
         assert!(matches!(template.resolution, Resolution::Resolved { .. }), "{:?}", template.resolution);
         evaluations += built.evaluations;
         for values in random_values(&family, 2000, 5) {
-            let response = family.plant().response(&values, template.frequency_rad_per_s);
+            let response = family.plant().response(&values, template.frequency_rad_per_s).unwrap();
             assert!(beyond(&template.outlines, response, &options) < 0.1, "{values:?}");
         }
     }

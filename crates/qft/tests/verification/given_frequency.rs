@@ -76,7 +76,7 @@ fn least(case: &Case, frequency: f64) -> Vec<f64> {
     let mut least = vec![f64::INFINITY; case.specifications.len()];
     for shares in close_look() {
         for (least, specification) in least.iter_mut().zip(&case.specifications) {
-            let plant = family.plant().coefficients(&family.values(&shares));
+            let plant = family.plant().coefficients(&family.values(&shares)).unwrap();
             *least = least.min(margin_db(&case.around, specification, plant, frequency));
         }
     }
@@ -88,7 +88,8 @@ fn spread_left(case: &Case, frequency: f64, allowed: f64) -> f64 {
     let Family::Uncertain(family) = &case.family else { panic!("a box") };
     let (mut least, mut greatest) = (f64::INFINITY, 0.0_f64);
     for shares in close_look() {
-        let member = case.around.member(family.plant().coefficients(&family.values(&shares))).unwrap();
+        let member =
+            case.around.member(family.plant().coefficients(&family.values(&shares)).unwrap()).unwrap();
         let open = member.response(frequency).unwrap().plant * case.around.response(frequency).feedback;
         let closed = (open.norm_sqr() / (1.0 + open).norm_sqr()).sqrt();
         (least, greatest) = (least.min(closed), greatest.max(closed));

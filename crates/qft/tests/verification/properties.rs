@@ -113,7 +113,7 @@ fn no_plant_and_frequency_drawn_at_random_is_worse_than_the_worst_case_found() {
         for _ in 0..10_000 {
             let shares: Vec<f64> = (0..4).map(|_| draw.share()).collect();
             let values = family.values(&shares);
-            let member = case.around.member(family.plant().coefficients(&values)).unwrap();
+            let member = case.around.member(family.plant().coefficients(&values).unwrap()).unwrap();
             // half of the draws near the resonance
             let near = values[3] * (1.0 + 0.2 * (draw.share() - 0.5));
             let frequency = if draw.share() < 0.5 { near } else { draw.factor(1e-3, 1e3) };

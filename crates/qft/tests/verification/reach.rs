@@ -139,7 +139,7 @@ fn a_sampled_loop_is_judged_up_to_half_its_sampling_frequency() {
             let (mut truth, mut at) = (f64::INFINITY, 0.0);
             let Family::Uncertain(family) = &servo(31) else { panic!("a box") };
             for values in family.members() {
-                let member = around.member(family.plant().coefficients(values)).unwrap();
+                let member = around.member(family.plant().coefficients(values).unwrap()).unwrap();
                 for point in 1..=3000 {
                     let w = nyquist * 1e-4f64.powf(1.0 - f64::from(point) / 3000.0);
                     let w = w.min(nyquist);

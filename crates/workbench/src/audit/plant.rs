@@ -13,8 +13,6 @@ pub enum PlantNames {
     Parameters(Vec<(String, &'static Dimension)>),
     /// Names of the measurements.
     Measured(Vec<String>),
-    /// Uncertain parameters likewise, and their values for each plant whose response was calculated.
-    Responses(Vec<(String, &'static Dimension)>, Vec<Vec<f64>>),
 }
 
 /// One plant with its names, as JSON shows it: an object of name to SI value.
@@ -33,11 +31,6 @@ impl PlantNames {
         PlantNames::Parameters(dimensioned(names))
     }
 
-    /// The same of plants whose responses were calculated, with their values.
-    pub fn of_responses<'a>(names: impl Iterator<Item = &'a str>, values: Vec<Vec<f64>>) -> PlantNames {
-        PlantNames::Responses(dimensioned(names), values)
-    }
-
     /// Names and values of a plant that has any.
     pub(crate) fn numbers<'a>(
         &'a self,
@@ -45,9 +38,6 @@ impl PlantNames {
     ) -> Option<impl Iterator<Item = (&'a str, &'static Dimension, f64)>> {
         let (names, values) = match (self, plant) {
             (PlantNames::Parameters(names), PlantPoint::Parameters(values)) => (names, values),
-            (PlantNames::Responses(names, plants), PlantPoint::Measured(index)) => {
-                (names, plants.get(*index)?)
-            }
             _ => return None,
         };
         Some(names.iter().zip(values).map(|((name, dimension), value)| (name.as_str(), *dimension, *value)))
@@ -80,9 +70,7 @@ impl PlantNames {
     /// What stands above the columns of [`PlantNames::cells`].
     pub fn headings(&self) -> Vec<&str> {
         match self {
-            PlantNames::Parameters(names) | PlantNames::Responses(names, _) => {
-                names.iter().map(|(name, _)| name.as_str()).collect()
-            }
+            PlantNames::Parameters(names) => names.iter().map(|(name, _)| name.as_str()).collect(),
             PlantNames::Measured(_) => vec!["measurement"],
         }
     }

@@ -113,7 +113,7 @@ fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalMargins>, Li
     }))
 }
 
-/// P H of the nominal plant with the delay of the loop, in z where it samples; `None` for a measured one.
+/// P H of the nominal plant with the delay of the loop, in z where it samples; `None` for one without polynomials.
 fn nominal_plant(problem: &RobustProblem) -> Result<Option<TransferFunction>, LinearError> {
     Ok(match problem.nominal()? {
         Some(Member::Continuous { plant, sensor }) => {
@@ -124,6 +124,6 @@ fn nominal_plant(problem: &RobustProblem) -> Result<Option<TransferFunction>, Li
             Some(command.with_dead_time(plant.dead_time_s)?.series(&sensor)?)
         }
         Some(Member::Sampled { with_sensor, .. }) => Some(with_sensor),
-        Some(Member::Measured { .. }) | None => None,
+        Some(Member::Responding { .. } | Member::Measured { .. }) | None => None,
     })
 }

@@ -31,7 +31,8 @@ pub(super) fn uncertain_plant(
         let open = Open { project, declared, rig, names };
         open.plant(values, *moved, *one_pressure).1.coefficients()
     })?;
-    let idle = (0..names.len()).find(|index| !recorded.expression().depends_on(*index));
+    let expression = recorded.expression();
+    let idle = (0..names.len()).find(|index| expression.is_some_and(|one| !one.depends_on(*index)));
     match idle.and_then(|index| names.get(index)) {
         Some(path) => Err(FamilyError::Path { path: path.clone(), reason: reason(path) }),
         None => Ok(recorded),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
 use phea_qft::family::{self, Coordinate, Extent, UncertainFamily};
 
 use super::FamilyError;
@@ -76,7 +76,9 @@ fn distinct(members: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 /// No dead time of a member may be negative.
 fn check_delay(family: &UncertainFamily) -> Result<(), FamilyError> {
     for values in family.members() {
-        let delay_s = family.plant().coefficients(values).dead_time_s;
+        let Some(PlantCoefficients { dead_time_s: delay_s, .. }) = family.plant().coefficients(values) else {
+            continue;
+        };
         if !(delay_s >= 0.0 && delay_s.is_finite()) {
             let names = family.plant().parameters().iter().map(|parameter| &parameter.name);
             let member: Vec<String> =

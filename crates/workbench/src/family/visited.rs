@@ -23,6 +23,7 @@ const CORNERS: usize = 4096;
 const WITHIN: usize = 64;
 
 /// The rig of a family with its uncertain numbers open.
+#[derive(Debug)]
 pub(super) struct Visited {
     pub(super) rig: Rig,
     pub(super) names: Vec<String>,

@@ -36,6 +36,9 @@ pub(super) fn figure(
     let Family::Uncertain(family) = &problem.family else {
         return Some(Err("measured responses have no step response".to_string()));
     };
+    if !family.plant().is_rational() {
+        return Some(Err("with lines in motion only the trial on the machine has steps".to_string()));
+    }
     let drawn = drawn(problem, family, view, limits);
     Some(drawn.map(|input| family_step(words(names), &input)).map_err(|error| error.to_string()))
 }
@@ -60,7 +63,8 @@ fn drawn(
         Ok::<_, TimeResponseError>(TimeSeries { name: name.to_string(), values, times_s: times_s.to_vec() })
     };
     let member = |name: &str, values: &[f64]| {
-        let plant = family.plant().coefficients(values);
+        let plant =
+            family.plant().coefficients(values).ok_or(TimeResponseError::from(LinearError::NoPlant))?;
         let delayed = plant.dead_time_s + problem.compensation.delay_s() > 0.0;
         if problem.compensation.sample_time_s().is_none() && delayed {
             let (times_s, values) = delayed_step(problem, plant, duration)?;

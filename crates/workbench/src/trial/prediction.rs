@@ -1,15 +1,19 @@
 //! The step response that the linear loop predicts: of polynomials, or of responses where lines move.
 
+use std::sync::Arc;
+
 use num_complex::Complex64;
+use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::time_response::{
     StepBaseline, StepMetrics, TimeResponseError, step_metrics, step_of_frequency_response,
 };
+use phea_dynamics::uncertain_plant::PlantMember;
 use phea_hydraulics::linear::transfer_functions;
 use phea_qft::closed_loop::{Compensation, Member};
-use phea_qft::family::MeasuredPlant;
+use phea_qft::family::tabulated;
 use phea_qft::stability::{StabilityStatus, member_stability};
 
-use super::rigs::{LinearPlant, Tried};
+use super::rigs::Tried;
 use super::run::{BAND_PERCENT, Response};
 use crate::command::CommandError;
 use crate::control::{controller, deployed, sensor};
@@ -37,11 +41,11 @@ pub(super) enum Prediction {
 /// The prediction for one machine.
 pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Prediction, CommandError> {
     match &tried.plant {
-        LinearPlant::Unknown => Ok(Prediction::Unknown),
-        LinearPlant::Responses(plant) => {
+        None => Ok(Prediction::Unknown),
+        Some(PlantMember::Responding(plant)) => {
             Ok(of_responses(plant, &problem.compensation).unwrap_or(Prediction::Unknown))
         }
-        LinearPlant::Rational(plant) => {
+        Some(PlantMember::Rational(plant)) => {
             let Some(given) = controller(&tried.project)? else { return Ok(Prediction::Unknown) };
             let given = deployed(&tried.project, &given)?;
             let plant = transfer_functions(plant)?.command;
@@ -57,16 +61,19 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
     }
 }
 
-fn of_responses(plant: &MeasuredPlant, compensation: &Compensation) -> Result<Prediction, TimeResponseError> {
-    let member = compensation.measured(plant);
+fn of_responses(
+    plant: &Arc<dyn RespondingPlant>,
+    compensation: &Compensation,
+) -> Result<Prediction, TimeResponseError> {
+    let member = compensation.responding(plant.clone());
     match member_stability(&member, compensation).status {
         StabilityStatus::Stable => {}
         StabilityStatus::Unstable(_) => return Ok(Prediction::Grows),
         StabilityStatus::NotResolved(_) => return Ok(Prediction::Unknown),
     }
     let highest = compensation.highest_frequency_rad_per_s();
-    let points =
-        straight(&plant.frequencies_rad_per_s, highest, |frequency| closed(&member, compensation, frequency));
+    let grid = tabulated(plant.as_ref(), plant.range_rad_per_s(), String::new()).frequencies_rad_per_s;
+    let points = straight(&grid, highest, |frequency| closed(&member, compensation, frequency));
     let final_value = points.first().map_or(1.0, |(_, real)| *real);
     let mut found = Prediction::Unknown;
     for duration in DURATIONS_S {

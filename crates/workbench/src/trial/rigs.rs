@@ -1,18 +1,17 @@
 //! Which machines a verdict is tried on: the declared one, the worst plants of the audit made into rigs, and lumped lines with their waves.
 
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
-use phea_dynamics::uncertain_plant::PlantCoefficients;
+use phea_dynamics::uncertain_plant::PlantMember;
 use phea_hydraulics::line::{Conduit, Member};
-use phea_qft::family::{Family, MeasuredPlant};
+use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
 use crate::audit::{NamedPlant, ProjectAudit};
-use crate::family::family;
 use crate::project::{Actuator, Component, EdgeCoefficients, LINEAR_PARAMETERS, Line, LineModel, Project};
 use crate::rig::Rig;
 use crate::robust::RobustProblem;
-use crate::source::Memory;
 
 /// A machine and the plant that the linear loop has for it.
 #[derive(Clone, Debug)]
@@ -23,18 +22,8 @@ pub(super) struct Tried {
     /// Where the lines of a rig with waves begin to oscillate, rad/s.
     pub(super) quarter_wave_rad_per_s: Option<f64>,
     pub(super) project: Project,
-    pub(super) plant: LinearPlant,
-}
-
-/// A plant of the linear loop.
-#[derive(Clone, Debug)]
-pub(super) enum LinearPlant {
-    /// With lumped lines.
-    Rational(PlantCoefficients<f64>),
-    /// With lines in motion.
-    Responses(MeasuredPlant),
-    /// None is known.
-    Unknown,
+    /// `None` where none is known.
+    pub(super) plant: Option<PlantMember>,
 }
 
 /// Part by which a parameter of the linear model may miss that of a plant.
@@ -53,15 +42,15 @@ pub(super) fn rigs(
     let (mut rigs, mut missing) = (Vec::new(), Vec::new());
     if let Ok(rig) = Rig::new(project) {
         let plant = match &rig.in_motion {
-            None => LinearPlant::Rational(rig.plant.coefficients()),
-            Some(_) => alone(project).map_or(LinearPlant::Unknown, LinearPlant::Responses),
+            None => PlantMember::Rational(rig.plant.coefficients()),
+            Some(moving) => PlantMember::Responding(Arc::new(*moving)),
         };
         let of = |what: &str, project: Project, quarter_wave_rad_per_s| Tried {
             what: what.to_string(),
             named: None,
             quarter_wave_rad_per_s,
             project,
-            plant: plant.clone(),
+            plant: Some(plant.clone()),
         };
         rigs.push(of("the rig as declared", project.clone(), None));
         let waves = with_waves(project);
@@ -83,31 +72,15 @@ pub(super) fn rigs(
                 named: Some(view.names.named(&worst.plant)),
                 quarter_wave_rad_per_s: None,
                 project,
-                plant: match (&problem.family, &worst.plant) {
-                    (Family::Uncertain(family), _) => {
-                        LinearPlant::Rational(family.plant().coefficients(&values))
-                    }
-                    (Family::Measured(family), PlantPoint::Measured(index)) => family
-                        .plants()
-                        .get(*index)
-                        .cloned()
-                        .map_or(LinearPlant::Unknown, LinearPlant::Responses),
-                    _ => LinearPlant::Unknown,
+                plant: match &problem.family {
+                    Family::Uncertain(family) => family.plant().member(&values),
+                    Family::Measured(_) => None,
                 },
             }),
             Err(reason) => missing.push(format!("{what} ({}): {reason}", view.names.text(&worst.plant))),
         }
     }
     (rigs, missing)
-}
-
-/// The response of the rig itself, its lines in motion.
-fn alone(project: &Project) -> Option<MeasuredPlant> {
-    let alone = Project { uncertainty: Vec::new(), family: None, ..project.clone() };
-    match family(&alone, &Memory::default()).ok()? {
-        Family::Measured(family) => family.plants().first().cloned(),
-        Family::Uncertain(_) => None,
-    }
 }
 
 /// The same rig, its lumped lines as transmission lines; `None` where nothing of them is lumped or long.

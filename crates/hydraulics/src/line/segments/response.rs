@@ -1,41 +1,82 @@
-use num_complex::Complex64;
+use std::f64::consts::PI;
+
+use phea_dynamics::analytic::Analytic;
+use phea_dynamics::portable::cos;
 
 use super::Segments;
 use crate::line::TransferMatrix;
 use crate::line::laminar_friction::UNSTEADY_FRICTION;
 
 impl Segments {
-    /// See [`crate::line::DynamicLine::transfer_matrix`]: every node a capacity across the line, every segment an impedance along it.
-    pub(in crate::line) fn transfer_matrix(&self, s: Complex64) -> TransferMatrix {
-        let segments = self.count.max(1) as f64;
-        let along = self.impedance(s) / segments;
-        let mut matrix = TransferMatrix::IDENTITY;
-        for node in 0..self.count {
-            let capacity = self.share() / if node == 0 { 2.0 } else { 1.0 };
-            matrix = matrix.across(s * capacity + self.creep_admittance(node, s)).along(along);
+    /// See [`crate::line::DynamicLine::transfer_matrix`]: N equal sections, each an impedance z along the line between two halves of an
+    /// admittance y across it, with the Chebyshev polynomials T_N and U_(N-1) by their roots:
+    ///
+    /// ```text
+    /// x = 1 + z y/2:     a = d = T_N(x),   b = z U_(N-1)(x),   c = y (1 + z y/4) U_(N-1)(x)
+    /// T_N(x) = 1/2 product of 2 (x - cos((2 k - 1) pi/(2 N))),     U_(N-1)(x) = product of 2 (x - cos(k pi/N))
+    /// ```
+    ///
+    /// The last half of the elastic capacity belongs to the chamber.
+    pub(in crate::line) fn transfer_matrix<A: Analytic>(&self, s: A) -> TransferMatrix<A> {
+        let creeping = self.creep_admittance(s);
+        if self.count == 0 {
+            return TransferMatrix::identity().across(creeping);
         }
-        matrix.across(self.creep_admittance(self.count, s))
+        let sections = self.count as f64;
+        let along = self.impedance(s).scaled(1.0 / sections);
+        let across = s.scaled(self.share()) + creeping.scaled(1.0 / sections);
+        let product = along * across;
+        let one = A::from(1.0);
+        let x = one + product.scaled(0.5);
+        let quarters = |count: usize, offset: f64| {
+            let root = move |k: usize| cos((k as f64 - offset) * PI / sections);
+            (1..=count).fold(one, |all, k| all * (x - A::from(root(k))).scaled(2.0))
+        };
+        let (own, other) = (quarters(self.count, 0.5).scaled(0.5), quarters(self.count - 1, 0.0));
+        let whole = TransferMatrix {
+            pressure: own,
+            impedance: along * other,
+            admittance: across * (one + product.scaled(0.25)) * other,
+            flow: own,
+        };
+        whole.across(s.scaled(-0.5 * self.share()))
     }
 
     /// Inertance and friction of the whole length, in Pa s/m3.
-    fn impedance(&self, s: Complex64) -> Complex64 {
-        let unsteady = UNSTEADY_FRICTION.into_iter().take(self.lags()).map(|(corner, weight)| {
-            let behind = s / (s + corner * self.viscous_rate);
-            4.0 * weight * self.inertance * self.viscous_rate * behind
-        });
-        s * self.inertance + self.resistance + unsteady.sum::<Complex64>()
+    fn impedance<A: Analytic>(&self, s: A) -> A {
+        let mut sum = s.scaled(self.inertance) + A::from(self.resistance);
+        for (corner, weight) in UNSTEADY_FRICTION.into_iter().take(self.lags()) {
+            let behind = s / (s + A::from(corner * self.viscous_rate));
+            sum = sum + behind.scaled(4.0 * weight * self.inertance * self.viscous_rate);
+        }
+        sum
     }
 
-    /// Flow that the creeping wall takes up at a node, over the pressure there.
-    fn creep_admittance(&self, node: usize, s: Complex64) -> Complex64 {
-        let Some(creep) = self.creep else { return Complex64::ZERO };
-        let ends = if self.count > 0 && (node == 0 || node == self.count) { 2.0 } else { 1.0 };
-        creep.compliance / (ends * self.count.max(1) as f64) * s / (1.0 + creep.retardation_time * s)
+    /// Flow that the creeping wall takes up, over the pressure.
+    fn creep_admittance<A: Analytic>(&self, s: A) -> A {
+        let Some(creep) = self.creep else { return A::from(0.0) };
+        s.scaled(creep.compliance) / (A::from(1.0) + s.scaled(creep.retardation_time))
+    }
+
+    /// Steady resistance of the line, Pa s/m3.
+    pub(in crate::line) fn resistance(&self) -> f64 {
+        if self.count == 0 { 0.0 } else { self.resistance }
     }
 
     /// What yields at once, in m3/Pa.
     pub(in crate::line) fn elastic_compliance(&self) -> f64 {
         self.compliance
+    }
+
+    /// A frequency above all of its modes, rad/s: 2 N/sqrt(I C).
+    pub(in crate::line) fn fastest_rad_per_s(&self) -> f64 {
+        let product = self.inertance * self.compliance;
+        if self.count > 0 && product > 0.0 { 2.0 * self.count as f64 / product.sqrt() } else { 0.0 }
+    }
+
+    /// What a creeping wall yields later, in m3/Pa.
+    pub(in crate::line) fn creep_compliance(&self) -> f64 {
+        self.creep.map_or(0.0, |creep| creep.compliance)
     }
 
     /// The same line, fluid and wall stiffer by a factor.

@@ -1,27 +1,70 @@
-use num_complex::Complex64;
-use phea_dynamics::portable::exp_complex;
+use phea_dynamics::analytic::Analytic;
 
 use super::{TravellingWaves, Wave};
+use crate::line::TransferMatrix;
 use crate::line::attenuation::CORNERS;
-use crate::line::{LineResponse, TransferMatrix};
+
+/// A wave at s: what its impedances in phase and in opposition consist of.
+struct WaveResponse<A> {
+    /// Z_i(s)
+    impedance: A,
+    /// 1 + E_i
+    sum: A,
+    /// (1 - E_i)/(s T_i)
+    decay: A,
+    /// s T_i
+    angle: A,
+}
 
 impl<const M: usize> TravellingWaves<M> {
     /// See [`crate::line::DynamicLine::transfer_matrix`]. With E_i = e^(-s T_i) A_i(s) the waves see
     ///
     /// ```text
-    /// in phase        p/q = R_0/2 b_1/(b_1 + s T_1) + sum of Z_i(s) (1 + E_i)/(1 - E_i)
-    /// in opposition   p/q = R_0/2 b_1/(b_1 + s T_1) + sum of Z_i(s) (1 - E_i)/(1 + E_i)
+    /// in phase        p/q = R_0/2 b_1/(b_1 + s T_1) + sum of Z_i(s) (1 + E_i)/(1 - E_i) = n/(s d)
+    /// in opposition   p/q = R_0/2 b_1/(b_1 + s T_1) + sum of Z_i(s) (1 - E_i)/(1 + E_i) = m/e
+    ///     d = product of (1 - E_i)/(s T_i),   e = product of (1 + E_i)
+    /// a = d = (n e + s d m)/D,   b = 2 n m/D,   c = 2 s d e/D,      D = n e - s d m
     /// ```
-    pub(in crate::line) fn transfer_matrix(&self, s: Complex64) -> TransferMatrix {
+    ///
+    /// Without friction and with one wave D is Z/T 4 e^(-sT): nothing else is divided by, so that a resonance of the line is an
+    /// ordinary point.
+    pub(in crate::line) fn transfer_matrix<A: Analytic>(&self, s: A) -> TransferMatrix<A> {
         let first = self.waves.first().map_or(0.0, |wave| wave.delay);
-        let steady = self.half_resistance * CORNERS[0] / (CORNERS[0] + s * first);
-        let mut response = LineResponse { in_phase: steady, in_opposition: steady };
-        for wave in &self.waves {
-            let (impedance, passed) = wave.response(s);
-            response.in_phase += impedance * (1.0 + passed) / (1.0 - passed);
-            response.in_opposition += impedance * (1.0 - passed) / (1.0 + passed);
+        let steady = A::from(self.half_resistance * CORNERS[0]) / (A::from(CORNERS[0]) + s.scaled(first));
+        let waves = self.waves.map(|wave| wave.response(s));
+        let product = |of: &dyn Fn(&WaveResponse<A>) -> A, without: Option<usize>| {
+            let others = waves.iter().enumerate().filter(|(index, _)| Some(*index) != without);
+            others.fold(A::from(1.0), |product, (_, wave)| product * of(wave))
+        };
+        let (sum, decay) = (|wave: &WaveResponse<A>| wave.sum, |wave: &WaveResponse<A>| wave.decay);
+        let (both_decays, both_sums) = (product(&decay, None), product(&sum, None));
+        let (mut in_phase, mut in_opposition) = (s * steady * both_decays, steady * both_sums);
+        for (index, (response, wave)) in waves.iter().zip(&self.waves).enumerate() {
+            let yielding = (response.impedance * response.sum).scaled(1.0 / wave.delay);
+            in_phase = in_phase + yielding * product(&decay, Some(index));
+            let passing = response.impedance * response.angle * response.decay;
+            in_opposition = in_opposition + passing * product(&sum, Some(index));
         }
-        TransferMatrix::IDENTITY.across(s * self.end_compliance).then(&response.transfer_matrix())
+        let (own, crossed) = (in_phase * both_sums, s * both_decays * in_opposition);
+        let divisor = own - crossed;
+        let straight = (own + crossed) / divisor;
+        let passed = TransferMatrix {
+            pressure: straight,
+            impedance: (in_phase * in_opposition).scaled(2.0) / divisor,
+            admittance: (s * both_decays * both_sums).scaled(2.0) / divisor,
+            flow: straight,
+        };
+        let end = s.scaled(self.end_compliance);
+        TransferMatrix {
+            admittance: passed.admittance + end * passed.pressure,
+            flow: passed.flow + end * passed.impedance,
+            ..passed
+        }
+    }
+
+    /// Steady resistance of the line, Pa s/m3: waves that stand still resist nothing.
+    pub(in crate::line) fn resistance(&self) -> f64 {
+        2.0 * self.half_resistance
     }
 
     /// What yields at once, in m3/Pa.
@@ -47,15 +90,20 @@ impl<const M: usize> TravellingWaves<M> {
 }
 
 impl Wave<f64> {
-    /// Z_i(s) and e^(-s T_i) A_i(s).
-    fn response(&self, s: Complex64) -> (Complex64, Complex64) {
-        let angle = s * self.delay;
-        let (mut impedance, mut attenuation) = (Complex64::ONE, Complex64::ONE);
+    /// With E = e^(-s T) A(s) and A(s) = 1 - s T times a sum of lags: (1 - E)/(s T) is the mean of e^(-s T), and that sum times e^(-s T).
+    fn response<A: Analytic>(&self, s: A) -> WaveResponse<A> {
+        let angle = s.scaled(self.delay);
+        let mut lags = A::from(0.0);
         for (weight, corner) in self.weights.iter().zip(CORNERS) {
-            let lag = *weight / (corner + angle);
-            impedance += lag;
-            attenuation -= lag * angle;
+            lags = lags + A::from(*weight) / (A::from(corner) + angle);
         }
-        (self.impedance * impedance, exp_complex(-angle) * attenuation)
+        let one = A::from(1.0);
+        let delayed = (-angle).exponential();
+        WaveResponse {
+            impedance: (one + lags).scaled(self.impedance),
+            sum: one + delayed * (one - angle * lags),
+            decay: angle.mean_of_decay() + delayed * lags,
+            angle,
+        }
     }
 }

@@ -58,10 +58,12 @@ pub(super) fn candidates(family: &Family, compensation: &Compensation) -> Vec<Ca
                 }
             }
             let seen = |values: &Vec<f64>| {
-                let plant = uncertain.plant().coefficients(values);
-                let command = plant.command.clone();
-                let member = compensation.member(plant).ok()?;
-                Candidate::rational(PlantPoint::Parameters(values.clone()), command, member, compensation)
+                let point = PlantPoint::Parameters(values.clone());
+                let member = compensation.member_of(uncertain.plant(), values).ok()?;
+                match uncertain.plant().coefficients(values) {
+                    Some(plant) => Candidate::rational(point, plant.command, member, compensation),
+                    None => Some(Candidate::without_roots(point, member, compensation)),
+                }
             };
             chosen.into_iter().filter_map(seen).collect()
         }
@@ -70,7 +72,7 @@ pub(super) fn candidates(family: &Family, compensation: &Compensation) -> Vec<Ca
             plants
                 .map(|(index, plant)| {
                     let member = compensation.measured(plant);
-                    Candidate::measured(PlantPoint::Measured(index), member, compensation)
+                    Candidate::without_roots(PlantPoint::Measured(index), member, compensation)
                 })
                 .collect()
         }
@@ -85,8 +87,8 @@ fn strided<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> {
 }
 
 impl Candidate {
-    /// Of a measured plant no root is known; what follows without roots holds nevertheless.
-    fn measured(point: PlantPoint, member: Member, compensation: &Compensation) -> Candidate {
+    /// Of a plant without polynomials no root is known; what follows without roots holds nevertheless.
+    fn without_roots(point: PlantPoint, member: Member, compensation: &Compensation) -> Candidate {
         let dead_time_s = compensation.delay_s() + compensation.sensor().dead_time_s();
         let sample = compensation.sample_time_s();
         Candidate {
@@ -130,7 +132,7 @@ impl Candidate {
                 let right = zeros.iter().copied().filter(is_right).collect();
                 (right, 0, plant.dead_time_s + sensor.dead_time_s())
             }
-            Member::Measured { .. } => return None,
+            Member::Responding { .. } | Member::Measured { .. } => return None,
         };
         let size = |root: &Complex64| portable::magnitude(*root);
         Some(Candidate {

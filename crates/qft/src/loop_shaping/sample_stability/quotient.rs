@@ -37,7 +37,7 @@ impl Quotient {
                 })
             }
             Member::Sampled { with_sensor, .. } => Quotient::of_function(with_sensor),
-            Member::Continuous { .. } | Member::Measured { .. } => None,
+            Member::Continuous { .. } | Member::Responding { .. } | Member::Measured { .. } => None,
         }
     }
 

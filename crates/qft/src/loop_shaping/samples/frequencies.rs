@@ -65,7 +65,7 @@ pub fn search_frequencies(
 fn measured_by_all(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<[f64; 2], SamplesError> {
     let mut common = [0.0, f64::INFINITY];
     for plant in plants {
-        if let Plant::Measured(plant) = plant_at(&problem.family, plant)? {
+        if let Plant::Measured(plant) = plant_at(problem, plant)? {
             let frequencies = &plant.frequencies_rad_per_s;
             common[0] = frequencies.first().copied().unwrap_or(0.0).max(common[0]);
             common[1] = frequencies.last().copied().unwrap_or(0.0).min(common[1]);
@@ -89,7 +89,7 @@ fn features(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<(Vec<f64>,
         }
     }
     for plant in plants {
-        match plant_at(&problem.family, plant)? {
+        match plant_at(problem, plant)? {
             Plant::Rational(plant) => {
                 let paths = std::iter::once(&plant.command).chain(&plant.disturbance);
                 for coefficients in paths.flat_map(|path| [&path.numerator, &path.denominator]) {

@@ -1,0 +1,55 @@
+//! The response of a plant without polynomials in a table: point by point where it bends.
+
+use num_complex::Complex64;
+use phea_dynamics::frequency::logarithmic_grid;
+use phea_dynamics::portable;
+use phea_dynamics::responding::RespondingPlant;
+
+use super::MeasuredPlant;
+
+/// Points in a decade before they are made denser.
+const POINTS_PER_DECADE: f64 = 25.0;
+/// Part of a response by which the middle between two points may lie off what is interpolated there.
+const TOLERANCE: f64 = 2e-3;
+/// Two points are no closer than this part of their frequency.
+const CLOSEST: f64 = 1e-6;
+
+/// Frequency in rad/s, and both paths there.
+type Point = (f64, [Complex64; 2]);
+
+/// The response between two frequencies in rad/s, at points so dense that what [`MeasuredPlant::response`] interpolates is that of the
+/// plant to 0.2 % halfway between any two of them: what a search looks at thousands of times.
+pub fn tabulated(plant: &dyn RespondingPlant, [from, to]: [f64; 2], name: String) -> MeasuredPlant {
+    let at = |frequency: f64| (frequency, plant.response(frequency));
+    let decades = portable::ln(to / from) / std::f64::consts::LN_10;
+    let grid = logarithmic_grid(from, to, (POINTS_PER_DECADE * decades).ceil() as usize).unwrap_or_default();
+    let mut left: Vec<Point> = grid.iter().rev().map(|frequency| at(*frequency)).collect();
+    let mut found: Vec<Point> = Vec::with_capacity(2 * left.len());
+    found.extend(left.pop());
+    while let (Some(&next), Some(&previous)) = (left.last(), found.last()) {
+        let middle = at((previous.0 * next.0).sqrt());
+        let close = next.0 - previous.0 <= CLOSEST * next.0;
+        if close || (0..2).all(|path| is_between(previous.1[path], middle.1[path], next.1[path])) {
+            found.push(next);
+            left.pop();
+        } else {
+            left.push(middle);
+        }
+    }
+    MeasuredPlant {
+        name,
+        frequencies_rad_per_s: found.iter().map(|point| point.0).collect(),
+        command: found.iter().map(|point| point.1[0]).collect(),
+        disturbance: Some(found.iter().map(|point| point.1[1]).collect()),
+        unstable_poles: 0,
+        is_resolved: true,
+    }
+}
+
+/// Whether the middle between two points is their geometric mean, near enough.
+fn is_between(from: Complex64, middle: Complex64, to: Complex64) -> bool {
+    let turn = to / from;
+    let half = Complex64::new(portable::ln(portable::magnitude(turn)), portable::argument(turn)) / 2.0;
+    let mean = from * portable::exp_complex(half);
+    portable::magnitude(middle / mean - 1.0) <= TOLERANCE
+}

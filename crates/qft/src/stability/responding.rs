@@ -1,0 +1,82 @@
+//! Stability of a plant without polynomials within its loop.
+
+use phea_dynamics::frequency::logarithmic_grid;
+use phea_dynamics::portable::{log10, magnitude};
+use phea_dynamics::responding::RespondingPlant;
+
+use super::enclosed::Enclosed;
+use super::measured::OpenLoop;
+use super::{Irresolution, MemberStability, StabilityStatus};
+use crate::closed_loop::{Compensation, Member};
+use crate::family::tabulated;
+
+/// Points in a decade of a first look, which does not count poles.
+const POINTS_PER_DECADE: f64 = 30.0;
+/// |L| that integrators have reached where a look begins, and decades below the range of the plant that are tried for it.
+const LARGE_GAIN: f64 = 2.0;
+const DECADES_BELOW: i32 = 9;
+
+/// How closed-loop poles are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Count {
+    /// With 1 + L enclosed from each frequency to the next; in a sampled loop on points.
+    Enclosed,
+    /// On points between which 1 + L turns little: where the box is searched for the least |1 + L| anyway.
+    OnPoints,
+}
+
+pub(super) fn stability(member: &Member, compensation: &Compensation, count: Count) -> MemberStability {
+    let Member::Responding { plant, sensor, delay_s, sample_time_s } = member else {
+        return MemberStability::not_resolved(Irresolution::Points);
+    };
+    let points = || {
+        let range = range(member, plant.as_ref(), compensation);
+        let table = tabulated(plant.as_ref(), range, String::new());
+        OpenLoop::new(member, compensation, &table.frequencies_rad_per_s, true)
+    };
+    let counted = match (sample_time_s, count) {
+        (None, Count::Enclosed) => {
+            let enclosed = Enclosed { plant: plant.as_ref(), sensor, delay_s: *delay_s, compensation };
+            enclosed.unstable_poles()
+        }
+        _ => points().unstable_closed_loop_poles(0, sensor),
+    };
+    match counted {
+        Ok(0) => points().stability(0),
+        Ok(unstable) => MemberStability {
+            status: StabilityStatus::Unstable(super::Instability::Poles { count: unstable }),
+            largest_real_part: None,
+            closest_approach: None,
+            critical_delay: None,
+        },
+        Err(reason) => MemberStability::not_resolved(reason),
+    }
+}
+
+/// L on an even grid: a look that a search can afford at every plant.
+pub(super) fn first_look<'a>(member: &'a Member, compensation: &'a Compensation) -> Option<OpenLoop<'a>> {
+    let Member::Responding { plant, .. } = member else { return None };
+    let [from, to] = range(member, plant.as_ref(), compensation);
+    let decades = log10(to / from);
+    let count = (POINTS_PER_DECADE * decades).ceil() as usize;
+    let grid = logarithmic_grid(from, to, count).ok()?;
+    Some(OpenLoop::new(member, compensation, &grid, true))
+}
+
+/// Where the loop does something of its own, rad/s: an integrator that is slower than the plant has its crossover below it.
+fn range(member: &Member, plant: &dyn RespondingPlant, compensation: &Compensation) -> [f64; 2] {
+    let [mut from, to] = plant.range_rad_per_s();
+    let integrates =
+        compensation.feedback().poles().iter().any(|pole| compensation.is_at_zero_frequency(*pole));
+    for _ in 0..DECADES_BELOW {
+        let gain = member.response(from).map_or(f64::INFINITY, |response| {
+            let open_loop = response.plant * response.sensor * compensation.feedback().at_frequency(from);
+            magnitude(open_loop)
+        });
+        if !integrates || gain > LARGE_GAIN {
+            break;
+        }
+        from /= 10.0;
+    }
+    [from, to.min(compensation.highest_frequency_rad_per_s())]
+}

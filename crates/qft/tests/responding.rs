@@ -1,0 +1,261 @@
+//! Plants without polynomials: one that has polynomials after all, and hides them, must be judged as the same plant that shows them.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::sync::Arc;
+
+use num_complex::Complex64;
+use phea_dynamics::analytic::{Analytic, Disc, Jet};
+use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
+use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::portable::{exp, ln, magnitude};
+use phea_dynamics::random::share;
+use phea_dynamics::responding::{RespondingPlant, RespondingPlants};
+use phea_dynamics::uncertain_plant::{
+    PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
+};
+use phea_qft::closed_loop::Compensation;
+use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, tabulated, vertices};
+use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::stability::{Instability, MemberStability, StabilityStatus, member_stability};
+use phea_qft::verification::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Verdict};
+
+/// k/((s + slow)(s^2 + 2 d w s + w^2)), with dead time.
+#[derive(Clone, Copy, Debug)]
+struct Hidden {
+    gain: f64,
+    slow: f64,
+    natural: f64,
+    damping: f64,
+    dead_time_s: f64,
+}
+
+impl Hidden {
+    fn shown(&self) -> PlantCoefficients<f64> {
+        let Hidden { gain, slow, natural, damping, dead_time_s } = *self;
+        let (middle, square) = (2.0 * damping * natural, natural * natural);
+        let denominator = vec![1.0, middle + slow, square + middle * slow, square * slow];
+        let command = RationalCoefficients { numerator: vec![gain], denominator: denominator.clone() };
+        let disturbance = Some(RationalCoefficients { numerator: vec![-2.0, 0.0], denominator });
+        PlantCoefficients { command, disturbance, dead_time_s }
+    }
+
+    fn at<A: Analytic>(&self, s: A) -> [A; 2] {
+        let Hidden { gain, slow, natural, damping, dead_time_s } = *self;
+        let pair = s * s + s.scaled(2.0 * damping * natural) + A::from(natural * natural);
+        let below = (s + A::from(slow)) * pair;
+        let delayed = (-s.scaled(dead_time_s)).exponential();
+        [A::from(gain) * delayed / below, s.scaled(-2.0) / below]
+    }
+}
+
+impl RespondingPlant for Hidden {
+    fn response(&self, frequency_rad_per_s: f64) -> [Complex64; 2] {
+        self.at(Complex64::new(0.0, frequency_rad_per_s))
+    }
+
+    fn enclosure(&self, frequencies_rad_per_s: [f64; 2]) -> Disc {
+        Jet::enclosed(Disc::of_frequencies(frequencies_rad_per_s), |s| self.at(s)[0])
+    }
+
+    fn slow(&self) -> PlantCoefficients<f64> {
+        self.shown()
+    }
+
+    /// |s^2 + ... + w^2| is at least v^2 - w^2.
+    fn roll_off(&self, v: f64) -> Option<f64> {
+        (v > self.natural).then(|| self.gain.abs() / (v * (v * v - self.natural * self.natural)))
+    }
+
+    fn range_rad_per_s(&self) -> [f64; 2] {
+        [0.01 * self.slow.min(self.natural), 20.0 * self.slow.max(self.natural)]
+    }
+
+    fn echo_s(&self) -> f64 {
+        self.dead_time_s
+    }
+}
+
+fn hidden(state: &mut u64) -> Hidden {
+    let mut spread = |low: f64, high: f64| exp(ln(low) + share(state) * ln(high / low));
+    let (slow, natural, damping) = (spread(0.1, 100.0), spread(1.0, 300.0), spread(0.02, 1.0));
+    let gain = spread(0.3, 30.0) * slow * natural * natural;
+    Hidden { gain, slow, natural, damping, dead_time_s: spread(1e-4, 3.0) / natural }
+}
+
+fn compensation(state: &mut u64, natural: f64) -> Compensation {
+    let gain = 0.02 * exp(7.0 * share(state));
+    let mut elements = vec![Element::Gain(gain)];
+    if share(state) < 0.7 {
+        let corner = natural * share(state);
+        elements.push(Element::ProportionalIntegral { proportional_gain: 1.0, integral_gain: corner });
+    }
+    let feedback = Compensator::new(elements);
+    let timing = Timing { delay_s: 0.3 * share(state) / natural, ..Timing::default() };
+    let controller = Controller { feedback, timing, ..Controller::default() };
+    let sensor = TransferFunction::from_polynomials(
+        &Polynomial::new(vec![5.0 * natural]),
+        &Polynomial::new(vec![1.0, 5.0 * natural]),
+    );
+    Compensation::new(&controller, sensor.unwrap()).unwrap()
+}
+
+/// Unstable poles by enclosures, and by the turns of the characteristic function: independent counts, of 400 loops, some of them with
+/// more than one unstable pair.
+#[test]
+fn poles_are_counted_as_those_of_the_polynomials() {
+    let mut state = 11;
+    let mut found = [0_usize; 3];
+    for _ in 0..400 {
+        let plant = hidden(&mut state);
+        let around = compensation(&mut state, plant.natural);
+        let shown = member_stability(&around.member(plant.shown()).unwrap(), &around);
+        let own = member_stability(&around.responding(Arc::new(plant)), &around);
+        match (&shown.status, &own.status) {
+            (StabilityStatus::Stable, StabilityStatus::Stable) => {
+                let distance = |one: &MemberStability| one.closest_approach.unwrap().distance;
+                let apart = distance(&own) / distance(&shown) - 1.0;
+                assert!(apart.abs() < 1e-6, "{plant:?}: {apart}");
+                let delay = |one: &MemberStability| one.critical_delay.unwrap().delay_s;
+                let [own, shown] = [delay(&own), delay(&shown)];
+                assert!(own == shown || (own / shown - 1.0).abs() < 1e-6, "{plant:?}: {own} {shown}");
+                found[0] += 1;
+            }
+            (
+                StabilityStatus::Unstable(Instability::Poles { count }),
+                StabilityStatus::Unstable(Instability::Poles { count: own }),
+            ) => {
+                assert_eq!(count, own, "{plant:?}");
+                found[1 + usize::from(*count > 2)] += 1;
+            }
+            other => panic!("{plant:?}: {other:?}"),
+        }
+    }
+    assert!(found[0] > 100 && found[1] > 100 && found[2] > 1, "{found:?}");
+}
+
+/// The table of a response is that response to 0.2 %, between its points too.
+#[test]
+fn tables_hold_what_is_between_their_points() {
+    let mut state = 5;
+    for _ in 0..40 {
+        let plant = hidden(&mut state);
+        let table = tabulated(&plant, plant.range_rad_per_s(), String::new());
+        for pair in table.frequencies_rad_per_s.windows(2) {
+            let between = pair[0] + share(&mut state) * (pair[1] - pair[0]);
+            let (told, _) = table.response(between).unwrap();
+            let error = magnitude(told / plant.at(Complex64::new(0.0, between))[0] - 1.0);
+            assert!(error < 3e-3, "{plant:?} at {between}: {error}");
+        }
+    }
+}
+
+#[derive(Debug)]
+struct HiddenBox;
+
+fn of_values(values: &[f64]) -> Hidden {
+    Hidden { gain: 40.0 * values[0], slow: 1.0, natural: values[1], damping: values[2], dead_time_s: 0.01 }
+}
+
+impl RespondingPlants for HiddenBox {
+    fn at(&self, values: &[f64]) -> Option<Arc<dyn RespondingPlant>> {
+        Some(Arc::new(of_values(values)))
+    }
+}
+
+fn specifications() -> Vec<Specification> {
+    let all = [
+        Requirement::RobustStability(Limit::Constant(1.4)),
+        Requirement::Sensitivity(Limit::Constant(1.6)),
+        Requirement::LoadMotion(Limit::Constant(0.05)),
+    ];
+    let specification = |requirement| Specification {
+        requirement,
+        frequencies_rad_per_s: vec![1.0, 10.0],
+        band_rad_per_s: [0.0, f64::INFINITY],
+    };
+    all.into_iter().map(specification).collect()
+}
+
+/// The search of the box, between its corners, finds the same worst plants with polynomials and without.
+#[test]
+fn a_box_is_searched_as_that_of_the_polynomials() {
+    let parameter = |name: &str, minimum: f64, maximum: f64| UncertainParameter {
+        name: name.into(),
+        nominal: minimum,
+        minimum,
+        maximum,
+    };
+    let parameters = vec![parameter("k", 1.0, 3.0), parameter("w", 10.0, 25.0), parameter("d", 0.05, 0.4)];
+    let shown = UncertainPlant::record(parameters.clone(), |p| {
+        let middle = (p[2] * p[1]) * 2.0.into();
+        let square = p[1] * p[1];
+        let denominator = vec![1.0.into(), middle + 1.0.into(), square + middle, square];
+        PlantCoefficients {
+            command: RationalCoefficients {
+                numerator: vec![p[0] * 40.0.into()],
+                denominator: denominator.clone(),
+            },
+            disturbance: Some(RationalCoefficients {
+                numerator: vec![(-2.0).into(), 0.0.into()],
+                denominator,
+            }),
+            dead_time_s: 0.01.into(),
+        }
+    });
+    let without = UncertainPlant::responding(parameters, Arc::new(HiddenBox));
+    let feedback =
+        Compensator::new(vec![Element::ProportionalIntegral { proportional_gain: 0.4, integral_gain: 0.5 }]);
+    let controller = Controller { feedback, ..Controller::default() };
+    let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
+    let findings = [shown.unwrap(), without.unwrap()].map(|plant| {
+        let along = |index| Coordinate {
+            parameters: vec![index],
+            opposed: vec![],
+            spacing: vec![Spacing::Linear],
+            points: 2,
+        };
+        let coordinates = vec![along(0), along(1), along(2)];
+        let members = vertices(&plant, &coordinates).unwrap();
+        let family = UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap();
+        let (family, specifications) = (Family::Uncertain(family), specifications());
+        let mut audit = SpecificationAudit::new(
+            &family,
+            &compensation,
+            &specifications,
+            TrackingJudgement::Magnitude,
+            TOLERANCE_DB,
+        );
+        while audit.step() {}
+        audit.findings().to_vec()
+    });
+    let [shown, own] = findings;
+    for (shown, own) in shown.iter().zip(&own) {
+        let [one, other] = [shown, own].map(|finding| finding.worst.as_ref().unwrap());
+        assert!((one.margin_db - other.margin_db).abs() < 1e-3, "{one:?} {other:?}");
+        assert_eq!(shown.verdict, own.verdict);
+        assert_eq!(shown.evidence, own.evidence);
+    }
+    assert!(shown.iter().any(|finding| finding.verdict == Verdict::Violated));
+}
+
+/// Sampled, a plant that hides its polynomials folds onto itself as that which shows them.
+#[test]
+fn samples_are_those_of_the_polynomials() {
+    let mut state = 3;
+    for _ in 0..20 {
+        let plant = Hidden { dead_time_s: 0.0, ..hidden(&mut state) };
+        let sample_time_s = 0.3 / plant.natural.max(plant.slow);
+        let timing =
+            Timing { sample_time_s: Some(sample_time_s), delay_s: sample_time_s, ..Timing::default() };
+        let controller = Controller { timing, ..Controller::default() };
+        let around = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
+        let members = [around.member(plant.shown()).unwrap(), around.responding(Arc::new(plant))];
+        for share in [1e-3, 0.03, 0.3, 0.9] {
+            let frequency = share * around.highest_frequency_rad_per_s();
+            let [shown, own] = members.each_ref().map(|member| member.response(frequency).unwrap());
+            assert!(magnitude(own.plant / shown.plant - 1.0) < 3e-4, "{plant:?} at {frequency}");
+            assert_eq!(own.sensor.im, 0.0);
+        }
+    }
+}
