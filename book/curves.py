@@ -240,13 +240,16 @@ def chamber_pair(area_b, position, model="by_volume", flow=2.97e-7, leak=2.402e-
     return areas, capacities, flow / NOMINAL * math.sqrt(SUPPLY / 2), leak / math.sqrt(SUPPLY / 2)
 
 
-def reduction_cost(area_b, position, model="by_volume"):
-    """Largest difference of F_e/U_C in dB and degrees between two pressures and their reduction, and of the static gain as a factor."""
+def reduction_cost(area_b, position, model="by_volume", least=1e-3):
+    """Largest difference of F_e/U_C in dB and degrees between two pressures and their reduction, and of the static gain as a factor.
+
+    Frequencies from `least` rad/s up.
+    """
     (a, b), (c_a, c_b), gain, leak = chamber_pair(area_b, position, model)
     mean, stiffness = (a + b) / 2, a**2 / c_a + b**2 / c_b
     reduced_gain = mean / stiffness * gain * (a / c_a + b / c_b)
     reduced_leak = mean**2 * leak / (a**2 + b**2)
-    s = 1j * np.geomspace(1e-3, 2e4, 200001)
+    s = 1j * np.geomspace(least, 2e4, 200001)
     y_a, y_b = c_a * s + leak, c_b * s + leak
 
     def force(own, driven, displaced):

@@ -104,6 +104,21 @@ def unequal_areas():
             expect(f"{name}, dB", found[0], decibels, 0.05 if decibels >= 1 else 0.005)
             expect(f"{name}, degrees", found[1], degrees, 0.05 if degrees >= 1 else 0.005)
             expect(f"{name}, static gain", found[2], static, 0.005)
+    for least, quoted_db, quoted_degrees, digit in ((10.0, 0.12, 4.3, 0.05), (100.0, 0.12, 0.44, 0.005)):
+        costs = [
+            curves.reduction_cost(math.pi / 4 * (0.05**2 - rod**2), place, model, least)
+            for rod in (0.022, 0.036)
+            for model in ("uniform", "by_volume")
+            for place in (0.0, 0.25, 0.5)
+        ]
+        expect(f"worst from {least} rad/s, dB", max(cost[0] for cost in costs), quoted_db, 0.005)
+        expect(f"worst from {least} rad/s, degrees", max(cost[1] for cost in costs), quoted_degrees, digit)
+
+
+def damping():
+    """Where valve leakage damps the piston as much as f_v = 100 N s/m does."""
+    ratio = curves.FRICTION / curves.MASS * curves.AREA**2 / 5.9295e-13
+    expect("K_H there, MN/m", (ratio + math.sqrt(ratio**2 + 4 * ratio * curves.SENSOR)) / 2e6, 46, 0.5)
 
 
 def passivity():
@@ -127,7 +142,7 @@ def passivity():
         expect(f"friction with the gain of 6.27, K_H = {stiffness:g}", found, quoted, 0.5)
 
 
-for check in (valve, friction, hoses, unequal_areas, passivity):
+for check in (valve, friction, hoses, unequal_areas, damping, passivity):
     check()
 if FAILURES:
     raise SystemExit(f"{len(FAILURES)} numbers of the book part from their recomputation: " + "; ".join(FAILURES))
