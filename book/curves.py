@@ -171,13 +171,13 @@ def poles(stiffness, flow_pressure, friction=FRICTION, sensor=SENSOR, mass=MASS)
 
 
 def admittance(omega, stiffness, gain=GAIN, integral=INTEGRAL, friction=FRICTION, flow_gain=FLOW_GAIN,
-               flow_pressure=FLOW_PRESSURE, sensor=SENSOR):
+               flow_pressure=FLOW_PRESSURE, sensor=SENSOR, spool=SPOOL):
     """1/Z of the closed loop: the sensor's spring in series with piston, fluid and feedback."""
     s = 1j * np.asarray(omega)
     fluid = 1 / (s / stiffness + flow_pressure / AREA**2)
     piston = MASS * s + friction
-    spool = SPOOL**2 / (s**2 + 2 * DAMPING * SPOOL * s + SPOOL**2)
-    feedback = flow_gain / AREA * spool * (gain + integral / s)
+    lag = spool**2 / (s**2 + 2 * DAMPING * spool * s + spool**2)
+    feedback = flow_gain / AREA * lag * (gain + integral / s)
     return s / sensor + (1 + fluid * feedback) / (fluid + piston)
 
 

@@ -166,15 +166,15 @@ def poles_over_stiffness():
         (-pair.real / np.abs(pair), [-p.real / abs(p) for _, p in marked], "Piston: damping ratio"),
     )
     for axes, (curve, points, label) in zip(panels, rows):
-        axes.plot(stiffness / 1e6, curve, color=BLUE, label="6.7")
+        axes.plot(stiffness / 1e6, curve, color=BLUE, lw=4.0, alpha=0.45, label="6.7")
         axes.plot(np.array(marks) / 1e6, points, "o", color=ORANGE, ms=5, label="hoses of 3, 2.5, 2, 1.5, 1 and 0.5 m a side (from the left)")
         axes.set(ylabel=label, xscale="log")
     series = stiffness * curves.SENSOR / (stiffness + curves.SENSOR)
-    panels[0].plot(stiffness / 1e6, leak * series / curves.AREA**2, color=GREEN, ls="--", lw=1.4, label="$K_c K_{eq}/A^2$")
-    panels[1].plot(stiffness / 1e6, np.sqrt((stiffness + curves.SENSOR) / curves.MASS), color=GREEN, ls="--", lw=1.4,
+    panels[0].plot(stiffness / 1e6, leak * series / curves.AREA**2, color=BLACK, ls="--", lw=1.2, label="$K_c K_{eq}/A^2$")
+    panels[1].plot(stiffness / 1e6, np.sqrt((stiffness + curves.SENSOR) / curves.MASS), color=BLACK, ls="--", lw=1.2,
                    label=r"$\sqrt{(K_H + K_S)/M}$")
     panels[1].axhline(curves.SPOOL, color=MUTED, ls=":", label="spool")
-    panels[2].plot(stiffness / 1e6, curves.FRICTION / curves.MASS / 2 / np.abs(pair), color=GREEN, ls="--", lw=1.4,
+    panels[2].plot(stiffness / 1e6, curves.FRICTION / curves.MASS / 2 / np.abs(pair), color=BLACK, ls="--", lw=1.2,
                    label="of friction alone (6.12 as printed)")
     panels[0].set(yscale="log")
     panels[2].set_xticks([0.1, 1, 10, 100], ["0.1", "1", "10", "100"])

@@ -135,6 +135,12 @@ def passivity():
     for spring, quoted, digit in ((first, 0.418, 0.0005), (last, 10.4, 0.05)):
         expect("environment behind a cell of 98.1 MN/m, MN/m", 1 / (1 / spring - 1 / cell) / 1e6, quoted, digit)
     expect("largest real part with 2 MN/m, 1/s", curves.closed_loop(curves.STIFFNESS, 2e6).real.max(), 6.05, 0.005)
+    phase = np.degrees(np.angle(1 / curves.admittance(np.linspace(*band, 4001), curves.STIFFNESS)))
+    expect("largest phase of Z, degrees", phase.max(), 93.2, 0.05)
+    expect("least friction with a spool of 2000 rad/s", curves.friction_for_passivity(curves.STIFFNESS, spool=2000.0), 528, 0.5)
+    bound = curves.MASS * curves.GAIN * curves.FLOW_GAIN * curves.STIFFNESS / curves.AREA
+    expect("without lag of the spool", bound, 1001, 0.5)
+    expect("nearly without", curves.friction_for_passivity(curves.STIFFNESS, spool=1e6) / bound, 1, 0.02)
     expect("stiffness that shuts the band, MN/m", curves.MASS * curves.SPOOL**2 / 1e6, 15.8, 0.05)
     for stiffness, quoted in ((5e5, 151), (2.24e6, 69), (5e6, 20)):
         gain = curves.tuned_gain(stiffness)
