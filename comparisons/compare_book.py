@@ -3,7 +3,7 @@
     python comparisons/compare_book.py [PHEA]        # or the variable PHEA; without either, what cargo builds
 
 Pressures and commands of the valve at shut ports and unloaded, stiffness over hose lengths in both models, poles over them, bands in which
-the closed loop gives energy, springs that make it unstable, and what a reduction of unequal areas costs.
+the closed loop gives energy, springs that make it unstable, the machine behind such a spring, and what a reduction of unequal areas costs.
 """
 
 import json
@@ -96,6 +96,20 @@ def passivity():
         equal("the same by its poles", curves.closed_loop(curves.STIFFNESS, spring).real.max() > 0, unstable)
 
 
+def machine():
+    """The step of 4 kN on the nonlinear machine behind 2 MN/m: with f_v = 100 N s/m alone it swings, with bristles it settles."""
+    text = RIG.read_text()
+    start, end = text.index("[cylinder.friction]"), text.index("[line]")
+    viscous = text[:start] + '[cylinder.friction]\nmodel = "viscous"\nviscous = 100\n\n' + text[end:]
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "viscous.toml"
+        path.write_text(viscous)
+        for project, sensor, quoted, digit in ((path, 2e6, 175, 5), (path, 20e6, 0.35, 0.005), (RIG, 2e6, 2.03, 0.005)):
+            told = ask("simulate", f"force_sensor.stiffness={sensor}", project=project)["scenarios"][0]["events"][0]["metrics"]
+            overshoot = told["overshoot_percent"]
+            equal(f"overshoot {overshoot:.4g} %, {project.stem}, {sensor:g} N/m", abs(overshoot - quoted) <= digit, True)
+
+
 def reduction():
     text = RIG.read_text()
     edges = ("supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank")
@@ -117,7 +131,7 @@ def reduction():
             equal(f"reduction, rod of {rod} m, {model}, x = {place}", found, [told["magnitude_db"], told["phase_deg"]], 1e-3)
 
 
-for check in (valve, hoses, passivity, reduction):
+for check in (valve, hoses, passivity, machine, reduction):
     check()
 if WRONG:
     raise SystemExit(f"{len(WRONG)} part from phea: " + "; ".join(WRONG))
