@@ -88,7 +88,7 @@ impl LuGre {
 
     /// Whether sigma_2 >= sigma_1 (F_S - F_C)/F_C, the condition for passivity.
     ///
-    /// Source: Barahanov and Ortega (2000), IEEE Transactions on Automatic Control 45(4).
+    /// Source: Barabanov and Ortega (2000), IEEE Transactions on Automatic Control 45(4).
     ///
     /// # Example
     /// ```
