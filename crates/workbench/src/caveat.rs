@@ -28,7 +28,7 @@ pub(crate) fn of_models(project: &Project) -> Vec<String> {
 }
 
 fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
-    [load(project), supply(project), feed_forward(project), prefilter(project)].into_iter().flatten()
+    [load(project), supply(project), feed_forward(project)].into_iter().flatten()
 }
 
 /// A wall whose mass nobody states.
@@ -97,18 +97,6 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
                    is of the loop with it"
             .to_string(),
         unproven: yields || limits(project, SpecificationKind::LoadMotion),
-    })
-}
-
-/// A prefilter that acts between samples.
-fn prefilter(project: &Project) -> Option<Caveat> {
-    let sampled = project.controller.as_ref()?.sample_time.is_some();
-    let continuous = project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous);
-    (sampled && continuous).then(|| Caveat {
-        sentence: "prefilter.continuous is not counted: the linear loop samples the prefilter with the controller, and only a \
-                   simulation lets it act between samples"
-            .to_string(),
-        unproven: limits(project, SpecificationKind::Tracking),
     })
 }
 

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use num_complex::Complex64;
 use phea_qft::verification::Verdict;
 use phea_workbench::audit::{self, ProjectAudit, audit_project};
 use phea_workbench::control::{controller, sensor};
@@ -9,6 +10,7 @@ use phea_workbench::linear_loop::linear_loop;
 use phea_workbench::linearize::{Linearization, linearize};
 use phea_workbench::project::{self, Project};
 use phea_workbench::rig::Rig;
+use phea_workbench::robust::robust_problem;
 use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
@@ -143,6 +145,26 @@ fn a_region_with_lines_in_motion_is_looked_at_in_single_plants() {
         let single = view.caveats.iter().any(|caveat| caveat.sentence.contains("single plants of the box"));
         assert_eq!(single, told, "{settings:?}");
     }
+}
+
+/// A prefilter before the samples: a step of 910/(s^2 + 83 s + 910), as it is between any two samples, reaches the loop.
+#[test]
+fn a_prefilter_before_the_samples_acts_in_continuous_time() {
+    let project = loaded(HOSE, &["controller.sample_time=5 ms", "prefilter.continuous=true"]);
+    let plant = linearized(&project).plant.command;
+    let given = controller(&project).unwrap().unwrap();
+    let step = linear_loop(&plant, &given, &sensor(&project).unwrap(), 1.0).unwrap().step.unwrap();
+    let root = (83.0_f64.powi(2) - 4.0 * 910.0).sqrt();
+    let [fast, slow] = [(83.0 + root) / 2.0, (83.0 - root) / 2.0];
+    for (time_s, value) in step.times_s.iter().zip(&step.filtered_reference).take(200) {
+        let expected = 1.0 + (slow * (-fast * time_s).exp() - fast * (-slow * time_s).exp()) / root;
+        assert!((value - expected).abs() < 1e-9, "{time_s} {value} {expected}");
+    }
+    let problem = robust_problem(&Memory::default(), &project).unwrap();
+    let filtered = problem.compensation.response(400.0).prefilter;
+    let expected = 910.0 / Complex64::new(910.0 - 400.0 * 400.0, 83.0 * 400.0);
+    assert!((filtered / expected - 1.0).norm_sqr() < 1e-24, "{filtered} {expected}");
+    assert!(problem.caveats.is_empty(), "{:?}", problem.caveats);
 }
 
 /// What changes no specification is told, and the verdict stays.

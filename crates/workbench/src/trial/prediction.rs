@@ -1,9 +1,8 @@
 //! The step response that the linear loop predicts: of polynomials, or of responses where lines move.
 
 use num_complex::Complex64;
-use phea_dynamics::time_response::{
-    StepBaseline, StepMetrics, TimeResponseError, step_metrics, step_of_frequency_response,
-};
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::time_response::{StepBaseline, StepMetrics, step_metrics, step_of_frequency_response};
 use phea_hydraulics::linear::transfer_functions;
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::MeasuredPlant;
@@ -57,7 +56,7 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
     }
 }
 
-fn of_responses(plant: &MeasuredPlant, compensation: &Compensation) -> Result<Prediction, TimeResponseError> {
+fn of_responses(plant: &MeasuredPlant, compensation: &Compensation) -> Result<Prediction, CommandError> {
     let member = compensation.measured(plant);
     match member_stability(&member, compensation).status {
         StabilityStatus::Stable => {}
@@ -65,8 +64,10 @@ fn of_responses(plant: &MeasuredPlant, compensation: &Compensation) -> Result<Pr
         StabilityStatus::NotResolved(_) => return Ok(Prediction::Unknown),
     }
     let highest = compensation.highest_frequency_rad_per_s();
-    let points =
-        straight(&plant.frequencies_rad_per_s, highest, |frequency| closed(&member, compensation, frequency));
+    let prefilter = compensation.prefilter_of_step()?;
+    let points = straight(&plant.frequencies_rad_per_s, highest, |frequency| {
+        closed(&member, compensation, &prefilter, frequency)
+    });
     let final_value = points.first().map_or(1.0, |(_, real)| *real);
     let mut found = Prediction::Unknown;
     for duration in DURATIONS_S {
@@ -87,12 +88,16 @@ fn of_responses(plant: &MeasuredPlant, compensation: &Compensation) -> Result<Pr
     Ok(found)
 }
 
-/// F P G/(1 + L)
-fn closed(member: &Member, compensation: &Compensation, frequency: f64) -> Option<Complex64> {
+/// F P G/(1 + L), F as a step meets it.
+fn closed(
+    member: &Member,
+    compensation: &Compensation,
+    prefilter: &TransferFunction,
+    frequency: f64,
+) -> Option<Complex64> {
     let plant = member.response(frequency)?;
-    let own = compensation.response(frequency);
-    let forward = plant.plant * own.feedback;
-    Some(own.prefilter * forward / (1.0 + forward * plant.sensor))
+    let forward = plant.plant * compensation.feedback().at_frequency(frequency);
+    Some(prefilter.at_frequency(frequency) * forward / (1.0 + forward * plant.sensor))
 }
 
 /// The real part at these frequencies, and between them until it is straight there.
