@@ -5,6 +5,7 @@
 //! D F_h = N_u U_sp - N_v s X                                             chambers: ChamberDynamics
 //! (M s^2 + f_v s) X = F_h - F_e,       F_e = K_S (X - X_L)               piston and force sensor, thesis (4.29)
 //! X_L = X_0,   or   (m s^2 + c s + k) X_L = F_e + (c s + k) X_0          load: LinearLoad
+//! U_C -> U_C + K_x s X_L                                                 what is fed forward of the load's velocity
 //! ```
 //!
 //! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v and the supply at a constant pressure.
@@ -39,6 +40,8 @@ pub struct Plant<S = f64> {
     pub sensor_stiffness: S,
     /// What the force sensor pushes on.
     pub load: LinearLoad<S>,
+    /// Gain K_x in V s/m from the velocity of the load to the command, at once; `None` where nothing is fed forward.
+    pub load_velocity_feed_forward: Option<S>,
 }
 
 /// How pressures build up. Units: m2, m3/(s V), m3/(s Pa), N/m, m3/Pa.
@@ -147,6 +150,7 @@ impl<S: Scalar> Plant<S> {
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
             load,
+            load_velocity_feed_forward: None,
         }
     }
 
@@ -171,6 +175,7 @@ impl<S: Scalar> Plant<S> {
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
             load,
+            load_velocity_feed_forward: None,
         }
     }
 
@@ -181,6 +186,10 @@ impl<S: Scalar> Plant<S> {
     /// prescribed    F_e = K_S (w^2 N_u U_C - V Q X_0)/(V (Q + K_S D))
     /// yielding      F_e = K_S (Z w^2 N_u U_C - (c s + k) V Q X_0)/(V (Q (Z + K_S) + K_S Z D))
     /// ```
+    ///
+    /// The velocity of the load that is fed forward is a second path of a prescribed motion, and a second loop of a load that yields:
+    /// V Q is less by w^2 N_u K_x s in both numerators of X_0, and in the denominator V (...) is less by K_S w^2 N_u K_x s of a load that
+    /// yields.
     ///
     /// # Example
     /// What the load adds: with a mass as heavy as the earth it does not move.
@@ -205,19 +214,24 @@ impl<S: Scalar> Plant<S> {
         let spool = [one, damping, square];
         let sensor = self.sensor_stiffness;
         let Chambers { own, driven, displaced } = self.chambers.polynomials(self.internal_leakage);
+        let fed = self.load_velocity_feed_forward.map(|gain| shifted(&scaled(gain * sensor * square, &driven)));
         let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], &own), &displaced));
-        let (driven, moved_by_ground, sensed) = match self.load {
-            LinearLoad::Prescribed => (driven, moved.clone(), sum(&moved, &scaled(sensor, &own))),
+        let by_load = scaled(-sensor, &product(&spool, &moved));
+        let by_load = fed.as_ref().map_or(by_load.clone(), |fed| sum(&by_load, fed));
+        let (driven, disturbance, denominator) = match self.load {
+            LinearLoad::Prescribed => {
+                (driven, by_load, product(&spool, &sum(&moved, &scaled(sensor, &own))))
+            }
             LinearLoad::Yielding { mass, damping, stiffness } => {
                 let load = [mass, damping, stiffness];
                 let before_sensor = product(&moved, &[mass, damping, stiffness + sensor]);
                 let sensed = sum(&before_sensor, &scaled(sensor, &product(&load, &own)));
-                (product(&load, &driven), product(&moved, &[damping, stiffness]), sensed)
+                let alone = product(&spool, &sensed);
+                let denominator = fed.map_or(alone.clone(), |fed| sum(&alone, &scaled(S::from(-1.0), &fed)));
+                (product(&load, &driven), product(&by_load, &[damping, stiffness]), denominator)
             }
         };
-        let denominator = product(&spool, &sensed);
         let command = scaled(sensor * square, &driven);
-        let disturbance = scaled(-sensor, &product(&spool, &moved_by_ground));
         PlantCoefficients {
             command: RationalCoefficients { numerator: command, denominator: denominator.clone() },
             disturbance: Some(RationalCoefficients { numerator: disturbance, denominator }),

@@ -4,7 +4,8 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Plant, System};
 use phea_hydraulics::machine::Machine;
 
-pub(super) struct Commanded(pub(super) Machine);
+/// The second number is the gain from the load's velocity to the command, V s/m.
+pub(super) struct Commanded(pub(super) Machine, pub(super) f64);
 
 impl System<f64> for Commanded {
     fn states(&self) -> usize {
@@ -17,7 +18,8 @@ impl System<f64> for Commanded {
         self.0.scales()
     }
     fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
-        self.0.rates(state, inputs[0], &inputs[1..], rates);
+        let velocity: T = Plant::<f64>::disturbance(&self.0, state, &inputs[1..]);
+        self.0.rates(state, inputs[0] + velocity.times(self.1), &inputs[1..], rates);
     }
     fn delays(&self) -> Vec<f64> {
         self.0.delays()

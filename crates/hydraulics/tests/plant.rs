@@ -108,12 +108,12 @@ impl Drawn {
     }
 
     /// F_e/U_C and F_e/X_0 of the machine's own derivatives.
-    fn small_signal(&self, frequency: f64) -> [Complex64; 2] {
+    fn small_signal(&self, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
         let inputs = [&[self.rest.command], &self.rest.inputs[..]].concat();
         let (zero, one) = (Complex64::ZERO, Complex64::ONE);
         let ground = [zero, one, Complex64::new(0.0, frequency)];
         [[one, zero, zero], ground].map(|drive| {
-            let system = Commanded(self.machine);
+            let system = Commanded(self.machine, feed_forward);
             let amplitudes = small_signal(&system, &self.rest.state, &inputs, &drive, frequency).unwrap();
             amplitudes[4] * self.actuator.components().force_sensor.stiffness
         })
@@ -125,11 +125,14 @@ impl Drawn {
 fn it_is_the_machine_for_small_motions() {
     for number in 0..300 {
         let rig = drawn(number);
-        let coefficients = rig.plant().coefficients();
+        // every other rig feeds the velocity of its load forward, from a thousandth of what holds the force to three times that
+        let feed_forward = if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 300.0) } else { 0.0 };
+        let fed = (feed_forward > 0.0).then_some(feed_forward);
+        let coefficients = Plant { load_velocity_feed_forward: fed, ..rig.plant() }.coefficients();
         let disturbance = coefficients.disturbance.unwrap();
         for step in 0..20 {
             let frequency = 1e-3 * pow(1e7, f64::from(step) / 19.0);
-            let [command, ground] = rig.small_signal(frequency);
+            let [command, ground] = rig.small_signal(feed_forward, frequency);
             for (told, own) in [(&coefficients.command, command), (&disturbance, ground)] {
                 let error = (told.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
                 assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");

@@ -133,12 +133,12 @@ fn drawn(number: u64) -> Drawn {
 }
 
 impl Drawn {
-    fn small_signal(&self, frequency: f64) -> [Complex64; 2] {
+    fn small_signal(&self, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
         let inputs = [&[self.command], &self.inputs[..]].concat();
         let (zero, one) = (Complex64::ZERO, Complex64::ONE);
         let ground = [zero, one, Complex64::new(0.0, frequency)];
         [[one, zero, zero], ground].map(|drive| {
-            let system = Commanded(self.machine);
+            let system = Commanded(self.machine, feed_forward);
             small_signal(&system, &self.state, &inputs, &drive, frequency).unwrap()[4] * self.sensor
         })
     }
@@ -149,11 +149,12 @@ impl Drawn {
 fn it_is_the_machine_for_small_motions() {
     for number in 0..108 {
         let rig = drawn(number);
-        let moving = PlantInMotion::new(&rig.plant, &rig.behind);
+        let feed_forward = if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 108.0) } else { 0.0 };
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind).fed_forward(Some(feed_forward));
         assert!(moving.is_passive());
         for step in 0..14 {
             let frequency = 0.01 * pow(1e6, f64::from(step) / 13.0);
-            let own = rig.small_signal(frequency);
+            let own = rig.small_signal(feed_forward, frequency);
             let told = moving.response(Complex64::new(0.0, frequency));
             for (told, own) in told.into_iter().zip(own) {
                 let error = (told / own - 1.0).norm_sqr().sqrt();
@@ -169,7 +170,7 @@ fn lumped_lines_make_the_rational_plant() {
     for number in (0..36).step_by(6).map(|first| first * 6) {
         let rig = drawn(number);
         let plants = [
-            rig.plant,
+            Plant { load_velocity_feed_forward: Some(20.0), ..rig.plant },
             Plant::of_load_pressure(&phea_hydraulics::reference_rig::nominal_plant(), 1e-12, rig.plant.load),
         ];
         let BehindLines { chambers, lumped, .. } = rig.behind;

@@ -72,7 +72,21 @@ struct AtChamber {
     admittance: Complex64,
 }
 
+/// F_e (sensed - fed) = command U_C + ground X_0, `fed` being what the velocity of a load that yields feeds back.
+struct Paths {
+    command: Complex64,
+    ground: Complex64,
+    sensed: Complex64,
+    fed: Complex64,
+}
+
 impl PlantInMotion {
+    /// The same with the velocity of the load fed forward, K_x in V s/m.
+    #[must_use]
+    pub fn fed_forward(self, load_velocity_feed_forward: Option<f64>) -> PlantInMotion {
+        PlantInMotion { plant: Plant { load_velocity_feed_forward, ..self.plant }, ..self }
+    }
+
     /// The plant with these chambers and lines in place of its lumped ones.
     pub fn new(plant: &Plant, behind: &BehindLines) -> PlantInMotion {
         let side = |side: usize| {
@@ -87,6 +101,12 @@ impl PlantInMotion {
 
     /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, by the equations of [`Plant::coefficients`].
     pub fn response(&self, s: Complex64) -> [Complex64; 2] {
+        let Paths { command, ground, sensed, fed } = self.paths(s);
+        [command, ground].map(|path| path / (sensed - fed))
+    }
+
+    fn paths(&self, s: Complex64) -> Paths {
+        let zero = Complex64::ZERO;
         let [one, other] = self.sides.map(|side| side.at_chamber(s));
         let [area_a, area_b] = self.sides.map(|side| side.area);
         let leakage = self.plant.internal_leakage;
@@ -101,21 +121,30 @@ impl PlantInMotion {
         let (frequency, sensor) = (self.plant.valve_natural_frequency, self.plant.sensor_stiffness);
         let square = frequency * frequency;
         let spool = square / (s * s + 2.0 * self.plant.valve_damping_ratio * frequency * s + square);
-        let (load, ground) = match self.plant.load {
-            LinearLoad::Prescribed => (None, Complex64::ONE),
+        let fed = sensor * self.plant.load_velocity_feed_forward.unwrap_or(0.0) * s * spool * driven;
+        match self.plant.load {
+            LinearLoad::Prescribed => {
+                let sensed = moved + sensor * own;
+                Paths { command: sensor * spool * driven, ground: fed - sensor * moved, sensed, fed: zero }
+            }
             LinearLoad::Yielding { mass, damping, stiffness } => {
                 let tied = damping * s + stiffness;
-                (Some(mass * s * s + tied), tied)
+                let load = mass * s * s + tied;
+                let sensed = moved * (load + sensor) + sensor * load * own;
+                let ground = tied * (fed - sensor * moved);
+                Paths { command: sensor * load * spool * driven, ground, sensed, fed }
             }
-        };
-        let (free, sensed) = match load {
-            None => (Complex64::ONE, moved + sensor * own),
-            Some(load) => (load, moved * (load + sensor) + sensor * load * own),
-        };
-        [sensor * free * spool * driven / sensed, -sensor * ground * moved / sensed]
+        }
     }
 
-    /// Whether nothing in it gives energy, so that none of its poles lies in the right half plane: its lines are passive, and so are
+    /// 1 - K_x s X_L/U_C, the return difference of the velocity that a load which yields feeds back; 1 where nothing does. Its turns
+    /// around zero tell how many poles of the plant lie in the right half plane.
+    pub fn return_difference(&self, s: Complex64) -> Complex64 {
+        let Paths { sensed, fed, .. } = self.paths(s);
+        1.0 - fed / sensed
+    }
+
+    /// Whether nothing in it but what is fed forward gives energy, so that none of its poles lies in the right half plane: its lines are passive, and so are
     /// valve, leakage, friction and load where none of their coefficients is negative.
     pub fn is_passive(&self) -> bool {
         let load = match self.plant.load {
