@@ -214,14 +214,13 @@ impl<S: Scalar> Plant<S> {
         let spool = [one, damping, square];
         let sensor = self.sensor_stiffness;
         let Chambers { own, driven, displaced } = self.chambers.polynomials(self.internal_leakage);
-        let fed = self.load_velocity_feed_forward.map(|gain| shifted(&scaled(gain * sensor * square, &driven)));
+        let fed =
+            self.load_velocity_feed_forward.map(|gain| shifted(&scaled(gain * sensor * square, &driven)));
         let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], &own), &displaced));
         let by_load = scaled(-sensor, &product(&spool, &moved));
         let by_load = fed.as_ref().map_or(by_load.clone(), |fed| sum(&by_load, fed));
         let (driven, disturbance, denominator) = match self.load {
-            LinearLoad::Prescribed => {
-                (driven, by_load, product(&spool, &sum(&moved, &scaled(sensor, &own))))
-            }
+            LinearLoad::Prescribed => (driven, by_load, product(&spool, &sum(&moved, &scaled(sensor, &own)))),
             LinearLoad::Yielding { mass, damping, stiffness } => {
                 let load = [mass, damping, stiffness];
                 let before_sensor = product(&moved, &[mass, damping, stiffness + sensor]);

@@ -126,7 +126,8 @@ fn it_is_the_machine_for_small_motions() {
     for number in 0..300 {
         let rig = drawn(number);
         // every other rig feeds the velocity of its load forward, from a thousandth of what holds the force to three times that
-        let feed_forward = if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 300.0) } else { 0.0 };
+        let feed_forward =
+            if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 300.0) } else { 0.0 };
         let fed = (feed_forward > 0.0).then_some(feed_forward);
         let coefficients = Plant { load_velocity_feed_forward: fed, ..rig.plant() }.coefficients();
         let disturbance = coefficients.disturbance.unwrap();

@@ -149,7 +149,8 @@ impl Drawn {
 fn it_is_the_machine_for_small_motions() {
     for number in 0..108 {
         let rig = drawn(number);
-        let feed_forward = if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 108.0) } else { 0.0 };
+        let feed_forward =
+            if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 108.0) } else { 0.0 };
         let moving = PlantInMotion::new(&rig.plant, &rig.behind).fed_forward(Some(feed_forward));
         assert!(moving.is_passive());
         for step in 0..14 {

@@ -24,7 +24,7 @@ pub(crate) fn caveats(project: &Project) -> Vec<Caveat> {
 /// What is declared and in no linear model, in sentences.
 pub(crate) fn of_models(project: &Project) -> Vec<String> {
     let others = apart_from_lines(project).map(|caveat| caveat.sentence);
-    lumped(project).into_iter().chain(others).collect()
+    lumped(project).into_iter().chain(others).chain(fed_in_loop(project)).collect()
 }
 
 fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
@@ -87,16 +87,35 @@ fn supply(project: &Project) -> Option<Caveat> {
     })
 }
 
-/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion.
+/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion. A loop that acts at once
+/// counts it.
 fn feed_forward(project: &Project) -> Option<Caveat> {
-    let declared = project.controller.as_ref()?.load_velocity_feed_forward?;
-    let yields =
-        project.actuator.as_ref().is_some_and(|actuator| actuator.load.model != LoadModel::Prescribed);
+    let controller = project.controller.as_ref()?;
+    let declared = controller.load_velocity_feed_forward?;
+    let actuator = project.actuator.as_ref();
+    let yields = actuator.is_some_and(|actuator| actuator.load.model != LoadModel::Prescribed);
+    let why = match (actuator, controller.sample_time) {
+        (None, _) => "no load is known of a [plant]",
+        (Some(_), Some(_)) => "the controller samples it",
+        (Some(_), None) if controller.delay > 0.0 => "controller.delay makes it late",
+        _ => return None,
+    };
     (declared.gain != Some(0.0)).then(|| Caveat {
-        sentence: "the load velocity that [controller] feeds forward is not counted: this is the loop without it, and only a simulation \
-                   is of the loop with it"
-            .to_string(),
+        sentence: format!(
+            "the load velocity that [controller] feeds forward is not counted, as {why}: this is the loop without it, and only a \
+             simulation is of the loop with it"
+        ),
         unproven: yields || limits(project, SpecificationKind::LoadMotion),
+    })
+}
+
+/// What the models of a linearisation, which are of the rig without its controller, do not count of the load's velocity.
+fn fed_in_loop(project: &Project) -> Option<String> {
+    let declared = project.controller.as_ref()?.load_velocity_feed_forward?;
+    (declared.gain != Some(0.0) && feed_forward(project).is_none()).then(|| {
+        "the load velocity that [controller] feeds forward is not in these models, which have no controller: verify, design and \
+         simulate count it"
+            .to_string()
     })
 }
 

@@ -2,6 +2,7 @@
 //! of the linear model with where it comes from.
 
 mod assembly;
+mod in_loop;
 mod lines;
 mod numbers;
 mod parameters;
@@ -25,6 +26,7 @@ use phea_hydraulics::two_pressure::{
 use crate::project::Project;
 
 pub(crate) use assembly::{actuator, components};
+pub(crate) use in_loop::feed_forward;
 pub(crate) use lines::{in_motion, lines};
 pub(crate) use numbers::Numbers;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
@@ -61,6 +63,8 @@ pub struct Rig {
     pub plant: Plant,
     /// The same with its lines in motion, which is then what every verdict is of; `None` where both are lumped.
     pub in_motion: Option<PlantInMotion>,
+    /// Gain of the load's velocity on the command, V s/m, where it is fed forward at once; [`Rig::in_loop`] counts it.
+    pub fed_at_once: Option<f64>,
 }
 
 /// Why a project has no rig to compute with.
@@ -135,6 +139,7 @@ impl Rig {
             load,
             plant,
             in_motion,
+            fed_at_once: in_loop::fed_at_once(project, &linear),
         })
     }
 }

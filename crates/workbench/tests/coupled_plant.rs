@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use num_complex::Complex64;
+use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::Verdict;
 use phea_workbench::audit::{self, ProjectAudit, audit_project};
 use phea_workbench::control::{controller, sensor};
@@ -117,8 +118,9 @@ fn what_is_not_counted_is_told_first() {
                 "load.stiffness=1e9",
                 "load.damping=1e5",
                 "controller.load_velocity_feed_forward={}",
+                "controller.delay=0.1 ms",
             ],
-            "the load velocity that [controller] feeds forward is not counted",
+            "the load velocity that [controller] feeds forward is not counted, as controller.delay makes it late",
         ),
     ] {
         let view = audited(&satisfied(settings));
@@ -167,11 +169,36 @@ fn a_prefilter_before_the_samples_acts_in_continuous_time() {
     assert!(problem.caveats.is_empty(), "{:?}", problem.caveats);
 }
 
+/// A load that yields and is fed forward swings up once the gain is too large, with lumped lines as with waves in them: so do the
+/// machines of theory/feed_forward.md, 0.7 and 1.3 times A/K_qU.
+#[test]
+fn a_load_velocity_that_is_fed_forward_is_in_the_loop() {
+    let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
+    let (_, specifications) = rest.split_once("[[specification]]").unwrap();
+    let certain = format!("{start}[[specification]]{specifications}");
+    let area_over_gain = 29.3;
+    for line in [&[][..], &["line.model=creeping", "line.relaxation_time=0.01"]] {
+        for (share, stable) in [(0.0, true), (0.7, true), (1.3, false)] {
+            let gain = format!("controller.load_velocity_feed_forward.gain={}", share * area_over_gain);
+            let settings = [&SPRUNG[..], line, &[&gain]].concat();
+            let problem = robust_problem(&Memory::default(), &loaded(&certain, &settings)).unwrap();
+            let member = problem.nominal().unwrap().unwrap();
+            let found = member_stability(&member, &problem.compensation).status;
+            assert_eq!(found == StabilityStatus::Stable, stable, "{line:?} {share}: {found:?}");
+            assert!(stable || matches!(found, StabilityStatus::Unstable(_)), "{line:?} {share}: {found:?}");
+            assert!(problem.caveats.is_empty(), "{:?}", problem.caveats);
+        }
+    }
+}
+
 /// What changes no specification is told, and the verdict stays.
 #[test]
 fn a_path_that_no_specification_limits_decides_nothing() {
-    let view = audited(&satisfied(&["controller.load_velocity_feed_forward={}"]));
-    assert_eq!((view.audit.verdict, view.caveats.len()), (Verdict::Met, 2));
+    for (settings, told) in [(vec![], 1), (vec!["controller.delay=0.1 ms"], 2)] {
+        let fed = [&["controller.load_velocity_feed_forward={}"], &settings[..]].concat();
+        let view = audited(&satisfied(&fed));
+        assert_eq!((view.audit.verdict, view.caveats.len()), (Verdict::Met, told), "{settings:?}");
+    }
 }
 
 /// The box of Table 6.3 begins above the K_c that the edges of Table 5.1 make: what the loop does with that rig is told.

@@ -104,6 +104,26 @@ fn delays_are_part_of_what_is_linearised() {
     assert!(apart(closed.points[0].linearised_machine.unwrap(), closed.points[0].linear_plant) < 0.05);
 }
 
+/// The velocity of a load that yields, fed forward, closes a loop of its own: the linear loop has it, with lumped lines and with waves.
+#[test]
+fn a_load_velocity_that_is_fed_forward_is_in_the_linear_loop() {
+    let sprung = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"500 N.s/m\" }";
+    let waves =
+        "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
+    let gain = "controller.numerator=0.0001*s + 0.0008";
+    let fed = "controller.load_velocity_feed_forward.gain=20";
+    for lines in [&[][..], &[waves, gain]] {
+        let with = [&[sprung, fed][..], lines].concat();
+        let [with, without] = [&with[..], &with[..1]]
+            .map(|settings| shaken(&smooth(settings), &[5.0, 40.0, 300.0], [1e-4, 1.0]).closed_loop.unwrap());
+        for (point, other) in with.points.iter().zip(&without.points) {
+            assert!(apart(point.linearised_machine.unwrap(), point.linear_plant) < 1e-5, "{point:?}");
+            assert!(apart(point.machine, point.linear_plant) < 1e-3, "{point:?}");
+            assert!(apart(other.machine, point.linear_plant) > 0.01, "{point:?} {other:?}");
+        }
+    }
+}
+
 /// Sampled, the fundamental between the samples is that of the held command.
 #[test]
 fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {

@@ -1,4 +1,7 @@
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use num_complex::Complex64;
+use phea_dynamics::portable;
 
 use super::{ChamberDynamics, LinearLoad, Plant};
 use crate::line::DynamicLine;
@@ -137,11 +140,32 @@ impl PlantInMotion {
         }
     }
 
-    /// 1 - K_x s X_L/U_C, the return difference of the velocity that a load which yields feeds back; 1 where nothing does. Its turns
-    /// around zero tell how many poles of the plant lie in the right half plane.
-    pub fn return_difference(&self, s: Complex64) -> Complex64 {
-        let Paths { sensed, fed, .. } = self.paths(s);
-        1.0 - fed / sensed
+    /// Poles in the right half plane of a plant that is passive but for what is fed forward, from its return difference at increasing
+    /// frequencies in rad/s, that reach from where it is real to where it is 1; `None` where two of these lie too far apart to tell.
+    ///
+    /// ```text
+    /// poles = -1/pi the turn of 1 - K_x s X_L/U_C around zero, from zero to infinite frequency                    Nyquist
+    /// ```
+    pub fn unstable_poles(&self, frequencies_rad_per_s: &[f64]) -> Option<usize> {
+        if self.plant.load == LinearLoad::Prescribed || self.plant.load_velocity_feed_forward.is_none() {
+            return Some(0);
+        }
+        let difference = |frequency: &f64| {
+            let Paths { sensed, fed, .. } = self.paths(Complex64::new(0.0, *frequency));
+            1.0 - fed / sensed
+        };
+        let values: Vec<Complex64> = frequencies_rad_per_s.iter().map(difference).collect();
+        let (first, last) = (values.first()?, values.last()?);
+        let start = portable::argument(*first);
+        let mut turn = start - (start / PI).round() * PI - portable::argument(*last);
+        for pair in values.windows(2) {
+            let step = portable::argument(pair[1] / pair[0]);
+            turn += step;
+            if step.is_nan() || step.abs() >= FRAC_PI_2 {
+                return None;
+            }
+        }
+        Some((-turn / PI).round().max(0.0) as usize)
     }
 
     /// Whether nothing in it but what is fed forward gives energy, so that none of its poles lies in the right half plane: its lines are passive, and so are

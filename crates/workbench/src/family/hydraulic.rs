@@ -83,14 +83,15 @@ impl Open<'_> {
         (position, steady, Balance::of(&components, leakage))
     }
 
-    /// The rig with these values, and its plant with lumped lines.
+    /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed forward is that of the declared rig.
     fn plant<S: Scalar>(&self, values: &[S], moved: bool, one_pressure: bool) -> (Place<S>, Plant<S>) {
         let place = self.place(values, moved);
         let numbers = Numbers::open(self.names, values);
         let load = yielding_load(&self.declared.load, &numbers, place.point.hydraulic_force);
         let load = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&place.chambers, &place.linear, one_pressure, place.leakage, load);
-        (place, plant)
+        let load_velocity_feed_forward = self.rig.fed_at_once.map(S::from);
+        (place, Plant { load_velocity_feed_forward, ..plant })
     }
 
     /// The rig with these values; its pressures are those of the declared rig where nothing moves them.

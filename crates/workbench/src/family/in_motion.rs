@@ -132,14 +132,16 @@ fn points(plant: &PlantInMotion, grid: &[f64], name: String) -> MeasuredPlant {
             left.push(middle);
         }
     }
+    let frequencies_rad_per_s: Vec<f64> = found.iter().map(|point| point.0).collect();
+    // nothing in a passive plant grows but by what is fed forward
+    let unstable_poles = plant.unstable_poles(&frequencies_rad_per_s);
     MeasuredPlant {
         name,
-        frequencies_rad_per_s: found.iter().map(|point| point.0).collect(),
+        frequencies_rad_per_s,
         command: found.iter().map(|point| point.1[0]).collect(),
         disturbance: Some(found.iter().map(|point| point.1[1]).collect()),
-        // nothing in a passive plant grows
-        unstable_poles: 0,
-        is_resolved: true,
+        is_resolved: unstable_poles.is_some(),
+        unstable_poles: unstable_poles.unwrap_or(0),
     }
 }
 

@@ -14,7 +14,7 @@ use phea_qft::design::quantisation::Quantisation;
 use super::SimulateError;
 use crate::control::{controller, deployed, quantisation, sensor};
 use crate::project::{self, Project, Scenario, StepMethod, SupplyModel};
-use crate::rig::{Rig, lines};
+use crate::rig::{Rig, feed_forward, lines};
 
 /// A machine with its controller.
 #[derive(Clone, Debug)]
@@ -81,7 +81,7 @@ impl Bench {
     fn closed(project: &Project, external_force: bool) -> Result<Bench, SimulateError> {
         let (rig, sensed) = rig_and_machine(project, external_force)?;
         let controller = controller(project)?.ok_or(SimulateError::NoController)?;
-        let feed_forward = feed_forward(project, &rig);
+        let feed_forward = feed_forward(project, &rig.linear);
         let machine = *sensed.plant();
         let control = match controller.timing.sample_time_s {
             None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &controller, feed_forward)?)),
@@ -202,12 +202,6 @@ fn between_samples(
         return Ok(std::mem::take(&mut controller.prefilter).transfer_function()?);
     }
     Ok(TransferFunction::gain_only(1.0))
-}
-
-/// V s/m; the area over the flow gain holds the flow that the motion takes.
-fn feed_forward(project: &Project, rig: &Rig) -> f64 {
-    let declared = project.controller.as_ref().and_then(|controller| controller.load_velocity_feed_forward);
-    declared.map_or(0.0, |declared| declared.gain.unwrap_or(rig.linear.useful_area / rig.linear.flow_gain))
 }
 
 /// What the machine has beyond its actuator, whatever acts on it.

@@ -196,6 +196,7 @@ fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
 /// L in z has lumped lines
 /// ```
 struct Model {
+    /// As the loop sees it.
     rig: Rig,
     sensor: TransferFunction,
     delay_s: f64,
@@ -220,7 +221,7 @@ impl Model {
             Some((_, sampled)) => sampled.prefilter.clone(),
         };
         Ok(Model {
-            rig: rested.rig.clone(),
+            rig: rested.rig.in_loop(),
             sensor,
             delay_s: given.timing.delay_s,
             feedback: given.feedback.transfer_function()?,
