@@ -8,14 +8,19 @@
 //! U_C -> U_C + K_x s X_L                                                 what is fed forward of the load's velocity
 //! ```
 //!
-//! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v and the supply at a constant pressure.
+//! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v. The supply is at a constant
+//! pressure, or has one of its own: [`YieldingSupply`].
 
 mod in_motion;
+mod supply;
 
 pub use in_motion::{BehindLines, PlantInMotion};
+pub use supply::YieldingSupply;
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+
+use supply::Coupled;
 
 use crate::linear::LinearParameters;
 use crate::linear::polynomial::{product, scaled, shifted, sum};
@@ -40,6 +45,8 @@ pub struct Plant<S = f64> {
     pub sensor_stiffness: S,
     /// What the force sensor pushes on.
     pub load: LinearLoad<S>,
+    /// A supply that yields; `None` where its pressure is constant.
+    pub supply: Option<YieldingSupply<S>>,
     /// Gain K_x in V s/m from the velocity of the load to the command, at once; `None` where nothing is fed forward.
     pub load_velocity_feed_forward: Option<S>,
 }
@@ -96,15 +103,15 @@ pub enum LinearLoad<S = f64> {
     },
 }
 
-/// D, N_u and N_v, highest power first.
-struct Chambers<S> {
-    own: Vec<S>,
-    driven: Vec<S>,
-    displaced: Vec<S>,
+/// D, N_u and N_v: polynomials, highest power first, or their values.
+struct Chambers<T> {
+    own: T,
+    driven: T,
+    displaced: T,
 }
 
 impl<S: Scalar> ChamberDynamics<S> {
-    fn polynomials(&self, leakage: S) -> Chambers<S> {
+    fn polynomials(&self, leakage: S) -> Chambers<Vec<S>> {
         match *self {
             ChamberDynamics::LoadPressure {
                 useful_area: area,
@@ -133,6 +140,60 @@ impl<S: Scalar> ChamberDynamics<S> {
     }
 }
 
+impl<S: Scalar> ChamberDynamics<S> {
+    /// The same with a supply that yields, of either form.
+    fn behind(&self, supply: &YieldingSupply<S>, leakage: S) -> Chambers<Vec<S>> {
+        let [one, other] = [self.side(0), self.side(1)];
+        let [of_a, of_b] = supply.edges;
+        let coupled = Coupled {
+            own: [
+                vec![one.compliance, one.flow_pressure + leakage],
+                vec![other.compliance, other.flow_pressure + leakage],
+                vec![supply.compliance, supply.conductance + of_a + of_b],
+            ],
+            across: vec![leakage],
+            edges: [vec![of_a], vec![of_b]],
+            gains: [vec![one.flow_gain], vec![other.flow_gain], vec![supply.flow_gain]],
+        };
+        coupled.chambers([one.area, other.area])
+    }
+
+    /// One chamber, 0 or 1. One load pressure is that of two equal chambers:
+    ///
+    /// ```text
+    /// C = 2 A^2/K_H,   K_q = K_qU,   2 K_c
+    /// ```
+    fn side(&self, side: usize) -> Chamber<S> {
+        match *self {
+            ChamberDynamics::LoadPressure {
+                useful_area: area,
+                flow_gain,
+                flow_pressure_coefficient,
+                hydraulic_stiffness,
+            } => Chamber {
+                area,
+                compliance: S::from(2.0) * area * area / hydraulic_stiffness,
+                flow_gain,
+                flow_pressure: S::from(2.0) * flow_pressure_coefficient,
+            },
+            ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } => Chamber {
+                area: areas[side],
+                compliance: compliances[side],
+                flow_gain: flow_gains[side],
+                flow_pressure: flow_pressures[side],
+            },
+        }
+    }
+}
+
+/// Area, compliance, flow gain and flow-pressure coefficient of a chamber.
+struct Chamber<S> {
+    area: S,
+    compliance: S,
+    flow_gain: S,
+    flow_pressure: S,
+}
+
 impl<S: Scalar> Plant<S> {
     /// The plant of these parameters of the fifth-order model, with what that model leaves out.
     pub fn of_load_pressure(parameters: &LinearParameters<S>, leakage: S, load: LinearLoad<S>) -> Plant<S> {
@@ -150,6 +211,7 @@ impl<S: Scalar> Plant<S> {
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
             load,
+            supply: None,
             load_velocity_feed_forward: None,
         }
     }
@@ -175,6 +237,7 @@ impl<S: Scalar> Plant<S> {
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
             load,
+            supply: None,
             load_velocity_feed_forward: None,
         }
     }
@@ -213,7 +276,10 @@ impl<S: Scalar> Plant<S> {
         let damping = S::from(2.0) * self.valve_damping_ratio * self.valve_natural_frequency;
         let spool = [one, damping, square];
         let sensor = self.sensor_stiffness;
-        let Chambers { own, driven, displaced } = self.chambers.polynomials(self.internal_leakage);
+        let Chambers { own, driven, displaced } = match &self.supply {
+            None => self.chambers.polynomials(self.internal_leakage),
+            Some(supply) => self.chambers.behind(supply, self.internal_leakage),
+        };
         let fed =
             self.load_velocity_feed_forward.map(|gain| shifted(&scaled(gain * sensor * square, &driven)));
         let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], &own), &displaced));

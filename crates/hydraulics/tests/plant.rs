@@ -5,7 +5,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
-use phea_dynamics::simulation::{Plant as _, small_signal};
+use phea_dynamics::simulation::small_signal;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
@@ -13,22 +13,23 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::Member;
 use phea_hydraulics::linear::linear_model_coefficients;
-use phea_hydraulics::machine::{Beginning, Contact, LoadModel, Machine, MachineOptions};
-use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
+use phea_hydraulics::machine::{Beginning, Contact, LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
 use phea_hydraulics::plant::{LinearLoad, Plant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, nominal_plant, pipe_line};
-use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{
     TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
 };
 
-use super::commanded::Commanded;
+use super::commanded::{Commanded, power_unit, supply_pressure, yielding};
 
 /// A rig of its own for every number, with everything that lumped lines let the plant have.
 struct Drawn {
     actuator: Actuator,
     machine: Machine,
+    unit: PowerUnit,
     rest: Beginning,
     friction: f64,
     leakage: f64,
@@ -64,7 +65,8 @@ fn drawn(number: u64) -> Drawn {
         _ => LoadModel::Wall { mass, damping, gap: 1e-3, contact },
     };
     let internal_leakage = (leakage > 0.0).then_some(leakage);
-    let options = MachineOptions { load, internal_leakage, ..MachineOptions::default() };
+    let unit = power_unit(number);
+    let options = MachineOptions { load, internal_leakage, power_unit: unit, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let (position, command) = (spread(0.05, 0.45), spread(0.01, 2.0));
     // a wall takes no pull: the next command pushes harder
@@ -83,7 +85,7 @@ fn drawn(number: u64) -> Drawn {
             LinearLoad::Yielding { mass, damping, stiffness }
         }
     };
-    Drawn { actuator, machine, rest, friction, leakage, load }
+    Drawn { actuator, machine, unit, rest, friction, leakage, load }
 }
 
 impl Drawn {
@@ -91,10 +93,15 @@ impl Drawn {
     fn plant(&self) -> Plant {
         let state = &self.rest.state;
         let pressures = [state[2], state[3]];
-        let model = TwoPressureModel::new(&self.actuator, pressures, Member::Nominal, self.friction);
-        let yielding = if self.machine.states() > 6 { state[6] } else { 0.0 };
+        let stated = self.actuator.components().supply;
+        let supplied = supply_pressure(&self.unit, stated.pressure, state);
+        let model = TwoPressureModel {
+            supply: Supply { pressure: supplied, ..stated },
+            ..TwoPressureModel::new(&self.actuator, pressures, Member::Nominal, self.friction)
+        };
+        let moved = if self.load == LinearLoad::Prescribed { 0.0 } else { state[6] };
         let point = OperatingPoint {
-            position: self.rest.inputs[0] + yielding + state[4],
+            position: self.rest.inputs[0] + moved + state[4],
             command: state[0],
             pressure_a: pressures[0],
             pressure_b: pressures[1],
@@ -104,7 +111,8 @@ impl Drawn {
             net_flow_b: 0.0,
         };
         let parameters = two_pressure_linear_parameters(&model, &point, Direction::Extending);
-        Plant::of_two_pressures(&parameters, self.leakage, self.load)
+        let supply = yielding(&self.actuator, &self.unit, state[0], pressures, supplied);
+        Plant { supply, ..Plant::of_two_pressures(&parameters, self.leakage, self.load) }
     }
 
     /// F_e/U_C and F_e/X_0 of the machine's own derivatives.
@@ -140,6 +148,32 @@ fn it_is_the_machine_for_small_motions() {
             }
         }
     }
+}
+
+/// Where a limited pump settles the machine rests, as far as the pump gives what is taken there; the others have fallen to less.
+#[test]
+fn a_limited_pump_settles_where_the_machine_rests() {
+    let mut counted = [0, 0];
+    for number in 0..300 {
+        let rig = drawn(number);
+        let PowerUnit::PumpLimited(unit) = rig.unit else { continue };
+        let components = rig.actuator.components();
+        let idle = components.supply.pressure;
+        let balance = Balance::of(components, (rig.leakage > 0.0).then_some(rig.leakage));
+        let found = balance.settled_supply(&unit, idle, Steady::Command(rig.rest.state[0]));
+        let rests = *rig.rest.state.last().unwrap();
+        if found.taken < unit.pump_flow {
+            assert!((found.supply.pressure / rests - 1.0).abs() < 1e-9, "rig {number}: {found:?} {rests}");
+            for (own, rests) in found.settled.pressures.into_iter().zip(&rig.rest.state[2..4]) {
+                assert!((own - rests).abs() < 1e-8 * idle, "rig {number}: {own} {rests}");
+            }
+        } else {
+            assert_eq!(found.supply.pressure, idle - unit.relief_override);
+            assert!(rests < found.supply.pressure, "rig {number}: {found:?} {rests}");
+        }
+        counted[usize::from(found.taken < unit.pump_flow)] += 1;
+    }
+    assert!(counted.iter().all(|count| *count > 10), "{counted:?}");
 }
 
 /// Without leakage and with a prescribed load it is the model it is made of, coefficient by coefficient.

@@ -3,7 +3,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::{ChamberDynamics, LinearLoad, Plant};
+use super::supply::Coupled;
+use super::{Chamber, Chambers, LinearLoad, Plant, YieldingSupply};
 use crate::line::DynamicLine;
 
 /// The plant with lines that have dynamics of their own: what no quotient of polynomials is, but a response at every frequency.
@@ -69,10 +70,14 @@ struct Side {
     line: DynamicLine,
 }
 
-/// Flow from the valve per volt, and flow per pascal, both at the chamber.
+/// A chamber with its line at one frequency.
 struct AtChamber {
+    /// Flow from the valve per volt, and flow per pascal, both at the chamber.
     flow_gain: Complex64,
     admittance: Complex64,
+    /// d + K_c b, by which the valve's flow is less at the chamber than at a port held still, and b.
+    passed: Complex64,
+    impedance: Complex64,
 }
 
 /// F_e (sensed - fed) = command U_C + ground X_0, `fed` being what the velocity of a load that yields feeds back.
@@ -93,7 +98,7 @@ impl PlantInMotion {
     /// The plant with these chambers and lines in place of its lumped ones.
     pub fn new(plant: &Plant, behind: &BehindLines) -> PlantInMotion {
         let side = |side: usize| {
-            let [area, compliance, flow_gain, flow_pressure] = chamber(&plant.chambers, side);
+            let Chamber { area, compliance, flow_gain, flow_pressure } = plant.chambers.side(side);
             let stiffer = behind.lumped[side] / compliance;
             let line = behind.lines[side].stiffened(stiffer);
             let compliance = behind.chambers[side] / stiffer + line.chamber_compliance();
@@ -110,18 +115,10 @@ impl PlantInMotion {
 
     fn paths(&self, s: Complex64) -> Paths {
         let zero = Complex64::ZERO;
-        let [one, other] = self.sides.map(|side| side.at_chamber(s));
-        let [area_a, area_b] = self.sides.map(|side| side.area);
-        let leakage = self.plant.internal_leakage;
-        let (a, b) = (one.admittance, other.admittance);
-        let difference = area_a - area_b;
-        let own = a * b + leakage * (a + b);
-        let driven = area_a * one.flow_gain * b
-            + area_b * other.flow_gain * a
-            + leakage * difference * (one.flow_gain - other.flow_gain);
-        let displaced = area_a * area_a * b + area_b * area_b * a + leakage * difference * difference;
+        let Chambers { own, driven, displaced } = self.chambers(s);
+        let sensor = self.plant.sensor_stiffness;
         let moved = s * ((self.plant.moving_mass * s + self.plant.viscous_friction) * own + displaced);
-        let (frequency, sensor) = (self.plant.valve_natural_frequency, self.plant.sensor_stiffness);
+        let frequency = self.plant.valve_natural_frequency;
         let square = frequency * frequency;
         let spool = square / (s * s + 2.0 * self.plant.valve_damping_ratio * frequency * s + square);
         let fed = sensor * self.plant.load_velocity_feed_forward.unwrap_or(0.0) * s * spool * driven;
@@ -137,6 +134,49 @@ impl PlantInMotion {
                 let ground = tied * (fed - sensor * moved);
                 Paths { command: sensor * load * spool * driven, ground, sensed, fed }
             }
+        }
+    }
+
+    /// D, N_u and N_v at s.
+    fn chambers(&self, s: Complex64) -> Chambers<Complex64> {
+        let at = self.sides.map(|side| side.at_chamber(s));
+        let [area_a, area_b] = self.sides.map(|side| side.area);
+        let leakage = self.plant.internal_leakage;
+        if let Some(supply) = &self.plant.supply {
+            return self.behind(supply, &at, s).chambers([area_a, area_b]);
+        }
+        let [one, other] = at;
+        let (a, b) = (one.admittance, other.admittance);
+        let difference = area_a - area_b;
+        Chambers {
+            own: a * b + leakage * (a + b),
+            driven: area_a * one.flow_gain * b
+                + area_b * other.flow_gain * a
+                + leakage * difference * (one.flow_gain - other.flow_gain),
+            displaced: area_a * area_a * b + area_b * area_b * a + leakage * difference * difference,
+        }
+    }
+
+    /// With a supply that yields. Its edges end at the valve's ports, whose pressures are, with a d - b c = 1,
+    ///
+    /// ```text
+    /// p_port = (p + b K_q U + b s_i p_S)/(d + K_c b)
+    /// ```
+    fn behind(&self, supply: &YieldingSupply, at: &[AtChamber; 2], s: Complex64) -> Coupled<Complex64> {
+        let leakage = self.plant.internal_leakage;
+        let [of_a, of_b] = supply.edges;
+        let [one, other] = at;
+        let returned = |edge: f64, at: &AtChamber| edge * at.impedance;
+        let own = s * supply.compliance + supply.conductance + of_a + of_b
+            - of_a * returned(of_a, one) / one.passed
+            - of_b * returned(of_b, other) / other.passed;
+        let taken =
+            supply.flow_gain - returned(of_a, one) * one.flow_gain + returned(of_b, other) * other.flow_gain;
+        Coupled {
+            own: [one.admittance + leakage, other.admittance + leakage, own],
+            across: leakage.into(),
+            edges: [of_a / one.passed, of_b / other.passed],
+            gains: [one.flow_gain, other.flow_gain, taken],
         }
     }
 
@@ -182,7 +222,11 @@ impl PlantInMotion {
             self.plant.valve_damping_ratio,
         ];
         let of_sides = self.sides.iter().flat_map(|side| [side.compliance, side.flow_pressure]);
-        own.into_iter().chain(load).chain(of_sides).all(|value| value >= 0.0)
+        let of_supply = self.plant.supply.iter().flat_map(|supply| {
+            let to_tank = [0, 1].map(|side| self.sides[side].flow_pressure - supply.edges[side]);
+            [supply.edges, to_tank, [supply.compliance, supply.conductance]].concat()
+        });
+        own.into_iter().chain(load).chain(of_sides).chain(of_supply).all(|value| value >= 0.0)
     }
 
     /// Where the slower line is a quarter of a wave long, pi/(2 T) in rad/s; `None` where no wave travels.
@@ -200,25 +244,8 @@ impl Side {
         AtChamber {
             flow_gain: self.flow_gain / passed,
             admittance: s * self.compliance + (line.admittance + self.flow_pressure * line.pressure) / passed,
-        }
-    }
-}
-
-/// Area, compliance, flow gain and flow-pressure coefficient of a chamber. One load pressure is that of two equal chambers:
-///
-/// ```text
-/// C = 2 A^2/K_H,   K_q = K_qU,   2 K_c
-/// ```
-fn chamber(chambers: &ChamberDynamics, side: usize) -> [f64; 4] {
-    match *chambers {
-        ChamberDynamics::LoadPressure {
-            useful_area: area,
-            flow_gain,
-            flow_pressure_coefficient,
-            hydraulic_stiffness,
-        } => [area, 2.0 * area * area / hydraulic_stiffness, flow_gain, 2.0 * flow_pressure_coefficient],
-        ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } => {
-            [areas[side], compliances[side], flow_gains[side], flow_pressures[side]]
+            passed,
+            impedance: line.impedance,
         }
     }
 }
