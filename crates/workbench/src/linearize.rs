@@ -155,7 +155,8 @@ pub fn linearize(
     Ok(Linearization {
         plant_is_fifth_order: matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
             && rig.internal_leakage == 0.0
-            && rig.load.is_none(),
+            && rig.load.is_none()
+            && rig.plant.supply.is_none(),
         agreement,
         stiffness: [Member::Nominal, Member::Minimum, Member::Maximum]
             .map(|member| stroke_stiffness(rig, member)),

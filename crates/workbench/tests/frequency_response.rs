@@ -124,6 +124,35 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_linear_loop() {
     }
 }
 
+/// A pump that gives little more than what leaks, an override of 40 bar and a load that the piston presses: the force sees the supply's
+/// pressure move, and the linear plant has it.
+#[test]
+fn a_supply_that_yields_is_in_the_linear_plant() {
+    let pump = [
+        "supply.model=pump_limited",
+        "supply.flow=1.5 L/min",
+        "supply.relief_override=40 bar",
+        "supply.volume=50 mL",
+        "operating_point.load_force=4 kN",
+    ];
+    let waves =
+        "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
+    for lines in [&[][..], &[waves, "controller.numerator=0.0001*s + 0.0008"]] {
+        let settings = [&pump[..], lines].concat();
+        let loaded = smooth(&settings);
+        let found = shaken(&loaded, &[1.0, 30.0, 300.0], [1e-4, 1.0]);
+        let closed = found.closed_loop.unwrap();
+        for point in found.open_loop.points.iter().chain(&closed.points) {
+            assert!(apart(point.linearised_machine.unwrap(), point.linear_plant) < 1e-5, "{point:?}");
+            assert!(apart(point.machine, point.linear_plant) < 1e-3, "{point:?}");
+        }
+        let mut rig = Rig::new(&loaded.project).unwrap();
+        let counted = rig.plant.coefficients().command.at_frequency(1.0);
+        rig.plant.supply = None;
+        assert!(apart(rig.plant.coefficients().command.at_frequency(1.0), counted) > 0.01);
+    }
+}
+
 /// Sampled, the fundamental between the samples is that of the held command.
 #[test]
 fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {

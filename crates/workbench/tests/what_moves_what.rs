@@ -82,6 +82,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
             vec!["line.compliance=by_volume", "operating_point.command=0.5", "fluid.entrained_air=0.01"],
         ),
         (include_str!("project_valid/simulation.toml").to_string(), vec![]),
+        (include_str!("project_valid/simulation.toml").to_string(), vec!["operating_point.load_force=2 kN"]),
         (
             include_str!("project_valid/asymmetric.toml").to_string(),
             vec!["cylinder.friction.regular_velocity=1 mm/s"],
