@@ -25,6 +25,18 @@ pub struct Timing {
     pub delay_s: f64,
     /// How continuous elements become sampled ones.
     pub discretization: Discretization,
+    /// Whether the prefilter acts on the reference before it is sampled, in continuous time.
+    pub continuous_prefilter: bool,
+}
+
+impl Timing {
+    /// When the prefilter acts: with the controller, or in continuous time before its samples.
+    pub fn of_prefilter(&self) -> Timing {
+        match self.continuous_prefilter {
+            true => Timing { sample_time_s: None, ..*self },
+            false => *self,
+        }
+    }
 }
 
 /// What the integral part does while the command is limited.

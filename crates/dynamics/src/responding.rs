@@ -8,9 +8,7 @@ use num_complex::Complex64;
 use crate::analytic::Disc;
 use crate::uncertain_plant::PlantCoefficients;
 
-/// A stable plant that no quotient of polynomials is, such as one behind lines with waves.
-///
-/// It has no pole in the right half plane, and none on the imaginary axis but at zero.
+/// A plant that no quotient of polynomials is, such as one behind lines with waves. It has no pole on the imaginary axis but at zero.
 pub trait RespondingPlant: Debug + Send + Sync {
     /// P(jw), and Pd(jw) from the disturbance, at a positive frequency in rad/s.
     fn response(&self, frequency_rad_per_s: f64) -> [Complex64; 2];
@@ -24,6 +22,9 @@ pub trait RespondingPlant: Debug + Send + Sync {
 
     /// A number b with |P(jv)| <= b (w/v)^3 at every v from w on; `None` where none is known.
     fn roll_off(&self, frequency_rad_per_s: f64) -> Option<f64>;
+
+    /// Its own poles in the right half plane; `None` where they cannot be counted.
+    fn unstable_poles(&self) -> Option<usize>;
 
     /// Between which frequencies in rad/s the response does something of its own.
     fn range_rad_per_s(&self) -> [f64; 2];

@@ -13,11 +13,13 @@
 mod balance;
 mod bisection;
 mod settling;
+mod supply;
 
 use phea_dynamics::scalar::Scalar;
 
 pub use balance::Balance;
 pub use settling::{Settled, Steady};
+pub use supply::SettledSupply;
 
 use crate::actuator::Actuator;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;

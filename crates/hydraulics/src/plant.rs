@@ -5,16 +5,22 @@
 //! D F_h = N_u U_sp - N_v s X                                             chambers: ChamberDynamics
 //! (M s^2 + f_v s) X = F_h - F_e,       F_e = K_S (X - X_L)               piston and force sensor, thesis (4.29)
 //! X_L = X_0,   or   (m s^2 + c s + k) X_L = F_e + (c s + k) X_0          load: LinearLoad
+//! U_C -> U_C + K_x s X_L                                                 what is fed forward of the load's velocity
 //! ```
 //!
-//! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v and the supply at a constant pressure.
+//! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v. The supply is at a constant
+//! pressure, or has one of its own: [`YieldingSupply`].
 
 mod in_motion;
+mod supply;
 
 pub use in_motion::{BehindLines, PlantInMotion};
+pub use supply::YieldingSupply;
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+
+use supply::Coupled;
 
 use crate::linear::LinearParameters;
 use crate::linear::polynomial::{product, scaled, shifted, sum};
@@ -39,6 +45,10 @@ pub struct Plant<S = f64> {
     pub sensor_stiffness: S,
     /// What the force sensor pushes on.
     pub load: LinearLoad<S>,
+    /// A supply that yields; `None` where its pressure is constant.
+    pub supply: Option<YieldingSupply<S>>,
+    /// Gain K_x in V s/m from the velocity of the load to the command, at once; `None` where nothing is fed forward.
+    pub load_velocity_feed_forward: Option<S>,
 }
 
 /// How pressures build up. Units: m2, m3/(s V), m3/(s Pa), N/m, m3/Pa.
@@ -93,15 +103,15 @@ pub enum LinearLoad<S = f64> {
     },
 }
 
-/// D, N_u and N_v, highest power first.
-struct Chambers<S> {
-    own: Vec<S>,
-    driven: Vec<S>,
-    displaced: Vec<S>,
+/// D, N_u and N_v: polynomials, highest power first, or their values.
+struct Chambers<T> {
+    own: T,
+    driven: T,
+    displaced: T,
 }
 
 impl<S: Scalar> ChamberDynamics<S> {
-    fn polynomials(&self, leakage: S) -> Chambers<S> {
+    fn polynomials(&self, leakage: S) -> Chambers<Vec<S>> {
         match *self {
             ChamberDynamics::LoadPressure {
                 useful_area: area,
@@ -130,6 +140,60 @@ impl<S: Scalar> ChamberDynamics<S> {
     }
 }
 
+impl<S: Scalar> ChamberDynamics<S> {
+    /// The same with a supply that yields, of either form.
+    fn behind(&self, supply: &YieldingSupply<S>, leakage: S) -> Chambers<Vec<S>> {
+        let [one, other] = [self.side(0), self.side(1)];
+        let [of_a, of_b] = supply.edges;
+        let coupled = Coupled {
+            own: [
+                vec![one.compliance, one.flow_pressure + leakage],
+                vec![other.compliance, other.flow_pressure + leakage],
+                vec![supply.compliance, supply.conductance + of_a + of_b],
+            ],
+            across: vec![leakage],
+            edges: [vec![of_a], vec![of_b]],
+            gains: [vec![one.flow_gain], vec![other.flow_gain], vec![supply.flow_gain]],
+        };
+        coupled.chambers([one.area, other.area])
+    }
+
+    /// One chamber, 0 or 1. One load pressure is that of two equal chambers:
+    ///
+    /// ```text
+    /// C = 2 A^2/K_H,   K_q = K_qU,   2 K_c
+    /// ```
+    fn side(&self, side: usize) -> Chamber<S> {
+        match *self {
+            ChamberDynamics::LoadPressure {
+                useful_area: area,
+                flow_gain,
+                flow_pressure_coefficient,
+                hydraulic_stiffness,
+            } => Chamber {
+                area,
+                compliance: S::from(2.0) * area * area / hydraulic_stiffness,
+                flow_gain,
+                flow_pressure: S::from(2.0) * flow_pressure_coefficient,
+            },
+            ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } => Chamber {
+                area: areas[side],
+                compliance: compliances[side],
+                flow_gain: flow_gains[side],
+                flow_pressure: flow_pressures[side],
+            },
+        }
+    }
+}
+
+/// Area, compliance, flow gain and flow-pressure coefficient of a chamber.
+struct Chamber<S> {
+    area: S,
+    compliance: S,
+    flow_gain: S,
+    flow_pressure: S,
+}
+
 impl<S: Scalar> Plant<S> {
     /// The plant of these parameters of the fifth-order model, with what that model leaves out.
     pub fn of_load_pressure(parameters: &LinearParameters<S>, leakage: S, load: LinearLoad<S>) -> Plant<S> {
@@ -147,6 +211,8 @@ impl<S: Scalar> Plant<S> {
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
             load,
+            supply: None,
+            load_velocity_feed_forward: None,
         }
     }
 
@@ -171,6 +237,8 @@ impl<S: Scalar> Plant<S> {
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
             load,
+            supply: None,
+            load_velocity_feed_forward: None,
         }
     }
 
@@ -181,6 +249,10 @@ impl<S: Scalar> Plant<S> {
     /// prescribed    F_e = K_S (w^2 N_u U_C - V Q X_0)/(V (Q + K_S D))
     /// yielding      F_e = K_S (Z w^2 N_u U_C - (c s + k) V Q X_0)/(V (Q (Z + K_S) + K_S Z D))
     /// ```
+    ///
+    /// The velocity of the load that is fed forward is a second path of a prescribed motion, and a second loop of a load that yields:
+    /// V Q is less by w^2 N_u K_x s in both numerators of X_0, and in the denominator V (...) is less by K_S w^2 N_u K_x s of a load that
+    /// yields.
     ///
     /// # Example
     /// What the load adds: with a mass as heavy as the earth it does not move.
@@ -204,20 +276,27 @@ impl<S: Scalar> Plant<S> {
         let damping = S::from(2.0) * self.valve_damping_ratio * self.valve_natural_frequency;
         let spool = [one, damping, square];
         let sensor = self.sensor_stiffness;
-        let Chambers { own, driven, displaced } = self.chambers.polynomials(self.internal_leakage);
+        let Chambers { own, driven, displaced } = match &self.supply {
+            None => self.chambers.polynomials(self.internal_leakage),
+            Some(supply) => self.chambers.behind(supply, self.internal_leakage),
+        };
+        let fed =
+            self.load_velocity_feed_forward.map(|gain| shifted(&scaled(gain * sensor * square, &driven)));
         let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], &own), &displaced));
-        let (driven, moved_by_ground, sensed) = match self.load {
-            LinearLoad::Prescribed => (driven, moved.clone(), sum(&moved, &scaled(sensor, &own))),
+        let by_load = scaled(-sensor, &product(&spool, &moved));
+        let by_load = fed.as_ref().map_or(by_load.clone(), |fed| sum(&by_load, fed));
+        let (driven, disturbance, denominator) = match self.load {
+            LinearLoad::Prescribed => (driven, by_load, product(&spool, &sum(&moved, &scaled(sensor, &own)))),
             LinearLoad::Yielding { mass, damping, stiffness } => {
                 let load = [mass, damping, stiffness];
                 let before_sensor = product(&moved, &[mass, damping, stiffness + sensor]);
                 let sensed = sum(&before_sensor, &scaled(sensor, &product(&load, &own)));
-                (product(&load, &driven), product(&moved, &[damping, stiffness]), sensed)
+                let alone = product(&spool, &sensed);
+                let denominator = fed.map_or(alone.clone(), |fed| sum(&alone, &scaled(S::from(-1.0), &fed)));
+                (product(&load, &driven), product(&by_load, &[damping, stiffness]), denominator)
             }
         };
-        let denominator = product(&spool, &sensed);
         let command = scaled(sensor * square, &driven);
-        let disturbance = scaled(-sensor, &product(&spool, &moved_by_ground));
         PlantCoefficients {
             command: RationalCoefficients { numerator: command, denominator: denominator.clone() },
             disturbance: Some(RationalCoefficients { numerator: disturbance, denominator }),

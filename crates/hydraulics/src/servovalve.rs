@@ -6,8 +6,8 @@ mod spool;
 mod tare;
 
 pub use coefficients::{
-    ChamberCoefficients, ControlCoefficients, Direction, chamber_coefficients, control_coefficients,
-    velocity_gain,
+    ChamberCoefficients, ControlCoefficients, Direction, SupplyCoefficients, chamber_coefficients,
+    control_coefficients, supply_coefficients, velocity_gain,
 };
 pub use flow::{
     ChamberFlows, EdgeFlows, Openings, chamber_flows, control_flow, edge_flows, hyperbolic_secant,

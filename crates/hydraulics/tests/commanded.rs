@@ -1,10 +1,58 @@
-//! A machine whose first input is its command, to differentiate it by.
+//! A machine whose first input is its command, to differentiate it by, and its supply.
 
+use phea_dynamics::portable::pow;
+use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Plant, System};
-use phea_hydraulics::machine::Machine;
+use phea_hydraulics::actuator::Actuator;
+use phea_hydraulics::machine::{Accumulator, Machine, PowerUnit, PumpLimited};
+use phea_hydraulics::operating_point::{Balance, Settled, SettledSupply};
+use phea_hydraulics::plant::YieldingSupply;
+use phea_hydraulics::servovalve::{Direction, Supply};
 
-pub(super) struct Commanded(pub(super) Machine);
+/// Two of five numbers have a supply that yields, with an accumulator for every other of these; some pumps give less than what leaks.
+pub(super) fn power_unit(number: u64) -> PowerUnit {
+    if number % 5 < 3 {
+        return PowerUnit::Constant;
+    }
+    let mut state = stream(31, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let gas_volume = spread(1e-4, 1e-2);
+    let accumulator = Accumulator { gas_volume, precharge_pressure: 40e5, polytropic_index: 1.3 };
+    PowerUnit::PumpLimited(PumpLimited {
+        pump_flow: spread(6e-6, 3e-4),
+        relief_override: spread(1e5, 2e6),
+        volume: spread(1e-4, 1e-2),
+        effective_bulk_modulus: spread(1e8, 1.4e9),
+        accumulator: number.is_multiple_of(2).then_some(accumulator),
+    })
+}
+
+/// The supply pressure of a machine at rest: the last of the states that have names.
+pub(super) fn supply_pressure(unit: &PowerUnit, stated: f64, named: &[f64]) -> f64 {
+    if unit.yields() { named.last().copied().unwrap_or(f64::NAN) } else { stated }
+}
+
+/// The supply where it rests, for small motions, with this command in V and these pressures at the valve's ports and of the supply in Pa.
+pub(super) fn yielding(
+    actuator: &Actuator,
+    unit: &PowerUnit,
+    command: f64,
+    ports: [f64; 2],
+    pressure: f64,
+) -> Option<YieldingSupply> {
+    let PowerUnit::PumpLimited(unit) = unit else { return None };
+    let components = actuator.components();
+    let supply = Supply { pressure, ..components.supply };
+    let settled = SettledSupply { supply, settled: Settled { command, pressures: ports }, taken: f64::NAN };
+    let idle = components.supply.pressure;
+    let drops = [idle, idle - components.supply.tank_pressure];
+    let balance = Balance::of(components, None);
+    Some(YieldingSupply::new(unit, &balance, drops, &settled, Direction::Extending))
+}
+
+/// The second number is the gain from the load's velocity to the command, V s/m.
+pub(super) struct Commanded(pub(super) Machine, pub(super) f64);
 
 impl System<f64> for Commanded {
     fn states(&self) -> usize {
@@ -17,7 +65,8 @@ impl System<f64> for Commanded {
         self.0.scales()
     }
     fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
-        self.0.rates(state, inputs[0], &inputs[1..], rates);
+        let velocity: T = Plant::<f64>::disturbance(&self.0, state, &inputs[1..]);
+        self.0.rates(state, inputs[0] + velocity.times(self.1), &inputs[1..], rates);
     }
     fn delays(&self) -> Vec<f64> {
         self.0.delays()

@@ -5,7 +5,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
-use phea_dynamics::simulation::{Plant as _, small_signal};
+use phea_dynamics::simulation::small_signal;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
@@ -13,22 +13,23 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::Member;
 use phea_hydraulics::linear::linear_model_coefficients;
-use phea_hydraulics::machine::{Beginning, Contact, LoadModel, Machine, MachineOptions};
-use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
+use phea_hydraulics::machine::{Beginning, Contact, LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
 use phea_hydraulics::plant::{LinearLoad, Plant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, nominal_plant, pipe_line};
-use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{
     TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
 };
 
-use super::commanded::Commanded;
+use super::commanded::{Commanded, power_unit, supply_pressure, yielding};
 
 /// A rig of its own for every number, with everything that lumped lines let the plant have.
 struct Drawn {
     actuator: Actuator,
     machine: Machine,
+    unit: PowerUnit,
     rest: Beginning,
     friction: f64,
     leakage: f64,
@@ -64,7 +65,8 @@ fn drawn(number: u64) -> Drawn {
         _ => LoadModel::Wall { mass, damping, gap: 1e-3, contact },
     };
     let internal_leakage = (leakage > 0.0).then_some(leakage);
-    let options = MachineOptions { load, internal_leakage, ..MachineOptions::default() };
+    let unit = power_unit(number);
+    let options = MachineOptions { load, internal_leakage, power_unit: unit, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let (position, command) = (spread(0.05, 0.45), spread(0.01, 2.0));
     // a wall takes no pull: the next command pushes harder
@@ -83,7 +85,7 @@ fn drawn(number: u64) -> Drawn {
             LinearLoad::Yielding { mass, damping, stiffness }
         }
     };
-    Drawn { actuator, machine, rest, friction, leakage, load }
+    Drawn { actuator, machine, unit, rest, friction, leakage, load }
 }
 
 impl Drawn {
@@ -91,10 +93,15 @@ impl Drawn {
     fn plant(&self) -> Plant {
         let state = &self.rest.state;
         let pressures = [state[2], state[3]];
-        let model = TwoPressureModel::new(&self.actuator, pressures, Member::Nominal, self.friction);
-        let yielding = if self.machine.states() > 6 { state[6] } else { 0.0 };
+        let stated = self.actuator.components().supply;
+        let supplied = supply_pressure(&self.unit, stated.pressure, state);
+        let model = TwoPressureModel {
+            supply: Supply { pressure: supplied, ..stated },
+            ..TwoPressureModel::new(&self.actuator, pressures, Member::Nominal, self.friction)
+        };
+        let moved = if self.load == LinearLoad::Prescribed { 0.0 } else { state[6] };
         let point = OperatingPoint {
-            position: self.rest.inputs[0] + yielding + state[4],
+            position: self.rest.inputs[0] + moved + state[4],
             command: state[0],
             pressure_a: pressures[0],
             pressure_b: pressures[1],
@@ -104,16 +111,17 @@ impl Drawn {
             net_flow_b: 0.0,
         };
         let parameters = two_pressure_linear_parameters(&model, &point, Direction::Extending);
-        Plant::of_two_pressures(&parameters, self.leakage, self.load)
+        let supply = yielding(&self.actuator, &self.unit, state[0], pressures, supplied);
+        Plant { supply, ..Plant::of_two_pressures(&parameters, self.leakage, self.load) }
     }
 
     /// F_e/U_C and F_e/X_0 of the machine's own derivatives.
-    fn small_signal(&self, frequency: f64) -> [Complex64; 2] {
+    fn small_signal(&self, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
         let inputs = [&[self.rest.command], &self.rest.inputs[..]].concat();
         let (zero, one) = (Complex64::ZERO, Complex64::ONE);
         let ground = [zero, one, Complex64::new(0.0, frequency)];
         [[one, zero, zero], ground].map(|drive| {
-            let system = Commanded(self.machine);
+            let system = Commanded(self.machine, feed_forward);
             let amplitudes = small_signal(&system, &self.rest.state, &inputs, &drive, frequency).unwrap();
             amplitudes[4] * self.actuator.components().force_sensor.stiffness
         })
@@ -125,17 +133,47 @@ impl Drawn {
 fn it_is_the_machine_for_small_motions() {
     for number in 0..300 {
         let rig = drawn(number);
-        let coefficients = rig.plant().coefficients();
+        // every other rig feeds the velocity of its load forward, from a thousandth of what holds the force to three times that
+        let feed_forward =
+            if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 300.0) } else { 0.0 };
+        let fed = (feed_forward > 0.0).then_some(feed_forward);
+        let coefficients = Plant { load_velocity_feed_forward: fed, ..rig.plant() }.coefficients();
         let disturbance = coefficients.disturbance.unwrap();
         for step in 0..20 {
             let frequency = 1e-3 * pow(1e7, f64::from(step) / 19.0);
-            let [command, ground] = rig.small_signal(frequency);
+            let [command, ground] = rig.small_signal(feed_forward, frequency);
             for (told, own) in [(&coefficients.command, command), (&disturbance, ground)] {
                 let error = (told.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
                 assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");
             }
         }
     }
+}
+
+/// Where a limited pump settles the machine rests, as far as the pump gives what is taken there; the others have fallen to less.
+#[test]
+fn a_limited_pump_settles_where_the_machine_rests() {
+    let mut counted = [0, 0];
+    for number in 0..300 {
+        let rig = drawn(number);
+        let PowerUnit::PumpLimited(unit) = rig.unit else { continue };
+        let components = rig.actuator.components();
+        let idle = components.supply.pressure;
+        let balance = Balance::of(components, (rig.leakage > 0.0).then_some(rig.leakage));
+        let found = balance.settled_supply(&unit, idle, Steady::Command(rig.rest.state[0]));
+        let rests = *rig.rest.state.last().unwrap();
+        if found.taken < unit.pump_flow {
+            assert!((found.supply.pressure / rests - 1.0).abs() < 1e-9, "rig {number}: {found:?} {rests}");
+            for (own, rests) in found.settled.pressures.into_iter().zip(&rig.rest.state[2..4]) {
+                assert!((own - rests).abs() < 1e-8 * idle, "rig {number}: {own} {rests}");
+            }
+        } else {
+            assert_eq!(found.supply.pressure, idle - unit.relief_override);
+            assert!(rests < found.supply.pressure, "rig {number}: {found:?} {rests}");
+        }
+        counted[usize::from(found.taken < unit.pump_flow)] += 1;
+    }
+    assert!(counted.iter().all(|count| *count > 10), "{counted:?}");
 }
 
 /// Without leakage and with a prescribed load it is the model it is made of, coefficient by coefficient.

@@ -17,11 +17,11 @@ use phea_hydraulics::machine::{Chambers, LoadModel, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
 use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, pipe_line};
-use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{TwoPressureModel, two_pressure_linear_parameters};
 
-use super::commanded::Commanded;
+use super::commanded::{Commanded, power_unit, supply_pressure, yielding};
 
 fn model(number: u64, time: f64) -> LineModel {
     let friction =
@@ -104,42 +104,51 @@ fn drawn(number: u64) -> Drawn {
     let lines = [line(&parts.line_a, &models[0]), line(&parts.line_b, &models[1])];
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let (load, linear_load) = loads(number, mass, stiffness, damping);
+    let unit = power_unit(number);
     let options = MachineOptions {
         load,
         internal_leakage: Some(leakage),
         lines: Some(lines),
+        power_unit: unit,
         ..MachineOptions::default()
     };
     let machine = Machine::new(&actuator, &options).unwrap();
     let condition = Condition::Command(spread(0.01, 2.0));
     let rest = machine.rest(&operating_point(&actuator, spread(0.05, 0.45), condition).unwrap()).unwrap();
-    let yielding = if linear_load == LinearLoad::Prescribed { 0.0 } else { rest.state[6] };
-    let position = rest.inputs[0] + yielding + rest.state[4];
+    let moves = linear_load != LinearLoad::Prescribed;
+    let position = rest.inputs[0] + if moves { rest.state[6] } else { 0.0 } + rest.state[4];
     let pressures = [rest.state[2], rest.state[3]];
     let point = at_ports(&rest.state, position, &lines, leakage);
-    let two = TwoPressureModel::new(&actuator, pressures, Member::Nominal, friction);
+    let stated = parts.supply;
+    let named = &rest.state[..6 + 2 * usize::from(moves) + usize::from(unit.yields())];
+    let supplied = supply_pressure(&unit, stated.pressure, named);
+    let two = TwoPressureModel {
+        supply: Supply { pressure: supplied, ..stated },
+        ..TwoPressureModel::new(&actuator, pressures, Member::Nominal, friction)
+    };
     let parameters = two_pressure_linear_parameters(&two, &point, Direction::Extending);
     let own = Chambers::behind_lines(&actuator, Member::Nominal, [0.0; 2]);
     let behind =
         BehindLines { lines, chambers: own.compliance(position, pressures), lumped: parameters.compliances };
+    let supply = yielding(&actuator, &unit, point.command, [point.pressure_a, point.pressure_b], supplied);
     Drawn {
         machine,
         inputs: [&rest.inputs[..], &rest.waves[..]].concat(),
         state: rest.state,
         command: rest.command,
         sensor: parts.force_sensor.stiffness,
-        plant: Plant::of_two_pressures(&parameters, leakage, linear_load),
+        plant: Plant { supply, ..Plant::of_two_pressures(&parameters, leakage, linear_load) },
         behind,
     }
 }
 
 impl Drawn {
-    fn small_signal(&self, frequency: f64) -> [Complex64; 2] {
+    fn small_signal(&self, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
         let inputs = [&[self.command], &self.inputs[..]].concat();
         let (zero, one) = (Complex64::ZERO, Complex64::ONE);
         let ground = [zero, one, Complex64::new(0.0, frequency)];
         [[one, zero, zero], ground].map(|drive| {
-            let system = Commanded(self.machine);
+            let system = Commanded(self.machine, feed_forward);
             small_signal(&system, &self.state, &inputs, &drive, frequency).unwrap()[4] * self.sensor
         })
     }
@@ -150,11 +159,13 @@ impl Drawn {
 fn it_is_the_machine_for_small_motions() {
     for number in 0..108 {
         let rig = drawn(number);
-        let moving = PlantInMotion::new(&rig.plant, &rig.behind);
+        let feed_forward =
+            if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 108.0) } else { 0.0 };
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind).fed_forward(Some(feed_forward));
         assert!(moving.is_passive());
         for step in 0..14 {
             let frequency = 0.01 * pow(1e6, f64::from(step) / 13.0);
-            let own = rig.small_signal(frequency);
+            let own = rig.small_signal(feed_forward, frequency);
             let told = moving.response(Complex64::new(0.0, frequency));
             for (told, own) in told.into_iter().zip(own) {
                 let error = (told / own - 1.0).norm_sqr().sqrt();
@@ -170,7 +181,7 @@ fn lumped_lines_make_the_rational_plant() {
     for number in (0..36).step_by(6).map(|first| first * 6) {
         let rig = drawn(number);
         let plants = [
-            rig.plant,
+            Plant { load_velocity_feed_forward: Some(20.0), ..rig.plant },
             Plant::of_load_pressure(&phea_hydraulics::reference_rig::nominal_plant(), 1e-12, rig.plant.load),
         ];
         let BehindLines { chambers, lumped, .. } = rig.behind;

@@ -5,7 +5,7 @@ mod images;
 use std::sync::Arc;
 
 use num_complex::Complex64;
-use phea_dynamics::controller::Controller;
+use phea_dynamics::controller::{Controller, Timing};
 use phea_dynamics::linear::{
     Discretization, LinearError, Polynomial, StateSpace, TimeDomain, TransferFunction,
 };
@@ -22,6 +22,10 @@ use images::Images;
 /// continuous:  L = P G H e^(-s T_d),  T = P G e^(-s T_d)/(1 + L)                                   thesis 3.1, 3.2
 /// sampled:     L = Z{(1 - e^(-sT))/s P H e^(-s T_d)} G(z), at z = e^(jwT), up to pi/T
 /// ```
+///
+/// The prefilter of a sampled loop is F(z), or F(s) where it acts on the reference before this is sampled. Of a sine of the reference
+/// below pi/T the samples behind F(s) are those of F(jw) times the sine: F T is taken with F(jw), and holds for references without parts
+/// beyond pi/T.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compensation {
     feedback: TransferFunction,
@@ -125,20 +129,8 @@ impl Compensation {
     /// ```
     pub fn new(controller: &Controller, sensor: TransferFunction) -> Result<Compensation, LinearError> {
         let timing = &controller.timing;
-        let sampled = |function: TransferFunction| match (timing.sample_time_s, function.domain()) {
-            (Some(sample_time_s), TimeDomain::Continuous) => {
-                function.discretized(sample_time_s, timing.discretization)
-            }
-            _ => Ok(function),
-        };
-        let domain = timing
-            .sample_time_s
-            .map_or(TimeDomain::Continuous, |sample_time_s| TimeDomain::Discrete { sample_time_s });
-        let feedback = sampled(controller.feedback.transfer_function()?)?;
-        let prefilter = sampled(controller.prefilter.transfer_function()?)?;
-        if feedback.domain() != domain || prefilter.domain() != domain {
-            return Err(LinearError::DomainMismatch);
-        }
+        let feedback = deployed(controller.feedback.transfer_function()?, timing)?;
+        let prefilter = deployed(controller.prefilter.transfer_function()?, &timing.of_prefilter())?;
         if sensor.domain() != TimeDomain::Continuous {
             return Err(LinearError::WrongDomain { operation: "a sensor", needed: "continuous" });
         }
@@ -156,9 +148,38 @@ impl Compensation {
         &self.feedback
     }
 
-    /// F, sampled where the loop samples.
+    /// F, sampled where the loop samples it.
     pub fn prefilter(&self) -> &TransferFunction {
         &self.prefilter
+    }
+
+    /// F as a step of the reference meets it, in the domain of the loop: where it acts before the samples, the F(z) whose step response is
+    /// the samples of that of F(s).
+    ///
+    /// # Errors
+    /// [`LinearError`] where F(s) cannot be sampled.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
+    /// use phea_dynamics::linear::TransferFunction;
+    /// use phea_qft::closed_loop::Compensation;
+    /// let timing = Timing { sample_time_s: Some(0.1), continuous_prefilter: true, ..Timing::default() };
+    /// let prefilter = Compensator::new(vec![Element::RealPole { frequency: 5.0 }]);
+    /// let controller = Controller { prefilter, timing, ..Controller::default() };
+    /// let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0))?;
+    /// assert_eq!(compensation.prefilter().poles()[0].re, -5.0);
+    /// let sampled = compensation.prefilter_of_step()?;
+    /// assert!((sampled.poles()[0].re - (-0.5_f64).exp()).abs() < 1e-15 && (sampled.dc_gain() - 1.0).abs() < 1e-12);
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn prefilter_of_step(&self) -> Result<TransferFunction, LinearError> {
+        match (self.sample_time_s, self.prefilter.domain()) {
+            (Some(sample_time_s), TimeDomain::Continuous) => {
+                self.prefilter.discretized(sample_time_s, Discretization::ZeroOrderHold)
+            }
+            _ => Ok(self.prefilter.clone()),
+        }
     }
 
     /// H, continuous.
@@ -369,6 +390,19 @@ impl Member {
                 images.of_measurement(plant, frequency_rad_per_s)
             }
         }
+    }
+}
+
+/// A part of the controller in the domain of its timing.
+fn deployed(function: TransferFunction, timing: &Timing) -> Result<TransferFunction, LinearError> {
+    match (timing.sample_time_s, function.domain()) {
+        (None, TimeDomain::Continuous) => Ok(function),
+        (None, TimeDomain::Discrete { .. }) => Err(LinearError::DomainMismatch),
+        (Some(sample_time_s), TimeDomain::Continuous) => {
+            function.discretized(sample_time_s, timing.discretization)
+        }
+        (Some(sample_time_s), domain) if domain == TimeDomain::Discrete { sample_time_s } => Ok(function),
+        (Some(_), TimeDomain::Discrete { .. }) => Err(LinearError::DomainMismatch),
     }
 }
 

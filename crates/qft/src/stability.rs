@@ -120,6 +120,9 @@ pub enum Irresolution {
         "controller or sensor has poles on the boundary of stability, which measured points cannot go around"
     )]
     UndampedController,
+    /// A plant whose own unstable poles cannot be counted.
+    #[error("how many unstable poles the plant has by itself is not known")]
+    OpenLoopPoles,
     /// Fewer than two points were measured below half the sampling rate.
     #[error("there are fewer than two points to count turns between")]
     Points,

@@ -72,6 +72,28 @@ fn integrator_and_lag_are_held_exactly() {
     });
 }
 
+/// Before the samples a/(s + a) is a/(jw + a) at every frequency; a step of the reference meets it as (1 - e)/(z - e), e = exp(-a T).
+#[test]
+fn a_prefilter_before_the_samples_is_not_sampled() {
+    let a = 200.0;
+    let timing = Timing { continuous_prefilter: true, ..timing(Some(SAMPLE_TIME), 0.0) };
+    let around = |prefilter| {
+        let controller = Controller { prefilter, timing, ..Controller::default() };
+        Compensation::new(&controller, unity())
+    };
+    let compensation = around(Compensator::new(vec![Element::RealPole { frequency: a }])).unwrap();
+    let of_step = compensation.prefilter_of_step().unwrap();
+    let e = portable::exp(-a * SAMPLE_TIME);
+    for frequency in FREQUENCIES {
+        close(compensation.response(frequency).prefilter, a / Complex64::new(a, frequency));
+        close(of_step.at_frequency(frequency), (1.0 - e) / (z(frequency) - e));
+        close(compensation.response(frequency).feedback, Complex64::new(1.0, 0.0));
+    }
+    let sampled = unity().in_domain(TimeDomain::Discrete { sample_time_s: SAMPLE_TIME }).unwrap();
+    let refused = around(Compensator::new(vec![Element::General(sampled)]));
+    assert_eq!(refused.unwrap_err(), LinearError::DomainMismatch);
+}
+
 /// A dead time d of a share of a sample splits the step: with r = exp(-a (T - d)), a/(s + a) becomes
 /// (1 - r + (r - e)/z)/(z - e). Plant and loop delay add up, whole samples are powers of 1/z.
 #[test]

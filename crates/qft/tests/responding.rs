@@ -67,6 +67,10 @@ impl RespondingPlant for Hidden {
         (v > self.natural).then(|| self.gain.abs() / (v * (v * v - self.natural * self.natural)))
     }
 
+    fn unstable_poles(&self) -> Option<usize> {
+        Some(0)
+    }
+
     fn range_rad_per_s(&self) -> [f64; 2] {
         [0.01 * self.slow.min(self.natural), 20.0 * self.slow.max(self.natural)]
     }

@@ -4,6 +4,8 @@
 //! on it, the verdict is not proven.
 
 use crate::project::{LineModel, LoadModel, Project, SpecificationKind, SupplyModel};
+use crate::quantity::DisplayUnit;
+use crate::rig::Rig;
 
 /// Something declared that the linear loop does not count.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,16 +18,23 @@ pub struct Caveat {
 
 /// What is declared and in no linear loop.
 pub(crate) fn caveats(project: &Project) -> Vec<Caveat> {
-    [load(project), supply(project), feed_forward(project), prefilter(project)]
-        .into_iter()
-        .flatten()
-        .collect()
+    apart_from_lines(project).chain(supply(project)).collect()
 }
 
 /// What is declared and in no linear model, in sentences.
 pub(crate) fn of_models(project: &Project) -> Vec<String> {
-    let others = caveats(project).into_iter().map(|caveat| caveat.sentence);
-    lumped(project).into_iter().chain(others).collect()
+    let others = apart_from_lines(project).map(|caveat| caveat.sentence);
+    lumped(project)
+        .into_iter()
+        .chain(others)
+        .chain(constant_supply(project))
+        .chain(fed_in_loop(project))
+        .collect()
+}
+
+/// What no linear model counts.
+fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
+    [load(project), feed_forward(project)].into_iter().flatten()
 }
 
 /// A wall whose mass nobody states.
@@ -59,39 +68,77 @@ fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
     Some((place, model.word()))
 }
 
-/// A supply that yields.
+/// A supply that yields is counted as small motions see it, which a large step is not; where more is taken than the pump gives there is no
+/// rest to be linearised at.
 fn supply(project: &Project) -> Option<Caveat> {
     let supply = &project.actuator.as_ref()?.supply;
-    (supply.model == SupplyModel::PumpLimited).then(|| Caveat {
-        sentence: "supply.model = \"pump_limited\" is not counted: the linear plant has a supply of constant pressure, and only a \
-                   simulation shows what the pump cannot give"
-            .to_string(),
-        unproven: true,
+    if supply.model == SupplyModel::Constant || is_measured(project) {
+        return None;
+    }
+    let found = Rig::new(project).ok()?.supply?;
+    let flow = |value: f64| DisplayUnit::LITRE_PER_MINUTE.text(value, 3);
+    let gives = supply.flow.unwrap_or(f64::NAN);
+    let (taken, gives_words) = (flow(found.taken), flow(gives));
+    let pressure = DisplayUnit::BAR.text(found.supply.pressure, 4);
+    let rests = found.taken < gives;
+    let sentence = match rests {
+        true => format!(
+            "supply.model = \"pump_limited\" is counted as small motions see it, at {pressure} where the valve takes {taken} of the \
+             pump's {gives_words}: what a large step takes beyond it only a simulation shows"
+        ),
+        false => format!(
+            "supply.model = \"pump_limited\" does not rest at the operating point, where the valve takes {taken} and the pump gives \
+             {gives_words}: the plant is that at {pressure}, where the relief valve shuts"
+        ),
+    };
+    Some(Caveat { sentence, unproven: !rests })
+}
+
+/// What the models of a linearisation do not count of the supply.
+fn constant_supply(project: &Project) -> Option<String> {
+    let supply = &project.actuator.as_ref()?.supply;
+    (supply.model == SupplyModel::PumpLimited).then(|| {
+        "supply.model = \"pump_limited\" is counted in the plant alone: the other models have the pressure at which it settles, held \
+         constant"
+            .to_string()
     })
 }
 
-/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion.
+/// Whether the plants of the family are responses that were measured.
+fn is_measured(project: &Project) -> bool {
+    project.family.as_ref().is_some_and(|family| !family.measured.is_empty())
+}
+
+/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion. A loop that acts at once
+/// counts it.
 fn feed_forward(project: &Project) -> Option<Caveat> {
-    let declared = project.controller.as_ref()?.load_velocity_feed_forward?;
-    let yields =
-        project.actuator.as_ref().is_some_and(|actuator| actuator.load.model != LoadModel::Prescribed);
+    let controller = project.controller.as_ref()?;
+    let declared = controller.load_velocity_feed_forward?;
+    let actuator = project.actuator.as_ref();
+    let yields = actuator.is_some_and(|actuator| actuator.load.model != LoadModel::Prescribed);
+    let why = match (actuator, controller.sample_time) {
+        (None, _) => "no load is known of a [plant]",
+        _ if is_measured(project) => "the plants of the family were measured without it",
+        (Some(_), Some(_)) => "the controller samples it",
+        (Some(_), None) if controller.delay > 0.0 => "controller.delay makes it late",
+        _ => return None,
+    };
     (declared.gain != Some(0.0)).then(|| Caveat {
-        sentence: "the load velocity that [controller] feeds forward is not counted: this is the loop without it, and only a simulation \
-                   is of the loop with it"
-            .to_string(),
+        sentence: format!(
+            "the load velocity that [controller] feeds forward is not counted, as {why}: this is the loop without it, and only a \
+             simulation is of the loop with it"
+        ),
         unproven: yields || limits(project, SpecificationKind::LoadMotion),
     })
 }
 
-/// A prefilter that acts between samples.
-fn prefilter(project: &Project) -> Option<Caveat> {
-    let sampled = project.controller.as_ref()?.sample_time.is_some();
-    let continuous = project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous);
-    (sampled && continuous).then(|| Caveat {
-        sentence: "prefilter.continuous is not counted: the linear loop samples the prefilter with the controller, and only a \
-                   simulation lets it act between samples"
-            .to_string(),
-        unproven: limits(project, SpecificationKind::Tracking),
+/// What the models of a linearisation, which are of the rig without its controller, do not count of the load's velocity.
+fn fed_in_loop(project: &Project) -> Option<String> {
+    let declared = project.controller.as_ref()?.load_velocity_feed_forward?;
+    (declared.gain != Some(0.0) && feed_forward(project).is_none()).then(|| {
+        "the load velocity that [controller] feeds forward is not in these models, which have no controller: verify, design and \
+         simulate count it"
+            .to_string()
     })
 }
 

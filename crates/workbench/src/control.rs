@@ -82,6 +82,7 @@ pub fn timing(project: &Project) -> Timing {
             project::Discretization::ZeroOrderHold => Discretization::ZeroOrderHold,
             project::Discretization::Matched => Discretization::Matched,
         },
+        continuous_prefilter: project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous),
     }
 }
 

@@ -12,7 +12,7 @@ use phea_dynamics::time_response::{
 pub struct LinearLoop {
     /// G
     pub controller: TransferFunction,
-    /// F
+    /// F: in s where it acts before the samples of the loop.
     pub prefilter: TransferFunction,
     /// L = P G H with the delay of the loop.
     pub open_loop: TransferFunction,
@@ -67,7 +67,7 @@ const SAMPLES: usize = 2000;
 /// Closes the loop of plant P with a controller that sees the output through the sensor H.
 ///
 /// A continuous controller in a continuous loop; a sampled one with the plant held by a zero-order hold, the delay of the
-/// loop in it.
+/// loop in it. A prefilter that acts before the samples is met by a step as the samples of its step response.
 ///
 /// # Errors
 /// A system that cannot be built or discretised.
@@ -80,11 +80,11 @@ pub fn linear_loop(
     let (feedback, prefilter) =
         (controller.feedback.transfer_function()?, controller.prefilter.transfer_function()?);
     let delay_s = controller.timing.delay_s;
-    let (plant, with_sensor, feedback, prefilter) = match controller.timing.sample_time_s {
+    let (plant, with_sensor, feedback, prefilter, of_step) = match controller.timing.sample_time_s {
         None => {
             let late = plant.clone().with_dead_time(delay_s)?;
             let with_sensor = late.series(sensor)?;
-            (late, with_sensor, feedback, prefilter)
+            (late, with_sensor, feedback, prefilter.clone(), prefilter)
         }
         Some(sample_time_s) => {
             let sampled = |function: TransferFunction| match function.domain() {
@@ -98,7 +98,11 @@ pub fn linear_loop(
             };
             let late = plant.clone().with_dead_time(delay_s)?;
             let with_sensor = held(late.series(sensor)?)?;
-            (held(late)?, with_sensor, sampled(feedback)?, sampled(prefilter)?)
+            let [acts, of_step] = match controller.timing.continuous_prefilter {
+                true => [prefilter.clone(), held(prefilter)?],
+                false => [sampled(prefilter.clone())?, sampled(prefilter)?],
+            };
+            (held(late)?, with_sensor, sampled(feedback)?, acts, of_step)
         }
     };
     let open_loop = with_sensor.series(&feedback)?;
@@ -108,7 +112,7 @@ pub fn linear_loop(
             Err("the closed loop is unstable, its response grows without bound".to_string())
         }
         () if !prefilter.is_stable() => Err("the prefilter is unstable".to_string()),
-        () => step_view(&plant, &with_sensor, &feedback, &prefilter, band_percent)
+        () => step_view(&plant, &with_sensor, &feedback, &of_step, band_percent)
             .map_err(|error| error.to_string()),
     };
     Ok(LinearLoop {

@@ -142,13 +142,21 @@ pub fn linearize(
     });
     let rational = rational && sensor.dead_time_s() == 0.0;
     let continuous = feedback.as_ref().filter(|function| rational && is_continuous(function));
-    let closed_loop = continuous.map(|controller| closed_loop_view(rig, &port, controller)).transpose()?;
+    let closed_loop = match continuous {
+        None => None,
+        Some(controller) => {
+            let seen = rig.in_loop().plant;
+            let port = transfer_functions(&Plant { load: LinearLoad::Prescribed, ..seen }.coefficients())?;
+            Some(closed_loop_view(rig, &port, controller)?)
+        }
+    };
     let reductions = [&two_pressure.command, &full.command, &decomposed[1], &first_order];
     let agreement = agreement::agreement(rig, &frequency_grid(&plant.command)?, &plant.command, reductions);
     Ok(Linearization {
         plant_is_fifth_order: matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
             && rig.internal_leakage == 0.0
-            && rig.load.is_none(),
+            && rig.load.is_none()
+            && rig.plant.supply.is_none(),
         agreement,
         stiffness: [Member::Nominal, Member::Minimum, Member::Maximum]
             .map(|member| stroke_stiffness(rig, member)),

@@ -35,6 +35,7 @@ pub use chapter::Chapter;
 pub use opening::{Decided, Decision};
 pub use typeset::{prose, typeset};
 
+use phea_hydraulics::linear::transfer_functions;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use crate::answer::{OutputFile, significant};
@@ -225,10 +226,8 @@ fn rig_part(
     let derived = derive(project, &rig);
     let sizing = problem.map(|problem| size(problem, Question::Both));
     let band = project.scenarios.first().map_or(SETTLING_BAND, |scenario| scenario.settling_band_percent);
-    let given = controller
-        .as_ref()
-        .map(|given| linear_loop(&linearization.plant.command, given, &sensor, band))
-        .transpose()?;
+    let seen = transfer_functions(&rig.in_loop().plant.coefficients())?.command;
+    let given = controller.as_ref().map(|given| linear_loop(&seen, given, &sensor, band)).transpose()?;
 
     let mut chapters = vec![rig::chapter(project, actuator, &rig)];
     if let (Some(problem), Some(sizing)) = (problem, &sizing) {

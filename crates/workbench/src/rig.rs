@@ -2,19 +2,21 @@
 //! of the linear model with where it comes from.
 
 mod assembly;
+mod in_loop;
 mod lines;
 mod numbers;
 mod parameters;
 mod place;
 mod plant;
 mod sizing;
+mod supply;
 
 use num_complex::Complex64;
-use phea_hydraulics::actuator::{Actuator, ActuatorError};
+use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::line::{LineError, Member};
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
-    Condition, OperatingPoint, OperatingPointError, leaking_operating_point,
+    Balance, Condition, OperatingPoint, OperatingPointError, Settled, SettledSupply, leaking_operating_point,
 };
 use phea_hydraulics::plant::{LinearLoad, Plant, PlantInMotion};
 use phea_hydraulics::servovalve::Direction;
@@ -25,14 +27,16 @@ use phea_hydraulics::two_pressure::{
 use crate::project::Project;
 
 pub(crate) use assembly::{actuator, components};
+pub(crate) use in_loop::feed_forward;
 pub(crate) use lines::{in_motion, lines};
 pub(crate) use numbers::Numbers;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub(crate) use place::place;
 pub(crate) use plant::{
-    YieldingLoad, are_equal, linear, plant, sides, stated, states_one_pressure, yielding_load,
+    YieldingLoad, are_equal, linear, plant, sides, stated, states_one_pressure, with_supply, yielding_load,
 };
 pub use sizing::{SizingError, sizing_problem};
+pub(crate) use supply::{power_unit, settled_supply, yielding_supply};
 
 /// A rig ready to be computed with.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +45,8 @@ pub struct Rig {
     pub actuator: Actuator,
     /// Where the linear models are taken.
     pub point: OperatingPoint,
+    /// Where a supply that yields settles at that point; `None` of one with a constant pressure.
+    pub supply: Option<SettledSupply>,
     /// What is known of that point.
     pub condition: Condition,
     /// The nonlinear two-pressure model, nominal stiffening.
@@ -61,6 +67,8 @@ pub struct Rig {
     pub plant: Plant,
     /// The same with its lines in motion, which is then what every verdict is of; `None` where both are lumped.
     pub in_motion: Option<PlantInMotion>,
+    /// Gain of the load's velocity on the command, V s/m, where it is fed forward at once; [`Rig::in_loop`] counts it.
+    pub fed_at_once: Option<f64>,
 }
 
 /// Why a project has no rig to compute with.
@@ -108,23 +116,39 @@ impl Rig {
         let (position, steady) = place(project, components.cylinder.stroke, &numbers);
         let condition = Condition::from(steady);
         let leakage = declared.cylinder.internal_leakage;
-        let point = leaking_operating_point(&actuator, leakage, position, condition)?;
+        let balance = Balance::of(components, leakage);
+        let supply = settled_supply(declared, &numbers, &balance, steady);
+        let supply = supply.filter(|found| found.supply.pressure.is_finite());
+        // the valve at the pressure that the pump holds there, lines and stall forces at the stated one
+        let settled = supply.map_or(components.supply, |found| found.supply);
+        let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
+        let point = leaking_operating_point(&at_valve, leakage, position, condition)?;
         let pressures = [point.pressure_a, point.pressure_b];
+        let supply = supply
+            .map(|found| SettledSupply { settled: Settled { command: point.command, pressures }, ..found });
         let friction = components.friction.viscous();
-        let model = TwoPressureModel::new(&actuator, pressures, Member::Nominal, friction);
+        let model = TwoPressureModel::new(&at_valve, pressures, Member::Nominal, friction);
         let two_pressure = two_pressure_linear_parameters(&model, &point, Direction::Mean);
         let derived = reduce(&two_pressure);
         let parameters = parameters::resolve(project, &derived);
         let linear = linear(&two_pressure, stated(&parameters));
         let internal_leakage = leakage.unwrap_or(0.0);
         let load = yielding_load(&declared.load, &numbers, point.hydraulic_force);
-        let one_pressure = states_one_pressure(&parameters, &[]) || are_equal(sides(&two_pressure));
+        let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found));
+        let unseen = yielding.is_none_or(|supply| are_equal([supply.edges]));
+        let equal = are_equal(sides(&two_pressure)) && unseen;
+        let one_pressure = states_one_pressure(&parameters, &[]) || equal;
         let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
+        let plant = match yielding {
+            Some(supply) if !(one_pressure && unseen) => with_supply(plant, supply, &two_pressure),
+            _ => plant,
+        };
         let in_motion = in_motion(&declared.line, components, &point, &two_pressure, &plant)?;
         Ok(Rig {
             actuator,
             point,
+            supply,
             condition,
             model,
             two_pressure,
@@ -135,6 +159,7 @@ impl Rig {
             load,
             plant,
             in_motion,
+            fed_at_once: in_loop::fed_at_once(project, &linear),
         })
     }
 }

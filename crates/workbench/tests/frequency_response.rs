@@ -104,6 +104,55 @@ fn delays_are_part_of_what_is_linearised() {
     assert!(apart(closed.points[0].linearised_machine.unwrap(), closed.points[0].linear_plant) < 0.05);
 }
 
+/// The velocity of a load that yields, fed forward, closes a loop of its own: the linear loop has it, with lumped lines and with waves.
+#[test]
+fn a_load_velocity_that_is_fed_forward_is_in_the_linear_loop() {
+    let sprung = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"500 N.s/m\" }";
+    let waves =
+        "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
+    let gain = "controller.numerator=0.0001*s + 0.0008";
+    let fed = "controller.load_velocity_feed_forward.gain=20";
+    for lines in [&[][..], &[waves, gain]] {
+        let with = [&[sprung, fed][..], lines].concat();
+        let [with, without] = [&with[..], &with[..1]]
+            .map(|settings| shaken(&smooth(settings), &[5.0, 40.0, 300.0], [1e-4, 1.0]).closed_loop.unwrap());
+        for (point, other) in with.points.iter().zip(&without.points) {
+            assert!(apart(point.linearised_machine.unwrap(), point.linear_plant) < 1e-5, "{point:?}");
+            assert!(apart(point.machine, point.linear_plant) < 1e-3, "{point:?}");
+            assert!(apart(other.machine, point.linear_plant) > 0.01, "{point:?} {other:?}");
+        }
+    }
+}
+
+/// A pump that gives little more than what leaks, an override of 40 bar and a load that the piston presses: the force sees the supply's
+/// pressure move, and the linear plant has it.
+#[test]
+fn a_supply_that_yields_is_in_the_linear_plant() {
+    let pump = [
+        "supply.model=pump_limited",
+        "supply.flow=1.5 L/min",
+        "supply.relief_override=40 bar",
+        "supply.volume=50 mL",
+        "operating_point.load_force=4 kN",
+    ];
+    let waves =
+        "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
+    for lines in [&[][..], &[waves, "controller.numerator=0.0001*s + 0.0008"]] {
+        let settings = [&pump[..], lines].concat();
+        let loaded = smooth(&settings);
+        let found = shaken(&loaded, &[1.0, 30.0, 300.0], [1e-4, 1.0]);
+        let closed = found.closed_loop.unwrap();
+        for point in found.open_loop.points.iter().chain(&closed.points) {
+            assert!(apart(point.linearised_machine.unwrap(), point.linear_plant) < 1e-5, "{point:?}");
+            assert!(apart(point.machine, point.linear_plant) < 1e-3, "{point:?}");
+        }
+        let mut rig = Rig::new(&loaded.project).unwrap();
+        let counted = rig.plant.coefficients().command.at_frequency(1.0);
+        rig.plant.supply = None;
+        assert!(apart(rig.plant.coefficients().command.at_frequency(1.0), counted) > 0.01);
+    }
+}
+
 /// Sampled, the fundamental between the samples is that of the held command.
 #[test]
 fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {

@@ -90,10 +90,10 @@ fn the_text_says_the_verdict_first_and_what_it_rests_on() {
     }
 }
 
-/// What a simulation adds to the command and no linear model knows of is said by every command on the linear loop.
+/// What a simulation adds to the command and a model does not know of is said by every command on that model.
 #[test]
 fn a_feed_forward_is_told_to_be_left_out() {
-    let words = "feeds forward is not counted";
+    let words = "feeds forward is not";
     let shape = Request::Shape { shaped: Shaped::Controller, changes: vec![] };
     for (text, request) in [(HOSE, Request::Linearize), (INTEGRATOR, Request::Verify), (INTEGRATOR, shape)] {
         for (settings, told) in [

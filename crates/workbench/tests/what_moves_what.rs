@@ -73,6 +73,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
             ],
         ),
         (hose(), sampled.to_vec()),
+        (hose(), vec!["controller.load_velocity_feed_forward={ gain = 20 }"]),
         (hose(), converters.to_vec()),
         (factored, vec![]),
         (pipe(), [&wall[..], &["load.relative_damping=0.1"]].concat()),
@@ -81,6 +82,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
             vec!["line.compliance=by_volume", "operating_point.command=0.5", "fluid.entrained_air=0.01"],
         ),
         (include_str!("project_valid/simulation.toml").to_string(), vec![]),
+        (include_str!("project_valid/simulation.toml").to_string(), vec!["operating_point.load_force=2 kN"]),
         (
             include_str!("project_valid/asymmetric.toml").to_string(),
             vec!["cylinder.friction.regular_velocity=1 mm/s"],
@@ -159,7 +161,7 @@ fn loaded(text: &str, settings: &[String]) -> Option<Project> {
 fn computed(project: &Project) -> [Option<String>; PARTS.len()] {
     let rig = Rig::new(project).ok();
     let sizing = rig.as_ref().and_then(|rig| sizing_problem(project, rig, &Catalogue::default()).ok());
-    let plant = rig.as_ref().map(|rig| {
+    let plant = rig.as_ref().map(Rig::in_loop).map(|rig| {
         let load = |w: f64| match &rig.in_motion {
             Some(plant) => plant.response(Complex64::new(0.0, w))[1],
             None => rig.plant.coefficients().disturbance.unwrap().at_frequency(w),

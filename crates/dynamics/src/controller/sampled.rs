@@ -46,7 +46,7 @@ pub struct ControllerOutput {
 
 impl Controller {
     /// The controller as it is deployed with this sample time: continuous compensators discretised by the timing's
-    /// method, sampled ones taken as they are.
+    /// method, sampled ones taken as they are. A prefilter that acts before the samples is no part of it.
     ///
     /// # Errors
     /// A compensator that is improper, has dead time or cannot be discretised, or a sampled one with another sample time.
@@ -61,10 +61,12 @@ impl Controller {
         };
         let feedback = sampled(&self.feedback)?;
         let sections = Section::in_series(&feedback)?;
+        let none = Compensator::default();
+        let prefilter = if self.timing.continuous_prefilter { &none } else { &self.prefilter };
         Ok(SampledController {
             integral: integral_of(&feedback, &sections),
             feedback: sections,
-            prefilter: Section::in_series(&sampled(&self.prefilter)?)?,
+            prefilter: Section::in_series(&sampled(prefilter)?)?,
             command_limit: self.command_limit.unwrap_or(f64::INFINITY),
             anti_windup: self.anti_windup,
             sample_time_s,

@@ -2,7 +2,8 @@ mod responding;
 
 use phea_dynamics::analytic::Analytic;
 
-use super::{ChamberDynamics, LinearLoad, Plant};
+use super::supply::{Coupled, Over};
+use super::{Chamber, Chambers, LinearLoad, Plant, YieldingSupply};
 use crate::line::DynamicLine;
 
 /// The plant with lines that have dynamics of their own: what no quotient of polynomials is, but a response at every frequency.
@@ -68,17 +69,35 @@ struct Side {
     line: DynamicLine,
 }
 
-/// A chamber at s: flow per pascal there is `admittance/passed`, flow from the valve per volt its flow gain over `passed`.
+/// A chamber with its line at s, everything times what the line passes: `passed` is d + K_c b, by which the valve's flow is less at the
+/// chamber than at a port held still.
 struct AtChamber<A> {
+    /// Flow per pascal at the chamber, times `passed`.
     admittance: A,
     passed: A,
+    /// b
+    impedance: A,
+}
+
+/// F_e (sensed - fed) = command U_C + ground X_0, `fed` being what the velocity of a load that yields feeds back.
+struct Paths<A> {
+    command: A,
+    ground: A,
+    sensed: A,
+    fed: A,
 }
 
 impl PlantInMotion {
+    /// The same with the velocity of the load fed forward, K_x in V s/m.
+    #[must_use]
+    pub fn fed_forward(self, load_velocity_feed_forward: Option<f64>) -> PlantInMotion {
+        PlantInMotion { plant: Plant { load_velocity_feed_forward, ..self.plant }, ..self }
+    }
+
     /// The plant with these chambers and lines in place of its lumped ones.
     pub fn new(plant: &Plant, behind: &BehindLines) -> PlantInMotion {
         let side = |side: usize| {
-            let [area, compliance, flow_gain, flow_pressure] = chamber(&plant.chambers, side);
+            let Chamber { area, compliance, flow_gain, flow_pressure } = plant.chambers.side(side);
             let stiffer = behind.lumped[side] / compliance;
             let line = behind.lines[side].stiffened(stiffer);
             let compliance = behind.chambers[side] / stiffer + line.chamber_compliance();
@@ -89,43 +108,93 @@ impl PlantInMotion {
 
     /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of [`Plant::coefficients`].
     pub fn response<A: Analytic>(&self, s: A) -> [A; 2] {
-        let [one, other] = self.sides.map(|side| side.at_chamber(s));
-        let [area_a, area_b] = self.sides.map(|side| side.area);
-        let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
-        let leakage = self.plant.internal_leakage;
-        let difference = area_a - area_b;
-        // everything times what both lines pass, so that nothing is divided by what vanishes at a resonance
-        let (a, b) = (one.admittance, other.admittance);
-        let passed = one.passed * other.passed;
-        let own = a * b + (a * other.passed + b * one.passed).scaled(leakage);
-        let driven = b.scaled(area_a * gain_a)
-            + a.scaled(area_b * gain_b)
-            + (other.passed.scaled(gain_a) - one.passed.scaled(gain_b)).scaled(leakage * difference);
-        let displaced = (b * one.passed).scaled(area_a * area_a)
-            + (a * other.passed).scaled(area_b * area_b)
-            + passed.scaled(leakage * difference * difference);
+        let Paths { command, ground, sensed, fed } = self.paths(s);
+        let divisor = sensed - fed;
+        [command / divisor, ground / divisor]
+    }
+
+    fn paths<A: Analytic>(&self, s: A) -> Paths<A> {
+        let Chambers { own, driven, displaced } = self.chambers(s);
+        let sensor = self.plant.sensor_stiffness;
         let rubbed = s.scaled(self.plant.moving_mass) + A::from(self.plant.viscous_friction);
         let moved = s * (rubbed * own + displaced);
-        let (frequency, sensor) = (self.plant.valve_natural_frequency, self.plant.sensor_stiffness);
+        let frequency = self.plant.valve_natural_frequency;
         let square = frequency * frequency;
         let turned = s.scaled(2.0 * self.plant.valve_damping_ratio * frequency);
         let spool = A::from(square) / (s * s + turned + A::from(square));
-        let (load, ground) = match self.plant.load {
-            LinearLoad::Prescribed => (None, A::from(1.0)),
+        let driven = (spool * driven).scaled(sensor);
+        let fed = match self.plant.load_velocity_feed_forward {
+            Some(gain) => s.scaled(gain) * driven,
+            None => A::from(0.0),
+        };
+        match self.plant.load {
+            LinearLoad::Prescribed => {
+                let sensed = moved + own.scaled(sensor);
+                Paths { command: driven, ground: fed - moved.scaled(sensor), sensed, fed: A::from(0.0) }
+            }
             LinearLoad::Yielding { mass, damping, stiffness } => {
                 let tied = s.scaled(damping) + A::from(stiffness);
-                (Some((s * s).scaled(mass) + tied), tied)
+                let load = (s * s).scaled(mass) + tied;
+                let sensed = moved * (load + A::from(sensor)) + (load * own).scaled(sensor);
+                let ground = tied * (fed - moved.scaled(sensor));
+                Paths { command: load * driven, ground, sensed, fed }
             }
-        };
-        let (free, sensed) = match load {
-            None => (A::from(1.0), moved + own.scaled(sensor)),
-            Some(load) => (load, moved * (load + A::from(sensor)) + (load * own).scaled(sensor)),
-        };
-        [(free * spool * driven).scaled(sensor) / sensed, -(ground * moved).scaled(sensor) / sensed]
+        }
     }
 
-    /// Whether nothing in it gives energy, so that none of its poles lies in the right half plane: its lines are passive, and so are
-    /// valve, leakage, friction and load where none of their coefficients is negative.
+    /// D, N_u and N_v at s, times what both lines pass, so that nothing is divided by what vanishes at a resonance.
+    fn chambers<A: Analytic>(&self, s: A) -> Chambers<A> {
+        let at = self.sides.map(|side| side.at_chamber(s));
+        let [area_a, area_b] = self.sides.map(|side| side.area);
+        let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
+        let leakage = self.plant.internal_leakage;
+        if let Some(supply) = &self.plant.supply {
+            let Chambers { own, driven, displaced } = self.behind(supply, &at, s).chambers([area_a, area_b]);
+            return Chambers { own: own.0, driven: driven.0, displaced: displaced.0 };
+        }
+        let [one, other] = at;
+        let (a, b) = (one.admittance, other.admittance);
+        let passed = one.passed * other.passed;
+        let difference = area_a - area_b;
+        let crossed = other.passed.scaled(gain_a) - one.passed.scaled(gain_b);
+        Chambers {
+            own: a * b + (a * other.passed + b * one.passed).scaled(leakage),
+            driven: b.scaled(area_a * gain_a)
+                + a.scaled(area_b * gain_b)
+                + crossed.scaled(leakage * difference),
+            displaced: (b * one.passed).scaled(area_a * area_a)
+                + (a * other.passed).scaled(area_b * area_b)
+                + passed.scaled(leakage * difference * difference),
+        }
+    }
+
+    /// With a supply that yields. Its edges end at the valve's ports, whose pressures are, with a d - b c = 1,
+    ///
+    /// ```text
+    /// p_port = (p + b K_q U + b s_i p_S)/(d + K_c b)
+    /// ```
+    fn behind<A: Analytic>(&self, supply: &YieldingSupply, at: &[AtChamber<A>; 2], s: A) -> Coupled<Over<A>> {
+        let leakage = A::from(self.plant.internal_leakage);
+        let [of_a, of_b] = supply.edges;
+        let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
+        let [one, other] = at;
+        let returned = |edge: f64, at: &AtChamber<A>| at.impedance.scaled(edge) / at.passed;
+        let tied = s.scaled(supply.compliance) + A::from(supply.conductance + of_a + of_b);
+        let own = tied - returned(of_a, one).scaled(of_a) - returned(of_b, other).scaled(of_b);
+        let taken = A::from(supply.flow_gain) - returned(of_a, one).scaled(gain_a)
+            + returned(of_b, other).scaled(gain_b);
+        let admittance = |at: &AtChamber<A>| Over(at.admittance / at.passed + leakage);
+        let passing = |value: f64, at: &AtChamber<A>| Over(A::from(value) / at.passed);
+        Coupled {
+            own: [admittance(one), admittance(other), Over(own)],
+            across: Over(leakage),
+            edges: [passing(of_a, one), passing(of_b, other)],
+            gains: [passing(gain_a, one), passing(gain_b, other), Over(taken)],
+        }
+    }
+
+    /// Whether nothing in it but what is fed forward gives energy, so that without that none of its poles lies in the right half plane: its
+    /// lines are passive, and so are valve, leakage, friction and load where none of their coefficients is negative.
     pub fn is_passive(&self) -> bool {
         let load = match self.plant.load {
             LinearLoad::Prescribed => [0.0; 3],
@@ -138,7 +207,11 @@ impl PlantInMotion {
             self.plant.valve_damping_ratio,
         ];
         let of_sides = self.sides.iter().flat_map(|side| [side.compliance, side.flow_pressure]);
-        own.into_iter().chain(load).chain(of_sides).all(|value| value >= 0.0)
+        let of_supply = self.plant.supply.iter().flat_map(|supply| {
+            let to_tank = [0, 1].map(|side| self.sides[side].flow_pressure - supply.edges[side]);
+            [supply.edges, to_tank, [supply.compliance, supply.conductance]].concat()
+        });
+        own.into_iter().chain(load).chain(of_sides).chain(of_supply).all(|value| value >= 0.0)
     }
 
     /// Where the slower line is a quarter of a wave long, pi/(2 T) in rad/s; `None` where no wave travels.
@@ -154,25 +227,7 @@ impl Side {
         let line = self.line.transfer_matrix(s);
         let passed = line.flow + line.impedance.scaled(self.flow_pressure);
         let taken = line.admittance + line.pressure.scaled(self.flow_pressure);
-        AtChamber { admittance: s.scaled(self.compliance) * passed + taken, passed }
-    }
-}
-
-/// Area, compliance, flow gain and flow-pressure coefficient of a chamber. One load pressure is that of two equal chambers:
-///
-/// ```text
-/// C = 2 A^2/K_H,   K_q = K_qU,   2 K_c
-/// ```
-fn chamber(chambers: &ChamberDynamics, side: usize) -> [f64; 4] {
-    match *chambers {
-        ChamberDynamics::LoadPressure {
-            useful_area: area,
-            flow_gain,
-            flow_pressure_coefficient,
-            hydraulic_stiffness,
-        } => [area, 2.0 * area * area / hydraulic_stiffness, flow_gain, 2.0 * flow_pressure_coefficient],
-        ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } => {
-            [areas[side], compliances[side], flow_gains[side], flow_pressures[side]]
-        }
+        let admittance = s.scaled(self.compliance) * passed + taken;
+        AtChamber { admittance, passed, impedance: line.impedance }
     }
 }

@@ -70,6 +70,46 @@ pub fn chamber_coefficients<S: Scalar>(
     }
 }
 
+/// Derivatives of what the edges take from the supply. Units: m3/(s Pa), m3/(s V).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupplyCoefficients<S = f64> {
+    /// s_A = dq_A/dp_S = -dq_S/dp_A, of the edge from the supply to chamber A.
+    pub edge_a: S,
+    /// s_B, likewise to chamber B.
+    pub edge_b: S,
+    /// K_qS = dq_S/dU, of both edges.
+    pub flow_gain: S,
+}
+
+/// Derivatives of the flow from the supply at any spool position and chamber pressures p_A and p_B.
+///
+/// ```text
+/// s_A  = (K_v3 u+ + K_vin3 sech) root'(p_S - p_A)        s_B = (K_v5 u- + K_vin5 sech) root'(p_S - p_B)
+/// K_qS = (K_v3 u+' + K_vin3 sech') root(p_S - p_A) + (K_v5 u-' + K_vin5 sech') root(p_S - p_B)
+/// ```
+///
+/// s_A is that part of K_cA which is the supply's.
+pub fn supply_coefficients<S: Scalar>(
+    valve: &Servovalve<S>,
+    supply: &Supply<S>,
+    spool: S,
+    pressures: [S; 2],
+    direction: Direction,
+) -> SupplyCoefficients<S> {
+    let (flow, leak) = (&valve.flow_coefficients, &valve.leakage_coefficients);
+    let Openings { forward, backward, leakage } = Openings::at(valve, spool);
+    let (forward_slope, backward_slope, leakage_slope) = opening_slopes(valve, spool, leakage, direction);
+    let [drop_a, drop_b] = pressures.map(|pressure| supply.pressure - pressure);
+    let root = |drop| regular_root(drop, valve.transition_pressure);
+    let slope = |drop| regular_root_slope(drop, valve.transition_pressure);
+    SupplyCoefficients {
+        edge_a: (flow.supply_to_a * forward + leak.supply_to_a * leakage) * slope(drop_a),
+        edge_b: (flow.supply_to_b * backward + leak.supply_to_b * leakage) * slope(drop_b),
+        flow_gain: (flow.supply_to_a * forward_slope + leak.supply_to_a * leakage_slope) * root(drop_a)
+            + (flow.supply_to_b * backward_slope + leak.supply_to_b * leakage_slope) * root(drop_b),
+    }
+}
+
 /// d/dU of the openings u+ and u- and of sech(lambda u).
 fn opening_slopes<S: Scalar>(valve: &Servovalve<S>, spool: S, leakage: S, direction: Direction) -> (S, S, S) {
     let (one, half) = (S::from(1.0), S::from(0.5));

@@ -36,13 +36,14 @@ pub fn tabulated(plant: &dyn RespondingPlant, [from, to]: [f64; 2], name: String
             left.push(middle);
         }
     }
+    let unstable_poles = plant.unstable_poles();
     MeasuredPlant {
         name,
         frequencies_rad_per_s: found.iter().map(|point| point.0).collect(),
         command: found.iter().map(|point| point.1[0]).collect(),
         disturbance: Some(found.iter().map(|point| point.1[1]).collect()),
-        unstable_poles: 0,
-        is_resolved: true,
+        is_resolved: unstable_poles.is_some(),
+        unstable_poles: unstable_poles.unwrap_or(0),
     }
 }
 

@@ -130,10 +130,11 @@ impl Shaping {
         });
         let timing = samples.problem().timing;
         let frequencies = samples.frequencies_rad_per_s();
-        let response = |structure: &Structure| structure.response(&timing, &frequencies);
+        let behind = timing.of_prefilter();
+        let behind = prefilter.as_ref().map(|prefilter| prefilter.response(&behind, &frequencies));
         Ok(Shaping {
-            response: response(&structure)?,
-            prefilter_response: prefilter.as_ref().map(response).transpose()?,
+            response: structure.response(&timing, &frequencies)?,
+            prefilter_response: behind.transpose()?,
             bounds: [structure.bounds(), prefilter.as_ref().map_or(vec![], Structure::bounds)].concat(),
             stability: SampleStability::new(samples.around(), samples.members().to_vec()),
             structure,
@@ -185,11 +186,12 @@ impl Shaping {
             self.stability.add(member.clone());
         }
         let timing = &self.samples.problem().timing;
+        let behind = timing.of_prefilter();
         let frequencies = self.samples.frequencies_rad_per_s();
         self.response = self.structure.response(timing, &frequencies)?;
         let prefilter = self.prefilter.as_ref();
         self.prefilter_response =
-            prefilter.map(|prefilter| prefilter.response(timing, &frequencies)).transpose()?;
+            prefilter.map(|prefilter| prefilter.response(&behind, &frequencies)).transpose()?;
         Ok(new)
     }
 

@@ -40,7 +40,7 @@ struct Target {
 }
 
 impl PrefilterFit {
-    /// The fit of a structure, sampled as the loop is. Where the band has no width, but not by more than the tolerance at both edges
+    /// The fit of a structure, sampled as the loop samples its prefilter. Where the band has no width, but not by more than the tolerance at both edges
     /// (dB), it is widened by it.
     ///
     /// # Errors
@@ -64,7 +64,7 @@ impl PrefilterFit {
             .iter()
             .map(|point| target(point.width_db(), point.least_db, point.greatest_db, point.rate()))
             .collect();
-        let response = structure.response(timing, &frequencies)?;
+        let response = structure.response(&timing.of_prefilter(), &frequencies)?;
         Ok(PrefilterFit { bounds: structure.bounds(), structure, response, targets })
     }
 

@@ -125,16 +125,16 @@ impl PrefilterRun {
         timing: &Timing,
         options: PrefilterOptions,
     ) -> Result<PrefilterRun, PrefilterError> {
+        let timing = timing.of_prefilter();
         let tolerance_db = options.tolerance_db;
         let outcome = band.closed(tolerance_db).copied().map(PrefilterOutcome::NoBand);
         let structures =
             structures(&band, options.least_relative_degree, options.least_order..=options.maximum_order);
         let fits: Vec<PrefilterFit> = structures
             .into_iter()
-            .map(|structure| PrefilterFit::new(&band, structure, timing, tolerance_db))
+            .map(|structure| PrefilterFit::new(&band, structure, &timing, tolerance_db))
             .collect::<Result<_, _>>()?;
         let search = search(fits.first(), &options);
-        let timing = *timing;
         Ok(PrefilterRun { band, timing, options, fits, at: 0, search, best: None, outcome })
     }
 

@@ -38,7 +38,8 @@ impl Enclosed<'_> {
     /// Poles of the closed loop in the right half plane.
     pub(super) fn unstable_poles(&self) -> Result<usize, Irresolution> {
         let feedback = self.compensation.feedback();
-        let own = outside_of_stable_region(feedback)? + outside_of_stable_region(self.sensor)?;
+        let of_plant = self.plant.unstable_poles().ok_or(Irresolution::OpenLoopPoles)?;
+        let own = outside_of_stable_region(feedback)? + outside_of_stable_region(self.sensor)? + of_plant;
         let integrators = integrators(feedback) + integrators(self.sensor);
         let (mut from, mut turned) = self.below(integrators)?;
         let [_, top] = self.plant.range_rad_per_s();

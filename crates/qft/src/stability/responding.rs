@@ -39,7 +39,10 @@ pub(super) fn stability(member: &Member, compensation: &Compensation, count: Cou
             let enclosed = Enclosed { plant: plant.as_ref(), sensor, delay_s: *delay_s, compensation };
             enclosed.unstable_poles()
         }
-        _ => points().unstable_closed_loop_poles(0, sensor),
+        _ => {
+            let own = plant.unstable_poles().ok_or(Irresolution::OpenLoopPoles);
+            own.and_then(|own| points().unstable_closed_loop_poles(own, sensor))
+        }
     };
     match counted {
         Ok(0) => points().stability(0),

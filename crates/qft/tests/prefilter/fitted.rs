@@ -163,7 +163,7 @@ fn a_band_closed_by_less_than_the_tolerance_is_met_within_it() {
 #[test]
 fn a_sampled_prefilter_has_the_margins_that_were_searched() {
     for discretization in [Discretization::Tustin, Discretization::Matched] {
-        let timing = Timing { sample_time_s: Some(0.02), discretization, delay_s: 0.01 };
+        let timing = Timing { sample_time_s: Some(0.02), discretization, delay_s: 0.01, ..Timing::default() };
         let one = |element| Compensator::new(vec![element]);
         let sampled = |prefilter: Compensator| {
             let controller =
@@ -189,6 +189,20 @@ fn a_sampled_prefilter_has_the_margins_that_were_searched() {
         let continuous = fitted.compensator.transfer_function().unwrap();
         assert!(band.margins(&continuous)[0] != worst);
     }
+}
+
+/// Before the samples the prefilter is fitted as in a continuous loop, and the band is that of the sampled one.
+#[test]
+fn a_prefilter_before_the_samples_is_fitted_in_s() {
+    let lag = Element::RealPole { frequency: 2.0 }.transfer_function().unwrap();
+    let fitted = |timing: &Timing| {
+        let band = around_prefilter(&lag, 0.5, &spaced(0.05, 60.0, 40));
+        found(run(band, timing, PrefilterOptions::new(2, 1)))
+    };
+    let sampled = Timing { sample_time_s: Some(0.05), ..Timing::default() };
+    let continuous = fitted(&Timing::default());
+    assert_eq!(fitted(&Timing { continuous_prefilter: true, ..sampled }), continuous);
+    assert_ne!(fitted(&sampled).compensator, continuous.compensator);
 }
 
 /// Analytic slopes of every margin against central differences, and the worst of them is the one that is judged.

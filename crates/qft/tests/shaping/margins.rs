@@ -98,7 +98,12 @@ fn check(problem: &DesignProblem, structure: &Structure, x: &[f64], prefilter: O
 fn margins_are_those_of_one_plant_after_the_other() {
     let mut draw = Draw(11);
     let prefilter = rational(&[3.0], &[1.0, 3.0]);
-    let sampled = |discretization| Timing { sample_time_s: Some(0.01), delay_s: 0.004, discretization };
+    let sampled = |discretization| Timing {
+        sample_time_s: Some(0.01),
+        delay_s: 0.004,
+        discretization,
+        ..Timing::default()
+    };
     for timing in [
         Timing::default(),
         Timing { delay_s: 0.01, ..Timing::default() },

@@ -21,8 +21,8 @@ const DISCRETIZATIONS: [Discretization; 4] = [
 fn timings() -> Vec<Timing> {
     let sampled = DISCRETIZATIONS.map(|discretization| Timing {
         sample_time_s: Some(PERIOD),
-        delay_s: 0.0,
         discretization,
+        ..Timing::default()
     });
     [vec![Timing::default()], sampled.to_vec()].concat()
 }

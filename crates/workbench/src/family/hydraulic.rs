@@ -5,11 +5,14 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
+use phea_hydraulics::actuator::Components;
 use phea_hydraulics::line::{LineError, Member};
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::operating_point::{Balance, OperatingPoint, Settled, Steady, hydraulic_force};
-use phea_hydraulics::plant::{LinearLoad, Plant, PlantInMotion};
-use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::operating_point::{
+    Balance, OperatingPoint, Settled, SettledSupply, Steady, hydraulic_force,
+};
+use phea_hydraulics::plant::{LinearLoad, Plant, PlantInMotion, YieldingSupply};
+use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
 };
@@ -17,7 +20,10 @@ use phea_hydraulics::two_pressure::{
 use super::FamilyError;
 use super::visited::Visited;
 use crate::project::{Actuator, LINEAR_PARAMETERS, Project};
-use crate::rig::{self, Numbers, Rig, components, linear, place, plant, stated, yielding_load};
+use crate::rig::{
+    self, Numbers, Rig, components, linear, place, plant, settled_supply, stated, with_supply, yielding_load,
+    yielding_supply,
+};
 
 /// Records the plant with the uncertain numbers open and all others at the values that hold.
 pub(super) fn uncertain_plant(
@@ -25,11 +31,11 @@ pub(super) fn uncertain_plant(
     parameters: Vec<UncertainParameter>,
 ) -> Result<UncertainPlant, FamilyError> {
     let visited = Visited::new(project, &parameters)?;
-    let Visited { rig, names, moved, one_pressure, .. } = &visited;
+    let Visited { rig, names, equal, .. } = &visited;
     let Some(declared) = &project.actuator else { return Err(crate::rig::RigError::NoActuator.into()) };
     let recorded = UncertainPlant::record(parameters, |values| {
         let open = Open { project, declared, rig, names };
-        open.plant(values, *moved, *one_pressure).1.coefficients()
+        open.plant(values, visited.moved, *equal).1.coefficients()
     })?;
     let expression = recorded.expression();
     let idle = (0..names.len()).find(|index| expression.is_some_and(|one| !one.depends_on(*index)));
@@ -48,10 +54,10 @@ pub(super) fn in_motion(
     visited: &Visited,
     values: &[f64],
 ) -> Result<Option<PlantInMotion>, LineError> {
-    let Visited { rig, names, moved, one_pressure, .. } = visited;
+    let Visited { rig, names, moved, equal, .. } = visited;
     let Some(declared) = &project.actuator else { return Ok(None) };
     let open = Open { project, declared, rig, names };
-    let (place, plant) = open.plant(values, *moved, *one_pressure);
+    let (place, plant) = open.plant(values, *moved, *equal);
     let components = components(declared, &Numbers::open(names, values));
     rig::in_motion(&declared.line, &components, &place.point, &place.chambers, &plant)
 }
@@ -71,11 +77,31 @@ pub(super) struct Place<S> {
     /// With what `[linear]` and `[uncertainty]` state of the linear model in its place.
     pub(super) linear: LinearParameters<S>,
     pub(super) leakage: S,
+    /// `None` where the supply has a constant pressure.
+    pub(super) supply: Option<YieldingSupply<S>>,
+}
+
+/// What is equal on both sides of every plant of a family.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Equal {
+    /// All of both chambers, or all that is stated: one load pressure tells all of them.
+    pub(super) one_pressure: bool,
+    /// What the supply gives to them, so that the difference of their pressures does not see it.
+    pub(super) edges: bool,
 }
 
 impl Open<'_> {
-    /// What decides the pressures.
+    /// What decides the pressures, the supply as it settles.
     pub(super) fn balance<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
+        let (position, steady, idle) = self.idle(values);
+        let numbers = Numbers::open(self.names, values);
+        let found = settled_supply(self.declared, &numbers, &idle, steady);
+        let supply = found.map_or(idle.supply, |found| found.supply);
+        (position, steady, Balance { supply, ..idle })
+    }
+
+    /// The same with the supply as it is stated.
+    fn idle<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
         let numbers = Numbers::open(self.names, values);
         let components = components(self.declared, &numbers);
         let (position, steady) = place(self.project, components.cylinder.stroke, &numbers);
@@ -84,29 +110,42 @@ impl Open<'_> {
         (position, steady, Balance::of(&components, leakage))
     }
 
-    /// The rig with these values, and its plant with lumped lines.
-    fn plant<S: Scalar>(&self, values: &[S], moved: bool, one_pressure: bool) -> (Place<S>, Plant<S>) {
+    /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed forward is that of the declared rig.
+    fn plant<S: Scalar>(&self, values: &[S], moved: bool, equal: Equal) -> (Place<S>, Plant<S>) {
         let place = self.place(values, moved);
         let numbers = Numbers::open(self.names, values);
         let load = yielding_load(&self.declared.load, &numbers, place.point.hydraulic_force);
         let load = load.map_or(LinearLoad::Prescribed, |load| load.linear());
-        let plant = plant(&place.chambers, &place.linear, one_pressure, place.leakage, load);
-        (place, plant)
+        let plant = plant(&place.chambers, &place.linear, equal.one_pressure, place.leakage, load);
+        let plant = match place.supply {
+            Some(supply) if !(equal.one_pressure && equal.edges) => {
+                with_supply(plant, supply, &place.chambers)
+            }
+            _ => plant,
+        };
+        let load_velocity_feed_forward = self.rig.fed_at_once.map(S::from);
+        (place, Plant { load_velocity_feed_forward, ..plant })
     }
 
     /// The rig with these values; its pressures are those of the declared rig where nothing moves them.
     pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> Place<S> {
         let numbers = Numbers::open(self.names, values);
         let components = components(self.declared, &numbers);
-        let (position, steady, balance) = self.balance(values);
+        let (position, steady, idle) = self.idle(values);
         let known = &self.rig.point;
-        let Settled { command, pressures } = match moved {
-            true => balance.settle(steady),
-            false => Settled {
-                command: S::from(known.command),
-                pressures: [known.pressure_a, known.pressure_b].map(S::from),
-            },
+        let (supply, at) = match (moved, &self.rig.supply) {
+            (true, _) => {
+                let (_, _, balance) = self.balance(values);
+                (balance.supply, balance.settle(steady))
+            }
+            (false, found) => {
+                let pressure = found.map_or(idle.supply.pressure, |found| S::from(found.supply.pressure));
+                let pressures = [known.pressure_a, known.pressure_b].map(S::from);
+                (Supply { pressure, ..idle.supply }, Settled { command: S::from(known.command), pressures })
+            }
         };
+        let Settled { command, pressures } = at;
+        let balance = Balance { supply, ..idle };
         let none = S::from(0.0);
         let [pressure_a, pressure_b] = pressures;
         let point = OperatingPoint {
@@ -120,12 +159,15 @@ impl Open<'_> {
             net_flow_b: none,
         };
         let friction = components.friction.viscous();
+        let components = Components { supply, ..components };
         let model = TwoPressureModel::of(&components, pressures, Member::Nominal, friction);
         let chambers = two_pressure_linear_parameters(&model, &point, Direction::Mean);
         let known = stated(&self.rig.parameters).map(|(name, value)| (name, S::from(value)));
         let open = self.names.iter().map(String::as_str).zip(values.iter().copied());
         let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));
-        Place { point, chambers, linear, leakage: balance.leakage.unwrap_or(none) }
+        let settled = SettledSupply { supply, settled: at, taken: none };
+        let supply = yielding_supply(self.declared, &numbers, &idle, &settled);
+        Place { point, chambers, linear, leakage: balance.leakage.unwrap_or(none), supply }
     }
 }
 

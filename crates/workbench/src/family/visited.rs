@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 use phea_dynamics::expression::Expression;
 use phea_dynamics::uncertain_plant::UncertainParameter;
-use phea_hydraulics::actuator::Actuator;
+use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::operating_point::{Settled, leaking_operating_point};
 use phea_qft::family::{Extent, UncertainFamily};
 
 use super::FamilyError;
-use super::hydraulic::Open;
+use super::hydraulic::{Equal, Open};
 use crate::answer::significant;
 use crate::project::Project;
 use crate::rig::{Numbers, Rig, RigError, are_equal, components, sides, states_one_pressure};
@@ -29,8 +29,8 @@ pub(super) struct Visited {
     pub(super) names: Vec<String>,
     /// Whether an uncertain number moves the pressures.
     pub(super) moved: bool,
-    /// Whether one load pressure tells all of every plant.
-    pub(super) one_pressure: bool,
+    /// What is equal on both sides of every plant.
+    pub(super) equal: Equal,
     /// The uncertain numbers that move them.
     movers: Vec<usize>,
     /// Command and both pressures.
@@ -51,16 +51,25 @@ impl Visited {
         });
         let movers: Vec<usize> = (0..names.len()).filter(|index| settled.depends_on(*index)).collect();
         let moved = !movers.is_empty();
-        let chambers = Expression::record(&all, |values| {
-            sides(&open.place(values, moved).chambers).into_iter().flatten().collect()
+        let both = Expression::record(&all, |values| {
+            let place = open.place(values, moved);
+            let edges = place.supply.map_or([0.0.into(); 2], |supply| supply.edges);
+            [edges].into_iter().chain(sides(&place.chambers)).flatten().collect()
         });
-        let equal = |values: &Vec<f64>| {
-            let found = chambers.evaluate(values);
-            are_equal(found.chunks_exact(2).map(|pair| [pair[0], pair[1]]))
+        let plants = within(parameters);
+        let nominal: Vec<f64> = parameters.iter().map(|parameter| parameter.nominal).collect();
+        let pairs: Vec<Vec<[f64; 2]>> = [&nominal]
+            .into_iter()
+            .chain(&plants)
+            .map(|values| both.evaluate(values).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect())
+            .collect();
+        let equal = |from: usize, to: usize| {
+            pairs.iter().all(|pairs| are_equal(pairs.iter().copied().take(to).skip(from)))
         };
-        let one_pressure = states_one_pressure(&rig.parameters, &names)
-            || (are_equal(sides(&rig.two_pressure)) && within(parameters).iter().all(equal));
-        Ok(Visited { rig, names, moved, one_pressure, movers, settled })
+        let edges = equal(0, 1);
+        let chambers = are_equal(sides(&rig.two_pressure)) && equal(1, usize::MAX);
+        let one_pressure = states_one_pressure(&rig.parameters, &names) || (chambers && edges);
+        Ok(Visited { rig, names, moved, equal: Equal { one_pressure, edges }, movers, settled })
     }
 
     /// What is wrong at a plant; nothing where its recorded pressures are those of its operating point.
@@ -78,6 +87,7 @@ impl Visited {
             return None;
         }
         let components = components(open.declared, &Numbers::open(open.names, values));
+        let components = Components { supply: balance.supply, ..components };
         let afresh = Actuator::new(components).map_err(|error| error.to_string()).and_then(|actuator| {
             let point = leaking_operating_point(&actuator, balance.leakage, position, steady.into());
             point.map_err(|error| error.to_string())

@@ -8,6 +8,7 @@ use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
+use phea_hydraulics::linear::transfer_functions;
 
 use super::{Linearization, linearize, resonance};
 use crate::command::CommandError;
@@ -219,6 +220,8 @@ fn values([from, to]: [f64; 2], count: usize, by_ratio: bool) -> Vec<f64> {
 /// The models with the controller that goes around them.
 struct Models {
     linearization: Linearization,
+    /// From command to force, as the loop sees it.
+    seen: TransferFunction,
     given: Option<Controller>,
     sensor: TransferFunction,
 }
@@ -228,7 +231,8 @@ fn linearized(loaded: &Loaded) -> Result<Models, String> {
         let rig = Rig::new(&loaded.project)?;
         let (given, sensor) = (controller(&loaded.project)?, sensor(&loaded.project)?);
         let linearization = linearize(&rig, given.as_ref(), &sensor)?;
-        Ok(Models { linearization, given, sensor })
+        let seen = transfer_functions(&rig.in_loop().plant.coefficients())?.command;
+        Ok(Models { linearization, seen, given, sensor })
     };
     found().map_err(|error| error.to_string())
 }
@@ -247,12 +251,12 @@ fn moves(found: &[(f64, Result<Models, String>)]) -> bool {
 }
 
 fn swept(models: Models, plant_follows: bool) -> Swept {
-    let Models { linearization, given, sensor } = models;
-    let function = match plant_follows {
-        true => linearization.plant.command.clone(),
-        false => linearization.derived_full.command.clone(),
+    let Models { linearization, seen, given, sensor } = models;
+    let [function, seen] = match plant_follows {
+        true => [linearization.plant.command.clone(), seen],
+        false => [linearization.derived_full.command.clone(), linearization.derived_full.command.clone()],
     };
-    let closed = given.map(|given| linear_loop(&function, &given, &sensor, BAND_PERCENT));
+    let closed = given.map(|given| linear_loop(&seen, &given, &sensor, BAND_PERCENT));
     let bandwidth_rad_per_s = match closed {
         None => Err("the project gives no controller"),
         Some(Err(_)) => Err("the loop cannot be closed"),

@@ -257,7 +257,7 @@ impl Prefilter {
         v.optional(k, &mut self.sample_time);
         let k = plain(
             "continuous",
-            "Whether a simulation lets it act in continuous time beside a sampled controller.",
+            "Whether it acts in continuous time, on the reference before a sampled controller takes it.",
         );
         v.flag(k, &mut self.continuous);
     }

@@ -127,7 +127,7 @@ fn closed_loop(
         }
     };
     let closed = plant.series(compensation.feedback())?.feedback(&sensor)?;
-    compensation.prefilter().series(&closed)
+    compensation.prefilter_of_step()?.series(&closed)
 }
 
 /// The same of a continuous loop with dead time, in time.

@@ -71,7 +71,7 @@ fn assumptions(project: &Project) -> Vec<String> {
         ];
     }
     let mut assumptions = vec![
-        "Pressures are gauge; the tank is at the declared pressure; the supply pressure is constant in every linear model.".to_string(),
+        "Pressures are gauge; the tank is at the declared pressure; the supply pressure is constant in every linear model, but in the plant of a pump that is limited.".to_string(),
         "Volumetric expansion and wall modulus of a hose are taken at the supply pressure; between the catalogue's point and another pressure the expansion follows the catalogue's slope; a supply beyond the point is warned of.".to_string(),
         "The hose wall has its dynamic modulus at every frequency; at rest it is softer by the stiffening ratio.".to_string(),
         "Friction enters the linear models by its viscous part alone.".to_string(),

@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::plant::{LinearLoad, Plant};
+use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, Plant, YieldingSupply};
 use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
 
@@ -116,6 +116,29 @@ pub(crate) fn plant<S: Scalar>(
         ..*chambers
     };
     Plant::of_two_pressures(&stated, leakage, load)
+}
+
+/// The same plant at a supply that yields. Where a stated number makes the valve of one load pressure another than its parts are, what
+/// it takes from the supply is another alike.
+pub(crate) fn with_supply<S: Scalar>(
+    plant: Plant<S>,
+    supply: YieldingSupply<S>,
+    chambers: &TwoPressureLinearParameters<S>,
+) -> Plant<S> {
+    let supply = match plant.chambers {
+        ChamberDynamics::TwoPressures { .. } => supply,
+        ChamberDynamics::LoadPressure { flow_gain, flow_pressure_coefficient, .. } => {
+            let (two, own) = (S::from(2.0), &chambers.chambers);
+            let both = two * flow_pressure_coefficient;
+            let [edge_a, edge_b] = supply.edges;
+            YieldingSupply {
+                edges: [edge_a * both / own.flow_pressure_a, edge_b * both / own.flow_pressure_b],
+                flow_gain: supply.flow_gain * two * flow_gain / (own.flow_gain_a + own.flow_gain_b),
+                ..supply
+            }
+        }
+    };
+    Plant { supply: Some(supply), ..plant }
 }
 
 /// What the project states of the linear model: name and value.

@@ -45,9 +45,13 @@ impl<'a> Workpiece<'a> {
         own.or(self.timing().sample_time_s)
     }
 
-    /// When the loop acts.
+    /// When what is shaped acts.
     pub(super) fn timing(&self) -> Timing {
-        control::timing(self.project)
+        let timing = control::timing(self.project);
+        match self.shaped {
+            Shaped::Controller => timing,
+            Shaped::Prefilter => timing.of_prefilter(),
+        }
     }
 
     /// Takes an element in as it is declared, and gives it as the loop has it.

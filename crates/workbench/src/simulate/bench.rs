@@ -5,16 +5,14 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Method, Sensed, Settings};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::line::Member;
-use phea_hydraulics::machine::{
-    Accumulator, Contact, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited,
-};
+use phea_hydraulics::machine::{Contact, LoadModel, Machine, MachineOptions};
 use phea_hydraulics::servovalve::SpoolImperfection;
 use phea_qft::design::quantisation::Quantisation;
 
 use super::SimulateError;
 use crate::control::{controller, deployed, quantisation, sensor};
-use crate::project::{self, Project, Scenario, StepMethod, SupplyModel};
-use crate::rig::{Rig, lines};
+use crate::project::{self, Project, Scenario, StepMethod};
+use crate::rig::{Numbers, Rig, feed_forward, lines, power_unit};
 
 /// A machine with its controller.
 #[derive(Clone, Debug)]
@@ -81,7 +79,7 @@ impl Bench {
     fn closed(project: &Project, external_force: bool) -> Result<Bench, SimulateError> {
         let (rig, sensed) = rig_and_machine(project, external_force)?;
         let controller = controller(project)?.ok_or(SimulateError::NoController)?;
-        let feed_forward = feed_forward(project, &rig);
+        let feed_forward = feed_forward(project, &rig.linear);
         let machine = *sensed.plant();
         let control = match controller.timing.sample_time_s {
             None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &controller, feed_forward)?)),
@@ -204,12 +202,6 @@ fn between_samples(
     Ok(TransferFunction::gain_only(1.0))
 }
 
-/// V s/m; the area over the flow gain holds the flow that the motion takes.
-fn feed_forward(project: &Project, rig: &Rig) -> f64 {
-    let declared = project.controller.as_ref().and_then(|controller| controller.load_velocity_feed_forward);
-    declared.map_or(0.0, |declared| declared.gain.unwrap_or(rig.linear.useful_area / rig.linear.flow_gain))
-}
-
 /// What the machine has beyond its actuator, whatever acts on it.
 pub(crate) fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions, SimulateError> {
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
@@ -231,7 +223,7 @@ pub(crate) fn options(project: &Project, actuator: &Actuator) -> Result<MachineO
             .end_stops
             .map(|stops| Contact { stiffness: stops.stiffness, relative_damping: stops.relative_damping }),
         friction_regular_velocity: friction.and_then(|friction| friction.regular_velocity),
-        power_unit: power_unit(declared),
+        power_unit: power_unit(declared, &Numbers::declared()),
         load: load(&declared.load),
         external_force: false,
         vapour_pressure_absolute: declared.fluid.vapour_pressure,
@@ -242,25 +234,6 @@ pub(crate) fn options(project: &Project, actuator: &Actuator) -> Result<MachineO
             &actuator.components().fluid,
             actuator.mean_pressure(),
         )?,
-    })
-}
-
-fn power_unit(declared: &project::Actuator) -> PowerUnit {
-    let supply = &declared.supply;
-    if supply.model == SupplyModel::Constant {
-        return PowerUnit::Constant;
-    }
-    PowerUnit::PumpLimited(PumpLimited {
-        // a validated project states the flow of a limited pump
-        pump_flow: supply.flow.unwrap_or(f64::NAN),
-        relief_override: supply.relief_override,
-        volume: supply.volume,
-        effective_bulk_modulus: supply.effective_bulk_modulus.unwrap_or(declared.fluid.bulk_modulus),
-        accumulator: supply.accumulator.map(|accumulator| Accumulator {
-            gas_volume: accumulator.gas_volume,
-            precharge_pressure: accumulator.precharge_pressure,
-            polytropic_index: accumulator.polytropic_exponent,
-        }),
     })
 }
 

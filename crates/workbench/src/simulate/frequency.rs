@@ -137,7 +137,8 @@ fn rested(project: &Project) -> Result<Rested, SimulateError> {
     let components = rig.actuator.components();
     let area = 0.5 * (components.cylinder.area_a + components.cylinder.area_b);
     let push_n = area * (components.supply.pressure - components.supply.tank_pressure);
-    let plant = transfer_functions(&rig.plant.coefficients()).map_err(SimulateError::Plant)?.command;
+    let plant =
+        transfer_functions(&rig.in_loop().plant.coefficients()).map_err(SimulateError::Plant)?.command;
     Ok(Rested { machine, rest, force_n, push_n, settings: settings(project), plant, rig })
 }
 

@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::responding::RespondingPlant;
-use phea_dynamics::time_response::{
-    StepBaseline, StepMetrics, TimeResponseError, step_metrics, step_of_frequency_response,
-};
+use phea_dynamics::time_response::{StepBaseline, StepMetrics, step_metrics, step_of_frequency_response};
 use phea_dynamics::uncertain_plant::PlantMember;
 use phea_hydraulics::linear::transfer_functions;
 use phea_qft::closed_loop::{Compensation, Member};
@@ -64,7 +63,7 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
 fn of_responses(
     plant: &Arc<dyn RespondingPlant>,
     compensation: &Compensation,
-) -> Result<Prediction, TimeResponseError> {
+) -> Result<Prediction, CommandError> {
     let member = compensation.responding(plant.clone());
     match member_stability(&member, compensation).status {
         StabilityStatus::Stable => {}
@@ -73,7 +72,8 @@ fn of_responses(
     }
     let highest = compensation.highest_frequency_rad_per_s();
     let grid = tabulated(plant.as_ref(), plant.range_rad_per_s(), String::new()).frequencies_rad_per_s;
-    let points = straight(&grid, highest, |frequency| closed(&member, compensation, frequency));
+    let prefilter = compensation.prefilter_of_step()?;
+    let points = straight(&grid, highest, |frequency| closed(&member, compensation, &prefilter, frequency));
     let final_value = points.first().map_or(1.0, |(_, real)| *real);
     let mut found = Prediction::Unknown;
     for duration in DURATIONS_S {
@@ -94,12 +94,16 @@ fn of_responses(
     Ok(found)
 }
 
-/// F P G/(1 + L)
-fn closed(member: &Member, compensation: &Compensation, frequency: f64) -> Option<Complex64> {
+/// F P G/(1 + L), F as a step meets it.
+fn closed(
+    member: &Member,
+    compensation: &Compensation,
+    prefilter: &TransferFunction,
+    frequency: f64,
+) -> Option<Complex64> {
     let plant = member.response(frequency)?;
-    let own = compensation.response(frequency);
-    let forward = plant.plant * own.feedback;
-    Some(own.prefilter * forward / (1.0 + forward * plant.sensor))
+    let forward = plant.plant * compensation.feedback().at_frequency(frequency);
+    Some(prefilter.at_frequency(frequency) * forward / (1.0 + forward * plant.sensor))
 }
 
 /// The real part at these frequencies, and between them until it is straight there.

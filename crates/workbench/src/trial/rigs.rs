@@ -10,7 +10,7 @@ use phea_qft::verification::PlantPoint;
 
 use crate::audit::{NamedPlant, ProjectAudit};
 use crate::project::{Actuator, Component, EdgeCoefficients, LINEAR_PARAMETERS, Line, LineModel, Project};
-use crate::rig::Rig;
+use crate::rig::{Rig, feed_forward};
 use crate::robust::RobustProblem;
 
 /// A machine and the plant that the linear loop has for it.
@@ -41,9 +41,10 @@ pub(super) fn rigs(
 ) -> (Vec<Tried>, Vec<String>) {
     let (mut rigs, mut missing) = (Vec::new(), Vec::new());
     if let Ok(rig) = Rig::new(project) {
-        let plant = match &rig.in_motion {
-            None => PlantMember::Rational(rig.plant.coefficients()),
-            Some(moving) => PlantMember::Responding(Arc::new(*moving)),
+        let seen = rig.in_loop();
+        let plant = match seen.in_motion {
+            None => PlantMember::Rational(seen.plant.coefficients()),
+            Some(moving) => PlantMember::Responding(Arc::new(moving)),
         };
         let of = |what: &str, project: Project, quarter_wave_rad_per_s| Tried {
             what: what.to_string(),
@@ -115,6 +116,12 @@ fn made(project: &Project, names: &[&str], values: &[f64]) -> Result<Project, St
     let mut rig = project.clone();
     rig.uncertainty.clear();
     rig.family = None;
+    // what is fed forward is that of the declared rig
+    let declared = Rig::new(project).map_err(|error| error.to_string())?;
+    let gain = feed_forward(project, &declared.linear);
+    if let Some(given) = rig.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut()) {
+        given.gain = Some(gain);
+    }
     let stated = names.iter().copied().zip(values.iter().copied()).filter(|(name, _)| !is_linear(name));
     for (name, value) in stated {
         if name == "operating_point.velocity" && value != 0.0 {

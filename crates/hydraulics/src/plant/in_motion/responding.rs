@@ -1,17 +1,25 @@
 //! What robust design asks of a plant without polynomials.
 
+use std::f64::consts::PI;
+
 use num_complex::Complex64;
 use phea_dynamics::analytic::{Disc, Jet};
+use phea_dynamics::portable::argument;
 use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
-use super::super::{ChamberDynamics, LinearLoad, Plant};
-use super::PlantInMotion;
+use super::super::{ChamberDynamics, LinearLoad, Plant, YieldingSupply};
+use super::{Paths, PlantInMotion, Side};
 
 /// How far below the slowest and above the fastest thing of a plant its response is its own.
 const BELOW: f64 = 0.01;
 const ABOVE_SPOOL: f64 = 20.0;
 const ABOVE_QUARTER_WAVE: f64 = 40.0;
+/// How far beyond that a count of its own poles goes, and in what steps.
+const FAR: f64 = 100.0;
+const STEPS_MAXIMUM: usize = 100_000;
+const SMALL_TURN: f64 = 0.5;
+const LARGE_STEP: f64 = 1.05;
 
 impl RespondingPlant for PlantInMotion {
     fn response(&self, frequency_rad_per_s: f64) -> [Complex64; 2] {
@@ -30,9 +38,11 @@ impl RespondingPlant for PlantInMotion {
     /// ```text
     /// p_port = p + R q,   q = K_q U - K_c p_port      so that q = K_q/(1 + K_c R) U - K_c/(1 + K_c R) p
     /// ```
+    ///
+    /// and the edges of a supply that yields likewise.
     fn slow(&self) -> PlantCoefficients<f64> {
-        let of = |value: fn(&super::Side) -> f64| [value(&self.sides[0]), value(&self.sides[1])];
-        let passing = |side: &super::Side| 1.0 + side.flow_pressure * side.line.resistance();
+        let of = |value: fn(&Side) -> f64| [value(&self.sides[0]), value(&self.sides[1])];
+        let passing = |side: &Side| 1.0 + side.flow_pressure * side.line.resistance();
         let slow = [passing(&self.sides[0]), passing(&self.sides[1])];
         let over = |values: [f64; 2]| [values[0] / slow[0], values[1] / slow[1]];
         let chambers = ChamberDynamics::TwoPressures {
@@ -43,7 +53,19 @@ impl RespondingPlant for PlantInMotion {
             flow_gains: over(of(|side| side.flow_gain)),
             flow_pressures: over(of(|side| side.flow_pressure)),
         };
-        Plant { chambers, ..self.plant }.coefficients()
+        let supply = self.plant.supply.map(|supply| {
+            let [resistance_a, resistance_b] = over(of(|side| side.line.resistance()));
+            let ([of_a, of_b], edges) = (supply.edges, over(supply.edges));
+            let [gain_a, gain_b] = of(|side| side.flow_gain);
+            let returned = of_a * of_a * resistance_a + of_b * of_b * resistance_b;
+            YieldingSupply {
+                conductance: supply.conductance + of_a + of_b - edges[0] - edges[1] - returned,
+                flow_gain: supply.flow_gain - of_a * resistance_a * gain_a + of_b * resistance_b * gain_b,
+                edges,
+                ..supply
+            }
+        });
+        Plant { chambers, supply, ..self.plant }.coefficients()
     }
 
     /// Nothing behind the valve gives energy, so that no more reaches the piston than a source with the conductance K_c can give, and the
@@ -54,26 +76,64 @@ impl RespondingPlant for PlantInMotion {
     /// F_e = K_e (x_C - x_L) = v/(s/K_e + Y_L)                     Y_L: velocity of the load over its force
     /// |P(jw)| <= |v/U_sp| w_n^2/(w^2 - w_n^2) / (w/K_e - w/(M_L w^2 - K_L))       each factor falls from where it is positive
     /// ```
+    ///
+    /// A supply that yields is a third port, `power_per_volt`. What a load that yields feeds forward multiplies this by
+    /// 1/(1 - K_x |P Y_L|) at most.
     fn roll_off(&self, frequency_rad_per_s: f64) -> Option<f64> {
         let friction = self.plant.viscous_friction;
-        let given: f64 = self
-            .sides
-            .iter()
-            .filter(|side| side.flow_gain != 0.0)
-            .map(|side| side.flow_gain * side.flow_gain / (4.0 * side.flow_pressure))
-            .sum();
-        let velocity = (given / friction).sqrt();
         let w = frequency_rad_per_s;
         let natural = self.plant.valve_natural_frequency;
         let spool = natural * natural / (w * w - natural * natural);
-        let yielding = match self.plant.load {
-            LinearLoad::Yielding { mass, stiffness, .. } if mass > 0.0 => w / (mass * w * w - stiffness),
-            LinearLoad::Yielding { .. } | LinearLoad::Prescribed => 0.0,
+        // what the load gives way, and how fast it goes, for a newton at this frequency
+        let (yielding, speed) = match self.plant.load {
+            LinearLoad::Yielding { mass, stiffness, .. } if mass > 0.0 => {
+                let yielding = w / (mass * w * w - stiffness);
+                (yielding, yielding)
+            }
+            LinearLoad::Yielding { damping, .. } if damping > 0.0 => (0.0, 1.0 / damping),
+            LinearLoad::Yielding { stiffness, .. } => (0.0, w / stiffness),
+            LinearLoad::Prescribed => (0.0, 0.0),
         };
         let held = w / self.plant.sensor_stiffness - yielding;
-        let bound = velocity * spool / held;
-        let falls = spool > 0.0 && held > 0.0 && yielding >= 0.0;
+        let bound = (self.power_per_volt() / friction).sqrt() * spool / held;
+        let fed = self.plant.load_velocity_feed_forward.map_or(0.0, |gain| gain.abs() * bound * speed);
+        let falls = spool > 0.0 && held > 0.0 && yielding >= 0.0 && fed < 0.5;
+        let bound = bound / (1.0 - fed);
         (self.is_passive() && falls && bound.is_finite()).then_some(bound)
+    }
+
+    fn unstable_poles(&self) -> Option<usize> {
+        if !self.is_passive() {
+            return None;
+        }
+        if self.plant.load == LinearLoad::Prescribed || self.plant.load_velocity_feed_forward.is_none() {
+            return Some(0);
+        }
+        // 1 less what the load's velocity feeds back, of a plant that is stable without it: Nyquist
+        let difference = |frequency: f64| {
+            let Paths { sensed, fed, .. } = self.paths(Complex64::new(0.0, frequency));
+            (frequency, 1.0 - fed / sensed)
+        };
+        let [from, to] = self.range_rad_per_s();
+        let mut ahead: Vec<(f64, Complex64)> =
+            [to * FAR, (from * to).sqrt(), from / FAR].map(difference).to_vec();
+        let mut here = ahead.pop()?;
+        let start = argument(here.1);
+        let mut turn = start - (start / PI).round() * PI;
+        for _ in 0..STEPS_MAXIMUM {
+            let Some(&next) = ahead.last() else {
+                return Some(((argument(here.1) - turn) / PI).round().max(0.0) as usize);
+            };
+            let step = argument(next.1 / here.1);
+            if step.abs() < SMALL_TURN && next.0 < LARGE_STEP * here.0 {
+                turn += step;
+                here = next;
+                ahead.pop();
+            } else {
+                ahead.push(difference((here.0 * next.0).sqrt()));
+            }
+        }
+        None
     }
 
     fn range_rad_per_s(&self) -> [f64; 2] {
@@ -93,5 +153,24 @@ impl RespondingPlant for PlantInMotion {
     fn echo_s(&self) -> f64 {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
         2.0 * delays.fold(0.0, f64::max)
+    }
+}
+
+impl PlantInMotion {
+    /// The most power in W that can leave valve and supply for the square of a volt: their sources k less their conductances G,
+    ///
+    /// ```text
+    /// max over p of k.p - p.G p = k.G^-1 k/4,      p = (p_A, p_B, p_S),   k = (K_qA, -K_qB, -K_qS)
+    /// ```
+    fn power_per_volt(&self) -> f64 {
+        let driven = self.sides.iter().filter(|side| side.flow_gain != 0.0);
+        let ports: f64 = driven.map(|side| side.flow_gain * side.flow_gain / side.flow_pressure).sum();
+        let Some(supply) = &self.plant.supply else { return ports / 4.0 };
+        let passed = [0, 1].map(|side| supply.edges[side] / self.sides[side].flow_pressure);
+        let [of_a, of_b] = [0, 1].map(|side| passed[side] * self.sides[side].flow_gain);
+        let source = of_a - of_b - supply.flow_gain;
+        let own =
+            supply.conductance + supply.edges[0] * (1.0 - passed[0]) + supply.edges[1] * (1.0 - passed[1]);
+        (ports + source * source / own) / 4.0
     }
 }

@@ -27,11 +27,11 @@ pub enum CoefficientFormat {
 /// A controller as it is deployed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoundedController {
-    /// The controller of these sections, to be audited: feedback and prefilter are in z.
+    /// The controller of these sections, to be audited: feedback and prefilter are in z, a prefilter that acts before the samples as it was.
     pub controller: Controller,
     /// G, coefficient by coefficient as it is run.
     pub feedback: Vec<Section>,
-    /// F, likewise.
+    /// F, likewise; empty where it acts before the samples.
     pub prefilter: Vec<Section>,
     /// What rounding did to G.
     pub feedback_effect: CoefficientEffect,
@@ -46,6 +46,10 @@ pub struct CoefficientEffect {
     pub largest_pole_shift: f64,
     /// Gain at zero frequency over that before; `None` where there is none, as behind an integrator.
     pub dc_gain_ratio: Option<f64>,
+}
+
+impl CoefficientEffect {
+    const NONE: CoefficientEffect = CoefficientEffect { largest_pole_shift: 0.0, dc_gain_ratio: Some(1.0) };
 }
 
 impl CoefficientFormat {
@@ -126,7 +130,10 @@ pub fn rounded(
         Ok::<_, QuantisationError>((function, kept, effect))
     };
     let (feedback_function, feedback, feedback_effect) = sections(&controller.feedback)?;
-    let (prefilter_function, prefilter, prefilter_effect) = sections(&controller.prefilter)?;
+    let (prefilter_function, prefilter, prefilter_effect) = match controller.timing.continuous_prefilter {
+        true => (controller.prefilter.clone(), vec![], CoefficientEffect::NONE),
+        false => sections(&controller.prefilter)?,
+    };
     let controller =
         Controller { feedback: feedback_function, prefilter: prefilter_function, ..controller.clone() };
     Ok(RoundedController { controller, feedback, prefilter, feedback_effect, prefilter_effect })

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
-use phea_dynamics::linear::{TimeDomain, TransferFunction};
+use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 use phea_dynamics::simulation::{ClosedLoop, Input, Profile, Sensed, Settings, small_signal};
 use phea_hydraulics::machine::Machine;
@@ -196,6 +196,7 @@ fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
 /// L in z has lumped lines
 /// ```
 struct Model {
+    /// As the loop sees it.
     rig: Rig,
     sensor: TransferFunction,
     delay_s: f64,
@@ -215,19 +216,16 @@ impl Model {
                 Some((sample_time_s, linear_loop(&rested.plant, &deployed, &sensor, 1.0)?))
             }
         };
-        let prefilter = given.prefilter.transfer_function()?;
-        let between = project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous);
+        let prefilter = match &sampled {
+            None => given.prefilter.transfer_function()?,
+            Some((_, sampled)) => sampled.prefilter.clone(),
+        };
         Ok(Model {
-            rig: rested.rig.clone(),
+            rig: rested.rig.in_loop(),
             sensor,
             delay_s: given.timing.delay_s,
             feedback: given.feedback.transfer_function()?,
-            prefilter: match &sampled {
-                Some((_, sampled)) if !between || prefilter.domain() != TimeDomain::Continuous => {
-                    sampled.prefilter.clone()
-                }
-                _ => prefilter,
-            },
+            prefilter,
             sampled,
         })
     }

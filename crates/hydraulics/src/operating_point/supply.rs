@@ -1,0 +1,70 @@
+//! Where a supply that yields settles with the valve and the chambers.
+
+use phea_dynamics::scalar::Scalar;
+
+use super::{Balance, Settled, Steady};
+use crate::machine::PumpLimited;
+use crate::servovalve::{Openings, Supply, edge_flows, tare_flow};
+
+/// A supply, the valve and both chambers, settled. Units: Pa, m3/s, 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SettledSupply<S = f64> {
+    /// Supply and tank pressures.
+    pub supply: Supply<S>,
+    /// Command and chamber pressures.
+    pub settled: Settled<S>,
+    /// What the valve takes from the supply, its tare flow included.
+    pub taken: S,
+}
+
+/// Newton steps, with the slope of a flow that goes with the root of the pressure.
+const ROUNDS: usize = 6;
+
+impl<S: Scalar> Balance<S> {
+    /// Where a limited pump settles, this balance having the pressure that it holds when idle; `tare_drop` in Pa is that at which the tare
+    /// flow is stated.
+    ///
+    /// ```text
+    /// p_S = p_idle - dp_o q_S(p_S)/q_pump         down to p_idle - dp_o, where the relief valve is shut
+    /// ```
+    ///
+    /// Where the valve takes more than the pump gives, the pressure is told at which the relief valve shuts: what is missing comes from
+    /// the volume and the accumulator, so that this is no rest, and the pressure falls.
+    ///
+    /// # Example
+    /// At null a pump of 10 L/min gives what leaks and the tare flow, 1.2 L/min in all.
+    /// ```
+    /// # use phea_hydraulics::{reference_rig::{components, hose_line}, stiffness::StiffnessModel};
+    /// use phea_hydraulics::machine::PumpLimited;
+    /// use phea_hydraulics::operating_point::{Balance, Steady};
+    /// let balance = Balance::of(&components(hose_line(), StiffnessModel::Uniform), None);
+    /// let unit = PumpLimited {
+    ///     pump_flow: 1.67e-4, relief_override: 5e5, volume: 1e-3, effective_bulk_modulus: 1e9, accumulator: None,
+    /// };
+    /// let found = balance.settled_supply(&unit, 70e5, Steady::Command(0.0));
+    /// assert!((found.supply.pressure - (70e5 - 5e5 * found.taken / 1.67e-4)).abs() < 1e-3);
+    /// assert!(found.supply.pressure < 69.5e5 && found.supply.pressure > 69e5);
+    /// ```
+    pub fn settled_supply(&self, unit: &PumpLimited<S>, tare_drop: S, steady: Steady<S>) -> SettledSupply<S> {
+        let mut pressure = self.supply.pressure;
+        let mut found = self.taking(pressure, tare_drop, steady);
+        for _ in 0..ROUNDS {
+            let falls = unit.relief_override * (found.taken / unit.pump_flow).minimum(S::from(1.0));
+            let slope = falls / (S::from(2.0) * (pressure - self.supply.tank_pressure));
+            let slope = S::select(found.taken.less_than(unit.pump_flow), slope, S::from(0.0));
+            pressure = pressure + (self.supply.pressure - falls - pressure) / (S::from(1.0) + slope);
+            found = self.taking(pressure, tare_drop, steady);
+        }
+        found
+    }
+
+    fn taking(&self, pressure: S, tare_drop: S, steady: Steady<S>) -> SettledSupply<S> {
+        let supply = Supply { pressure, ..self.supply };
+        let settled = Balance { supply, ..*self }.settle(steady);
+        let [pressure_a, pressure_b] = settled.pressures;
+        let openings = Openings::at(&self.valve, settled.command);
+        let edges = edge_flows(&self.valve, &supply, &openings, pressure_a, pressure_b);
+        let taken = edges.supply_to_a + edges.supply_to_b + tare_flow(&self.valve, &supply, tare_drop);
+        SettledSupply { supply, settled, taken }
+    }
+}

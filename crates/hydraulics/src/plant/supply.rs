@@ -1,0 +1,137 @@
+use phea_dynamics::analytic::Analytic;
+use phea_dynamics::scalar::Scalar;
+
+use super::Chambers;
+use crate::linear::polynomial::{product, scaled, sum};
+use crate::machine::PumpLimited;
+use crate::operating_point::{Balance, SettledSupply};
+use crate::orifice::{regular_root, regular_root_slope};
+use crate::servovalve::{Direction, supply_coefficients};
+
+/// A supply whose pressure is a state, for small motions. Units: m3/Pa, m3/(s Pa), m3/(s V).
+///
+/// ```text
+/// (C_S s + G_S) p_S = -q_S,    q_S = K_qS U + s_A (p_S - p_A) + s_B (p_S - p_B)     at the valve's ports
+/// q_A = ... + s_A p_S,    q_B = ... + s_B p_S                                       into the chambers
+/// G_S = q_pump/dp_o where the relief valve is open, 0 where it is shut; with it the slope of the tare flow
+/// ```
+///
+/// These are [`crate::machine::PowerUnit`] differentiated. Where s_A and s_B are equal, and so are the chambers, the pressures of a
+/// symmetric cylinder rise and fall together with p_S, and the force does not see it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct YieldingSupply<S = f64> {
+    /// Compliance C_S of the supply line with its accumulator.
+    pub compliance: S,
+    /// What relief valve and tare flow take more with the pressure, G_S.
+    pub conductance: S,
+    /// What the edges from the supply give more with its pressure, s_A and s_B.
+    pub edges: [S; 2],
+    /// What they take more with the spool, K_qS.
+    pub flow_gain: S,
+}
+
+impl<S: Scalar> YieldingSupply<S> {
+    /// That of a power unit where supply, valve and chambers settled; `stated` is the pressure in Pa that an idle pump holds, and
+    /// `tare_drop` the one in Pa at which the tare flow is stated.
+    pub fn new(
+        unit: &PumpLimited<S>,
+        balance: &Balance<S>,
+        [stated, tare_drop]: [S; 2],
+        settled: &SettledSupply<S>,
+        direction: Direction,
+    ) -> YieldingSupply<S> {
+        let (valve, pressure) = (&balance.valve, settled.supply.pressure);
+        let opens = stated - unit.relief_override;
+        let relief = unit.pump_flow / unit.relief_override;
+        let relief = S::select(opens.less_than(pressure), relief, S::from(0.0));
+        let drop = pressure - settled.supply.tank_pressure;
+        let tare = valve.tare_flow * regular_root_slope(drop, valve.transition_pressure)
+            / regular_root(tare_drop, valve.transition_pressure);
+        let at = &settled.settled;
+        let found = supply_coefficients(valve, &settled.supply, at.command, at.pressures, direction);
+        YieldingSupply {
+            compliance: unit.compliance(pressure),
+            conductance: relief + tare,
+            edges: [found.edge_a, found.edge_b],
+            flow_gain: found.flow_gain,
+        }
+    }
+}
+
+/// What the pressures are found from: admittances of both chambers and of the supply, and how they are coupled.
+pub(super) struct Coupled<T> {
+    /// Of chamber A, chamber B and the supply, everything that is tied to it.
+    pub(super) own: [T; 3],
+    /// Across the piston, and from the supply into each chamber.
+    pub(super) across: T,
+    pub(super) edges: [T; 2],
+    /// What the spool gives to chamber A, takes from chamber B, and takes from the supply.
+    pub(super) gains: [T; 3],
+}
+
+/// What admittances are multiplied and added as.
+pub(super) trait Admittance<S>: Sized {
+    fn plus(&self, other: &Self) -> Self;
+    fn times(&self, other: &Self) -> Self;
+    fn by(&self, factor: S) -> Self;
+}
+
+impl<S: Scalar> Admittance<S> for Vec<S> {
+    fn plus(&self, other: &Self) -> Self {
+        sum(self, other)
+    }
+    fn times(&self, other: &Self) -> Self {
+        product(self, other)
+    }
+    fn by(&self, factor: S) -> Self {
+        scaled(factor, self)
+    }
+}
+
+/// A value at s, or over a set of such.
+#[derive(Clone, Copy)]
+pub(super) struct Over<A>(pub(super) A);
+
+impl<A: Analytic> Admittance<f64> for Over<A> {
+    fn plus(&self, other: &Self) -> Self {
+        Over(self.0 + other.0)
+    }
+    fn times(&self, other: &Self) -> Self {
+        Over(self.0 * other.0)
+    }
+    fn by(&self, factor: f64) -> Self {
+        Over(self.0.scaled(factor))
+    }
+}
+
+impl<T> Coupled<T> {
+    /// D, N_u and N_v of these pressures by Cramer's rule, the areas in m2.
+    ///
+    /// ```text
+    /// [ a   -G   -s_A ] [p_A]   [ K_qA]       [-A_A]
+    /// [-G    b   -s_B ] [p_B] = [-K_qB] U  +  [ A_B] s X,        D = a b c - 2 G s_A s_B - a s_B^2 - b s_A^2 - c G^2
+    /// [-s_A -s_B  c   ] [p_S]   [-K_qS]       [  0 ]
+    /// ```
+    pub(super) fn chambers<S: Scalar>(&self, [area_a, area_b]: [S; 2]) -> Chambers<T>
+    where
+        T: Admittance<S>,
+    {
+        let minus = |value: T| value.by(S::from(-1.0));
+        let [a, b, c] = &self.own;
+        let ([of_a, of_b], across) = (&self.edges, &self.across);
+        let bc = b.times(c).plus(&minus(of_b.times(of_b)));
+        let ac = a.times(c).plus(&minus(of_a.times(of_a)));
+        let ab = across.times(c).plus(&of_a.times(of_b));
+        let from_a = across.times(of_b).plus(&b.times(of_a));
+        let from_b = a.times(of_b).plus(&across.times(of_a));
+        let force = |a: &T, b: &T| a.by(area_a).plus(&b.by(-area_b));
+        let [by_a, by_b, by_supply] = [force(&bc, &ab), force(&ab, &ac), force(&from_a, &from_b)];
+        let [gain_a, gain_b, gain_supply] = &self.gains;
+        let taken = by_b.times(gain_b).plus(&by_supply.times(gain_supply));
+        Chambers {
+            own: a.times(&bc).plus(&minus(across.times(&ab).plus(&of_a.times(&from_a)))),
+            driven: by_a.times(gain_a).plus(&minus(taken)),
+            displaced: by_a.by(area_a).plus(&by_b.by(-area_b)),
+        }
+    }
+}
