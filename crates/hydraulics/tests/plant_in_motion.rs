@@ -19,7 +19,9 @@ use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, pipe_line};
 use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
-use phea_hydraulics::two_pressure::{TwoPressureModel, two_pressure_linear_parameters};
+use phea_hydraulics::two_pressure::{
+    TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
+};
 
 use super::commanded::{Commanded, power_unit, supply_pressure, yielding};
 
@@ -73,6 +75,19 @@ fn at_ports(state: &[f64], position: f64, lines: &[DynamicLine; 2], leakage: f64
     }
 }
 
+/// The two-pressure model with its supply at this pressure, and what it is at a point.
+fn parameters_at(
+    supplied: f64,
+    actuator: &Actuator,
+    point: &OperatingPoint,
+    (pressures, friction): ([f64; 2], f64),
+) -> TwoPressureLinearParameters {
+    let supply = Supply { pressure: supplied, ..actuator.components().supply };
+    let model =
+        TwoPressureModel { supply, ..TwoPressureModel::new(actuator, pressures, Member::Nominal, friction) };
+    two_pressure_linear_parameters(&model, point, Direction::Extending)
+}
+
 fn drawn(number: u64) -> Drawn {
     let mut state = stream(23, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -119,17 +134,11 @@ fn drawn(number: u64) -> Drawn {
     let position = rest.inputs[0] + if moves { rest.state[6] } else { 0.0 } + rest.state[4];
     let pressures = [rest.state[2], rest.state[3]];
     let point = at_ports(&rest.state, position, &lines, leakage);
-    let stated = parts.supply;
     let named = &rest.state[..6 + 2 * usize::from(moves) + usize::from(unit.yields())];
-    let supplied = supply_pressure(&unit, stated.pressure, named);
-    let two = TwoPressureModel {
-        supply: Supply { pressure: supplied, ..stated },
-        ..TwoPressureModel::new(&actuator, pressures, Member::Nominal, friction)
-    };
-    let parameters = two_pressure_linear_parameters(&two, &point, Direction::Extending);
-    let own = Chambers::behind_lines(&actuator, Member::Nominal, [0.0; 2]);
-    let behind =
-        BehindLines { lines, chambers: own.compliance(position, pressures), lumped: parameters.compliances };
+    let supplied = supply_pressure(&unit, parts.supply.pressure, named);
+    let parameters = parameters_at(supplied, &actuator, &point, (pressures, friction));
+    let own = Chambers::behind_lines(&actuator, Member::Nominal, [0.0; 2]).compliance(position, pressures);
+    let behind = BehindLines { lines, chambers: own, lumped: parameters.compliances };
     let supply = yielding(&actuator, &unit, point.command, [point.pressure_a, point.pressure_b], supplied);
     Drawn {
         machine,

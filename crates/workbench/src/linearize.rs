@@ -126,8 +126,7 @@ pub fn linearize(
     let plant = transfer_functions(&rig.plant.coefficients())?;
     let leaking = rig.leaking();
     let full = linear_model(&leaking)?;
-    // What the load feels is the actuator without it.
-    let port = transfer_functions(&Plant { load: LinearLoad::Prescribed, ..rig.plant }.coefficients())?;
+    let port = felt(&rig.plant)?;
     let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.two_pressure))?;
     let decomposed = [
         decomposed_model(&leaking, MechanicalDamping::Printed)?,
@@ -142,21 +141,11 @@ pub fn linearize(
     });
     let rational = rational && sensor.dead_time_s() == 0.0;
     let continuous = feedback.as_ref().filter(|function| rational && is_continuous(function));
-    let closed_loop = match continuous {
-        None => None,
-        Some(controller) => {
-            let seen = rig.in_loop().plant;
-            let port = transfer_functions(&Plant { load: LinearLoad::Prescribed, ..seen }.coefficients())?;
-            Some(closed_loop_view(rig, &port, controller)?)
-        }
-    };
+    let closed_loop = continuous.map(|controller| closed_loop_view(rig, controller)).transpose()?;
     let reductions = [&two_pressure.command, &full.command, &decomposed[1], &first_order];
     let agreement = agreement::agreement(rig, &frequency_grid(&plant.command)?, &plant.command, reductions);
     Ok(Linearization {
-        plant_is_fifth_order: matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
-            && rig.internal_leakage == 0.0
-            && rig.load.is_none()
-            && rig.plant.supply.is_none(),
+        plant_is_fifth_order: is_fifth_order(rig),
         agreement,
         stiffness: [Member::Nominal, Member::Minimum, Member::Maximum]
             .map(|member| stroke_stiffness(rig, member)),
@@ -211,11 +200,21 @@ fn open_loop_view(rig: &Rig, port: &LinearModel) -> Result<PortView, LinearError
     })
 }
 
-fn closed_loop_view(
-    rig: &Rig,
-    port: &LinearModel,
-    controller: &TransferFunction,
-) -> Result<PortView, LinearError> {
+/// Whether the plant is thesis (6.7): one load pressure, a prescribed load, and neither leakage nor a supply that is seen.
+fn is_fifth_order(rig: &Rig) -> bool {
+    matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
+        && rig.internal_leakage == 0.0
+        && rig.load.is_none()
+        && rig.plant.supply.is_none()
+}
+
+/// What the load feels: the actuator without it.
+fn felt(plant: &Plant) -> Result<LinearModel, LinearError> {
+    transfer_functions(&Plant { load: LinearLoad::Prescribed, ..*plant }.coefficients())
+}
+
+fn closed_loop_view(rig: &Rig, controller: &TransferFunction) -> Result<PortView, LinearError> {
+    let port = &felt(&rig.in_loop().plant)?;
     let impedance = closed_loop_impedance(port, controller)?;
     Ok(PortView {
         passivity: passivity(&impedance)?,

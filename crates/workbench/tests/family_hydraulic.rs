@@ -164,7 +164,6 @@ fn physical_paths_reach_the_model_as_through_the_rig() {
     );
 }
 
-// ORIGIN: written by hand, the numbers are those of examples/ybitu/hose.toml
 /// A supply that yields moves its own pressure, those of the chambers, and what the force sees of it: each plant of the box is that of the
 /// rig with these numbers.
 #[test]
@@ -173,6 +172,7 @@ fn a_supply_that_yields_is_recorded() {
     let with = |more: &str| pump.replacen("[valve]", &format!("{more}\n[valve]"), 1);
     let pressed = "[operating_point]\nload_force = \"4 kN\"\n";
     let gas = "[supply.accumulator]\ngas_volume = \"1 L\"\nprecharge_pressure = \"40 bar\"\n";
+    // ORIGIN: written by hand, around those of examples/ybitu/hose.toml
     let numbers = [
         ("supply.flow", [1e-4, 1.6e-4, 3e-4]),
         ("supply.relief_override", [1e5, 5e5, 1e6]),
@@ -199,6 +199,7 @@ fn a_supply_that_yields_is_recorded() {
     );
 }
 
+// ORIGIN: written by hand, the numbers are those of examples/ybitu/hose.toml
 /// What does not reach the plant is refused, and says why.
 #[test]
 fn a_number_that_does_not_enter_the_plant_is_refused() {

@@ -13,6 +13,8 @@ use phea_workbench::simulate::Bench;
 use phea_workbench::sizing::{Question, size};
 use phea_workbench::source::Memory;
 
+const SIMULATION: &str = include_str!("project_valid/simulation.toml");
+const ASYMMETRIC: &str = include_str!("project_valid/asymmetric.toml");
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state what is asked of it.
 const TABLES: [&str; 11] = [
@@ -81,12 +83,9 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
             pipe(),
             vec!["line.compliance=by_volume", "operating_point.command=0.5", "fluid.entrained_air=0.01"],
         ),
-        (include_str!("project_valid/simulation.toml").to_string(), vec![]),
-        (include_str!("project_valid/simulation.toml").to_string(), vec!["operating_point.load_force=2 kN"]),
-        (
-            include_str!("project_valid/asymmetric.toml").to_string(),
-            vec!["cylinder.friction.regular_velocity=1 mm/s"],
-        ),
+        (SIMULATION.to_string(), vec![]),
+        (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
+        (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
         (volumes.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),
         (
             pipe(),
