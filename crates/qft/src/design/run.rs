@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use phea_dynamics::linear::TransferFunction;
 
-use super::attempt::{Attempt, DesignError, Ending, FEASIBLE_DB};
+use super::attempt::{Attempt, Beginning, DesignError, Ending, FEASIBLE_DB};
 use super::binding::{binding_limits, conflicts};
 use super::candidates::Ground;
 use super::diagnosis::{Finding, Severity, diagnose};
@@ -71,9 +71,10 @@ impl DesignRun {
             ControllerChoice::Given(_) => VecDeque::from([(0, 0)]),
             ControllerChoice::Grow { maximum_order } => {
                 let sampled = problem.timing.sample_time_s.is_some();
-                (ground.integrators..=maximum_order)
-                    .flat_map(|order| degrees(order, ground.integrators, sampled))
-                    .collect()
+                let orders = ground.integrators..=maximum_order;
+                let usual = orders.clone().flat_map(|order| degrees(order, ground.integrators, sampled));
+                let biproper = orders.filter(|order| !sampled && is_worth_as_many_zeros(*order, &ground));
+                usual.chain(biproper.map(|order| (order, order))).collect()
             }
         };
         // where no controller of any order will do, what is left is by how much
@@ -195,6 +196,8 @@ impl DesignRun {
         };
         self.samples = Some(samples.clone());
         let sampled = std::mem::take(&mut self.sampled);
+        let stabilising = self.plan.ground.stabilising(&structure, &self.problem);
+        let beginning = Beginning { simpler: beginning, stabilising };
         let attempt = Attempt::new(structure, samples, &self.options, self.relaxing, beginning, sampled)?;
         self.attempt = Some(attempt);
         Ok(())
@@ -289,6 +292,7 @@ impl DesignRun {
             controller: attempt.deployed()?,
             law: attempt.shaping().controller(attempt.x()),
             structure: attempt.structure().clone(),
+            starts: attempt.starts().cloned(),
             objective_db: self.rounds.last().map_or(f64::NAN, |round| round.objective_db),
             audit: audit.clone(),
             binding: binding_limits(audit),
@@ -306,6 +310,12 @@ fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize
         _ if sampled || (order == 1 && integrators == 1) => vec![(order, order - 1), (order, order)],
         _ => vec![(order, order - 1)],
     }
+}
+
+/// Whether a continuous controller of this order is tried with as many zeros as poles too, once none with fewer zeros has done: a pair of
+/// zeros over a pair of poles, say, which has the phase of the zeros at every frequency above.
+fn is_worth_as_many_zeros(order: usize, ground: &Ground) -> bool {
+    order >= 2 && order > ground.integrators
 }
 
 /// The same order with one zero fewer, where structures grow: a larger relative degree has less gain at high frequency than any smaller one.
