@@ -86,6 +86,7 @@ pub(super) struct Attempt {
     sound: Vec<f64>,
     /// Points at which the nominal plant is stabilised.
     stabilising: Vec<Vec<f64>>,
+    is_hard: bool,
     /// Where the starts of its last search ended.
     starts: Option<Starts>,
     /// Whether no more than an audit is wanted.
@@ -122,14 +123,14 @@ impl Attempt {
             _ => None,
         };
         let mut shaping = Shaping::new(structure.clone(), given, options.objective, samples)?;
-        let Beginning { mut simpler, stabilising } = beginning;
+        let Beginning { mut simpler, stabilising, is_hard } = beginning;
         let stabilising = best_of(&mut shaping, stabilising);
         simpler.extend_from_slice(&stabilising);
-        let search = Search::new(search_options(aim, options.seed, relaxes, !stabilising.is_empty()))
-            .beginning_with(simpler);
+        let search = Search::new(search_options(aim, options.seed, relaxes, is_hard)).beginning_with(simpler);
         Ok(Attempt {
             shaping,
             stabilising,
+            is_hard,
             starts: None,
             structure,
             options: options.clone(),
@@ -456,7 +457,7 @@ impl Attempt {
         }
         let seed = self.options.seed.wrapping_add(self.restarts);
         let sound = self.sound.get(..self.structure.dimension()).map(<[f64]>::to_vec);
-        let search = Search::new(search_options(self.aim, seed, self.relaxes, !self.stabilising.is_empty()));
+        let search = Search::new(search_options(self.aim, seed, self.relaxes, self.is_hard));
         let given = sound.into_iter().chain(self.stabilising.iter().cloned()).collect();
         Ok(Stage::Searching(Box::new(search.beginning_with(given))))
     }

@@ -26,12 +26,32 @@ const OBSERVER: [f64; 2] = [1.0, 4.0];
 /// A pole at the origin is moved to this share of the slowest other pole.
 const SLOW: f64 = 0.3;
 
+/// A pole slower than this share of the fastest one that has to move stays slow, at these multiples of its magnitude.
+const MUCH_SLOWER: f64 = 0.1;
+const SLOW_SPEEDS: [f64; 3] = [0.3, 1.0, 3.0];
+
+/// By how much the mirrored poles move out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Speeds {
+    control: f64,
+    observer: f64,
+    /// Of poles that are much slower than others that have to move.
+    slow: f64,
+}
+
 /// Zeros, poles and gain of a plant, dead time among them.
 #[derive(Clone, Debug, PartialEq)]
 struct Roots {
     gain: f64,
     zeros: Vec<Complex64>,
     poles: Vec<Complex64>,
+}
+
+/// Whether the nominal plant, or that in the middle of the box, has a pole that the loop has to move; not known of measured plants.
+pub(super) fn has_poles_to_move(problem: &DesignProblem) -> bool {
+    let Family::Uncertain(family) = &problem.family else { return false };
+    let polynomial = |plant: PlantCoefficients<f64>| Polynomial::new(plant.command.denominator).roots().ok();
+    central_plants(family).into_iter().filter_map(polynomial).flatten().any(has_to_move)
 }
 
 /// Controllers of at most this order, with so many integrators, that stabilise simplifications of the nominal plant and of the middle of
@@ -55,9 +75,12 @@ pub(super) fn stabilising(
         for kept in kept_least..=kept_most {
             let simple = roots.simplified(kept);
             for (speed, observer) in
-                SPEEDS.iter().flat_map(|speed| OBSERVER.map(|observer| (speed, observer)))
+                SPEEDS.iter().flat_map(|speed| OBSERVER.map(|observer| (*speed, observer)))
             {
-                found.extend(simple.controller(integrators, [*speed, observer * speed]));
+                for slow in simple.slow_speeds() {
+                    let speeds = Speeds { control: speed, observer: observer * speed, slow: *slow };
+                    found.extend(simple.controller(integrators, speeds));
+                }
             }
         }
     }
@@ -124,7 +147,7 @@ impl Roots {
     }
 
     /// The controller that places the poles of the loop; `None` where it has roots in the right half plane, which no structure has.
-    fn controller(&self, integrators: usize, speeds: [f64; 2]) -> Option<TransferFunction> {
+    fn controller(&self, integrators: usize, speeds: Speeds) -> Option<TransferFunction> {
         let scale = self.scale()?;
         let scaled = |roots: &[Complex64]| roots.iter().map(|root| root / scale).collect::<Vec<_>>();
         let origin = vec![Complex64::new(0.0, 0.0); integrators];
@@ -135,11 +158,14 @@ impl Roots {
         let gain = self.gain * portable::exp(f64::from(power) * portable::ln(scale));
         let denominator = Polynomial::from_roots(1.0, &poles).ok()?;
         let numerator = Polynomial::from_roots(gain, &scaled(&self.zeros)).ok()?;
-        let mirrored = |speed: f64, count: usize| -> Vec<Complex64> {
-            poles.iter().rev().take(count).map(|pole| speed * mirror(*pole, slow)).collect()
+        let much_slower = self.much_slower() / scale;
+        let mirrored = |speed: f64| -> Vec<Complex64> {
+            let own = |pole: &Complex64| {
+                if portable::magnitude(*pole) < much_slower { speeds.slow } else { speed }
+            };
+            poles.iter().rev().map(|pole| own(pole) * mirror(*pole, slow)).collect()
         };
-        let target =
-            [mirrored(speeds[0], poles.len()), observer_poles(&mirrored(speeds[1], poles.len()))].concat();
+        let target = [mirrored(speeds.control), observer_poles(&mirrored(speeds.observer))].concat();
         let target = Polynomial::from_roots(1.0, &target).ok()?;
         let (x, y) = placed(&denominator, &numerator, &target)?;
         let back = |roots: Vec<Complex64>| roots.into_iter().map(|root| root * scale).collect::<Vec<_>>();
@@ -152,6 +178,19 @@ impl Roots {
         let gain =
             y.leading_coefficient() / x.leading_coefficient() * portable::exp(excess * portable::ln(scale));
         TransferFunction::from_factors(gain, zeros, poles).ok()
+    }
+
+    /// The magnitude below which poles stay slow.
+    fn much_slower(&self) -> f64 {
+        let moved = self.poles.iter().filter(|pole| has_to_move(**pole));
+        MUCH_SLOWER * moved.map(|pole| portable::magnitude(*pole)).fold(0.0, f64::max)
+    }
+
+    /// The multiples that are tried for poles that stay slow; one of them where there is no such pole.
+    fn slow_speeds(&self) -> &'static [f64] {
+        let below = self.much_slower();
+        let any = self.poles.iter().any(|pole| portable::magnitude(*pole) < below && pole.norm_sqr() > 0.0);
+        if any { &SLOW_SPEEDS } else { &SLOW_SPEEDS[..1] }
     }
 
     /// The geometric mean of the magnitudes of the poles that are not at the origin.

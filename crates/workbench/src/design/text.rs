@@ -180,21 +180,16 @@ fn seed_sentence(view: &ProjectDesign) -> String {
 /// How much the result owes to its starts: where the descents of the last search ended.
 fn starts_sentence(starts: &Starts) -> String {
     let mut sentence = format!("  {} of {} starts stabilise every plant", starts.stabilised, starts.tried);
-    let three = |[best, median, worst]: [f64; 3]| {
-        let number = |value: f64| significant(value, 4);
-        format!(
-            "{} dB at best, {} dB in the middle, {} dB at worst",
-            number(best),
-            number(median),
-            number(worst)
-        )
+    let three = |[best, median, worst]: [String; 3]| {
+        format!("{best} at best, {median} in the middle, {worst} at worst")
     };
     if let Some(margins_db) = starts.margins_db {
-        let descents = starts.ended;
-        sentence.push_str(&format!("; worst margin where {descents} descents ended: {}", three(margins_db)));
+        let (descents, margins) = (starts.ended, three(margins_db.map(margin_words)));
+        sentence.push_str(&format!("; worst margin where {descents} descents ended: {margins}"));
     }
     if let Some(objectives_db) = starts.objectives_db {
-        sentence.push_str(&format!("; objective of those that keep the limits: {}", three(objectives_db)));
+        let objectives = three(objectives_db.map(|value| format!("{} dB", significant(value, 4))));
+        sentence.push_str(&format!("; objective of those that keep the limits: {objectives}"));
     }
     sentence + "\n"
 }

@@ -12,6 +12,8 @@ pub(in crate::design) struct Beginning {
     pub(in crate::design) simpler: Vec<Vec<f64>>,
     /// What stabilises the nominal plant.
     pub(in crate::design) stabilising: Vec<Vec<f64>>,
+    /// Whether the plants are hard to stabilise.
+    pub(in crate::design) is_hard: bool,
 }
 
 /// The best of these points: those that stabilise every plant by their worst margin, then the others by how far from it they are.
