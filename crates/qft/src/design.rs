@@ -10,10 +10,11 @@ mod problem;
 pub mod quantisation;
 mod result;
 mod run;
+mod stabilising;
 
 pub use attempt::DesignError;
 pub use candidates::gain_range;
 pub use diagnosis::{Constraint, Finding, Party, Place, Severity, SharedLimit, diagnose};
 pub use problem::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
-pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation};
+pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation, Starts};
 pub use run::DesignRun;

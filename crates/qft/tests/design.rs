@@ -9,3 +9,4 @@ mod published;
 mod relaxed;
 mod rounded;
 mod servo;
+mod unstable;

@@ -28,6 +28,8 @@ mod limit;
 mod minimum_of_a_limit;
 #[path = "../src/verification/minimum.rs"]
 mod minimum_of_a_margin;
+#[path = "../src/design/stabilising/placement.rs"]
+mod placement;
 #[path = "../src/design/diagnosis/plane.rs"]
 mod plane;
 #[path = "../src/bound/power_of_two.rs"]

@@ -1,25 +1,26 @@
 //! One structure on its way to a design: a search, the fit of a prefilter, a descent with both, an audit, and the descent again with what
 //! the audit found.
 
+mod beginning;
 mod deployment;
+mod error;
 
-use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::linear::TransferFunction;
 
+pub(super) use self::beginning::Beginning;
+use self::beginning::{best_of, search_options};
+pub use self::error::DesignError;
 use super::counterexample::{
     Counterexample, counterexamples, too_little_delay, unstable_plant, worst_margin_db, worst_over_rate_db,
 };
 use super::problem::{DesignOptions, DesignProblem, Objective, PrefilterChoice};
-use super::quantisation::QuantisationError;
-use super::result::DesignRound;
+use super::result::{DesignRound, Starts};
 use crate::audit::AuditRun;
 use crate::closed_loop::Compensation;
 use crate::loop_shaping::{
-    Aim, Descent, DescentOptions, Judgement, Samples, SamplesError, Search, SearchOptions, SearchProblem,
-    SearchStatus, Shaping, Structure,
+    Aim, Descent, DescentOptions, Judgement, Samples, Search, SearchProblem, SearchStatus, Shaping, Structure,
 };
-use crate::prefilter::{
-    FittedPrefilter, PrefilterBand, PrefilterError, PrefilterOptions, PrefilterOutcome, PrefilterRun,
-};
+use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, PrefilterRun};
 use crate::sampled::SampledPlants;
 use crate::specification::Requirement;
 use crate::verification::{Audit, SpecificationAudit, TrackingJudgement, Verdict};
@@ -38,23 +39,6 @@ const ROUNDS_MAXIMUM: usize = 40;
 const BAND_ROOM_DB: f64 = 3.0;
 /// How far inside its limits a search stays, dB: what the audit finds between the samples then still meets them.
 const RESERVE_DB: f64 = 0.001;
-
-/// Why a step of the design cannot be made at all.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum DesignError {
-    /// A part is no transfer function, or cannot be sampled.
-    #[error("{0}")]
-    Linear(#[from] LinearError),
-    /// The plants cannot be looked at.
-    #[error("{0}")]
-    Samples(#[from] SamplesError),
-    /// There is no band for a prefilter.
-    #[error("{0}")]
-    Prefilter(#[from] PrefilterError),
-    /// The coefficients of the controller cannot be kept in their format.
-    #[error("{0}")]
-    Quantisation(#[from] QuantisationError),
-}
 
 /// What an attempt ended with.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,6 +84,11 @@ pub(super) struct Attempt {
     restarts: u64,
     /// The last x from which margins led on.
     sound: Vec<f64>,
+    /// Points at which the nominal plant is stabilised.
+    stabilising: Vec<Vec<f64>>,
+    is_hard: bool,
+    /// Where the starts of its last search ended.
+    starts: Option<Starts>,
     /// Whether no more than an audit is wanted.
     audits_only: bool,
     x: Vec<f64>,
@@ -117,7 +106,7 @@ impl Attempt {
         mut samples: Samples,
         options: &DesignOptions,
         relaxes: bool,
-        beginning: Vec<Vec<f64>>,
+        beginning: Beginning,
         sampled: SampledPlants,
     ) -> Result<Attempt, DesignError> {
         let reserve_db = if relaxes { 0.0 } else { RESERVE_DB };
@@ -133,9 +122,16 @@ impl Attempt {
             }
             _ => None,
         };
-        let search = Search::new(search_options(aim, options.seed, relaxes)).beginning_with(beginning);
+        let mut shaping = Shaping::new(structure.clone(), given, options.objective, samples)?;
+        let Beginning { mut simpler, stabilising, is_hard } = beginning;
+        let stabilising = best_of(&mut shaping, stabilising);
+        simpler.extend_from_slice(&stabilising);
+        let search = Search::new(search_options(aim, options.seed, relaxes, is_hard)).beginning_with(simpler);
         Ok(Attempt {
-            shaping: Shaping::new(structure.clone(), given, options.objective, samples)?,
+            shaping,
+            stabilising,
+            is_hard,
+            starts: None,
             structure,
             options: options.clone(),
             aim,
@@ -207,6 +203,11 @@ impl Attempt {
         self.structure.compensator(own).transfer_function().ok()
     }
 
+    /// Where the starts of its last search ended.
+    pub(super) fn starts(&self) -> Option<&Starts> {
+        self.starts.as_ref()
+    }
+
     pub(super) fn x(&self) -> &[f64] {
         &self.x
     }
@@ -228,6 +229,7 @@ impl Attempt {
     fn after_search(&mut self) -> Result<Stage, DesignError> {
         let Stage::Searching(search) = &self.stage else { return Ok(Stage::Ended(Ending::NotStabilised)) };
         let Some(result) = search.result() else { return Ok(Stage::Ended(Ending::NotStabilised)) };
+        self.starts = Some(Starts::of(&result));
         self.x = result.x;
         if matches!(result.status, SearchStatus::NotStabilised { .. }) {
             return Ok(Stage::Ended(Ending::NotStabilised));
@@ -455,8 +457,9 @@ impl Attempt {
         }
         let seed = self.options.seed.wrapping_add(self.restarts);
         let sound = self.sound.get(..self.structure.dimension()).map(<[f64]>::to_vec);
-        let search = Search::new(search_options(self.aim, seed, self.relaxes));
-        Ok(Stage::Searching(Box::new(search.beginning_with(sound.into_iter().collect()))))
+        let search = Search::new(search_options(self.aim, seed, self.relaxes, self.is_hard));
+        let given = sound.into_iter().chain(self.stabilising.iter().cloned()).collect();
+        Ok(Stage::Searching(Box::new(search.beginning_with(given))))
     }
 
     fn prefilter_is_fitted(&self) -> bool {
@@ -485,12 +488,4 @@ impl Attempt {
 /// Index of the tracking specification, if there is one.
 fn tracks(problem: &DesignProblem) -> Option<usize> {
     problem.specifications.iter().position(|one| matches!(one.requirement, Requirement::Tracking { .. }))
-}
-
-/// The gain is scanned, for hardly any is right for a random shape; a relaxation takes more descents to their end, for the answer is a
-/// number.
-fn search_options(aim: Aim, seed: u64, relaxes: bool) -> SearchOptions {
-    let descent = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(aim) };
-    let (starts, finished) = if relaxes { (12, 6) } else { (8, 5) };
-    SearchOptions { samples: 48, scanned: 14, starts, finished, descent, ..SearchOptions::new(aim, seed) }
 }

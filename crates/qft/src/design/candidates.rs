@@ -9,6 +9,7 @@ use phea_dynamics::uncertain_plant::RationalCoefficients;
 
 use super::feedback_sign::opposing_sign;
 use super::problem::DesignProblem;
+use super::stabilising::stabilising;
 use crate::family::Family;
 use crate::loop_shaping::{Part, Structure};
 use crate::specification::{Limit, Requirement, Specification};
@@ -21,6 +22,8 @@ const ABOVE: f64 = 200.0;
 const BELOW_LOWEST: f64 = 0.1;
 /// Corners at which a factor is added to a simpler controller.
 const CORNERS: usize = 9;
+/// Where factors are added to a controller that places poles, above its fastest root.
+const BEYOND_FASTEST: [f64; 2] = [3.0, 20.0];
 /// Damping ratios of free pairs; beyond 1 a pair is two real roots.
 const DAMPING_RATIOS: [f64; 2] = [0.1, 20.0];
 /// Decades that the gain may lie beyond those that put the crossover on a frequency of the specifications.
@@ -83,7 +86,8 @@ impl Ground {
         let span = span(&problem.specifications);
         let low = LowFrequency::of(problem, span[0]);
         let wanted = problem.specifications.iter().map(wanted_type).max().unwrap_or(0);
-        let integrators = usize::try_from(wanted - low.plant_type).unwrap_or(0);
+        // an integrator would cancel a zero of the plant at the origin, and the loop keep a pole there
+        let integrators = usize::try_from(wanted - low.plant_type.max(0)).unwrap_or(0);
         let corner = [(BELOW_LOWEST * span[0]).max(BELOW_HIGHEST * span[1]), ABOVE * span[1]];
         // With k = w^integrators / |P(jw)| the loop of unit corners crosses over at w.
         let crossover = |frequency: &f64| {
@@ -101,31 +105,23 @@ impl Ground {
     /// Points of a structure from which it can do what a simpler controller does, or nearly: poles and zeros are added at one corner each, where
     /// they cancel if there are as many of one as of the other; a zero too many is left out.
     pub(super) fn grown(&self, structure: &Structure, simpler: &TransferFunction) -> Vec<Vec<f64>> {
-        let mut zeros = simpler.zeros().to_vec();
-        zeros.sort_by(|one, other| one.norm_sqr().total_cmp(&other.norm_sqr()));
-        let wanted = |power: f64| structure.roots(power);
-        let grown = |corner: &f64| {
-            let mut gain = simpler.gain();
-            let (mut zeros, mut poles) = (zeros.clone(), simpler.poles().to_vec());
-            while zeros.len() > wanted(1.0) {
-                gain *= portable::magnitude(zeros.pop()?);
-            }
-            let added = Complex64::new(-corner, 0.0);
-            while zeros.len() < wanted(1.0) {
-                zeros.push(added);
-                gain /= corner;
-            }
-            while poles.len() < wanted(-1.0) {
-                poles.push(added);
-                gain *= corner;
-            }
-            let function = TransferFunction::from_factors(gain, zeros, poles).ok()?;
-            structure.point_of(&Compensator::new(vec![Element::General(function)]))
-        };
         let middle =
             [self.corner[0].max(10.0 * BELOW_HIGHEST * self.corner[1] / ABOVE), 0.3 * self.corner[1]];
         let corners = logarithmic_grid(middle[0], middle[1], CORNERS).unwrap_or_default();
-        corners.iter().filter_map(grown).collect()
+        corners.iter().filter_map(|corner| grown_at(structure, simpler, *corner)).collect()
+    }
+
+    /// Points of a structure at which it stabilises the nominal plant, or nearly; see [`stabilising`].
+    pub(super) fn stabilising(&self, structure: &Structure, problem: &DesignProblem) -> Vec<Vec<f64>> {
+        let simpler = stabilising(problem, self.integrators, structure.roots(-1.0));
+        let at = |function: &TransferFunction| {
+            let roots = function.poles().iter().chain(function.zeros());
+            let fastest = roots.map(|root| portable::magnitude(*root)).fold(self.corner[0], f64::max);
+            BEYOND_FASTEST.map(|factor| grown_at(structure, function, (factor * fastest).min(self.corner[1])))
+        };
+        let mut points: Vec<Vec<f64>> = simpler.iter().flat_map(at).flatten().collect();
+        points.dedup();
+        points
     }
 
     /// The structure of this order with so many zeros.
@@ -152,6 +148,28 @@ impl Ground {
         let parts = integrator.chain(factors(zeros, false)).chain(factors(poles, true)).collect();
         Structure { sign: self.sign, gain: self.gain, parts }
     }
+}
+
+/// The point of a structure at which it is a simpler controller with poles and zeros added at this corner, a zero too many left out.
+fn grown_at(structure: &Structure, simpler: &TransferFunction, corner: f64) -> Option<Vec<f64>> {
+    let mut gain = simpler.gain();
+    let (mut zeros, mut poles) = (simpler.zeros().to_vec(), simpler.poles().to_vec());
+    zeros.sort_by(|one, other| one.norm_sqr().total_cmp(&other.norm_sqr()));
+    let [wanted_zeros, wanted_poles] = [structure.roots(1.0), structure.roots(-1.0)];
+    while zeros.len() > wanted_zeros {
+        gain *= portable::magnitude(zeros.pop()?);
+    }
+    let added = Complex64::new(-corner, 0.0);
+    while zeros.len() < wanted_zeros {
+        zeros.push(added);
+        gain /= corner;
+    }
+    while poles.len() < wanted_poles {
+        poles.push(added);
+        gain *= corner;
+    }
+    let function = TransferFunction::from_factors(gain, zeros, poles).ok()?;
+    structure.point_of(&Compensator::new(vec![Element::General(function)]))
 }
 
 fn joined(left: [f64; 2], right: [f64; 2]) -> [f64; 2] {

@@ -2,7 +2,7 @@
 
 use phea_dynamics::controller::Controller;
 
-use crate::loop_shaping::Structure;
+use crate::loop_shaping::{SearchResult, Structure};
 use crate::verification::{Audit, PlantPoint};
 
 /// Why a design ended.
@@ -73,6 +73,45 @@ pub struct DesignRound {
     pub audited_margin_db: Option<f64>,
 }
 
+/// Where the starts of the last search ended, which tells how much a result owes to its starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Starts {
+    /// Points at which the search looked before its descents.
+    pub tried: usize,
+    /// How many of them stabilise every plant that was looked at.
+    pub stabilised: usize,
+    /// Descents that were led to their end.
+    pub ended: usize,
+    /// Worst margin at these ends over its rate, dB: the best of them, their median and the worst of them; `None` where there is no end.
+    pub margins_db: Option<[f64; 3]>,
+    /// The objective at those ends that keep to every limit to 0.01 dB, dB: least, median and greatest; `None` where none does.
+    pub objectives_db: Option<[f64; 3]>,
+}
+
+/// An end that misses by less than this keeps to its limits, dB.
+const KEPT_DB: f64 = 0.01;
+
+impl Starts {
+    pub(super) fn of(result: &SearchResult) -> Starts {
+        let margins = result.ends.iter().map(|end| -end.judgement.worst_margin_db);
+        let kept = result.ends.iter().filter(|end| end.judgement.worst_margin_db >= -KEPT_DB);
+        Starts {
+            tried: result.points,
+            stabilised: result.stable_points,
+            ended: result.ends.len(),
+            margins_db: least_median_greatest(margins.collect()).map(|three| three.map(|one| -one)),
+            objectives_db: least_median_greatest(kept.map(|end| end.judgement.objective_db).collect()),
+        }
+    }
+}
+
+/// Of an even number the median is the lesser one in the middle.
+fn least_median_greatest(mut values: Vec<f64>) -> Option<[f64; 3]> {
+    values.sort_by(f64::total_cmp);
+    let middle = *values.get(values.len().saturating_sub(1) / 2)?;
+    Some([*values.first()?, middle, *values.last()?])
+}
+
 /// A controller, its prefilter, and the audit of both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
@@ -84,6 +123,8 @@ pub struct Design {
     pub law: Controller,
     /// What was shaped.
     pub structure: Structure,
+    /// Where the starts of its last search ended; `None` before a search has ended.
+    pub starts: Option<Starts>,
     /// Its objective, dB.
     pub objective_db: f64,
     /// Its audit against the specifications as they were asked for.

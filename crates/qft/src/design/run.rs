@@ -4,12 +4,13 @@ use std::collections::VecDeque;
 
 use phea_dynamics::linear::TransferFunction;
 
-use super::attempt::{Attempt, DesignError, Ending, FEASIBLE_DB};
+use super::attempt::{Attempt, Beginning, DesignError, Ending, FEASIBLE_DB};
 use super::binding::{binding_limits, conflicts};
 use super::candidates::Ground;
 use super::diagnosis::{Finding, Severity, diagnose};
 use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
+use super::stabilising::has_poles_to_move;
 use crate::family::{Extent, Family, random};
 use crate::loop_shaping::{Samples, Structure, search_frequencies};
 use crate::sampled::SampledPlants;
@@ -22,6 +23,8 @@ const INTERIOR_PLANTS: usize = 32;
 /// Members of a family without a box that a search begins with.
 const MEMBERS_MAXIMUM: usize = 200;
 
+/// What is added to the seed where a structure is tried once more.
+const SEED_AGAIN: u64 = 1000;
 /// A larger order is worth its poles where it lowers the relaxation by more than this, dB.
 const RELAXATION_GAINED_DB: f64 = 0.01;
 
@@ -32,6 +35,10 @@ struct Plan {
     /// (order, zeros) that are still to be tried.
     waiting: VecDeque<(usize, usize)>,
     all: usize,
+    /// Whether plants have poles that the loop has to move: every structure is tried twice, for a search may miss what is there.
+    is_hard: bool,
+    /// The structure that was tried last.
+    last: Option<Structure>,
     /// Whether a controller was found already, and fewer zeros are tried in its order.
     found: bool,
     /// Whether what was thought infeasible was begun anew.
@@ -67,20 +74,31 @@ impl DesignRun {
     /// A design that has not begun.
     pub fn new(problem: DesignProblem, options: DesignOptions) -> DesignRun {
         let ground = Ground::new(&problem);
+        let is_hard = has_poles_to_move(&problem);
         let waiting: VecDeque<(usize, usize)> = match options.controller {
             ControllerChoice::Given(_) => VecDeque::from([(0, 0)]),
             ControllerChoice::Grow { maximum_order } => {
                 let sampled = problem.timing.sample_time_s.is_some();
-                (ground.integrators..=maximum_order)
-                    .flat_map(|order| degrees(order, ground.integrators, sampled))
-                    .collect()
+                let orders = ground.integrators..=maximum_order;
+                let usual = orders.clone().flat_map(|order| degrees(order, ground.integrators, sampled));
+                let biproper = orders.filter(|order| !sampled && is_worth_as_many_zeros(*order, &ground));
+                let each = usual.chain(biproper.map(|order| (order, order)));
+                each.flat_map(|degrees| std::iter::repeat_n(degrees, if is_hard { 2 } else { 1 })).collect()
             }
         };
         // where no controller of any order will do, what is left is by how much
         let findings = diagnose(&problem);
         let impossible = findings.iter().any(|finding| finding.severity() == Severity::Impossible);
         DesignRun {
-            plan: Plan { ground, all: waiting.len(), waiting, found: false, again: false },
+            plan: Plan {
+                ground,
+                all: waiting.len(),
+                waiting,
+                is_hard,
+                last: None,
+                found: false,
+                again: false,
+            },
             problem,
             options,
             findings,
@@ -195,9 +213,22 @@ impl DesignRun {
         };
         self.samples = Some(samples.clone());
         let sampled = std::mem::take(&mut self.sampled);
-        let attempt = Attempt::new(structure, samples, &self.options, self.relaxing, beginning, sampled)?;
+        let stabilising = self.plan.ground.stabilising(&structure, &self.problem);
+        let beginning = Beginning { simpler: beginning, stabilising, is_hard: self.plan.is_hard };
+        let options = self.options_of(&structure);
+        let attempt = Attempt::new(structure, samples, &options, self.relaxing, beginning, sampled)?;
         self.attempt = Some(attempt);
         Ok(())
+    }
+
+    /// Those of the design; the same structure again begins at other random points.
+    fn options_of(&mut self, structure: &Structure) -> DesignOptions {
+        let mut options = self.options.clone();
+        if self.plan.last.as_ref() == Some(structure) {
+            options.seed = options.seed.wrapping_add(SEED_AGAIN);
+        }
+        self.plan.last = Some(structure.clone());
+        options
     }
 
     fn first_samples(&self) -> Result<Samples, DesignError> {
@@ -289,6 +320,7 @@ impl DesignRun {
             controller: attempt.deployed()?,
             law: attempt.shaping().controller(attempt.x()),
             structure: attempt.structure().clone(),
+            starts: attempt.starts().cloned(),
             objective_db: self.rounds.last().map_or(f64::NAN, |round| round.objective_db),
             audit: audit.clone(),
             binding: binding_limits(audit),
@@ -306,6 +338,12 @@ fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize
         _ if sampled || (order == 1 && integrators == 1) => vec![(order, order - 1), (order, order)],
         _ => vec![(order, order - 1)],
     }
+}
+
+/// Whether a continuous controller of this order is tried with as many zeros as poles too, once none with fewer zeros has done: a pair of
+/// zeros over a pair of poles, say, which has the phase of the zeros at every frequency above.
+fn is_worth_as_many_zeros(order: usize, ground: &Ground) -> bool {
+    order >= 2 && order > ground.integrators
 }
 
 /// The same order with one zero fewer, where structures grow: a larger relative degree has less gain at high frequency than any smaller one.

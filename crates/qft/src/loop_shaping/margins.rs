@@ -113,10 +113,23 @@ pub(super) fn demands(
             Some(Demand { specification: index, quantity, allowed: allowed?, rate })
         }));
     }
+    if demands.is_empty() && !specifications.is_empty() && frequency <= highest_frequency {
+        demands.push(Demand::RESERVE);
+    }
     demands
 }
 
 impl Demand {
+    /// Where no specification demands anything: |1/(1+L)| stays below 20 dB, so that no search for the least objective slides along the
+    /// edge of stability beyond the bands.
+    const RESERVE: Demand =
+        Demand { specification: usize::MAX, quantity: Quantity::Sensitivity, allowed: 100.0, rate: 1.0 };
+
+    /// Whether it belongs to no specification.
+    pub(super) fn is_reserve(&self) -> bool {
+        self.specification == usize::MAX
+    }
+
     /// More demands than one column can have.
     pub(super) const PER_COLUMN: usize = 64;
 

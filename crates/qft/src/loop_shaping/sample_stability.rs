@@ -79,6 +79,8 @@ pub struct SampleJudgement {
 struct Plant {
     member: Member,
     quotient: Option<Quotient>,
+    /// With its dead time as a quotient, where it has one: for ranking only.
+    approximation: Option<Quotient>,
 }
 
 /// The controller that is asked about.
@@ -101,8 +103,9 @@ impl SampleStability {
     /// One more plant.
     pub fn add(&mut self, member: Member) {
         let quotient = Quotient::of_member(&member);
+        let approximation = if quotient.is_none() { Quotient::of_delayed_member(&member) } else { None };
         self.order.insert(0, self.plants.len());
-        self.plants.push(Plant { member, quotient });
+        self.plants.push(Plant { member, quotient, approximation });
     }
 
     /// Whether no plant has dead time or is known by measurements only: then a question costs little.
@@ -148,6 +151,47 @@ impl SampleStability {
         Ok(judgement)
     }
 
+    /// A bound, to one percent, of the real parts of all closed-loop poles in 1/s, 0 where none is positive, dead time being replaced by
+    /// its Padé approximation of third order: for ranking controllers that fail in a loop with dead time, where the poles themselves
+    /// are dear. `None` where a plant is measured, the controller has dead time, or the loop is sampled and its delay is long.
+    ///
+    /// # Errors
+    /// Those of [`SampleStability::is_stable`].
+    ///
+    /// # Example
+    /// e^(-sT)/(s - 2) with a gain of 1 keeps a pole between 0 and 2 1/s, here at 1.1 1/s: s - 2 + e^(-0.0957 s) = 0.
+    /// ```
+    /// use phea_dynamics::controller::Controller;
+    /// use phea_dynamics::linear::TransferFunction;
+    /// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+    /// use phea_qft::closed_loop::Compensation;
+    /// use phea_qft::loop_shaping::SampleStability;
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+    /// let command = RationalCoefficients { numerator: vec![1.0], denominator: vec![1.0, -2.0] };
+    /// let dead_time_s = -(0.9_f64).ln() / 1.1;
+    /// let member = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s })?;
+    /// let plants = SampleStability::new(&compensation, vec![member]);
+    /// let rightmost = plants.approximate_real_part(&TransferFunction::gain_only(1.0))?.ok_or("none")?;
+    /// assert!((rightmost - 1.1).abs() < 0.011 + 1e-6);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn approximate_real_part(&self, feedback: &TransferFunction) -> Result<Option<f64>, LinearError> {
+        let question = self.question(feedback)?;
+        let mut greatest = 0.0_f64;
+        for plant in &self.plants {
+            let quotient = plant.quotient.as_ref().or(plant.approximation.as_ref());
+            let Some((quotient, own)) = quotient.zip(question.feedback.as_ref()) else { return Ok(None) };
+            let characteristic = quotient.closed(own);
+            let lies_below = |real_part: f64| question.all_below(&characteristic, real_part);
+            if !lies_below(greatest) {
+                greatest = first_below(lies_below);
+            }
+        }
+        Ok(Some(greatest))
+    }
+
     fn question(&self, feedback: &TransferFunction) -> Result<Question, LinearError> {
         let compensation = self.compensation.with_feedback(feedback.clone())?;
         Ok(Question { compensation, feedback: Quotient::of_function(feedback), path: OnceCell::new() })
@@ -188,18 +232,23 @@ impl Question {
     /// Whether no pole has a real part above this one; where that cannot be told, it has none, unless there is no end to its turns.
     fn lies_below(&self, plant: &Plant, real_part: f64) -> bool {
         if let Some(characteristic) = self.characteristic(plant) {
-            let moved = match self.compensation.sample_time_s() {
-                None => characteristic.substituted(real_part, 0.0),
-                Some(sample_time_s) => {
-                    // z = e^(real_part T) z'
-                    let shift = portable::tanh(0.5 * real_part * sample_time_s);
-                    characteristic.substituted(shift, shift)
-                }
-            };
-            return moved.hurwitz() != Hurwitz::No;
+            return self.all_below(&characteristic, real_part);
         }
         let found = self.delayed_poles_lie_below(&plant.member, real_part);
         !matches!(found, Ok(false) | Err(Irresolution::Budget { .. }))
+    }
+
+    /// Whether no root of this characteristic polynomial is known to have a real part above this one.
+    fn all_below(&self, characteristic: &RoundedPolynomial, real_part: f64) -> bool {
+        let moved = match self.compensation.sample_time_s() {
+            None => characteristic.substituted(real_part, 0.0),
+            Some(sample_time_s) => {
+                // z = e^(real_part T) z'
+                let shift = portable::tanh(0.5 * real_part * sample_time_s);
+                characteristic.substituted(shift, shift)
+            }
+        };
+        moved.hurwitz() != Hurwitz::No
     }
 
     fn delayed_poles_lie_below(&self, member: &Member, real_part: f64) -> Result<bool, Irresolution> {
@@ -211,23 +260,28 @@ impl Question {
 
     /// The first of the real parts that are told apart below which all poles lie.
     fn largest_real_part(&self, plant: &Plant) -> f64 {
-        let per_decade = std::f64::consts::LN_10 / REAL_PARTS_PER_DECADE;
-        let real_part = |number: usize| LEAST_REAL_PART * portable::exp(per_decade * number as f64);
-        let (mut above, mut below) = (0, DECADES * REAL_PARTS_PER_DECADE as usize);
-        if self.lies_below(plant, real_part(above)) {
-            return 0.0;
-        }
-        if !self.lies_below(plant, real_part(below)) {
-            return f64::INFINITY;
-        }
-        while below - above > 1 {
-            let middle = above + (below - above) / 2;
-            if self.lies_below(plant, real_part(middle)) {
-                below = middle;
-            } else {
-                above = middle;
-            }
-        }
-        real_part(below)
+        first_below(|real_part| self.lies_below(plant, real_part))
     }
+}
+
+/// The first of the real parts that are told apart of which this holds; 0 where it holds of all, infinity where of none.
+fn first_below(lies_below: impl Fn(f64) -> bool) -> f64 {
+    let per_decade = std::f64::consts::LN_10 / REAL_PARTS_PER_DECADE;
+    let real_part = |number: usize| LEAST_REAL_PART * portable::exp(per_decade * number as f64);
+    let (mut above, mut below) = (0, DECADES * REAL_PARTS_PER_DECADE as usize);
+    if lies_below(real_part(above)) {
+        return 0.0;
+    }
+    if !lies_below(real_part(below)) {
+        return f64::INFINITY;
+    }
+    while below - above > 1 {
+        let middle = above + (below - above) / 2;
+        if lies_below(real_part(middle)) {
+            below = middle;
+        } else {
+            above = middle;
+        }
+    }
+    real_part(below)
 }

@@ -241,7 +241,7 @@ impl Shaping {
         let plant = |index: usize| self.samples.plants()[index].clone();
         for (column, &[feedback, prefilter]) in self.samples.columns().iter().zip(&forward) {
             around.close(column, feedback, prefilter);
-            for demand in &column.demands {
+            for demand in column.demands.iter().filter(|demand| !demand.is_reserve()) {
                 let worst = candidates(demand, column, &around, feedback).into_iter().next();
                 margins.extend(worst.map(|worst| SampledMargin {
                     specification: demand.specification,
@@ -357,7 +357,8 @@ impl Shaping {
             return (true, 0.0);
         }
         if !self.stability.is_rational() {
-            return (false, UNSTABLE);
+            let ranked = self.stability.approximate_real_part(feedback);
+            return (false, ranked.map_or(f64::INFINITY, |real_part| real_part.unwrap_or(UNSTABLE)));
         }
         let judgement = self.stability.judge(feedback);
         (false, judgement.map_or(f64::INFINITY, |judgement| judgement.largest_real_part))

@@ -87,6 +87,10 @@ pub struct SearchResult {
     /// How much worse the worst of these ends is than the best, dB: of the objective, or of the worst margin where that is aimed at or no
     /// end keeps the reserve; infinite where only some do. `None` with fewer than two ends.
     pub spread_db: Option<f64>,
+    /// Points that were looked at before the descents: given ones, samples and, where there was an evolution, its last generation.
+    pub points: usize,
+    /// How many of them are stable.
+    pub stable_points: usize,
     /// All work, that of descents left behind included.
     pub work: Work,
 }
@@ -260,6 +264,8 @@ impl Search {
             judgement: best.judgement,
             binding: self.descents.first().map_or(vec![], |descent| descent.binding().to_vec()),
             spread_db: self.spread_db(&ends),
+            points: self.candidates.len(),
+            stable_points: self.candidates.iter().filter(|one| is_usable(&one.judgement)).count(),
             ends,
             work,
         })

@@ -5,6 +5,9 @@ use phea_dynamics::portable;
 use super::PrefilterError;
 use crate::closed_loop::{Compensation, Member};
 
+/// At an undamped pole of the plant, where it has no response, the closed loop is taken this share of the frequency higher.
+const BESIDE: f64 = 1e-9;
+
 /// The greatest and the least |P G/(1+L)| of a family at one frequency, the prefilter left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackingExtremes {
@@ -25,6 +28,9 @@ pub struct TrackingExtremes {
 /// ```text
 /// T = P G/(1 + P G H)
 /// ```
+///
+/// At an undamped pole of a plant T is continuous: |P| grows without bound there, and T tends to 1/H. It is taken a billionth of the
+/// frequency beside.
 ///
 /// # Errors
 /// [`PrefilterError::NoResponse`] where a measurement does not reach, or a plant has no value;
@@ -76,13 +82,17 @@ fn extremes_at(
         least_member: 0,
     };
     for (member, plant) in members.iter().enumerate() {
-        let magnitude = plant.response(frequency_rad_per_s).map_or(f64::NAN, |response| {
+        let closed = |frequency: f64| {
+            let response = plant.response(frequency)?;
             let forward = response.plant * feedback;
-            portable::magnitude(forward / (1.0 + forward * response.sensor))
-        });
-        if magnitude.is_nan() {
+            let magnitude = portable::magnitude(forward / (1.0 + forward * response.sensor));
+            magnitude.is_finite().then_some(magnitude)
+        };
+        // the closed loop is continuous where the plant alone is infinite
+        let magnitude = closed(frequency_rad_per_s).or_else(|| closed(frequency_rad_per_s * (1.0 + BESIDE)));
+        let Some(magnitude) = magnitude else {
             return Err(PrefilterError::NoResponse { member, frequency_rad_per_s });
-        }
+        };
         if magnitude > found.greatest {
             (found.greatest, found.greatest_member) = (magnitude, member);
         }

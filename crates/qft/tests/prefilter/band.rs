@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
-use phea_qft::prefilter::{BandEdge, PrefilterBand, PrefilterError};
+use phea_qft::prefilter::{BandEdge, PrefilterBand, PrefilterError, tracking_extremes};
 use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
 
 use super::loops::{around, integrators, member, rational, servo, spaced, tracking};
@@ -150,7 +150,17 @@ fn what_leaves_no_band_says_why() {
     let requirement = Requirement::Sensitivity(Limit::Constant(2.0));
     let sensitivity = Specification { requirement, ..constant() };
     assert_eq!(of(&members, &[2.0], &sensitivity), PrefilterError::NotTracking);
-    let undamped = [member(&compensation, &[1.0], &[1.0, 0.0, 4.0])];
+    let nowhere = [member(&compensation, &[f64::NAN], &[1.0, 0.0, 4.0])];
     let error = PrefilterError::NoResponse { member: 0, frequency_rad_per_s: 2.0 };
-    assert_eq!(of(&undamped, &[2.0], &constant()), error);
+    assert_eq!(of(&nowhere, &[2.0], &constant()), error);
+}
+
+/// k/(s^2 + 4) has no response at 2 rad/s, and its closed loop k/(s^2 + 4 + k) is 1 there.
+#[test]
+fn an_undamped_pole_is_an_ordinary_point() {
+    let around = around(TransferFunction::gain_only(1.0));
+    let members = [3.0, 5.0].map(|k| member(&around, &[k], &[1.0, 0.0, 4.0]));
+    let found = tracking_extremes(&around, &members, &[1.0, 2.0]).unwrap();
+    assert!((found[0].greatest - 5.0 / 8.0).abs() < 1e-14 && (found[0].least - 3.0 / 6.0).abs() < 1e-14);
+    assert!((found[1].greatest - 1.0).abs() < 1e-8 && (found[1].least - 1.0).abs() < 1e-8, "{found:?}");
 }

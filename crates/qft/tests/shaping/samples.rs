@@ -115,7 +115,7 @@ fn beyond_a_measurement_nothing_is_looked_at() {
 }
 
 #[test]
-fn the_grid_covers_the_bands_and_no_more() {
+fn the_grid_covers_the_bands_and_what_lies_above_their_ends() {
     let mut problem = problem(Timing::default());
     let all = plants(&problem);
     let grid = search_frequencies(&problem, &all, 20.0).unwrap();
@@ -126,12 +126,21 @@ fn the_grid_covers_the_bands_and_no_more() {
     let dense = grid.windows(2).filter(|pair| pair[0] > 0.5 && pair[1] < 30.0);
     assert!(dense.clone().count() > 30);
     assert!(dense.into_iter().all(|pair| pair[1] / pair[0] < 10f64.powf(1.0 / 20.0) * (1.0 + 1e-6)));
-    // a sampled loop ends at pi/T, a band where it says
+    // a sampled loop ends at pi/T; above the last band the grid goes on, as dense, a factor 30 further or to pi/T
     problem.timing.sample_time_s = Some(0.02);
     let sampled = search_frequencies(&problem, &all, 20.0).unwrap();
     assert_eq!(*sampled.last().unwrap(), std::f64::consts::PI / 0.02);
     problem.specifications = problem.specifications.drain(5..).collect();
-    assert_eq!(*search_frequencies(&problem, &all, 20.0).unwrap().last().unwrap(), 15.0);
+    let above = |problem: &DesignProblem, ends_at: f64| {
+        let grid = search_frequencies(problem, &all, 20.0).unwrap();
+        assert!(grid.contains(&15.0) && (0.85..=1.0).contains(&(grid.last().unwrap() / ends_at)), "{grid:?}");
+        let above = grid.windows(2).filter(|pair| pair[0] >= 15.0);
+        assert!(above.clone().count() > 15);
+        assert!(above.into_iter().all(|pair| pair[1] / pair[0] < 10f64.powf(1.0 / 20.0) * (1.0 + 1e-6)));
+    };
+    above(&problem, std::f64::consts::PI / 0.02);
+    problem.timing.sample_time_s = None;
+    above(&problem, 30.0 * 15.0);
 }
 
 /// The resonances of lightly damped plants are among the frequencies, but not all of a crowd.

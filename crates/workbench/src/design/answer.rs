@@ -1,6 +1,6 @@
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::{LinearError, TimeDomain};
-use phea_qft::design::{BindingLimit, Conflict, DesignRound, DesignStatus};
+use phea_qft::design::{BindingLimit, Conflict, DesignRound, DesignStatus, Starts};
 use phea_qft::loop_shaping::{Part, Structure};
 use phea_qft::verification::PlantPoint;
 use serde::Serialize;
@@ -37,6 +37,9 @@ struct Body<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     published_reason: Option<&'static str>,
     rounds: Vec<RoundRow>,
+    starts: Option<StartsRow>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    starts_reason: Option<&'static str>,
     binding: Vec<LimitRow>,
     relaxation_db: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -48,6 +51,16 @@ struct Body<'a> {
     machine: Option<trial::Body<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     machine_reason: Option<&'static str>,
+}
+
+/// Where the starts of the last search ended; of three numbers the best, the median and the worst.
+#[derive(Serialize)]
+struct StartsRow {
+    tried: usize,
+    stabilised: usize,
+    ended: usize,
+    worst_margin_db: Option<[f64; 3]>,
+    objective_db: Option<[f64; 3]>,
 }
 
 #[derive(Serialize)]
@@ -164,6 +177,8 @@ pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
         minimum_delay_margin_s: view.minimum_delay_margin_s,
         published_reason: view.published.is_none().then_some("the project gives no controller"),
         rounds: design.rounds.iter().map(round).collect(),
+        starts: design.starts.as_ref().map(starts),
+        starts_reason: design.starts.is_none().then_some("no search ended"),
         binding: design.binding.iter().map(|limit| binding(view, limit)).collect(),
         relaxation_db: relaxation.map(|relaxation| relaxation.relaxation_db),
         relaxation_db_reason: relaxation.is_none().then_some("the specifications were not found infeasible"),
@@ -239,6 +254,16 @@ fn published(side: &Side) -> PublishedRow<'_> {
         prefilter: Factors::of(side.problem.compensation.prefilter()),
         figures: figures(side),
         verification: audit::body(&side.view),
+    }
+}
+
+fn starts(starts: &Starts) -> StartsRow {
+    StartsRow {
+        tried: starts.tried,
+        stabilised: starts.stabilised,
+        ended: starts.ended,
+        worst_margin_db: starts.margins_db,
+        objective_db: starts.objectives_db,
     }
 }
 

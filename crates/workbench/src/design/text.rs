@@ -1,5 +1,5 @@
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
-use phea_qft::design::{DesignStatus, Objective};
+use phea_qft::design::{DesignStatus, Objective, Starts};
 use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::comparison::compared;
@@ -54,6 +54,7 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
         ));
     }
     out.push_str(&format!("\nRounds of search and audit\n{}\n  {}\n", rounds(view), seed_sentence(view)));
+    out.push_str(&view.design.starts.as_ref().map_or_else(String::new, starts_sentence));
     out.push_str(&format!("\nAudit of the designed controller\n{}", audit::text(&view.designed.view)));
     out.push_str(&settings_sentence(loaded));
     Ok(out)
@@ -174,6 +175,23 @@ fn seed_sentence(view: &ProjectDesign) -> String {
         (DesignStatus::Met, _) => "may end lower",
     };
     format!("begun at random points of seed {}; a local optimum: other seeds {better}", view.options.seed)
+}
+
+/// How much the result owes to its starts: where the descents of the last search ended.
+fn starts_sentence(starts: &Starts) -> String {
+    let mut sentence = format!("  {} of {} starts stabilise every plant", starts.stabilised, starts.tried);
+    let three = |[best, median, worst]: [String; 3]| {
+        format!("{best} at best, {median} in the middle, {worst} at worst")
+    };
+    if let Some(margins_db) = starts.margins_db {
+        let (descents, margins) = (starts.ended, three(margins_db.map(margin_words)));
+        sentence.push_str(&format!("; worst margin where {descents} descents ended: {margins}"));
+    }
+    if let Some(objectives_db) = starts.objectives_db {
+        let objectives = three(objectives_db.map(|value| format!("{} dB", significant(value, 4))));
+        sentence.push_str(&format!("; objective of those that keep the limits: {objectives}"));
+    }
+    sentence + "\n"
 }
 
 /// What was set on the command line is not in the file that a design writes.

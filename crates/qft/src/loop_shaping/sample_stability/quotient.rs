@@ -41,6 +41,28 @@ impl Quotient {
         }
     }
 
+    /// P H of a continuous member with dead time T, which is replaced by its Padé approximation of third order; `None` for other members.
+    ///
+    /// ```text
+    /// e^(-sT) ~ p(-sT)/p(sT),      p(u) = u^3/120 + u^2/10 + u/2 + 1
+    /// ```
+    pub(super) fn of_delayed_member(member: &Member) -> Option<Quotient> {
+        let Member::Continuous { plant, sensor } = member else { return None };
+        let own_s = plant.dead_time_s + sensor.dead_time_s();
+        let mut plant = plant.clone();
+        plant.dead_time_s = 0.0;
+        let sensor = sensor.clone().with_dead_time(0.0).ok()?;
+        let rational = Quotient::of_member(&Member::Continuous { plant, sensor })?;
+        let delay = |time_s: f64| {
+            let [one, square, cube] = [time_s, time_s * time_s, time_s * time_s * time_s];
+            RoundedPolynomial::exact(&[cube / 120.0, square / 10.0, one / 2.0, 1.0])
+        };
+        Some(Quotient {
+            numerator: rational.numerator.times(&delay(-own_s)),
+            denominator: rational.denominator.times(&delay(own_s)),
+        })
+    }
+
     /// A transfer function in s or z; `None` for a dead time that leaves no polynomials, and for one in z that answers before it is
     /// asked.
     pub(super) fn of_function(function: &TransferFunction) -> Option<Quotient> {

@@ -25,7 +25,8 @@ const PEAKS_MAXIMUM: usize = 80;
 /// frequencies, and the lightly damped roots of the plants; increasing, rad/s.
 ///
 /// A band from 0 begins a factor 30 below the slowest root of a plant or a limit and the least design frequency, one to infinity
-/// ends as far above the fastest; between 5 times those and there, the grid is four times as coarse. A sampled loop ends at pi/T.
+/// ends as far above the fastest; where every band ends, the grid goes on a factor 30 further, so that a search sees how near to instability
+/// the loop comes there. Between 5 times those and there, the grid is four times as coarse. A sampled loop ends at pi/T.
 /// Of peaks that crowd, some are left out. Where plants are known by their responses, the grid keeps to what all of them reach.
 ///
 /// # Errors
@@ -51,9 +52,15 @@ pub fn search_frequencies(
     grid.extend(peaks);
     let given = problem.specifications.iter().flat_map(|specification| &specification.frequencies_rad_per_s);
     grid.extend(given.chain(bands.iter().flatten()).filter(|frequency| frequency.is_finite()));
+    let covered = bands.iter().fold(0.0, |covered: f64, [_, to]| covered.max(*to));
+    let mut beyond = spaced([covered.max(ends[0]), (covered * BEYOND).max(ends[0])], points_per_decade);
+    beyond.retain(|frequency| covered < *frequency && *frequency <= highest);
     grid.retain(|frequency| {
         *frequency > 0.0 && bands.iter().any(|[from, to]| from <= frequency && frequency <= to)
     });
+    if covered.is_finite() {
+        grid.extend(beyond);
+    }
     let [first, last] = measured_by_all(problem, plants)?;
     grid.retain(|frequency| (first..=last).contains(frequency));
     grid.sort_by(f64::total_cmp);

@@ -1,0 +1,41 @@
+//! What a search begins with, and how widely it looks.
+
+use crate::loop_shaping::{Aim, DescentOptions, SearchOptions, SearchProblem, Shaping};
+
+/// Of the points at which the nominal plant is stabilised, so many begin a search at most.
+const STABILISING_MAXIMUM: usize = 24;
+
+/// Points that a search looks at before any that is spread.
+#[derive(Clone, Debug, Default)]
+pub(in crate::design) struct Beginning {
+    /// What a simpler controller does.
+    pub(in crate::design) simpler: Vec<Vec<f64>>,
+    /// What stabilises the nominal plant.
+    pub(in crate::design) stabilising: Vec<Vec<f64>>,
+    /// Whether the plants are hard to stabilise.
+    pub(in crate::design) is_hard: bool,
+}
+
+/// The best of these points: those that stabilise every plant by their worst margin, then the others by how far from it they are.
+pub(super) fn best_of(shaping: &mut Shaping, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut judged: Vec<((bool, f64), Vec<f64>)> = Vec::with_capacity(points.len());
+    for x in points {
+        let judgement = shaping.judge(&x);
+        let badness = if judgement.stable { -judgement.worst_margin_db } else { judgement.instability };
+        judged.push(((!judgement.stable, badness), x));
+    }
+    judged.sort_by(|(one, _), (other, _)| one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)));
+    judged.into_iter().map(|(_, x)| x).take(STABILISING_MAXIMUM).collect()
+}
+
+/// The gain is scanned, for hardly any is right for a random shape; a relaxation takes more descents to their end, for the answer is a
+/// number, and so does a plant that is hard to stabilise, whose local optima are many.
+pub(super) fn search_options(aim: Aim, seed: u64, relaxes: bool, is_hard: bool) -> SearchOptions {
+    let descent = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(aim) };
+    let (samples, starts, finished) = match (is_hard, relaxes) {
+        (true, _) => (96, 16, 8),
+        (false, true) => (48, 12, 6),
+        (false, false) => (48, 8, 5),
+    };
+    SearchOptions { samples, scanned: 14, starts, finished, descent, ..SearchOptions::new(aim, seed) }
+}
