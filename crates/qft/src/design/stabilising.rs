@@ -47,7 +47,7 @@ struct Roots {
     poles: Vec<Complex64>,
 }
 
-/// Whether the nominal plant, or that in the middle of the box, has a pole that the loop has to move; not known of measured plants.
+/// Whether the nominal plant, or that in the middle of the box, has a pole that the loop has to move; not known of plants without polynomials.
 pub(super) fn has_poles_to_move(problem: &DesignProblem) -> bool {
     let Family::Uncertain(family) = &problem.family else { return false };
     let polynomial = |plant: PlantCoefficients<f64>| Polynomial::new(plant.command.denominator).roots().ok();
@@ -55,7 +55,7 @@ pub(super) fn has_poles_to_move(problem: &DesignProblem) -> bool {
 }
 
 /// Controllers of at most this order, with so many integrators, that stabilise simplifications of the nominal plant and of the middle of
-/// the box; empty where no pole of the plant is unstable or undamped, and for measured plants.
+/// the box; empty where no pole of the plant is unstable or undamped, and for plants without polynomials.
 pub(super) fn stabilising(
     problem: &DesignProblem,
     integrators: usize,
@@ -96,7 +96,7 @@ fn central_plants(family: &UncertainFamily) -> Vec<PlantCoefficients<f64>> {
             values.push(middle);
         }
     }
-    values.iter().map(|values| plant.coefficients(values)).collect()
+    values.iter().filter_map(|values| plant.coefficients(values)).collect()
 }
 
 impl Roots {
