@@ -118,7 +118,9 @@ impl AuditRun {
                     if self.stability.searched() {
                         self.specifications.add(self.stability.plants_between());
                     }
-                    self.stage = Stage::Specifications;
+                    // an unstable loop has no margins to look for
+                    let decided = is_unstable(&self.stability.result().finding);
+                    self.stage = if decided { Stage::Done } else { Stage::Specifications };
                 }
             }
             Stage::Specifications => {
@@ -157,7 +159,10 @@ impl AuditRun {
     /// What was found; complete once [`AuditRun::step`] has answered that there is nothing left.
     pub fn audit(&self) -> Audit {
         let stability = self.stability.result();
-        let mut specifications = self.specifications.findings().to_vec();
+        let mut specifications = match is_unstable(&stability.finding) && self.stage == Stage::Done {
+            true => self.specifications.unexamined(),
+            false => self.specifications.findings().to_vec(),
+        };
         for finding in &mut specifications {
             without_stability(finding, &stability.finding);
         }
@@ -200,15 +205,20 @@ fn worse(one: Verdict, other: Verdict) -> Verdict {
     }
 }
 
+/// Whether a loop of the family is unstable. Where all poles decay and stability is violated, it is by the prefilter, which only the
+/// reference goes through.
+fn is_unstable(stability: &StabilityFinding) -> bool {
+    let decays = stability.largest_real_part.is_some_and(|real| real < 0.0);
+    stability.verdict == Verdict::Violated && !decays
+}
+
 /// The magnitudes of an unstable loop are those of no response: it keeps to no specification, by no margin. Of a loop that is not known to
 /// be stable, they may be.
 fn without_stability(finding: &mut SpecificationFinding, stability: &StabilityFinding) {
     let tracks = matches!(finding.requirement, Requirement::Tracking { .. });
-    // poles that decay in a family that is not stable: then it is the prefilter, which only the reference goes through
-    let prefilter_alone = stability.largest_real_part.is_some_and(|real| real < 0.0);
     match stability.verdict {
         Verdict::Met => {}
-        Verdict::Violated if prefilter_alone && !tracks => {}
+        Verdict::Violated if !is_unstable(stability) && !tracks => {}
         Verdict::Violated => {
             *finding = SpecificationFinding {
                 requirement: finding.requirement.clone(),

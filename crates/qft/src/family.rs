@@ -11,7 +11,8 @@ mod tabulated;
 pub use coordinate::{Coordinate, Spacing};
 pub use measured::{MeasuredFamily, MeasuredPlant, MeasurementError};
 pub use member::{grid, random, vertices};
-pub use tabulated::tabulated;
+pub(crate) use tabulated::COARSE;
+pub use tabulated::{FINE, tabulated};
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
 

@@ -19,6 +19,7 @@ pub use audit::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Work};
 pub(crate) use minimum::between;
 pub(crate) use remark::rounded;
 
+use crate::family::{Extent, Family};
 use crate::specification::Requirement;
 
 /// A verdict. `Met` means that the margin is not below the negative of the tolerance, everywhere that was looked at.
@@ -41,6 +42,17 @@ pub enum Evidence {
     Search,
     /// Proven for every plant and every frequency.
     Proof,
+}
+
+impl Evidence {
+    /// What an audit of a family rests on.
+    fn of(family: &Family) -> Evidence {
+        match family {
+            Family::Uncertain(family) if family.extent() == Extent::Box => Evidence::Search,
+            // given plants and measurements are looked at one by one
+            Family::Uncertain(_) | Family::Measured(_) => Evidence::Grid,
+        }
+    }
 }
 
 /// One plant of a family.

@@ -15,7 +15,7 @@ use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
 use phea_qft::closed_loop::Compensation;
-use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, tabulated, vertices};
+use phea_qft::family::{Coordinate, Extent, FINE, Family, Spacing, UncertainFamily, tabulated, vertices};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::stability::{Instability, MemberStability, StabilityStatus, member_stability};
 use phea_qft::verification::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Verdict};
@@ -144,7 +144,7 @@ fn tables_hold_what_is_between_their_points() {
     let mut state = 5;
     for _ in 0..40 {
         let plant = hidden(&mut state);
-        let table = tabulated(&plant, plant.range_rad_per_s(), String::new());
+        let table = tabulated(&plant, plant.range_rad_per_s(), FINE);
         for pair in table.frequencies_rad_per_s.windows(2) {
             let between = pair[0] + share(&mut state) * (pair[1] - pair[0]);
             let (told, _) = table.response(between).unwrap();

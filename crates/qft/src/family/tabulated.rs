@@ -9,8 +9,10 @@ use super::MeasuredPlant;
 
 /// Points in a decade before they are made denser.
 const POINTS_PER_DECADE: f64 = 25.0;
-/// Part of a response by which the middle between two points may lie off what is interpolated there.
-const TOLERANCE: f64 = 2e-3;
+/// Part of a response by which the middle between two points may lie off what is interpolated there, for tables that stand for a plant.
+pub const FINE: f64 = 2e-3;
+/// The same where a table only says at which frequencies a response bends.
+pub(crate) const COARSE: f64 = 3e-2;
 /// Two points are no closer than this part of their frequency.
 const CLOSEST: f64 = 1e-6;
 
@@ -18,8 +20,8 @@ const CLOSEST: f64 = 1e-6;
 type Point = (f64, [Complex64; 2]);
 
 /// The response between two frequencies in rad/s, at points so dense that what [`MeasuredPlant::response`] interpolates is that of the
-/// plant to 0.2 % halfway between any two of them: what a search looks at thousands of times.
-pub fn tabulated(plant: &dyn RespondingPlant, [from, to]: [f64; 2], name: String) -> MeasuredPlant {
+/// plant to this part of itself halfway between any two of them ([`FINE`] is 0.2 %): what a search looks at thousands of times.
+pub fn tabulated(plant: &dyn RespondingPlant, [from, to]: [f64; 2], tolerance: f64) -> MeasuredPlant {
     let at = |frequency: f64| (frequency, plant.response(frequency));
     let decades = portable::ln(to / from) / std::f64::consts::LN_10;
     let grid = logarithmic_grid(from, to, (POINTS_PER_DECADE * decades).ceil() as usize).unwrap_or_default();
@@ -29,7 +31,7 @@ pub fn tabulated(plant: &dyn RespondingPlant, [from, to]: [f64; 2], name: String
     while let (Some(&next), Some(&previous)) = (left.last(), found.last()) {
         let middle = at((previous.0 * next.0).sqrt());
         let close = next.0 - previous.0 <= CLOSEST * next.0;
-        if close || (0..2).all(|path| is_between(previous.1[path], middle.1[path], next.1[path])) {
+        if close || (0..2).all(|path| apart(previous.1[path], middle.1[path], next.1[path]) <= tolerance) {
             found.push(next);
             left.pop();
         } else {
@@ -38,7 +40,7 @@ pub fn tabulated(plant: &dyn RespondingPlant, [from, to]: [f64; 2], name: String
     }
     let unstable_poles = plant.unstable_poles();
     MeasuredPlant {
-        name,
+        name: String::new(),
         frequencies_rad_per_s: found.iter().map(|point| point.0).collect(),
         command: found.iter().map(|point| point.1[0]).collect(),
         disturbance: Some(found.iter().map(|point| point.1[1]).collect()),
@@ -47,10 +49,10 @@ pub fn tabulated(plant: &dyn RespondingPlant, [from, to]: [f64; 2], name: String
     }
 }
 
-/// Whether the middle between two points is their geometric mean, near enough.
-fn is_between(from: Complex64, middle: Complex64, to: Complex64) -> bool {
+/// The part of itself by which the middle between two points is off their geometric mean.
+fn apart(from: Complex64, middle: Complex64, to: Complex64) -> f64 {
     let turn = to / from;
     let half = Complex64::new(portable::ln(portable::magnitude(turn)), portable::argument(turn)) / 2.0;
     let mean = from * portable::exp_complex(half);
-    portable::magnitude(middle / mean - 1.0) <= TOLERANCE
+    portable::magnitude(middle / mean - 1.0)
 }

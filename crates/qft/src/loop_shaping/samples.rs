@@ -15,7 +15,7 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember};
 use super::margins::{Demand, Keeping, demands};
 use crate::closed_loop::{Compensation, Member};
 use crate::design::DesignProblem;
-use crate::family::{Extent, Family, MeasuredPlant, UncertainFamily, tabulated};
+use crate::family::{Extent, FINE, Family, MeasuredPlant, UncertainFamily, tabulated};
 use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// Beside an undamped pole of the plant, where it has no response, it is looked at this share of the frequency higher.
@@ -353,7 +353,7 @@ fn plant_at<'a>(problem: &'a DesignProblem, point: &PlantPoint) -> Result<Plant<
                 PlantMember::Rational(coefficients) => Plant::Rational(coefficients),
                 PlantMember::Responding(plant) => {
                     let range = responding_range(problem, plant.as_ref());
-                    Plant::Measured(Cow::Owned(tabulated(plant.as_ref(), range, String::new())))
+                    Plant::Measured(Cow::Owned(tabulated(plant.as_ref(), range, FINE)))
                 }
             })
         }

@@ -257,7 +257,9 @@ impl StabilityAudit {
         if self.compensation.sample_time_s().is_some() {
             tasks.push(Task::Resample);
         }
-        if family.extent() == Extent::Box {
+        // an unstable plant decides, and without polynomials a search costs much
+        let decided = self.record.unstable.is_some() && !family.plant().is_rational();
+        if family.extent() == Extent::Box && !decided {
             tasks.push(Task::Infinity);
             let searches: [(Badness, &'static [Badness]); 4] = [
                 (Badness::Closeness, &[Badness::Peak, Badness::DelaySensitivity]),

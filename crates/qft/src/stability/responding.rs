@@ -8,7 +8,7 @@ use super::enclosed::Enclosed;
 use super::measured::OpenLoop;
 use super::{Irresolution, MemberStability, StabilityStatus};
 use crate::closed_loop::{Compensation, Member};
-use crate::family::tabulated;
+use crate::family::{COARSE, tabulated};
 
 /// Points in a decade of a first look, which does not count poles.
 const POINTS_PER_DECADE: f64 = 30.0;
@@ -31,7 +31,7 @@ pub(super) fn stability(member: &Member, compensation: &Compensation, count: Cou
     };
     let points = || {
         let range = range(member, plant.as_ref(), compensation);
-        let table = tabulated(plant.as_ref(), range, String::new());
+        let table = tabulated(plant.as_ref(), range, COARSE);
         OpenLoop::new(member, compensation, &table.frequencies_rad_per_s, true)
     };
     let counted = match (sample_time_s, count) {

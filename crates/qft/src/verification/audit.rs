@@ -8,7 +8,7 @@ use super::finding::{Case, Part};
 use super::frequencies::{Features, features};
 use super::scan::{Peak, Plant, Scan};
 use super::search::Task;
-use super::{PlantPoint, SpecificationFinding};
+use super::{Evidence, PlantPoint, SpecificationFinding, Verdict};
 use crate::closed_loop::Compensation;
 use crate::family::{Extent, Family, UncertainFamily, vertices};
 use crate::sampled::SampledPlants;
@@ -216,6 +216,22 @@ impl SpecificationAudit {
     /// What was found of each specification, in order; empty until the last step.
     pub fn findings(&self) -> &[SpecificationFinding] {
         &self.finished
+    }
+
+    /// The specifications as they stand before anything was looked at: not proven.
+    pub(crate) fn unexamined(&self) -> Vec<SpecificationFinding> {
+        let finding = |specification: &Specification| SpecificationFinding {
+            requirement: specification.requirement.clone(),
+            verdict: Verdict::NotProven,
+            evidence: Evidence::of(&self.family),
+            worst: None,
+            interior: None,
+            violations: vec![],
+            at_design_frequencies: vec![],
+            envelope: vec![],
+            remarks: vec![],
+        };
+        self.specifications.iter().map(finding).collect()
     }
 
     /// What was done so far.

@@ -7,7 +7,7 @@ use super::remark::remarks;
 use super::response::decibels;
 use super::scan::{Plant, Scan, Worst};
 use super::{Evidence, PlantPoint, SpecificationFinding, Verdict, ViolatedBand, WorstCase};
-use crate::family::{Extent, Family};
+use crate::family::Family;
 use crate::specification::Specification;
 
 /// Margins above minus this much are rounding, dB.
@@ -150,11 +150,7 @@ impl Joining<'_> {
                 (false, true) => Verdict::Met,
                 (false, false) => Verdict::NotProven,
             },
-            evidence: match self.family {
-                Family::Uncertain(family) if family.extent() == Extent::Box => Evidence::Search,
-                // given plants and measurements are looked at one by one
-                Family::Uncertain(_) | Family::Measured(_) => Evidence::Grid,
-            },
+            evidence: Evidence::of(self.family),
             worst: worst.map(worst_case),
             interior: interior.map(worst_case),
             violations: self.violations(scan, &envelope, &all),

@@ -9,7 +9,7 @@ use super::asymptote;
 use super::criterion::Quantity;
 use super::evaluator::Evaluator;
 use crate::closed_loop::Member;
-use crate::family::tabulated;
+use crate::family::{COARSE, tabulated};
 use crate::specification::Limit;
 
 /// Points in a decade where roots are, and beyond them.
@@ -99,7 +99,7 @@ pub(super) fn features(evaluator: &Evaluator, member: &Member) -> Features {
         }
         Member::Responding { plant, delay_s, .. } => {
             let range = plant.range_rad_per_s();
-            let bends = tabulated(plant.as_ref(), range, String::new());
+            let bends = tabulated(plant.as_ref(), range, COARSE);
             Features {
                 frequencies: bends.frequencies_rad_per_s,
                 range: Some(range),

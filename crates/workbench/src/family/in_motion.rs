@@ -33,8 +33,8 @@ pub(super) fn family(
     }
     let parameters = lumped.plant().parameters().to_vec();
     let moving = Moving { visited: Visited::new(project, &parameters)?, project: project.clone() };
-    let members = members(lumped)?;
-    for values in &members {
+    let (corners, members) = members(lumped)?;
+    for values in corners.iter().chain(&members) {
         let named = || named(&parameters, values);
         let plant = moving.plant(values).map_err(|error| FamilyError::Line { error, member: named() })?;
         if plant.is_none_or(|plant| !plant.is_passive()) {
@@ -67,25 +67,22 @@ impl RespondingPlants for Moving {
     }
 }
 
-/// The nominal plant, the corners of a box where they are few, and as many of the other members as are looked at, spread over all.
-fn members(lumped: &UncertainFamily) -> Result<Vec<Vec<f64>>, FamilyError> {
+/// The corners of a box where they are few, which every audit looks at; and the members: the nominal plant, and as many of the others as
+/// are looked at beside the corners, spread over all.
+fn members(lumped: &UncertainFamily) -> Result<(Vec<Vec<f64>>, Vec<Vec<f64>>), FamilyError> {
     let all = lumped.members();
-    let mut chosen: Vec<Vec<f64>> = all.iter().take(1).cloned().collect();
     if lumped.extent() == Extent::Members {
-        return Ok(all.to_vec());
+        return Ok((Vec::new(), all.to_vec()));
     }
-    if lumped.coordinates().len() <= CORNER_COORDINATES {
-        chosen.extend(vertices(lumped.plant(), lumped.coordinates())?);
-    }
-    let room = MEMBERS_MAXIMUM.saturating_sub(chosen.len()).max(1);
-    chosen.extend(all.iter().step_by(all.len().div_ceil(room).max(1)).cloned());
-    let mut distinct: Vec<Vec<f64>> = Vec::with_capacity(chosen.len());
-    for values in chosen {
-        if !distinct.contains(&values) {
-            distinct.push(values);
-        }
-    }
-    Ok(distinct)
+    let corners = match lumped.coordinates().len() {
+        0 => Vec::new(),
+        few if few <= CORNER_COORDINATES => vertices(lumped.plant(), lumped.coordinates())?,
+        _ => Vec::new(),
+    };
+    let others: Vec<&Vec<f64>> = all.iter().skip(1).filter(|values| !corners.contains(values)).collect();
+    let room = MEMBERS_MAXIMUM.saturating_sub(corners.len()).max(1);
+    let spread = others.iter().step_by(others.len().div_ceil(room).max(1)).map(|values| (*values).clone());
+    Ok((corners, all.iter().take(1).cloned().chain(spread).collect()))
 }
 
 fn named(parameters: &[UncertainParameter], values: &[f64]) -> String {

@@ -9,7 +9,7 @@ use phea_dynamics::time_response::{StepBaseline, StepMetrics, step_metrics, step
 use phea_dynamics::uncertain_plant::PlantMember;
 use phea_hydraulics::linear::transfer_functions;
 use phea_qft::closed_loop::{Compensation, Member};
-use phea_qft::family::tabulated;
+use phea_qft::family::{FINE, tabulated};
 use phea_qft::stability::{StabilityStatus, member_stability};
 
 use super::rigs::Tried;
@@ -71,7 +71,7 @@ fn of_responses(
         StabilityStatus::NotResolved(_) => return Ok(Prediction::Unknown),
     }
     let highest = compensation.highest_frequency_rad_per_s();
-    let grid = tabulated(plant.as_ref(), plant.range_rad_per_s(), String::new()).frequencies_rad_per_s;
+    let grid = tabulated(plant.as_ref(), plant.range_rad_per_s(), FINE).frequencies_rad_per_s;
     let prefilter = compensation.prefilter_of_step()?;
     let points = straight(&grid, highest, |frequency| closed(&member, compensation, &prefilter, frequency));
     let final_value = points.first().map_or(1.0, |(_, real)| *real);

@@ -28,11 +28,15 @@ impl Segments {
         let product = along * across;
         let one = A::from(1.0);
         let x = one + product.scaled(0.5);
-        let quarters = |count: usize, offset: f64| {
-            let root = move |k: usize| cos((k as f64 - offset) * PI / sections);
-            (1..=count).fold(one, |all, k| all * (x - A::from(root(k))).scaled(2.0))
-        };
-        let (own, other) = (quarters(self.count, 0.5).scaled(0.5), quarters(self.count - 1, 0.0));
+        // cos(j pi/(2 N)) by cos((j + 1) a) = 2 cos(a) cos(j a) - cos((j - 1) a): roots of T_N and U_(N-1) in turn
+        let first = cos(PI / (2.0 * sections));
+        let (mut before, mut root) = (1.0, first);
+        let (mut own, mut other) = (A::from(0.5), one);
+        for j in 1..2 * self.count {
+            let polynomial = if j % 2 == 1 { &mut own } else { &mut other };
+            *polynomial = *polynomial * (x - A::from(root)).scaled(2.0);
+            (before, root) = (root, 2.0 * first * root - before);
+        }
         let whole = TransferMatrix {
             pressure: own,
             impedance: along * other,
