@@ -33,7 +33,8 @@ pub(super) fn family(
     }
     let parameters = lumped.plant().parameters().to_vec();
     let moving = Moving { visited: Visited::new(project, &parameters)?, project: project.clone() };
-    let (corners, members) = members(lumped)?;
+    let corners = corners(lumped)?;
+    let members = members(lumped, &corners);
     for values in corners.iter().chain(&members) {
         let named = || named(&parameters, values);
         let plant = moving.plant(values).map_err(|error| FamilyError::Line { error, member: named() })?;
@@ -67,22 +68,25 @@ impl RespondingPlants for Moving {
     }
 }
 
-/// The corners of a box where they are few, which every audit looks at; and the members: the nominal plant, and as many of the others as
-/// are looked at beside the corners, spread over all.
-fn members(lumped: &UncertainFamily) -> Result<(Vec<Vec<f64>>, Vec<Vec<f64>>), FamilyError> {
+/// The corners of a box where they are few: every audit looks at them.
+fn corners(lumped: &UncertainFamily) -> Result<Vec<Vec<f64>>, FamilyError> {
+    let few = (1..=CORNER_COORDINATES).contains(&lumped.coordinates().len());
+    Ok(match lumped.extent() {
+        Extent::Box if few => vertices(lumped.plant(), lumped.coordinates())?,
+        Extent::Box | Extent::Members => Vec::new(),
+    })
+}
+
+/// The nominal plant, and as many of the others as are looked at beside the corners, spread over all.
+fn members(lumped: &UncertainFamily, corners: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let all = lumped.members();
     if lumped.extent() == Extent::Members {
-        return Ok((Vec::new(), all.to_vec()));
+        return all.to_vec();
     }
-    let corners = match lumped.coordinates().len() {
-        0 => Vec::new(),
-        few if few <= CORNER_COORDINATES => vertices(lumped.plant(), lumped.coordinates())?,
-        _ => Vec::new(),
-    };
     let others: Vec<&Vec<f64>> = all.iter().skip(1).filter(|values| !corners.contains(values)).collect();
     let room = MEMBERS_MAXIMUM.saturating_sub(corners.len()).max(1);
     let spread = others.iter().step_by(others.len().div_ceil(room).max(1)).map(|values| (*values).clone());
-    Ok((corners, all.iter().take(1).cloned().chain(spread).collect()))
+    all.iter().take(1).cloned().chain(spread).collect()
 }
 
 fn named(parameters: &[UncertainParameter], values: &[f64]) -> String {
