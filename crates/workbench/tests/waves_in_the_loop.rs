@@ -70,6 +70,15 @@ fn the_step_that_is_predicted_is_the_machines() {
     assert_eq!(first["agrees"], Value::from(true));
 }
 
+/// For the one rig there is a loop below the quarter wave of its hoses that satisfies everything, and the machine agrees.
+#[test]
+fn one_rig_with_waves_is_designed_for() {
+    let object = asked(&Request::Design { seed: None, stages: false }, &["line.model=transmission_line"]);
+    assert_eq!(object["status"], Value::from("met"));
+    assert_eq!(object["verification"]["verdict"], Value::from("met"));
+    assert_eq!(object["machine"]["verdict"], Value::from("agrees"), "{}", object["machine"]);
+}
+
 /// A family with lines in motion names its plants by their parameters, as every other family does.
 #[test]
 fn worst_plants_have_their_parameters() {

@@ -428,6 +428,7 @@ impl StabilityAudit {
                 let corners = self.plants.len() - family.members().len() - between;
                 format!("{} members and {corners} corners of the box{folding}", family.members().len())
             }
+            _ if self.plants.len() == 1 => String::new(),
             _ => format!("{} plants", self.plants.len()),
         };
         let way = match (&record.real_part, &self.family) {
@@ -443,7 +444,10 @@ impl StabilityAudit {
             (Some(_), _) => "by their closed-loop poles",
             (None, _) => "by the turns of their characteristic function",
         };
-        let mut reason = format!("all {which} are stable {way}");
+        let mut reason = match which.as_str() {
+            "" => format!("the family is one plant, stable {way}"),
+            _ => format!("all {which} are stable {way}"),
+        };
         if let Some(closest) = &record.closest {
             let ClosestApproach { distance, frequency_rad_per_s, .. } = closest;
             let between = if self.searched() { " between them, too," } else { "" };
