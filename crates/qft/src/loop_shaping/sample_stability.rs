@@ -15,8 +15,10 @@ use std::cell::OnceCell;
 
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
+use phea_dynamics::responding::RespondingPlant;
 
 use crate::closed_loop::{Compensation, Member};
+use crate::family::{COARSE, MeasuredPlant, tabulated};
 use crate::stability::{FeedbackPath, Irresolution, StabilityStatus, member_stability, poles_lie_below};
 use quotient::Quotient;
 use rounded_polynomial::{Hurwitz, RoundedPolynomial};
@@ -25,6 +27,8 @@ use rounded_polynomial::{Hurwitz, RoundedPolynomial};
 const REAL_PARTS_PER_DECADE: f64 = 256.0;
 const LEAST_REAL_PART: f64 = 1e-9;
 const DECADES: usize = 21;
+/// How far above half the sampling rate a plant without polynomials is tabulated.
+const ABOVE_NYQUIST: f64 = 20.0;
 
 /// Plants of one loop, made ready to be asked about its controller.
 ///
@@ -102,10 +106,22 @@ impl SampleStability {
 
     /// One more plant.
     pub fn add(&mut self, member: Member) {
+        let member = match member {
+            // a search asks too often for the plant itself
+            Member::Responding { plant, .. } => self.compensation.measured(&self.tabulated(plant.as_ref())),
+            other => other,
+        };
         let quotient = Quotient::of_member(&member);
         let approximation = if quotient.is_none() { Quotient::of_delayed_member(&member) } else { None };
         self.order.insert(0, self.plants.len());
         self.plants.push(Plant { member, quotient, approximation });
+    }
+
+    /// A plant without polynomials, as far as the images of a sampled loop need it.
+    fn tabulated(&self, plant: &dyn RespondingPlant) -> MeasuredPlant {
+        let [from, to] = plant.range_rad_per_s();
+        let highest = self.compensation.sample_time_s().map_or(0.0, |sample| std::f64::consts::PI / sample);
+        tabulated(plant, [from, to.max(ABOVE_NYQUIST * highest)], COARSE)
     }
 
     /// Whether no plant has dead time or is known by measurements only: then a question costs little.

@@ -4,7 +4,7 @@ mod frequencies;
 
 pub use frequencies::search_frequencies;
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller};
@@ -15,7 +15,7 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember};
 use super::margins::{Demand, Keeping, demands};
 use crate::closed_loop::{Compensation, Member};
 use crate::design::DesignProblem;
-use crate::family::{Extent, FINE, Family, MeasuredPlant, UncertainFamily, tabulated};
+use crate::family::{Extent, Family, MeasuredPlant, UncertainFamily};
 use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// Beside an undamped pole of the plant, where it has no response, it is looked at this share of the frequency higher.
@@ -261,7 +261,8 @@ impl Samples {
         }
         let member = match plant_at(&self.problem, point)? {
             Plant::Rational(coefficients) => self.around.member(coefficients)?,
-            Plant::Measured(measured) => self.around.measured(&measured),
+            Plant::Measured(measured) => self.around.measured(measured),
+            Plant::Responding(plant) => self.around.responding(plant),
         };
         self.plants.push(point.clone());
         self.members.push(member);
@@ -328,21 +329,8 @@ impl Column {
 /// A plant of a family.
 enum Plant<'a> {
     Rational(PlantCoefficients<f64>),
-    /// Or one without polynomials, in a table: a search asks too often for the plant itself.
-    Measured(Cow<'a, MeasuredPlant>),
-}
-
-/// How far below the lowest design frequency, and above half the sampling rate, a plant without polynomials is tabulated.
-const BELOW_DESIGN: f64 = 0.1;
-const ABOVE_NYQUIST: f64 = 20.0;
-
-/// Where a search looks at a plant without polynomials, rad/s.
-fn responding_range(problem: &DesignProblem, plant: &dyn RespondingPlant) -> [f64; 2] {
-    let [from, to] = plant.range_rad_per_s();
-    let asked = problem.specifications.iter().flat_map(|one| &one.frequencies_rad_per_s).copied();
-    let lowest = asked.filter(|frequency| *frequency > 0.0).fold(f64::INFINITY, f64::min);
-    let nyquist = problem.timing.sample_time_s.map_or(0.0, |sample| std::f64::consts::PI / sample);
-    [from.min(BELOW_DESIGN * lowest), to.max(ABOVE_NYQUIST * nyquist)]
+    Measured(&'a MeasuredPlant),
+    Responding(Arc<dyn RespondingPlant>),
 }
 
 fn plant_at<'a>(problem: &'a DesignProblem, point: &PlantPoint) -> Result<Plant<'a>, SamplesError> {
@@ -351,14 +339,11 @@ fn plant_at<'a>(problem: &'a DesignProblem, point: &PlantPoint) -> Result<Plant<
             let complete = values.len() == family.plant().parameters().len();
             complete.then(|| family.plant().member(values)).flatten().map(|plant| match plant {
                 PlantMember::Rational(coefficients) => Plant::Rational(coefficients),
-                PlantMember::Responding(plant) => {
-                    let range = responding_range(problem, plant.as_ref());
-                    Plant::Measured(Cow::Owned(tabulated(plant.as_ref(), range, FINE)))
-                }
+                PlantMember::Responding(plant) => Plant::Responding(plant),
             })
         }
         (Family::Measured(family), PlantPoint::Measured(index)) => {
-            family.plants().get(*index).map(|plant| Plant::Measured(Cow::Borrowed(plant)))
+            family.plants().get(*index).map(Plant::Measured)
         }
         _ => None,
     };

@@ -7,6 +7,7 @@ use phea_dynamics::portable;
 
 use super::{Plant, SamplesError, around, plant_at};
 use crate::design::DesignProblem;
+use crate::family::{COARSE, tabulated};
 use crate::specification::Limit;
 use crate::verification::PlantPoint;
 
@@ -103,6 +104,11 @@ fn features(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<(Vec<f64>,
                     // a polynomial without roots to be had has no peak to show
                     roots.extend(Polynomial::new(coefficients.clone()).roots().unwrap_or_default());
                 }
+            }
+            Plant::Responding(plant) => {
+                let range = plant.range_rad_per_s();
+                peaks.extend(tabulated(plant.as_ref(), range, COARSE).frequencies_rad_per_s);
+                sizes.extend(range);
             }
             Plant::Measured(plant) => {
                 peaks.extend(&plant.frequencies_rad_per_s);
