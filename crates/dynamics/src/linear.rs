@@ -34,6 +34,7 @@ mod roots;
 mod state_space;
 mod structure;
 mod transfer_function;
+mod wide;
 mod zeros;
 
 use num_complex::Complex64;

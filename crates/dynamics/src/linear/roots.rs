@@ -5,6 +5,7 @@
 //! magnitude start at their own magnitude; beyond the unit circle the reversed polynomial is evaluated.
 
 use num_complex::Complex64;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::double_double::ComplexDoubleDouble;
 pub(crate) use super::refinement::conjugate_pairs;
@@ -149,6 +150,26 @@ fn evaluate_locally(polynomial: &Polynomial, z: Complex64) -> LocalValue {
 
 /// p/p' at z with both in twice the working precision; partial sums that grow out of range are scaled down together.
 fn evaluate_widely(polynomial: &Polynomial, z: Complex64) -> LocalValue {
+    Arch::new().dispatch(Widely { polynomial, z })
+}
+
+/// The same, compiled for the instructions of the processor at hand.
+struct Widely<'a> {
+    polynomial: &'a Polynomial,
+    z: Complex64,
+}
+
+impl WithSimd for Widely<'_> {
+    type Output = LocalValue;
+
+    #[inline(always)]
+    fn with_simd<D: Simd>(self, _: D) -> LocalValue {
+        widely(self.polynomial, self.z)
+    }
+}
+
+#[inline(always)]
+fn widely(polynomial: &Polynomial, z: Complex64) -> LocalValue {
     const LIMIT: f64 = 1e30;
     let (point, radius) = (ComplexDoubleDouble::from(z), magnitude(z));
     let (mut value, mut slope) = (ComplexDoubleDouble::default(), ComplexDoubleDouble::default());

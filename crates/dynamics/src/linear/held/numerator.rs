@@ -66,8 +66,7 @@ impl Held {
         let mut samples = Vec::with_capacity(count / 2 + 1);
         for k in 0..count.div_ceil(2) {
             let z = *points.get(2 * k + 1)?;
-            let local = self.at(z)?;
-            let numerator = local.value * local.determinant;
+            let numerator = self.numerator(z)?;
             samples.push(Sample { z: z.value(), numerator: numerator.value() });
             // a point of the upper half counts for its conjugate too
             let weight = if 2 * k + 1 == count { 1.0 } else { 2.0 };
@@ -83,12 +82,13 @@ impl Held {
 
     /// N at the angles of the slow poles, between z = 1 and the points above.
     fn beside_slow_poles(&self, poles: &[Complex64]) -> Vec<Sample> {
-        let angles = poles.iter().map(|pole| magnitude(pole - 1.0));
+        // of a pair one counts for both
+        let upper = poles.iter().filter(|pole| pole.im >= 0.0);
+        let angles = upper.map(|pole| magnitude(pole - 1.0));
         let within = angles.filter(|angle| (LEAST_ANGLE..1.0).contains(angle));
         let sample = |angle: f64| {
             let z = Complex64::new(cos(angle), sin(angle));
-            let local = self.at(z.into())?;
-            Some(Sample { z, numerator: (local.value * local.determinant).value() })
+            Some(Sample { z, numerator: self.numerator(z.into())?.value() })
         };
         within.filter_map(sample).collect()
     }
