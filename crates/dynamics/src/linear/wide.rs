@@ -197,14 +197,14 @@ mod tests {
             let matrix = Wide::from_fn(order, entry);
             let product = matrix.times(&matrix);
             let column = matrix.times_column(&vec![entry(0, 1); order]);
-            for i in 0..order {
+            for (i, found) in column.iter().enumerate() {
                 let sum = |term: &dyn Fn(usize) -> DoubleDouble| {
                     (0..order).map(term).fold(DoubleDouble::ZERO, |sum, term| sum + term)
                 };
                 for j in 0..order {
                     assert_eq!(product.entry(i, j), sum(&|k| entry(i, k) * entry(k, j)), "{order} {i} {j}");
                 }
-                assert_eq!(column[i], sum(&|k| entry(i, k) * entry(0, 1)), "{order} {i}");
+                assert_eq!(*found, sum(&|k| entry(i, k) * entry(0, 1)), "{order} {i}");
             }
         }
     }

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 
 use super::super::double_double::{ComplexDoubleDouble, DoubleDouble};
 use super::super::refinement::{converge, symmetrise};
-use super::super::{LinearError, Polynomial};
+use super::super::{LinearError, Polynomial, roots};
 use super::Held;
 use crate::portable::{cos, magnitude, sin};
 
@@ -30,7 +30,7 @@ impl Held {
     /// the response were not found.
     ///
     /// # Errors
-    /// Those of [`Polynomial::roots`].
+    /// Those of [`roots::guessed`].
     pub(in super::super) fn factors(
         &self,
         poles: &[Complex64],
@@ -41,7 +41,7 @@ impl Held {
         let Some(kept) = first.and_then(|first| coefficients.get(first..)) else { return Ok(None) };
         let rounded = Polynomial::new(kept.iter().map(|c| c.value()).collect());
         let gain = rounded.leading_coefficient();
-        let mut zeros = apart(rounded.roots()?);
+        let mut zeros = apart(roots::guessed(&rounded)?);
         let step = |z: Complex64| self.newton_step(poles, z);
         converge(&mut zeros, 60, |z| if REFINED.contains(&magnitude(z)) { step(z) } else { None });
         let zeros = symmetrise(&zeros);
