@@ -15,7 +15,8 @@ pub(crate) fn power_unit<S: Scalar>(declared: &project::Actuator, numbers: &Numb
     if supply.model == SupplyModel::Constant {
         return PowerUnit::Constant;
     }
-    let at = |key: &str, value: f64| numbers.at(&format!("supply.{key}"), value);
+    let of_supply = numbers.within("supply");
+    let at = |key: &str, value: f64| of_supply.at(key, value);
     let of_fluid = || numbers.at("fluid.bulk_modulus", declared.fluid.bulk_modulus);
     let modulus = supply.effective_bulk_modulus;
     PowerUnit::PumpLimited(PumpLimited {
