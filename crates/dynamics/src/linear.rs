@@ -25,6 +25,7 @@ pub(crate) mod double_double;
 mod eigenvalues;
 pub(crate) mod even_part;
 mod held;
+mod hessenberg;
 mod interconnection;
 pub(crate) mod matrix_exponential;
 mod polynomial;
