@@ -56,13 +56,15 @@ const STAGES: &[(&str, Stage)] = &[
     ("peers", peers),
     (COMPARISONS, comparisons::run),
     (MUTATION, mutation),
+    (SOAK, soak),
 ];
 
 /// The stage whose recomputations go on beside the others.
 const COMPARISONS: &str = "comparisons";
 
-/// The stage that runs only where it is named.
+/// The stages that run only where they are named.
 const MUTATION: &str = "mutation";
+const SOAK: &str = "soak";
 
 /// The names of all stages.
 pub(crate) const STAGE_NAMES: [&str; STAGES.len()] = {
@@ -75,7 +77,7 @@ pub(crate) const STAGE_NAMES: [&str; STAGES.len()] = {
     names
 };
 
-/// Runs the named stages, when none is named all but the one that waits to be named; whether nothing failed.
+/// Runs the named stages, when none is named all but those that wait to be named; whether nothing failed.
 ///
 /// Where the variable `CI` is set, a stage that had to be skipped fails the run.
 pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
@@ -83,7 +85,10 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
         eprintln!("no stage is called `{unknown}`; the stages are {}", STAGE_NAMES.join(", "));
         return false;
     }
-    let chosen = |name: &str| if wanted.is_empty() { name != MUTATION } else { wanted.contains(&name) };
+    let chosen = |name: &str| match wanted {
+        [] => ![MUTATION, SOAK].contains(&name),
+        _ => wanted.contains(&name),
+    };
     // A build often waits for one crate: the second processor recomputes meanwhile.
     let mut begun = chosen(COMPARISONS).then(|| comparisons::begin(root));
     let mut results = Vec::new();
@@ -171,6 +176,14 @@ fn mutation(root: &Path) -> Outcome {
     execute(root, "cargo", &["test", "--workspace", "--test", "all", "--", "--ignored", "mutation::"])
 }
 
+/// A hundred kills of campaigns on one, two and four threads, and two gigabytes of rows, as they are shipped: what went and how fast is told.
+fn soak(root: &Path) -> Outcome {
+    let tests =
+        ["campaign_killed::", "streamed_rows::", "--include-ignored", "--nocapture", "--test-threads=1"];
+    let arguments = [&["test", "--release", "-p", "phea-cli", "--test", "all", "--"][..], &tests].concat();
+    execute_with(root, "cargo", &arguments, &[("PHEA_KILLS", "100")])
+}
+
 fn doctests(root: &Path) -> Outcome {
     execute(root, "cargo", &["test", "--workspace", "--doc", "--no-fail-fast"])
 }
@@ -222,6 +235,6 @@ mod tests {
 
     #[test]
     fn every_stage_that_is_special_is_one() {
-        assert!([COMPARISONS, MUTATION].iter().all(|name| STAGE_NAMES.contains(name)));
+        assert!([COMPARISONS, MUTATION, SOAK].iter().all(|name| STAGE_NAMES.contains(name)));
     }
 }

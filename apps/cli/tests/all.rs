@@ -6,3 +6,4 @@ mod campaign_killed;
 mod exit_status;
 mod full_disk;
 mod stories;
+mod streamed_rows;
