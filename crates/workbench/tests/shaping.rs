@@ -324,7 +324,8 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
     let lag = "{ kind = \"lag\", zero_frequency = 5, pole_frequency = 50 }";
     check(Change::Add, lag, "a lag has its zero above its pole", 34, "write kind = \"lead\"");
     let zero = "{ kind = \"lead\", zero_freqency = 5, pole_frequency = 50 }";
-    check(Change::Add, zero, "this element needs `zero_frequency`", 1, "");
+    let needs = "missing `zero_frequency` in [elements]: kind \"lead\" needs it";
+    check(Change::Add, zero, needs, 1, "Corner of the numerator of a lead or lag.");
     check(Change::Add, "{ kind = lead }", "string values must be quoted, expected literal string", 10, "");
     check(
         Change::Add,
@@ -337,7 +338,8 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
     check(Change::Remove, "one", "`one` is no number of an element", 1, "elements are counted from 1");
     check(Change::Move, "1", "there is no `=` in it", 1, "for instance 3=1");
     check(Change::Move, "1 = 2", "`2` is no number of an element", 5, "there is one element");
-    check(Change::Replace, "1={ kind = \"pole\" }", "this element needs `frequency`", 3, "");
+    let needs = "missing `frequency` in [elements]: kind \"pole\" needs it";
+    check(Change::Replace, "1={ kind = \"pole\" }", needs, 3, "Corner or natural frequency.");
     let example = "for instance: lead through -6 dB, -130 deg at 20 rad/s";
     check(Change::Pass, "lead", "it does not say `through` which point", 1, example);
     check(Change::Pass, "lead through 3 dB", "it does not say `at` which frequency", 14, example);
