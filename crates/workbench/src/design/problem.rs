@@ -25,6 +25,7 @@ const DAMPING_RATIOS: [f64; 2] = [0.1, 5.0];
 pub fn design_problem(project: &Project, given: &RobustProblem) -> Result<DesignProblem, CommandError> {
     Ok(DesignProblem {
         family: given.family.clone(),
+        beside: vec![],
         sensor: sensor(project)?,
         timing: timing(project),
         specifications: given.specifications.clone(),
