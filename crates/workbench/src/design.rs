@@ -198,19 +198,6 @@ pub fn design_project(
             let told = ProjectDesign::new(project, &given, run.problem(), design, options)?;
             let continuous = if stopped { None } else { continuous_as_sampled(project, &run, &told, watch)? };
             let trial = if stopped { None } else { tried_design(source, project, &told, watch)? };
-            if let Some(waves) = trial.as_ref().filter(|t| t.agreement()==Agreement::Contradicts).and_then(|_| crate::trial::with_waves(project)) {
-                let alone = Project { uncertainty: vec![], family: None, linear: Default::default(), operating_point: project.resolved_operating_point(), ..waves };
-                if let phea_qft::family::Family::Uncertain(family) = crate::family::family(&alone, source)? {
-                    let mut next = run.clone().taking_in(family.plant().clone()).map_err(DesignError::from)?;
-                    while next.step().map_err(DesignError::from)? { watch(Progress { stage: next.stage(), share: next.progress() }); }
-                    let d = next.design().unwrap();
-                    eprintln!("{:?} {:?} {:?}", d.status, d.law.feedback.transfer_function(), d.structure);
-                    for r in &d.rounds { eprintln!("{} {} {} {} {:?}", r.structure.dimension(), r.plants, r.frequencies, r.searched_margin_db, r.audited_margin_db); }
-                    let again = ProjectDesign::new(project, &given, next.problem(), d.clone(), next.options().clone())?;
-                    let trial = tried_design(source, project, &again, watch)?;
-                    return Ok(ProjectDesign { trial, ..again });
-                }
-            }
             Ok(ProjectDesign { stopped, published, explanations, continuous, trial, ..told })
         }
         None if stopped => Err(CommandError::Stopped),

@@ -10,7 +10,6 @@ mod rigs;
 mod run;
 
 pub(crate) use answer::{Body, HEADINGS, agreement_word, body, cells, reasons, text};
-pub(crate) use rigs::with_waves;
 pub use run::{Agreement, Response, Run, Step};
 
 use crate::audit::ProjectAudit;

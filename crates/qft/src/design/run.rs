@@ -129,7 +129,7 @@ impl DesignRun {
         next.sampled = self.sampled;
         next.rounds = self.rounds;
         if let Some(mut samples) = self.samples {
-            samples.take_in(plant, POINTS_PER_DECADE)?;
+            samples.take_in(plant)?;
             next.samples = Some(samples);
         }
         if let Some(found) = self.design {
@@ -261,7 +261,11 @@ impl DesignRun {
     fn first_samples(&self) -> Result<Samples, DesignError> {
         let plants = first_plants(&self.problem, self.options.seed);
         let frequencies = search_frequencies(&self.problem, &plants, POINTS_PER_DECADE)?;
-        Ok(Samples::new(&self.problem, &plants, &frequencies)?)
+        let mut samples = Samples::new(&self.problem, &plants, &frequencies)?;
+        for beside in (0..self.problem.beside.len()).map(PlantPoint::Beside) {
+            samples.look_closely_at(&beside)?;
+        }
+        Ok(samples)
     }
 
     fn end_attempt(&mut self) -> Result<(), DesignError> {

@@ -2,6 +2,7 @@
 
 mod frequencies;
 
+use frequencies::bends;
 pub use frequencies::search_frequencies;
 
 use std::sync::Arc;
@@ -164,22 +165,25 @@ impl Samples {
         Ok(())
     }
 
-    /// Takes a plant in that the loop must serve beside its family, the nominal one of this: it is looked at wherever every plant is, and at
-    /// these frequencies, rad/s.
+    /// Takes a plant in that the loop must serve beside its family, the nominal one of this.
     ///
     /// # Errors
     /// Those of [`Samples::new`].
-    pub(crate) fn take_in(
-        &mut self,
-        plant: UncertainPlant,
-        points_per_decade: f64,
-    ) -> Result<(), SamplesError> {
+    pub(crate) fn take_in(&mut self, plant: UncertainPlant) -> Result<(), SamplesError> {
         let point = PlantPoint::Beside(self.problem.beside.len());
         self.problem.beside.push(plant);
         self.add_plant(&point)?;
-        let own = std::slice::from_ref(&point);
-        for frequency in search_frequencies(&self.problem, own, points_per_decade)? {
-            self.add(own, frequency)?;
+        self.look_closely_at(&point)
+    }
+
+    /// Looks at this plant wherever its own response bends: between the frequencies of a grid a resonance may hide.
+    ///
+    /// # Errors
+    /// Those of [`Samples::new`].
+    pub(crate) fn look_closely_at(&mut self, point: &PlantPoint) -> Result<(), SamplesError> {
+        let highest = self.around.highest_frequency_rad_per_s();
+        for frequency in bends(&self.problem, point)?.into_iter().filter(|frequency| *frequency <= highest) {
+            self.add(std::slice::from_ref(point), frequency)?;
         }
         Ok(())
     }
