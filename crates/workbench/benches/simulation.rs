@@ -20,9 +20,8 @@ use phea_dynamics::simulation::{
     Status, System, Task, drive,
 };
 use phea_hydraulics::machine::{Machine, MachineOptions, Start};
-use phea_workbench::control::{controller, sensor};
 use phea_workbench::project::{self, Project, Signal};
-use phea_workbench::rig::Rig;
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 /// Name, project file and golden reference.
@@ -134,7 +133,7 @@ enum Control {
 
 impl Bench {
     fn new(project: &Project) -> Result<Bench, Fault> {
-        let rig = Rig::new(project)?;
+        let rig = Setup::rig_of(project)?;
         let machine = Machine::new(&rig.actuator, &MachineOptions::default())?;
         let scenario = project.scenarios.first().ok_or("no scenario")?;
         let stated = scenario.start.as_ref().ok_or("no start")?;
@@ -153,8 +152,8 @@ impl Bench {
         let ground = motion.shifted(beginning.inputs[0]);
         let mut inputs = vec![reference, Input::Value(ground.clone()), Input::Rate(ground)];
 
-        let mut law = controller(project)?.ok_or("no controller")?;
-        let sensed = Sensed::new(machine, &sensor(project)?)?;
+        let mut law = Setup::new(project)?.controller.ok_or("no controller")?;
+        let sensed = Sensed::new(machine, &Setup::new(project)?.sensor)?;
         let control = match law.timing.sample_time_s {
             None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &law, 0.0)?)),
             Some(sample_time_s) => {

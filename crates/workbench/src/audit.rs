@@ -25,9 +25,9 @@ use phea_qft::verification::{Audit, SpecificationFinding, TOLERANCE_DB, Tracking
 
 use crate::caveat::Caveat;
 use crate::command::{CommandError, Progress, Watch};
-use crate::project::Project;
 use crate::quantity::DisplayUnit;
 use crate::robust::{RobustProblem, robust_problem};
+use crate::setup::Setup;
 use crate::source::Source;
 
 /// Why there is nothing to audit.
@@ -53,9 +53,10 @@ pub enum AuditError {
 /// built, or a watcher that stops.
 pub fn audit_project(
     source: &dyn Source,
-    project: &Project,
+    setup: &Setup<'_>,
     watch: Watch<'_>,
 ) -> Result<ProjectAudit, CommandError> {
+    let project = setup.project;
     match &project.controller {
         None => return Err(AuditError::NoController.into()),
         Some(controller) if !controller.has_law() => return Err(AuditError::NoLaw.into()),
@@ -64,7 +65,7 @@ pub fn audit_project(
     if project.specifications.is_empty() {
         return Err(AuditError::NoSpecification.into());
     }
-    audit_problem(&robust_problem(source, project)?, watch)
+    audit_problem(&robust_problem(source, setup)?, watch)
 }
 
 /// The same of a robust problem that is at hand already.

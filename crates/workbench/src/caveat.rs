@@ -5,7 +5,7 @@
 
 use crate::project::{LineModel, LoadModel, Project, SpecificationKind, SupplyModel};
 use crate::quantity::DisplayUnit;
-use crate::rig::Rig;
+use crate::setup::Setup;
 
 /// Something declared that the linear loop does not count.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,8 +17,8 @@ pub struct Caveat {
 }
 
 /// What is declared and in no linear loop.
-pub(crate) fn caveats(project: &Project) -> Vec<Caveat> {
-    apart_from_lines(project).chain(supply(project)).collect()
+pub(crate) fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
+    apart_from_lines(setup.project).chain(supply(setup)).collect()
 }
 
 /// What is declared and in no linear model, in sentences.
@@ -70,12 +70,13 @@ fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
 
 /// A supply that yields is counted as small motions see it, which a large step is not; where more is taken than the pump gives there is no
 /// rest to be linearised at.
-fn supply(project: &Project) -> Option<Caveat> {
+fn supply(setup: &Setup<'_>) -> Option<Caveat> {
+    let project = setup.project;
     let supply = &project.actuator.as_ref()?.supply;
     if supply.model == SupplyModel::Constant || is_measured(project) {
         return None;
     }
-    let found = Rig::new(project).ok()?.supply?;
+    let found = setup.rig().ok()?.supply?;
     let flow = |value: f64| DisplayUnit::LITRE_PER_MINUTE.text(value, 3);
     let gives = supply.flow.unwrap_or(f64::NAN);
     let (taken, gives_words) = (flow(found.taken), flow(gives));

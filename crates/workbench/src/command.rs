@@ -17,17 +17,18 @@ use crate::answer::{self, Answer, OutputFile};
 use crate::audit::{self, AuditError, audit_project, outside};
 use crate::campaign::{CampaignError, Nowhere};
 use crate::caveat::caveats;
-use crate::control::{ControlError, controller, sensor};
+use crate::control::ControlError;
 use crate::derived::{self, derive};
 use crate::design::{self, DesignError, design_project};
 use crate::family::{FamilyError, family, visited_box};
 use crate::figure::FigureError;
 use crate::linearize::SweepRequest;
-use crate::project::{Loaded, Project, Report as Refusal};
+use crate::project::{Loaded, Report as Refusal};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{Decision, Report, report};
-use crate::rig::{Rig, RigError, sizing_problem};
+use crate::rig::{RigError, sizing_problem};
 use crate::robust::robust_problem;
+use crate::setup::Setup;
 use crate::shaping::{self, RequestedChange, Shaped, ShapingError, shape};
 use crate::simulate::{SimulateError, compare_projects};
 use crate::sizing::{self, Question, size};
@@ -295,24 +296,23 @@ pub fn answer_into(
 }
 
 fn check(source: &dyn Source, loaded: &Loaded) -> Result<Answer, CommandError> {
-    let derived = match Rig::new(&loaded.project) {
-        Ok(rig) => derive(&loaded.project, &rig),
+    let setup = Setup::new(&loaded.project)?;
+    let derived = match setup.rig() {
+        Ok(rig) => derive(&loaded.project, rig),
         // A plant given as a transfer function has nothing to derive; it is valid all the same.
         Err(RigError::NoActuator) => vec![],
         Err(error) => return Err(error.into()),
     };
-    controller(&loaded.project)?;
-    sensor(&loaded.project)?;
     specifications(&loaded.project)?;
     let wishes = wishes(&loaded.project)?;
     let in_time = specification::text(&wishes);
-    let visited = visited_box(&loaded.project)?;
+    let visited = visited_box(&setup)?;
     let in_words = |ranges: &Vec<_>| format!("{}\n", derived::visited_text(&loaded.project, ranges));
     let boxed = visited.as_ref().map_or(String::new(), in_words);
-    let told = told_first(&loaded.project);
+    let told = told_first(&setup);
     let first: String = told.iter().map(|sentence| format!("warning: {sentence}\n")).collect();
     let text = match derived.as_slice() {
-        [] => format!("{first}{in_time}The project is valid. {}\n", without_derived(source, loaded)?),
+        [] => format!("{first}{in_time}The project is valid. {}\n", without_derived(source, &setup)?),
         derived => format!("{first}{}\n{boxed}{in_time}The project is valid.\n", derived::text(derived)),
     };
     let files = derived::files(&derived);
@@ -321,15 +321,15 @@ fn check(source: &dyn Source, loaded: &Loaded) -> Result<Answer, CommandError> {
 }
 
 /// What no verdict on the linear loop counts, and what of the rig lies outside of its own family.
-fn told_first(project: &Project) -> Vec<String> {
-    let outside = outside(project)
+fn told_first(setup: &Setup<'_>) -> Vec<String> {
+    let outside = outside(setup)
         .map(|(_, words)| format!("the family does not contain the rig as it is derived ({words})"));
-    outside.into_iter().chain(caveats(project).into_iter().map(|caveat| caveat.sentence)).collect()
+    outside.into_iter().chain(caveats(setup).into_iter().map(|caveat| caveat.sentence)).collect()
 }
 
 /// The family is all that a project without an actuator has: it must be one.
-fn without_derived(source: &dyn Source, loaded: &Loaded) -> Result<&'static str, CommandError> {
-    Ok(match family(&loaded.project, source)? {
+fn without_derived(source: &dyn Source, setup: &Setup<'_>) -> Result<&'static str, CommandError> {
+    Ok(match family(setup, source)? {
         Family::Measured(_) => "Its plants were measured, and nothing is derived from them.",
         Family::Uncertain(_) => "Its plant is a transfer function, from which nothing is derived.",
     })
@@ -367,9 +367,9 @@ fn size_answer(
     catalogues: &[String],
     question: Question,
 ) -> Result<Answer, CommandError> {
-    let rig = Rig::new(&loaded.project)?;
+    let setup = Setup::new(&loaded.project)?;
     let catalogue = crate::catalogue::load(source, catalogues).map_err(CommandError::Catalogue)?;
-    let problem = sizing_problem(&loaded.project, &rig, &catalogue)?;
+    let problem = sizing_problem(&setup, &catalogue)?;
     let sizing = size(&problem, question);
     Ok(Answer {
         text: sizing::text(&sizing),
@@ -380,7 +380,7 @@ fn size_answer(
 }
 
 fn verify_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
-    let view = audit_project(source, &loaded.project, watch)?;
+    let view = audit_project(source, &Setup::new(&loaded.project)?, watch)?;
     Ok(Answer {
         text: audit::text(&view),
         json: audit::json(loaded, &view),
@@ -390,9 +390,10 @@ fn verify_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Resu
 }
 
 fn verify_on_machine(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
-    let view = audit_project(source, &loaded.project, watch)?;
-    let problem = robust_problem(source, &loaded.project)?;
-    let Some(trial) = tried(source, &loaded.project, &problem, &view, watch)? else {
+    let setup = Setup::new(&loaded.project)?;
+    let view = audit_project(source, &setup, watch)?;
+    let problem = robust_problem(source, &setup)?;
+    let Some(trial) = tried(source, &setup, &problem, &view, watch)? else {
         return Err(RigError::NoActuator.into());
     };
     Ok(Answer {
@@ -410,7 +411,7 @@ fn design_answer(
     stages: bool,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    let view = design_project(source, loaded, seed, watch)?;
+    let view = design_project(source, &Setup::new(&loaded.project)?, seed, watch)?;
     Ok(Answer {
         text: design::text(loaded, &view)?,
         json: design::json(loaded, &view)?,
@@ -461,15 +462,15 @@ fn report_answer(
     watch: Watch<'_>,
     files: impl Fn(&Report) -> Result<Vec<OutputFile>, FigureError>,
 ) -> Result<Answer, CommandError> {
+    let setup = Setup::new(&loaded.project)?;
     let problem = match loaded.project.sizing {
         None => None,
         Some(_) => {
-            let rig = Rig::new(&loaded.project)?;
             let catalogue = crate::catalogue::load(source, catalogues).map_err(CommandError::Catalogue)?;
-            Some(sizing_problem(&loaded.project, &rig, &catalogue)?)
+            Some(sizing_problem(&setup, &catalogue)?)
         }
     };
-    let report = report(source, loaded, problem.as_ref(), watch)?;
+    let report = report(source, loaded, &setup, problem.as_ref(), watch)?;
     let text: String = report.summary.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
     let body = ReportBody {
         summary: report.summary.iter().map(|(name, text)| SummaryRow { name, text: text.clone() }).collect(),

@@ -1,12 +1,9 @@
-//! The controller and prefilter of a project as values of `phea_dynamics`, and the linear loop they close.
+//! The controller and prefilter of a project as values of `phea_dynamics`; [`Setup`](crate::setup::Setup) holds them.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Stage, Timing};
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
-use phea_qft::closed_loop::Compensation;
-use phea_qft::design::quantisation::{
-    CoefficientFormat, Converter, Quantisation, QuantisationError, rounded,
-};
+use phea_qft::design::quantisation::{CoefficientFormat, Converter, Quantisation, QuantisationError};
 
 use crate::project::{self, ElementKind, Formula, FormulaError, Project, Rational, Transfer};
 
@@ -44,7 +41,7 @@ pub enum ControlError {
 ///
 /// # Errors
 /// [`ControlError`] if one of them is no transfer function.
-pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError> {
+pub(crate) fn controller(project: &Project) -> Result<Option<Controller>, ControlError> {
     let Some(declared) = project.controller.as_ref().filter(|controller| controller.has_law()) else {
         return Ok(None);
     };
@@ -65,14 +62,14 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
 ///
 /// # Errors
 /// [`ControlError`] if it is no transfer function.
-pub fn prefilter(project: &Project) -> Result<Option<Compensator>, ControlError> {
+pub(crate) fn prefilter(project: &Project) -> Result<Option<Compensator>, ControlError> {
     let Some(declared) = &project.prefilter else { return Ok(None) };
     let sample_time = declared.sample_time.or(timing(project).sample_time_s);
     compensator("[prefilter]", &declared.transfer, sample_time).map(Some)
 }
 
 /// When the controller acts, be its law given or to be designed; continuous and without delay where the project says nothing.
-pub fn timing(project: &Project) -> Timing {
+pub(crate) fn timing(project: &Project) -> Timing {
     let Some(declared) = &project.controller else { return Timing::default() };
     Timing {
         sample_time_s: declared.sample_time,
@@ -90,7 +87,7 @@ pub fn timing(project: &Project) -> Timing {
 ///
 /// # Errors
 /// [`ControlError::Quantisation`] for a converter that is none.
-pub fn quantisation(project: &Project) -> Result<Quantisation, ControlError> {
+pub(crate) fn quantisation(project: &Project) -> Result<Quantisation, ControlError> {
     let declared = project.controller.as_ref().and_then(|controller| controller.quantization.clone());
     let Some(declared) = declared else { return Ok(Quantisation::default()) };
     let converter = |bits: u32, range: Option<[f64; 2]>| {
@@ -106,33 +103,11 @@ pub fn quantisation(project: &Project) -> Result<Quantisation, ControlError> {
     })
 }
 
-/// A controller as the project's computer runs it: in z with rounded coefficients, or as it is where nothing is rounded.
-///
-/// # Errors
-/// [`ControlError::Quantisation`] for coefficients that cannot be kept.
-pub fn deployed(project: &Project, controller: &Controller) -> Result<Controller, ControlError> {
-    match quantisation(project)?.coefficients {
-        CoefficientFormat::Double => Ok(controller.clone()),
-        format => Ok(rounded(controller, format)?.controller),
-    }
-}
-
-/// The loop around the plant that the given controller and prefilter make; `None` where the project gives no law.
-///
-/// # Errors
-/// [`ControlError`] if one of them is no transfer function, or cannot be sampled.
-pub fn compensation(project: &Project) -> Result<Option<Compensation>, ControlError> {
-    let Some(controller) = controller(project)? else { return Ok(None) };
-    let controller = deployed(project, &controller)?;
-    let linear = |error| ControlError::Linear { place: "[controller]", error };
-    Compensation::new(&controller, sensor(project)?).map(Some).map_err(linear)
-}
-
 /// H; 1 where the project says nothing of a sensor.
 ///
 /// # Errors
 /// [`ControlError`] if what it says is no transfer function.
-pub fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
+pub(crate) fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
     let Some(declared) = &project.sensor else { return Ok(TransferFunction::gain_only(1.0)) };
     let place = "[sensor]";
     let Rational { numerator, denominator } = &declared.transfer;

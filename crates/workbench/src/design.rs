@@ -32,10 +32,10 @@ use phea_qft::verification::Verdict;
 
 use crate::audit::{ProjectAudit, audit_problem};
 use crate::command::{CommandError, Progress, Watch};
-use crate::control::{controller, deployed, sensor};
-use crate::project::{self, Loaded, Project};
+use crate::project::{self, Project};
 use crate::quantity;
 use crate::robust::{RobustProblem, robust_problem};
+use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{Agreement, Trial, tried};
 
@@ -91,22 +91,23 @@ impl ProjectDesign {
     /// # Errors
     /// [`CommandError`] for a law or a sensor that is no transfer function.
     pub fn new(
-        project: &Project,
+        setup: &Setup<'_>,
         given: &RobustProblem,
         asked: &DesignProblem,
         design: Design,
         options: DesignOptions,
     ) -> Result<ProjectDesign, CommandError> {
+        let project = setup.project;
         let has_prefilter = options.prefilter != PrefilterChoice::None;
         let law = design.law.clone();
         let problem = RobustProblem {
-            compensation: Compensation::new(&design.controller, sensor(project)?)?,
+            compensation: Compensation::new(&design.controller, setup.sensor.clone())?,
             has_controller: true,
             has_prefilter,
             ..given.clone()
         };
         let view = ProjectAudit::new(&problem, design.audit.clone());
-        let rounding = rounding::rounding(project, &problem)?;
+        let rounding = rounding::rounding(setup, &problem)?;
         let declared = project.controller.clone().unwrap_or_default();
         let declared_controller = project::Controller {
             transfer: factors::declared(&law.feedback.transfer_function()?),
@@ -165,24 +166,24 @@ impl ProjectDesign {
 /// built, or a watcher that stops it before anything was found.
 pub fn design_project(
     source: &dyn Source,
-    loaded: &Loaded,
+    setup: &Setup<'_>,
     seed: Option<u32>,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, CommandError> {
-    let project = &loaded.project;
+    let project = setup.project;
     if project.specifications.is_empty() {
         return Err(DesignError::NoSpecification.into());
     }
-    let given = robust_problem(source, project)?;
-    let published = match controller(project)? {
+    let given = robust_problem(source, setup)?;
+    let published = match &setup.controller {
         None => None,
         Some(law) => {
             let view = audit_problem(&given, watch)?;
-            Some(Side::new(law, given.clone(), view)?)
+            Some(Side::new(law.clone(), given.clone(), view)?)
         }
     };
-    let problem = design_problem(project, &given)?;
-    let options = design_options(project, &given, seed)?;
+    let problem = design_problem(setup, &given);
+    let options = design_options(setup, &given, seed)?;
     let mut run = DesignRun::new(problem, options);
     let explanations = run.findings().iter().map(Explanation::of).collect::<Vec<_>>();
     let mut stopped = false;
@@ -195,8 +196,8 @@ pub fn design_project(
     let (options, found) = (run.options().clone(), run.design().cloned());
     match found {
         Some(design) => {
-            let told = ProjectDesign::new(project, &given, run.problem(), design, options)?;
-            let continuous = if stopped { None } else { continuous_as_sampled(project, &run, &told, watch)? };
+            let told = ProjectDesign::new(setup, &given, run.problem(), design, options)?;
+            let continuous = if stopped { None } else { continuous_as_sampled(setup, &run, &told, watch)? };
             let trial = if stopped { None } else { tried_design(source, project, &told, watch)? };
             Ok(ProjectDesign { stopped, published, explanations, continuous, trial, ..told })
         }
@@ -215,13 +216,14 @@ fn tried_design(
     told: &ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Option<Trial>, CommandError> {
-    tried(source, &told.deployed(project), &told.designed.problem, &told.designed.view, watch)
+    let deployed = told.deployed(project);
+    tried(source, &Setup::new(&deployed)?, &told.designed.problem, &told.designed.view, watch)
 }
 
 /// What a design that knows nothing of samples and delay becomes by them: made for the continuous loop, audited in the sampled one. `None`
 /// where the loop does not sample, or no such design is found.
 fn continuous_as_sampled(
-    project: &Project,
+    setup: &Setup<'_>,
     sampled: &DesignRun,
     told: &ProjectDesign,
     watch: Watch<'_>,
@@ -239,7 +241,7 @@ fn continuous_as_sampled(
     }
     let Some(design) = run.design() else { return Ok(None) };
     let controller = Controller { timing, ..design.law.clone() };
-    let compensation = Compensation::new(&deployed(project, &controller)?, sensor(project)?)?;
+    let compensation = setup.compensation(&controller)?;
     let problem = RobustProblem { compensation, ..told.designed.problem.clone() };
     let view = audit_problem(&problem, watch)?;
     Ok(Some(Side::new(controller, problem, view)?))

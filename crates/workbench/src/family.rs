@@ -15,6 +15,7 @@ use phea_qft::family::{Family, MeasurementError};
 
 use crate::project::{FormulaError, Project, Report, SpecificationKind};
 use crate::rig::RigError;
+use crate::setup::Setup;
 use crate::source::Source;
 
 pub use visited_box::{Extreme, VisitedRange, visited_box};
@@ -120,20 +121,22 @@ pub enum FamilyError {
 ///             [uncertainty]\nk = { nominal = 2, minimum = 1, maximum = 4, points = 3, spacing = \"log\" }\n";
 /// let source = Memory::default().with("servo.toml", text);
 /// let project = phea_workbench::project::read(&source, "servo.toml", &[], &[])?.project;
-/// let Family::Uncertain(family) = phea_workbench::family::family(&project, &source)? else { panic!("a box") };
+/// let setup = phea_workbench::setup::Setup::new(&project)?;
+/// let Family::Uncertain(family) = phea_workbench::family::family(&setup, &source)? else { panic!("a box") };
 /// let gains: Vec<f64> = family.members().iter().map(|values| values[0].round()).collect();
 /// assert_eq!(gains, [2.0, 1.0, 4.0]); // the nominal plant first, then what else is on the grid
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn family(project: &Project, source: &dyn Source) -> Result<Family, FamilyError> {
+pub fn family(setup: &Setup<'_>, source: &dyn Source) -> Result<Family, FamilyError> {
+    let project = setup.project;
     let family = match &project.family {
         Some(declared) if !declared.measured.is_empty() => {
             Family::Measured(measured::family(project, declared, source)?)
         }
         _ => {
-            let lumped = uncertain::family(project, uncertain_plant(project)?)?;
-            visited::check(project, &lumped)?;
-            Family::Uncertain(in_motion::family(project, &lumped)?.unwrap_or(lumped))
+            let lumped = uncertain::family(project, uncertain_plant(setup)?)?;
+            visited::check(setup, &lumped)?;
+            Family::Uncertain(in_motion::family(setup, &lumped)?.unwrap_or(lumped))
         }
     };
     check_second_path(project, &family)?;
@@ -153,7 +156,8 @@ fn check_second_path(project: &Project, family: &Family) -> Result<(), FamilyErr
 }
 
 /// The plant over the box of its uncertain parameters.
-fn uncertain_plant(project: &Project) -> Result<UncertainPlant, FamilyError> {
+fn uncertain_plant(setup: &Setup<'_>) -> Result<UncertainPlant, FamilyError> {
+    let project = setup.project;
     let parameters = uncertain::parameters(project)?;
     let is_outside = |one: &&UncertainParameter| {
         let set = project.linear.get(&one.name);
@@ -165,6 +169,6 @@ fn uncertain_plant(project: &Project) -> Result<UncertainPlant, FamilyError> {
     }
     match &project.plant {
         Some(plant) => formula::uncertain_plant(plant, parameters),
-        None => hydraulic::uncertain_plant(project, parameters),
+        None => hydraulic::uncertain_plant(setup, parameters),
     }
 }

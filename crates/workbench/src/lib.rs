@@ -20,6 +20,7 @@ pub mod quantity;
 pub mod report;
 pub mod rig;
 pub mod robust;
+pub mod setup;
 pub mod shaping;
 pub mod simulate;
 pub mod sizing;

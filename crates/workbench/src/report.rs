@@ -41,14 +41,13 @@ use phea_qft::verification::{SpecificationFinding, Verdict};
 use crate::answer::{OutputFile, significant};
 use crate::audit::{ProjectAudit, verdict_words};
 use crate::command::{CommandError, Watch};
-use crate::control::{controller, sensor};
 use crate::derived::derive;
 use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop, settling_words};
 use crate::linearize::{Linearization, linearize};
 use crate::project::{Actuator, Loaded, Project, Signal};
 use crate::quantity::DisplayUnit;
-use crate::rig::Rig;
+use crate::setup::Setup;
 use crate::sizing::{Question, Sizing, SizingProblem, size};
 use crate::source::Source;
 
@@ -91,6 +90,7 @@ const PNG_SCALE: f64 = 2.0;
 pub fn report(
     source: &dyn Source,
     loaded: &Loaded,
+    setup: &Setup<'_>,
     problem: Option<&SizingProblem>,
     watch: Watch<'_>,
 ) -> Result<Report, CommandError> {
@@ -98,18 +98,17 @@ pub fn report(
     if project.actuator.is_none() && project.specifications.is_empty() {
         return Err(CommandError::NothingToReport);
     }
-    let mut rig =
-        project.actuator.as_ref().map(|actuator| rig_part(project, actuator, problem)).transpose()?;
-    let judged = judged::judged(source, loaded, watch)?;
+    let mut rig = project.actuator.as_ref().map(|actuator| rig_part(setup, actuator, problem)).transpose()?;
+    let judged = judged::judged(source, setup, watch)?;
     let deployed = judged.as_ref().and_then(Judged::found).map(|view| view.deployed(project));
-    let driven = driven::driven(source, project, deployed.as_ref(), watch)?;
+    let driven = driven::driven(source, setup, deployed.as_ref(), watch)?;
     let campaign = campaign::driven(source, loaded, watch)?;
 
     let mut facts = rig.as_ref().map(|rig| rig.facts.clone()).unwrap_or_default();
     let mut results: Facts = driven.iter().flat_map(Driven::facts).collect();
     results.extend(campaign.as_ref().and_then(|campaign| campaign.fact.clone()));
     let contents = Contents {
-        project,
+        setup,
         judged: judged.as_ref(),
         driven: driven.as_ref(),
         facts: &facts,
@@ -215,26 +214,24 @@ struct RigPart {
 }
 
 fn rig_part(
-    project: &Project,
+    setup: &Setup<'_>,
     actuator: &Actuator,
     problem: Option<&SizingProblem>,
 ) -> Result<RigPart, CommandError> {
-    let rig = Rig::new(project)?;
-    let controller = controller(project)?;
-    let sensor = sensor(project)?;
-    let linearization = linearize(&rig, controller.as_ref(), &sensor)?;
-    let derived = derive(project, &rig);
+    let (project, rig, sensor) = (setup.project, setup.rig()?, &setup.sensor);
+    let linearization = linearize(rig, setup.controller.as_ref(), sensor)?;
+    let derived = derive(project, rig);
     let sizing = problem.map(|problem| size(problem, Question::Both));
     let band = project.scenarios.first().map_or(SETTLING_BAND, |scenario| scenario.settling_band_percent);
     let seen = transfer_functions(&rig.in_loop().plant.coefficients())?.command;
-    let given = controller.as_ref().map(|given| linear_loop(&seen, given, &sensor, band)).transpose()?;
+    let given = setup.controller.as_ref().map(|given| linear_loop(&seen, given, sensor, band)).transpose()?;
 
-    let mut chapters = vec![rig::chapter(project, actuator, &rig)];
+    let mut chapters = vec![rig::chapter(project, actuator, rig)];
     if let (Some(problem), Some(sizing)) = (problem, &sizing) {
         chapters.push(sizing::chapter(problem, sizing));
     }
     let appendix = vec![
-        stiffness::chapter(&rig, &linearization),
+        stiffness::chapter(rig, &linearization),
         derived::chapter(&derived),
         models::chapter(&linearization)?,
         impedance::chapter(project, &linearization)?,

@@ -24,7 +24,7 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
 };
 
-use crate::project::Project;
+use crate::project::{self, Project};
 
 pub(crate) use assembly::{actuator, components};
 pub(crate) use in_loop::feed_forward;
@@ -103,13 +103,11 @@ impl Rig {
         LinearParameters { flow_pressure_coefficient, ..self.linear }
     }
 
-    /// Assembles the rig of a project and linearises it.
+    /// Assembles the rig of a project and linearises it: [`Setup`](crate::setup::Setup) holds it.
     ///
     /// # Errors
-    /// [`RigError`] if the project is about another plant, a parameter is impossible, or nothing balances at the
-    /// operating point.
-    pub fn new(project: &Project) -> Result<Rig, RigError> {
-        let declared = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
+    /// [`RigError`] if a parameter is impossible, or nothing balances at the operating point.
+    pub(crate) fn of(project: &Project, declared: &project::Actuator) -> Result<Rig, RigError> {
         let actuator = assembly::actuator(declared)?;
         let components = actuator.components();
         let numbers = Numbers::declared();

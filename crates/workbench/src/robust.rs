@@ -16,9 +16,8 @@ use phea_qft::verification::PlantPoint;
 use crate::audit::{kind_words, outside};
 use crate::caveat::{Caveat, caveats};
 use crate::command::{CommandError, Progress, Watch};
-use crate::control::{compensation, prefilter, sensor, timing};
 use crate::family::family;
-use crate::project::Project;
+use crate::setup::Setup;
 use crate::source::Source;
 use crate::specification::{of_rounding, specifications};
 
@@ -85,48 +84,46 @@ pub enum RobustError {
 ///
 /// # Errors
 /// [`CommandError`] for parts that are no transfer functions, families or limits.
-pub fn robust_problem(source: &dyn Source, project: &Project) -> Result<RobustProblem, CommandError> {
-    let given = compensation(project)?;
-    let has_controller = given.is_some();
-    let compensation = match given {
-        Some(given) => given,
+pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustProblem, CommandError> {
+    let compensation = match &setup.controller {
+        Some(given) => setup.compensation(given)?,
         None => {
-            let prefilter = prefilter(project)?.unwrap_or_default();
-            let open = Controller { prefilter, timing: timing(project), ..Controller::default() };
-            Compensation::new(&open, sensor(project)?)?
+            let prefilter = setup.prefilter.clone().unwrap_or_default();
+            let open = Controller { prefilter, timing: setup.timing, ..Controller::default() };
+            Compensation::new(&open, setup.sensor.clone())?
         }
     };
     let (specifications, specification_names) =
-        named_specifications(project, compensation.highest_frequency_rad_per_s())?;
+        named_specifications(setup, compensation.highest_frequency_rad_per_s())?;
     Ok(RobustProblem {
-        family: family(project, source)?,
+        family: family(setup, source)?,
         compensation,
-        has_controller,
-        has_prefilter: project.prefilter.is_some(),
+        has_controller: setup.controller.is_some(),
+        has_prefilter: setup.prefilter.is_some(),
         specifications,
         specification_names,
-        rig_outside: match outside(project) {
-            Some((alone, beyond)) => Some((self::family(&alone, source)?, beyond)),
+        rig_outside: match outside(setup) {
+            Some((alone, beyond)) => Some((self::family(&Setup::new(&alone)?, source)?, beyond)),
             None => None,
         },
-        caveats: caveats(project),
+        caveats: caveats(setup),
     })
 }
 
 /// What must be kept to, and what it is called. Bounds on the rounding of converters are drawn at every design frequency that the loop
 /// reaches.
 fn named_specifications(
-    project: &Project,
+    setup: &Setup<'_>,
     highest_frequency_rad_per_s: f64,
 ) -> Result<(Vec<Specification>, Vec<String>), CommandError> {
-    let mut specifications = specifications(project)?;
+    let mut specifications = specifications(setup.project)?;
     let mut names: Vec<String> = specifications.iter().map(|one| kind_words(&one.requirement)).collect();
     let mut frequencies: Vec<f64> =
         specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied()).collect();
     frequencies.retain(|frequency| *frequency <= highest_frequency_rad_per_s);
     frequencies.sort_by(f64::total_cmp);
     frequencies.dedup();
-    for (specification, name) in of_rounding(project, &frequencies)? {
+    for (specification, name) in of_rounding(setup, &frequencies) {
         specifications.push(specification);
         names.push(name.to_string());
     }

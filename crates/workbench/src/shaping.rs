@@ -24,6 +24,7 @@ use crate::audit::{PlantNames, names};
 use crate::command::{CommandError, Progress, Watch};
 use crate::project::{self, Element, Findings, Loaded, Report};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
+use crate::setup::Setup;
 use crate::source::Source;
 use workpiece::Workpiece;
 
@@ -112,7 +113,8 @@ pub fn shape(
     }
     let mut workpiece = Workpiece::new(&loaded.project, shaped)?;
     // without the elements, which may be none that can be sampled before they are changed
-    let bare = robust_problem(source, &workpiece::with_elements(&loaded.project, shaped, &[]))?;
+    let bare = workpiece::with_elements(&loaded.project, shaped, &[]);
+    let bare = robust_problem(source, &Setup::new(&bare)?)?;
     let mut history = History::new(workpiece.given().clone());
     for requested in changes {
         let mut findings = Findings::default();
@@ -125,7 +127,7 @@ pub fn shape(
     let elements = workpiece.declared(history.present());
     let saved = save::saved(source, loaded, shaped, &elements)?;
     let edited = workpiece::with_elements(&loaded.project, shaped, &elements);
-    let problem = robust_problem(source, &edited)?;
+    let problem = robust_problem(source, &Setup::new(&edited)?)?;
     let (chart, unreached_rad_per_s) = chart(&problem, watch)?;
     let tracking =
         if problem.has_prefilter { TrackingJudgement::Magnitude } else { TrackingJudgement::Spread };

@@ -75,9 +75,10 @@ use crate::answer::TableFormat;
 use crate::command::{Progress, Watch};
 use crate::control::ControlError;
 use crate::linear_loop::LoopError;
-use crate::project::{self, Project, Report};
+use crate::project::{self, Report};
 use crate::quantity::{FORCE, VOLTAGE, display};
 use crate::rig::RigError;
+use crate::setup::Setup;
 use crate::source::{Destination, Source, WriteError};
 
 /// Why a sound project is not simulated.
@@ -204,10 +205,10 @@ pub enum SimulateError {
 /// in the status of its scenario.
 pub fn simulate_project(
     source: &dyn Source,
-    project: &Project,
+    setup: &Setup<'_>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
-    simulate_into(source, project, None, watch)
+    simulate_into(source, setup, None, watch)
 }
 
 /// The same, with a table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, its rows written as they come: no row is held, however many there are.
@@ -216,16 +217,17 @@ pub fn simulate_project(
 /// As [`simulate_project`], and [`SimulateError::Write`].
 pub fn simulate_into(
     source: &dyn Source,
-    project: &Project,
+    setup: &Setup<'_>,
     destination: Option<(&dyn Destination, TableFormat)>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
+    let project = setup.project;
     if project.scenarios.is_empty() {
         return Err(SimulateError::NoScenario);
     }
     let mut prepared = Vec::new();
     for scenario in &project.scenarios {
-        let bench = Bench::of_scenario(project, scenario)?;
+        let bench = Bench::of_scenario(setup, scenario)?;
         let course = course::course(source, project, &bench, scenario)?;
         let measured = measured::measurements(source, project, scenario).map_err(SimulateError::Motion)?;
         prepared.push((bench, course, measured));

@@ -14,8 +14,8 @@ pub use run::{Agreement, Response, Run, Step};
 
 use crate::audit::ProjectAudit;
 use crate::command::{CommandError, Progress, Watch};
-use crate::project::Project;
 use crate::robust::RobustProblem;
+use crate::setup::Setup;
 use crate::source::Source;
 
 /// Every run, in the order in which they were driven: the rig as it is declared first.
@@ -40,15 +40,16 @@ impl Trial {
 /// [`CommandError`] for a controller or a sensor that is no transfer function, and where the watcher stops it.
 pub(crate) fn tried(
     source: &dyn Source,
-    project: &Project,
+    setup: &Setup<'_>,
     problem: &RobustProblem,
     view: &ProjectAudit,
     watch: Watch<'_>,
 ) -> Result<Option<Trial>, CommandError> {
-    if project.actuator.is_none() {
+    if setup.project.actuator.is_none() {
         return Ok(None);
     }
-    let (rigs, not_driven) = rigs::rigs(project, problem, view);
+    let rig = setup.rig()?;
+    let (rigs, not_driven) = rigs::rigs(setup, rig, problem, view);
     let count = rigs.len() as f64;
     let mut runs = Vec::new();
     for (index, rig) in rigs.iter().enumerate() {

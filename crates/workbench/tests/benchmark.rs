@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use phea_workbench::project;
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
@@ -17,7 +18,7 @@ fn run(text: &str, settings: &[&str]) -> ScenarioRun {
     let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
     let loaded =
         project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
-    simulate_project(&source, &loaded.project, &mut |_| true).unwrap().remove(0)
+    simulate_project(&source, &Setup::new(&loaded.project).unwrap(), &mut |_| true).unwrap().remove(0)
 }
 
 /// Largest difference of the force in N, at the times of the reference.

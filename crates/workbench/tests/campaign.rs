@@ -14,6 +14,7 @@ use phea_workbench::campaign::{
 };
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
 use phea_workbench::project::{self, Loaded};
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -93,7 +94,9 @@ fn a_run_is_what_simulate_makes_of_its_settings() {
             let drawn = plan.settings(&plan.draw(run as u64));
             let all: Vec<&str> = settings.iter().copied().chain(drawn.iter().map(String::as_str)).collect();
             let simulated =
-                simulate_project(&source(), &load(&all).project, &mut |_| true).unwrap().remove(0);
+                simulate_project(&source(), &Setup::new(&load(&all).project).unwrap(), &mut |_| true)
+                    .unwrap()
+                    .remove(0);
             let seen = simulated.record.signal("force_n");
             assert_eq!((simulated.looks_per_row, seen.len()), (1, force_n.len()));
             assert!(
@@ -202,7 +205,7 @@ fn lumps_are_those_of_the_drawn_linear_model() {
     for row in plan.rows(0..3, lanes(1)).unwrap() {
         let drawn = plan.settings(&plan.draw(row.run));
         let all: Vec<&str> = SHORT.iter().copied().chain(drawn.iter().map(String::as_str)).collect();
-        let linear = phea_workbench::rig::Rig::new(&load(&all).project).unwrap().derived;
+        let linear = phea_workbench::setup::Setup::rig_of(&load(&all).project).unwrap().derived;
         let expected = [linear.hydraulic_stiffness, linear.flow_gain, linear.flow_pressure_coefficient];
         assert_eq!(row.lumps, Some(expected));
     }

@@ -7,12 +7,11 @@ use phea_dynamics::portable::exp;
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::Verdict;
 use phea_workbench::audit::{self, ProjectAudit, audit_project};
-use phea_workbench::control::{controller, sensor};
 use phea_workbench::linear_loop::linear_loop;
 use phea_workbench::linearize::{Linearization, linearize};
 use phea_workbench::project::{self, Project};
-use phea_workbench::rig::Rig;
 use phea_workbench::robust::robust_problem;
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
@@ -28,14 +27,14 @@ fn loaded(text: &str, settings: &[&str]) -> Project {
 }
 
 fn linearized(project: &Project) -> Linearization {
-    linearize(&Rig::new(project).unwrap(), None, &sensor(project).unwrap()).unwrap()
+    linearize(&Setup::rig_of(project).unwrap(), None, &Setup::new(project).unwrap().sensor).unwrap()
 }
 
 /// Overshoot of a step of the reference in percent, by the linear plant.
 fn overshoot(project: &Project) -> f64 {
-    let given = controller(project).unwrap().unwrap();
+    let given = Setup::new(project).unwrap().controller.unwrap();
     let plant = linearized(project).plant.command;
-    let closed = linear_loop(&plant, &given, &sensor(project).unwrap(), 1.0).unwrap();
+    let closed = linear_loop(&plant, &given, &Setup::new(project).unwrap().sensor, 1.0).unwrap();
     closed.step.unwrap().metrics.overshoot_percent
 }
 
@@ -49,7 +48,7 @@ fn a_load_that_yields_is_in_the_loop() {
     for (project, expected) in [&prescribed, &sprung].into_iter().zip(expected) {
         assert!((overshoot(project) - expected).abs() < 0.01, "{} instead of {expected}", overshoot(project));
     }
-    let runs = simulate_project(&Memory::default(), &sprung, &mut |_| true).unwrap();
+    let runs = simulate_project(&Memory::default(), &Setup::new(&sprung).unwrap(), &mut |_| true).unwrap();
     let machine = runs[0].windows[0].1.overshoot_percent.unwrap();
     assert!((25.0..expected[1]).contains(&machine), "{machine}");
 }
@@ -94,7 +93,7 @@ fn satisfied(settings: &[&str]) -> Project {
 }
 
 fn audited(project: &Project) -> ProjectAudit {
-    audit_project(&Memory::default(), project, &mut |_| true).unwrap()
+    audit_project(&Memory::default(), &Setup::new(project).unwrap(), &mut |_| true).unwrap()
 }
 
 /// What is declared and not in the linear loop stands above everything else that is said, and no verdict is met.
@@ -133,15 +132,15 @@ fn what_is_not_counted_is_told_first() {
 fn a_prefilter_before_the_samples_acts_in_continuous_time() {
     let project = loaded(HOSE, &["controller.sample_time=5 ms", "prefilter.continuous=true"]);
     let plant = linearized(&project).plant.command;
-    let given = controller(&project).unwrap().unwrap();
-    let step = linear_loop(&plant, &given, &sensor(&project).unwrap(), 1.0).unwrap().step.unwrap();
+    let given = Setup::new(&project).unwrap().controller.unwrap();
+    let step = linear_loop(&plant, &given, &Setup::new(&project).unwrap().sensor, 1.0).unwrap().step.unwrap();
     let root = (83.0_f64 * 83.0 - 4.0 * 910.0).sqrt();
     let [fast, slow] = [(83.0 + root) / 2.0, (83.0 - root) / 2.0];
     for (time_s, value) in step.times_s.iter().zip(&step.filtered_reference).take(200) {
         let expected = 1.0 + (slow * exp(-fast * time_s) - fast * exp(-slow * time_s)) / root;
         assert!((value - expected).abs() < 1e-9, "{time_s} {value} {expected}");
     }
-    let problem = robust_problem(&Memory::default(), &project).unwrap();
+    let problem = robust_problem(&Memory::default(), &Setup::new(&project).unwrap()).unwrap();
     let filtered = problem.compensation.response(400.0).prefilter;
     let expected = 910.0 / Complex64::new(910.0 - 400.0 * 400.0, 83.0 * 400.0);
     assert!((filtered / expected - 1.0).norm_sqr() < 1e-24, "{filtered} {expected}");
@@ -155,7 +154,7 @@ fn a_limited_pump_is_counted() {
     assert_eq!(view.audit.verdict, Verdict::Met);
     let told = view.caveats.iter().find(|caveat| caveat.sentence.contains("supply.model")).unwrap();
     assert!(told.sentence.contains("is counted as small motions see it") && !told.unproven, "{told:?}");
-    let rig = Rig::new(&loaded(HOSE, &["supply.model=pump_limited"])).unwrap();
+    let rig = Setup::rig_of(&loaded(HOSE, &["supply.model=pump_limited"])).unwrap();
     let found = rig.supply.unwrap();
     // what the pump gives above what is taken goes through a relief valve that opens over 5 bar
     let falls = 5e5 * found.taken / (9.8e-3 / 60.0);
@@ -174,7 +173,9 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_loop() {
         for (share, stable) in [(0.0, true), (0.7, true), (1.3, false)] {
             let gain = format!("controller.load_velocity_feed_forward.gain={}", share * area_over_gain);
             let settings = [&SPRUNG[..], line, &[&gain]].concat();
-            let problem = robust_problem(&Memory::default(), &loaded(&certain, &settings)).unwrap();
+            let problem =
+                robust_problem(&Memory::default(), &Setup::new(&loaded(&certain, &settings)).unwrap())
+                    .unwrap();
             let member = problem.nominal().unwrap().unwrap();
             let found = member_stability(&member, &problem.compensation).status;
             assert_eq!(found == StabilityStatus::Stable, stable, "{line:?} {share}: {found:?}");

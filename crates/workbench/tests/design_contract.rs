@@ -13,6 +13,7 @@ use phea_workbench::command::{CommandError, Request};
 use phea_workbench::design::{DesignError, Explanation, design_options, design_problem};
 use phea_workbench::project;
 use phea_workbench::robust::robust_problem;
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const TIMED: &str = include_str!("project_valid/design.toml");
@@ -21,8 +22,11 @@ const DESIGN: Request = Request::Design { seed: None, stages: false };
 
 fn begun(project: &str, settings: &[&str], seed: Option<u32>) -> (DesignProblem, DesignOptions) {
     let project = load(project, settings, &[]).project;
-    let given = robust_problem(&Memory::default(), &project).unwrap();
-    (design_problem(&project, &given).unwrap(), design_options(&project, &given, seed).unwrap())
+    let given = robust_problem(&Memory::default(), &Setup::new(&project).unwrap()).unwrap();
+    (
+        design_problem(&Setup::new(&project).unwrap(), &given),
+        design_options(&Setup::new(&project).unwrap(), &given, seed).unwrap(),
+    )
 }
 
 #[test]
@@ -179,8 +183,8 @@ fn the_answer_is_what_is_deployed() {
 fn two_limits_that_no_loop_keeps_together_are_explained() {
     let source = Memory::default().with("mistake.toml", CONTRADICTORY);
     let project = project::read(&source, "mistake.toml", &[], &[]).unwrap().project;
-    let given = robust_problem(&source, &project).unwrap();
-    let findings = diagnose(&design_problem(&project, &given).unwrap());
+    let given = robust_problem(&source, &Setup::new(&project).unwrap()).unwrap();
+    let findings = diagnose(&design_problem(&Setup::new(&project).unwrap(), &given));
     let found: Vec<Explanation> = findings.iter().map(Explanation::of).collect();
     let impossible = found.iter().find(|one| one.is_impossible && one.specifications == [0, 1]).unwrap();
     // |S| <= w/|jw + 30| up to 10 rad/s and |T| <= 5/|jw + 5| from 8 rad/s: both hold there alone

@@ -17,12 +17,12 @@ use phea_qft::loop_shaping::{Part, Structure};
 use phea_qft::verification::{PlantPoint, TOLERANCE_DB, TrackingJudgement, Verdict};
 use phea_workbench::audit::audit_project;
 use phea_workbench::command::{Request, answer};
-use phea_workbench::control::controller;
 use phea_workbench::design::{
     DESIGNED_PROJECT, ProjectDesign, Side, design_options, design_problem, files, json, stage_files, text,
 };
 use phea_workbench::project::{self, FeedForward, Loaded, Prefilter, Quantization, Transfer};
 use phea_workbench::robust::robust_problem;
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 /// k/(s (s + 10)) with two specifications and a law that is too slow for the second.
@@ -89,16 +89,17 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
 
 fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
     let (source, loaded) = loaded(text);
-    let given = robust_problem(&source, &loaded.project).unwrap();
-    let law = controller(&loaded.project).unwrap().unwrap();
-    let audit = audit_project(&source, &loaded.project, &mut |_| true).unwrap();
+    let given = robust_problem(&source, &Setup::new(&loaded.project).unwrap()).unwrap();
+    let setup = Setup::new(&loaded.project).unwrap();
+    let law = setup.controller.clone().unwrap();
+    let audit = audit_project(&source, &Setup::new(&loaded.project).unwrap(), &mut |_| true).unwrap();
     let published = Side::new(law, given.clone(), audit).unwrap();
-    let problem = design_problem(&loaded.project, &given).unwrap();
-    let options = design_options(&loaded.project, &given, Some(7)).unwrap();
+    let problem = design_problem(&Setup::new(&loaded.project).unwrap(), &given);
+    let options = design_options(&Setup::new(&loaded.project).unwrap(), &given, Some(7)).unwrap();
     assert_eq!(options.controller, ControllerChoice::Grow { maximum_order: 4 });
     assert_eq!(options.prefilter, PrefilterChoice::Grow { maximum_order: 3 });
     let design = design(&problem, options.coefficients, status);
-    let view = ProjectDesign::new(&loaded.project, &given, &problem, design, options).unwrap();
+    let view = ProjectDesign::new(&setup, &given, &problem, design, options).unwrap();
     (source, loaded, ProjectDesign { published: Some(published), ..view })
 }
 

@@ -10,9 +10,9 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::family::{Extent, Family, UncertainFamily};
-use phea_workbench::control::compensation;
 use phea_workbench::family::{FamilyError, family};
 use phea_workbench::project::{self, Project};
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const SERVO: &str = "schema = 1\n[plant]\nnumerator = \"k*a/2\"\ndenominator = \"(s + a)^2 - a*(s - b)\"\n\
@@ -28,7 +28,7 @@ fn loaded(text: &str) -> Project {
 }
 
 fn found(text: &str) -> Result<Family, FamilyError> {
-    family(&loaded(text), &Memory::default())
+    family(&Setup::new(&loaded(text)).unwrap(), &Memory::default())
 }
 
 #[track_caller]
@@ -133,14 +133,15 @@ fn the_sensor_is_carried_into_the_loop() {
     let controller = "[controller]\nnumerator = \"1\"\ndenominator = \"s\"\n";
     let sensor = "[sensor]\nnumerator = \"200\"\ndenominator = \"s + 200\"\ndelay = \"2 ms\"\n";
     let project = loaded(&format!("{SERVO}{sensor}{controller}"));
-    let around = compensation(&project).unwrap().unwrap();
+    let setup = Setup::new(&project).unwrap();
+    let around = setup.compensation(setup.controller.as_ref().unwrap()).unwrap();
     let family = uncertain(SERVO);
     let member = around.member(family.plant().coefficients(&family.members()[0]).unwrap()).unwrap();
     let s = Complex64::new(0.0, 50.0);
     close(member.response(50.0).unwrap().sensor, 200.0 / (s + 200.0) * portable::exp_complex(-s * 0.002));
-    assert_eq!(compensation(&loaded(SERVO)).unwrap(), None);
-    let without = compensation(&loaded(&format!("{SERVO}{controller}"))).unwrap().unwrap();
-    assert_eq!(without.sensor().at_frequency(50.0), Complex64::new(1.0, 0.0));
+    assert_eq!(Setup::new(&loaded(SERVO)).unwrap().controller, None);
+    let without = loaded(&format!("{SERVO}{controller}"));
+    assert_eq!(Setup::new(&without).unwrap().sensor.at_frequency(50.0), Complex64::new(1.0, 0.0));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
 use phea_qft::family::Family;
 use phea_workbench::family::{FamilyError, family};
 use phea_workbench::project::{self, LINEAR_PARAMETERS, Project, Random, Uncertain};
-use phea_workbench::rig::Rig;
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 fn loaded(text: &str) -> Project {
@@ -21,7 +21,7 @@ const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 fn recorded(project: &Project) -> Result<UncertainPlant, FamilyError> {
     let few = project::Family { random: Some(Random { count: 1, seed: 1 }), ..project::Family::default() };
     let project = Project { family: Some(few), ..project.clone() };
-    match family(&project, &Memory::default())? {
+    match family(&Setup::new(&project).unwrap(), &Memory::default())? {
         Family::Uncertain(family) => Ok(family.plant().clone()),
         Family::Measured(_) => panic!("nothing was measured"),
     }
@@ -42,14 +42,14 @@ fn points(plant: &UncertainPlant) -> Vec<Vec<f64>> {
 fn the_recorded_rig_is_the_linear_model() {
     let project = loaded(HOSE);
     let plant = recorded(&project).unwrap();
-    let rig = Rig::new(&project).unwrap();
+    let rig = Setup::rig_of(&project).unwrap();
     assert_eq!(plant.coefficients(&plant.nominal()), Some(rig.plant.coefficients()));
     for values in points(&plant) {
         let mut stated = project.clone();
         for (uncertain, value) in stated.uncertainty.iter_mut().zip(&values) {
             uncertain.nominal = *value;
         }
-        let rig = Rig::new(&stated).unwrap();
+        let rig = Setup::rig_of(&stated).unwrap();
         assert_eq!(plant.coefficients(&values), Some(rig.plant.coefficients()));
         // with a prescribed load and without leakage that is thesis (6.7)
         let published = linear_model_coefficients(&rig.linear).command;
@@ -91,7 +91,7 @@ fn follows_the_rig_within(tolerance: f64, text: &str, ranges: &[(&str, [f64; 3])
         for (parameter, value) in plant.parameters().iter().zip(&values) {
             stated = stated.with_number(&parameter.name, *value).unwrap();
         }
-        let expected = Rig::new(&stated).unwrap().plant.coefficients();
+        let expected = Setup::rig_of(&stated).unwrap().plant.coefficients();
         let found = plant.coefficients(&values).unwrap();
         let [found, expected] = [found, expected].map(|member| {
             let disturbance = member.disturbance.unwrap();
@@ -237,7 +237,7 @@ fn every_parameter_of_the_project_has_its_field() {
         sensor_stiffness,
         valve_natural_frequency,
         valve_damping_ratio,
-    } = Rig::new(&project).unwrap().linear;
+    } = Setup::rig_of(&project).unwrap().linear;
     let mut found = [
         useful_area,
         moving_mass,

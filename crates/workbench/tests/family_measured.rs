@@ -13,6 +13,7 @@ use phea_qft::family::{Family, MeasuredFamily};
 use phea_workbench::command::{Request, answer};
 use phea_workbench::family::{FamilyError, family};
 use phea_workbench::project;
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const PROJECT: &str = "schema = 1\n[family]\nmeasured = [\"a.csv\"]\n";
@@ -20,7 +21,7 @@ const PROJECT: &str = "schema = 1\n[family]\nmeasured = [\"a.csv\"]\n";
 fn read(text: &str, csv: impl Into<Vec<u8>>) -> Result<Family, FamilyError> {
     let source = Memory::default().with("rigs/p.toml", text).with("rigs/a.csv", csv);
     let loaded = project::read(&source, "rigs/p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
-    family(&loaded.project, &source)
+    family(&Setup::new(&loaded.project).unwrap(), &source)
 }
 
 #[track_caller]
@@ -110,7 +111,9 @@ fn the_first_file_is_the_nominal_plant_and_poles_are_counted() {
         .with("rigs/b.csv", row(2.0))
         .with("/data/a.csv", row(1.0));
     let loaded = project::read(&source, "rigs/p.toml", &[], &[]).unwrap();
-    let Family::Measured(family) = family(&loaded.project, &source).unwrap() else { panic!("measured") };
+    let Family::Measured(family) = family(&Setup::new(&loaded.project).unwrap(), &source).unwrap() else {
+        panic!("measured")
+    };
     let names: Vec<&str> = family.plants().iter().map(|plant| plant.name.as_str()).collect();
     assert_eq!(names, ["b.csv", "/data/a.csv"]);
     assert!(family.plants().iter().all(|plant| plant.unstable_poles == 2));
@@ -209,7 +212,7 @@ fn files_that_are_none_are_told() {
     refuses([0x66, 0xff, 0x0a], &["0:0 the file is no UTF-8 text"]);
     let source = Memory::default().with("p.toml", PROJECT);
     let project = project::read(&source, "p.toml", &[], &[]).unwrap().project;
-    let error = family(&project, &source).unwrap_err().to_string();
+    let error = family(&Setup::new(&project).unwrap(), &source).unwrap_err().to_string();
     assert!(error.contains("cannot read a.csv: no such file"), "{error}");
 }
 

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_hydraulics::linear::{LinearParameters, linear_model};
 use phea_workbench::project::{self, Project};
-use phea_workbench::rig::Rig;
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Cause, Metrics, simulate_project};
 use phea_workbench::source::Memory;
 
@@ -50,7 +50,7 @@ fn lag(parameters: &LinearParameters) -> f64 {
 #[test]
 fn the_exact_gain_is_what_cancels_the_load_in_the_linear_model() {
     for line in ["pipe", "hose"] {
-        let parameters = Rig::new(&load(line, &[])).unwrap().linear;
+        let parameters = Setup::rig_of(&load(line, &[])).unwrap().linear;
         let model = linear_model(&parameters).unwrap();
         for frequency in [0.01, 1.0, 10.0, 300.0, 1e3, 1e4] {
             let s = Complex64::new(0.0, frequency);
@@ -67,10 +67,10 @@ fn the_exact_gain_is_what_cancels_the_load_in_the_linear_model() {
 fn what_is_left_grows_with_the_lag() {
     // ORIGIN: recomputed by book/recompute_theory.py
     for (line, quoted) in [("hose", 1.69e-3), ("pipe", 1.65e-3)] {
-        let tau = lag(&Rig::new(&load(line, &[])).unwrap().linear);
+        let tau = lag(&Setup::rig_of(&load(line, &[])).unwrap().linear);
         assert!((tau - quoted).abs() < 0.005e-3, "{line}: {tau}");
     }
-    let parameters = Rig::new(&load("pipe", &[])).unwrap().linear;
+    let parameters = Setup::rig_of(&load("pipe", &[])).unwrap().linear;
     let tau = lag(&parameters);
     for (share, frequency) in [(1.0, 10.0), (0.7, 1.0), (1.3, 5.0)] {
         let s = Complex64::new(0.0, frequency);
@@ -88,7 +88,7 @@ fn a_little_less_than_the_gain_is_passive() {
     for (line, proportional, integral, less_percent) in
         [("pipe", 5e-4, 2e-3, 0.65), ("hose", 1e-3, 8e-3, 1.3)]
     {
-        let parameters = Rig::new(&load(line, &[])).unwrap().linear;
+        let parameters = Setup::rig_of(&load(line, &[])).unwrap().linear;
         let model = linear_model(&parameters).unwrap();
         let zero = Complex64::new(-integral / proportional, 0.0);
         let controller =
@@ -113,7 +113,9 @@ fn a_little_less_than_the_gain_is_passive() {
 fn of_the_motion(line: &str, settings: &[String]) -> Metrics {
     let mut project = load(line, settings);
     project.scenarios.truncate(1);
-    let run = simulate_project(&Memory::default(), &project, &mut |_| true).unwrap().remove(0);
+    let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
+        .unwrap()
+        .remove(0);
     assert_eq!(run.stopped(), None, "{line} {settings:?}");
     let (_, metrics) = run.windows.into_iter().find(|(window, _)| window.cause == Cause::LoadMotion).unwrap();
     metrics
@@ -135,7 +137,7 @@ fn table(head: &str) -> (Vec<String>, Vec<(String, Vec<f64>)>) {
 }
 
 fn gain(share: f64) -> String {
-    let parameters = Rig::new(&load("pipe", &[])).unwrap().linear;
+    let parameters = Setup::rig_of(&load("pipe", &[])).unwrap().linear;
     format!("controller.load_velocity_feed_forward.gain={:e}", share * static_gain(&parameters))
 }
 

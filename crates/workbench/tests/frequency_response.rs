@@ -9,7 +9,7 @@ use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, FrequencyOptions, Request, SimulateRequest};
 use phea_workbench::linearize::linearize;
 use phea_workbench::project::{self, Loaded};
-use phea_workbench::rig::Rig;
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{FrequencyRequest, FrequencyResponse, ResponsePoint, frequency_response};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -39,7 +39,7 @@ fn shaken(loaded: &Loaded, frequencies: &[f64], amplitudes: [f64; 2]) -> Frequen
         command_amplitude_v: Some(amplitudes[0]),
         reference_amplitude_n: Some(amplitudes[1]),
     };
-    let found = frequency_response(&loaded.project, &request, &mut |_| true).unwrap();
+    let found = frequency_response(&Setup::new(&loaded.project).unwrap(), &request, &mut |_| true).unwrap();
     assert!(found.is_settled(), "{found:?}");
     found
 }
@@ -59,7 +59,7 @@ fn worst(points: &[ResponsePoint], of: impl Fn(&ResponsePoint) -> f64) -> f64 {
 fn small_sines_give_the_linear_plant() {
     let loaded = smooth(&[]);
     let found = shaken(&loaded, &[1.0, 30.0, 1000.0], [1e-4, 1.0]);
-    let rig = Rig::new(&loaded.project).unwrap();
+    let rig = Setup::rig_of(&loaded.project).unwrap();
     let two_pressure = linearize(&rig, None, &TransferFunction::gain_only(1.0)).unwrap().two_pressure.command;
     for point in &found.open_loop.points {
         let linearised = point.linearised_machine.unwrap();
@@ -146,7 +146,7 @@ fn a_supply_that_yields_is_in_the_linear_plant() {
             assert!(apart(point.linearised_machine.unwrap(), point.linear_plant) < 1e-5, "{point:?}");
             assert!(apart(point.machine, point.linear_plant) < 1e-3, "{point:?}");
         }
-        let mut rig = Rig::new(&loaded.project).unwrap();
+        let mut rig = Setup::rig_of(&loaded.project).unwrap();
         let counted = rig.plant.coefficients().command.at_frequency(1.0);
         rig.plant.supply = None;
         assert!(apart(rig.plant.coefficients().command.at_frequency(1.0), counted) > 0.01);

@@ -5,6 +5,7 @@
 use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded, Report};
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -34,7 +35,10 @@ fn load(settings: &[&str]) -> Loaded {
 }
 
 fn run(settings: &[&str]) -> ScenarioRun {
-    let run = simulate_project(&Memory::default(), &load(settings).project, &mut |_| true).unwrap().remove(0);
+    let run =
+        simulate_project(&Memory::default(), &Setup::new(&load(settings).project).unwrap(), &mut |_| true)
+            .unwrap()
+            .remove(0);
     assert_eq!(run.stopped(), None, "{settings:?}");
     run
 }

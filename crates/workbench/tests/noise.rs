@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use phea_workbench::control;
 use phea_workbench::project::{self, Project};
-use phea_workbench::rig::Rig;
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
@@ -26,7 +25,9 @@ fn still(settings: &[&str]) -> Project {
 
 /// Commands and forces at the samples.
 fn samples(settings: &[&str]) -> (Vec<f64>, Vec<f64>) {
-    let run = simulate_project(&Memory::default(), &still(settings), &mut |_| true).unwrap().remove(0);
+    let run = simulate_project(&Memory::default(), &Setup::new(&still(settings)).unwrap(), &mut |_| true)
+        .unwrap()
+        .remove(0);
     assert_eq!(run.stopped(), None);
     let at_samples = |values: &[f64]| values.iter().copied().step_by(run.looks_per_row).collect::<Vec<f64>>();
     let [commands, forces] =
@@ -98,7 +99,7 @@ fn the_measurement_is_rounded_to_its_levels() {
 fn the_command_is_rounded_to_its_levels() {
     let converter = "], quantization = { command_bits = 16, command_range = [-10, 10] }";
     let setting = sampled(1e-3, converter);
-    let converter = control::quantisation(&still(&[&setting])).unwrap().command.unwrap();
+    let converter = Setup::new(&still(&[&setting])).unwrap().quantisation.command.unwrap();
     // ORIGIN: analytic, 20 V/65536, and 1 V between the levels 3276 and 3277, at 3276.8
     assert_eq!(converter.step(), 0.00030517578125);
     assert_eq!(converter.rounded(1.0), 3277.0 * 0.00030517578125);
@@ -136,7 +137,7 @@ fn the_force_takes_what_the_bandwidth_lets_through() {
         "force_sensor.noise=20 N",
         "cylinder.friction={ model = \"viscous\", viscous = 3000 }",
     ];
-    let linear = Rig::new(&still(&settings)).unwrap().linear;
+    let linear = Setup::rig_of(&still(&settings)).unwrap().linear;
     let crossover = gain * linear.flow_gain * linear.equivalent_stiffness() / linear.useful_area;
     let (_, forces) = samples(&settings);
     let found = rms(&forces) / 20.0;

@@ -9,6 +9,7 @@ use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_workbench::family::{VisitedRange, family, visited_box};
 use phea_workbench::project::{self, Project};
 use phea_workbench::rig::Rig;
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
@@ -45,7 +46,8 @@ fn ranges(ranges: &[(&str, [f64; 3])]) -> String {
 }
 
 fn members(project: &Project) -> UncertainFamily {
-    match family(project, &Memory::default()).unwrap_or_else(|error| panic!("{error}")) {
+    match family(&Setup::new(project).unwrap(), &Memory::default()).unwrap_or_else(|error| panic!("{error}"))
+    {
         Family::Uncertain(family) => family,
         Family::Measured(_) => panic!("nothing was measured"),
     }
@@ -59,7 +61,7 @@ fn rebuilt(project: &Project, plant: &UncertainPlant, values: &[f64]) -> Rig {
     for (parameter, value) in plant.parameters().iter().zip(values) {
         stated = stated.with_number(&parameter.name, *value).unwrap();
     }
-    Rig::new(&stated).unwrap()
+    Setup::rig_of(&stated).unwrap()
 }
 
 /// Largest relative difference of both paths over the frequencies.
@@ -162,7 +164,9 @@ fn unequal_areas_and_a_wall_follow() {
 #[test]
 fn points_without_balance_are_refused_by_name() {
     let refused = |lines: &[(&str, [f64; 3])]| {
-        family(&loaded(&text(&ranges(lines), "", "")), &Memory::default()).unwrap_err().to_string()
+        family(&Setup::new(&loaded(&text(&ranges(lines), "", ""))).unwrap(), &Memory::default())
+            .unwrap_err()
+            .to_string()
     };
     let far = refused(&[("operating_point.load_force", [0.0, 1000.0, 12e3])]);
     assert!(
@@ -200,7 +204,7 @@ fn a_region_is_the_points_that_the_rig_visits() {
     // ORIGIN: analytic, (9.8 L/min less 7.55e-6 m3/s)/A_u
     let reach = (9.8e-3 / 60.0 - 7.55e-6) / 1.583_362_697_4e-3;
     assert!((velocity.maximum / reach - 1.0).abs() < 1e-6 && velocity.minimum == -velocity.maximum);
-    let ranges = visited_box(&project).unwrap().unwrap();
+    let ranges = visited_box(&Setup::new(&project).unwrap()).unwrap().unwrap();
     let friction = range(&ranges, "viscous_friction");
     assert_eq!((friction.minimum.value, friction.maximum.value), (100.0, 3e4));
     let mut state = 9;
@@ -215,7 +219,7 @@ fn a_region_is_the_points_that_the_rig_visits() {
         for (parameter, value) in family.plant().parameters().iter().zip(&values).skip(1) {
             stated = stated.with_number(&parameter.name, *value).unwrap();
         }
-        let linear = Rig::new(&stated).unwrap().linear;
+        let linear = Setup::rig_of(&stated).unwrap().linear;
         for (name, value) in [
             ("flow_gain", linear.flow_gain),
             ("flow_pressure_coefficient", linear.flow_pressure_coefficient),
@@ -253,7 +257,7 @@ fn the_box_of_the_thesis_is_that_of_an_operating_region() {
         let settings = settings(flow);
         let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
         let project = read(&text("", &region, ""), &settings).unwrap_or_else(|report| panic!("{report}"));
-        visited_box(&project).unwrap().unwrap()
+        visited_box(&Setup::new(&project).unwrap()).unwrap().unwrap()
     };
     // K_v/U_n sqrt(p_S/2) without load; the same over sqrt(3) with two thirds of the supply's pressure on the piston
     let full = 3e-8 * 35e5_f64.sqrt();
@@ -300,6 +304,6 @@ fn contradictions_are_refused() {
         assert!(found.contains(word), "{word}: {found}");
     }
     let beyond = text("", "[family.operating_region]\nvelocity = [0.3, 0.5]\n", "");
-    let error = family(&loaded(&beyond), &Memory::default()).unwrap_err().to_string();
+    let error = family(&Setup::new(&loaded(&beyond)).unwrap(), &Memory::default()).unwrap_err().to_string();
     assert!(error.starts_with("[family.operating_region] `velocity`: the pump gives"), "{error}");
 }

@@ -5,6 +5,7 @@
 use crate::ask::{HOSE, load};
 use phea_workbench::command::{CommandError, Progress};
 use phea_workbench::report::{Report, report};
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const PROCESS: &str = include_str!("../../../examples/qft/dead_time.toml");
@@ -43,7 +44,8 @@ prefilter_maximum_order = 1
 "#;
 
 fn report_of(project: &str, settings: &[&str]) -> Report {
-    report(&Memory::default(), &load(project, settings, &[]), None, &mut |_| true).unwrap()
+    let loaded = load(project, settings, &[]);
+    report(&Memory::default(), &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap()
 }
 
 /// The chapter on the page; `None` without one.
@@ -185,7 +187,9 @@ fn whoever_watches_the_search_may_stop_it() {
         searched = searched || progress.stage == "shaping the loop";
         !searched
     };
-    let stopped = report(&Memory::default(), &load(LAG, &[], &[]), None, &mut watch);
+    let loaded = load(LAG, &[], &[]);
+    let setup = Setup::new(&loaded.project).unwrap();
+    let stopped = report(&Memory::default(), &loaded, &setup, None, &mut watch);
     assert!(matches!(stopped, Err(CommandError::Stopped)));
     assert!(searched);
 }

@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::report::{Report, report};
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -21,7 +22,8 @@ fn load(source: &Memory, settings: &[&str]) -> Loaded {
 
 fn report_of(text: &str, settings: &[&str]) -> Report {
     let source = Memory::default().with("rig.toml", text);
-    report(&source, &load(&source, settings), None, &mut |_| true).unwrap()
+    let loaded = load(&source, settings);
+    report(&source, &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap()
 }
 
 fn json(source: &Memory, loaded: &Loaded, request: &Request) -> Value {
@@ -74,7 +76,8 @@ fn measured_hose() -> (Memory, f64) {
 }
 
 fn runs(source: &Memory, loaded: &Loaded) -> Vec<ScenarioRun> {
-    simulate_project(source, &loaded.project, &mut |_| true).unwrap_or_else(|error| panic!("{error}"))
+    simulate_project(source, &Setup::new(&loaded.project).unwrap(), &mut |_| true)
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// One report of the hose against the commands that it repeats: verdicts of `verify` and `design`, numbers of `simulate`.
@@ -82,7 +85,7 @@ fn runs(source: &Memory, loaded: &Loaded) -> Vec<ScenarioRun> {
 fn both_controllers_stand_there_as_the_commands_tell_them() {
     let (source, nrmse) = measured_hose();
     let loaded = load(&source, &[]);
-    let told = report(&source, &loaded, None, &mut |_| true).unwrap();
+    let told = report(&source, &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap();
     let page = opening(&told);
 
     let verified = json(&source, &loaded, &Request::VerifyOnMachine);

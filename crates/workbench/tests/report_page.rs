@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
 use phea_workbench::report::{Report, report};
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use resvg::usvg::roxmltree::{Document, Node};
 
@@ -415,7 +416,8 @@ fn report_with(settings: &[&str]) -> Report {
 
 /// The report of a project with settings, without a sizing chapter.
 fn report_of(project: &str, settings: &[&str]) -> Report {
-    report(&Memory::default(), &load(project, settings, &[]), None, &mut |_| true).unwrap()
+    let loaded = load(project, settings, &[]);
+    report(&Memory::default(), &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap()
 }
 
 #[test]

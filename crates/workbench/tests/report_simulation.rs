@@ -4,6 +4,7 @@
 
 use phea_workbench::project;
 use phea_workbench::report::{Report, report};
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
@@ -15,7 +16,7 @@ fn reported(text: &str, settings: &[&str]) -> Report {
     let source = Memory::default().with("rig.toml", text);
     let loaded =
         project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
-    report(&source, &loaded, None, &mut |_| true).unwrap()
+    report(&source, &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap()
 }
 
 fn without(text: &str, first: &str, until: &str) -> String {

@@ -4,6 +4,7 @@
 
 use phea_hydraulics::machine::SIGNALS;
 use phea_workbench::project;
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, SimulateError, simulate_project};
 use phea_workbench::source::Memory;
 
@@ -32,7 +33,8 @@ fn run(text: &str, settings: &[String]) -> Result<ScenarioRun, SimulateError> {
     let source = Memory::default().with("rig.toml", text);
     let loaded =
         project::read(&source, "rig.toml", settings, &[]).unwrap_or_else(|report| panic!("{report}"));
-    simulate_project(&source, &loaded.project, &mut |_| true).map(|mut runs| runs.remove(0))
+    simulate_project(&source, &Setup::new(&loaded.project).unwrap(), &mut |_| true)
+        .map(|mut runs| runs.remove(0))
 }
 
 /// What no signal may move by in a second, as its name ends: a part in a hundred thousand of what a run moves it by.

@@ -9,6 +9,7 @@ use phea_dynamics::portable;
 use phea_workbench::campaign::Plan;
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded, SignalKind};
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Cause, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -30,7 +31,9 @@ fn load(text: &str, source: &Memory) -> Loaded {
 }
 
 fn run_with(text: &str, source: &Memory) -> ScenarioRun {
-    let run = simulate_project(source, &load(text, source).project, &mut |_| true).unwrap().remove(0);
+    let run = simulate_project(source, &Setup::new(&load(text, source).project).unwrap(), &mut |_| true)
+        .unwrap()
+        .remove(0);
     assert_eq!(run.stopped(), None);
     run
 }
@@ -136,8 +139,9 @@ fn a_recorded_reference_is_followed_like_what_was_recorded() {
     assert!((end(&ramp) - end(&file)).abs() < 1.0, "{} {}", end(&ramp), end(&file));
     let text = rig("duration = 1\nreference = { kind = \"file\", file = \"ramp.csv\" }");
     let wrong = Memory::default().with("ramp.csv", "time_ms,force_nm\n0,0\n1,1\n");
-    let error =
-        simulate_project(&wrong, &load(&text, &wrong).project, &mut |_| true).unwrap_err().to_string();
+    let error = simulate_project(&wrong, &Setup::new(&load(&text, &wrong).project).unwrap(), &mut |_| true)
+        .unwrap_err()
+        .to_string();
     assert!(
         error.contains("unknown column `force_nm`") && error.contains("did you mean `force_n`?"),
         "{error}"
@@ -326,7 +330,9 @@ fn a_state_is_refused_where_it_does_not_fit_and_not_written_where_it_would_not_b
     let refused = |state: &str, change: &dyn Fn(String) -> String| {
         let source = Memory::default().with("one.state.toml", state);
         let text = change(rig("duration = 1\nstart = { file = \"one.state.toml\" }"));
-        simulate_project(&source, &load(&text, &source).project, &mut |_| true).unwrap_err().to_string()
+        simulate_project(&source, &Setup::new(&load(&text, &source).project).unwrap(), &mut |_| true)
+            .unwrap_err()
+            .to_string()
     };
     let same = |text: String| text;
     let sampled = |text: String| text.replace("saturation", "sample_time = \"1 ms\"\nsaturation");
@@ -376,12 +382,16 @@ fn an_expansion_is_carried_on_beyond_its_pressure_with_a_warning() {
     let loaded = read(&settings);
     let words = "the expansion of the hose is stated at 70 bar, and the supply has 100 bar: in between it is carried on along its slope";
     assert_eq!(warned(&loaded), [words]);
-    let run = simulate_project(&Memory::default(), &loaded.project, &mut |_| true).unwrap().remove(0);
+    let run = simulate_project(&Memory::default(), &Setup::new(&loaded.project).unwrap(), &mut |_| true)
+        .unwrap()
+        .remove(0);
     let beyond: Vec<char> = run.beyond_expansion.iter().map(|beyond| beyond.chamber).collect();
     assert_eq!((beyond, run.beyond_expansion[0].stated_pa), (vec!['a'], 7e6));
     assert!(run.beyond_expansion[0].peak_pa >= 8e6);
     let loaded = read(&["scenario.0.duration=0.02 s"]);
     assert!(warned(&loaded).is_empty());
-    let run = simulate_project(&Memory::default(), &loaded.project, &mut |_| true).unwrap().remove(0);
+    let run = simulate_project(&Memory::default(), &Setup::new(&loaded.project).unwrap(), &mut |_| true)
+        .unwrap()
+        .remove(0);
     assert!(run.beyond_expansion.is_empty());
 }

@@ -6,11 +6,10 @@ use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::time_response::step_response;
-use phea_workbench::control::{controller, sensor};
 use phea_workbench::linear_loop::{LoopStability, linear_loop};
 use phea_workbench::linearize::linearize;
 use phea_workbench::project;
-use phea_workbench::rig::Rig;
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 fn rational(numerator: &[f64], denominator: &[f64]) -> TransferFunction {
@@ -63,9 +62,9 @@ fn impedance_is_closed_through_the_sensor() {
         .replace("[prefilter]", "[sensor]\nnumerator = \"300\"\ndenominator = \"s + 300\"\n\n[prefilter]");
     let source = Memory::default().with("p.toml", text);
     let project = project::read(&source, "p.toml", &[], &[]).unwrap().project;
-    let (rig, given) = (Rig::new(&project).unwrap(), controller(&project).unwrap().unwrap());
-    let sensor = sensor(&project).unwrap();
-    let linearization = linearize(&rig, Some(&given), &sensor).unwrap();
+    let setup = Setup::new(&project).unwrap();
+    let (given, sensor) = (setup.controller.clone().unwrap(), setup.sensor.clone());
+    let linearization = linearize(setup.rig().unwrap(), Some(&given), &sensor).unwrap();
     let feedback = given.feedback.transfer_function().unwrap();
     let closed = linearization.closed_loop.unwrap().impedance;
     for frequency in [0.1, 10.0, 300.0, 2000.0] {

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded, Project};
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Cause, ScenarioRun, SimulateError, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -53,7 +54,8 @@ fn load(text: &str, settings: &[&str]) -> Loaded {
 }
 
 fn runs_of(text: &str, settings: &[&str]) -> Vec<ScenarioRun> {
-    simulate_project(&Memory::default(), &load(text, settings).project, &mut |_| true).unwrap()
+    simulate_project(&Memory::default(), &Setup::new(&load(text, settings).project).unwrap(), &mut |_| true)
+        .unwrap()
 }
 
 fn run_of(text: &str, settings: &[&str]) -> ScenarioRun {
@@ -256,7 +258,7 @@ fn a_measured_motion_is_that_motion() {
         writeln!(text, "{row}, {:e}", 7.0 + 5.0 * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)).unwrap();
     }
     let (source, project) = with_motion(&text);
-    let run = simulate_project(&source, &project, &mut |_| true).unwrap().remove(0);
+    let run = simulate_project(&source, &Setup::new(&project).unwrap(), &mut |_| true).unwrap().remove(0);
     let same = run_of(BENCHMARK, &["scenario.0.duration=3.5 s"]);
     for time_s in [2.9, 3.03, 3.06, 3.11, 3.3] {
         let (found, expected) = (at(&run, "force_n", time_s), at(&same, "force_n", time_s));
@@ -275,7 +277,7 @@ fn a_motion_file_is_refused_with_its_place() {
     ];
     for (content, place, message) in cases {
         let (source, project) = with_motion(content);
-        let error = simulate_project(&source, &project, &mut |_| true).unwrap_err();
+        let error = simulate_project(&source, &Setup::new(&project).unwrap(), &mut |_| true).unwrap_err();
         let SimulateError::Motion(report) = error else { panic!("{error}") };
         let found: Vec<String> =
             report.diagnostics.iter().map(|d| format!("{}:{} {}", d.line, d.column, d.message)).collect();

@@ -4,6 +4,7 @@
 
 use phea_workbench::command::{self, Request, SimulateRequest};
 use phea_workbench::project::{self, Loaded};
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, simulate_checked, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -20,12 +21,16 @@ fn load(settings: &[&str]) -> Loaded {
 }
 
 fn run(settings: &[&str]) -> ScenarioRun {
-    simulate_project(&Memory::default(), &load(settings).project, &mut |_| true).unwrap().remove(0)
+    simulate_project(&Memory::default(), &Setup::new(&load(settings).project).unwrap(), &mut |_| true)
+        .unwrap()
+        .remove(0)
 }
 
 fn checked(settings: &[&str]) -> ScenarioRun {
     let project = load(settings).project;
-    simulate_checked(&Memory::default(), &project, None, &mut |_| true).unwrap().remove(0)
+    simulate_checked(&Memory::default(), &Setup::new(&project).unwrap(), None, &mut |_| true)
+        .unwrap()
+        .remove(0)
 }
 
 fn with_check() -> Request {
@@ -110,13 +115,17 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
 fn a_check_that_is_stopped_compares_what_there_is() {
     let project = load(&[SHORT]).project;
     let mut watch = |progress: command::Progress| progress.share < 0.75;
-    let stopped = simulate_checked(&Memory::default(), &project, None, &mut watch).unwrap().remove(0);
+    let stopped = simulate_checked(&Memory::default(), &Setup::new(&project).unwrap(), None, &mut watch)
+        .unwrap()
+        .remove(0);
     assert!(stopped.stopped().is_none());
     let check = stopped.check.unwrap();
     assert_eq!(check.stopped.unwrap().word, "cancelled");
     assert!(check.force.unwrap().time_s <= check.stopped.unwrap().time_s);
     let project = load(&[SHORT]).project;
     let mut watch = |progress: command::Progress| progress.share < 0.25;
-    let first = simulate_checked(&Memory::default(), &project, None, &mut watch).unwrap().remove(0);
+    let first = simulate_checked(&Memory::default(), &Setup::new(&project).unwrap(), None, &mut watch)
+        .unwrap()
+        .remove(0);
     assert!(first.was_cancelled() && first.check.is_none());
 }

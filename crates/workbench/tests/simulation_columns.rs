@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use phea_workbench::project;
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Record, simulate_project};
 use phea_workbench::source::Memory;
 
@@ -14,7 +15,7 @@ fn record_of(settings: &[&str]) -> Record {
     let source = Memory::default().with("rig.toml", BENCHMARK);
     let loaded =
         project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
-    simulate_project(&source, &loaded.project, &mut |_| true).unwrap().remove(0).record
+    simulate_project(&source, &Setup::new(&loaded.project).unwrap(), &mut |_| true).unwrap().remove(0).record
 }
 
 /// The largest magnitude of a difference of two columns, and of the first of them.

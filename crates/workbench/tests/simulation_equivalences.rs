@@ -13,6 +13,7 @@ use phea_hydraulics::machine::{Machine, MachineOptions};
 use phea_workbench::linearize::linearize;
 use phea_workbench::project::{self, Project};
 use phea_workbench::rig::Rig;
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Cause, Metrics, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
@@ -27,7 +28,9 @@ fn load(settings: &[&str]) -> Project {
 }
 
 fn run(settings: &[&str]) -> ScenarioRun {
-    let run = simulate_project(&Memory::default(), &load(settings), &mut |_| true).unwrap().remove(0);
+    let run = simulate_project(&Memory::default(), &Setup::new(&load(settings)).unwrap(), &mut |_| true)
+        .unwrap()
+        .remove(0);
     assert_eq!(run.status, Status::Completed);
     run
 }
@@ -86,7 +89,7 @@ fn small_motions_are_those_of_the_linearised_rig() {
         "valve.leakage_coefficients=[2.4e-9, 2.4e-9, 2.4e-9, 2.4e-9]",
         "operating_point.position=\"0.1 m\"",
     ]);
-    let rig = Rig::new(&project).unwrap();
+    let rig = Setup::rig_of(&project).unwrap();
     let linear = linearize(&rig, None, &TransferFunction::gain_only(1.0)).unwrap().two_pressure;
     // 1 mV or 1 um; the piston on its sensor resonates near 1300 rad/s
     for frequency in [10.0, 30.0, 100.0, 300.0, 1000.0, 1300.0] {

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 
 use phea_workbench::command::{self, Request, SimulateRequest};
 use phea_workbench::project;
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, SimulateError, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -24,7 +25,7 @@ fn rig(measured: &str, content: &str) -> (Memory, project::Loaded) {
 
 fn run(measured: &str, content: &str) -> ScenarioRun {
     let (source, loaded) = rig(measured, content);
-    simulate_project(&source, &loaded.project, &mut |_| true)
+    simulate_project(&source, &Setup::new(&loaded.project).unwrap(), &mut |_| true)
         .unwrap_or_else(|error| panic!("{error}"))
         .remove(0)
 }
@@ -108,7 +109,7 @@ fn a_measurement_that_cannot_be_taken_is_refused_with_its_place() {
     for (content, expected) in cases {
         let (source, loaded) = rig(MAPPED, content);
         let SimulateError::Motion(report) =
-            simulate_project(&source, &loaded.project, &mut |_| true).unwrap_err()
+            simulate_project(&source, &Setup::new(&loaded.project).unwrap(), &mut |_| true).unwrap_err()
         else {
             panic!("{content}")
         };

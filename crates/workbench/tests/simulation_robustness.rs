@@ -4,6 +4,7 @@
 
 use phea_dynamics::simulation::Status;
 use phea_workbench::project::{self, Loaded, Report};
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Record, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
@@ -22,7 +23,9 @@ fn read(text: &str, settings: &[&str]) -> Result<Loaded, Report> {
 #[track_caller]
 fn run(text: &str, settings: &[&str]) -> ScenarioRun {
     let project = read(text, settings).unwrap_or_else(|report| panic!("{report}")).project;
-    let run = simulate_project(&Memory::default(), &project, &mut |_| true).unwrap().remove(0);
+    let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
+        .unwrap()
+        .remove(0);
     let Record { times_s, reference_n, filtered_reference_n, control_v, signals, of_loop, .. } = &run.record;
     let all = [times_s, reference_n, filtered_reference_n, control_v].into_iter().flatten();
     let all = all.chain(signals.iter().flatten()).chain(of_loop.iter().flatten());
@@ -140,7 +143,9 @@ fn apart(text: &str, settings: &[&str]) -> f64 {
     let force = |more: &[&str]| {
         let project =
             read(text, &[settings, more].concat()).unwrap_or_else(|report| panic!("{report}")).project;
-        let run = simulate_project(&Memory::default(), &project, &mut |_| true).unwrap().remove(0);
+        let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
+            .unwrap()
+            .remove(0);
         assert_eq!(run.status, Status::Completed, "{settings:?}");
         run.record.signal("force_n").to_vec()
     };

@@ -4,6 +4,7 @@
 
 use phea_workbench::command::Request;
 use phea_workbench::project;
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
@@ -126,7 +127,9 @@ fn the_gap_counts_from_the_equilibrium() {
         [[scenario]]\nname = \"touch\"\nduration = \"3 s\"\noutput_step = \"1 ms\"\nreference = [{ at = \"0.5 s\", force = \"500 N\" }]\n";
     let text = format!("{}{scenario}", &HOSE[..first]);
     let project = load(&text, &["controller.numerator=0.0003*s + 0.002"], &[]).project;
-    let run = simulate_project(&Memory::default(), &project, &mut |_| true).unwrap().remove(0);
+    let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
+        .unwrap()
+        .remove(0);
     let load = run.record.signal("load_position_m").to_vec();
     let (start, end) = (load[0], *load.last().unwrap());
     // where it stands before the step, and 2 mm on with what 500 N press into 20 MN/m

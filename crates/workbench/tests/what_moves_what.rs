@@ -6,9 +6,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use num_complex::Complex64;
 use phea_workbench::catalogue::Catalogue;
-use phea_workbench::control::{compensation, prefilter, sensor};
 use phea_workbench::project::{self, KeyEntry, Project};
 use phea_workbench::rig::{Rig, sizing_problem};
+use phea_workbench::setup::Setup;
 use phea_workbench::simulate::Bench;
 use phea_workbench::sizing::{Question, size};
 use phea_workbench::source::Memory;
@@ -158,9 +158,10 @@ fn loaded(text: &str, settings: &[String]) -> Option<Project> {
 
 /// What is computed of a project, one text for each part; `None` for a part that it does not have.
 fn computed(project: &Project) -> [Option<String>; PARTS.len()] {
-    let rig = Rig::new(project).ok();
-    let sizing = rig.as_ref().and_then(|rig| sizing_problem(project, rig, &Catalogue::default()).ok());
-    let plant = rig.as_ref().map(Rig::in_loop).map(|rig| {
+    let setup = Setup::new(project).unwrap();
+    let rig = setup.rig().ok();
+    let sizing = sizing_problem(&setup, &Catalogue::default()).ok();
+    let plant = rig.map(Rig::in_loop).map(|rig| {
         let load = |w: f64| match &rig.in_motion {
             Some(plant) => plant.response(Complex64::new(0.0, w))[1],
             None => rig.plant.coefficients().disturbance.unwrap().at_frequency(w),
@@ -169,15 +170,19 @@ fn computed(project: &Project) -> [Option<String>; PARTS.len()] {
         [0.3, 20.0, 400.0, 1000.0, 3000.0].map(at).concat()
     });
     // the machine of a bench stands behind its rig, and before what a scenario adds
-    let machine = Bench::new(project).ok().map(|bench| {
+    let machine = Bench::new(&setup).ok().map(|bench| {
         let all = format!("{bench:?}");
         all[all.find(", machine: ").unwrap()..].to_string()
     });
     [
         sizing.map(|problem| format!("{:?}", size(&problem, Question::Both))),
         plant,
-        compensation(project).ok().flatten().map(|loop_| format!("{loop_:?} {:?}", prefilter(project))),
-        sensor(project).ok().map(|sensor| format!("{sensor:?}")),
+        setup
+            .controller
+            .as_ref()
+            .and_then(|given| setup.compensation(given).ok())
+            .map(|loop_| format!("{loop_:?} {:?}", setup.prefilter)),
+        Some(format!("{:?}", setup.sensor)),
         machine,
     ]
 }

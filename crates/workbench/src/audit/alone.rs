@@ -6,16 +6,17 @@ use phea_qft::verification::{TOLERANCE_DB, TrackingJudgement, Verdict};
 use crate::answer::significant;
 use crate::caveat::Caveat;
 use crate::project::Project;
-use crate::rig::{ParameterOrigin, ResolvedParameter, Rig};
+use crate::rig::{ParameterOrigin, ResolvedParameter};
 use crate::robust::RobustProblem;
+use crate::setup::Setup;
 
 /// Part of a derived value by which it may lie outside of bounds that are printed to three digits.
 const ROUNDED: f64 = 0.01;
 
 /// The project without its uncertainty, and what of it the box does not contain. `None` where the box
 /// contains the rig, or nothing is known of a rig.
-pub(crate) fn outside(project: &Project) -> Option<(Project, String)> {
-    let rig = Rig::new(project).ok()?;
+pub(crate) fn outside(setup: &Setup<'_>) -> Option<(Project, String)> {
+    let (project, rig) = (setup.project, setup.rig().ok()?);
     let beyond = |one: &&ResolvedParameter| {
         let slack = ROUNDED * one.derived.abs();
         one.origin == ParameterOrigin::Uncertainty

@@ -10,7 +10,8 @@ use super::range::VariedRange;
 use super::row::Columns;
 use super::varied::ranges;
 use crate::project::{Loaded, Project, Scenario, print};
-use crate::simulate::{Bench, Control, Driven, Window, driven, loop_size};
+use crate::setup::Setup;
+use crate::simulate::{Bench, Control, Driven, SimulateError, Window, driven, loop_size};
 use crate::source::Source;
 
 /// Most times at which the bands of the force are given over the whole scenario, and as many more around what begins its windows.
@@ -96,7 +97,7 @@ impl Plan {
             return Err(CampaignError::OpenLoop { name: scenario.name });
         }
         let ranges = ranges(&project, campaign, &scenario)?;
-        let bench = Bench::of_scenario(&project, &scenario)?;
+        let bench = Bench::of_scenario(&Setup::new(&project).map_err(SimulateError::from)?, &scenario)?;
         let driven = driven(source, &project, &bench, &scenario)?;
         let looks = (scenario.duration / scenario.output_step * (1.0 + 4.0 * f64::EPSILON)) as usize + 1;
         let times_s: Vec<f64> = (0..looks).map(|look| look as f64 * scenario.output_step).collect();

@@ -9,7 +9,8 @@ use phea_hydraulics::machine::{Machine, MachineOptions};
 
 use super::plan::{Draw, Plan};
 use super::row::{Ran, Row, RowOutcome, numbers};
-use crate::rig::{Rig, RigError, actuator};
+use crate::rig::{RigError, actuator};
+use crate::setup::Setup;
 use crate::simulate::{
     Bench, COMMAND_LIMIT, Control, Digital, Follower, Occurrence, Samples, SimulateError, Stopped, Waking,
     course_of, occurrences, options,
@@ -42,7 +43,7 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         return Err(refused(problem, None));
     }
     let project = plan.drawn(&draw).ok_or_else(|| refused("a path leads to no number".to_string(), None))?;
-    let lumps = Rig::new(&project).ok().map(|rig| {
+    let lumps = Setup::rig_of(&project).ok().map(|rig| {
         let linear = rig.derived;
         [linear.hydraulic_stiffness, linear.flow_gain, linear.flow_pressure_coefficient]
     });

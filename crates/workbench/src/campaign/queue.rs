@@ -16,7 +16,7 @@ use super::plan::Plan;
 use super::prepared::{Prepared, Watched, prepared};
 use super::row::{Row, RowOutcome};
 use super::supply::Supply;
-use crate::control::{controller, sensor};
+use crate::setup::Setup;
 use crate::simulate::{Control, SimulateError};
 
 use super::CampaignError;
@@ -119,10 +119,9 @@ pub(super) fn in_lanes<const L: usize>(
     }
     let settings = &plan.bench.settings;
     let machine = plan.bench.machine.convert(&mut |value| Lanes([value; L]));
-    let sensed = Sensed::new(machine, &sensor(&plan.project).map_err(SimulateError::from)?)
-        .map_err(SimulateError::from)?;
-    let control = controller(&plan.project).map_err(SimulateError::from)?;
-    let control = control.ok_or(SimulateError::NoController)?;
+    let setup = Setup::new(&plan.project).map_err(SimulateError::from)?;
+    let sensed = Sensed::new(machine, &setup.sensor).map_err(SimulateError::from)?;
+    let control = setup.controller.ok_or(SimulateError::NoController)?;
     let gain = plan.bench.feed_forward;
     let mut closed = ClosedLoop::new(sensed, &control, gain).map_err(SimulateError::from)?;
     let machine: fn(&mut ClosedLoop<Sensed<Machine<Lanes<L>>>>) -> &mut Machine<Lanes<L>> = in_loop;

@@ -4,6 +4,7 @@ use super::{CommandError, Watch};
 use crate::answer::{Answer, TableFormat};
 use crate::campaign::{self, CampaignError, Ledger, Plan, Summary, Wanted};
 use crate::project::{self, Loaded};
+use crate::setup::Setup;
 use crate::simulate::{self, simulate_into};
 use crate::source::{Destination, Source};
 
@@ -77,7 +78,7 @@ fn one(
         .map_err(|report| CampaignError::Settings(Box::new(report)))?;
     drawn.project.scenarios.retain(|scenario| scenario.name == plan.scenario());
     let table = destination.map(|destination| (destination, TableFormat::Csv));
-    let runs = simulate_into(source, &drawn.project, table, watch)?;
+    let runs = simulate_into(source, &Setup::new(&drawn.project)?, table, watch)?;
     Ok(Answer {
         text: campaign::run_text(&draw, &settings, &drawn, &runs),
         json: campaign::run_json(loaded, (plan, &draw), &settings, (&drawn, &runs)),

@@ -2,17 +2,15 @@
 
 use super::CommandError;
 use crate::answer::Answer;
-use crate::control::{controller, sensor};
 use crate::linearize::{self, Linearization, SweepRequest, linearize, sweep};
 use crate::project::Loaded;
-use crate::rig::Rig;
+use crate::setup::Setup;
 use crate::simulate::picture_files;
 use crate::source::Source;
 
 fn linearized(loaded: &Loaded) -> Result<Linearization, CommandError> {
-    let rig = Rig::new(&loaded.project)?;
-    let given = controller(&loaded.project)?;
-    Ok(linearize(&rig, given.as_ref(), &sensor(&loaded.project)?)?)
+    let setup = Setup::new(&loaded.project)?;
+    Ok(linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?)
 }
 
 pub(super) fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
@@ -37,7 +35,7 @@ pub(super) fn swept_answer(
     files.extend(linearize::sweep_files(&swept));
     files.extend(picture_files(&[linearize::sweep_figure(&swept)])?);
     Ok(Answer {
-        text: linearize::sweep_text(loaded, &swept),
+        text: linearize::sweep_text(&swept),
         json: linearize::json_swept(loaded, &linearization, &swept),
         files,
         affirmative: true,

@@ -4,6 +4,7 @@ use super::{CommandError, Watch, error_words};
 use crate::answer::{Answer, OutputFile, TableFormat};
 use crate::project::Loaded;
 use crate::quantity::{self, ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
+use crate::setup::Setup;
 use crate::simulate::{
     FrequencyRequest, ScenarioRun, figure_files, files, frequency_files, frequency_json, frequency_pictures,
     frequency_response, frequency_text, json, picture_files, simulate_checked, simulate_into, text,
@@ -70,10 +71,11 @@ pub(super) fn simulate_answer(
         return frequency_answer(loaded, asked, &options.request()?, watch);
     }
     let tables = destination.map(|destination| (destination, asked.table));
+    let setup = Setup::new(&loaded.project)?;
     let runs = if asked.check {
-        simulate_checked(source, &loaded.project, tables, watch)?
+        simulate_checked(source, &setup, tables, watch)?
     } else {
-        simulate_into(source, &loaded.project, tables, watch)?
+        simulate_into(source, &setup, tables, watch)?
     };
     let mut written = files(loaded, &runs);
     if asked.figures {
@@ -94,7 +96,7 @@ fn frequency_answer(
     request: &FrequencyRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    let found = frequency_response(&loaded.project, request, watch)?;
+    let found = frequency_response(&Setup::new(&loaded.project)?, request, watch)?;
     // nothing that is written to memory can fail
     let mut written: Vec<OutputFile> = frequency_files(&found, asked.table).unwrap_or_default();
     if asked.figures {

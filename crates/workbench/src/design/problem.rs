@@ -9,9 +9,10 @@ use phea_qft::specification::Requirement;
 use phea_qft::verification::TOLERANCE_DB;
 
 use crate::command::CommandError;
-use crate::control::{ControlError, element, prefilter, quantisation, sensor, timing};
-use crate::project::{DesignObjective, PartKind, Project, StructurePart};
+use crate::control::{ControlError, element};
+use crate::project::{DesignObjective, PartKind, StructurePart};
 use crate::robust::RobustProblem;
+use crate::setup::Setup;
 
 /// How far corner frequencies may lie below and above the design frequencies.
 const FREQUENCY_FACTORS: [f64; 2] = [0.1, 100.0];
@@ -19,18 +20,15 @@ const FREQUENCY_FACTORS: [f64; 2] = [0.1, 100.0];
 const DAMPING_RATIOS: [f64; 2] = [0.1, 5.0];
 
 /// What must be kept to, by which plants, in which loop.
-///
-/// # Errors
-/// [`CommandError`] for a sensor that is no transfer function.
-pub fn design_problem(project: &Project, given: &RobustProblem) -> Result<DesignProblem, CommandError> {
-    Ok(DesignProblem {
+pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem {
+    DesignProblem {
         family: given.family.clone(),
         beside: vec![],
-        sensor: sensor(project)?,
-        timing: timing(project),
+        sensor: setup.sensor.clone(),
+        timing: setup.timing,
         specifications: given.specifications.clone(),
-        minimum_delay_margin_s: project.design.clone().unwrap_or_default().minimum_delay_margin,
-    })
+        minimum_delay_margin_s: setup.project.design.clone().unwrap_or_default().minimum_delay_margin,
+    }
 }
 
 /// How a design is made: by `[design]`, or its defaults; `seed` in place of the project's.
@@ -38,15 +36,15 @@ pub fn design_problem(project: &Project, given: &RobustProblem) -> Result<Design
 /// # Errors
 /// [`CommandError`] for a prefilter that is no transfer function, or a nominal plant that cannot be sampled.
 pub fn design_options(
-    project: &Project,
+    setup: &Setup<'_>,
     given: &RobustProblem,
     seed: Option<u32>,
 ) -> Result<DesignOptions, CommandError> {
-    let design = project.design.clone().unwrap_or_default();
+    let design = setup.project.design.clone().unwrap_or_default();
     let controller = if design.structure.is_empty() {
         ControllerChoice::Grow { maximum_order: count(design.maximum_order) }
     } else {
-        let problem = design_problem(project, given)?;
+        let problem = design_problem(setup, given);
         let frequencies = given.design_frequencies();
         ControllerChoice::Given(structure(&design.structure, design.gain, &problem, &frequencies)?)
     };
@@ -57,10 +55,10 @@ pub fn design_options(
             DesignObjective::BestWorstMargin => Objective::BestWorstMargin,
         },
         controller,
-        prefilter: prefilter_choice(project, given, design.prefilter_maximum_order)?,
+        prefilter: prefilter_choice(setup, given, design.prefilter_maximum_order)?,
         seed: u64::from(seed.unwrap_or(design.seed)),
         tolerance_db: TOLERANCE_DB,
-        coefficients: quantisation(project)?.coefficients,
+        coefficients: setup.quantisation.coefficients,
     })
 }
 
@@ -70,7 +68,7 @@ fn count(number: u32) -> usize {
 
 /// A prefilter is designed for tracking alone, and never in place of one that stands beside a controller without a law.
 fn prefilter_choice(
-    project: &Project,
+    setup: &Setup<'_>,
     given: &RobustProblem,
     maximum_order: u32,
 ) -> Result<PrefilterChoice, CommandError> {
@@ -78,8 +76,8 @@ fn prefilter_choice(
         matches!(one.requirement, Requirement::Tracking { .. })
     };
     let is_designed = given.specifications.iter().any(tracks) && maximum_order > 0;
-    let is_kept = project.prefilter.is_some() && (!given.has_controller || !is_designed);
-    Ok(match prefilter(project)? {
+    let is_kept = setup.prefilter.is_some() && (!given.has_controller || !is_designed);
+    Ok(match &setup.prefilter {
         Some(kept) if is_kept => PrefilterChoice::Given(kept.transfer_function()?),
         _ if is_designed => PrefilterChoice::Grow { maximum_order: count(maximum_order) },
         _ => PrefilterChoice::None,

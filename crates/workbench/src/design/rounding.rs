@@ -8,9 +8,8 @@ use serde::Serialize;
 use crate::answer::{Number, significant};
 use crate::audit::{NamedPlant, PlantNames};
 use crate::command::CommandError;
-use crate::control::quantisation;
-use crate::project::Project;
 use crate::robust::RobustProblem;
+use crate::setup::Setup;
 
 /// What the converters do, or why that cannot be told.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,8 +42,8 @@ struct EffectRow {
 }
 
 /// `None` where no converter rounds.
-pub(super) fn rounding(project: &Project, problem: &RobustProblem) -> Result<Option<Rounding>, CommandError> {
-    let quantisation = quantisation(project)?;
+pub(super) fn rounding(setup: &Setup<'_>, problem: &RobustProblem) -> Result<Option<Rounding>, CommandError> {
+    let quantisation = setup.quantisation;
     if quantisation.command.is_none() && quantisation.measurement.is_none() {
         return Ok(None);
     }

@@ -24,13 +24,15 @@ use crate::rig::{
     self, Numbers, Rig, components, linear, place, plant, settled_supply, stated, with_supply, yielding_load,
     yielding_supply,
 };
+use crate::setup::Setup;
 
 /// Records the plant with the uncertain numbers open and all others at the values that hold.
 pub(super) fn uncertain_plant(
-    project: &Project,
+    setup: &Setup<'_>,
     parameters: Vec<UncertainParameter>,
 ) -> Result<UncertainPlant, FamilyError> {
-    let visited = Visited::new(project, &parameters)?;
+    let project = setup.project;
+    let visited = Visited::new(setup, &parameters)?;
     let Visited { rig, names, equal, .. } = &visited;
     let Some(declared) = &project.actuator else { return Err(crate::rig::RigError::NoActuator.into()) };
     let recorded = UncertainPlant::record(parameters, |values| {

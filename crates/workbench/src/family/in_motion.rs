@@ -16,7 +16,7 @@ use super::FamilyError;
 use super::hydraulic;
 use super::visited::Visited;
 use crate::project::Project;
-use crate::rig::Rig;
+use crate::setup::Setup;
 
 /// Members of a box that are looked at, its corners among them; what lies between them is searched.
 const MEMBERS_MAXIMUM: usize = 200;
@@ -25,14 +25,14 @@ const CORNER_COORDINATES: usize = 6;
 
 /// The family with lines in motion; `None` where both are lumped.
 pub(super) fn family(
-    project: &Project,
+    setup: &Setup<'_>,
     lumped: &UncertainFamily,
 ) -> Result<Option<UncertainFamily>, FamilyError> {
-    if project.actuator.is_none() || Rig::new(project)?.in_motion.is_none() {
+    if setup.rig().ok().and_then(|rig| rig.in_motion).is_none() {
         return Ok(None);
     }
     let parameters = lumped.plant().parameters().to_vec();
-    let moving = Moving { visited: Visited::new(project, &parameters)?, project: project.clone() };
+    let moving = Moving { visited: Visited::new(setup, &parameters)?, project: setup.project.clone() };
     let corners = corners(lumped)?;
     let members = members(lumped, &corners);
     for values in corners.iter().chain(&members) {

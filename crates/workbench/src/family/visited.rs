@@ -14,6 +14,7 @@ use super::hydraulic::{Equal, Open};
 use crate::answer::significant;
 use crate::project::Project;
 use crate::rig::{Numbers, Rig, RigError, are_equal, components, sides, states_one_pressure};
+use crate::setup::Setup;
 
 /// Relative error of a pressure that is none.
 const EXACT: f64 = 1e-9;
@@ -38,8 +39,8 @@ pub(super) struct Visited {
 }
 
 impl Visited {
-    pub(super) fn new(project: &Project, parameters: &[UncertainParameter]) -> Result<Visited, FamilyError> {
-        let rig = Rig::new(project)?;
+    pub(super) fn new(setup: &Setup<'_>, parameters: &[UncertainParameter]) -> Result<Visited, FamilyError> {
+        let (project, rig) = (setup.project, setup.rig()?.clone());
         let Some(declared) = &project.actuator else { return Err(RigError::NoActuator.into()) };
         let names: Vec<String> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
         let open = Open { project, declared, rig: &rig, names: &names };
@@ -146,9 +147,10 @@ impl Visited {
 ///
 /// # Errors
 /// [`FamilyError::OperatingPoint`] with the first where they are not, and why.
-pub(super) fn check(project: &Project, family: &UncertainFamily) -> Result<(), FamilyError> {
+pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), FamilyError> {
+    let project = setup.project;
     let Some(declared) = &project.actuator else { return Ok(()) };
-    let visited = Visited::new(project, family.plant().parameters())?;
+    let visited = Visited::new(setup, family.plant().parameters())?;
     if !visited.moved {
         return Ok(());
     }

@@ -7,7 +7,7 @@ use phea_qft::family::{Coordinate, Extent, Family, UncertainFamily};
 use super::hydraulic::{Open, is_linear};
 use super::visited::Visited;
 use super::{FamilyError, family, uncertain};
-use crate::project::Project;
+use crate::setup::Setup;
 use crate::source::Memory;
 
 /// A parameter of the linear model over a family.
@@ -63,14 +63,15 @@ const SEED: u64 = 1;
 ///
 /// # Errors
 /// Those of [`family`].
-pub fn visited_box(project: &Project) -> Result<Option<Vec<VisitedRange>>, FamilyError> {
+pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, FamilyError> {
+    let project = setup.project;
     let Some(declared) = &project.actuator else { return Ok(None) };
     let parameters = uncertain::parameters(project)?;
     if parameters.iter().all(|parameter| is_linear(&parameter.name)) {
         return Ok(None);
     }
-    let Family::Uncertain(family) = family(project, &Memory::default())? else { return Ok(None) };
-    let visited = Visited::new(project, &parameters)?;
+    let Family::Uncertain(family) = family(setup, &Memory::default())? else { return Ok(None) };
+    let visited = Visited::new(setup, &parameters)?;
     let open = Open { project, declared, rig: &visited.rig, names: &visited.names };
     let names: Vec<&str> = visited.names.iter().map(String::as_str).collect();
     let of = |result: usize| {

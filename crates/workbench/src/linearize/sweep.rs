@@ -11,12 +11,12 @@ use phea_dynamics::portable;
 use phea_hydraulics::linear::transfer_functions;
 
 use super::{Linearization, linearize, resonance};
+use crate::caveat::{Caveat, caveats};
 use crate::command::CommandError;
-use crate::control::{controller, sensor};
 use crate::linear_loop::{LinearLoop, LoopStability, linear_loop};
 use crate::project::{self, Key, KeyEntry, Loaded};
 use crate::quantity::{self, DisplayUnit, display};
-use crate::rig::Rig;
+use crate::setup::Setup;
 use crate::source::Source;
 use crate::spelling::nearest;
 
@@ -54,6 +54,8 @@ pub struct Sweep {
     /// Whether the plant that every verdict is of follows the key. Where the project states the parameters of the linear model it
     /// may not: then everything told of poles is of the derived parameters.
     pub plant_follows: bool,
+    /// What no verdict on the linear loop counts of the project.
+    pub caveats: Vec<Caveat>,
     /// In order.
     pub points: Vec<SweepPoint>,
 }
@@ -111,7 +113,8 @@ pub fn sweep(
         .map(|(value, found)| SweepPoint { value, found: found.map(|models| swept(models, plant_follows)) })
         .collect();
     let unit = quantity::fitting(ends[0].abs().max(ends[1].abs()), key.dimension);
-    Ok(Sweep { path, unit, si: key.dimension.si, by_ratio, plant_follows, points })
+    let caveats = caveats(&Setup::new(&loaded.project)?);
+    Ok(Sweep { path, unit, si: key.dimension.si, by_ratio, plant_follows, caveats, points })
 }
 
 /// A range, read.
@@ -228,11 +231,10 @@ struct Models {
 
 fn linearized(loaded: &Loaded) -> Result<Models, String> {
     let found = || -> Result<Models, CommandError> {
-        let rig = Rig::new(&loaded.project)?;
-        let (given, sensor) = (controller(&loaded.project)?, sensor(&loaded.project)?);
-        let linearization = linearize(&rig, given.as_ref(), &sensor)?;
-        let seen = transfer_functions(&rig.in_loop().plant.coefficients())?.command;
-        Ok(Models { linearization, seen, given, sensor })
+        let setup = Setup::new(&loaded.project)?;
+        let seen = transfer_functions(&setup.rig()?.in_loop().plant.coefficients())?.command;
+        let linearization = linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?;
+        Ok(Models { linearization, seen, given: setup.controller, sensor: setup.sensor })
     };
     found().map_err(|error| error.to_string())
 }

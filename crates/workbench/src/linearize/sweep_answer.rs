@@ -5,9 +5,7 @@ use serde::Serialize;
 use super::root_list;
 use super::sweep::{Sweep, SweepPoint, Swept};
 use crate::answer::{OutputFile, significant, table};
-use crate::caveat::caveats;
 use crate::figure::{Figure, PoleSweepInput, PoleSweepPoint, Words, pole_sweep};
-use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
 
 /// A value of the swept key in the JSON of `linearize`.
@@ -112,9 +110,9 @@ fn resonance(found: &Swept) -> Option<[f64; 2]> {
 }
 
 /// The table of a sweep for people.
-pub fn sweep_text(loaded: &Loaded, sweep: &Sweep) -> String {
+pub fn sweep_text(sweep: &Sweep) -> String {
     let mut out = String::new();
-    for caveat in caveats(&loaded.project) {
+    for caveat in &sweep.caveats {
         out.push_str(&format!("warning: {}\n", caveat.sentence));
     }
     if let Some(sentence) = unmoved(sweep) {

@@ -25,6 +25,7 @@ use crate::design::{
 use crate::figure::Figure;
 use crate::project::{Loaded, Project};
 use crate::robust::DesignFrequency;
+use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::Trial;
 
@@ -52,10 +53,10 @@ pub(super) struct FoundDesign {
 /// Those that leave nothing to report; that no controller is found is not among them.
 pub(super) fn designed(
     source: &dyn Source,
-    loaded: &Loaded,
+    setup: &Setup<'_>,
     watch: Watch<'_>,
 ) -> Result<Designed, CommandError> {
-    let view = match design_project(source, loaded, None, watch) {
+    let view = match design_project(source, setup, None, watch) {
         Ok(view) if view.stopped => return Err(CommandError::Stopped),
         Ok(view) => view,
         Err(CommandError::Design(DesignError::NoController(mut sentences))) => {

@@ -4,6 +4,7 @@ use crate::answer::significant;
 use crate::command::{CommandError, Watch};
 use crate::project::Project;
 use crate::quantity::DisplayUnit;
+use crate::setup::Setup;
 use crate::simulate::{
     Cause, Named, ScenarioRun, SimulateError, Window, Wish, cause_words, cells_of, simulate_project,
 };
@@ -37,19 +38,20 @@ pub(super) struct DrivenSide {
 /// [`CommandError::Stopped`] where the watch stops it, and a wish in time that is none.
 pub(super) fn driven(
     source: &dyn Source,
-    project: &Project,
+    setup: &Setup<'_>,
     designed: Option<&Project>,
     watch: Watch<'_>,
 ) -> Result<Option<Driven>, CommandError> {
+    let project = setup.project;
     if project.scenarios.is_empty() {
         return Ok(None);
     }
     let has_law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
-    let given = (has_law || designed.is_none()).then_some((GIVEN, project));
-    let designed = designed.map(|project| (DESIGNED, project));
+    let given = (has_law || designed.is_none()).then(|| (GIVEN, setup.clone()));
+    let designed = designed.map(Setup::new).transpose()?.map(|setup| (DESIGNED, setup));
     let mut sides = Vec::new();
-    for (name, project) in given.into_iter().chain(designed) {
-        let runs = simulate_project(source, project, watch);
+    for (name, setup) in given.into_iter().chain(designed) {
+        let runs = simulate_project(source, &setup, watch);
         if runs.iter().flatten().any(ScenarioRun::was_cancelled) {
             return Err(CommandError::Stopped);
         }

@@ -4,8 +4,8 @@ use super::design::{self, Designed};
 use crate::audit::{ProjectAudit, audit_problem};
 use crate::command::{CommandError, Watch};
 use crate::design::ProjectDesign;
-use crate::project::Loaded;
 use crate::robust::{DesignFrequency, RobustProblem, robust_problem};
+use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{Trial, tried};
 
@@ -29,25 +29,25 @@ pub(super) struct Judged {
 /// [`CommandError`] for a family or a law that cannot be computed with, and where the watch stops it.
 pub(super) fn judged(
     source: &dyn Source,
-    loaded: &Loaded,
+    setup: &Setup<'_>,
     watch: Watch<'_>,
 ) -> Result<Option<Judged>, CommandError> {
-    let project = &loaded.project;
+    let project = setup.project;
     if project.specifications.is_empty() {
         return Ok(None);
     }
-    let problem = robust_problem(source, project)?;
+    let problem = robust_problem(source, setup)?;
     let given = match problem.has_controller {
         true => Some(audit_problem(&problem, watch)?),
         false => None,
     };
     let bounds = problem.at_design_frequencies(watch)?;
     let given_trial = match &given {
-        Some(view) => tried(source, project, &problem, view, watch)?,
+        Some(view) => tried(source, setup, &problem, view, watch)?,
         None => None,
     };
     let designed = match design::is_asked_for(project) {
-        true => Some(design::designed(source, loaded, watch)?),
+        true => Some(design::designed(source, setup, watch)?),
         false => None,
     };
     Ok(Some(Judged { problem, bounds, given, given_trial, designed }))

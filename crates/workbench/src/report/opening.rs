@@ -16,7 +16,7 @@ use super::{Facts, NOMINAL_LOOP};
 use crate::audit::verdict_key;
 use crate::design::explanation_words;
 use crate::figure::Figure;
-use crate::project::Project;
+use crate::setup::Setup;
 use crate::simulate::at_a_glance;
 use crate::trial::agreement_word;
 use next::next_steps;
@@ -24,7 +24,7 @@ use side::{Side, sides};
 
 /// What the page is made of.
 pub(super) struct Contents<'a> {
-    pub(super) project: &'a Project,
+    pub(super) setup: &'a Setup<'a>,
     pub(super) judged: Option<&'a Judged>,
     pub(super) driven: Option<&'a Driven>,
     /// Of the rig and its load: shown as cards.

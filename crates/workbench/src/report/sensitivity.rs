@@ -9,6 +9,7 @@ use super::typeset::prose;
 use crate::command::{CommandError, Watch};
 use crate::figure::DisplayUnit;
 use crate::project::{FrictionModel, Project};
+use crate::setup::Setup;
 use crate::simulate::{METRICS, Metrics, ScenarioRun, Window, cause_words, cells_of, simulate_project};
 use crate::source::Source;
 
@@ -85,7 +86,7 @@ fn vary(
     (quantity, factor, value): (&'static str, f64, String),
     watch: Watch<'_>,
 ) -> Result<Varied, CommandError> {
-    let run = match simulate_project(source, project, watch) {
+    let run = match simulate_project(source, &Setup::new(project)?, watch) {
         Ok(runs) if runs.iter().any(ScenarioRun::was_cancelled) => return Err(CommandError::Stopped),
         Ok(runs) => runs.into_iter().next().ok_or_else(|| "no scenario".to_string()),
         Err(error) => Err(error.to_string()),

@@ -13,11 +13,11 @@ impl Rig {
     /// # Example
     /// Beside a prescribed load only the path of its motion changes.
     /// ```
-    /// use phea_workbench::rig::Rig;
+    /// use phea_workbench::setup::Setup;
     /// use phea_workbench::source::Memory;
     /// let source = Memory::default().with("rig.toml", include_str!("../../../../examples/ybitu/hose.toml"));
     /// let settings = ["controller.load_velocity_feed_forward={}".to_string()];
-    /// let rig = Rig::new(&phea_workbench::project::read(&source, "rig.toml", &settings, &[])?.project)?;
+    /// let rig = Setup::rig_of(&phea_workbench::project::read(&source, "rig.toml", &settings, &[])?.project)?;
     /// let [own, seen] = [&rig, &rig.in_loop()].map(|rig| rig.plant.coefficients());
     /// let load = |paths: &phea_dynamics::uncertain_plant::PlantCoefficients<f64>| {
     ///     paths.disturbance.as_ref().map(|path| path.at_frequency(1.0).norm_sqr())

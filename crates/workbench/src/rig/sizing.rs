@@ -1,12 +1,12 @@
 use phea_dynamics::portable::ln;
 use phea_hydraulics::linear::LinearParameters;
 
-use super::Rig;
 use super::assembly::{Expansion, ExpansionPressures, hose, stiffening};
 use super::numbers::Numbers;
 use crate::answer::significant;
 use crate::catalogue::{Catalogue, DASH_SIZES, Kind};
-use crate::project::{self, HoseProperties, Project};
+use crate::project::{self, HoseProperties};
+use crate::setup::Setup;
 use crate::sizing::{HoseOption, SizingProblem};
 
 /// Recommended oil velocity of pressure lines, m/s (Rabie 2009, quoted in Ledezma 2019, section 6.3.1.1).
@@ -19,8 +19,11 @@ const MAXIMUM_GAIN: f64 = 1.0;
 const HOSE_LENGTH: [f64; 2] = [0.1, 10.0];
 
 /// Why a project cannot be sized.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SizingError {
+    /// The rig cannot be computed with.
+    #[error(transparent)]
+    Rig(#[from] super::RigError),
     /// There is nothing to size for.
     #[error(
         "the project has no [sizing]: add one with `time_constant`, or `settling_time` and `settling_band_percent`"
@@ -41,11 +44,8 @@ pub enum SizingError {
 ///
 /// # Errors
 /// [`SizingError`] if the project does not say what to size for.
-pub fn sizing_problem(
-    project: &Project,
-    rig: &Rig,
-    catalogue: &Catalogue,
-) -> Result<SizingProblem, SizingError> {
+pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<SizingProblem, SizingError> {
+    let (project, rig) = (setup.project, setup.rig()?);
     let wish = project.sizing.as_ref().ok_or(SizingError::Absent)?;
     let actuator = project.actuator.as_ref().ok_or(SizingError::NoHose)?;
     let components = rig.actuator.components();

@@ -10,9 +10,9 @@ use phea_hydraulics::servovalve::SpoolImperfection;
 use phea_qft::design::quantisation::Quantisation;
 
 use super::SimulateError;
-use crate::control::{controller, deployed, quantisation, sensor};
 use crate::project::{self, Project, Scenario, StepMethod};
 use crate::rig::{Numbers, Rig, feed_forward, lines, power_unit};
+use crate::setup::Setup;
 
 /// A machine with its controller.
 #[derive(Clone, Debug)]
@@ -60,31 +60,32 @@ impl Bench {
     ///
     /// # Errors
     /// [`SimulateError`] where one of them is missing or impossible.
-    pub fn new(project: &Project) -> Result<Bench, SimulateError> {
-        Bench::closed(project, false)
+    pub fn new(setup: &Setup<'_>) -> Result<Bench, SimulateError> {
+        Bench::closed(setup, false)
     }
 
     /// What a scenario of the project is driven on: open loop where it states a command, with a force from outside where it states one.
     ///
     /// # Errors
     /// As [`Bench::new`]; an open loop needs no controller.
-    pub fn of_scenario(project: &Project, scenario: &Scenario) -> Result<Bench, SimulateError> {
+    pub fn of_scenario(setup: &Setup<'_>, scenario: &Scenario) -> Result<Bench, SimulateError> {
         let external_force = !scenario.external_force.is_empty();
         match scenario.is_open_loop() {
-            false => Bench::closed(project, external_force),
-            true => Bench::open(project, external_force),
+            false => Bench::closed(setup, external_force),
+            true => Bench::open(setup, external_force),
         }
     }
 
-    fn closed(project: &Project, external_force: bool) -> Result<Bench, SimulateError> {
-        let (rig, sensed) = rig_and_machine(project, external_force)?;
-        let controller = controller(project)?.ok_or(SimulateError::NoController)?;
+    fn closed(setup: &Setup<'_>, external_force: bool) -> Result<Bench, SimulateError> {
+        let project = setup.project;
+        let (rig, sensed) = rig_and_machine(setup, external_force)?;
+        let controller = setup.controller.clone().ok_or(SimulateError::NoController)?;
         let feed_forward = feed_forward(project, &rig.linear);
         let machine = *sensed.plant();
         let control = match controller.timing.sample_time_s {
             None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &controller, feed_forward)?)),
             Some(sample_time_s) => {
-                Control::Sampled(Box::new(sampled(project, sensed, controller, sample_time_s, feed_forward)?))
+                Control::Sampled(Box::new(sampled(setup, sensed, controller, sample_time_s, feed_forward)?))
             }
         };
         let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
@@ -100,8 +101,9 @@ impl Bench {
     }
 
     /// The machine alone, for a command that is stated: limits, samples and delays of a controller do not act on it.
-    fn open(project: &Project, external_force: bool) -> Result<Bench, SimulateError> {
-        let (rig, sensed) = rig_and_machine(project, external_force)?;
+    fn open(setup: &Setup<'_>, external_force: bool) -> Result<Bench, SimulateError> {
+        let project = setup.project;
+        let (rig, sensed) = rig_and_machine(setup, external_force)?;
         let machine = *sensed.plant();
         let control = Control::Open(Box::new(HeldPlant::new(sensed, &TransferFunction::gain_only(1.0))?));
         let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
@@ -140,11 +142,11 @@ impl Bench {
 }
 
 /// The rig, and its machine behind its sensor.
-fn rig_and_machine(project: &Project, external_force: bool) -> Result<(Rig, Sensed<Machine>), SimulateError> {
-    let rig = Rig::new(project)?;
-    let options = MachineOptions { external_force, ..options(project, &rig.actuator)? };
+fn rig_and_machine(setup: &Setup<'_>, external_force: bool) -> Result<(Rig, Sensed<Machine>), SimulateError> {
+    let rig = setup.rig()?;
+    let options = MachineOptions { external_force, ..options(setup.project, &rig.actuator)? };
     let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
-    Ok((rig, Sensed::new(machine, &sensor(project)?)?))
+    Ok((rig.clone(), Sensed::new(machine, &setup.sensor)?))
 }
 
 fn capacity(project: &Project) -> Option<f64> {
@@ -170,14 +172,15 @@ pub(super) fn settings(project: &Project) -> Settings {
 }
 
 fn sampled(
-    project: &Project,
+    setup: &Setup<'_>,
     sensed: Sensed<Machine>,
     mut controller: Controller,
     sample_time_s: f64,
     feed_forward: f64,
 ) -> Result<Sampled, SimulateError> {
+    let project = setup.project;
     let between = between_samples(project, &mut controller)?;
-    let controller = deployed(project, &controller)?;
+    let controller = setup.deployed(&controller)?;
     let noise = project.actuator.as_ref().map_or(0.0, |actuator| actuator.force_sensor.noise);
     Ok(Sampled {
         held: HeldPlant::new(sensed, &between)?,
@@ -185,7 +188,7 @@ fn sampled(
         command_limit: controller.command_limit.unwrap_or(f64::INFINITY),
         controller: controller.sampled(sample_time_s)?,
         feed_forward,
-        converters: quantisation(project)?,
+        converters: setup.quantisation,
         noise,
         seed: u64::from(project.simulation.seed),
     })

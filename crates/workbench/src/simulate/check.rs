@@ -10,7 +10,7 @@ use super::metrics::Measured;
 use super::{Metrics, Record, ScenarioRun, SimulateError, Stopped, Window, simulate_into, simulate_project};
 use crate::answer::TableFormat;
 use crate::command::{Progress, Watch};
-use crate::project::Project;
+use crate::setup::Setup;
 use crate::source::{Destination, Source};
 
 /// Of the second run's tolerance over that of the first.
@@ -91,21 +91,21 @@ impl Check {
 /// As [`simulate_into`].
 pub fn simulate_checked(
     source: &dyn Source,
-    project: &Project,
+    setup: &Setup<'_>,
     destination: Option<(&dyn Destination, TableFormat)>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
     let half = |progress: Progress| Progress { share: 0.5 * progress.share, ..progress };
-    let mut runs = simulate_into(source, project, destination, &mut |progress| watch(half(progress)))?;
+    let mut runs = simulate_into(source, setup, destination, &mut |progress| watch(half(progress)))?;
     if runs.iter().any(ScenarioRun::was_cancelled) {
         return Ok(runs);
     }
-    let mut tighter = project.clone();
+    let mut tighter = setup.project.clone();
     tighter.simulation.tolerance *= TIGHTER;
     let mut told = |progress: Progress| {
         watch(Progress { stage: "checking at a tenth of the tolerance", share: 0.5 + half(progress).share })
     };
-    let others = simulate_project(source, &tighter, &mut told)?;
+    let others = simulate_project(source, &setup.asked(&tighter), &mut told)?;
     for (run, other) in runs.iter_mut().zip(&others) {
         run.check = Some(check(run, other, tighter.simulation.tolerance));
     }

@@ -3,6 +3,7 @@
 use super::{ScenarioRun, SimulateError, simulate_project};
 use crate::command::{Progress, Watch};
 use crate::project::Loaded;
+use crate::setup::Setup;
 use crate::source::Source;
 
 /// Projects with what came of their scenarios.
@@ -53,7 +54,9 @@ pub fn compare_projects<'a>(
         let mut told = |progress: Progress| {
             watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
         };
-        let runs = simulate_project(source, &loaded.project, &mut told).map_err(|error| (index, error))?;
+        let named = |error: SimulateError| (index, error);
+        let setup = Setup::new(&loaded.project).map_err(|error| named(error.into()))?;
+        let runs = simulate_project(source, &setup, &mut told).map_err(named)?;
         let stopped = runs.iter().any(ScenarioRun::was_cancelled);
         comparison.projects.push((loaded, runs));
         if stopped {

@@ -22,8 +22,8 @@ use phea_hydraulics::machine::{Beginning, Machine};
 use super::SimulateError;
 use super::bench::{options, settings};
 use crate::command::{Progress, Watch};
-use crate::project::Project;
 use crate::rig::Rig;
+use crate::setup::Setup;
 
 /// Part of the nominal voltage, and of what the supply can push with, that a sine has where nothing is asked for.
 const USUAL_AMPLITUDE: f64 = 0.01;
@@ -101,11 +101,11 @@ impl FrequencyResponse {
 /// # Errors
 /// [`SimulateError`] if the project describes no machine, or one that does not rest at the operating point.
 pub fn frequency_response(
-    project: &Project,
+    setup: &Setup<'_>,
     request: &FrequencyRequest,
     watch: Watch<'_>,
 ) -> Result<FrequencyResponse, SimulateError> {
-    let rested = rested(project)?;
+    let rested = rested(setup)?;
     let frequencies = frequencies(request, &rested);
     let count = 2.0 * frequencies.len() as f64;
     let mut told = |done: usize| watch(Progress { stage: "frequency response", share: done as f64 / count });
@@ -118,7 +118,7 @@ pub fn frequency_response(
         Err("it was stopped before".to_string())
     } else {
         let before = frequencies.len();
-        closed_loop::measured(project, &rested, &frequencies, request, &mut |index| {
+        closed_loop::measured(setup, &rested, &frequencies, request, &mut |index| {
             stopped |= !told(before + index);
             !stopped
         })?
@@ -128,8 +128,8 @@ pub fn frequency_response(
     Ok(FrequencyResponse { position_m, force_n, command_v, open_loop, closed_loop, stopped })
 }
 
-fn rested(project: &Project) -> Result<Rested, SimulateError> {
-    let rig = Rig::new(project)?;
+fn rested(setup: &Setup<'_>) -> Result<Rested, SimulateError> {
+    let (project, rig) = (setup.project, setup.rig()?.clone());
     let machine =
         Machine::new(&rig.actuator, &options(project, &rig.actuator)?).map_err(SimulateError::Machine)?;
     let rest = machine.rest(&rig.point).map_err(SimulateError::Machine)?;

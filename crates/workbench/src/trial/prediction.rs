@@ -15,9 +15,9 @@ use phea_qft::stability::{StabilityStatus, member_stability};
 use super::rigs::Tried;
 use super::run::{BAND_PERCENT, Response};
 use crate::command::CommandError;
-use crate::control::{controller, deployed, sensor};
 use crate::linear_loop::{LinearLoop, LoopStability, linear_loop};
 use crate::robust::RobustProblem;
+use crate::setup::Setup;
 
 /// Durations that are tried until the response has settled, s, and the points of each.
 const DURATIONS_S: [f64; 3] = [0.5, 2.0, 10.0];
@@ -45,10 +45,11 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
             Ok(of_responses(plant, &problem.compensation).unwrap_or(Prediction::Unknown))
         }
         Some(PlantMember::Rational(plant)) => {
-            let Some(given) = controller(&tried.project)? else { return Ok(Prediction::Unknown) };
-            let given = deployed(&tried.project, &given)?;
+            let setup = Setup::new(&tried.project)?;
+            let Some(given) = &setup.controller else { return Ok(Prediction::Unknown) };
+            let given = setup.deployed(given)?;
             let plant = transfer_functions(plant)?.command;
-            let closed = linear_loop(&plant, &given, &sensor(&tried.project)?, BAND_PERCENT);
+            let closed = linear_loop(&plant, &given, &setup.sensor, BAND_PERCENT);
             Ok(match closed {
                 Ok(LinearLoop { step: Ok(step), .. }) => {
                     Prediction::Step(step.metrics, Response { times_s: step.times_s, values: step.response })

@@ -12,6 +12,7 @@ use crate::audit::{NamedPlant, ProjectAudit};
 use crate::project::{Actuator, Component, EdgeCoefficients, LINEAR_PARAMETERS, Line, LineModel, Project};
 use crate::rig::{Rig, feed_forward};
 use crate::robust::RobustProblem;
+use crate::setup::Setup;
 
 /// A machine and the plant that the linear loop has for it.
 #[derive(Clone, Debug)]
@@ -35,28 +36,28 @@ const NUDGE: f64 = 1e-3;
 
 /// The machines, and what was said of plants that none was found for.
 pub(super) fn rigs(
-    project: &Project,
+    setup: &Setup<'_>,
+    rig: &Rig,
     problem: &RobustProblem,
     view: &ProjectAudit,
 ) -> (Vec<Tried>, Vec<String>) {
-    let (mut rigs, mut missing) = (Vec::new(), Vec::new());
-    if let Ok(rig) = Rig::new(project) {
-        let seen = rig.in_loop();
-        let plant = match seen.in_motion {
-            None => PlantMember::Rational(seen.plant.coefficients()),
-            Some(moving) => PlantMember::Responding(Arc::new(moving)),
-        };
-        let of = |what: &str, project: Project, quarter_wave_rad_per_s| Tried {
-            what: what.to_string(),
-            named: None,
-            quarter_wave_rad_per_s,
-            project,
-            plant: Some(plant.clone()),
-        };
-        rigs.push(of("the rig as declared", project.clone(), None));
-        let waves = with_waves(project);
-        rigs.extend(waves.map(|project| of("the same with waves in its lines", project, quarter_wave(&rig))));
-    }
+    let project = setup.project;
+    let seen = rig.in_loop();
+    let plant = match seen.in_motion {
+        None => PlantMember::Rational(seen.plant.coefficients()),
+        Some(moving) => PlantMember::Responding(Arc::new(moving)),
+    };
+    let of = |what: &str, project: Project, quarter_wave_rad_per_s| Tried {
+        what: what.to_string(),
+        named: None,
+        quarter_wave_rad_per_s,
+        project,
+        plant: Some(plant.clone()),
+    };
+    let mut rigs = vec![of("the rig as declared", project.clone(), None)];
+    let waves = with_waves(project);
+    rigs.extend(waves.map(|project| of("the same with waves in its lines", project, quarter_wave(rig))));
+    let mut missing = Vec::new();
     let mut known: Vec<&PlantPoint> = Vec::new();
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         let Some(worst) = &finding.worst else { continue };
@@ -67,7 +68,7 @@ pub(super) fn rigs(
         known.push(&worst.plant);
         let (names, values): (Vec<&str>, Vec<f64>) = numbers.map(|(name, _, value)| (name, value)).unzip();
         let what = format!("the worst plant of {}", view.numbered(index));
-        match made(project, &names, &values) {
+        match made(setup, rig, &names, &values) {
             Ok(project) => rigs.push(Tried {
                 what,
                 named: Some(view.names.named(&worst.plant)),
@@ -111,13 +112,13 @@ fn quarter_wave(rig: &Rig) -> Option<f64> {
 
 /// A project whose rig has these parameters: numbers of the project and of its operating point at their places, those of the linear
 /// model by what they follow from.
-fn made(project: &Project, names: &[&str], values: &[f64]) -> Result<Project, String> {
+fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Result<Project, String> {
+    let project = setup.project;
     let is_linear = |name: &str| LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name);
     let mut rig = project.clone();
     rig.uncertainty.clear();
     rig.family = None;
     // what is fed forward is that of the declared rig
-    let declared = Rig::new(project).map_err(|error| error.to_string())?;
     let gain = feed_forward(project, &declared.linear);
     if let Some(given) = rig.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut()) {
         given.gain = Some(gain);
@@ -150,7 +151,7 @@ fn made(project: &Project, names: &[&str], values: &[f64]) -> Result<Project, St
 
 /// A parameter of the linear model as it follows from the rig.
 fn derived(project: &Project, name: &str) -> Result<f64, String> {
-    let rig = Rig::new(project).map_err(|error| error.to_string())?;
+    let rig = Setup::rig_of(project).map_err(|error| error.to_string())?;
     let found = rig.parameters.iter().find(|parameter| parameter.name == name);
     found.map(|parameter| parameter.derived).ok_or_else(|| format!("`{name}` is no parameter"))
 }

@@ -13,8 +13,8 @@ use crate::audit::{NamedPlant, ProjectAudit};
 use crate::command::{CommandError, Watch};
 use crate::project::{Component, LineModel, Project, Scenario, Signal};
 use crate::quantity::{DisplayUnit, FORCE};
-use crate::rig::Rig;
 use crate::robust::RobustProblem;
+use crate::setup::Setup;
 use crate::simulate::{ScenarioRun, SimulateError, simulate_project};
 use crate::source::Source;
 
@@ -130,7 +130,7 @@ pub(super) fn run(
             quarter_wave_rad_per_s: tried.quarter_wave_rad_per_s,
         })
     };
-    match simulate_project(source, &project, watch) {
+    match simulate_project(source, &Setup::new(&project)?, watch) {
         Ok(runs) => {
             let Some(driven) = runs.first().filter(|driven| !driven.was_cancelled()) else { return Ok(None) };
             let machine = step_of(driven);
@@ -151,7 +151,7 @@ pub(super) fn run(
 
 /// From the force of the operating point, towards where there is room.
 fn reference(project: &Project) -> Result<[f64; 2], CommandError> {
-    let rig = Rig::new(project)?;
+    let rig = Setup::rig_of(project)?;
     let components = rig.actuator.components();
     let area = 0.5 * (components.cylinder.area_a + components.cylinder.area_b);
     let push = area * (components.supply.pressure - components.supply.tank_pressure);

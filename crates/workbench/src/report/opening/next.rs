@@ -14,6 +14,7 @@ use crate::project::Project;
 use crate::quantity::DisplayUnit;
 use crate::report::design::Designed;
 use crate::report::driven::{DESIGNED, GIVEN};
+use crate::setup::Setup;
 use crate::simulate::Wish;
 use crate::trial::{Agreement, Run};
 
@@ -31,8 +32,8 @@ pub(super) fn next_steps(contents: &Contents<'_>, sides: &[Side<'_>]) -> Vec<Str
     steps.extend(controller(contents, sides));
     steps.extend(taken.iter().flat_map(|side| machine(side)));
     steps.extend(taken.and_then(|side| wishes(contents, side)));
-    steps.extend(uncounted(contents.project));
-    steps.extend(taken.and_then(|side| delay(contents.project, side)));
+    steps.extend(uncounted(contents.setup));
+    steps.extend(taken.and_then(|side| delay(contents.setup.project, side)));
     steps.extend(undeclared(contents, taken));
     steps.truncate(MOST);
     steps
@@ -229,12 +230,12 @@ fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
 }
 
 /// What no verdict counts, and a rig outside of its own family.
-fn uncounted(project: &Project) -> Vec<String> {
+fn uncounted(setup: &Setup<'_>) -> Vec<String> {
     let mut steps = Vec::new();
-    if let Some((_, words)) = outside(project).filter(|_| !project.specifications.is_empty()) {
+    if let Some((_, words)) = outside(setup).filter(|_| !setup.project.specifications.is_empty()) {
         steps.push(format!("Widen `[uncertainty]` until it holds the rig as it is derived: {words}."));
     }
-    let open = caveats(project).into_iter().filter(|caveat| caveat.unproven);
+    let open = caveats(setup).into_iter().filter(|caveat| caveat.unproven);
     steps.extend(open.map(|caveat| {
         format!("Judge this by simulation, no verdict on the linear loop counts it: {}.", caveat.sentence)
     }));
@@ -257,7 +258,7 @@ fn delay(project: &Project, side: &Side<'_>) -> Option<String> {
 
 /// What would tell more.
 fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> {
-    let project = contents.project;
+    let project = contents.setup.project;
     let mut steps = Vec::new();
     if contents.no_hose_fits {
         steps.push("Change the gain, the time constant or the stock length in `[sizing]`: no hose of the catalogue fits.".to_string());

@@ -13,10 +13,9 @@ use phea_hydraulics::machine::Machine;
 use super::open_loop::profile;
 use super::point::{ResponsePoint, Shaken, finer, force_amplitude, point, respond};
 use super::{FrequencyRequest, Response, Rested, USUAL_AMPLITUDE, curve};
-use crate::control::{controller, deployed, sensor};
 use crate::linear_loop::{LinearLoop, linear_loop};
-use crate::project::Project;
 use crate::rig::Rig;
+use crate::setup::Setup;
 use crate::simulate::SimulateError;
 use crate::simulate::bench::{Bench, Control, Sampled};
 use crate::simulate::course::under_way;
@@ -31,19 +30,19 @@ const TYPICAL_PUSH: f64 = 0.1;
 /// Measures the response at these frequencies; ends before the first for which `goes_on` is false. The reason where there is no
 /// loop.
 pub(super) fn measured(
-    project: &Project,
+    setup: &Setup<'_>,
     rested: &Rested,
     frequencies: &[f64],
     request: &FrequencyRequest,
     goes_on: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Result<Response, String>, SimulateError> {
-    let Some(given) = controller(project)? else {
+    let Some(given) = &setup.controller else {
         return Ok(Err("the project gives no controller".to_string()));
     };
-    let bench = Bench::new(project)?;
+    let bench = Bench::new(setup)?;
     let amplitude = request.reference_amplitude_n.unwrap_or(USUAL_AMPLITUDE * rested.push_n);
-    let model = Model::new(project, rested, &given)?;
-    let reference_n = held_reference(rested, &given)?;
+    let model = Model::new(setup, rested, given)?;
+    let reference_n = held_reference(rested, given)?;
     if !reference_n.is_finite() {
         return Ok(Err("no reference holds the force of the operating point".to_string()));
     }
@@ -207,12 +206,12 @@ struct Model {
 }
 
 impl Model {
-    fn new(project: &Project, rested: &Rested, given: &Controller) -> Result<Model, SimulateError> {
-        let sensor = sensor(project)?;
+    fn new(setup: &Setup<'_>, rested: &Rested, given: &Controller) -> Result<Model, SimulateError> {
+        let sensor = setup.sensor.clone();
         let sampled = match given.timing.sample_time_s {
             None => None,
             Some(sample_time_s) => {
-                let deployed = deployed(project, given)?;
+                let deployed = setup.deployed(given)?;
                 Some((sample_time_s, linear_loop(&rested.plant, &deployed, &sensor, 1.0)?))
             }
         };
