@@ -21,7 +21,7 @@ use crate::family::family;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{Agreement, Run, waves_alone};
+use crate::trial::{self, Agreement, Run, waves_alone};
 
 /// What became of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +56,8 @@ pub struct Repair {
     pub before: Option<ProjectAudit>,
     /// The same in the loop that was found; `None` where none was.
     pub after: Option<ProjectAudit>,
+    /// The loop that was found with the waves in every plant of the family; `None` where none was, or nothing is known of them.
+    pub whole: Option<ProjectAudit>,
     /// Where it is met, the first design; otherwise the controller that comes nearest, where there is one.
     pub other: Option<Box<ProjectDesign>>,
     /// What was done and what cannot be had, for an engineer.
@@ -70,6 +72,7 @@ impl Repair {
             quarter_wave_rad_per_s: None,
             before: None,
             after: None,
+            whole: None,
             other: None,
             sentences: vec![],
         }
@@ -154,7 +157,11 @@ fn with_waves(
     };
     let audits = found.design.beside.first().cloned();
     let after = audits.map(|audit| ProjectAudit::new(&alone_in_loop(&plant, &found), audit));
-    let repair = Repair { status, after, ..known };
+    let whole = match status {
+        RepairStatus::Met => family_with_waves((source, setup), &found, watch)?,
+        _ => None,
+    };
+    let repair = Repair { status, after, whole, ..known };
     let sentences = words::sentences(setup.project, &repair, told, &found);
     Ok(Repair { sentences, other: Some(Box::new(found)), ..repair })
 }
@@ -173,6 +180,19 @@ fn alone_in_loop(plant: &UncertainPlant, design: &ProjectDesign) -> RobustProble
         caveats: vec![],
         ..design.designed.problem.clone()
     }
+}
+
+/// The loop of a design with waves in every plant of its family, of which one was taken in; `None` where there is no such family.
+fn family_with_waves(
+    (source, setup): (&dyn Source, &Setup<'_>),
+    found: &ProjectDesign,
+    watch: Watch<'_>,
+) -> Result<Option<ProjectAudit>, CommandError> {
+    let Some(project) = trial::with_waves(setup.project) else { return Ok(None) };
+    let Ok(family) = family(&Setup::new(&project)?, source) else { return Ok(None) };
+    let problem =
+        RobustProblem { family, rig_outside: None, caveats: vec![], ..found.designed.problem.clone() };
+    audit_problem(&problem, watch).map(Some)
 }
 
 /// The design gone on with the plant among those that it serves, tried on the machine; `None` where no controller was found.

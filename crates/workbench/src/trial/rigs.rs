@@ -88,7 +88,7 @@ pub(super) fn rigs(
 }
 
 /// The same rig, its lumped lines as transmission lines; `None` where nothing of them is lumped or long.
-fn with_waves(project: &Project) -> Option<Project> {
+pub(crate) fn with_waves(project: &Project) -> Option<Project> {
     let mut other = project.clone();
     let line = &mut other.actuator.as_mut()?.line;
     let mut moved = false;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{LimitRow, PublishedRow, conflict, published};
+use super::{LimitRow, PublishedRow, RoundRow, conflict, published, round};
 use crate::answer::Number;
 use crate::audit;
 use crate::design::words::repair_key;
@@ -37,6 +37,12 @@ pub(super) struct RepairRow<'a> {
     nearest: Option<PublishedRow<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     nearest_machine: Option<trial::Body<'a>>,
+    /// Of the search for the nearest controller; those of the first design come before them, as they do in `rounds` where it is met.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nearest_rounds: Option<Vec<RoundRow>>,
+    /// The controller that was found with the waves in every plant of the family.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    family_with_waves: Option<audit::Body<'a>>,
     sentences: &'a [String],
 }
 
@@ -65,6 +71,8 @@ pub(super) fn row(repair: &Repair) -> RepairRow<'_> {
         before: before.map(|design| published(&design.designed)),
         nearest: nearest.map(|design| published(&design.designed)),
         nearest_machine: nearest.and_then(|design| design.trial.as_ref()).map(trial::body),
+        nearest_rounds: nearest.map(|design| design.design.rounds.iter().map(round).collect()),
+        family_with_waves: repair.whole.as_ref().map(audit::body),
         sentences: &repair.sentences,
     }
 }

@@ -1,5 +1,6 @@
 //! What a repair did, and what cannot be had, in sentences.
 
+use phea_qft::design::ControllerChoice;
 use phea_qft::verification::Verdict;
 
 use super::{Repair, RepairStatus};
@@ -25,11 +26,24 @@ pub(super) fn sentences(
         sentences.push(help(project, repair, told));
         sentences.extend(nearest(found));
     }
-    sentences.push(
-        "one plant with waves was taken in, that of the rig itself: `line.model = \"transmission_line\"` puts waves into every plant of the family"
-            .to_string(),
-    );
+    sentences.push(whole(repair.whole.as_ref()));
     sentences
+}
+
+/// What is known of the plants that were not taken in.
+fn whole(view: Option<&ProjectAudit>) -> String {
+    let every = "with `line.model = \"transmission_line\"` every plant of the family has waves";
+    let told = match view {
+        None => return format!("taken in was the plant of the rig itself: {every}"),
+        Some(view) if view.audit.verdict == Verdict::Met => {
+            "the controller keeps to every specification with those too".to_string()
+        }
+        Some(view) if view.audit.stability.verdict != Verdict::Met => {
+            stability_sentence(&view.audit.stability, &view.names)
+        }
+        Some(view) => format!("every plant is stable, with {}", margins(view)),
+    };
+    format!("taken in was the plant of the rig itself; {every}, and of these nothing is promised: {told}")
 }
 
 /// What the loop of the first design does with the plant.
@@ -129,6 +143,9 @@ fn help(project: &Project, repair: &Repair, told: &ProjectDesign) -> String {
             "what is known of the wall that damps its waves (`line.model = \"segments\"` with `line.relaxation_time`)"
                 .to_string(),
         );
+    }
+    if let ControllerChoice::Grow { maximum_order } = told.options.controller {
+        ways.push(format!("a controller of higher order (`design.maximum_order`, now {maximum_order})"));
     }
     let wider = match repair.status {
         RepairStatus::Infeasible { relaxation_db } => {
