@@ -32,7 +32,7 @@ pub(super) fn sentences(
 
 /// What is known of the plants that were not taken in.
 fn whole(view: Option<&ProjectAudit>) -> String {
-    let every = "with `line.model = \"transmission_line\"` every plant of the family has waves";
+    let every = "with `line.model = \"transmission_line\"` waves are in every plant of the family";
     let told = match view {
         None => return format!("taken in was the plant of the rig itself: {every}"),
         Some(view) if view.audit.verdict == Verdict::Met => {
@@ -43,7 +43,9 @@ fn whole(view: Option<&ProjectAudit>) -> String {
         }
         Some(view) => format!("every plant is stable, with {}", margins(view)),
     };
-    format!("taken in was the plant of the rig itself; {every}, and of these nothing is promised: {told}")
+    format!(
+        "taken in was the plant of the rig itself, and nothing is promised of the others; {every}: {told}"
+    )
 }
 
 /// What the loop of the first design does with the plant.
