@@ -107,9 +107,7 @@ impl Open<'_> {
         let numbers = Numbers::open(self.names, values);
         let components = components(self.declared, &numbers);
         let (position, steady) = place(self.project, components.cylinder.stroke, &numbers);
-        let leakage = self.declared.cylinder.internal_leakage;
-        let leakage = leakage.map(|value| numbers.at("cylinder.internal_leakage", value));
-        (position, steady, Balance::of(&components, leakage))
+        (position, steady, Balance::of(&components))
     }
 
     /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed forward is that of the declared rig.
