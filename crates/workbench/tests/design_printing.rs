@@ -76,6 +76,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         structure: structure.clone(),
         starts: None,
         objective_db: 34.0,
+        beside: vec![],
         audit: run.audit(),
         binding: vec![BindingLimit { specification: 1, frequency_rad_per_s: 1.0, plant, margin_db: 0.0 }],
         rounds: vec![DesignRound {
