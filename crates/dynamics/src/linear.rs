@@ -25,6 +25,7 @@ pub(crate) mod double_double;
 mod eigenvalues;
 pub(crate) mod even_part;
 mod held;
+mod hessenberg;
 mod interconnection;
 pub(crate) mod matrix_exponential;
 mod polynomial;
@@ -34,6 +35,7 @@ mod roots;
 mod state_space;
 mod structure;
 mod transfer_function;
+mod wide;
 mod zeros;
 
 use num_complex::Complex64;

@@ -17,6 +17,7 @@ impl DoubleDouble {
     pub(crate) const ZERO: DoubleDouble = DoubleDouble { high: 0.0, low: 0.0 };
 
     /// a + b without error.
+    #[inline(always)]
     pub(crate) fn sum_of(a: f64, b: f64) -> Self {
         let high = a + b;
         let part = high - a;
@@ -24,26 +25,31 @@ impl DoubleDouble {
     }
 
     /// a b without error.
+    #[inline(always)]
     pub(crate) fn product_of(a: f64, b: f64) -> Self {
         let high = a * b;
         DoubleDouble { high, low: a.mul_add(b, -high) }
     }
 
     /// The nearest `f64`.
+    #[inline(always)]
     pub(crate) fn value(self) -> f64 {
         self.high + self.low
     }
 
+    #[inline(always)]
     pub(crate) fn abs(self) -> Self {
         if self.high < 0.0 { -self } else { self }
     }
 
     /// The quotient by an `f64`.
+    #[inline(always)]
     pub(crate) fn divided_by(self, divisor: f64) -> Self {
         self.divided_by_wide(divisor.into())
     }
 
     /// The quotient, good to about thirty digits.
+    #[inline(always)]
     pub(crate) fn divided_by_wide(self, divisor: Self) -> Self {
         let first = self.high / divisor.high;
         let rest = self - divisor * DoubleDouble::from(first);
@@ -51,10 +57,12 @@ impl DoubleDouble {
     }
 
     /// The number times a power of two.
+    #[inline(always)]
     pub(crate) fn scaled(self, power_of_two: f64) -> Self {
         DoubleDouble { high: self.high * power_of_two, low: self.low * power_of_two }
     }
 
+    #[inline(always)]
     fn normalised(high: f64, low: f64) -> Self {
         let sum = high + low;
         DoubleDouble { high: sum, low: low - (sum - high) }
@@ -62,6 +70,7 @@ impl DoubleDouble {
 }
 
 impl From<f64> for DoubleDouble {
+    #[inline(always)]
     fn from(value: f64) -> Self {
         DoubleDouble { high: value, low: 0.0 }
     }
@@ -69,6 +78,7 @@ impl From<f64> for DoubleDouble {
 
 impl Add for DoubleDouble {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         let high = DoubleDouble::sum_of(self.high, other.high);
         let low = DoubleDouble::sum_of(self.low, other.low);
@@ -79,6 +89,7 @@ impl Add for DoubleDouble {
 
 impl Neg for DoubleDouble {
     type Output = Self;
+    #[inline(always)]
     fn neg(self) -> Self {
         DoubleDouble { high: -self.high, low: -self.low }
     }
@@ -86,6 +97,7 @@ impl Neg for DoubleDouble {
 
 impl Sub for DoubleDouble {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self + (-other)
     }
@@ -93,6 +105,7 @@ impl Sub for DoubleDouble {
 
 impl Mul for DoubleDouble {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         let product = DoubleDouble::product_of(self.high, other.high);
         let cross = self.high * other.low + self.low * other.high;
@@ -109,6 +122,7 @@ pub(crate) struct ComplexDoubleDouble {
 
 impl ComplexDoubleDouble {
     /// z - root without error.
+    #[inline(always)]
     pub(crate) fn difference_of(z: Complex64, root: Complex64) -> Self {
         ComplexDoubleDouble {
             re: DoubleDouble::sum_of(z.re, -root.re),
@@ -117,21 +131,25 @@ impl ComplexDoubleDouble {
     }
 
     /// The number times a power of two.
+    #[inline(always)]
     pub(crate) fn scaled(self, power_of_two: f64) -> Self {
         ComplexDoubleDouble { re: self.re.scaled(power_of_two), im: self.im.scaled(power_of_two) }
     }
 
     /// The number times a real one: the same digits as the complex product, for half of its work.
+    #[inline(always)]
     pub(crate) fn times_real(self, factor: f64) -> Self {
         self.times_wide(DoubleDouble::from(factor))
     }
 
     /// The same with a real number of twice the working precision.
+    #[inline(always)]
     pub(crate) fn times_wide(self, factor: DoubleDouble) -> Self {
         ComplexDoubleDouble { re: factor * self.re, im: factor * self.im }
     }
 
     /// The quotient, good to about thirty digits.
+    #[inline(always)]
     pub(crate) fn divided_by(self, divisor: Self) -> Self {
         let squares = divisor.re * divisor.re + divisor.im * divisor.im;
         let conjugate = ComplexDoubleDouble { re: divisor.re, im: -divisor.im };
@@ -143,24 +161,28 @@ impl ComplexDoubleDouble {
     }
 
     /// The nearest ordinary complex number.
+    #[inline(always)]
     pub(crate) fn value(self) -> Complex64 {
         Complex64::new(self.re.value(), self.im.value())
     }
 }
 
 impl From<f64> for ComplexDoubleDouble {
+    #[inline(always)]
     fn from(value: f64) -> Self {
         ComplexDoubleDouble { re: value.into(), im: DoubleDouble::ZERO }
     }
 }
 
 impl From<DoubleDouble> for ComplexDoubleDouble {
+    #[inline(always)]
     fn from(value: DoubleDouble) -> Self {
         ComplexDoubleDouble { re: value, im: DoubleDouble::ZERO }
     }
 }
 
 impl From<Complex64> for ComplexDoubleDouble {
+    #[inline(always)]
     fn from(value: Complex64) -> Self {
         ComplexDoubleDouble { re: value.re.into(), im: value.im.into() }
     }
@@ -168,6 +190,7 @@ impl From<Complex64> for ComplexDoubleDouble {
 
 impl Add for ComplexDoubleDouble {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         ComplexDoubleDouble { re: self.re + other.re, im: self.im + other.im }
     }
@@ -175,6 +198,7 @@ impl Add for ComplexDoubleDouble {
 
 impl Sub for ComplexDoubleDouble {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         ComplexDoubleDouble { re: self.re - other.re, im: self.im - other.im }
     }
@@ -182,6 +206,7 @@ impl Sub for ComplexDoubleDouble {
 
 impl Mul for ComplexDoubleDouble {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         ComplexDoubleDouble {
             re: self.re * other.re - self.im * other.im,

@@ -9,6 +9,7 @@ use num_complex::Complex64;
 
 use super::LinearError;
 use super::double_double::ComplexDoubleDouble;
+use super::hessenberg;
 use super::refinement::{converge, sort, symmetrise};
 use super::structure::{balance, irreducible_blocks};
 use crate::portable::magnitude;
@@ -45,8 +46,7 @@ pub(crate) fn working_eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Comple
         }
         _ => balance(&mut matrix),
     };
-    let (_, triangular) = Schur::try_new(matrix, f64::EPSILON, 100 * order)?.unpack();
-    Some(of_quasi_triangular(&triangular))
+    hessenberg::eigenvalues(matrix)
 }
 
 fn by_blocks(
@@ -160,7 +160,7 @@ fn of_quasi_triangular(triangular: &DMatrix<f64>) -> Vec<Complex64> {
 }
 
 /// Eigenvalues of [a b; c d], the real ones without cancellation.
-fn of_two_by_two(a: f64, b: f64, c: f64, d: f64) -> [Complex64; 2] {
+pub(super) fn of_two_by_two(a: f64, b: f64, c: f64, d: f64) -> [Complex64; 2] {
     let (mean, half) = ((a + d) / 2.0, (a - d) / 2.0);
     // the square root of |b c| without overflow, and the sign of b c
     let coupling = b.abs().sqrt() * c.abs().sqrt();

@@ -14,18 +14,23 @@ mod numerator;
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::LinearError;
 use super::double_double::{ComplexDoubleDouble, DoubleDouble};
-use super::matrix_exponential::{Wide, exponential};
+use super::matrix_exponential::exponential;
 use super::realization::Chain;
+use super::wide::{Wide, WideColumn};
 
 /// Beyond exp of this the poles of a sampled plant leave the range of numbers.
 const GROWTH_MAXIMUM: f64 = 300.0;
 
 /// A held and sampled plant with one input and one output, whose system matrix is block triangular.
 pub(super) struct Held {
-    transition: Wide,
+    /// The diagonal blocks of Phi, from the last to the first.
+    diagonal: Vec<DiagonalBlock>,
+    /// What of Phi stands above them, column by column.
+    above: Wide,
     /// G_0
     present: Vec<DoubleDouble>,
     /// G_1
@@ -57,30 +62,46 @@ impl Held {
         if growth.is_nan() || growth > GROWTH_MAXIMUM {
             return Err(unbounded);
         }
-        let whole = Step::new(&plant, sample_time_s);
         let held = if fraction_s == 0.0 {
-            Held::assembled(plant, whole.transition, whole.input, None)
+            let whole = Step::new(&plant, sample_time_s);
+            Held::assembled(plant, &whole.transition, whole.input, None)
         } else {
-            let early = Step::new(&plant, fraction_s);
-            let late = Step::new(&plant, sample_time_s - fraction_s);
+            let rest_s = sample_time_s - fraction_s;
+            let late = Step::new(&plant, rest_s);
+            let other = (rest_s != fraction_s).then(|| Step::new(&plant, fraction_s));
+            let early = other.as_ref().unwrap_or(&late);
             let previous = late.transition.times_column(&early.input);
-            Held::assembled(plant, whole.transition, late.input, Some(previous))
+            let whole = late.transition.times(&early.transition);
+            Held::assembled(plant, &whole, late.input, Some(previous))
         };
-        if held.is_finite() { Ok(held) } else { Err(unbounded) }
+        held.filter(Held::is_finite).ok_or(unbounded)
     }
 
+    /// `None` where an entry of Phi is not finite.
     fn assembled(
         plant: Chain,
-        transition: Wide,
+        transition: &Wide,
         present: Vec<DoubleDouble>,
         previous: Option<Vec<DoubleDouble>>,
-    ) -> Held {
-        Held { transition, present, previous, output: plant.taps, feedthrough: plant.feedthrough }
+    ) -> Option<Held> {
+        if !transition.is_finite() {
+            return None;
+        }
+        let diagonal = diagonal_blocks(transition);
+        let mut first = vec![0; transition.order()];
+        for block in &diagonal {
+            (first[block.first], first[block.last]) = (block.first, block.first);
+        }
+        let above = Wide::from_fn(transition.order(), |column, row| {
+            if row < first[column] { transition.entry(row, column) } else { DoubleDouble::ZERO }
+        });
+        let (output, feedthrough) = (plant.taps, plant.feedthrough);
+        Some(Held { diagonal, above, present, previous, output, feedthrough })
     }
 
     fn is_finite(&self) -> bool {
         let columns = self.present.iter().chain(self.previous.iter().flatten());
-        self.transition.is_finite() && columns.map(|entry| entry.value()).all(f64::is_finite)
+        columns.map(|entry| entry.value()).all(f64::is_finite)
     }
 
     fn order(&self) -> usize {
@@ -96,101 +117,148 @@ impl Held {
         }
     }
 
+    /// N at a point; `None` at a pole.
+    pub(super) fn numerator(&self, z: ComplexDoubleDouble) -> Option<ComplexDoubleDouble> {
+        let local = Arch::new().dispatch(Evaluation { held: self, z, with_slope: false })?;
+        Some(local.value * local.determinant)
+    }
+
     /// `None` at a pole.
     pub(super) fn at(&self, z: ComplexDoubleDouble) -> Option<Local> {
-        let zero = ComplexDoubleDouble::default();
-        let blocks = self.solved(z)?;
-        let driven: Vec<ComplexDoubleDouble> = match &self.previous {
-            None => self.present.iter().map(|&entry| entry.into()).collect(),
-            Some(previous) => {
-                let pairs = self.present.iter().zip(previous);
-                pairs.map(|(&now, &before)| z.times_wide(now) + before.into()).collect()
-            }
-        };
-        let states = self.substituted(&blocks, &driven);
-        // (z I - Phi) x = b(z), so (z I - Phi) x' = b'(z) - x
-        let changes: Vec<ComplexDoubleDouble> = states
-            .iter()
-            .zip(&self.present)
-            .map(|(&state, &now)| {
-                let own = if self.previous.is_some() { ComplexDoubleDouble::from(now) } else { zero };
-                own - state
-            })
-            .collect();
-        let slopes = self.substituted(&blocks, &changes);
-        let read = |states: &[ComplexDoubleDouble], start: f64| {
-            let start = ComplexDoubleDouble::from(start);
-            states.iter().zip(&self.output).fold(start, |sum, (&x, &c)| sum + x.times_wide(c))
-        };
-        let determinant =
-            blocks.iter().fold(ComplexDoubleDouble::from(1.0), |product, block| product * block.determinant);
-        Some(Local { value: read(&states, self.feedthrough), slope: read(&slopes, 0.0), determinant })
+        Arch::new().dispatch(Evaluation { held: self, z, with_slope: true })
     }
 
-    /// The diagonal blocks of z I - Phi from the last to the first, inverted; `None` where one of them is singular.
-    fn solved(&self, z: ComplexDoubleDouble) -> Option<Vec<Block>> {
-        let entry = |i: usize, j: usize| self.transition.entry(i, j);
-        let mut blocks = Vec::with_capacity(self.order());
-        let mut end = self.order();
-        while end > 0 {
-            let last = end - 1;
-            let paired = last > 0 && entry(last, last - 1).high != 0.0;
-            let first = if paired { last - 1 } else { last };
-            let diagonal = [z - entry(first, first).into(), z - entry(last, last).into()];
-            let coupling = if paired {
-                [entry(first, last), entry(last, first)]
-            } else {
-                [DoubleDouble::ZERO, DoubleDouble::ZERO]
+    /// b(z)
+    #[inline(always)]
+    fn driven(&self, z: ComplexDoubleDouble) -> WideColumn {
+        let mut driven = WideColumn::zero(self.order());
+        for (index, &now) in self.present.iter().enumerate() {
+            let entry = match &self.previous {
+                None => now.into(),
+                Some(previous) => z.times_wide(now) + previous[index].into(),
             };
-            let determinant = if paired {
-                diagonal[0] * diagonal[1] - (coupling[0] * coupling[1]).into()
-            } else {
-                diagonal[0]
-            };
-            if determinant.value() == Complex64::new(0.0, 0.0) {
-                return None;
-            }
-            let inverse = ComplexDoubleDouble::from(1.0).divided_by(determinant);
-            blocks.push(Block { first, last, diagonal, coupling, determinant, inverse });
-            end = first;
+            driven.set(index, entry);
         }
-        Some(blocks)
+        driven
     }
 
-    /// (z I - Phi)^-1 b, from the last state to the first.
-    fn substituted(&self, blocks: &[Block], right: &[ComplexDoubleDouble]) -> Vec<ComplexDoubleDouble> {
-        let mut states = right.to_vec();
-        for block in blocks {
-            let rest = |row: usize, states: &[ComplexDoubleDouble]| {
-                let later = block.last + 1..self.order();
-                later.fold(states[row], |sum, column| {
-                    let factor = self.transition.entry(row, column);
-                    if factor.high == 0.0 { sum } else { sum + states[column].times_wide(factor) }
-                })
-            };
-            let (upper, lower) = (rest(block.first, &states), rest(block.last, &states));
+    /// C x
+    #[inline(always)]
+    fn read(&self, states: &WideColumn, start: f64) -> ComplexDoubleDouble {
+        let mut sum = ComplexDoubleDouble::from(start);
+        for (index, &factor) in self.output.iter().enumerate() {
+            sum = sum + states.get(index).times_wide(factor);
+        }
+        sum
+    }
+
+    /// (z I - Phi)^-1 b in the place of b, from the last state to the first.
+    #[inline(always)]
+    fn substitute(&self, blocks: &[Block], states: &mut WideColumn) {
+        for (block, inverted) in self.diagonal.iter().zip(blocks) {
+            let (upper, lower) = (states.get(block.first), states.get(block.last));
             if block.first == block.last {
-                states[block.last] = upper * block.inverse;
+                states.set(block.last, upper * inverted.inverse);
             } else {
-                let [first, last] = block.diagonal;
+                let [first, last] = inverted.diagonal;
                 let [right, below] = block.coupling;
-                states[block.first] = (last * upper + lower.times_wide(right)) * block.inverse;
-                states[block.last] = (first * lower + upper.times_wide(below)) * block.inverse;
+                states.set(block.first, (last * upper + lower.times_wide(right)) * inverted.inverse);
+                states.set(block.last, (first * lower + upper.times_wide(below)) * inverted.inverse);
+            }
+            for column in block.first..=block.last {
+                states.add_product(states.get(column), self.above.row(column), block.first);
             }
         }
-        states
     }
 }
 
-/// A pole or a pair of them in z I - Phi.
-struct Block {
+/// A pole or a pair of them in Phi.
+struct DiagonalBlock {
     first: usize,
     last: usize,
-    diagonal: [ComplexDoubleDouble; 2],
-    /// Entries of Phi above and below the diagonal.
+    diagonal: [DoubleDouble; 2],
+    /// Entries above and below the diagonal.
     coupling: [DoubleDouble; 2],
+}
+
+fn diagonal_blocks(transition: &Wide) -> Vec<DiagonalBlock> {
+    let entry = |i: usize, j: usize| transition.entry(i, j);
+    let mut blocks = Vec::with_capacity(transition.order());
+    let mut end = transition.order();
+    while end > 0 {
+        let last = end - 1;
+        let paired = last > 0 && entry(last, last - 1).high != 0.0;
+        let first = if paired { last - 1 } else { last };
+        let coupling =
+            if paired { [entry(first, last), entry(last, first)] } else { [DoubleDouble::ZERO; 2] };
+        blocks.push(DiagonalBlock {
+            first,
+            last,
+            diagonal: [entry(first, first), entry(last, last)],
+            coupling,
+        });
+        end = first;
+    }
+    blocks
+}
+
+/// A diagonal block of z I - Phi, inverted.
+struct Block {
+    diagonal: [ComplexDoubleDouble; 2],
     determinant: ComplexDoubleDouble,
     inverse: ComplexDoubleDouble,
+}
+
+impl DiagonalBlock {
+    /// Within z I - Phi; `None` where it is singular.
+    #[inline(always)]
+    fn inverted(&self, z: ComplexDoubleDouble) -> Option<Block> {
+        let diagonal = self.diagonal.map(|entry| z - entry.into());
+        let determinant = if self.first == self.last {
+            diagonal[0]
+        } else {
+            diagonal[0] * diagonal[1] - (self.coupling[0] * self.coupling[1]).into()
+        };
+        let singular = determinant.value() == Complex64::new(0.0, 0.0);
+        let inverse = ComplexDoubleDouble::from(1.0).divided_by(determinant);
+        (!singular).then_some(Block { diagonal, determinant, inverse })
+    }
+}
+
+/// The response of a plant at a point, with the instructions of the processor at hand; its slope is zero where it is not asked for.
+struct Evaluation<'a> {
+    held: &'a Held,
+    z: ComplexDoubleDouble,
+    with_slope: bool,
+}
+
+impl WithSimd for Evaluation<'_> {
+    type Output = Option<Local>;
+
+    #[inline(always)]
+    fn with_simd<D: Simd>(self, _: D) -> Option<Local> {
+        let Evaluation { held, z, with_slope } = self;
+        let mut blocks = Vec::with_capacity(held.diagonal.len());
+        let mut determinant = ComplexDoubleDouble::from(1.0);
+        for block in &held.diagonal {
+            let inverted = block.inverted(z)?;
+            determinant = determinant * inverted.determinant;
+            blocks.push(inverted);
+        }
+        let mut states = held.driven(z);
+        held.substitute(&blocks, &mut states);
+        let value = held.read(&states, held.feedthrough);
+        if !with_slope {
+            return Some(Local { value, slope: ComplexDoubleDouble::default(), determinant });
+        }
+        // (z I - Phi) x = b(z), so (z I - Phi) x' = b'(z) - x
+        for (index, &now) in held.present.iter().enumerate() {
+            let own = if held.previous.is_some() { now } else { DoubleDouble::ZERO };
+            states.set(index, ComplexDoubleDouble::from(own) - states.get(index));
+        }
+        held.substitute(&blocks, &mut states);
+        Some(Local { value, slope: held.read(&states, 0.0), determinant })
+    }
 }
 
 /// exp(A h), and the effect of a constant input over h.

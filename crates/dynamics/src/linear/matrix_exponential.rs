@@ -5,9 +5,11 @@
 //! scaled by a power of two, summed as a Taylor series, and squared back.
 
 use nalgebra::DMatrix;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::double_double::DoubleDouble;
 use super::structure::balance;
+use super::wide::Wide;
 
 const TAYLOR_TERMS: i32 = 18;
 
@@ -24,7 +26,6 @@ pub(crate) fn exponential_less_identity(matrix: &DMatrix<f64>, time: f64) -> DMa
 
 /// exp(A t) in twice the working precision.
 pub(super) fn exponential(matrix: &DMatrix<f64>, time: f64) -> Wide {
-    let order = matrix.nrows();
     let mut balanced = matrix.clone();
     let scales = balance(&mut balanced);
     // halve until the norm is at most 1/16: 18 terms then leave 1e-37
@@ -32,80 +33,32 @@ pub(super) fn exponential(matrix: &DMatrix<f64>, time: f64) -> Wide {
     let (_, exponent) = libm::frexp(norm * time.abs() * 16.0);
     let halvings = if norm == 0.0 { 0 } else { exponent.clamp(0, 1100) };
     let step = libm::ldexp(time, -halvings);
-    let scaled = Wide::from_fn(order, |i, j| DoubleDouble::product_of(balanced[(i, j)], step));
-    let mut result = Wide::identity(order);
-    for term in (1..=TAYLOR_TERMS).rev() {
-        // Horner: I + X/k (I + X/(k+1) (...))
-        result = scaled.times(&result).divided_by(f64::from(term)).plus_identity();
-    }
-    for _ in 0..halvings {
-        result = result.times(&result);
-    }
+    let scaled = Wide::from_fn(matrix.nrows(), |i, j| DoubleDouble::product_of(balanced[(i, j)], step));
+    let result = Arch::new().dispatch(Squaring { scaled, halvings });
     // the scales are powers of two
-    Wide::from_fn(order, |i, j| result.entry(i, j).scaled(scales[i]).scaled(1.0 / scales[j]))
+    Wide::from_fn(result.order(), |i, j| result.entry(i, j).scaled(scales[i]).scaled(1.0 / scales[j]))
 }
 
-/// A square matrix of twice the working precision.
-pub(super) struct Wide {
-    order: usize,
-    entries: Vec<DoubleDouble>,
+/// exp(X 2^n) by the series of exp(X), squared n times; with the instructions of the processor at hand.
+struct Squaring {
+    scaled: Wide,
+    halvings: i32,
 }
 
-impl Wide {
-    pub(super) fn from_fn(order: usize, entry: impl Fn(usize, usize) -> DoubleDouble) -> Self {
-        let entries = (0..order * order).map(|index| entry(index / order, index % order)).collect();
-        Wide { order, entries }
-    }
+impl WithSimd for Squaring {
+    type Output = Wide;
 
-    fn identity(order: usize) -> Self {
-        Wide::from_fn(order, |i, j| if i == j { 1.0.into() } else { DoubleDouble::ZERO })
-    }
-
-    pub(super) fn entry(&self, row: usize, column: usize) -> DoubleDouble {
-        self.entries[row * self.order + column]
-    }
-
-    /// The product; zeros, of which a block triangular matrix is half made, cost nothing.
-    fn times(&self, other: &Wide) -> Self {
-        let order = self.order;
-        let mut entries = vec![DoubleDouble::ZERO; order * order];
-        for (row, sums) in entries.chunks_exact_mut(order.max(1)).enumerate() {
-            for k in 0..order {
-                let left = self.entry(row, k);
-                if left.high == 0.0 {
-                    continue;
-                }
-                for (sum, &right) in sums.iter_mut().zip(&other.entries[k * order..(k + 1) * order]) {
-                    if right.high != 0.0 {
-                        *sum = *sum + left * right;
-                    }
-                }
-            }
+    #[inline(always)]
+    fn with_simd<D: Simd>(self, _: D) -> Wide {
+        let mut result = Wide::identity(self.scaled.order());
+        for term in (1..=TAYLOR_TERMS).rev() {
+            // Horner: I + X/k (I + X/(k+1) (...))
+            result = self.scaled.divided_by(f64::from(term)).times(&result).plus_identity();
         }
-        Wide { order, entries }
-    }
-
-    pub(super) fn times_column(&self, column: &[DoubleDouble]) -> Vec<DoubleDouble> {
-        let row = |i: usize| {
-            let terms = column.iter().enumerate().map(|(j, &entry)| self.entry(i, j) * entry);
-            terms.fold(DoubleDouble::ZERO, |sum, term| sum + term)
-        };
-        (0..self.order).map(row).collect()
-    }
-
-    pub(super) fn is_finite(&self) -> bool {
-        self.entries.iter().all(|entry| entry.value().is_finite())
-    }
-
-    fn divided_by(mut self, divisor: f64) -> Self {
-        self.entries.iter_mut().for_each(|entry| *entry = entry.divided_by(divisor));
-        self
-    }
-
-    fn plus_identity(mut self) -> Self {
-        let order = self.order;
-        self.entries.iter_mut().step_by(order + 1).for_each(|entry| *entry = *entry + 1.0.into());
-        self
+        for _ in 0..self.halvings {
+            result = result.times(&result);
+        }
+        result
     }
 }
 

@@ -5,6 +5,7 @@
 //! magnitude start at their own magnitude; beyond the unit circle the reversed polynomial is evaluated.
 
 use num_complex::Complex64;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::double_double::ComplexDoubleDouble;
 pub(crate) use super::refinement::conjugate_pairs;
@@ -13,9 +14,30 @@ use super::{LinearError, Polynomial};
 use crate::portable::{self, magnitude};
 
 const MAXIMUM_SWEEPS: usize = 300;
+/// A pair whose imaginary part is more than this share of it is no double root on the axis.
+const FAR_FROM_AXIS: f64 = 0.5;
 
 /// All roots, sorted, in exact conjugate pairs.
 pub(crate) fn of_polynomial(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
+    found(polynomial, |deflated| Ok(merge_multiple(deflated, iterate(deflated)?)))
+}
+
+/// The same as far as working precision tells them, multiple roots a little apart: for a polynomial whose coefficients are rounded, and
+/// whose roots are refined by other means.
+pub(crate) fn guessed(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
+    found(polynomial, |deflated| {
+        let mut roots = starting_points(deflated.coefficients());
+        let moved = sweep(&mut roots, |z| evaluate_locally(deflated, z));
+        let degree = polynomial.degree();
+        moved.map(|()| symmetrise(&on_the_axis(roots))).ok_or(LinearError::RootsNotConverged { degree })
+    })
+}
+
+/// All roots, sorted, by who finds them of what is left without those at the origin, if it is of the second degree at least.
+fn found(
+    polynomial: &Polynomial,
+    find: impl FnOnce(&Polynomial) -> Result<Vec<Complex64>, LinearError>,
+) -> Result<Vec<Complex64>, LinearError> {
     if polynomial.is_zero() {
         return Err(LinearError::ZeroPolynomial);
     }
@@ -32,7 +54,7 @@ pub(crate) fn of_polynomial(polynomial: &Polynomial) -> Result<Vec<Complex64>, L
     let mut roots = match *deflated.coefficients() {
         [_] => Vec::new(),
         [a, b] => vec![Complex64::new(-b / a, 0.0)],
-        _ => merge_multiple(&deflated, iterate(&deflated)?),
+        _ => find(&deflated)?,
     };
     if roots.iter().any(|root| !root.is_finite()) {
         return Err(LinearError::RootsNotConverged { degree: polynomial.degree() });
@@ -149,6 +171,26 @@ fn evaluate_locally(polynomial: &Polynomial, z: Complex64) -> LocalValue {
 
 /// p/p' at z with both in twice the working precision; partial sums that grow out of range are scaled down together.
 fn evaluate_widely(polynomial: &Polynomial, z: Complex64) -> LocalValue {
+    Arch::new().dispatch(Widely { polynomial, z })
+}
+
+/// The same, compiled for the instructions of the processor at hand.
+struct Widely<'a> {
+    polynomial: &'a Polynomial,
+    z: Complex64,
+}
+
+impl WithSimd for Widely<'_> {
+    type Output = LocalValue;
+
+    #[inline(always)]
+    fn with_simd<D: Simd>(self, _: D) -> LocalValue {
+        widely(self.polynomial, self.z)
+    }
+}
+
+#[inline(always)]
+fn widely(polynomial: &Polynomial, z: Complex64) -> LocalValue {
     const LIMIT: f64 = 1e30;
     let (point, radius) = (ComplexDoubleDouble::from(z), magnitude(z));
     let (mut value, mut slope) = (ComplexDoubleDouble::default(), ComplexDoubleDouble::default());
@@ -222,7 +264,9 @@ fn multiple_root(polynomial: &Polynomial, members: &[Complex64]) -> Option<(Comp
     let mean = members.iter().sum::<Complex64>() / members.len() as f64;
     let real_count: usize = members.iter().map(|root| if root.im == 0.0 { 1 } else { 2 }).sum();
     let on_axis = Complex64::new(mean.re, 0.0);
+    let near_axis = members.len() > 1 || mean.im.abs() <= FAR_FROM_AXIS * magnitude(mean);
     if real_count > 1
+        && near_axis
         && let Some(root) = accepted(polynomial, on_axis, real_count)
     {
         return Some((root, real_count));

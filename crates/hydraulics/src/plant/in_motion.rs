@@ -4,7 +4,7 @@ use phea_dynamics::analytic::Analytic;
 
 use super::supply::{Coupled, Over};
 use super::{Chamber, Chambers, LinearLoad, Plant, YieldingSupply};
-use crate::line::DynamicLine;
+use crate::line::{DynamicLine, TransferMatrix};
 
 /// The plant with lines that have dynamics of their own: what no quotient of polynomials is, but a response at every frequency.
 ///
@@ -45,6 +45,8 @@ use crate::line::DynamicLine;
 pub struct PlantInMotion {
     plant: Plant,
     sides: [Side; 2],
+    /// Whether both lines are the same.
+    alike: bool,
 }
 
 /// What the chambers of a plant consist of. Units: m3/Pa.
@@ -103,7 +105,8 @@ impl PlantInMotion {
             let compliance = behind.chambers[side] / stiffer + line.chamber_compliance();
             Side { area, compliance, flow_gain, flow_pressure, line }
         };
-        PlantInMotion { plant: *plant, sides: [side(0), side(1)] }
+        let sides = [side(0), side(1)];
+        PlantInMotion { plant: *plant, sides, alike: sides[0].line == sides[1].line }
     }
 
     /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of [`Plant::coefficients`].
@@ -144,7 +147,10 @@ impl PlantInMotion {
 
     /// D, N_u and N_v at s, times what both lines pass, so that nothing is divided by what vanishes at a resonance.
     fn chambers<A: Analytic>(&self, s: A) -> Chambers<A> {
-        let at = self.sides.map(|side| side.at_chamber(s));
+        let [one, other] = &self.sides;
+        let line = one.line.transfer_matrix(s);
+        let across = if self.alike { line } else { other.line.transfer_matrix(s) };
+        let at = [one.at_chamber(line, s), other.at_chamber(across, s)];
         let [area_a, area_b] = self.sides.map(|side| side.area);
         let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
         let leakage = self.plant.internal_leakage;
@@ -223,8 +229,7 @@ impl PlantInMotion {
 }
 
 impl Side {
-    fn at_chamber<A: Analytic>(&self, s: A) -> AtChamber<A> {
-        let line = self.line.transfer_matrix(s);
+    fn at_chamber<A: Analytic>(&self, line: TransferMatrix<A>, s: A) -> AtChamber<A> {
         let passed = line.flow + line.impedance.scaled(self.flow_pressure);
         let taken = line.admittance + line.pressure.scaled(self.flow_pressure);
         let admittance = s.scaled(self.compliance) * passed + taken;

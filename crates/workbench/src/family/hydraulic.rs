@@ -60,8 +60,7 @@ pub(super) fn in_motion(
     let Some(declared) = &project.actuator else { return Ok(None) };
     let open = Open { project, declared, rig, names };
     let (place, plant) = open.plant(values, *moved, *equal);
-    let components = components(declared, &Numbers::open(names, values));
-    rig::in_motion(&declared.line, &components, &place.point, &place.chambers, &plant)
+    rig::in_motion(&declared.line, &place.components, &place.point, &place.chambers, &plant)
 }
 
 /// A rig with some of its numbers open.
@@ -74,6 +73,8 @@ pub(super) struct Open<'a> {
 
 /// A rig at its operating point.
 pub(super) struct Place<S> {
+    /// With the supply as it is stated.
+    pub(super) components: Components<S>,
     pub(super) point: OperatingPoint<S>,
     pub(super) chambers: TwoPressureLinearParameters<S>,
     /// With what `[linear]` and `[uncertainty]` state of the linear model in its place.
@@ -95,19 +96,28 @@ pub(super) struct Equal {
 impl Open<'_> {
     /// What decides the pressures, the supply as it settles.
     pub(super) fn balance<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
-        let (position, steady, idle) = self.idle(values);
         let numbers = Numbers::open(self.names, values);
-        let found = settled_supply(self.declared, &numbers, &idle, steady);
+        self.settled(&numbers, self.idle(&components(self.declared, &numbers), &numbers))
+    }
+
+    fn settled<S: Scalar>(
+        &self,
+        numbers: &Numbers<'_, S>,
+        (position, steady, idle): (S, Steady<S>, Balance<S>),
+    ) -> (S, Steady<S>, Balance<S>) {
+        let found = settled_supply(self.declared, numbers, &idle, steady);
         let supply = found.map_or(idle.supply, |found| found.supply);
         (position, steady, Balance { supply, ..idle })
     }
 
     /// The same with the supply as it is stated.
-    fn idle<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
-        let numbers = Numbers::open(self.names, values);
-        let components = components(self.declared, &numbers);
-        let (position, steady) = place(self.project, components.cylinder.stroke, &numbers);
-        (position, steady, Balance::of(&components))
+    fn idle<S: Scalar>(
+        &self,
+        components: &Components<S>,
+        numbers: &Numbers<'_, S>,
+    ) -> (S, Steady<S>, Balance<S>) {
+        let (position, steady) = place(self.project, components.cylinder.stroke, numbers);
+        (position, steady, Balance::of(components))
     }
 
     /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed forward is that of the declared rig.
@@ -131,11 +141,11 @@ impl Open<'_> {
     pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> Place<S> {
         let numbers = Numbers::open(self.names, values);
         let components = components(self.declared, &numbers);
-        let (position, steady, idle) = self.idle(values);
+        let (position, steady, idle) = self.idle(&components, &numbers);
         let known = &self.rig.point;
         let (supply, at) = match (moved, &self.rig.supply) {
             (true, _) => {
-                let (_, _, balance) = self.balance(values);
+                let (_, _, balance) = self.settled(&numbers, (position, steady, idle));
                 (balance.supply, balance.settle(steady))
             }
             (false, found) => {
@@ -159,15 +169,15 @@ impl Open<'_> {
             net_flow_b: none,
         };
         let friction = components.friction.viscous();
-        let components = Components { supply, ..components };
-        let model = TwoPressureModel::of(&components, pressures, Member::Nominal, friction);
+        let settled_components = Components { supply, ..components };
+        let model = TwoPressureModel::of(&settled_components, pressures, Member::Nominal, friction);
         let chambers = two_pressure_linear_parameters(&model, &point, Direction::Mean);
         let known = stated(&self.rig.parameters).map(|(name, value)| (name, S::from(value)));
         let open = self.names.iter().map(String::as_str).zip(values.iter().copied());
         let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));
         let settled = SettledSupply { supply, settled: at, taken: none };
         let supply = yielding_supply(self.declared, &numbers, &idle, &settled);
-        Place { point, chambers, linear, leakage: balance.leakage.unwrap_or(none), supply }
+        Place { components, point, chambers, linear, leakage: balance.leakage.unwrap_or(none), supply }
     }
 }
 

@@ -54,7 +54,8 @@ pub(crate) fn stiffness_model(compliance: Compliance) -> StiffnessModel {
 }
 
 fn fluid<S: Scalar>(declared: &project::Fluid, numbers: &Numbers<'_, S>) -> Fluid<S> {
-    let at = |key: &str, value: f64| numbers.at(&format!("fluid.{key}"), value);
+    let numbers = numbers.within("fluid");
+    let at = |key: &str, value: f64| numbers.at(key, value);
     let holds = |fraction: &f64| *fraction > 0.0 || numbers.is_open("fluid.entrained_air");
     Fluid {
         bulk_modulus: at("bulk_modulus", declared.bulk_modulus),
@@ -72,15 +73,18 @@ fn fluid<S: Scalar>(declared: &project::Fluid, numbers: &Numbers<'_, S>) -> Flui
 
 /// Coefficients as declared; without them, those of the data sheet, equal for all edges.
 fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_drop: S) -> Servovalve<S> {
-    let at = |key: &str, value: f64| numbers.at(&format!("valve.{key}"), value);
+    let numbers = numbers.within("valve");
+    let at = |key: &str, value: f64| numbers.at(key, value);
     let stated = |key: &str, value: Option<f64>| at(key, value.unwrap_or(f64::NAN));
-    let edges = |table: &str, edges: EdgeCoefficients| {
+    let edges = |table: &'static str, edges: EdgeCoefficients| {
         let [supply_to_a, a_to_tank, supply_to_b, b_to_tank] = edges.in_order();
+        let numbers = numbers.within(table);
+        let at = |key: &str, value: f64| numbers.at(key, value);
         Edges {
-            supply_to_a: at(&format!("{table}.supply_to_a"), supply_to_a),
-            a_to_tank: at(&format!("{table}.a_to_tank"), a_to_tank),
-            supply_to_b: at(&format!("{table}.supply_to_b"), supply_to_b),
-            b_to_tank: at(&format!("{table}.b_to_tank"), b_to_tank),
+            supply_to_a: at("supply_to_a", supply_to_a),
+            a_to_tank: at("a_to_tank", a_to_tank),
+            supply_to_b: at("supply_to_b", supply_to_b),
+            b_to_tank: at("b_to_tank", b_to_tank),
         }
     };
     let tare_flow = at("tare_flow", declared.tare_flow);
@@ -199,7 +203,7 @@ pub(super) fn stiffening<S: Scalar>(declared: Option<Interval>, numbers: &Number
     let Interval { nominal, minimum, maximum } = declared.unwrap_or(Interval::exactly(1.0));
     let at = |part: &str, value: f64| {
         let whole = numbers.get("dynamic_stiffening");
-        whole.unwrap_or_else(|| numbers.at(&format!("dynamic_stiffening.{part}"), value))
+        whole.unwrap_or_else(|| numbers.within("dynamic_stiffening").at(part, value))
     };
     Stiffening {
         nominal: at("nominal", nominal),
@@ -209,7 +213,8 @@ pub(super) fn stiffening<S: Scalar>(declared: Option<Interval>, numbers: &Number
 }
 
 fn pipe<S: Scalar>(declared: &project::Pipe, numbers: &Numbers<'_, S>) -> Pipe<S> {
-    let at = |key: &str, value: f64| numbers.at(&format!("pipe.{key}"), value);
+    let numbers = numbers.within("pipe");
+    let at = |key: &str, value: f64| numbers.at(key, value);
     let wall = match (declared.wall_thickness, declared.youngs_modulus) {
         (Some(thickness), Some(youngs_modulus)) => PipeWall::Elastic {
             thickness: at("wall_thickness", thickness),
@@ -224,7 +229,8 @@ fn pipe<S: Scalar>(declared: &project::Pipe, numbers: &Numbers<'_, S>) -> Pipe<S
 }
 
 fn cylinder<S: Scalar>(declared: &project::Cylinder, numbers: &Numbers<'_, S>) -> Cylinder<S> {
-    let at = |key: &str, value: f64| numbers.at(&format!("cylinder.{key}"), value);
+    let numbers = numbers.within("cylinder");
+    let at = |key: &str, value: f64| numbers.at(key, value);
     // two numbers in one key are never open; one number for both sides is
     let both = |pair: Option<[f64; 2]>, key: &str, single: Option<f64>| match pair {
         Some(pair) => pair.map(S::from),
@@ -256,7 +262,8 @@ fn cylinder<S: Scalar>(declared: &project::Cylinder, numbers: &Numbers<'_, S>) -
 
 fn friction<S: Scalar>(declared: Option<&project::Friction>, numbers: &Numbers<'_, S>) -> Friction<S> {
     let Some(declared) = declared else { return Friction::Viscous { viscous: S::from(0.0) } };
-    let at = |key: &str, value: f64| numbers.at(&format!("cylinder.friction.{key}"), value);
+    let numbers = numbers.within("cylinder.friction");
+    let at = |key: &str, value: f64| numbers.at(key, value);
     let viscous = at("viscous", declared.viscous);
     let stribeck = |curve: &StribeckCurve| Stribeck {
         coulomb: at("coulomb", curve.coulomb),

@@ -10,9 +10,8 @@ use crate::project::{self, Project};
 /// declared, thesis (4.18); a velocity has no load where none is declared.
 pub(crate) fn place<S: Scalar>(project: &Project, stroke: S, numbers: &Numbers<'_, S>) -> (S, Steady<S>) {
     let declared = project.resolved_operating_point();
-    let at = |name: &str, value: Option<f64>| {
-        value.map(|value| numbers.at(&format!("operating_point.{name}"), value))
-    };
+    let numbers = numbers.within("operating_point");
+    let at = |name: &str, value: Option<f64>| value.map(|value| numbers.at(name, value));
     let position = at("position", declared.position).unwrap_or(stroke / S::from(2.0));
     let project::OperatingPoint { load_pressure, load_force, velocity, command, .. } = declared;
     let pressure = at("load_pressure", load_pressure);

@@ -45,7 +45,8 @@ pub(crate) fn yielding_load<S: Scalar>(
     force: S,
 ) -> Option<YieldingLoad<S>> {
     let none = S::from(0.0);
-    let at = |key: &str, value: f64| numbers.at(&format!("load.{key}"), value);
+    let of_load = numbers.within("load");
+    let at = |key: &str, value: f64| of_load.at(key, value);
     match *declared {
         project::Load::Prescribed => None,
         project::Load::SpringMassDamper { mass, stiffness, damping } => Some(YieldingLoad {

@@ -12,7 +12,8 @@ use crate::project::{self, SupplyModel};
 /// Where the supply pressure comes from.
 pub(crate) fn power_unit<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_, S>) -> PowerUnit<S> {
     let SupplyModel::PumpLimited(pump) = &declared.supply.model else { return PowerUnit::Constant };
-    let at = |key: &str, value: f64| numbers.at(&format!("supply.{key}"), value);
+    let of_supply = numbers.within("supply");
+    let at = |key: &str, value: f64| of_supply.at(key, value);
     let of_fluid = || numbers.at("fluid.bulk_modulus", declared.fluid.bulk_modulus);
     let modulus = pump.effective_bulk_modulus;
     PowerUnit::PumpLimited(PumpLimited {

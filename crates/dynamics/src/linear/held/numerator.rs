@@ -4,7 +4,7 @@ use num_complex::Complex64;
 
 use super::super::double_double::{ComplexDoubleDouble, DoubleDouble};
 use super::super::refinement::{converge, symmetrise};
-use super::super::{LinearError, Polynomial};
+use super::super::{LinearError, Polynomial, roots};
 use super::Held;
 use crate::portable::{cos, magnitude, sin};
 
@@ -30,7 +30,7 @@ impl Held {
     /// the response were not found.
     ///
     /// # Errors
-    /// Those of [`Polynomial::roots`].
+    /// Those of [`roots::guessed`].
     pub(in super::super) fn factors(
         &self,
         poles: &[Complex64],
@@ -41,7 +41,7 @@ impl Held {
         let Some(kept) = first.and_then(|first| coefficients.get(first..)) else { return Ok(None) };
         let rounded = Polynomial::new(kept.iter().map(|c| c.value()).collect());
         let gain = rounded.leading_coefficient();
-        let mut zeros = apart(rounded.roots()?);
+        let mut zeros = apart(roots::guessed(&rounded)?);
         let step = |z: Complex64| self.newton_step(poles, z);
         converge(&mut zeros, 60, |z| if REFINED.contains(&magnitude(z)) { step(z) } else { None });
         let zeros = symmetrise(&zeros);
@@ -66,8 +66,7 @@ impl Held {
         let mut samples = Vec::with_capacity(count / 2 + 1);
         for k in 0..count.div_ceil(2) {
             let z = *points.get(2 * k + 1)?;
-            let local = self.at(z)?;
-            let numerator = local.value * local.determinant;
+            let numerator = self.numerator(z)?;
             samples.push(Sample { z: z.value(), numerator: numerator.value() });
             // a point of the upper half counts for its conjugate too
             let weight = if 2 * k + 1 == count { 1.0 } else { 2.0 };
@@ -83,12 +82,13 @@ impl Held {
 
     /// N at the angles of the slow poles, between z = 1 and the points above.
     fn beside_slow_poles(&self, poles: &[Complex64]) -> Vec<Sample> {
-        let angles = poles.iter().map(|pole| magnitude(pole - 1.0));
+        // of a pair one counts for both
+        let upper = poles.iter().filter(|pole| pole.im >= 0.0);
+        let angles = upper.map(|pole| magnitude(pole - 1.0));
         let within = angles.filter(|angle| (LEAST_ANGLE..1.0).contains(angle));
         let sample = |angle: f64| {
             let z = Complex64::new(cos(angle), sin(angle));
-            let local = self.at(z.into())?;
-            Some(Sample { z, numerator: (local.value * local.determinant).value() })
+            Some(Sample { z, numerator: self.numerator(z.into())?.value() })
         };
         within.filter_map(sample).collect()
     }
