@@ -78,6 +78,9 @@ pub(crate) enum Command {
         /// Write the project with the designed controller and prefilter in it to this file
         #[arg(long, value_name = "FILE")]
         save: Option<PathBuf>,
+        /// Leave it at a verdict that the machine contradicts, and do not design again with the plant that does
+        #[arg(long)]
+        no_repair: bool,
     },
     /// The nonlinear machine under its controller, through every scenario; Ctrl-C ends it with what there is
     Simulate {

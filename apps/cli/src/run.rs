@@ -36,8 +36,8 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             let shaped = if prefilter { Shaped::Prefilter } else { Shaped::Controller };
             on_project_saving(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())
         }
-        Command::Design { common, seed, save } => {
-            let request = Request::Design { seed, stages: common.out.is_some() };
+        Command::Design { common, seed, save, no_repair } => {
+            let request = Request::Design { seed, stages: common.out.is_some(), repair: !no_repair };
             on_project_saving(&common, &request, save.as_deref())
         }
         Command::Simulate {

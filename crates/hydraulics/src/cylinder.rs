@@ -2,6 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
+use crate::contact::Contact;
 use crate::parameter::{ParameterError, Problems};
 
 /// A double-acting cylinder. Units: m2, m, kg, m3.
@@ -21,6 +22,10 @@ pub struct Cylinder<S = f64> {
     pub dead_volume_a: S,
     /// Volume of chamber B that the piston never sweeps, without the line, in m3.
     pub dead_volume_b: S,
+    /// Laminar leakage across the piston per pressure difference, in m3/(s Pa); absent, none passes.
+    pub internal_leakage: Option<S>,
+    /// What the piston meets at both ends of its stroke. Absent, the ends are reported and nothing stops the piston.
+    pub end_stops: Option<Contact<S>>,
 }
 
 impl Cylinder {
@@ -38,6 +43,12 @@ impl Cylinder {
         problems.positive("moving_mass", self.moving_mass);
         problems.not_negative("dead_volume_a", self.dead_volume_a);
         problems.not_negative("dead_volume_b", self.dead_volume_b);
+        if let Some(leakage) = self.internal_leakage {
+            problems.positive("internal_leakage", leakage);
+        }
+        if let Some(contact) = self.end_stops {
+            problems.component("end_stops", contact.problems());
+        }
         problems.into_vec()
     }
 
@@ -50,6 +61,8 @@ impl Cylinder {
             moving_mass: S::from(self.moving_mass),
             dead_volume_a: S::from(self.dead_volume_a),
             dead_volume_b: S::from(self.dead_volume_b),
+            internal_leakage: self.internal_leakage.map(S::from),
+            end_stops: self.end_stops.map(|contact| contact.convert(&mut S::from)),
         }
     }
 }
@@ -65,6 +78,8 @@ impl<S: Copy> Cylinder<S> {
             moving_mass: of(self.moving_mass),
             dead_volume_a: of(self.dead_volume_a),
             dead_volume_b: of(self.dead_volume_b),
+            internal_leakage: self.internal_leakage.map(&mut *of),
+            end_stops: self.end_stops.map(|contact| contact.convert(of)),
         }
     }
 }
@@ -127,6 +142,7 @@ pub fn annulus_area<S: Scalar>(piston: S, rod: S) -> S {
 /// use phea_hydraulics::cylinder::{Cylinder, chamber_volumes};
 /// let cylinder = Cylinder {
 ///     area_a: 2e-3, area_b: 1e-3, stroke: 0.5, moving_mass: 10.0, dead_volume_a: 1e-5, dead_volume_b: 0.0,
+///     internal_leakage: None, end_stops: None,
 /// };
 /// assert_eq!(chamber_volumes(&cylinder, 0.25), [5.1e-4, 2.5e-4]);
 /// ```

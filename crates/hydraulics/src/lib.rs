@@ -8,6 +8,7 @@
 //! `absolute`.
 
 pub mod actuator;
+pub mod contact;
 pub mod cylinder;
 pub mod fluid;
 pub mod force_sensor;

@@ -18,7 +18,6 @@
 
 mod balance;
 mod chambers;
-mod contact;
 mod equations;
 mod ledger;
 mod load;
@@ -29,7 +28,6 @@ mod start;
 mod state;
 
 pub use chambers::{AeratedChambers, Chambers};
-pub use contact::Contact;
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, LoadMotion};
 pub use options::{MachineError, MachineOptions, VAPOUR_PRESSURE_ABSOLUTE};
@@ -87,8 +85,6 @@ pub struct Machine<S = f64> {
     cylinder: Cylinder<S>,
     chambers: Chambers<S>,
     lines: [DynamicLine<S>; 2],
-    internal_leakage: Option<S>,
-    end_stops: Option<Contact<S>>,
     friction: MovingFriction<S>,
     sensor_stiffness: S,
     load: LoadModel<S>,
@@ -132,8 +128,6 @@ impl Machine {
                 }
             },
             lines: options.lines.unwrap_or([none; 2]),
-            internal_leakage: options.internal_leakage,
-            end_stops: options.end_stops,
             friction,
             sensor_stiffness: components.force_sensor.stiffness,
             load: options.load,
@@ -153,12 +147,12 @@ impl Machine {
 
     /// Whether anything stops the piston at the ends of its stroke.
     pub fn has_end_stops(&self) -> bool {
-        self.end_stops.is_some()
+        self.cylinder.end_stops.is_some()
     }
 
     /// Refuses end stops into which the supply pressure presses the piston further than its chambers reach.
     fn check_ends(&self) -> Result<(), MachineError> {
-        let Some(contact) = self.end_stops else {
+        let Some(contact) = self.cylinder.end_stops else {
             return Ok(());
         };
         let pressure = self.supply.pressure.max(0.0);
@@ -190,8 +184,6 @@ impl<S: Copy> Machine<S> {
             cylinder: self.cylinder.convert(of),
             chambers: self.chambers.convert(of),
             lines: self.lines.map(|line| line.convert(of)),
-            internal_leakage: self.internal_leakage.map(&mut *of),
-            end_stops: self.end_stops.map(|contact| contact.convert(of)),
             friction: self.friction.convert(of),
             sensor_stiffness: of(self.sensor_stiffness),
             load: self.load.convert(of),
@@ -211,14 +203,14 @@ impl<const L: usize> Machine<Lanes<L>> {
     /// # Example
     /// ```
     /// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
-    /// # use phea_hydraulics::reference_rig::{components, hose_line, pipe_line};
+    /// # use phea_hydraulics::reference_rig::{components, hose_line, leaking, pipe_line};
     /// # use phea_hydraulics::machine::{Machine, MachineError, MachineOptions};
     /// let of = |line| Actuator::new(components(line, StiffnessModel::ByVolume));
     /// let machines = [of(hose_line())?, of(pipe_line())?].map(|a| Machine::new(&a, &MachineOptions::default()));
     /// let [hose, pipe] = machines;
     /// assert!(Machine::gather(&[hose.clone()?, pipe?]).is_ok());
-    /// let leaking = MachineOptions { internal_leakage: Some(1e-13), ..MachineOptions::default() };
-    /// let other = Machine::new(&of(hose_line())?, &leaking)?;
+    /// let leaking = leaking(components(hose_line(), StiffnessModel::ByVolume), 1e-13);
+    /// let other = Machine::new(&Actuator::new(leaking)?, &MachineOptions::default())?;
     /// assert_eq!(Machine::gather(&[hose?, other]), Err(MachineError::DifferentStructure { index: 1 }));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -252,7 +244,7 @@ impl<S: Lane> Machine<S> {
     /// # Example
     /// ```
     /// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
-    /// # use phea_hydraulics::reference_rig::{components, hose_line, pipe_line};
+    /// # use phea_hydraulics::reference_rig::{components, hose_line, leaking, pipe_line};
     /// # use phea_hydraulics::machine::{Machine, MachineError, MachineOptions};
     /// let of = |line| Actuator::new(components(line, StiffnessModel::ByVolume));
     /// let [hose, pipe] = [of(hose_line())?, of(pipe_line())?].map(|a| Machine::new(&a, &MachineOptions::default()));
@@ -260,8 +252,8 @@ impl<S: Lane> Machine<S> {
     /// let mut lanes = Machine::gather(&[hose, hose])?;
     /// lanes.put(1, &pipe)?;
     /// assert_eq!(lanes, Machine::gather(&[hose, pipe])?);
-    /// let leaking = MachineOptions { internal_leakage: Some(1e-13), ..MachineOptions::default() };
-    /// let other = Machine::new(&of(hose_line())?, &leaking)?;
+    /// let leaking = leaking(components(hose_line(), StiffnessModel::ByVolume), 1e-13);
+    /// let other = Machine::new(&Actuator::new(leaking)?, &MachineOptions::default())?;
     /// assert_eq!(lanes.put(0, &other), Err(MachineError::DifferentStructure { index: 0 }));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -149,7 +149,7 @@ impl OperatingPoint {
 /// #     },
 /// #     line_a: line, line_b: line,
 /// #     cylinder: Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: 0.5, moving_mass: 13.1,
-/// #         dead_volume_a: 0.0, dead_volume_b: 0.0 },
+/// #         dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, end_stops: None },
 /// #     friction: Friction::Viscous { viscous: 100.0 }, force_sensor: ForceSensor { stiffness: 2e7 },
 /// #     stiffness_model: StiffnessModel::Uniform,
 /// # })?;
@@ -164,34 +164,7 @@ pub fn operating_point(
     position: f64,
     condition: Condition,
 ) -> Result<OperatingPoint, OperatingPointError> {
-    leaking_operating_point(actuator, None, position, condition)
-}
-
-/// As [`operating_point`], with leakage across the piston in m3/(s Pa).
-///
-/// # Errors
-/// As [`operating_point`].
-///
-/// # Example
-/// What leaks from A to B takes the same flow from what the null valve gives A:
-/// ```
-/// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
-/// # use phea_hydraulics::reference_rig::{components, hose_line, valve};
-/// use phea_hydraulics::operating_point::{Condition, leaking_operating_point};
-/// use phea_hydraulics::servovalve::chamber_flows;
-/// let actuator = Actuator::new(components(hose_line(), StiffnessModel::Uniform))?;
-/// let point = leaking_operating_point(&actuator, Some(1e-12), 0.25, Condition::Command(0.0))?;
-/// let into = chamber_flows(&valve(), &actuator.components().supply, 0.0, point.pressure_a, point.pressure_b);
-/// assert!((into.into_a - 1e-12 * point.load_pressure()).abs() < 1e-15 && point.load_pressure() > 1e5);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn leaking_operating_point(
-    actuator: &Actuator,
-    leakage: Option<f64>,
-    position: f64,
-    condition: Condition,
-) -> Result<OperatingPoint, OperatingPointError> {
-    let balance = Balance::of(actuator.components(), leakage);
+    let balance = Balance::of(actuator.components());
     let stroke = actuator.components().cylinder.stroke;
     if !(0.0..=stroke).contains(&position) {
         return Err(OperatingPointError::PositionOutsideStroke { position, stroke });

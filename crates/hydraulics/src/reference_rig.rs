@@ -5,6 +5,7 @@
 //! tables.
 
 use crate::actuator::Components;
+use crate::contact::Contact;
 use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
 use crate::force_sensor::ForceSensor;
@@ -38,6 +39,18 @@ pub fn pipe_line() -> Line {
     Line::Pipe { pipe: Pipe { bore: 10.5e-3, wall: PipeWall::Rigid }, length: 0.35 }
 }
 
+/// These components, with a leakage across the piston in m3/(s Pa).
+pub fn leaking(components: Components, internal_leakage: f64) -> Components {
+    let cylinder = Cylinder { internal_leakage: Some(internal_leakage), ..components.cylinder };
+    Components { cylinder, ..components }
+}
+
+/// These components, with end stops.
+pub fn stopped(components: Components, contact: Contact) -> Components {
+    let cylinder = Cylinder { end_stops: Some(contact), ..components.cylinder };
+    Components { cylinder, ..components }
+}
+
 /// The symmetric cylinder: 50/22 mm, 0.5 m, 13.1 kg.
 pub fn cylinder() -> Cylinder {
     Cylinder {
@@ -47,6 +60,8 @@ pub fn cylinder() -> Cylinder {
         moving_mass: 13.1,
         dead_volume_a: 0.0,
         dead_volume_b: 0.0,
+        internal_leakage: None,
+        end_stops: None,
     }
 }
 

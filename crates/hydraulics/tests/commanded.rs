@@ -47,7 +47,7 @@ pub(super) fn yielding(
     let settled = SettledSupply { supply, settled: Settled { command, pressures: ports }, taken: f64::NAN };
     let idle = components.supply.pressure;
     let drops = [idle, idle - components.supply.tank_pressure];
-    let balance = Balance::of(components, None);
+    let balance = Balance::of(components);
     Some(YieldingSupply::new(unit, &balance, drops, &settled, Direction::Extending))
 }
 

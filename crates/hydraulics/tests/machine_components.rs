@@ -5,17 +5,18 @@
 use phea_dynamics::portable::sin;
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, MovingFriction};
 use phea_hydraulics::line::{Line, Member};
 use phea_hydraulics::machine::{
-    Accumulator, Chambers, Contact, INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited,
-    SIGNALS, Start,
+    Accumulator, Chambers, INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited, SIGNALS,
+    Start,
 };
 use phea_hydraulics::operating_point::{Condition, Load, operating_point};
 use phea_hydraulics::reference_rig::{
-    benchmark_components, components, cylinder, hose_line, measured_spool, pipe_line, valve,
+    benchmark_components, components, cylinder, hose_line, measured_spool, pipe_line, stopped, valve,
 };
 use phea_hydraulics::servovalve::{SpoolImperfection, SpoolState};
 use phea_hydraulics::stiffness::{StiffnessModel, compliance_at};
@@ -355,8 +356,9 @@ fn tare_flow_is_the_supplys() {
 fn indicators_turn_negative_with_their_events() {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.0 };
     let load = LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 1e-3, contact };
-    let options = MachineOptions { load, end_stops: Some(contact), ..MachineOptions::default() };
-    let machine = machine_of(components(hose_line(), StiffnessModel::ByVolume), &options);
+    let options = MachineOptions { load, ..MachineOptions::default() };
+    let rig = stopped(components(hose_line(), StiffnessModel::ByVolume), contact);
+    let machine = machine_of(rig, &options);
     let negative = |pressure_a: f64, position: f64, ground: f64| {
         let state = [0.0, 0.0, pressure_a, 30e5, 0.0, 0.0, position - ground, 0.0];
         let mut indicators = [0.0; INDICATORS.len()];

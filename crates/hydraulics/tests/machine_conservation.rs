@@ -6,15 +6,18 @@ use phea_dynamics::portable::sin;
 use phea_dynamics::scalar::Dual;
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
 use phea_hydraulics::line::{DynamicLine, END_SHARE, LaminarFriction, LineModel, Member};
 use phea_hydraulics::machine::{
-    Account, Accumulator, Contact, ENERGY_ACCOUNTS, LoadModel, Machine, MachineError, MachineOptions,
-    OIL_ACCOUNTS, PowerUnit, PumpLimited, Start,
+    Account, Accumulator, ENERGY_ACCOUNTS, LoadModel, Machine, MachineError, MachineOptions, OIL_ACCOUNTS,
+    PowerUnit, PumpLimited, Start,
 };
-use phea_hydraulics::reference_rig::{benchmark_components, components, cylinder, hose_line, pipe_line};
+use phea_hydraulics::reference_rig::{
+    benchmark_components, components, cylinder, hose_line, leaking, pipe_line, stopped,
+};
 use phea_hydraulics::servovalve::Servovalve;
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -179,13 +182,8 @@ const CREEPING: LineModel = LineModel::Creeping { relaxation_time: 0.02 };
 fn rich_machines() -> Vec<(&'static str, Machine)> {
     let rig = asymmetric();
     let hoses = Components { line_b: hose_line(), ..rig };
-    let of = |rig, options: MachineOptions| machine_of(rig, &options);
-    let with = |power_unit, lines| MachineOptions {
-        power_unit,
-        lines,
-        internal_leakage: Some(2e-12),
-        ..MachineOptions::default()
-    };
+    let of = |rig, options: MachineOptions| machine_of(leaking(rig, 2e-12), &options);
+    let with = |power_unit, lines| MachineOptions { power_unit, lines, ..MachineOptions::default() };
     let uniform = foamy(
         Components { friction: passive_friction(), ..benchmark_components() },
         StiffnessModel::Uniform,
@@ -227,8 +225,8 @@ fn ledgers_close_against_a_prescribed_motion() {
     let start = Start { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..Start::default() };
     let passive = Components { friction: passive_friction(), ..benchmark_components() };
     check(&machine_of(passive, &MachineOptions::default()), &motion, &start, 0.3, 2e-5);
-    let leaking = MachineOptions { internal_leakage: Some(2e-12), power_unit: pump(), ..Default::default() };
-    check(&machine_of(asymmetric(), &leaking), &motion, &start, 0.3, 2e-5);
+    let pumped = MachineOptions { power_unit: pump(), ..Default::default() };
+    check(&machine_of(leaking(asymmetric(), 2e-12), &pumped), &motion, &start, 0.3, 2e-5);
 }
 
 #[test]
@@ -258,11 +256,11 @@ fn ledgers_close_with_loads_of_their_own() {
 fn ledgers_close_in_the_end_stops() {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.5 };
     let load = LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 100.0 };
-    let options = MachineOptions { end_stops: Some(contact), load, ..MachineOptions::default() };
+    let options = MachineOptions { load, ..MachineOptions::default() };
     // An open edge at zero drop and a small chamber are too fast for this method where the root's transition is short.
     let rig = asymmetric();
     let valve = Servovalve { transition_pressure: 1e5, ..rig.valve };
-    let machine = machine_of(Components { valve, ..rig }, &options);
+    let machine = machine_of(stopped(Components { valve, ..rig }, contact), &options);
     for (position, bias) in [(0.002, -4.0), (0.498, 4.0)] {
         let motion = Motion { amplitude: 2.0, bias, ground: 0.0, ground_amplitude: 0.0 };
         let start = Start { position, pressure_a: 20e5, pressure_b: 20e5, ..Start::default() };
@@ -293,12 +291,10 @@ fn ledgers_close_in_the_end_stops() {
 fn the_rig_is_the_sum_of_its_components() {
     let contact = Contact { stiffness: 3e7, relative_damping: 0.4 };
     let load = LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 4e-4, contact };
-    let leaking = Some(2e-12);
-    let with_pump =
-        MachineOptions { load, power_unit: pump(), internal_leakage: leaking, ..Default::default() };
-    let plain = MachineOptions { internal_leakage: leaking, ..Default::default() };
+    let with_pump = MachineOptions { load, power_unit: pump(), ..Default::default() };
+    let plain = MachineOptions::default();
     for (options, more) in [(with_pump, vec![2e-6, 0.25, 0.1, 66e5]), (plain, vec![2e-6])] {
-        let machine = machine_of(asymmetric(), &options);
+        let machine = machine_of(leaking(asymmetric(), 2e-12), &options);
         let mut state = vec![0.7, 20.0, 41e5, 22e5, 3e-4, 0.08];
         state.extend(more);
         let ledger = machine.ledger(&state, &[0.2498, 0.05]).unwrap();

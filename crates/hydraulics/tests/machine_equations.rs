@@ -7,6 +7,7 @@ use phea_dynamics::portable::{cosh, expm1, pow};
 use phea_dynamics::scalar::{Dependence, Dual, Lanes};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, Stribeck};
@@ -14,12 +15,12 @@ use phea_hydraulics::line::{
     Conduit, DynamicLine, END_SHARE, LaminarFriction, Member, Segments, TransmissionLine,
 };
 use phea_hydraulics::machine::{
-    Accumulator, Contact, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, PowerUnit,
-    PumpLimited, SIGNALS,
+    Accumulator, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited,
+    SIGNALS,
 };
 use phea_hydraulics::operating_point::{Condition, Load, operating_point};
 use phea_hydraulics::reference_rig::{
-    benchmark_components, components, cylinder, hose_line, measured_spool, pipe_line,
+    benchmark_components, components, cylinder, hose_line, leaking, measured_spool, pipe_line, stopped,
 };
 use phea_hydraulics::servovalve::{Direction, Servovalve, SpoolImperfection};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -61,13 +62,15 @@ fn full() -> MachineOptions {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
     MachineOptions {
         spool: SpoolImperfection { threshold: Some(0.04), rate_limit: Some(4000.0), ..measured_spool() },
-        internal_leakage: Some(3e-13),
-        end_stops: Some(contact),
         friction_regular_velocity: Some(1e-3),
         power_unit: PowerUnit::PumpLimited(pump()),
         load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 2e-3, contact },
         ..MachineOptions::default()
     }
+}
+
+fn leaking_and_stopped(components: Components) -> Components {
+    stopped(leaking(components, 3e-13), Contact { stiffness: 1e8, relative_damping: 0.3 })
 }
 
 fn hose() -> Components {
@@ -111,11 +114,11 @@ fn machines() -> Vec<Machine> {
     vec![
         machine_of(benchmark_components(), &plain),
         machine_of(hose(), &plain),
-        machine_of(rough, &full()),
+        machine_of(leaking_and_stopped(rough), &full()),
         machine_of(asymmetric(), &sprung),
-        machine_of(uniform, &full()),
+        machine_of(leaking_and_stopped(uniform), &full()),
         machine_of(hose(), &MachineOptions { lines: Some([waves, segments]), ..plain }),
-        machine_of(rough, &MachineOptions { lines: Some([segments, waves]), ..full() }),
+        machine_of(leaking_and_stopped(rough), &MachineOptions { lines: Some([segments, waves]), ..full() }),
     ]
 }
 
@@ -420,12 +423,16 @@ fn starts_that_cannot_be_are_refused() {
     let refused = Machine::new(&Actuator::new(rough).unwrap(), &MachineOptions::default());
     assert_eq!(refused, Err(MachineError::StaticFriction));
     let soft = Contact { stiffness: 1e4, relative_damping: 0.0 };
-    let soft = MachineOptions { end_stops: Some(soft), ..MachineOptions::default() };
-    assert!(matches!(Machine::new(&actuator, &soft), Err(MachineError::ChamberVanishes { .. })));
+    let soft = Actuator::new(stopped(hose(), soft)).unwrap();
+    assert!(matches!(
+        Machine::new(&soft, &MachineOptions::default()),
+        Err(MachineError::ChamberVanishes { .. })
+    ));
     let spool = SpoolImperfection { threshold: Some(0.2), hysteresis_width: Some(0.1), ..Default::default() };
-    let narrow = MachineOptions { spool, internal_leakage: Some(-1.0), ..MachineOptions::default() };
+    let narrow = MachineOptions { spool, friction_regular_velocity: Some(-1.0), ..MachineOptions::default() };
     let Err(MachineError::Impossible { problems }) = Machine::new(&actuator, &narrow) else { panic!() };
     assert_eq!(problems.len(), 2);
+    assert!(Actuator::new(leaking(hose(), -1.0)).is_err());
 }
 
 fn static_friction() -> Friction {

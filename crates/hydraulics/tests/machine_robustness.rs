@@ -7,12 +7,13 @@ use phea_dynamics::simulation::{
     Course, Input, Plant, Profile, Settings, Simulated, Status, System, simulate,
 };
 use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::machine::{
-    Contact, INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited, SIGNALS, Start,
+    INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited, SIGNALS, Start,
 };
-use phea_hydraulics::reference_rig::{benchmark_components, components, hose_line};
+use phea_hydraulics::reference_rig::{benchmark_components, components, hose_line, stopped};
 use phea_hydraulics::servovalve::{SpoolImperfection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -84,8 +85,10 @@ fn at(position: f64) -> Start {
     Start { position, pressure_a: 30e5, pressure_b: 30e5, ..Start::default() }
 }
 
-fn end_stops() -> Option<Contact> {
-    Some(Contact { stiffness: 1e8, relative_damping: 0.5 })
+/// With end stops.
+fn hose_rig() -> Components {
+    let contact = Contact { stiffness: 1e8, relative_damping: 0.5 };
+    stopped(components(hose_line(), StiffnessModel::ByVolume), contact)
 }
 
 fn free_load() -> LoadModel {
@@ -109,8 +112,8 @@ fn a_shut_valve_settles() {
 /// Into the end stop at full command: held there by the whole supply, reported, and back again.
 #[test]
 fn a_piston_meets_its_end_stops() {
-    let options = MachineOptions { end_stops: end_stops(), load: free_load(), ..MachineOptions::default() };
-    let rig = components(hose_line(), StiffnessModel::ByVolume);
+    let options = MachineOptions { load: free_load(), ..MachineOptions::default() };
+    let rig = hose_rig();
     let course = [(0.0, 10.0), (1.0, -10.0), (3.5, 0.0)];
     let (result, outputs) = drive(machine_of(rig, &options), &at(0.4), 4.0, &course, Profile::constant(0.4));
     assert_eq!(result.outcome.status, Status::Completed);
@@ -160,11 +163,10 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
     };
     let options = MachineOptions {
         power_unit: PowerUnit::PumpLimited(unit),
-        end_stops: end_stops(),
         load: free_load(),
         ..MachineOptions::default()
     };
-    let rig = components(hose_line(), StiffnessModel::ByVolume);
+    let rig = hose_rig();
     let course = [(0.5, 5.0), (1.0, -5.0), (1.5, 0.0)];
     let (result, outputs) =
         drive(machine_of(rig, &options), &at(0.25), 3.0, &course, Profile::constant(0.25));

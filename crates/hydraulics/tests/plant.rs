@@ -7,16 +7,17 @@ use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::small_signal;
 use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::Member;
 use phea_hydraulics::linear::linear_model_coefficients;
-use phea_hydraulics::machine::{Beginning, Contact, LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::machine::{Beginning, LoadModel, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
 use phea_hydraulics::plant::{LinearLoad, Plant};
-use phea_hydraulics::reference_rig::{components, cylinder, hose_line, nominal_plant, pipe_line};
+use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
 use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{
@@ -47,15 +48,14 @@ fn drawn(number: u64) -> Drawn {
     let line_b = if number.is_multiple_of(2) { hose_line() } else { pipe_line() };
     let model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
     let reference = components(hose_line(), model);
-    let actuator = Actuator::new(Components {
+    let parts = Components {
         fluid: Fluid { entrained_air: air, ..reference.fluid },
         cylinder: Cylinder { area_a, area_b, moving_mass: spread(2.0, 80.0), ..cylinder() },
         line_b,
         friction: Friction::Viscous { viscous: friction },
         force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
         ..reference
-    })
-    .unwrap();
+    };
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let leakage = if number % 4 == 1 { 0.0 } else { spread(1e-14, 1e-10) };
     let contact = Contact { stiffness, relative_damping: spread(0.01, 1.0) };
@@ -64,9 +64,10 @@ fn drawn(number: u64) -> Drawn {
         1 => LoadModel::SpringMassDamper { mass, stiffness, damping },
         _ => LoadModel::Wall { mass, damping, gap: 1e-3, contact },
     };
-    let internal_leakage = (leakage > 0.0).then_some(leakage);
+    let parts = if leakage > 0.0 { leaking(parts, leakage) } else { parts };
+    let actuator = Actuator::new(parts).unwrap();
     let unit = power_unit(number);
-    let options = MachineOptions { load, internal_leakage, power_unit: unit, ..MachineOptions::default() };
+    let options = MachineOptions { load, power_unit: unit, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let (position, command) = (spread(0.05, 0.45), spread(0.01, 2.0));
     // a wall takes no pull: the next command pushes harder
@@ -159,7 +160,7 @@ fn a_limited_pump_settles_where_the_machine_rests() {
         let PowerUnit::PumpLimited(unit) = rig.unit else { continue };
         let components = rig.actuator.components();
         let idle = components.supply.pressure;
-        let balance = Balance::of(components, (rig.leakage > 0.0).then_some(rig.leakage));
+        let balance = Balance::of(components);
         let found = balance.settled_supply(&unit, idle, Steady::Command(rig.rest.state[0]));
         let rests = *rig.rest.state.last().unwrap();
         if found.taken < unit.pump_flow {

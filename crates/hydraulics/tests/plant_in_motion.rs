@@ -16,7 +16,7 @@ use phea_hydraulics::line::{DynamicLine, END_SHARE, LaminarFriction, Line, LineM
 use phea_hydraulics::machine::{Chambers, LoadModel, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
 use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
-use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, pipe_line};
+use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
 use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{
@@ -102,7 +102,7 @@ fn drawn(number: u64) -> Drawn {
         LineModel::TransmissionLine { .. } | LineModel::Lumped => pipe_line(),
         _ => of_length(spread(0.3, 3.0)),
     };
-    let actuator = Actuator::new(Components {
+    let parts = Components {
         fluid: Fluid { entrained_air: number.is_multiple_of(4).then_some(air), ..reference.fluid },
         cylinder: Cylinder { area_a, area_b, moving_mass: spread(2.0, 80.0), ..cylinder() },
         line_a: of_length(spread(0.3, 3.0)),
@@ -110,8 +110,8 @@ fn drawn(number: u64) -> Drawn {
         friction: Friction::Viscous { viscous: friction },
         force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
         ..reference
-    })
-    .unwrap();
+    };
+    let actuator = Actuator::new(leaking(parts, leakage)).unwrap();
     let parts = actuator.components();
     let line = |line: &Line, model: &LineModel| {
         DynamicLine::new(line, &parts.fluid, actuator.mean_pressure(), Member::Nominal, model).unwrap()
@@ -120,13 +120,7 @@ fn drawn(number: u64) -> Drawn {
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let (load, linear_load) = loads(number, mass, stiffness, damping);
     let unit = power_unit(number);
-    let options = MachineOptions {
-        load,
-        internal_leakage: Some(leakage),
-        lines: Some(lines),
-        power_unit: unit,
-        ..MachineOptions::default()
-    };
+    let options = MachineOptions { load, lines: Some(lines), power_unit: unit, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let condition = Condition::Command(spread(0.01, 2.0));
     let rest = machine.rest(&operating_point(&actuator, spread(0.05, 0.45), condition).unwrap()).unwrap();

@@ -8,10 +8,8 @@ use phea_dynamics::scalar::Dual;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::machine::{Machine, MachineOptions};
-use phea_hydraulics::operating_point::{
-    Balance, Load, OperatingPoint, Settled, Steady, leaking_operating_point, operating_point,
-};
-use phea_hydraulics::reference_rig::{components, cylinder, hose_line, valve};
+use phea_hydraulics::operating_point::{Balance, Load, OperatingPoint, Settled, Steady, operating_point};
+use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, valve};
 use phea_hydraulics::servovalve::{Edges, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -86,7 +84,7 @@ fn settled_points_are_those_of_bisection() {
         let actuator = draw.rig();
         let steady = draw.steady(&actuator);
         let Ok(point) = operating_point(&actuator, 0.25, steady.into()) else { continue };
-        let balance = Balance::of(actuator.components(), None);
+        let balance = Balance::of(actuator.components());
         let settled = balance.settle(steady);
         assert!(error(&actuator, &settled, &point) < 1e-13, "{steady:?} {actuator:?} {settled:?} {point:?}");
         assert!(balance.error(steady, &settled) < 1e-13, "{steady:?}");
@@ -97,8 +95,8 @@ fn settled_points_are_those_of_bisection() {
 
 /// Whether the force at standstill rises with the command all over its range: with unequal areas and edges much leakage undoes that, and
 /// one load has several commands.
-fn rises(actuator: &Actuator, leakage: f64) -> bool {
-    let balance = Balance::of(actuator.components(), Some(leakage));
+fn rises(actuator: &Actuator) -> bool {
+    let balance = Balance::of(actuator.components());
     let force = |command: f64| {
         let [a, b] = balance.settle(Steady::Command(command)).pressures;
         balance.areas[0] * a - balance.areas[1] * b
@@ -120,12 +118,12 @@ fn leaking_points_are_where_the_machine_rests() {
             continue; // the machine keeps a force
         }
         let leakage = draw.factor(1e-14, 1e-10);
-        if !rises(&actuator, leakage) {
+        let leaky = Actuator::new(leaking(*actuator.components(), leakage)).unwrap();
+        if !rises(&leaky) {
             continue; // the machine may rest at another balance
         }
         let Ok(tight) = operating_point(&actuator, 0.25, steady.into()) else { continue };
-        let options = MachineOptions { internal_leakage: Some(leakage), ..MachineOptions::default() };
-        let machine = Machine::new(&actuator, &options).unwrap();
+        let machine = Machine::new(&leaky, &MachineOptions::default()).unwrap();
         let (kind, rest) = match steady {
             Steady::Command(_) => (0, machine.rest(&tight)),
             _ => (1, machine.rest_under_load(&tight)),
@@ -136,14 +134,14 @@ fn leaking_points_are_where_the_machine_rests() {
             continue; // a chamber without oil
         }
         let rested = OperatingPoint { command, pressure_a, pressure_b, ..tight };
-        let balance = Balance::of(actuator.components(), Some(leakage));
+        let balance = Balance::of(leaky.components());
         let settled = balance.settle(steady);
         assert!(error(&actuator, &settled, &rested) < 1e-9, "{steady:?} {leakage} {settled:?} {rested:?}");
         assert!(balance.error(steady, &settled) < 1e-12, "{steady:?}");
         found[kind] += 1;
         if command.abs() < 10.0 {
-            let leaking = leaking_operating_point(&actuator, Some(leakage), 0.25, steady.into()).unwrap();
-            assert!(error(&actuator, &settled, &leaking) < 1e-12, "{steady:?} {leaking:?}");
+            let afresh = operating_point(&leaky, 0.25, steady.into()).unwrap();
+            assert!(error(&actuator, &settled, &afresh) < 1e-12, "{steady:?} {afresh:?}");
         }
     }
     assert!(found.iter().all(|count| *count > 500), "{found:?}");

@@ -124,6 +124,12 @@ impl UncertainFamily {
         Ok(UncertainFamily { plant, coordinates, members, extent })
     }
 
+    /// The nominal plant, and nothing else.
+    pub fn of_nominal(plant: UncertainPlant) -> UncertainFamily {
+        let members = vec![plant.nominal()];
+        UncertainFamily { plant, coordinates: vec![], members, extent: Extent::Members }
+    }
+
     /// The plant whose parameters are uncertain.
     pub fn plant(&self) -> &UncertainPlant {
         &self.plant

@@ -62,6 +62,8 @@ pub enum PlantPoint {
     Parameters(Vec<f64>),
     /// Index of a measured plant.
     Measured(usize),
+    /// Index of a plant that a design keeps to beside its family.
+    Beside(usize),
 }
 
 /// A margin with the frequency and the plant at which it was found.

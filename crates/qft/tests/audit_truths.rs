@@ -105,7 +105,7 @@ fn close(found: f64, truth: f64, tolerance: f64) {
 fn value(plant: &PlantPoint) -> f64 {
     match plant {
         PlantPoint::Parameters(values) => values[0],
-        PlantPoint::Measured(_) => f64::NAN,
+        PlantPoint::Measured(_) | PlantPoint::Beside(_) => f64::NAN,
     }
 }
 

@@ -84,7 +84,7 @@ fn timed(task: &Task) -> Result<(f64, Answer), String> {
     let begun = Instant::now();
     let loaded =
         project::read(&source, "rig.toml", &settings, &[]).map_err(|problems| problems.to_string())?;
-    let request = Request::Design { seed: None, stages: false };
+    let request = Request::Design { seed: None, stages: false, repair: false };
     let answer = command::answer(&source, &loaded, &[], &request).map_err(|error| error.to_string())?;
     Ok((begun.elapsed().as_secs_f64(), answer))
 }

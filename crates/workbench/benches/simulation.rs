@@ -20,7 +20,7 @@ use phea_dynamics::simulation::{
     Status, System, Task, drive,
 };
 use phea_hydraulics::machine::{Machine, MachineOptions, Start};
-use phea_workbench::project::{self, Project, Signal};
+use phea_workbench::project::{self, MotionShape, Project, Signal};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
@@ -146,9 +146,10 @@ impl Bench {
         let steps: Vec<(f64, f64)> = scenario.reference.iter().flat_map(Signal::steps).collect();
         let reference = Input::Value(Profile::steps(0.0, &steps)?);
         let declared = scenario.load_motion.as_ref().ok_or("no motion")?;
-        let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        let motion =
-            Profile::smooth_step(declared.start, number(declared.duration), number(declared.distance))?;
+        let MotionShape::SmoothStep { duration, distance } = declared.shape else {
+            return Err("no smooth step".into());
+        };
+        let motion = Profile::smooth_step(declared.start, duration, distance)?;
         let ground = motion.shifted(beginning.inputs[0]);
         let mut inputs = vec![reference, Input::Value(ground.clone()), Input::Rate(ground)];
 

@@ -3,7 +3,7 @@
 //! A simulation is of the whole machine. What the linear plant cannot count is told before the verdict; where a specification depends
 //! on it, the verdict is not proven.
 
-use crate::project::{LineModel, LoadModel, Project, SpecificationKind, SupplyModel};
+use crate::project::{LineModel, Load, Project, Pump, SpecificationKind, SupplyModel};
 use crate::quantity::DisplayUnit;
 use crate::setup::Setup;
 
@@ -40,7 +40,7 @@ fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
 /// A wall whose mass nobody states.
 fn load(project: &Project) -> Option<Caveat> {
     let load = &project.actuator.as_ref()?.load;
-    (load.model == LoadModel::Wall && load.mass.is_none()).then(|| Caveat {
+    matches!(load, Load::Wall { mass: None, .. }).then(|| Caveat {
         sentence: "load.model = \"wall\" is not counted without load.mass: this is the loop with a load that does not yield"
             .to_string(),
         unproven: true,
@@ -73,12 +73,12 @@ fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
 fn supply(setup: &Setup<'_>) -> Option<Caveat> {
     let project = setup.project;
     let supply = &project.actuator.as_ref()?.supply;
-    if supply.model == SupplyModel::Constant || is_measured(project) {
+    let SupplyModel::PumpLimited(Pump { flow: gives, .. }) = supply.model else { return None };
+    if is_measured(project) {
         return None;
     }
     let found = setup.rig().ok()?.supply?;
     let flow = |value: f64| DisplayUnit::LITRE_PER_MINUTE.text(value, 3);
-    let gives = supply.flow.unwrap_or(f64::NAN);
     let (taken, gives_words) = (flow(found.taken), flow(gives));
     let pressure = DisplayUnit::BAR.text(found.supply.pressure, 4);
     let rests = found.taken < gives;
@@ -98,7 +98,7 @@ fn supply(setup: &Setup<'_>) -> Option<Caveat> {
 /// What the models of a linearisation do not count of the supply.
 fn constant_supply(project: &Project) -> Option<String> {
     let supply = &project.actuator.as_ref()?.supply;
-    (supply.model == SupplyModel::PumpLimited).then(|| {
+    matches!(supply.model, SupplyModel::PumpLimited(_)).then(|| {
         "supply.model = \"pump_limited\" is counted in the plant alone: the other models have the pressure at which it settles, held \
          constant"
             .to_string()
@@ -116,7 +116,7 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
     let controller = project.controller.as_ref()?;
     let declared = controller.load_velocity_feed_forward?;
     let actuator = project.actuator.as_ref();
-    let yields = actuator.is_some_and(|actuator| actuator.load.model != LoadModel::Prescribed);
+    let yields = actuator.is_some_and(|actuator| actuator.load != Load::Prescribed);
     let why = match (actuator, controller.sample_time) {
         (None, _) => "no load is known of a [plant]",
         _ if is_measured(project) => "the plants of the family were measured without it",

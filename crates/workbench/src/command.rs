@@ -19,7 +19,7 @@ use crate::campaign::{CampaignError, Nowhere};
 use crate::caveat::caveats;
 use crate::control::ControlError;
 use crate::derived::{self, derive};
-use crate::design::{self, DesignError, design_project};
+use crate::design::{self, DesignError, design_and_repair, design_project};
 use crate::family::{FamilyError, family, visited_box};
 use crate::figure::FigureError;
 use crate::linearize::SweepRequest;
@@ -71,6 +71,8 @@ pub enum Request {
         seed: Option<u32>,
         /// Whether every stage is wanted as files, and not the designed project alone.
         stages: bool,
+        /// Whether it goes on where the machine contradicts it.
+        repair: bool,
     },
     /// The nonlinear machine through every scenario, its tables as text.
     Simulate,
@@ -281,7 +283,9 @@ pub fn answer_into(
             let (text, json) = (shaping::text(&shaping), shaping::json(loaded, &shaping));
             Ok(Answer { text, json, files: shaping::files(&shaping), affirmative: true })
         }
-        Request::Design { seed, stages } => design_answer(source, loaded, *seed, *stages, watch),
+        Request::Design { seed, stages, repair } => {
+            design_answer((source, loaded), *seed, [*stages, *repair], watch)
+        }
         Request::Simulate => simulate_answer(source, loaded, &SimulateRequest::default(), destination, watch),
         Request::SimulateAs(asked) => simulate_answer(source, loaded, asked, destination, watch),
         Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
@@ -405,13 +409,16 @@ fn verify_on_machine(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> 
 }
 
 fn design_answer(
-    source: &dyn Source,
-    loaded: &Loaded,
+    (source, loaded): (&dyn Source, &Loaded),
     seed: Option<u32>,
-    stages: bool,
+    [stages, repair]: [bool; 2],
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    let view = design_project(source, &Setup::new(&loaded.project)?, seed, watch)?;
+    let setup = Setup::new(&loaded.project)?;
+    let view = match repair {
+        true => design_and_repair(source, &setup, seed, watch)?,
+        false => design_project(source, &setup, seed, watch)?,
+    };
     Ok(Answer {
         text: design::text(loaded, &view)?,
         json: design::json(loaded, &view)?,

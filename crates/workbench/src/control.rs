@@ -5,7 +5,9 @@ use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, St
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_qft::design::quantisation::{CoefficientFormat, Converter, Quantisation, QuantisationError};
 
-use crate::project::{self, ElementKind, Formula, FormulaError, Project, Rational, Transfer};
+use crate::project::{
+    self, ElementKind, Formula, FormulaError, Project, Rational, RationalFunction, Transfer,
+};
 
 /// Why a declared controller or prefilter is no transfer function.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -29,6 +31,12 @@ pub enum ControlError {
     /// What is rounded cannot be.
     #[error("[controller.quantization]: {0}")]
     Quantisation(#[from] QuantisationError),
+    /// Zeros and poles without the factor before them.
+    #[error("{place}: `zeros` and `poles` need `gain`, the leading coefficient")]
+    Gain {
+        /// `[controller]`, `[prefilter]` or `[sensor]`.
+        place: &'static str,
+    },
     /// A text in z without a sample time.
     #[error("{place}: a transfer function in z needs `sample_time`")]
     SampleTime {
@@ -141,54 +149,59 @@ pub(crate) fn from_formulas(
     Ok(TransferFunction::from_polynomials(&top, &bottom))
 }
 
-/// A validated element has every number its kind needs; a missing one is refused as not finite further on.
+/// An element as the loop has it.
 pub(crate) fn element(
     place: &'static str,
     declared: &project::Element,
     sample_time: Option<f64>,
 ) -> Result<Element, ControlError> {
-    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-    let frequency = number(declared.frequency);
-    let damping_ratio = number(declared.damping_ratio);
     Ok(match declared.kind {
-        ElementKind::Gain => Element::Gain(number(declared.value)),
+        ElementKind::Gain { value } => Element::Gain(value),
         ElementKind::Integrator => Element::Integrator,
         ElementKind::Differentiator => Element::Differentiator,
-        ElementKind::Zero => Element::RealZero { frequency },
-        ElementKind::Pole => Element::RealPole { frequency },
-        ElementKind::ComplexZeros => Element::ComplexZeros { natural_frequency: frequency, damping_ratio },
-        ElementKind::ComplexPoles => Element::ComplexPoles { natural_frequency: frequency, damping_ratio },
-        ElementKind::Lead | ElementKind::Lag => Element::LeadLag {
-            zero_frequency: number(declared.zero_frequency),
-            pole_frequency: number(declared.pole_frequency),
-        },
-        ElementKind::Notch => Element::Notch {
+        ElementKind::Zero { frequency } => Element::RealZero { frequency },
+        ElementKind::Pole { frequency } => Element::RealPole { frequency },
+        ElementKind::ComplexZeros { frequency, damping_ratio } => {
+            Element::ComplexZeros { natural_frequency: frequency, damping_ratio }
+        }
+        ElementKind::ComplexPoles { frequency, damping_ratio } => {
+            Element::ComplexPoles { natural_frequency: frequency, damping_ratio }
+        }
+        ElementKind::Lead { zero_frequency, pole_frequency }
+        | ElementKind::Lag { zero_frequency, pole_frequency } => {
+            Element::LeadLag { zero_frequency, pole_frequency }
+        }
+        ElementKind::Notch { frequency, damping_ratio, numerator_damping_ratio } => Element::Notch {
             natural_frequency: frequency,
-            zero_damping_ratio: number(declared.numerator_damping_ratio),
+            zero_damping_ratio: numerator_damping_ratio,
             pole_damping_ratio: damping_ratio,
         },
-        ElementKind::RollOff => Element::ComplexPoles {
+        ElementKind::RollOff { frequency, damping_ratio } => Element::ComplexPoles {
             natural_frequency: frequency,
-            damping_ratio: declared.damping_ratio.unwrap_or(std::f64::consts::FRAC_1_SQRT_2),
+            damping_ratio: damping_ratio.unwrap_or(std::f64::consts::FRAC_1_SQRT_2),
         },
-        ElementKind::ProportionalIntegral => Element::ProportionalIntegral {
-            proportional_gain: number(declared.proportional_gain),
-            integral_gain: number(declared.integral_gain),
+        ElementKind::ProportionalIntegral { proportional_gain, integral_gain } => {
+            Element::ProportionalIntegral { proportional_gain, integral_gain }
+        }
+        ElementKind::ProportionalIntegralDerivative {
+            proportional_gain,
+            integral_gain,
+            derivative_gain,
+            filter_time,
+        } => Element::ProportionalIntegralDerivative {
+            proportional_gain,
+            integral_gain,
+            derivative_gain,
+            filter_time,
         },
-        ElementKind::ProportionalIntegralDerivative => Element::ProportionalIntegralDerivative {
-            proportional_gain: number(declared.proportional_gain),
-            integral_gain: number(declared.integral_gain),
-            derivative_gain: number(declared.derivative_gain),
-            filter_time: number(declared.filter_time),
-        },
-        ElementKind::General => Element::General(general(place, declared, sample_time)?),
+        ElementKind::General(ref ratio) => Element::General(general(place, ratio, sample_time)?),
     })
 }
 
 /// A ratio of polynomials, or factors.
 fn general(
     place: &'static str,
-    declared: &project::Element,
+    declared: &RationalFunction,
     sample_time: Option<f64>,
 ) -> Result<TransferFunction, ControlError> {
     let linear = |error| ControlError::Linear { place, error };
@@ -198,7 +211,7 @@ fn general(
             .map_err(linear)?,
         _ => {
             let roots = |pairs: &[[f64; 2]]| pairs.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
-            let gain = declared.gain.unwrap_or(f64::NAN);
+            let gain = declared.gain.ok_or(ControlError::Gain { place })?;
             TransferFunction::from_factors(gain, roots(&declared.zeros), roots(&declared.poles))
                 .map_err(linear)?
         }

@@ -6,6 +6,7 @@ mod comparison;
 mod explanation;
 mod factors;
 mod problem;
+mod repair;
 mod rounding;
 mod side;
 mod stages;
@@ -16,9 +17,10 @@ pub use answer::json;
 pub use explanation::Explanation;
 pub use factors::Factors;
 pub use problem::{design_options, design_problem};
+pub use repair::{Repair, RepairStatus};
 pub use rounding::Rounding;
 pub use side::{LoopFigures, NominalMargins, Side};
-pub use stages::{DESIGNED_PROJECT, files, stage_files};
+pub use stages::{DESIGNED_PROJECT, NEAREST_PROJECT, files, stage_files};
 pub use text::text;
 
 pub(crate) use comparison::compared;
@@ -78,6 +80,8 @@ pub struct ProjectDesign {
     pub rounding: Option<Rounding>,
     /// What the nonlinear machine does under the designed controller; absent without a machine, and where the design was stopped.
     pub trial: Option<Trial>,
+    /// What was done about a machine that contradicts it; absent where none does, or nothing was asked for.
+    pub repair: Option<Repair>,
     /// The designed controller as a project declares it.
     pub declared_controller: project::Controller,
     /// The designed prefilter likewise; absent where none was designed.
@@ -134,6 +138,7 @@ impl ProjectDesign {
             explanations: vec![],
             rounding,
             trial: None,
+            repair: None,
             declared_controller,
             declared_prefilter,
         })
@@ -159,6 +164,20 @@ impl ProjectDesign {
     }
 }
 
+/// Designs a controller for the project, and goes on where the machine contradicts it: the plant that does is taken in.
+///
+/// # Errors
+/// Those of [`design_project`].
+pub fn design_and_repair(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    seed: Option<u32>,
+    watch: Watch<'_>,
+) -> Result<ProjectDesign, CommandError> {
+    let (run, told) = designed(source, setup, seed, watch)?;
+    repair::repaired((source, setup), run, told, watch)
+}
+
 /// Designs a controller for the project, after the audit of the one that it gives.
 ///
 /// # Errors
@@ -170,6 +189,16 @@ pub fn design_project(
     seed: Option<u32>,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, CommandError> {
+    designed(source, setup, seed, watch).map(|(_, told)| told)
+}
+
+/// The design with the run that made it.
+fn designed(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    seed: Option<u32>,
+    watch: Watch<'_>,
+) -> Result<(DesignRun, ProjectDesign), CommandError> {
     let project = setup.project;
     if project.specifications.is_empty() {
         return Err(DesignError::NoSpecification.into());
@@ -199,7 +228,7 @@ pub fn design_project(
             let told = ProjectDesign::new(setup, &given, run.problem(), design, options)?;
             let continuous = if stopped { None } else { continuous_as_sampled(setup, &run, &told, watch)? };
             let trial = if stopped { None } else { tried_design(source, project, &told, watch)? };
-            Ok(ProjectDesign { stopped, published, explanations, continuous, trial, ..told })
+            Ok((run, ProjectDesign { stopped, published, explanations, continuous, trial, ..told }))
         }
         None if stopped => Err(CommandError::Stopped),
         None => {

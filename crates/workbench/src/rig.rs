@@ -16,7 +16,7 @@ use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::line::{LineError, Member};
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
-    Balance, Condition, OperatingPoint, OperatingPointError, Settled, SettledSupply, leaking_operating_point,
+    Balance, Condition, OperatingPoint, OperatingPointError, Settled, SettledSupply, operating_point,
 };
 use phea_hydraulics::plant::{LinearLoad, Plant, PlantInMotion};
 use phea_hydraulics::servovalve::Direction;
@@ -113,14 +113,13 @@ impl Rig {
         let numbers = Numbers::declared();
         let (position, steady) = place(project, components.cylinder.stroke, &numbers);
         let condition = Condition::from(steady);
-        let leakage = declared.cylinder.internal_leakage;
-        let balance = Balance::of(components, leakage);
+        let balance = Balance::of(components);
         let supply = settled_supply(declared, &numbers, &balance, steady);
         let supply = supply.filter(|found| found.supply.pressure.is_finite());
         // the valve at the pressure that the pump holds there, lines and stall forces at the stated one
         let settled = supply.map_or(components.supply, |found| found.supply);
         let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
-        let point = leaking_operating_point(&at_valve, leakage, position, condition)?;
+        let point = operating_point(&at_valve, position, condition)?;
         let pressures = [point.pressure_a, point.pressure_b];
         let supply = supply
             .map(|found| SettledSupply { settled: Settled { command: point.command, pressures }, ..found });
@@ -130,7 +129,7 @@ impl Rig {
         let derived = reduce(&two_pressure);
         let parameters = parameters::resolve(project, &derived);
         let linear = linear(&two_pressure, stated(&parameters));
-        let internal_leakage = leakage.unwrap_or(0.0);
+        let internal_leakage = components.cylinder.internal_leakage.unwrap_or(0.0);
         let load = yielding_load(&declared.load, &numbers, point.hydraulic_force);
         let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found));
         let unseen = yielding.is_none_or(|supply| are_equal([supply.edges]));

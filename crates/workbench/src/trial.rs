@@ -10,6 +10,7 @@ mod rigs;
 mod run;
 
 pub(crate) use answer::{Body, HEADINGS, agreement_word, body, cells, reasons, text};
+pub(crate) use rigs::{waves_alone, with_waves};
 pub use run::{Agreement, Response, Run, Step};
 
 use crate::audit::ProjectAudit;

@@ -37,6 +37,7 @@ mod plausible;
 mod project;
 mod project_formula;
 mod project_quantity;
+mod repair;
 mod report_design;
 mod report_opening;
 mod report_page;

@@ -18,7 +18,7 @@ use phea_workbench::source::Memory;
 
 const TIMED: &str = include_str!("project_valid/design.toml");
 const CONTRADICTORY: &str = include_str!("../../../examples/qft/mistakes/contradictory_bounds.toml");
-const DESIGN: Request = Request::Design { seed: None, stages: false };
+const DESIGN: Request = Request::Design { seed: None, stages: false, repair: false };
 
 fn begun(project: &str, settings: &[&str], seed: Option<u32>) -> (DesignProblem, DesignOptions) {
     let project = load(project, settings, &[]).project;

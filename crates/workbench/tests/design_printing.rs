@@ -20,7 +20,9 @@ use phea_workbench::command::{Request, answer};
 use phea_workbench::design::{
     DESIGNED_PROJECT, ProjectDesign, Side, design_options, design_problem, files, json, stage_files, text,
 };
-use phea_workbench::project::{self, FeedForward, Loaded, Prefilter, Quantization, Transfer};
+use phea_workbench::project::{
+    self, FeedForward, Loaded, Prefilter, Quantization, RationalFunction, Transfer,
+};
 use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
@@ -74,6 +76,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         structure: structure.clone(),
         starts: None,
         objective_db: 34.0,
+        beside: vec![],
         audit: run.audit(),
         binding: vec![BindingLimit { specification: 1, frequency_rad_per_s: 1.0, plant, margin_db: 0.0 }],
         rounds: vec![DesignRound {
@@ -298,7 +301,10 @@ fn what_the_computer_rounds_is_part_of_the_design() {
 fn what_a_setting_says_beside_the_law_is_written_with_it() {
     let (_, mut loaded, mut view) = view(&PROJECT.replace("TIMING\n", ""), DesignStatus::Met);
     let text = "[controller]\ngain = 1\n[controller.quantization]\ncommand_bits = 8\n[prefilter]\ngain = 1\n";
-    let transfer = Transfer { gain: Some(2.0), ..Transfer::default() };
+    let transfer = Transfer {
+        ratio: RationalFunction { gain: Some(2.0), ..RationalFunction::default() },
+        ..Transfer::default()
+    };
     view.declared_controller = project::Controller {
         transfer: transfer.clone(),
         sample_time: Some(1e-3),

@@ -12,7 +12,7 @@ use serde_json::Value;
 const EDGE_PLANTS: &str = include_str!("../../../examples/qft/edge_plants.toml");
 const UNSTABLE: &str = include_str!("../../../examples/qft/unstable_plant.toml");
 const LEAST_GAIN: &str = include_str!("../../../examples/qft/design/servo_least_gain.toml");
-const DESIGN: Request = Request::Design { seed: None, stages: false };
+const DESIGN: Request = Request::Design { seed: None, stages: false, repair: false };
 
 /// The design, and what `verify` says of the project that it writes.
 fn designed_and_verified(project: &str, settings: &[&str]) -> (Value, Value) {
@@ -68,7 +68,9 @@ fn the_rig_with_pipes_is_met() {
 
 #[test]
 fn the_same_seed_gives_the_same_bytes() {
-    let answered = |seed| answer(EDGE_PLANTS, &[], &[], &Request::Design { seed: Some(seed), stages: true });
+    let answered = |seed| {
+        answer(EDGE_PLANTS, &[], &[], &Request::Design { seed: Some(seed), stages: true, repair: false })
+    };
     let (first, second) = (answered(3), answered(3));
     assert_eq!(first.json, second.json);
     let bytes = |files: &[phea_workbench::answer::OutputFile]| {

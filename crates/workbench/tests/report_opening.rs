@@ -89,7 +89,7 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     let page = opening(&told);
 
     let verified = json(&source, &loaded, &Request::VerifyOnMachine);
-    let designed = json(&source, &loaded, &Request::Design { seed: None, stages: false });
+    let designed = json(&source, &loaded, &Request::Design { seed: None, stages: false, repair: false });
     let both = [&verified, &designed["verification"]];
     let verdicts = both.map(|answer| answer["verdict"].as_str().unwrap().replace('_', " "));
     assert_eq!(rows(&page, "every specification")[0][1..], verdicts);

@@ -172,8 +172,10 @@ fn polynomials_become_a_general_element_and_lose_nothing() {
     let saved =
         shaped(&format!("{SERVO}{POLYNOMIALS}"), &[(Change::Pass, "gain through 0 dB at 10 rad/s")]).1;
     let [gain, general] = &elements(&saved)[..] else { panic!("{saved}") };
-    assert_eq!((gain.kind, general.kind), (ElementKind::Gain, ElementKind::General));
-    assert_eq!(general.numerator.as_ref().map(project::Formula::text), Some("0.5*(s + 2)"));
+    let (ElementKind::Gain { .. }, ElementKind::General(ratio)) = (&gain.kind, &general.kind) else {
+        panic!()
+    };
+    assert_eq!(ratio.numerator.as_ref().map(project::Formula::text), Some("0.5*(s + 2)"));
     let expected = "[controller]                # given\nelements = [\n    { kind = \"gain\", value = ";
     let (_, controller) = saved.split_once(SERVO).unwrap();
     assert!(controller.starts_with(expected), "{controller}");
@@ -189,7 +191,7 @@ fn a_law_in_z_is_shaped_in_z() {
         "[controller]\nsample_time = \"1 ms\"\ngain = 0.5\npoles = [0.9]\ndomain = \"z\"\ndelay = \"1 ms\"\n";
     let (found, saved) = shaped(&format!("{SERVO}{law}"), &[(Change::Add, "{ kind = \"gain\", value = 2 }")]);
     let [general, gain] = &elements(&saved)[..] else { panic!("{saved}") };
-    assert_eq!((general.print().as_str(), gain.value), (DEPLOYED, Some(2.0)));
+    assert_eq!((general.print().as_str(), &gain.kind), (DEPLOYED, &ElementKind::Gain { value: 2.0 }));
     let other = law.replace("gain = 0.5", "gain = 1");
     assert_eq!(loop_at(&found, 10.0), loop_at(&shaped(&format!("{SERVO}{other}"), &[]).0, 10.0));
     assert!(saved.ends_with("sample_time = \"1 ms\"\ndelay = \"1 ms\"\n"), "{saved}");
@@ -292,7 +294,7 @@ fn the_prefilter_is_shaped_by_itself() {
     let saved = String::from_utf8(answer(&project, &[], &[], &request).files[0].bytes.clone()).unwrap();
     let prefilter = read(&saved).project.prefilter.unwrap();
     // -63.4 degrees of 1/(s + 1) leave 26.6, which a pole at 4 rad/s gives at 2 rad/s
-    let pole = prefilter.transfer.elements[1].frequency.unwrap();
+    let ElementKind::Pole { frequency: pole } = prefilter.transfer.elements[1].kind else { panic!() };
     assert!((pole - 4.0).abs() < 1e-9, "{pole}");
     assert!(saved.contains(POLYNOMIALS) && saved.contains("[prefilter] # soft\n"));
     let refused = try_answer(SERVO, &[], &[], &request);
@@ -322,7 +324,8 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
     let lag = "{ kind = \"lag\", zero_frequency = 5, pole_frequency = 50 }";
     check(Change::Add, lag, "a lag has its zero above its pole", 34, "write kind = \"lead\"");
     let zero = "{ kind = \"lead\", zero_freqency = 5, pole_frequency = 50 }";
-    check(Change::Add, zero, "this element needs `zero_frequency`", 1, "");
+    let needs = "missing `zero_frequency` in [elements]: kind \"lead\" needs it";
+    check(Change::Add, zero, needs, 1, "Corner of the numerator of a lead or lag.");
     check(Change::Add, "{ kind = lead }", "string values must be quoted, expected literal string", 10, "");
     check(
         Change::Add,
@@ -335,7 +338,8 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
     check(Change::Remove, "one", "`one` is no number of an element", 1, "elements are counted from 1");
     check(Change::Move, "1", "there is no `=` in it", 1, "for instance 3=1");
     check(Change::Move, "1 = 2", "`2` is no number of an element", 5, "there is one element");
-    check(Change::Replace, "1={ kind = \"pole\" }", "this element needs `frequency`", 3, "");
+    let needs = "missing `frequency` in [elements]: kind \"pole\" needs it";
+    check(Change::Replace, "1={ kind = \"pole\" }", needs, 3, "Corner or natural frequency.");
     let example = "for instance: lead through -6 dB, -130 deg at 20 rad/s";
     check(Change::Pass, "lead", "it does not say `through` which point", 1, example);
     check(Change::Pass, "lead through 3 dB", "it does not say `at` which frequency", 14, example);

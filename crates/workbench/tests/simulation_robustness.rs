@@ -86,7 +86,7 @@ fn a_supply_that_is_lost() {
     assert!(last(&run, "supply_pressure_pa") < 10e5, "{}", last(&run, "supply_pressure_pa"));
     assert!(last(&run, "force_n") < 3e3 && happened(&run, "command_limit"), "{:?}", run.occurrences);
     let refusal = refused(BENCHMARK, &["supply.model=pump_limited"]);
-    assert!(refusal.contains("a pump-limited supply needs `flow`"), "{refusal}");
+    assert!(refusal.contains("missing `flow` in [supply]"), "{refusal}");
 }
 
 /// Chambers above the supply give oil back to it; a tank above the supply is refused.

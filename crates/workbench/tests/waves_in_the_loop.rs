@@ -75,7 +75,10 @@ fn the_step_that_is_predicted_is_the_machines() {
 /// For the one rig there is a loop below the quarter wave of its hoses that satisfies everything, and the machine agrees.
 #[test]
 fn one_rig_with_waves_is_designed_for() {
-    let object = asked(&Request::Design { seed: None, stages: false }, &["line.model=transmission_line"]);
+    let object = asked(
+        &Request::Design { seed: None, stages: false, repair: false },
+        &["line.model=transmission_line"],
+    );
     assert_eq!(object["status"], Value::from("met"));
     assert_eq!(object["verification"]["verdict"], Value::from("met"));
     assert_eq!(object["machine"]["verdict"], Value::from("agrees"), "{}", object["machine"]);

@@ -130,7 +130,7 @@ impl<S: Scalar> Machine<S> {
     /// Flow across the piston from A to B, in m3/s.
     #[inline(always)]
     pub(super) fn leakage<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
-        self.internal_leakage.map_or(T::from(0.0), |conductance| {
+        self.cylinder.internal_leakage.map_or(T::from(0.0), |conductance| {
             constant::<S, T>(conductance) * (state.pressure_a - state.pressure_b)
         })
     }
@@ -154,7 +154,7 @@ impl<S: Scalar> Machine<S> {
     pub(super) fn forces<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> Forces<T> {
         let areas = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let [force, bristle_rate] = T::local(&self.friction, [state.velocity, state.bristle]);
-        let end_stops = match self.end_stops {
+        let end_stops = match self.cylinder.end_stops {
             None => T::from(0.0),
             Some(contact) => {
                 let contact = contact.convert(&mut constant::<S, T>);

@@ -207,7 +207,7 @@ impl<S: Scalar> Machine<S> {
 
     fn end_stop_account<T: Scalar + From<S>>(&self, position: T, velocity: T, force: T) -> Account<T> {
         let zero = T::from(0.0);
-        let Some(contact) = self.end_stops else {
+        let Some(contact) = self.cylinder.end_stops else {
             return Account { stored: zero, inflow: zero, lost: zero };
         };
         let contact = contact.convert(&mut constant::<S, T>);

@@ -1,6 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
-use super::Contact;
+use crate::contact::Contact;
 use crate::parameter::{ParameterError, Problems};
 
 /// What the force sensor pushes on. Units: kg, N/m, N s/m, m.

@@ -1,4 +1,4 @@
-use super::{Contact, LoadModel, PowerUnit};
+use super::{LoadModel, PowerUnit};
 use crate::line::{DynamicLine, Member};
 use crate::parameter::{ParameterError, Problems};
 use crate::servovalve::SpoolImperfection;
@@ -13,10 +13,6 @@ pub struct MachineOptions {
     pub spool: SpoolImperfection,
     /// Drop p_S - p_T in Pa at which the valve's tare flow is stated; absent, that of the actuator's own supply.
     pub tare_reference_drop: Option<f64>,
-    /// Laminar leakage across the piston per pressure difference, in m3/(s Pa).
-    pub internal_leakage: Option<f64>,
-    /// What the piston meets at both ends of its stroke. Absent, the ends are reported and nothing stops the piston.
-    pub end_stops: Option<Contact>,
     /// Velocity in m/s that smooths the jump of a static friction curve; needed for such a curve alone.
     pub friction_regular_velocity: Option<f64>,
     /// Where the supply pressure comes from.
@@ -39,8 +35,6 @@ impl Default for MachineOptions {
         MachineOptions {
             spool: SpoolImperfection::default(),
             tare_reference_drop: None,
-            internal_leakage: None,
-            end_stops: None,
             friction_regular_velocity: None,
             power_unit: PowerUnit::Constant,
             load: LoadModel::Prescribed,
@@ -59,12 +53,6 @@ impl MachineOptions {
         problems.component("valve", self.spool.problems());
         if let Some(drop) = self.tare_reference_drop {
             problems.positive("valve.tare_reference_drop", drop);
-        }
-        if let Some(leakage) = self.internal_leakage {
-            problems.positive("cylinder.internal_leakage", leakage);
-        }
-        if let Some(contact) = self.end_stops {
-            problems.component("cylinder.end_stops", contact.problems());
         }
         if let Some(velocity) = self.friction_regular_velocity {
             problems.positive("cylinder.friction.regular_velocity", velocity);

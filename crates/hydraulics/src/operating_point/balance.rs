@@ -20,14 +20,14 @@ pub struct Balance<S = f64> {
 }
 
 impl<S: Scalar> Balance<S> {
-    /// Of these components, with leakage across the piston in m3/(s Pa).
-    pub fn of(components: &Components<S>, leakage: Option<S>) -> Balance<S> {
+    /// Of these components.
+    pub fn of(components: &Components<S>) -> Balance<S> {
         let cylinder = &components.cylinder;
         Balance {
             valve: components.valve,
             supply: components.supply,
             areas: [cylinder.area_a, cylinder.area_b],
-            leakage,
+            leakage: components.cylinder.internal_leakage,
         }
     }
 }

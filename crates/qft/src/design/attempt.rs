@@ -1,6 +1,7 @@
 //! One structure on its way to a design: a search, the fit of a prefilter, a descent with both, an audit, and the descent again with what
 //! the audit found.
 
+mod auditing;
 mod beginning;
 mod deployment;
 mod error;
@@ -10,9 +11,7 @@ use phea_dynamics::linear::TransferFunction;
 pub(super) use self::beginning::Beginning;
 use self::beginning::{best_of, search_options};
 pub use self::error::DesignError;
-use super::counterexample::{
-    Counterexample, counterexamples, too_little_delay, unstable_plant, worst_margin_db, worst_over_rate_db,
-};
+use super::counterexample::{Counterexample, counterexamples, worst_margin_db};
 use super::problem::{DesignOptions, DesignProblem, Objective, PrefilterChoice};
 use super::result::{DesignRound, Starts};
 use crate::audit::AuditRun;
@@ -23,12 +22,10 @@ use crate::loop_shaping::{
 use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, PrefilterRun};
 use crate::sampled::SampledPlants;
 use crate::specification::Requirement;
-use crate::verification::{Audit, SpecificationAudit, TrackingJudgement, Verdict};
+use crate::verification::{Audit, SpecificationAudit, TrackingJudgement};
 
 /// Below this worst margin of the samples, the reserve taken off, a structure counts as unable to meet the specifications, dB.
 pub(super) const FEASIBLE_DB: f64 = -1.5e-3;
-/// A relaxation is found to this, dB.
-const RELAXATION_TOLERANCE_DB: f64 = 0.005;
 /// Where a counterexample misses by more than this, the margins of what was found lead nowhere, dB.
 const ASTRAY_DB: f64 = -6.0;
 /// Beside the frequency of a counterexample the same plants are looked at at these multiples of it.
@@ -62,6 +59,8 @@ enum Stage {
     Descending(Box<Descent>),
     /// The specifications over the box, from the plants of the samples alone.
     Checking(Box<SpecificationAudit>),
+    /// The next plant beside the family.
+    Beside(Box<AuditRun>),
     Auditing(Box<AuditRun>),
     Ended(Ending),
 }
@@ -96,6 +95,8 @@ pub(super) struct Attempt {
     rounds: Vec<DesignRound>,
     /// The plants that its audits sampled.
     sampled: SampledPlants,
+    /// The audits of the plants beside the family, of the controller that is audited.
+    beside: Vec<Audit>,
 }
 
 impl Attempt {
@@ -146,6 +147,7 @@ impl Attempt {
             stage: Stage::Searching(Box::new(search)),
             rounds: vec![],
             sampled,
+            beside: vec![],
         })
     }
 
@@ -156,7 +158,7 @@ impl Attempt {
             Stage::Fitting(run) => run.step(),
             Stage::Descending(descent) => descent.step(&mut self.shaping),
             Stage::Checking(audit) => audit.step(),
-            Stage::Auditing(run) => run.step(),
+            Stage::Beside(run) | Stage::Auditing(run) => run.step(),
             Stage::Ended(_) => return Ok(false),
         };
         if !goes_on {
@@ -165,6 +167,7 @@ impl Attempt {
                 Stage::Fitting(_) => self.after_fit()?,
                 Stage::Descending(_) => self.after_descent()?,
                 Stage::Checking(_) => self.after_check()?,
+                Stage::Beside(_) => self.after_beside()?,
                 Stage::Auditing(_) => self.after_audit()?,
                 Stage::Ended(ending) => Stage::Ended(ending.clone()),
             };
@@ -178,7 +181,7 @@ impl Attempt {
             Stage::Searching(_) | Stage::Descending(_) => "shaping the loop",
             Stage::Fitting(_) => "fitting the prefilter",
             Stage::Checking(_) => "looking between the samples",
-            Stage::Auditing(_) | Stage::Ended(_) => "auditing",
+            Stage::Beside(_) | Stage::Auditing(_) | Stage::Ended(_) => "auditing",
         }
     }
 
@@ -346,74 +349,16 @@ impl Attempt {
         let findings = audit.findings().to_vec();
         let judgement = self.judgement();
         let tolerance_db = self.new_below_db(&judgement);
-        let audited_margin_db = worst_margin_db(&findings);
+        let audited_db = worst_margin_db(&findings);
         let examples = counterexamples(&findings, tolerance_db, self.shaping.tracking());
-        if examples.is_empty() {
-            return self.audit();
+        if !examples.is_empty() {
+            self.note(Some(audited_db), &judgement);
+            if let Some(next) = self.with(&examples)? {
+                return Ok(next);
+            }
         }
-        self.note(Some(audited_margin_db), &judgement);
-        match self.with(&examples)? {
-            Some(next) => Ok(next),
-            None => self.audit(),
-        }
-    }
-
-    fn audit(&mut self) -> Result<Stage, DesignError> {
-        let problem = self.shaping.samples().problem();
-        let mut run = AuditRun::new(
-            &problem.family,
-            &self.compensation()?,
-            &problem.specifications,
-            self.shaping.tracking(),
-            self.options.tolerance_db,
-        );
-        run.take_over(std::mem::take(&mut self.sampled));
-        Ok(Stage::Auditing(Box::new(run)))
-    }
-
-    /// An attempt that found nothing stable, whose nearest controller is audited all the same.
-    pub(super) fn audited_as_it_is(mut self) -> Result<Attempt, DesignError> {
-        self.audits_only = true;
-        self.stage = self.audit()?;
-        Ok(self)
-    }
-
-    fn after_audit(&mut self) -> Result<Stage, DesignError> {
-        let Stage::Auditing(run) = &mut self.stage else { return self.audit() };
-        self.sampled = run.take_sampled();
-        let audit = Box::new(run.audit());
-        if self.audits_only {
-            return Ok(Stage::Ended(Ending::Hopeless(audit)));
-        }
-        let judgement = self.judgement();
-        let stable = audit.stability.verdict == Verdict::Met;
-        self.note(stable.then(|| worst_margin_db(&audit.specifications)), &judgement);
-        let delayed = too_little_delay(&audit, self.shaping.samples().problem());
-        if audit.verdict == Verdict::Met && delayed.is_empty() {
-            return Ok(Stage::Ended(Ending::Met(audit)));
-        }
-        let mut examples = unstable_plant(&audit);
-        examples.extend(delayed);
-        let tolerance_db = self.new_below_db(&judgement);
-        examples.extend(counterexamples(&audit.specifications, tolerance_db, self.shaping.tracking()));
-        Ok(self.with(&examples)?.unwrap_or(Stage::Ended(if self.relaxes && stable {
-            let audited_db = worst_over_rate_db(&audit.specifications, self.shaping.tracking());
-            Ending::Missed { worst_margin_db: judgement.worst_margin_db.min(audited_db), audit: Some(audit) }
-        } else {
-            Ending::NotConverged(audit)
-        })))
-    }
-
-    /// Margins below minus these are new, of single limits and of tracking: where the worst margin itself is looked for, what is worse than all
-    /// that was looked at. Limits of tracking may meet, and a margin to them counts by its share of the room: a negative one is new.
-    fn new_below_db(&self, judgement: &Judgement) -> [f64; 2] {
-        let worst_db = judgement.worst_margin_db;
-        let ordinary = 0.5 * self.options.tolerance_db;
-        match self.aim {
-            Aim::WorstMargin if self.relaxes => [RELAXATION_TOLERANCE_DB - worst_db.min(0.0); 2],
-            Aim::WorstMargin => [ordinary.min(RELAXATION_TOLERANCE_DB - worst_db), ordinary],
-            Aim::Objective => [ordinary; 2],
-        }
+        self.beside.clear();
+        self.audit()
     }
 
     /// The descent again, with these among the samples; `None` if they are among them already, or it was made often enough.

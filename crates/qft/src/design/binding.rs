@@ -1,7 +1,7 @@
 //! What the specification costs: which limit binds the loop at each frequency.
 
 use super::result::{BindingLimit, Conflict};
-use crate::verification::{Audit, WorstCase};
+use crate::verification::{Audit, PlantPoint, WorstCase};
 
 /// At each design frequency of a specification the one that leaves the loop least room, by increasing frequency.
 pub(super) fn binding_limits(audit: &Audit) -> Vec<BindingLimit> {
@@ -29,9 +29,22 @@ fn binding(specification: usize, case: &WorstCase) -> BindingLimit {
     }
 }
 
+/// The worst violations of the family and of the plants beside it.
+pub(super) fn all_conflicts(audit: &Audit, beside: &[Audit], tolerance_db: f64) -> Vec<Conflict> {
+    let mut found = conflicts(audit, tolerance_db);
+    for (index, audit) in beside.iter().enumerate() {
+        let plant = PlantPoint::Beside(index);
+        found.extend(
+            conflicts(audit, tolerance_db).into_iter().map(|one| Conflict { plant: plant.clone(), ..one }),
+        );
+    }
+    found.sort_by(|one, other| one.margin_db.total_cmp(&other.margin_db));
+    found
+}
+
 /// The worst violations of every specification that is broken, the worst first: what stands against one another where the common
 /// relaxation is as small as it can be.
-pub(super) fn conflicts(audit: &Audit, tolerance_db: f64) -> Vec<Conflict> {
+fn conflicts(audit: &Audit, tolerance_db: f64) -> Vec<Conflict> {
     let mut found: Vec<Conflict> = Vec::new();
     for (specification, finding) in audit.specifications.iter().enumerate() {
         let bands = finding.violations.iter().map(|band| &band.worst);

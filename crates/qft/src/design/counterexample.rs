@@ -39,6 +39,13 @@ pub(super) fn counterexamples(
     found
 }
 
+/// The same of the audit of a plant beside the family, by its index there.
+pub(super) fn of_beside(index: usize, examples: Vec<Counterexample>) -> Vec<Counterexample> {
+    let named =
+        |example: Counterexample| Counterexample { plants: vec![PlantPoint::Beside(index)], ..example };
+    examples.into_iter().map(named).collect()
+}
+
 /// The plant that makes a family unstable.
 pub(super) fn unstable_plant(audit: &Audit) -> Vec<Counterexample> {
     match audit.stability.verdict {
@@ -63,6 +70,11 @@ pub(super) fn too_little_delay(audit: &Audit, problem: &DesignProblem) -> Vec<Co
 pub(super) fn worst_margin_db(findings: &[SpecificationFinding]) -> f64 {
     let margins = findings.iter().filter_map(|finding| finding.worst.as_ref());
     margins.map(|worst| worst.margin_db).fold(f64::INFINITY, f64::min)
+}
+
+/// The same of an audit; `None` where a plant is not known to be stable.
+pub(super) fn audited_margin_db(audit: &Audit) -> Option<f64> {
+    (audit.stability.verdict == Verdict::Met).then(|| worst_margin_db(&audit.specifications))
 }
 
 /// The same over what one dB of relaxation of every limit adds to each: 2 for a spread.

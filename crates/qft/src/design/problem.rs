@@ -2,6 +2,7 @@
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::uncertain_plant::UncertainPlant;
 
 use super::quantisation::CoefficientFormat;
 use crate::family::Family;
@@ -13,6 +14,8 @@ use crate::specification::Specification;
 pub struct DesignProblem {
     /// The plants.
     pub family: Family,
+    /// Plants beside them that the loop must serve as well: of each the nominal one alone.
+    pub beside: Vec<UncertainPlant>,
     /// H; 1 where the output itself is fed back.
     pub sensor: TransferFunction,
     /// Sample time, delay and discretization of the controller that is looked for.

@@ -129,6 +129,8 @@ pub struct Design {
     pub objective_db: f64,
     /// Its audit against the specifications as they were asked for.
     pub audit: Audit,
+    /// The same of each plant beside the family.
+    pub beside: Vec<Audit>,
     /// The limits that it touches, by frequency.
     pub binding: Vec<BindingLimit>,
     /// How it came about.

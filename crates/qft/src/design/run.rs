@@ -3,9 +3,10 @@
 use std::collections::VecDeque;
 
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::uncertain_plant::UncertainPlant;
 
 use super::attempt::{Attempt, Beginning, DesignError, Ending, FEASIBLE_DB};
-use super::binding::{binding_limits, conflicts};
+use super::binding::{all_conflicts, binding_limits};
 use super::candidates::Ground;
 use super::diagnosis::{Finding, Severity, diagnose};
 use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
@@ -114,6 +115,32 @@ impl DesignRun {
             design: None,
             done: false,
         }
+    }
+
+    /// A design that goes on from one that has ended, with one more plant that its loop must serve: of this the nominal one. What did not do
+    /// without the plant does not do with it, so that structures of the order that was found come first, and what was looked at is known.
+    ///
+    /// # Errors
+    /// [`DesignError`] for a plant that does not fit the loop.
+    pub fn taking_in(self, plant: UncertainPlant) -> Result<DesignRun, DesignError> {
+        let mut problem = self.problem.clone();
+        problem.beside.push(plant.clone());
+        let mut next = DesignRun::new(problem, self.options);
+        next.sampled = self.sampled;
+        next.rounds = self.rounds;
+        if let Some(mut samples) = self.samples {
+            samples.take_in(plant)?;
+            next.samples = Some(samples);
+        }
+        if let Some(found) = self.design {
+            if let ControllerChoice::Grow { .. } = next.options.controller {
+                let order = found.structure.roots(-1.0);
+                next.plan.waiting.retain(|(own, _)| *own >= order);
+            }
+            next.plan.all = next.plan.waiting.len();
+            next.before = found.law.feedback.transfer_function().ok();
+        }
+        Ok(next)
     }
 
     /// What it works on.
@@ -234,7 +261,11 @@ impl DesignRun {
     fn first_samples(&self) -> Result<Samples, DesignError> {
         let plants = first_plants(&self.problem, self.options.seed);
         let frequencies = search_frequencies(&self.problem, &plants, POINTS_PER_DECADE)?;
-        Ok(Samples::new(&self.problem, &plants, &frequencies)?)
+        let mut samples = Samples::new(&self.problem, &plants, &frequencies)?;
+        for beside in (0..self.problem.beside.len()).map(PlantPoint::Beside) {
+            samples.look_closely_at(&beside)?;
+        }
+        Ok(samples)
     }
 
     fn end_attempt(&mut self) -> Result<(), DesignError> {
@@ -266,7 +297,7 @@ impl DesignRun {
                     _ => true,
                 };
                 if is_less {
-                    let conflicts = conflicts(audit, 0.8 * relaxation_db);
+                    let conflicts = all_conflicts(audit, attempt.beside(), 0.8 * relaxation_db);
                     let status = DesignStatus::Infeasible(Relaxation { relaxation_db, conflicts });
                     self.take(&attempt, status, audit)?;
                 }
@@ -323,6 +354,7 @@ impl DesignRun {
             starts: attempt.starts().cloned(),
             objective_db: self.rounds.last().map_or(f64::NAN, |round| round.objective_db),
             audit: audit.clone(),
+            beside: attempt.beside().to_vec(),
             binding: binding_limits(audit),
             rounds: self.rounds.clone(),
         });
@@ -355,7 +387,13 @@ fn fewer_zeros(choice: &ControllerChoice, structure: &Structure) -> VecDeque<(us
 
 /// The plants that a search begins with, the nominal one first.
 fn first_plants(problem: &DesignProblem, seed: u64) -> Vec<PlantPoint> {
-    match &problem.family {
+    let mut plants = first_members(&problem.family, seed);
+    plants.extend((0..problem.beside.len()).map(PlantPoint::Beside));
+    plants
+}
+
+fn first_members(family: &Family, seed: u64) -> Vec<PlantPoint> {
+    match family {
         Family::Uncertain(family) => {
             let mut values = vec![family.plant().nominal()];
             match family.extent() {

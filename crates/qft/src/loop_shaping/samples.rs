@@ -2,6 +2,7 @@
 
 mod frequencies;
 
+use frequencies::bends;
 pub use frequencies::search_frequencies;
 
 use std::sync::Arc;
@@ -10,7 +11,7 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller};
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::responding::RespondingPlant;
-use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, UncertainPlant};
 
 use super::margins::{Demand, Keeping, demands};
 use crate::closed_loop::{Compensation, Member};
@@ -55,6 +56,7 @@ pub enum SamplesError {
 /// })?;
 /// let problem = DesignProblem {
 ///     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
+///     beside: vec![],
 ///     sensor: TransferFunction::gain_only(1.0),
 ///     timing: Timing::default(),
 ///     specifications: vec![Specification {
@@ -163,6 +165,29 @@ impl Samples {
         Ok(())
     }
 
+    /// Takes a plant in that the loop must serve beside its family, the nominal one of this.
+    ///
+    /// # Errors
+    /// Those of [`Samples::new`].
+    pub(crate) fn take_in(&mut self, plant: UncertainPlant) -> Result<(), SamplesError> {
+        let point = PlantPoint::Beside(self.problem.beside.len());
+        self.problem.beside.push(plant);
+        self.add_plant(&point)?;
+        self.look_closely_at(&point)
+    }
+
+    /// Looks at this plant wherever its own response bends: between the frequencies of a grid a resonance may hide.
+    ///
+    /// # Errors
+    /// Those of [`Samples::new`].
+    pub(crate) fn look_closely_at(&mut self, point: &PlantPoint) -> Result<(), SamplesError> {
+        let highest = self.around.highest_frequency_rad_per_s();
+        for frequency in bends(&self.problem, point)?.into_iter().filter(|frequency| *frequency <= highest) {
+            self.add(std::slice::from_ref(point), frequency)?;
+        }
+        Ok(())
+    }
+
     /// How tracking is judged.
     pub fn tracking(&self) -> TrackingJudgement {
         self.tracking
@@ -204,7 +229,7 @@ impl Samples {
             Family::Uncertain(family) if family.extent() == Extent::Box => {
                 let values = self.plants.iter().filter_map(|plant| match plant {
                     PlantPoint::Parameters(values) => Some(values.clone()),
-                    PlantPoint::Measured(_) => None,
+                    PlantPoint::Measured(_) | PlantPoint::Beside(_) => None,
                 });
                 let plant = family.plant().clone();
                 let coordinates = family.coordinates().to_vec();
@@ -334,13 +359,18 @@ enum Plant<'a> {
 }
 
 fn plant_at<'a>(problem: &'a DesignProblem, point: &PlantPoint) -> Result<Plant<'a>, SamplesError> {
+    let of_box = |plant: PlantMember| match plant {
+        PlantMember::Rational(coefficients) => Plant::Rational(coefficients),
+        PlantMember::Responding(plant) => Plant::Responding(plant),
+    };
     let plant = match (&problem.family, point) {
+        (_, PlantPoint::Beside(index)) => {
+            let beside = problem.beside.get(*index);
+            beside.and_then(|plant| plant.member(&plant.nominal())).map(of_box)
+        }
         (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
             let complete = values.len() == family.plant().parameters().len();
-            complete.then(|| family.plant().member(values)).flatten().map(|plant| match plant {
-                PlantMember::Rational(coefficients) => Plant::Rational(coefficients),
-                PlantMember::Responding(plant) => Plant::Responding(plant),
-            })
+            complete.then(|| family.plant().member(values)).flatten().map(of_box)
         }
         (Family::Measured(family), PlantPoint::Measured(index)) => {
             family.plants().get(*index).map(Plant::Measured)

@@ -53,6 +53,7 @@ const WINDOW_DB: f64 = 20.0;
 /// # })?;
 /// # let problem = DesignProblem {
 /// #     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
+/// #     beside: vec![],
 /// #     sensor: TransferFunction::gain_only(1.0),
 /// #     timing: Timing::default(),
 /// #     specifications: vec![Specification {

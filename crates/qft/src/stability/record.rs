@@ -39,7 +39,7 @@ impl Record {
         ];
         let values = points.into_iter().flatten().filter_map(|point| match point {
             PlantPoint::Parameters(values) => Some(values.clone()),
-            PlantPoint::Measured(_) => None,
+            PlantPoint::Measured(_) | PlantPoint::Beside(_) => None,
         });
         values.collect()
     }

@@ -88,7 +88,7 @@ pub(super) fn tasks(
 fn shares(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
     match point {
         Some(PlantPoint::Parameters(values)) => family.shares(values),
-        Some(PlantPoint::Measured(_)) | None => vec![0.5; family.coordinates().len()],
+        Some(PlantPoint::Measured(_) | PlantPoint::Beside(_)) | None => vec![0.5; family.coordinates().len()],
     }
 }
 

@@ -53,7 +53,7 @@ pub(crate) fn thesis_specifications() -> Vec<Specification> {
 fn values(case: &WorstCase) -> &[f64] {
     match &case.plant {
         PlantPoint::Parameters(values) => values,
-        PlantPoint::Measured(_) => panic!("a plant with parameters"),
+        PlantPoint::Measured(_) | PlantPoint::Beside(_) => panic!("a plant with parameters"),
     }
 }
 

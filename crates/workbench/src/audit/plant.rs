@@ -47,6 +47,7 @@ impl PlantNames {
     pub fn text(&self, plant: &PlantPoint) -> String {
         let Some(numbers) = self.numbers(plant) else {
             return match (self, plant) {
+                (_, PlantPoint::Beside(_)) => "the plant that was taken in".to_string(),
                 (PlantNames::Measured(names), PlantPoint::Measured(index)) => {
                     names.get(*index).cloned().unwrap_or_default()
                 }
@@ -81,7 +82,10 @@ impl PlantNames {
             Some(numbers) => NamedPlant(
                 numbers.map(|(name, _, value)| (name.to_string(), NamedValue::Number(value))).collect(),
             ),
-            None => NamedPlant(vec![("measured".to_string(), NamedValue::Text(self.text(plant)))]),
+            None => {
+                let key = if matches!(plant, PlantPoint::Beside(_)) { "beside" } else { "measured" };
+                NamedPlant(vec![(key.to_string(), NamedValue::Text(self.text(plant)))])
+            }
         }
     }
 }

@@ -9,7 +9,7 @@ use super::CampaignError;
 use super::range::VariedRange;
 use super::row::Columns;
 use super::varied::ranges;
-use crate::project::{Loaded, Project, Scenario, print};
+use crate::project::{Loaded, MotionShape, Project, Scenario, print};
 use crate::setup::Setup;
 use crate::simulate::{Bench, Control, Driven, SimulateError, Window, driven, loop_size};
 use crate::source::Source;
@@ -261,7 +261,10 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
     hash.update(print(project));
     hash.update(env!("CARGO_PKG_VERSION"));
     hash.update(seed.to_le_bytes());
-    let motion = scenario.load_motion.iter().filter_map(|motion| motion.file.as_ref());
+    let motion = scenario.load_motion.iter().filter_map(|motion| match &motion.shape {
+        MotionShape::File { file } => Some(file),
+        _ => None,
+    });
     let signals = scenario.reference.iter().chain(&scenario.external_force);
     let signals = signals.filter_map(|signal| signal.file.as_ref());
     let signals = signals.chain(scenario.start.iter().filter_map(|start| start.file.as_ref()));

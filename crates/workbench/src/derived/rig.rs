@@ -268,7 +268,7 @@ fn friction(rig: &Rig, list: &mut List) {
 }
 
 fn flow(project: &Project, rig: &Rig, list: &mut List) {
-    let Some(flow) = project.actuator.as_ref().and_then(|actuator| actuator.supply.flow) else { return };
+    let Some(flow) = project.actuator.as_ref().and_then(|actuator| actuator.supply.flow()) else { return };
     let cylinder = &rig.actuator.components().cylinder;
     list.group("Flow");
     let speed = flow / cylinder.area_a.max(cylinder.area_b);

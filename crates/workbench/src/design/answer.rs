@@ -1,3 +1,5 @@
+mod repair;
+
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::{LinearError, TimeDomain};
 use phea_qft::design::{BindingLimit, Conflict, DesignRound, DesignStatus, Starts};
@@ -13,7 +15,7 @@ use super::{Explanation, ProjectDesign};
 use crate::answer::{self, Number};
 use crate::audit::{self, NamedPlant, PlantNames};
 use crate::project::Loaded;
-use crate::trial;
+use crate::trial::{self, Agreement};
 
 #[derive(Serialize)]
 struct Body<'a> {
@@ -51,6 +53,9 @@ struct Body<'a> {
     machine: Option<trial::Body<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     machine_reason: Option<&'static str>,
+    repair: Option<repair::RepairRow<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    repair_reason: Option<&'static str>,
 }
 
 /// Where the starts of the last search ended; of three numbers the best, the median and the worst.
@@ -191,6 +196,11 @@ pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
         machine_reason: view.trial.is_none().then_some(match view.stopped {
             true => "the design was stopped before it was tried on the machine",
             false => "the project describes a plant and no machine",
+        }),
+        repair: view.repair.as_ref().map(repair::row),
+        repair_reason: view.repair.is_none().then_some(match view.agreement() {
+            Agreement::Contradicts => "it was not asked for",
+            Agreement::Agrees | Agreement::Differs => "no machine contradicts the design",
         }),
     };
     Ok(answer::json("design", loaded, body))

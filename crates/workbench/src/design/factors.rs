@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use serde::Serialize;
 
-use super::project::{Transfer, Variable};
+use super::project::{RationalFunction, Transfer, Variable};
 use super::quantity::{RATIO, display};
 
 /// k Π(s - z)/Π(s - p) in JSON, or the same in z.
@@ -49,13 +49,14 @@ impl Factors {
 /// As [controller] or [prefilter] declares it.
 pub(super) fn declared(function: &TransferFunction) -> Transfer {
     let in_z = variable(function) == Variable::Z;
-    Transfer {
+    let ratio = RationalFunction {
         gain: Some(function.gain()),
         zeros: pairs(function.zeros()),
         poles: pairs(function.poles()),
         domain: in_z.then_some(Variable::Z),
-        ..Transfer::default()
-    }
+        ..RationalFunction::default()
+    };
+    Transfer { ratio, ..Transfer::default() }
 }
 
 fn sample_time_s(function: &TransferFunction) -> Option<f64> {
@@ -130,7 +131,7 @@ mod tests {
     fn a_law_in_z_is_declared_in_z() {
         let pole = TransferFunction::from_factors(0.5, vec![], vec![Complex64::new(0.9, 0.0)]).unwrap();
         let sampled = pole.in_domain(TimeDomain::Discrete { sample_time_s: 0.001 }).unwrap();
-        assert_eq!(declared(&sampled).domain, Some(Variable::Z));
+        assert_eq!(declared(&sampled).ratio.domain, Some(Variable::Z));
         assert_eq!(factored(&sampled, 2), "0.5 / (z - 0.9)");
         assert_eq!(Factors::of(&sampled).sample_time_s, Some(0.001));
     }

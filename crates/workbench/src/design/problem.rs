@@ -23,6 +23,7 @@ const DAMPING_RATIOS: [f64; 2] = [0.1, 5.0];
 pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem {
     DesignProblem {
         family: given.family.clone(),
+        beside: vec![],
         sensor: setup.sensor.clone(),
         timing: setup.timing,
         specifications: given.specifications.clone(),

@@ -10,7 +10,7 @@ use phea_qft::specification::Requirement;
 
 use super::factors::Factors;
 use super::words::structure_words;
-use super::{ProjectDesign, Side};
+use super::{ProjectDesign, Repair, Side};
 use crate::answer::OutputFile;
 use crate::audit;
 use crate::command::{CommandError, Watch};
@@ -21,18 +21,22 @@ use crate::robust::{DesignFrequency, RobustProblem};
 /// Name of the file with the project that a design makes.
 pub const DESIGNED_PROJECT: &str = "designed.toml";
 
+/// Name of the file with the project under the controller that comes nearest to what the machine asks for and cannot be had.
+pub const NEAREST_PROJECT: &str = "nearest.toml";
+
 /// How far the drawn frequencies reach beyond the design frequencies.
 const BEYOND: [f64; 2] = [0.1, 30.0];
 
 /// The project with the designed controller and prefilter in it, everything else byte for byte as it was.
 pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
-    let bytes = with_laws(
-        &loaded.bytes,
-        &loaded.settings,
-        &view.declared_controller,
-        view.declared_prefilter.as_ref(),
-    );
-    vec![OutputFile { name: DESIGNED_PROJECT.to_string(), bytes }]
+    let nearest = view.repair.as_ref().and_then(Repair::nearest);
+    let named = [(DESIGNED_PROJECT, Some(view)), (NEAREST_PROJECT, nearest)];
+    let file = |(name, design): (&str, Option<&ProjectDesign>)| {
+        let (controller, prefilter) = (&design?.declared_controller, design?.declared_prefilter.as_ref());
+        let bytes = with_laws(&loaded.bytes, &loaded.settings, controller, prefilter);
+        Some(OutputFile { name: name.to_string(), bytes })
+    };
+    named.into_iter().filter_map(file).collect()
 }
 
 /// Every stage; a design that was stopped has no templates and bounds, which take their time.

@@ -4,8 +4,8 @@ use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::comparison::compared;
 use super::factors::factored;
-use super::words::{status_sentence, structure_words};
-use super::{Explanation, ProjectDesign, Rounding};
+use super::words::{repair_words, status_sentence, structure_words};
+use super::{Explanation, ProjectDesign, Repair, RepairStatus, Rounding};
 use crate::answer::{significant, table};
 use crate::audit::{self, frequency_number, margin_words, summary};
 use crate::project::{Loaded, snippet};
@@ -34,6 +34,9 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
     if let Some(trial) = &view.trial {
         out.push_str(&trial::text(trial));
     }
+    if let Some(repair) = &view.repair {
+        out.push_str(&repair_text(repair)?);
+    }
     out.push_str(&format!("\nController\n{}", laws(view)?));
     out.push_str(&format!("\n{}\n", side_by_side(view)));
     let caution = match view.designed.view.audit.verdict {
@@ -57,6 +60,19 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
     out.push_str(&view.design.starts.as_ref().map_or_else(String::new, starts_sentence));
     out.push_str(&format!("\nAudit of the designed controller\n{}", audit::text(&view.designed.view)));
     out.push_str(&settings_sentence(loaded));
+    Ok(out)
+}
+
+/// What followed from the machine's contradiction; with the laws that come nearest to what cannot be had.
+fn repair_text(repair: &Repair) -> Result<String, LinearError> {
+    let mut out = format!("\nRepair: {}\n", repair_words(repair));
+    for sentence in &repair.sentences {
+        out.push_str(&format!("  {sentence}\n"));
+    }
+    if let Some(nearest) = repair.nearest() {
+        let snippet = snippet(&nearest.declared_controller, nearest.declared_prefilter.as_ref());
+        out.push_str(&format!("\nNearest controller\n{}\n{snippet}", laws(nearest)?));
+    }
     Ok(out)
 }
 
@@ -101,6 +117,8 @@ fn side_by_side(view: &ProjectDesign) -> String {
     let published = view.published.as_ref().map(compared);
     let mut headings = vec![""];
     headings.extend(published.iter().map(|_| "given"));
+    let before = before_repair(view).map(|before| compared(&before.designed));
+    headings.extend(before.iter().map(|_| "before the repair"));
     headings.push("designed");
     let continuous = view.continuous.as_ref().map(compared);
     headings.extend(continuous.iter().map(|_| "made without samples"));
@@ -109,9 +127,17 @@ fn side_by_side(view: &ProjectDesign) -> String {
         let of = |other: &Option<Vec<(String, String)>>| {
             other.as_ref().and_then(|rows| rows.get(index)).map(|(_, cell)| cell.clone())
         };
-        rows.add_row([name].into_iter().chain(of(&published)).chain([cell]).chain(of(&continuous)));
+        rows.add_row(
+            [name].into_iter().chain(of(&published)).chain(of(&before)).chain([cell]).chain(of(&continuous)),
+        );
     }
     rows.trim_fmt()
+}
+
+/// The first design, where the repair came to another one.
+fn before_repair(view: &ProjectDesign) -> Option<&ProjectDesign> {
+    let repair = view.repair.as_ref().filter(|repair| repair.status == RepairStatus::Met)?;
+    repair.other.as_deref()
 }
 
 /// The limits at which the smallest relaxation is found, with their plants.

@@ -5,7 +5,7 @@ use phea_qft::design::{ControllerChoice, DesignStatus, Objective};
 use phea_qft::loop_shaping::{Part, Structure};
 use phea_qft::verification::Verdict;
 
-use super::ProjectDesign;
+use super::{ProjectDesign, Repair, RepairStatus};
 use crate::answer::significant;
 use crate::project::DESIGN_OBJECTIVES;
 use crate::project::DesignObjective;
@@ -50,6 +50,23 @@ pub(crate) fn status_sentence(view: &ProjectDesign) -> String {
             )
         }
     }
+}
+
+/// The word of what a repair came to, in JSON.
+pub(crate) fn repair_key(repair: &Repair) -> &'static str {
+    match repair.status {
+        RepairStatus::Met => "met",
+        RepairStatus::Infeasible { .. } => "infeasible",
+        RepairStatus::NotConverged => "not_converged",
+        RepairStatus::NotStabilised => "not_stabilised",
+        RepairStatus::Stopped => "stopped",
+        RepairStatus::NothingToTakeIn => "nothing_to_take_in",
+    }
+}
+
+/// The same for people.
+pub(crate) fn repair_words(repair: &Repair) -> String {
+    repair_key(repair).replace('_', " ")
 }
 
 fn tried(choice: &ControllerChoice) -> String {

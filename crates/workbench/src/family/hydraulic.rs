@@ -117,9 +117,7 @@ impl Open<'_> {
         numbers: &Numbers<'_, S>,
     ) -> (S, Steady<S>, Balance<S>) {
         let (position, steady) = place(self.project, components.cylinder.stroke, numbers);
-        let leakage = self.declared.cylinder.internal_leakage;
-        let leakage = leakage.map(|value| numbers.at("cylinder.internal_leakage", value));
-        (position, steady, Balance::of(components, leakage))
+        (position, steady, Balance::of(components))
     }
 
     /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed forward is that of the declared rig.

@@ -45,6 +45,7 @@ pub(crate) fn limits(project: &Project) -> Option<[f64; 2]> {
     let components = components(declared, &Numbers::declared());
     let drop = components.supply.pressure - components.supply.tank_pressure;
     let reference = declared.valve.tare_pressure.unwrap_or(drop);
-    let left = (declared.supply.flow? - tare_flow(&components.valve, &components.supply, reference)).max(0.0);
+    let left =
+        (declared.supply.flow()? - tare_flow(&components.valve, &components.supply, reference)).max(0.0);
     Some([-left / components.cylinder.area_b, left / components.cylinder.area_a])
 }

@@ -6,7 +6,7 @@ use phea_dynamics::expression::Expression;
 use phea_dynamics::uncertain_plant::UncertainParameter;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
-use phea_hydraulics::operating_point::{Settled, leaking_operating_point};
+use phea_hydraulics::operating_point::{Settled, operating_point};
 use phea_qft::family::{Extent, UncertainFamily};
 
 use super::FamilyError;
@@ -90,7 +90,7 @@ impl Visited {
         let components = components(open.declared, &Numbers::open(open.names, values));
         let components = Components { supply: balance.supply, ..components };
         let afresh = Actuator::new(components).map_err(|error| error.to_string()).and_then(|actuator| {
-            let point = leaking_operating_point(&actuator, balance.leakage, position, steady.into());
+            let point = operating_point(&actuator, position, steady.into());
             point.map_err(|error| error.to_string())
         });
         let point = match afresh {

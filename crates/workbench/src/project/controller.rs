@@ -1,67 +1,45 @@
 //! `[controller]` and `[prefilter]`.
 
 mod element;
+mod rational_function;
 
 pub use element::{Element, ElementKind};
+pub use rational_function::RationalFunction;
 
-use super::formula::{Formula, Variable};
 use super::key::{key, plain};
 use super::reader::Reader;
 use super::text::Findings;
 use super::tree::Node;
-use super::visitor::{Shape, Visitor};
+use super::visitor::Visitor;
 use crate::catalogue::Catalogue;
 use crate::quantity::{FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};
 
-/// A transfer function in one of three forms: polynomials, factors, or elements in series.
+/// A transfer function: a ratio of polynomials, or elements in series.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Transfer {
-    /// Polynomial in `s`, or in `z` when it is sampled.
-    pub numerator: Option<Formula>,
-    /// Polynomial in `s`, or in `z` when it is sampled.
-    pub denominator: Option<Formula>,
-    /// Leading coefficient k of k Π(s - z)/Π(s - p).
-    pub gain: Option<f64>,
-    /// Real and imaginary parts, 1/s.
-    pub zeros: Vec<[f64; 2]>,
-    /// Real and imaginary parts, 1/s.
-    pub poles: Vec<[f64; 2]>,
-    /// Whether gain, zeros and poles are in s (absent) or in z.
-    pub domain: Option<Variable>,
+    /// The ratio; empty where it has elements.
+    pub ratio: RationalFunction,
     /// Elements in series.
     pub elements: Vec<Element>,
 }
 
-/// The words of `domain`.
-pub(super) static DOMAINS: [(&str, Option<Variable>); 2] =
-    [("s", Some(Variable::S)), ("z", Some(Variable::Z))];
-
 impl Transfer {
-    /// All of it as elements in series: polynomials and factors are one general element, with every number as it was written.
+    /// All of it as elements in series: a ratio is one general element, with every number as it was written.
     ///
     /// # Example
     /// ```
-    /// use phea_workbench::project::{ElementKind, Transfer};
-    /// let transfer = Transfer { gain: Some(2.0), poles: vec![[-3.0, 0.0]], ..Transfer::default() };
+    /// use phea_workbench::project::{ElementKind, RationalFunction, Transfer};
+    /// let ratio = RationalFunction { gain: Some(2.0), poles: vec![[-3.0, 0.0]], ..RationalFunction::default() };
+    /// let transfer = Transfer { ratio: ratio.clone(), ..Transfer::default() };
     /// let [general] = &transfer.as_elements()[..] else { panic!() };
-    /// assert_eq!((general.kind, general.gain, &general.poles), (ElementKind::General, Some(2.0), &transfer.poles));
+    /// assert_eq!(general.kind, ElementKind::General(ratio));
     /// assert!(Transfer::default().as_elements().is_empty());
     /// ```
     pub fn as_elements(&self) -> Vec<Element> {
-        let polynomials = self.numerator.is_some() && self.denominator.is_some();
-        if !polynomials && self.gain.is_none() {
-            return self.elements.clone();
+        match self.ratio.is_stated() {
+            false => self.elements.clone(),
+            true => vec![Element::new(ElementKind::General(self.ratio.clone()))],
         }
-        vec![Element {
-            kind: ElementKind::General,
-            numerator: self.numerator.clone(),
-            denominator: self.denominator.clone(),
-            gain: self.gain,
-            zeros: self.zeros.clone(),
-            poles: self.poles.clone(),
-            domain: self.domain,
-            ..Element::default()
-        }]
     }
 
     /// What a table says of it, other keys left alone.
@@ -73,22 +51,7 @@ impl Transfer {
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = plain("numerator", "Polynomial in s, or in z when sampled.");
-        v.formula(k, Shape::Polynomial, &mut self.numerator, false);
-        let k = plain("denominator", "Polynomial in s, or in z when sampled.");
-        v.formula(k, Shape::Polynomial, &mut self.denominator, false);
-        let k = key("gain", &RATIO, "Leading coefficient: k of k prod(s - z)/prod(s - p).");
-        v.optional(k, &mut self.gain);
-        v.complexes(
-            key("zeros", &RATIO, "Numbers, or [re, im] pairs with their conjugates."),
-            &mut self.zeros,
-        );
-        v.complexes(
-            key("poles", &RATIO, "Numbers, or [re, im] pairs with their conjugates."),
-            &mut self.poles,
-        );
-        let k = plain("domain", "Of gain, zeros and poles: in s, or in z when sampled.");
-        v.choice(k, &DOMAINS, &mut self.domain, false);
+        self.ratio.visit(v);
         v.tables(plain("elements", "Elements in series."), &mut self.elements, Element::visit);
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use super::key::{key, plain};
-use super::visitor::Visitor;
+use super::visitor::{Variants, Visitor};
 use crate::quantity::{
     AREA, DAMPING, FLOW_PRESSURE_COEFFICIENT, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS,
     VELOCITY, VOLUME,
@@ -113,63 +113,109 @@ impl Cylinder {
     }
 }
 
-/// Friction; which numbers are needed depends on the model.
+/// Friction of seals and bearings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Friction {
-    /// Which law.
-    pub model: FrictionModel,
+    /// What it has beside its viscous part.
+    pub law: FrictionLaw,
     /// N·s/m, slope at high velocity (σ₂ of LuGre).
     pub viscous: f64,
-    /// N, sliding friction F_C.
-    pub coulomb: Option<f64>,
-    /// N, breakaway friction F_S.
-    pub static_friction: Option<f64>,
-    /// m/s.
-    pub stribeck_velocity: Option<f64>,
-    /// Exponent of the Stribeck curve.
-    pub stribeck_exponent: f64,
-    /// m/s, smooths the jump of a Stribeck curve at standstill.
-    pub regular_velocity: Option<f64>,
-    /// N/m, σ₀.
-    pub bristle_stiffness: Option<f64>,
-    /// N·s/m, σ₁.
-    pub bristle_damping: Option<f64>,
 }
 
-/// Which friction law.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FrictionModel {
-    /// Proportional to velocity.
+/// A friction law, beside its viscous part.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum FrictionLaw {
+    /// Nothing: proportional to velocity.
     #[default]
     Viscous,
-    /// Coulomb, breakaway and viscous part as a function of velocity.
-    Stribeck,
+    /// Coulomb and breakaway part as a function of velocity.
+    Stribeck {
+        /// The function.
+        curve: StribeckCurve,
+        /// m/s, smooths its jump at standstill, where it is to be simulated.
+        regular_velocity: Option<f64>,
+    },
     /// Bristles with a state of their own.
-    LuGre,
+    LuGre {
+        /// Friction at constant velocity.
+        curve: StribeckCurve,
+        /// N/m, σ₀.
+        bristle_stiffness: f64,
+        /// N·s/m, σ₁.
+        bristle_damping: f64,
+    },
+}
+
+/// Friction that falls from breakaway to sliding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StribeckCurve {
+    /// N, sliding friction F_C.
+    pub coulomb: f64,
+    /// N, breakaway friction F_S.
+    pub static_friction: f64,
+    /// m/s.
+    pub stribeck_velocity: f64,
+    /// Exponent.
+    pub stribeck_exponent: f64,
+}
+
+impl StribeckCurve {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("coulomb", &FORCE, "Sliding friction F_C.").positive();
+        v.quantity(k, &mut self.coulomb);
+        v.quantity(key("static", &FORCE, "Breakaway friction F_S.").positive(), &mut self.static_friction);
+        let k = key("stribeck_velocity", &VELOCITY, "Velocity at which friction has fallen from F_S.");
+        v.quantity(k.positive(), &mut self.stribeck_velocity);
+        let k = key("stribeck_exponent", &RATIO, "Exponent of the Stribeck curve.").positive().or(2.0);
+        v.quantity(k.at_most(10.0).above(0.0), &mut self.stribeck_exponent);
+    }
+}
+
+impl Variants for FrictionLaw {
+    fn all() -> Vec<FrictionLaw> {
+        let curve = StribeckCurve::default();
+        vec![
+            FrictionLaw::Viscous,
+            FrictionLaw::Stribeck { curve, regular_velocity: None },
+            FrictionLaw::LuGre { curve, bristle_stiffness: 0.0, bristle_damping: 0.0 },
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            FrictionLaw::Viscous => "viscous",
+            FrictionLaw::Stribeck { .. } => "stribeck",
+            FrictionLaw::LuGre { .. } => "lugre",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        match self {
+            FrictionLaw::Viscous => {}
+            FrictionLaw::Stribeck { curve, regular_velocity } => {
+                curve.visit(v);
+                let k = key(
+                    "regular_velocity",
+                    &VELOCITY,
+                    "Smooths the jump of a Stribeck curve, to simulate it.",
+                );
+                v.optional(k.positive(), regular_velocity);
+            }
+            FrictionLaw::LuGre { curve, bristle_stiffness, bristle_damping } => {
+                curve.visit(v);
+                let k = key("bristle_stiffness", &STIFFNESS, "σ₀ of LuGre.").positive();
+                v.quantity(k, bristle_stiffness);
+                let k = key("bristle_damping", &DAMPING, "σ₁ of LuGre.").not_negative();
+                v.quantity(k, bristle_damping);
+            }
+        }
+    }
 }
 
 impl Friction {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let words = &[
-            ("viscous", FrictionModel::Viscous),
-            ("stribeck", FrictionModel::Stribeck),
-            ("lugre", FrictionModel::LuGre),
-        ];
-        v.choice(plain("model", "Which friction law."), words, &mut self.model, true);
+        v.variant(plain("model", "Which friction law."), &mut self.law, true);
         let k = key("viscous", &DAMPING, "Slope of friction over velocity, σ₂ of LuGre.").not_negative();
         v.quantity(k.or(0.0), &mut self.viscous);
-        let k = key("coulomb", &FORCE, "Sliding friction F_C.").positive();
-        v.optional(k, &mut self.coulomb);
-        v.optional(key("static", &FORCE, "Breakaway friction F_S.").positive(), &mut self.static_friction);
-        let k = key("stribeck_velocity", &VELOCITY, "Velocity at which friction has fallen from F_S.");
-        v.optional(k.positive(), &mut self.stribeck_velocity);
-        let k = key("stribeck_exponent", &RATIO, "Exponent of the Stribeck curve.").positive().or(2.0);
-        v.quantity(k.at_most(10.0).above(0.0), &mut self.stribeck_exponent);
-        let k = key("regular_velocity", &VELOCITY, "Smooths the jump of a Stribeck curve, to simulate it.");
-        v.optional(k.positive(), &mut self.regular_velocity);
-        let k = key("bristle_stiffness", &STIFFNESS, "σ₀ of LuGre.").positive();
-        v.optional(k, &mut self.bristle_stiffness);
-        let k = key("bristle_damping", &DAMPING, "σ₁ of LuGre.").not_negative();
-        v.optional(k, &mut self.bristle_damping);
     }
 }

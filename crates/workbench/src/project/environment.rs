@@ -1,7 +1,7 @@
 //! `[force_sensor]` and `[load]`.
 
 use super::key::{key, plain};
-use super::visitor::Visitor;
+use super::visitor::{Variants, Visitor};
 use crate::quantity::{DAMPING, FORCE, INVERSE_VELOCITY, LENGTH, MASS, STIFFNESS};
 
 /// The load cell.
@@ -29,54 +29,82 @@ impl ForceSensor {
 
 /// What the force acts on.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Load {
-    /// Which load.
-    pub model: LoadModel,
-    /// kg.
-    pub mass: Option<f64>,
-    /// N/m.
-    pub stiffness: Option<f64>,
-    /// N·s/m.
-    pub damping: Option<f64>,
-    /// m, free play before a wall is touched.
-    pub gap: Option<f64>,
-    /// s/m, damping of the wall relative to its elastic force.
-    pub relative_damping: f64,
-}
-
-/// Which load.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LoadModel {
+pub enum Load {
     /// It moves as the scenario says, whatever the force.
     #[default]
     Prescribed,
     /// Mass, spring and damper.
-    SpringMassDamper,
+    SpringMassDamper {
+        /// kg.
+        mass: f64,
+        /// N/m.
+        stiffness: f64,
+        /// N·s/m.
+        damping: f64,
+    },
     /// A guided mass; nothing up to the gap, then the wall.
-    Wall,
+    Wall {
+        /// kg; only what moves freely needs it.
+        mass: Option<f64>,
+        /// N·s/m, of its guide.
+        damping: f64,
+        /// N/m, of the wall.
+        stiffness: f64,
+        /// m, free play before the wall is touched.
+        gap: f64,
+        /// s/m, damping of the wall relative to its elastic force.
+        relative_damping: f64,
+    },
 }
 
 impl Load {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let words = &[
-            ("prescribed", LoadModel::Prescribed),
-            ("spring_mass_damper", LoadModel::SpringMassDamper),
-            ("wall", LoadModel::Wall),
-        ];
-        v.choice(plain("model", "Which load."), words, &mut self.model, false);
-        v.optional(key("mass", &MASS, "Mass of the load.").positive(), &mut self.mass);
-        v.optional(
-            key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").positive(),
-            &mut self.stiffness,
-        );
-        v.optional(
-            key("damping", &DAMPING, "Damping of the load or of its guide.").not_negative(),
-            &mut self.damping,
-        );
-        let k = key("gap", &LENGTH, "Free play before the wall is touched.").not_negative();
-        v.optional(k, &mut self.gap);
-        let k =
-            key("relative_damping", &INVERSE_VELOCITY, "Damping of the wall relative to its elastic force.");
-        v.quantity(k.not_negative().or(0.0), &mut self.relative_damping);
+        v.variant(plain("model", "Which load."), self, false);
+    }
+}
+
+impl Variants for Load {
+    fn all() -> Vec<Load> {
+        let (damping, stiffness) = (0.0, 0.0);
+        vec![
+            Load::Prescribed,
+            Load::SpringMassDamper { mass: 0.0, stiffness, damping },
+            Load::Wall { mass: None, damping, stiffness, gap: 0.0, relative_damping: 0.0 },
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            Load::Prescribed => "prescribed",
+            Load::SpringMassDamper { .. } => "spring_mass_damper",
+            Load::Wall { .. } => "wall",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let kilograms = key("mass", &MASS, "Mass of the load.").positive();
+        let spring = key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").positive();
+        let damper = key("damping", &DAMPING, "Damping of the load or of its guide.").not_negative().or(0.0);
+        match self {
+            Load::Prescribed => {}
+            Load::SpringMassDamper { mass, stiffness, damping } => {
+                v.quantity(kilograms, mass);
+                v.quantity(spring, stiffness);
+                v.quantity(damper, damping);
+            }
+            Load::Wall { mass, damping, stiffness, gap, relative_damping } => {
+                v.optional(kilograms, mass);
+                v.quantity(spring, stiffness);
+                v.quantity(damper, damping);
+                let k = key("gap", &LENGTH, "Free play before the wall is touched.").not_negative();
+                v.quantity(k.or(0.0), gap);
+                let k = key(
+                    "relative_damping",
+                    &INVERSE_VELOCITY,
+                    "Damping of the wall relative to its elastic force.",
+                );
+                v.quantity(k.not_negative().or(0.0), relative_damping);
+            }
+        }
     }
 }

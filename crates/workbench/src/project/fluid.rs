@@ -1,7 +1,7 @@
 //! `[fluid]` and `[supply]`.
 
 use super::key::{key, plain};
-use super::visitor::Visitor;
+use super::visitor::{Variants, Visitor};
 use crate::quantity::{DENSITY, FLOW, KINEMATIC_VISCOSITY, PRESSURE, RATIO, VOLUME};
 
 /// The oil.
@@ -47,16 +47,6 @@ pub struct Supply {
     pub pressure: f64,
     /// Pa, gauge.
     pub tank_pressure: f64,
-    /// m³/s, what the pump can give.
-    pub flow: Option<f64>,
-    /// Pa, rise over which the relief valve opens for the pump's whole flow.
-    pub relief_override: f64,
-    /// m³, of the supply line.
-    pub volume: f64,
-    /// Pa, of the supply line; absent: the fluid's.
-    pub effective_bulk_modulus: Option<f64>,
-    /// On the supply line.
-    pub accumulator: Option<Accumulator>,
 }
 
 /// A gas-charged accumulator.
@@ -82,26 +72,64 @@ impl Accumulator {
 }
 
 /// How the supply pressure behaves under load.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum SupplyModel {
     /// It stays as declared.
-    #[default]
-    Constant,
+    Constant {
+        /// m³/s, what the pump can give: sizing and the operating region keep to it.
+        flow: Option<f64>,
+    },
     /// It falls when the demand exceeds the pump's flow.
-    PumpLimited,
+    PumpLimited(Pump),
 }
 
-impl Supply {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = plain("model", "How the pressure behaves under load; `pump_limited` uses `flow`.");
-        let words = &[("constant", SupplyModel::Constant), ("pump_limited", SupplyModel::PumpLimited)];
-        v.choice(k, words, &mut self.model, false);
-        let k = key("pressure", &PRESSURE, "Supply pressure, gauge.").positive();
-        v.quantity(k, &mut self.pressure);
-        let k = key("tank_pressure", &PRESSURE, "Return pressure, gauge.").above(-101_325.0).or(0.0);
-        v.quantity(k, &mut self.tank_pressure);
+/// A limited pump with the line to the valve.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pump {
+    /// m³/s, what it can give.
+    pub flow: f64,
+    /// Pa, rise over which the relief valve opens for the pump's whole flow.
+    pub relief_override: f64,
+    /// m³, of the supply line.
+    pub volume: f64,
+    /// Pa, of the supply line; absent: the fluid's.
+    pub effective_bulk_modulus: Option<f64>,
+    /// On the supply line.
+    pub accumulator: Option<Accumulator>,
+}
+
+impl Default for SupplyModel {
+    fn default() -> Self {
+        SupplyModel::Constant { flow: None }
+    }
+}
+
+impl Variants for SupplyModel {
+    fn all() -> Vec<SupplyModel> {
+        vec![SupplyModel::default(), SupplyModel::PumpLimited(Pump::default())]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            SupplyModel::Constant { .. } => "constant",
+            SupplyModel::PumpLimited(_) => "pump_limited",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("flow", &FLOW, "Flow the pump can give.").positive();
-        v.optional(k, &mut self.flow);
+        match self {
+            SupplyModel::Constant { flow } => v.optional(k, flow),
+            SupplyModel::PumpLimited(pump) => {
+                v.quantity(k, &mut pump.flow);
+                pump.visit_line(v);
+            }
+        }
+    }
+}
+
+impl Pump {
+    fn visit_line<V: Visitor>(&mut self, v: &mut V) {
         let k =
             key("relief_override", &PRESSURE, "Rise over which the relief valve opens for all of `flow`.");
         v.quantity(k.positive().or(5e5), &mut self.relief_override);
@@ -111,5 +139,24 @@ impl Supply {
         v.optional(k, &mut self.effective_bulk_modulus);
         let k = plain("accumulator", "A gas-charged accumulator on that line.");
         v.table(k, &mut self.accumulator, Accumulator::visit);
+    }
+}
+
+impl Supply {
+    /// m³/s, what the pump can give, where it is stated.
+    pub fn flow(&self) -> Option<f64> {
+        match &self.model {
+            SupplyModel::Constant { flow } => *flow,
+            SupplyModel::PumpLimited(pump) => Some(pump.flow),
+        }
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("model", "How the pressure behaves under load; `pump_limited` uses `flow`.");
+        v.variant(k, &mut self.model, false);
+        let k = key("pressure", &PRESSURE, "Supply pressure, gauge.").positive();
+        v.quantity(k, &mut self.pressure);
+        let k = key("tank_pressure", &PRESSURE, "Return pressure, gauge.").above(-101_325.0).or(0.0);
+        v.quantity(k, &mut self.tank_pressure);
     }
 }

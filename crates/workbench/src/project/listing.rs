@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::Key;
-use super::visitor::{Form, Kinds, Named, Shape, Visitor};
+use super::visitor::{Form, Kinds, Named, Shape, Variants, Visitor};
 use crate::catalogue::Kind;
 
 /// Walks a project without changing it, but for the numbers it is asked to set.
@@ -15,6 +15,10 @@ pub(crate) struct Listing {
     path: String,
     /// Every key with a value of its own, by its path.
     pub(crate) keys: Vec<KeyEntry>,
+    /// The keys of the outermost table.
+    pub(crate) outermost: Vec<&'static str>,
+    /// Whether keys belong to a variant, which needs them where it is chosen.
+    of_variant: bool,
     /// Every number that exists, by its path.
     pub(crate) numbers: BTreeMap<String, (Key, f64)>,
     /// The path of every whole number, stated or not.
@@ -56,7 +60,18 @@ impl Listing {
     fn list(&mut self, key: Key, takes: impl Into<String>, required: bool) {
         if self.everything {
             let path = self.path_of(key.name);
-            self.keys.push(KeyEntry { path, key, takes: takes.into(), required });
+            let known = self.of_variant && self.keys.iter().any(|entry| entry.path == path);
+            let required = required && !self.of_variant;
+            if !known {
+                self.note(key);
+                self.keys.push(KeyEntry { path, key, takes: takes.into(), required });
+            }
+        }
+    }
+
+    fn note(&mut self, key: Key) {
+        if self.path.is_empty() {
+            self.outermost.push(key.name);
         }
     }
 
@@ -140,6 +155,20 @@ impl Visitor for Listing {
         self.list(key, format!("one of {}", all.join(", ")), required);
     }
 
+    fn variant<T: Variants>(&mut self, key: Key, field: &mut T, required: bool) {
+        if !self.everything {
+            return field.visit(self);
+        }
+        let all = T::all();
+        let words: Vec<String> = all.iter().map(|one| format!("\"{}\"", one.word())).collect();
+        self.list(key, format!("one of {}", words.join(", ")), required);
+        let outside = std::mem::replace(&mut self.of_variant, true);
+        for mut one in all {
+            one.visit(self);
+        }
+        self.of_variant = outside;
+    }
+
     fn formula(&mut self, key: Key, shape: Shape, _field: &mut Option<Formula>, required: bool) {
         let takes = match shape {
             Shape::Polynomial => "a polynomial in s or z, in text",
@@ -156,6 +185,7 @@ impl Visitor for Listing {
 
     fn table<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
         let mut absent = if self.everything { Some(T::default()) } else { None };
+        self.note(key);
         if let Some(value) = field.as_mut().or(absent.as_mut()) {
             self.within(key.name, |listing| visit(value, listing));
         }

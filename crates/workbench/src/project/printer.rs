@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::Key;
-use super::visitor::{Form, Kinds, Named, Shape, Visitor};
+use super::visitor::{Form, Kinds, Named, Shape, Variants, Visitor};
 use crate::catalogue::Kind;
 use crate::quantity;
 
@@ -217,6 +217,11 @@ impl Visitor for Printer {
         if let Some((word, _)) = words.iter().find(|(_, value)| value == field) {
             self.line(key.name, quoted(word));
         }
+    }
+
+    fn variant<T: Variants>(&mut self, key: Key, field: &mut T, _required: bool) {
+        self.line(key.name, quoted(field.word()));
+        field.visit(self);
     }
 
     fn formula(&mut self, key: Key, _shape: Shape, field: &mut Option<Formula>, _required: bool) {

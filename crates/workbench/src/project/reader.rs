@@ -46,6 +46,10 @@ struct Frame<'a> {
     layers: Vec<Layer<'a>>,
     /// Keys asked for so far.
     asked: Vec<&'static str>,
+    /// The key and the word that chose the variant being read.
+    chosen: Option<(&'static str, &'static str)>,
+    /// While the keys of another variant are looked at: those that are taken for absent, as they are read already.
+    passed_over: Option<Vec<&'static str>>,
     /// The values of a table written as an array, in the order of its keys.
     in_order: Option<std::slice::Iter<'a, Node>>,
 }
@@ -101,7 +105,15 @@ impl<'a> Reader<'a> {
     }
 
     fn open(&mut self, path: String, place: Place, layers: Vec<Layer<'a>>) {
-        self.frames.push(Frame { path, place, layers, asked: Vec::new(), in_order: None });
+        self.frames.push(Frame {
+            path,
+            place,
+            layers,
+            asked: Vec::new(),
+            chosen: None,
+            passed_over: None,
+            in_order: None,
+        });
     }
 
     /// Ends a table: what nobody asked for is unknown. Gives the keys that were asked for.
@@ -157,6 +169,9 @@ impl<'a> Reader<'a> {
     fn find(&mut self, key: Key) -> Option<Hit<'a>> {
         let path = self.path(key.name);
         let frame = self.frames.last_mut()?;
+        if frame.passed_over.as_ref().is_some_and(|keys| keys.contains(&key.name)) {
+            return None;
+        }
         if !frame.asked.contains(&key.name) {
             frame.asked.push(key.name);
             if let Some(values) = &mut frame.in_order {
@@ -203,15 +218,22 @@ impl<'a> Reader<'a> {
         self.provenance.push(Provenance { path, origin });
     }
 
+    /// Whether the present table is only searched for keys of variants that were not chosen.
+    fn looks_elsewhere(&self) -> bool {
+        self.frames.last().is_some_and(|frame| frame.passed_over.is_some())
+    }
+
     fn missing(&mut self, key: Key) {
-        if self.partial {
+        if self.partial || self.looks_elsewhere() {
             return;
         }
         let place = self.place();
         let frame_path = self.frames.last().map(|frame| frame.path.clone()).unwrap_or_default();
         let of = if frame_path.is_empty() { String::new() } else { format!(" in [{frame_path}]") };
-        let mut found =
-            Found::error(place, format!("missing `{}`{of}", key.name)).consequence().help(key.doc);
+        let chosen = self.frames.last().and_then(|frame| frame.chosen);
+        let needs = chosen.map_or(String::new(), |(name, word)| format!(": {name} \"{word}\" needs it"));
+        let message = format!("missing `{}`{of}{needs}", key.name);
+        let mut found = Found::error(place, message).consequence().help(key.doc);
         if !std::ptr::eq(key.dimension, &crate::quantity::RATIO) {
             found = found.expected(format!("{}, such as {}", key.dimension.name, key.dimension.examples));
         }

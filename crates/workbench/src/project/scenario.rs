@@ -3,7 +3,7 @@
 use super::key::{Key, key, plain};
 use super::measured::MeasuredFile;
 use super::signal::{Signal, SignalUnit};
-use super::visitor::Visitor;
+use super::visitor::{Variants, Visitor};
 use crate::quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PRESSURE, RATIO, TIME, VELOCITY, VOLTAGE};
 
 /// One simulation.
@@ -67,39 +67,115 @@ pub struct Published {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadMotion {
     /// Its shape in time.
-    pub kind: LoadMotionKind,
+    pub shape: MotionShape,
     /// s, when it begins.
     pub start: f64,
-    /// s; of a smooth step or a chirp.
-    pub duration: Option<f64>,
-    /// m, of a step.
-    pub distance: Option<f64>,
-    /// s, of a first-order step.
-    pub time_constant: Option<f64>,
-    /// m, of a sine or chirp.
-    pub amplitude: Option<f64>,
-    /// rad/s, of a sine, or where a chirp begins.
-    pub frequency: Option<f64>,
-    /// rad/s, where a chirp ends.
-    pub final_frequency: Option<f64>,
-    /// A CSV file with time and position.
-    pub file: Option<String>,
 }
 
-/// Shape of the load motion in time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LoadMotionKind {
+/// Shape of the load motion in time. Distances and amplitudes in m, times in s, frequencies in rad/s.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MotionShape {
     /// Quintic: velocity and acceleration are zero at both ends.
-    #[default]
-    SmoothStep,
+    SmoothStep {
+        /// How long it moves.
+        duration: f64,
+        /// How far.
+        distance: f64,
+    },
     /// 1 - exp(-t/τ).
-    FirstOrder,
+    FirstOrder {
+        /// How far.
+        distance: f64,
+        /// τ.
+        time_constant: f64,
+    },
     /// Sine.
-    Sine,
-    /// Sine of rising frequency.
-    Chirp,
-    /// From a file.
-    File,
+    Sine {
+        /// Of the sine.
+        amplitude: f64,
+        /// Of the sine.
+        frequency: f64,
+    },
+    /// Sine whose frequency moves evenly.
+    Chirp {
+        /// How long it moves.
+        duration: f64,
+        /// Of the sine.
+        amplitude: f64,
+        /// Where it begins.
+        frequency: f64,
+        /// Where it ends.
+        final_frequency: f64,
+    },
+    /// From a CSV file with time and position.
+    File {
+        /// Its name.
+        file: String,
+    },
+}
+
+impl Default for MotionShape {
+    fn default() -> Self {
+        MotionShape::SmoothStep { duration: 0.0, distance: 0.0 }
+    }
+}
+
+impl Variants for MotionShape {
+    const STRICT: bool = true;
+
+    fn all() -> Vec<MotionShape> {
+        vec![
+            MotionShape::default(),
+            MotionShape::FirstOrder { distance: 0.0, time_constant: 0.0 },
+            MotionShape::Sine { amplitude: 0.0, frequency: 0.0 },
+            MotionShape::Chirp { duration: 0.0, amplitude: 0.0, frequency: 0.0, final_frequency: 0.0 },
+            MotionShape::File { file: String::new() },
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            MotionShape::SmoothStep { .. } => "smooth_step",
+            MotionShape::FirstOrder { .. } => "first_order",
+            MotionShape::Sine { .. } => "sine",
+            MotionShape::Chirp { .. } => "chirp",
+            MotionShape::File { .. } => "file",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let how_long = key("duration", &TIME, "Of a smooth step or a chirp.").positive();
+        let how_far = key("distance", &LENGTH, "Of a smooth or first-order step.");
+        let size = key("amplitude", &LENGTH, "Of a sine or chirp.").positive();
+        let first = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
+        match self {
+            MotionShape::SmoothStep { duration, distance } => {
+                v.quantity(how_long, duration);
+                v.quantity(how_far, distance);
+            }
+            MotionShape::FirstOrder { distance, time_constant } => {
+                v.quantity(how_far, distance);
+                let k = key("time_constant", &TIME, "Of a first-order step.").positive();
+                v.quantity(k, time_constant);
+            }
+            MotionShape::Sine { amplitude, frequency } => {
+                v.quantity(size, amplitude);
+                v.quantity(first, frequency);
+            }
+            MotionShape::Chirp { duration, amplitude, frequency, final_frequency } => {
+                v.quantity(how_long, duration);
+                v.quantity(size, amplitude);
+                v.quantity(first, frequency);
+                let k = key("final_frequency", &ANGULAR_FREQUENCY, "Where a chirp ends.").positive();
+                v.quantity(k, final_frequency);
+            }
+            MotionShape::File { file } => {
+                let mut name = Some(std::mem::take(file));
+                v.text(plain("file", "A CSV file with time and position."), &mut name, true);
+                *file = name.unwrap_or_default();
+            }
+        }
+    }
 }
 
 impl Scenario {
@@ -184,27 +260,8 @@ impl Published {
 
 impl LoadMotion {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let words = &[
-            ("smooth_step", LoadMotionKind::SmoothStep),
-            ("first_order", LoadMotionKind::FirstOrder),
-            ("sine", LoadMotionKind::Sine),
-            ("chirp", LoadMotionKind::Chirp),
-            ("file", LoadMotionKind::File),
-        ];
-        v.choice(plain("kind", "Its shape in time."), words, &mut self.kind, true);
+        v.variant(plain("kind", "Its shape in time."), &mut self.shape, true);
         v.quantity(key("start", &TIME, "When it begins.").not_negative().or(0.0), &mut self.start);
-        let k = key("duration", &TIME, "Of a smooth step or a chirp.").positive();
-        v.optional(k, &mut self.duration);
-        v.optional(key("distance", &LENGTH, "Of a smooth or first-order step."), &mut self.distance);
-        let k = key("time_constant", &TIME, "Of a first-order step.").positive();
-        v.optional(k, &mut self.time_constant);
-        let k = key("amplitude", &LENGTH, "Of a sine or chirp.").positive();
-        v.optional(k, &mut self.amplitude);
-        let k = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
-        v.optional(k, &mut self.frequency);
-        let k = key("final_frequency", &ANGULAR_FREQUENCY, "Where a chirp ends.").positive();
-        v.optional(k, &mut self.final_frequency);
-        v.text(plain("file", "A CSV file with time and position."), &mut self.file, false);
     }
 }
 

@@ -7,6 +7,18 @@ use super::formula::Formula;
 use super::key::Key;
 use crate::catalogue::Kind;
 
+/// A choice with keys of its own for each of its variants.
+pub(crate) trait Variants: Clone {
+    /// Whether a key of another variant is an error, and not a warning.
+    const STRICT: bool = false;
+    /// Every variant, before it is read.
+    fn all() -> Vec<Self>;
+    /// As it is written.
+    fn word(&self) -> &'static str;
+    /// The keys of this variant.
+    fn visit<V: Visitor>(&mut self, v: &mut V);
+}
+
 /// How a table's description is carried out.
 pub(crate) trait Visitor: Sized {
     /// A number; required unless the key has a default.
@@ -39,6 +51,9 @@ pub(crate) trait Visitor: Sized {
         field: &mut T,
         required: bool,
     );
+    /// A word that chooses a variant, whose own keys follow in the present table; those of the other variants have no effect. Absent, the
+    /// field keeps its variant unless `required`.
+    fn variant<T: Variants>(&mut self, key: Key, field: &mut T, required: bool);
     /// A formula; required if `required`.
     fn formula(&mut self, key: Key, shape: Shape, field: &mut Option<Formula>, required: bool);
     /// The name of a catalogue entry, whose values serve where the table itself is silent.

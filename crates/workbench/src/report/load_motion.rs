@@ -8,7 +8,7 @@ use phea_dynamics::time_response::{
 use crate::answer::significant;
 use crate::figure::{DisplayUnit, Figure, StepResponseInput, TimeSeries, Words, step_response};
 use crate::linearize::PortView;
-use crate::project::{LoadMotion, LoadMotionKind, Project};
+use crate::project::{LoadMotion, MotionShape, Project};
 
 /// The motion that is shown where no scenario moves the load: 1 mm in 0.1 s.
 const MOTION: (f64, f64) = (1e-3, 0.1);
@@ -21,8 +21,8 @@ const SAMPLES: usize = 2000;
 
 /// Distance in m and duration in s of the first smooth step of the load in the scenarios, or 1 mm in 0.1 s.
 fn motion(project: &Project) -> (f64, f64) {
-    let smooth = |motion: &LoadMotion| match motion.kind {
-        LoadMotionKind::SmoothStep => motion.distance.zip(motion.duration),
+    let smooth = |motion: &LoadMotion| match motion.shape {
+        MotionShape::SmoothStep { duration, distance } => Some((distance, duration)),
         _ => None,
     };
     project

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, table, wide};
-use crate::project::{LoadModel, Loaded, Origin, Project};
+use crate::project::{Load, Loaded, Origin, Project};
 
 pub(super) fn chapter(loaded: &Loaded) -> Chapter {
     let catalogue: Vec<Vec<Markup>> = loaded
@@ -75,8 +75,8 @@ fn assumptions(project: &Project) -> Vec<String> {
         "Volumetric expansion and wall modulus of a hose are taken at the supply pressure; between the catalogue's point and another pressure the expansion follows the catalogue's slope; a supply beyond the point is warned of.".to_string(),
         "The hose wall has its dynamic modulus at every frequency; at rest it is softer by the stiffening ratio.".to_string(),
         "Friction enters the linear models by its viscous part alone.".to_string(),
-        match project.actuator.as_ref().map(|actuator| actuator.load.model) {
-            Some(LoadModel::Prescribed) => "The load moves as prescribed; the force sensor's stiffness includes what it stands on.".to_string(),
+        match project.actuator.as_ref().map(|actuator| &actuator.load) {
+            Some(Load::Prescribed) => "The load moves as prescribed; the force sensor's stiffness includes what it stands on.".to_string(),
             _ => "The load is the declared one; the force sensor's stiffness includes what it stands on.".to_string(),
         },
         "A settling time of four time constants is the 2 % rule (1 % takes 4.6).".to_string(),

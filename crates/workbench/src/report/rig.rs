@@ -7,7 +7,7 @@ use crate::figure::{
     ControllerSymbol, Environment, Figure, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, Words,
     schematic,
 };
-use crate::project::{self, Component, LoadModel, Project, SupplyModel};
+use crate::project::{self, Component, Load, Project, SupplyModel};
 use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE};
 use crate::rig::Rig;
 
@@ -28,12 +28,12 @@ fn circuit(project: &Project, actuator: &project::Actuator) -> Figure {
     let cylinder = &actuator.cylinder;
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
     let mut supply_rows = vec![shown(actuator.supply.pressure, &PRESSURE)];
-    supply_rows.extend(actuator.supply.flow.map(|flow| shown(flow, &FLOW)));
+    supply_rows.extend(actuator.supply.flow().map(|flow| shown(flow, &FLOW)));
     let symmetric = rod_a > 0.0 && rod_b > 0.0;
     let input = SchematicInput {
         supply: match actuator.supply.model {
-            SupplyModel::Constant => SupplyKind::ConstantPressure,
-            SupplyModel::PumpLimited => SupplyKind::Pump,
+            SupplyModel::Constant { .. } => SupplyKind::ConstantPressure,
+            SupplyModel::PumpLimited(_) => SupplyKind::Pump,
         },
         supply_rows,
         tank: shown(actuator.supply.tank_pressure, &PRESSURE),
@@ -48,17 +48,18 @@ fn circuit(project: &Project, actuator: &project::Actuator) -> Figure {
         cylinder: cylinder_words(cylinder),
         mass: shown(cylinder.moving_mass, &MASS),
         load_cell: Some(vec![shown(actuator.force_sensor.stiffness, &STIFFNESS)]),
-        environment: match actuator.load.model {
-            LoadModel::Prescribed => Environment::PrescribedMotion,
-            LoadModel::Wall => Environment::Wall,
-            LoadModel::SpringMassDamper => Environment::SpringMassDamper,
+        environment: match actuator.load {
+            Load::Prescribed => Environment::PrescribedMotion,
+            Load::Wall { .. } => Environment::Wall,
+            Load::SpringMassDamper { .. } => Environment::SpringMassDamper,
         },
-        environment_rows: actuator
-            .load
-            .stiffness
-            .map(|stiffness| shown(stiffness, &STIFFNESS))
-            .into_iter()
-            .collect(),
+        environment_rows: match actuator.load {
+            Load::Prescribed => None,
+            Load::SpringMassDamper { stiffness, .. } | Load::Wall { stiffness, .. } => Some(stiffness),
+        }
+        .map(|stiffness| shown(stiffness, &STIFFNESS))
+        .into_iter()
+        .collect(),
         controller: project.controller.as_ref().map(|controller| ControllerSymbol {
             has_prefilter: project.prefilter.is_some(),
             rows: controller_words(project, controller),
@@ -107,21 +108,26 @@ fn line(declared: &project::Line) -> LineSymbol {
 
 /// The load in a few words.
 pub(super) fn load_words(actuator: &project::Actuator) -> String {
-    let load = &actuator.load;
-    let parts = [
-        load.mass.map(|mass| shown(mass, &MASS)),
-        load.stiffness.map(|stiffness| shown(stiffness, &STIFFNESS)),
-        load.damping.map(|damping| shown(damping, &quantity::DAMPING)),
-        load.gap.map(|gap| format!("gap {}", shown(gap, &LENGTH))),
-    ];
-    let parts: Vec<String> = parts.into_iter().flatten().collect();
-    let stated = if parts.is_empty() { String::new() } else { format!(": {}", parts.join(", ")) };
-    match load.model {
-        LoadModel::Prescribed => {
+    let not_zero = |value: f64| Some(value).filter(|value| *value != 0.0);
+    let words = |mass: Option<f64>, stiffness: f64, damping: f64, gap: f64| {
+        let parts = [
+            mass.map(|mass| shown(mass, &MASS)),
+            Some(shown(stiffness, &STIFFNESS)),
+            not_zero(damping).map(|damping| shown(damping, &quantity::DAMPING)),
+            not_zero(gap).map(|gap| format!("gap {}", shown(gap, &LENGTH))),
+        ];
+        parts.into_iter().flatten().collect::<Vec<String>>().join(", ")
+    };
+    match actuator.load {
+        Load::Prescribed => {
             format!("moves as prescribed, behind {}", shown(actuator.force_sensor.stiffness, &STIFFNESS))
         }
-        LoadModel::SpringMassDamper => format!("spring, mass and damper{stated}"),
-        LoadModel::Wall => format!("a wall{stated}"),
+        Load::SpringMassDamper { mass, stiffness, damping } => {
+            format!("spring, mass and damper: {}", words(Some(mass), stiffness, damping, 0.0))
+        }
+        Load::Wall { mass, damping, stiffness, gap, .. } => {
+            format!("a wall: {}", words(mass, stiffness, damping, gap))
+        }
     }
 }
 
@@ -136,15 +142,15 @@ pub(super) fn lines_words(actuator: &project::Actuator) -> String {
 }
 
 fn controller_words(project: &Project, controller: &project::Controller) -> Vec<String> {
-    let words =
-        |letter: &str, transfer: &project::Transfer| match (&transfer.numerator, &transfer.denominator) {
-            (Some(numerator), Some(denominator)) => Some(format!(
-                "{letter} = {}/{}",
-                polynomial(numerator.text()),
-                polynomial(denominator.text())
-            )),
-            _ => None,
-        };
+    let words = |letter: &str, transfer: &project::Transfer| match (
+        &transfer.ratio.numerator,
+        &transfer.ratio.denominator,
+    ) {
+        (Some(numerator), Some(denominator)) => {
+            Some(format!("{letter} = {}/{}", polynomial(numerator.text()), polynomial(denominator.text())))
+        }
+        _ => None,
+    };
     let mut rows: Vec<String> = words("G", &controller.transfer).into_iter().collect();
     rows.extend(project.prefilter.as_ref().and_then(|prefilter| words("F", &prefilter.transfer)));
     if let Some(sample_time) = controller.sample_time {

@@ -8,7 +8,7 @@ use super::simulation::told;
 use super::typeset::prose;
 use crate::command::{CommandError, Watch};
 use crate::figure::DisplayUnit;
-use crate::project::{FrictionModel, Project};
+use crate::project::{FrictionLaw, Project};
 use crate::setup::Setup;
 use crate::simulate::{METRICS, Metrics, ScenarioRun, Window, cause_words, cells_of, simulate_project};
 use crate::source::Source;
@@ -70,10 +70,12 @@ fn sensitivity(
             break;
         };
         friction.viscous *= factor;
-        friction.coulomb = friction.coulomb.map(|force| force * factor);
-        friction.static_friction = friction.static_friction.map(|force| force * factor);
         if factor == 0.0 {
-            friction.model = FrictionModel::Viscous;
+            friction.law = FrictionLaw::Viscous;
+        }
+        if let FrictionLaw::Stribeck { curve, .. } | FrictionLaw::LuGre { curve, .. } = &mut friction.law {
+            curve.coulomb *= factor;
+            curve.static_friction *= factor;
         }
         varied.push(vary(source, &project, ("Friction", factor, word.to_string()), watch)?);
     }

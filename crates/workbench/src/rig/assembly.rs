@@ -1,5 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
+use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
@@ -11,7 +12,7 @@ use phea_hydraulics::servovalve::{
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::numbers::Numbers;
-use crate::project::{self, Compliance, Component, EdgeCoefficients, FrictionModel, Interval};
+use crate::project::{self, Compliance, Component, EdgeCoefficients, FrictionLaw, Interval, StribeckCurve};
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: taken where a project states none.
 pub(super) const KINEMATIC_VISCOSITY: f64 = 46e-6;
@@ -251,6 +252,11 @@ fn cylinder<S: Scalar>(declared: &project::Cylinder, numbers: &Numbers<'_, S>) -
         moving_mass: at("moving_mass", declared.moving_mass),
         dead_volume_a,
         dead_volume_b,
+        internal_leakage: declared.internal_leakage.map(|value| at("internal_leakage", value)),
+        end_stops: declared.end_stops.map(|stops| Contact {
+            stiffness: at("end_stops.stiffness", stops.stiffness),
+            relative_damping: at("end_stops.relative_damping", stops.relative_damping),
+        }),
     }
 }
 
@@ -258,22 +264,21 @@ fn friction<S: Scalar>(declared: Option<&project::Friction>, numbers: &Numbers<'
     let Some(declared) = declared else { return Friction::Viscous { viscous: S::from(0.0) } };
     let numbers = numbers.within("cylinder.friction");
     let at = |key: &str, value: f64| numbers.at(key, value);
-    let stated = |key: &str, value: Option<f64>| at(key, value.unwrap_or(f64::NAN));
     let viscous = at("viscous", declared.viscous);
-    let curve = || Stribeck {
-        coulomb: stated("coulomb", declared.coulomb),
-        breakaway: stated("static", declared.static_friction),
-        stribeck_velocity: stated("stribeck_velocity", declared.stribeck_velocity),
-        stribeck_exponent: at("stribeck_exponent", declared.stribeck_exponent),
+    let stribeck = |curve: &StribeckCurve| Stribeck {
+        coulomb: at("coulomb", curve.coulomb),
+        breakaway: at("static", curve.static_friction),
+        stribeck_velocity: at("stribeck_velocity", curve.stribeck_velocity),
+        stribeck_exponent: at("stribeck_exponent", curve.stribeck_exponent),
         viscous,
     };
-    match declared.model {
-        FrictionModel::Viscous => Friction::Viscous { viscous },
-        FrictionModel::Stribeck => Friction::Stribeck(curve()),
-        FrictionModel::LuGre => Friction::LuGre(LuGre {
-            curve: curve(),
-            bristle_stiffness: stated("bristle_stiffness", declared.bristle_stiffness),
-            bristle_damping: stated("bristle_damping", declared.bristle_damping),
+    match &declared.law {
+        FrictionLaw::Viscous => Friction::Viscous { viscous },
+        FrictionLaw::Stribeck { curve, .. } => Friction::Stribeck(stribeck(curve)),
+        FrictionLaw::LuGre { curve, bristle_stiffness, bristle_damping } => Friction::LuGre(LuGre {
+            curve: stribeck(curve),
+            bristle_stiffness: at("bristle_stiffness", *bristle_stiffness),
+            bristle_damping: at("bristle_damping", *bristle_damping),
         }),
     }
 }

@@ -45,21 +45,25 @@ pub(crate) fn yielding_load<S: Scalar>(
     force: S,
 ) -> Option<YieldingLoad<S>> {
     let none = S::from(0.0);
-    let stated = |path: &str, value: Option<f64>| value.map(|value| numbers.at(path, value));
-    let mass = stated("load.mass", declared.mass)?;
-    let damping = stated("load.damping", declared.damping).unwrap_or(none);
-    let stiffness = stated("load.stiffness", declared.stiffness).unwrap_or(none);
-    match declared.model {
-        project::LoadModel::Prescribed => None,
-        project::LoadModel::SpringMassDamper => {
-            Some(YieldingLoad { mass, damping, stiffness, contact_damping: none })
-        }
-        project::LoadModel::Wall => {
-            let relative_damping = numbers.at("load.relative_damping", declared.relative_damping);
-            let touched = S::select(none.less_than(force), stiffness, none);
-            let stiffness = if declared.gap.unwrap_or(0.0) == 0.0 { stiffness } else { touched };
-            let contact_damping = relative_damping * force.maximum(none);
-            Some(YieldingLoad { mass, damping, stiffness, contact_damping })
+    let of_load = numbers.within("load");
+    let at = |key: &str, value: f64| of_load.at(key, value);
+    match *declared {
+        project::Load::Prescribed => None,
+        project::Load::SpringMassDamper { mass, stiffness, damping } => Some(YieldingLoad {
+            mass: at("mass", mass),
+            damping: at("damping", damping),
+            stiffness: at("stiffness", stiffness),
+            contact_damping: none,
+        }),
+        project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => {
+            let wall = at("stiffness", stiffness);
+            let touched = S::select(none.less_than(force), wall, none);
+            Some(YieldingLoad {
+                mass: at("mass", mass?),
+                damping: at("damping", damping),
+                stiffness: if gap == 0.0 { wall } else { touched },
+                contact_damping: at("relative_damping", relative_damping) * force.maximum(none),
+            })
         }
     }
 }

@@ -109,7 +109,7 @@ fn time_constant(wish: &project::Sizing) -> Result<(f64, String), SizingError> {
 }
 
 fn maximum_flow(actuator: &project::Actuator) -> Result<(f64, String), SizingError> {
-    match (actuator.supply.flow, actuator.valve.nominal_flow) {
+    match (actuator.supply.flow(), actuator.valve.nominal_flow) {
         (Some(pump), Some(valve)) if pump <= valve => {
             Ok((pump, "the pump's, less than the valve's rated flow".to_string()))
         }

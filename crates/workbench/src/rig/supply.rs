@@ -11,21 +11,17 @@ use crate::project::{self, SupplyModel};
 
 /// Where the supply pressure comes from.
 pub(crate) fn power_unit<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_, S>) -> PowerUnit<S> {
-    let supply = &declared.supply;
-    if supply.model == SupplyModel::Constant {
-        return PowerUnit::Constant;
-    }
+    let SupplyModel::PumpLimited(pump) = &declared.supply.model else { return PowerUnit::Constant };
     let of_supply = numbers.within("supply");
     let at = |key: &str, value: f64| of_supply.at(key, value);
     let of_fluid = || numbers.at("fluid.bulk_modulus", declared.fluid.bulk_modulus);
-    let modulus = supply.effective_bulk_modulus;
+    let modulus = pump.effective_bulk_modulus;
     PowerUnit::PumpLimited(PumpLimited {
-        // a validated project states the flow of a limited pump
-        pump_flow: at("flow", supply.flow.unwrap_or(f64::NAN)),
-        relief_override: at("relief_override", supply.relief_override),
-        volume: at("volume", supply.volume),
+        pump_flow: at("flow", pump.flow),
+        relief_override: at("relief_override", pump.relief_override),
+        volume: at("volume", pump.volume),
         effective_bulk_modulus: modulus.map_or_else(of_fluid, |value| at("effective_bulk_modulus", value)),
-        accumulator: supply.accumulator.map(|accumulator| Accumulator {
+        accumulator: pump.accumulator.map(|accumulator| Accumulator {
             gas_volume: at("accumulator.gas_volume", accumulator.gas_volume),
             precharge_pressure: at("accumulator.precharge_pressure", accumulator.precharge_pressure),
             polytropic_index: at("accumulator.polytropic_exponent", accumulator.polytropic_exponent),

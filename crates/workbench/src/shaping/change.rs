@@ -157,9 +157,8 @@ fn pass(
     if let (Pattern::RollOff { damping_ratio }, Solved::ComplexPoles { natural_frequency, .. }) =
         (wish.pattern, &element)
     {
-        let (frequency, damping_ratio) = (Some(*natural_frequency), Some(damping_ratio));
-        let kind = ElementKind::RollOff;
-        workpiece.know(Element { kind, frequency, damping_ratio, ..Element::default() })?;
+        let (frequency, damping_ratio) = (*natural_frequency, Some(damping_ratio));
+        workpiece.know(Element::new(ElementKind::RollOff { frequency, damping_ratio }))?;
     }
     Ok(Some(match (replaced, wish.pattern, element) {
         (Some(index), _, element) => Edit::Replace(index, element),

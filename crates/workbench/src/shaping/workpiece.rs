@@ -6,7 +6,7 @@ use phea_dynamics::linear::{TimeDomain, TransferFunction};
 
 use super::Shaped;
 use crate::control::{self, ControlError};
-use crate::project::{self, ElementKind, Project, Transfer};
+use crate::project::{self, ElementKind, Project, RationalFunction, Transfer};
 
 /// The elements of a project, and every element that was ever named, so that none loses the form in which it was written.
 pub(super) struct Workpiece<'a> {
@@ -121,63 +121,51 @@ pub(super) fn with_elements(project: &Project, shaped: Shaped, elements: &[proje
 
 /// An element that was never declared: a gain that was scaled, or one that was solved for.
 fn declared_of(element: &Element) -> project::Element {
-    let of = |kind| project::Element { kind, ..project::Element::default() };
-    match *element {
-        Element::Gain(value) => project::Element { value: Some(value), ..of(ElementKind::Gain) },
-        Element::Integrator => of(ElementKind::Integrator),
-        Element::Differentiator => of(ElementKind::Differentiator),
-        Element::RealPole { frequency } => {
-            project::Element { frequency: Some(frequency), ..of(ElementKind::Pole) }
+    project::Element::new(match *element {
+        Element::Gain(value) => ElementKind::Gain { value },
+        Element::Integrator => ElementKind::Integrator,
+        Element::Differentiator => ElementKind::Differentiator,
+        Element::RealPole { frequency } => ElementKind::Pole { frequency },
+        Element::RealZero { frequency } => ElementKind::Zero { frequency },
+        Element::ComplexPoles { natural_frequency: frequency, damping_ratio } => {
+            ElementKind::ComplexPoles { frequency, damping_ratio }
         }
-        Element::RealZero { frequency } => {
-            project::Element { frequency: Some(frequency), ..of(ElementKind::Zero) }
+        Element::ComplexZeros { natural_frequency: frequency, damping_ratio } => {
+            ElementKind::ComplexZeros { frequency, damping_ratio }
         }
-        Element::ComplexPoles { natural_frequency, damping_ratio } => project::Element {
-            frequency: Some(natural_frequency),
-            damping_ratio: Some(damping_ratio),
-            ..of(ElementKind::ComplexPoles)
+        Element::LeadLag { zero_frequency, pole_frequency } if zero_frequency > pole_frequency => {
+            ElementKind::Lag { zero_frequency, pole_frequency }
+        }
+        Element::LeadLag { zero_frequency, pole_frequency } => {
+            ElementKind::Lead { zero_frequency, pole_frequency }
+        }
+        Element::Notch { natural_frequency, zero_damping_ratio, pole_damping_ratio } => ElementKind::Notch {
+            frequency: natural_frequency,
+            damping_ratio: pole_damping_ratio,
+            numerator_damping_ratio: zero_damping_ratio,
         },
-        Element::ComplexZeros { natural_frequency, damping_ratio } => project::Element {
-            frequency: Some(natural_frequency),
-            damping_ratio: Some(damping_ratio),
-            ..of(ElementKind::ComplexZeros)
-        },
-        Element::LeadLag { zero_frequency, pole_frequency } => project::Element {
-            zero_frequency: Some(zero_frequency),
-            pole_frequency: Some(pole_frequency),
-            ..of(if zero_frequency > pole_frequency { ElementKind::Lag } else { ElementKind::Lead })
-        },
-        Element::Notch { natural_frequency, zero_damping_ratio, pole_damping_ratio } => project::Element {
-            frequency: Some(natural_frequency),
-            damping_ratio: Some(pole_damping_ratio),
-            numerator_damping_ratio: Some(zero_damping_ratio),
-            ..of(ElementKind::Notch)
-        },
-        Element::ProportionalIntegral { proportional_gain, integral_gain } => project::Element {
-            proportional_gain: Some(proportional_gain),
-            integral_gain: Some(integral_gain),
-            ..of(ElementKind::ProportionalIntegral)
-        },
+        Element::ProportionalIntegral { proportional_gain, integral_gain } => {
+            ElementKind::ProportionalIntegral { proportional_gain, integral_gain }
+        }
         Element::ProportionalIntegralDerivative {
             proportional_gain,
             integral_gain,
             derivative_gain,
             filter_time,
-        } => project::Element {
-            proportional_gain: Some(proportional_gain),
-            integral_gain: Some(integral_gain),
-            derivative_gain: Some(derivative_gain),
-            filter_time: Some(filter_time),
-            ..of(ElementKind::ProportionalIntegralDerivative)
+        } => ElementKind::ProportionalIntegralDerivative {
+            proportional_gain,
+            integral_gain,
+            derivative_gain,
+            filter_time,
         },
         Element::General(ref function) => {
             let pairs = |roots: &[Complex64]| roots.iter().map(|root| [root.re, root.im]).collect();
-            project::Element {
+            ElementKind::General(RationalFunction {
                 gain: Some(function.gain()),
                 zeros: pairs(function.zeros()),
                 poles: pairs(function.poles()),
-                ..of(ElementKind::General)
-            }
+                ..RationalFunction::default()
+            })
         }
-    }
+    })
 }

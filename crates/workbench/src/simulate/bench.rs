@@ -4,13 +4,14 @@ use phea_dynamics::controller::{Controller, SampledController};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Method, Sensed, Settings};
 use phea_hydraulics::actuator::Actuator;
+use phea_hydraulics::contact::Contact;
 use phea_hydraulics::line::Member;
-use phea_hydraulics::machine::{Contact, LoadModel, Machine, MachineOptions};
+use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions};
 use phea_hydraulics::servovalve::SpoolImperfection;
 use phea_qft::design::quantisation::Quantisation;
 
 use super::SimulateError;
-use crate::project::{self, Project, Scenario, StepMethod};
+use crate::project::{self, FrictionLaw, Project, Scenario, StepMethod};
 use crate::rig::{Numbers, Rig, feed_forward, lines, power_unit};
 use crate::setup::Setup;
 
@@ -208,10 +209,10 @@ fn between_samples(
 /// What the machine has beyond its actuator, whatever acts on it.
 pub(crate) fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions, SimulateError> {
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
-    if declared.load.model == project::LoadModel::Wall && declared.load.mass.is_none() {
-        return Err(SimulateError::LoadMass);
-    }
-    let friction = declared.cylinder.friction.as_ref();
+    let friction_regular_velocity = match declared.cylinder.friction.as_ref().map(|friction| &friction.law) {
+        Some(FrictionLaw::Stribeck { regular_velocity, .. }) => *regular_velocity,
+        Some(FrictionLaw::Viscous | FrictionLaw::LuGre { .. }) | None => None,
+    };
     Ok(MachineOptions {
         spool: SpoolImperfection {
             null_bias: declared.valve.null_bias,
@@ -220,14 +221,9 @@ pub(crate) fn options(project: &Project, actuator: &Actuator) -> Result<MachineO
             rate_limit: declared.valve.rate_limit,
         },
         tare_reference_drop: declared.valve.tare_pressure,
-        internal_leakage: declared.cylinder.internal_leakage,
-        end_stops: declared
-            .cylinder
-            .end_stops
-            .map(|stops| Contact { stiffness: stops.stiffness, relative_damping: stops.relative_damping }),
-        friction_regular_velocity: friction.and_then(|friction| friction.regular_velocity),
+        friction_regular_velocity,
         power_unit: power_unit(declared, &Numbers::declared()),
-        load: load(&declared.load),
+        load: load(&declared.load)?,
         external_force: false,
         vapour_pressure_absolute: declared.fluid.vapour_pressure,
         member: Member::Nominal,
@@ -240,25 +236,17 @@ pub(crate) fn options(project: &Project, actuator: &Actuator) -> Result<MachineO
     })
 }
 
-/// A validated load has every number its model needs; a missing one is refused as not finite further on.
-fn load(declared: &project::Load) -> LoadModel {
-    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-    let damping = declared.damping.unwrap_or(0.0);
-    match declared.model {
-        project::LoadModel::Prescribed => LoadModel::Prescribed,
-        project::LoadModel::SpringMassDamper => LoadModel::SpringMassDamper {
-            mass: number(declared.mass),
-            stiffness: number(declared.stiffness),
+fn load(declared: &project::Load) -> Result<LoadModel, SimulateError> {
+    Ok(match *declared {
+        project::Load::Prescribed => LoadModel::Prescribed,
+        project::Load::SpringMassDamper { mass, stiffness, damping } => {
+            LoadModel::SpringMassDamper { mass, stiffness, damping }
+        }
+        project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => LoadModel::Wall {
+            mass: mass.ok_or(SimulateError::LoadMass)?,
             damping,
+            gap,
+            contact: Contact { stiffness, relative_damping },
         },
-        project::LoadModel::Wall => LoadModel::Wall {
-            mass: number(declared.mass),
-            damping,
-            gap: declared.gap.unwrap_or(0.0),
-            contact: Contact {
-                stiffness: number(declared.stiffness),
-                relative_damping: declared.relative_damping,
-            },
-        },
-    }
+    })
 }

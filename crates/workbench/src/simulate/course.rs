@@ -11,7 +11,7 @@ use super::motion_file::{self, Column};
 use super::saved::{self, SavedState};
 use super::signal::{self, Beginning as Begun};
 use super::{Cause, SimulateError, Window};
-use crate::project::{self, LoadMotion, LoadMotionKind, Project, Scenario};
+use crate::project::{self, LoadMotion, MotionShape, Project, Scenario};
 use crate::source::Source;
 
 /// A scenario ready to be run.
@@ -77,10 +77,7 @@ pub(crate) fn driven(
     let reference = signal::profile(source, project, &scenario.name, &scenario.reference, Column::FORCE)?;
     let motion = match &scenario.load_motion {
         None => Profile::constant(0.0),
-        Some(declared) if declared.kind == LoadMotionKind::File => {
-            motion_file::motion(source, project, declared).map_err(SimulateError::Motion)?.map_err(named)?
-        }
-        Some(declared) => motion(declared).map_err(named)?,
+        Some(declared) => motion(source, project, declared).map_err(SimulateError::Motion)?.map_err(named)?,
     };
     let command = signal::profile(source, project, &scenario.name, &scenario.command, Column::VOLTAGE)?;
     let external_force =
@@ -140,29 +137,23 @@ impl Driven {
     }
 }
 
-/// A validated motion has every number its kind needs; a missing one is refused as not finite.
-fn motion(declared: &LoadMotion) -> Result<Profile, ProfileError> {
-    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-    let start_s = declared.start;
-    match declared.kind {
-        LoadMotionKind::SmoothStep => {
-            Profile::smooth_step(start_s, number(declared.duration), number(declared.distance))
+/// The load motion as a function of time.
+fn motion(
+    source: &dyn Source,
+    project: &Project,
+    LoadMotion { shape, start }: &LoadMotion,
+) -> Result<Result<Profile, ProfileError>, Box<project::Report>> {
+    Ok(match shape {
+        MotionShape::SmoothStep { duration, distance } => Profile::smooth_step(*start, *duration, *distance),
+        MotionShape::FirstOrder { distance, time_constant } => {
+            Profile::first_order(*start, *time_constant, *distance)
         }
-        LoadMotionKind::FirstOrder => {
-            Profile::first_order(start_s, number(declared.time_constant), number(declared.distance))
+        MotionShape::Sine { amplitude, frequency } => Profile::sine(*start, *amplitude, *frequency),
+        MotionShape::Chirp { duration, amplitude, frequency, final_frequency } => {
+            Profile::chirp(*start, *duration, *amplitude, [*frequency, *final_frequency])
         }
-        LoadMotionKind::Sine => {
-            Profile::sine(start_s, number(declared.amplitude), number(declared.frequency))
-        }
-        // a file has been read elsewhere
-        LoadMotionKind::File => Ok(Profile::constant(0.0)),
-        LoadMotionKind::Chirp => Profile::chirp(
-            start_s,
-            number(declared.duration),
-            number(declared.amplitude),
-            [number(declared.frequency), number(declared.final_frequency)],
-        ),
-    }
+        MotionShape::File { file } => motion_file::motion(source, project, file, *start)?,
+    })
 }
 
 /// Where the search for a rest begins: the machine at the position of its operating point under the force of the reference, or without force where there is

@@ -11,7 +11,7 @@
 use phea_dynamics::simulation::{Profile, ProfileError};
 
 use crate::family::measured::table::{self, Cell};
-use crate::project::{Findings, Found, LoadMotion, Project, Report, Signal};
+use crate::project::{Findings, Found, Project, Report, Signal};
 use crate::quantity::{self, Dimension, FORCE, LENGTH, TIME, VOLTAGE};
 use crate::source::Source;
 use crate::spelling::nearest;
@@ -38,15 +38,16 @@ impl Column {
         Column { names: [("voltage_v", "V"), ("voltage_mv", "mV")], dimension: &VOLTAGE };
 }
 
-/// The motion as a function of time, or what is wrong with the file.
+/// The motion as a function of time, beginning at `start_s`, or what is wrong with the file.
 pub(super) fn motion(
     source: &dyn Source,
     project: &Project,
-    declared: &LoadMotion,
+    file: &str,
+    start_s: f64,
 ) -> Result<Result<Profile, ProfileError>, Box<Report>> {
-    let rows = read(source, project, declared.file.as_deref(), Column::POSITION)?;
+    let rows = read(source, project, Some(file), Column::POSITION)?;
     let (first_s, first_m) = rows.first().copied().unwrap_or_default();
-    let times: Vec<f64> = rows.iter().map(|row| declared.start + row.0 - first_s).collect();
+    let times: Vec<f64> = rows.iter().map(|row| start_s + row.0 - first_s).collect();
     let positions: Vec<f64> = rows.iter().map(|row| row.1 - first_m).collect();
     Ok(Profile::table(&times, &positions))
 }

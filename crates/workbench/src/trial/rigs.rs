@@ -9,7 +9,9 @@ use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
 use crate::audit::{NamedPlant, ProjectAudit};
-use crate::project::{Actuator, Component, EdgeCoefficients, LINEAR_PARAMETERS, Line, LineModel, Project};
+use crate::project::{
+    Actuator, Component, EdgeCoefficients, LINEAR_PARAMETERS, Line, LineModel, Linear, Project,
+};
 use crate::rig::{Rig, feed_forward};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -86,7 +88,7 @@ pub(super) fn rigs(
 }
 
 /// The same rig, its lumped lines as transmission lines; `None` where nothing of them is lumped or long.
-fn with_waves(project: &Project) -> Option<Project> {
+pub(crate) fn with_waves(project: &Project) -> Option<Project> {
     let mut other = project.clone();
     let line = &mut other.actuator.as_mut()?.line;
     let mut moved = false;
@@ -98,6 +100,19 @@ fn with_waves(project: &Project) -> Option<Project> {
         }
     }
     moved.then_some(other)
+}
+
+/// The rig with waves as it is: without uncertainty, and without the numbers that stand in the place of those that follow from it, which no
+/// machine has. `None` where it has no waves besides.
+pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
+    let rig = setup.rig().ok()?;
+    let mut alone = with_waves(setup.project)?;
+    let fed = alone.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut());
+    if let Some(fed) = fed {
+        fed.gain = Some(feed_forward(setup.project, &rig.linear));
+    }
+    let operating_point = setup.project.resolved_operating_point();
+    Some(Project { uncertainty: vec![], family: None, linear: Linear::default(), operating_point, ..alone })
 }
 
 /// Where the slower line is a quarter of a wave long, rad/s: pi/(2 T), T the time that a wave takes through it.

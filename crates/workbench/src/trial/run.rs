@@ -72,6 +72,8 @@ pub struct Run {
     pub reason: String,
     /// Where the lines of a machine with waves begin to oscillate, rad/s; `None` of one without.
     pub quarter_wave_rad_per_s: Option<f64>,
+    /// What was met on the way, as an occurrence is called: the limit of the command, cavitation, an end stop.
+    pub met: Vec<&'static str>,
 }
 
 /// The step over what the supply can push with.
@@ -115,7 +117,7 @@ pub(super) fn run(
     let reference_n = reference(&tried.project)?;
     let project = stepped(&tried.project, reference_n, duration);
     let (what, plant) = (tried.what.clone(), tried.named.clone());
-    let run = |status, machine, machine_response, (agreement, reason)| {
+    let run = |status, met, (machine, machine_response), (agreement, reason)| {
         Some(Run {
             what,
             plant,
@@ -128,6 +130,7 @@ pub(super) fn run(
             agreement,
             reason,
             quarter_wave_rad_per_s: tried.quarter_wave_rad_per_s,
+            met,
         })
     };
     match simulate_project(source, &Setup::new(&project)?, watch) {
@@ -143,9 +146,10 @@ pub(super) fn run(
                 ));
             }
             let status = driven.stopped().map_or("completed", |stopped| stopped.word);
-            Ok(run(status, Some(machine), response_of(driven, reference_n), judged))
+            let course = (Some(machine), response_of(driven, reference_n));
+            Ok(run(status, met(driven), course, judged))
         }
-        Err(error) => Ok(run("not_started", None, Response::default(), not_started(&error, view))),
+        Err(error) => Ok(run("not_started", vec![], (None, Response::default()), not_started(&error, view))),
     }
 }
 
@@ -241,12 +245,16 @@ fn judge(
         let [own, predicted] = [own, predicted].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
         return (Agreement::Differs, format!("it settles in {own}, where the linear loop takes {predicted}"));
     }
-    let limits: Vec<&str> = driven.occurrences.iter().filter(|one| one.begins).map(|one| one.kind).collect();
-    match (more.abs() > OVERSHOOT_ROOM_PERCENT, limits.first()) {
+    match (more.abs() > OVERSHOOT_ROOM_PERCENT, met(driven).first()) {
         (true, _) => (Agreement::Differs, told),
         (false, Some(kind)) => (Agreement::Differs, format!("{told}, and meets {}", kind.replace('_', " "))),
         (false, None) => (Agreement::Agrees, told),
     }
+}
+
+/// The limits and ends that the machine met, in the order in which it did.
+fn met(driven: &ScenarioRun) -> Vec<&'static str> {
+    driven.occurrences.iter().filter(|one| one.begins).map(|one| one.kind).collect()
 }
 
 /// `2.10 %`; what is less than a hundredth is none.

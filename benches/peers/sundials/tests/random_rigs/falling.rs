@@ -105,6 +105,8 @@ fn components(chance: &mut Chance) -> Components {
             moving_mass,
             dead_volume_a: area_a * stroke * 0.02,
             dead_volume_b: area_b * stroke * 0.02,
+            internal_leakage: None,
+            end_stops: None,
         },
         friction: friction(chance, most_force, moving_mass),
         force_sensor: ForceSensor { stiffness },

@@ -1,11 +1,12 @@
 //! What a richer rig has: lines with dynamics of their own, walls, memories of the spool, ends that are met.
 
 use phea_hydraulics::actuator::Components;
+use phea_hydraulics::contact::Contact;
 use phea_hydraulics::line::{
     Anchoring, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Member, Pipe,
     PipeWall, Stiffening,
 };
-use phea_hydraulics::machine::{Accumulator, Contact, LoadModel, MachineOptions, PowerUnit};
+use phea_hydraulics::machine::{Accumulator, LoadModel, MachineOptions, PowerUnit};
 
 use crate::rig::Chance;
 
@@ -59,16 +60,16 @@ fn pipe(chance: &mut Chance, bore: f64, length: f64) -> Line {
     Line::Pipe { pipe: Pipe { bore, wall }, length }
 }
 
-/// Adds to these options what makes a machine rich.
-pub(crate) fn enrich(chance: &mut Chance, components: &Components, options: &mut MachineOptions) {
-    let Components { supply, cylinder, force_sensor, .. } = components;
+/// Adds to these components and options what makes a machine rich.
+pub(crate) fn enrich(chance: &mut Chance, components: &mut Components, options: &mut MachineOptions) {
+    let Components { supply, cylinder, force_sensor, .. } = *components;
     let most_force = supply.pressure * cylinder.area_a;
     let width = chance.happens(0.5).then(|| 10.0 * chance.decades(1e-3, 3e-2));
     options.spool.hysteresis_width = width;
     options.spool.threshold = chance
         .happens(0.5)
         .then(|| width.map_or(10.0 * chance.decades(3e-4, 1e-2), |width| width * chance.between(0.05, 0.9)));
-    options.end_stops = chance
+    components.cylinder.end_stops = chance
         .happens(0.6)
         .then(|| Contact { stiffness: most_force / chance.decades(1e-6, 1e-3), relative_damping: 1.0 });
     if let PowerUnit::PumpLimited(pump) = &mut options.power_unit {

@@ -4,13 +4,14 @@ use phea_dynamics::controller::AntiWindup;
 use phea_dynamics::random;
 use phea_dynamics::simulation::Profile;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
+use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{DynamicLine, Line, LineError};
 use phea_hydraulics::machine::{
-    Contact, LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, Start,
+    LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, Start,
 };
 use phea_hydraulics::servovalve::{Edges, Servovalve, SpoolImperfection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -97,12 +98,12 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let (like_benchmark, rich) = (number.is_multiple_of(4), number % 4 == 2);
     let mut components = components(&mut chance, like_benchmark);
     let mut options =
-        if like_benchmark { MachineOptions::default() } else { options(&mut chance, &components) };
+        if like_benchmark { MachineOptions::default() } else { options(&mut chance, &mut components) };
     if rich {
         if number % 20 == 10 {
             options.lines = Some(rich::lines(&mut chance, &mut components).map_err(Refusal::Line)?);
         }
-        rich::enrich(&mut chance, &components, &mut options);
+        rich::enrich(&mut chance, &mut components, &mut options);
     }
     let control = control(&mut chance, &components, like_benchmark);
     let actuator = Actuator::new(components).map_err(Refusal::Actuator)?;
@@ -115,7 +116,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let pulls = chance.happens(0.5) && !matches!(options.load, LoadModel::Wall { .. });
     let sign = if pulls { -1.0 } else { 1.0 };
     let mut share = inside;
-    if rich && options.end_stops.is_some() && chance.happens(0.5) {
+    if rich && components.cylinder.end_stops.is_some() && chance.happens(0.5) {
         // Near the end that it is moved into.
         let left = chance.decades(1e-4, 1e-2);
         share = if pulls { left } else { 1.0 - left };
@@ -158,7 +159,7 @@ fn features(components: &Components, options: &MachineOptions, control: &Control
         ("threshold", options.spool.threshold.is_some()),
         ("pump", pump.is_some()),
         ("accumulator", pump.is_some_and(|pump| pump.accumulator.is_some())),
-        ("end stops", options.end_stops.is_some()),
+        ("end stops", components.cylinder.end_stops.is_some()),
         ("spring load", matches!(options.load, LoadModel::SpringMassDamper { .. })),
         ("wall", matches!(options.load, LoadModel::Wall { .. })),
         ("segments", matches!(options.lines, Some([DynamicLine::Segments(_), _]))),
@@ -213,6 +214,8 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
             moving_mass,
             dead_volume_a: area_a * stroke * chance.decades(1e-3, 0.1),
             dead_volume_b: area_b * stroke * chance.decades(1e-3, 0.1),
+            internal_leakage: None,
+            end_stops: None,
         },
         friction: friction(chance, most_force, moving_mass, like_benchmark),
         force_sensor: ForceSensor { stiffness },
@@ -246,8 +249,9 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64, bristles: bool) -> 
     }
 }
 
-fn options(chance: &mut Chance, components: &Components) -> MachineOptions {
-    let Components { supply, cylinder, force_sensor, .. } = components;
+/// Leakage across the piston and end stops are the cylinder's.
+fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
+    let Components { supply, cylinder, force_sensor, .. } = *components;
     let most_force = supply.pressure * cylinder.area_a;
     let flow = components.valve.flow_coefficients.supply_to_a * (0.5 * supply.pressure).sqrt();
     let stiffness = force_sensor.stiffness * chance.decades(1e-2, 1.0);
@@ -268,13 +272,15 @@ fn options(chance: &mut Chance, components: &Components) -> MachineOptions {
         effective_bulk_modulus: 1e9,
         accumulator: None,
     };
+    let power_unit = if chance.happens(0.2) { PowerUnit::PumpLimited(pump) } else { PowerUnit::Constant };
+    components.cylinder.internal_leakage =
+        chance.happens(0.5).then(|| flow / supply.pressure * chance.decades(1e-4, 1e-1));
+    components.cylinder.end_stops = chance
+        .happens(0.3)
+        .then(|| Contact { stiffness: most_force / chance.decades(1e-5, 0.3), relative_damping: 1.0 });
     MachineOptions {
         spool,
-        power_unit: if chance.happens(0.2) { PowerUnit::PumpLimited(pump) } else { PowerUnit::Constant },
-        internal_leakage: chance.happens(0.5).then(|| flow / supply.pressure * chance.decades(1e-4, 1e-1)),
-        end_stops: chance
-            .happens(0.3)
-            .then(|| Contact { stiffness: most_force / chance.decades(1e-5, 0.3), relative_damping: 1.0 }),
+        power_unit,
         friction_regular_velocity: Some(chance.decades(1e-4, 1e-2)),
         load: if chance.happens(0.3) { load } else { LoadModel::Prescribed },
         ..MachineOptions::default()

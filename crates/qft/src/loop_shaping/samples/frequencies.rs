@@ -69,6 +69,13 @@ pub fn search_frequencies(
     Ok(grid)
 }
 
+/// The frequencies around which the response of one plant bends, rad/s: all of them, however they crowd.
+pub(super) fn bends(problem: &DesignProblem, plant: &PlantPoint) -> Result<Vec<f64>, SamplesError> {
+    let (_, mut peaks) = features(problem, std::slice::from_ref(plant))?;
+    peaks.retain(|frequency| *frequency > 0.0 && frequency.is_finite());
+    Ok(peaks)
+}
+
 /// Between which frequencies every measured plant has a response; everywhere where none is measured.
 fn measured_by_all(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<[f64; 2], SamplesError> {
     let mut common = [0.0, f64::INFINITY];

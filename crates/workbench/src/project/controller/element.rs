@@ -2,16 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use super::DOMAINS;
+use super::RationalFunction;
 use crate::catalogue::Catalogue;
-use crate::project::formula::{Formula, Variable};
-use crate::project::key::{key, plain};
+use crate::project::key::{Key, key, plain};
 use crate::project::printer::Printer;
 use crate::project::reader::Reader;
 use crate::project::text::Findings;
 use crate::project::tree::{Entry, Node, Value};
 use crate::project::validate;
-use crate::project::visitor::{Shape, Visitor};
+use crate::project::visitor::{Variants, Visitor};
 use crate::quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
 
 /// One element of a controller; every kind but gain, `pi`, `pid` and `general` has unit gain at zero frequency (integrator and
@@ -22,130 +21,225 @@ pub struct Element {
     pub kind: ElementKind,
     /// Whether it acts; one that does not is kept in the list all the same.
     pub enabled: bool,
-    /// Of a gain.
-    pub value: Option<f64>,
-    /// rad/s: corner or natural frequency.
-    pub frequency: Option<f64>,
-    /// Of a complex pair, of a notch's denominator, or of a roll-off, where it may be absent: 1/√2.
-    pub damping_ratio: Option<f64>,
-    /// Of a notch's numerator.
-    pub numerator_damping_ratio: Option<f64>,
-    /// rad/s, corner of the numerator of a lead or lag.
-    pub zero_frequency: Option<f64>,
-    /// rad/s, corner of the denominator of a lead or lag.
-    pub pole_frequency: Option<f64>,
-    /// K_p of a `pi` or `pid`.
-    pub proportional_gain: Option<f64>,
-    /// K_i of a `pi` or `pid`, 1/s.
-    pub integral_gain: Option<f64>,
-    /// K_d of a `pid`, s.
-    pub derivative_gain: Option<f64>,
-    /// T_f of a `pid`, s.
-    pub filter_time: Option<f64>,
-    /// Of a `general` element: polynomial in `s`, or in `z` when it is sampled.
-    pub numerator: Option<Formula>,
-    /// Of a `general` element: polynomial in `s`, or in `z` when it is sampled.
-    pub denominator: Option<Formula>,
-    /// Of a `general` element in factors: the leading coefficient.
-    pub gain: Option<f64>,
-    /// Real and imaginary parts, 1/s.
-    pub zeros: Vec<[f64; 2]>,
-    /// Real and imaginary parts, 1/s.
-    pub poles: Vec<[f64; 2]>,
-    /// Whether gain, zeros and poles are in s (absent) or in z.
-    pub domain: Option<Variable>,
 }
 
-/// Which element.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Which element, with its numbers: frequencies ω in rad/s, damping ratios ζ.
+#[derive(Clone, Debug, PartialEq)]
 pub enum ElementKind {
-    /// `value`.
-    #[default]
-    Gain,
+    /// A factor.
+    Gain {
+        /// The factor.
+        value: f64,
+    },
     /// 1/s.
     Integrator,
     /// s.
     Differentiator,
     /// 1 + s/ω.
-    Zero,
+    Zero {
+        /// ω.
+        frequency: f64,
+    },
     /// 1/(1 + s/ω).
-    Pole,
+    Pole {
+        /// ω.
+        frequency: f64,
+    },
     /// 1 + 2ζs/ω + s²/ω².
-    ComplexZeros,
+    ComplexZeros {
+        /// ω.
+        frequency: f64,
+        /// ζ.
+        damping_ratio: f64,
+    },
     /// 1/(1 + 2ζs/ω + s²/ω²).
-    ComplexPoles,
+    ComplexPoles {
+        /// ω.
+        frequency: f64,
+        /// ζ.
+        damping_ratio: f64,
+    },
     /// (1 + s/ω_z)/(1 + s/ω_p); lags where ω_z > ω_p.
-    Lead,
+    Lead {
+        /// ω_z.
+        zero_frequency: f64,
+        /// ω_p.
+        pole_frequency: f64,
+    },
     /// (1 + s/ω_z)/(1 + s/ω_p), ω_z > ω_p.
-    Lag,
+    Lag {
+        /// ω_z.
+        zero_frequency: f64,
+        /// ω_p.
+        pole_frequency: f64,
+    },
     /// (s² + 2ζ_z ωs + ω²)/(s² + 2ζ_p ωs + ω²).
-    Notch,
-    /// 1/(1 + 2ζs/ω + s²/ω²) at high frequency; ζ may be left out.
-    RollOff,
+    Notch {
+        /// ω.
+        frequency: f64,
+        /// ζ_p.
+        damping_ratio: f64,
+        /// ζ_z.
+        numerator_damping_ratio: f64,
+    },
+    /// 1/(1 + 2ζs/ω + s²/ω²) at high frequency.
+    RollOff {
+        /// ω.
+        frequency: f64,
+        /// ζ; absent: 1/√2.
+        damping_ratio: Option<f64>,
+    },
     /// K_p + K_i/s.
-    ProportionalIntegral,
+    ProportionalIntegral {
+        /// K_p.
+        proportional_gain: f64,
+        /// K_i, 1/s.
+        integral_gain: f64,
+    },
     /// K_p + K_i/s + K_d s/(T_f s + 1).
-    ProportionalIntegralDerivative,
-    /// A ratio of polynomials, or factors.
-    General,
-}
-
-/// As they are written.
-const KINDS: &[(&str, ElementKind)] = &[
-    ("gain", ElementKind::Gain),
-    ("integrator", ElementKind::Integrator),
-    ("differentiator", ElementKind::Differentiator),
-    ("zero", ElementKind::Zero),
-    ("pole", ElementKind::Pole),
-    ("complex_zeros", ElementKind::ComplexZeros),
-    ("complex_poles", ElementKind::ComplexPoles),
-    ("lead", ElementKind::Lead),
-    ("lag", ElementKind::Lag),
-    ("notch", ElementKind::Notch),
-    ("roll_off", ElementKind::RollOff),
-    ("pi", ElementKind::ProportionalIntegral),
-    ("pid", ElementKind::ProportionalIntegralDerivative),
-    ("general", ElementKind::General),
-];
-
-impl ElementKind {
-    /// As it is written in the project file.
-    pub fn name(self) -> &'static str {
-        KINDS.iter().find(|(_, kind)| *kind == self).map_or("", |(name, _)| name)
-    }
+    ProportionalIntegralDerivative {
+        /// K_p.
+        proportional_gain: f64,
+        /// K_i, 1/s.
+        integral_gain: f64,
+        /// K_d, s.
+        derivative_gain: f64,
+        /// T_f, s.
+        filter_time: f64,
+    },
+    /// A ratio of polynomials.
+    General(RationalFunction),
 }
 
 impl Default for Element {
     fn default() -> Self {
-        Element {
-            kind: ElementKind::default(),
-            enabled: true,
-            value: None,
-            frequency: None,
-            damping_ratio: None,
-            numerator_damping_ratio: None,
-            zero_frequency: None,
-            pole_frequency: None,
-            proportional_gain: None,
-            integral_gain: None,
-            derivative_gain: None,
-            filter_time: None,
-            numerator: None,
-            denominator: None,
-            gain: None,
-            zeros: vec![],
-            poles: vec![],
-            domain: None,
+        Element::new(ElementKind::Gain { value: 0.0 })
+    }
+}
+
+impl ElementKind {
+    /// As it is written in the project file.
+    pub fn name(&self) -> &'static str {
+        self.word()
+    }
+}
+
+impl Variants for ElementKind {
+    const STRICT: bool = true;
+
+    fn all() -> Vec<ElementKind> {
+        let (frequency, damping_ratio) = (0.0, 0.0);
+        let (zero_frequency, pole_frequency) = (0.0, 0.0);
+        let (proportional_gain, integral_gain) = (0.0, 0.0);
+        vec![
+            ElementKind::Gain { value: 0.0 },
+            ElementKind::Integrator,
+            ElementKind::Differentiator,
+            ElementKind::Zero { frequency },
+            ElementKind::Pole { frequency },
+            ElementKind::ComplexZeros { frequency, damping_ratio },
+            ElementKind::ComplexPoles { frequency, damping_ratio },
+            ElementKind::Lead { zero_frequency, pole_frequency },
+            ElementKind::Lag { zero_frequency, pole_frequency },
+            ElementKind::Notch { frequency, damping_ratio, numerator_damping_ratio: 0.0 },
+            ElementKind::RollOff { frequency, damping_ratio: None },
+            ElementKind::ProportionalIntegral { proportional_gain, integral_gain },
+            ElementKind::ProportionalIntegralDerivative {
+                proportional_gain,
+                integral_gain,
+                derivative_gain: 0.0,
+                filter_time: 0.0,
+            },
+            ElementKind::General(RationalFunction::default()),
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            ElementKind::Gain { .. } => "gain",
+            ElementKind::Integrator => "integrator",
+            ElementKind::Differentiator => "differentiator",
+            ElementKind::Zero { .. } => "zero",
+            ElementKind::Pole { .. } => "pole",
+            ElementKind::ComplexZeros { .. } => "complex_zeros",
+            ElementKind::ComplexPoles { .. } => "complex_poles",
+            ElementKind::Lead { .. } => "lead",
+            ElementKind::Lag { .. } => "lag",
+            ElementKind::Notch { .. } => "notch",
+            ElementKind::RollOff { .. } => "roll_off",
+            ElementKind::ProportionalIntegral { .. } => "pi",
+            ElementKind::ProportionalIntegralDerivative { .. } => "pid",
+            ElementKind::General(_) => "general",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let corner = key("frequency", &ANGULAR_FREQUENCY, "Corner or natural frequency.").positive();
+        let doc = "Of a complex pair, a notch's denominator or a roll-off.";
+        let damping = key("damping_ratio", &RATIO, doc).not_negative();
+        match self {
+            ElementKind::Gain { value } => v.quantity(key("value", &RATIO, "Of a gain."), value),
+            ElementKind::Integrator | ElementKind::Differentiator => {}
+            ElementKind::Zero { frequency } | ElementKind::Pole { frequency } => {
+                v.quantity(corner, frequency)
+            }
+            ElementKind::ComplexZeros { frequency, damping_ratio }
+            | ElementKind::ComplexPoles { frequency, damping_ratio } => {
+                v.quantity(corner, frequency);
+                v.quantity(damping, damping_ratio);
+            }
+            ElementKind::Lead { zero_frequency, pole_frequency }
+            | ElementKind::Lag { zero_frequency, pole_frequency } => {
+                let k =
+                    key("zero_frequency", &ANGULAR_FREQUENCY, "Corner of the numerator of a lead or lag.");
+                v.quantity(k.positive(), zero_frequency);
+                let k =
+                    key("pole_frequency", &ANGULAR_FREQUENCY, "Corner of the denominator of a lead or lag.");
+                v.quantity(k.positive(), pole_frequency);
+            }
+            ElementKind::Notch { frequency, damping_ratio, numerator_damping_ratio } => {
+                v.quantity(corner, frequency);
+                v.quantity(damping, damping_ratio);
+                let k = key("numerator_damping_ratio", &RATIO, "Of a notch's numerator.").not_negative();
+                v.quantity(k, numerator_damping_ratio);
+            }
+            ElementKind::RollOff { frequency, damping_ratio } => {
+                v.quantity(corner, frequency);
+                v.optional(damping, damping_ratio);
+            }
+            ElementKind::ProportionalIntegral { proportional_gain, integral_gain } => {
+                v.quantity(PROPORTIONAL, proportional_gain);
+                v.quantity(INTEGRAL, integral_gain);
+            }
+            ElementKind::ProportionalIntegralDerivative {
+                proportional_gain,
+                integral_gain,
+                derivative_gain,
+                filter_time,
+            } => {
+                v.quantity(PROPORTIONAL, proportional_gain);
+                v.quantity(INTEGRAL, integral_gain);
+                v.quantity(key("derivative_gain", &RATIO, "Of a PID, in seconds."), derivative_gain);
+                let k = key("filter_time", &TIME, "Time constant of the derivative of a PID.").positive();
+                v.quantity(k, filter_time);
+            }
+            ElementKind::General(ratio) => ratio.visit(v),
         }
     }
 }
 
+const PROPORTIONAL: Key = key("proportional_gain", &RATIO, "Of a PI or PID.");
+const INTEGRAL: Key = key("integral_gain", &RATIO, "Of a PI or PID, for each second.");
+
 impl Element {
+    /// One that acts.
+    pub fn new(kind: ElementKind) -> Element {
+        Element { kind, enabled: true }
+    }
+
     /// Whether it is written in `z`.
     pub fn is_sampled(&self) -> bool {
-        let formulas = [&self.numerator, &self.denominator];
-        self.domain == Some(Variable::Z)
-            || formulas.into_iter().flatten().any(|formula| formula.variable() == Some(Variable::Z))
+        matches!(&self.kind, ElementKind::General(ratio) if ratio.is_sampled())
     }
 
     /// As an inline table of the project file, which reads back as the same element.
@@ -153,8 +247,8 @@ impl Element {
     /// # Example
     /// ```
     /// use phea_workbench::project::{Element, ElementKind};
-    /// let zero = Element { kind: ElementKind::Zero, frequency: Some(20.0), enabled: false, ..Element::default() };
-    /// assert_eq!(zero.print(), r#"{ kind = "zero", enabled = false, frequency = "20 rad/s" }"#);
+    /// let zero = Element { kind: ElementKind::Zero { frequency: 20.0 }, enabled: false };
+    /// assert_eq!(zero.print(), r#"{ kind = "zero", frequency = "20 rad/s", enabled = false }"#);
     /// ```
     pub fn print(&self) -> String {
         let mut printer = Printer::new(BTreeMap::new());
@@ -186,36 +280,7 @@ impl Element {
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.choice(plain("kind", "Which element."), KINDS, &mut self.kind, true);
+        v.variant(plain("kind", "Which element."), &mut self.kind, true);
         v.switch(plain("enabled", "Whether it acts."), &mut self.enabled);
-        v.optional(key("value", &RATIO, "Of a gain."), &mut self.value);
-        let k = key("frequency", &ANGULAR_FREQUENCY, "Corner or natural frequency.");
-        v.optional(k.positive(), &mut self.frequency);
-        let k = key("damping_ratio", &RATIO, "Of a complex pair, a notch's denominator or a roll-off.");
-        v.optional(k.not_negative(), &mut self.damping_ratio);
-        let k = key("numerator_damping_ratio", &RATIO, "Of a notch's numerator.").not_negative();
-        v.optional(k, &mut self.numerator_damping_ratio);
-        let k = key("zero_frequency", &ANGULAR_FREQUENCY, "Corner of the numerator of a lead or lag.");
-        v.optional(k.positive(), &mut self.zero_frequency);
-        let k = key("pole_frequency", &ANGULAR_FREQUENCY, "Corner of the denominator of a lead or lag.");
-        v.optional(k.positive(), &mut self.pole_frequency);
-        let k = key("proportional_gain", &RATIO, "Of a PI or PID.");
-        v.optional(k, &mut self.proportional_gain);
-        let k = key("integral_gain", &RATIO, "Of a PI or PID, for each second.");
-        v.optional(k, &mut self.integral_gain);
-        let k = key("derivative_gain", &RATIO, "Of a PID, in seconds.");
-        v.optional(k, &mut self.derivative_gain);
-        let k = key("filter_time", &TIME, "Time constant of the derivative of a PID.").positive();
-        v.optional(k, &mut self.filter_time);
-        let k = plain("numerator", "Of a general element: polynomial in s, or in z when sampled.");
-        v.formula(k, Shape::Polynomial, &mut self.numerator, false);
-        let k = plain("denominator", "Of a general element: polynomial in s, or in z when sampled.");
-        v.formula(k, Shape::Polynomial, &mut self.denominator, false);
-        let k = key("gain", &RATIO, "Of a general element in factors: the leading coefficient.");
-        v.optional(k, &mut self.gain);
-        v.complexes(key("zeros", &RATIO, "Of a general element in factors."), &mut self.zeros);
-        v.complexes(key("poles", &RATIO, "Of a general element in factors."), &mut self.poles);
-        let k = plain("domain", "Of a general element in factors: in s, or in z when sampled.");
-        v.choice(k, &DOMAINS, &mut self.domain, false);
     }
 }

@@ -5,9 +5,10 @@ use crate::catalogue::Kind;
 use crate::project::Origin;
 use crate::project::formula::Formula;
 use crate::project::key::Key;
+use crate::project::listing::Listing;
 use crate::project::text::Found;
 use crate::project::tree::{Node, Value};
-use crate::project::visitor::{Form, Kinds, Named, Shape, Visitor};
+use crate::project::visitor::{Form, Kinds, Named, Shape, Variants, Visitor};
 use crate::spelling::nearest;
 
 impl Visitor for Reader<'_> {
@@ -17,7 +18,9 @@ impl Visitor for Reader<'_> {
             self.record_origin(key, origin);
             *field = self.number(key, hit.node).unwrap_or(*field);
         } else if let Some(default) = key.default {
-            self.record_origin(key, Origin::Default);
+            if !self.looks_elsewhere() {
+                self.record_origin(key, Origin::Default);
+            }
             *field = default;
         } else {
             self.missing(key);
@@ -125,19 +128,35 @@ impl Visitor for Reader<'_> {
             }
             return;
         };
-        let all = words.iter().map(|(word, _)| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
-        let Value::Text(text) = &hit.node.value else {
-            return self.wrong_kind(key, &format!("one of {all}"), hit.node);
-        };
-        match words.iter().find(|(word, _)| word == text) {
-            Some((_, value)) => *field = *value,
-            None => {
-                let message = format!("`{}` cannot be \"{text}\"", key.name);
-                let near = nearest(text, words.iter().map(|(word, _)| *word));
-                let help = near.map(|word| format!("did you mean \"{word}\"?"));
-                let expected = format!("one of {all}");
-                self.findings.push(Found::error(hit.node.place, message).expected(expected).maybe_help(help));
+        let all: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+        if let Some(index) = self.word(key, hit.node, &all)
+            && let Some((_, value)) = words.get(index)
+        {
+            *field = *value;
+        }
+    }
+
+    fn variant<T: Variants>(&mut self, key: Key, field: &mut T, required: bool) {
+        let all = T::all();
+        let words: Vec<&str> = all.iter().map(T::word).collect();
+        let chosen = match self.find(key) {
+            Some(hit) => self.word(key, hit.node, &words),
+            None if required => {
+                self.missing(key);
+                None
             }
+            None => words.iter().position(|word| *word == field.word()),
+        };
+        match chosen.and_then(|index| all.get(index)) {
+            Some(chosen) => {
+                *field = chosen.clone();
+                self.choose(Some((key.name, chosen.word())));
+                field.visit(self);
+                self.choose(None);
+                self.without_effect(key, field, &all);
+            }
+            // what is not known to be of another variant is not unknown
+            None => all.iter().flat_map(keys_of).for_each(|name| self.know(name)),
         }
     }
 
@@ -346,7 +365,64 @@ impl Visitor for Reader<'_> {
     }
 }
 
+/// The keys of a variant.
+fn keys_of<T: Variants>(variant: &T) -> Vec<&'static str> {
+    let mut listing = Listing::of_everything();
+    variant.clone().visit(&mut listing);
+    listing.outermost
+}
+
 impl<'a> Reader<'a> {
+    /// The place of a text among words of which it must be one.
+    fn word(&mut self, key: Key, node: &Node, words: &[&'static str]) -> Option<usize> {
+        let all = words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
+        let Value::Text(text) = &node.value else {
+            self.wrong_kind(key, &format!("one of {all}"), node);
+            return None;
+        };
+        let found = words.iter().position(|word| word == text);
+        if found.is_none() {
+            let message = format!("`{}` cannot be \"{text}\"", key.name);
+            let near = nearest(text, words.iter().copied());
+            let help = near.map(|word| format!("did you mean \"{word}\"?"));
+            let expected = format!("one of {all}");
+            self.findings.push(Found::error(node.place, message).expected(expected).maybe_help(help));
+        }
+        found
+    }
+
+    fn choose(&mut self, chosen: Option<(&'static str, &'static str)>) {
+        if let Some(frame) = self.frames.last_mut() {
+            frame.chosen = chosen;
+        }
+    }
+
+    fn pass_over(&mut self, keys: Option<Vec<&'static str>>) {
+        if let Some(frame) = self.frames.last_mut() {
+            frame.passed_over = keys;
+        }
+    }
+
+    /// Warns of the keys of other variants that are written all the same; their values must be right.
+    fn without_effect<T: Variants>(&mut self, key: Key, chosen: &T, all: &[T]) {
+        let mut read = keys_of(chosen);
+        for other in all {
+            let keys = keys_of(other);
+            self.pass_over(Some(read.clone()));
+            other.clone().visit(self);
+            self.pass_over(None);
+            for name in keys.iter().filter(|name| !read.contains(name)) {
+                let written = self.frames.last().and_then(|frame| frame.layers.first()?.node.get(name));
+                if let Some(entry) = written {
+                    let message = format!("`{name}` has no effect with {} \"{}\"", key.name, chosen.word());
+                    let found = if T::STRICT { Found::error } else { Found::warning };
+                    self.findings.push(found(entry.node.place, message));
+                }
+            }
+            read.extend(keys);
+        }
+    }
+
     /// Reads the tables of a list.
     fn each_table<T: Default>(
         &mut self,

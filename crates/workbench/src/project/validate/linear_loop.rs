@@ -2,8 +2,8 @@
 
 use super::Check;
 use crate::project::{
-    AntiWindup, Discretization, Element, ElementKind, Formula, Prefilter, Project, Quantization, Transfer,
-    Variable,
+    AntiWindup, Discretization, Element, ElementKind, Formula, Prefilter, Project, Quantization,
+    RationalFunction, Transfer, Variable,
 };
 
 /// Most zeros, poles or elements of a transfer function.
@@ -98,9 +98,7 @@ pub(super) fn sensor(project: &Project, check: &mut Check<'_, '_>) {
 }
 
 fn is_discrete(transfer: &Transfer) -> bool {
-    let sampled = |formula: &Formula| formula.variable() == Some(Variable::Z);
-    transfer.domain == Some(Variable::Z)
-        || [&transfer.numerator, &transfer.denominator].into_iter().flatten().any(sampled)
+    transfer.ratio.is_sampled()
         || transfer.elements.iter().any(|element| element.enabled && element.is_sampled())
 }
 
@@ -123,7 +121,7 @@ fn transfer(
         1 => {}
         _ => check.error(path, format!("more than one form in [{path}]: it takes either {forms}")),
     }
-    rational_form(transfer, path, sample_time, [polynomials, factors], check);
+    rational_form(&transfer.ratio, path, sample_time, [polynomials, factors], check);
     if transfer.elements.len() > MAXIMUM_ORDER {
         check.error(&format!("{path}.elements"), format!("more than {MAXIMUM_ORDER} elements"));
     }
@@ -136,7 +134,11 @@ fn transfer(
     for (index, element) in transfer.elements.iter().enumerate().take(MAXIMUM_ORDER) {
         let path = format!("{path}.elements[{index}]");
         one_element(element, &path, sample_time, check);
-        if sampled && element.enabled && element.kind != ElementKind::Gain && !element.is_sampled() {
+        if sampled
+            && element.enabled
+            && !matches!(element.kind, ElementKind::Gain { .. })
+            && !element.is_sampled()
+        {
             check.error(&path, "this element is in `s`, but another one is in `z`");
         }
     }
@@ -144,49 +146,59 @@ fn transfer(
 
 /// Polynomials or factors, whichever of them is written.
 fn rational_form(
-    transfer: &Transfer,
+    ratio: &RationalFunction,
     path: &str,
     sample_time: Option<f64>,
     [polynomials, factors]: [bool; 2],
     check: &mut Check<'_, '_>,
 ) {
     if polynomials {
-        polynomial_form(transfer, path, sample_time, check);
+        polynomial_form(ratio, path, sample_time, check);
     }
     if factors {
-        if transfer.gain.is_none() {
+        if ratio.gain.is_none() {
             check.missing(path, "gain", "`zeros` and `poles` need `gain`, the leading coefficient");
         }
-        if transfer.gain == Some(0.0) {
+        if ratio.gain == Some(0.0) {
             check.error(&format!("{path}.gain"), "`gain` is zero");
         }
-        sample_time_of_z(transfer, path, sample_time, check);
-        conjugates(&transfer.zeros, &format!("{path}.zeros"), check);
-        conjugates(&transfer.poles, &format!("{path}.poles"), check);
+        sample_time_of_z(ratio, path, sample_time, check);
+        conjugates(&ratio.zeros, &format!("{path}.zeros"), check);
+        conjugates(&ratio.poles, &format!("{path}.poles"), check);
     }
-    if transfer.domain.is_some() && !factors {
+    if ratio.domain.is_some() && !factors {
         let message = "`domain` belongs to `gain`, `zeros` and `poles`: formulas say `s` or `z`";
         check.error(&format!("{path}.domain"), message);
     }
 }
 
-fn polynomial_form(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
-    for (name, formula) in [("numerator", &transfer.numerator), ("denominator", &transfer.denominator)] {
+fn polynomial_form(
+    ratio: &RationalFunction,
+    path: &str,
+    sample_time: Option<f64>,
+    check: &mut Check<'_, '_>,
+) {
+    for (name, formula) in [("numerator", &ratio.numerator), ("denominator", &ratio.denominator)] {
         if formula.is_none() {
             check.missing(path, name, format!("missing `{name}` in [{path}]"));
         }
     }
-    let (Some(numerator), Some(denominator)) = (&transfer.numerator, &transfer.denominator) else { return };
+    let (Some(numerator), Some(denominator)) = (&ratio.numerator, &ratio.denominator) else { return };
     if let (Some(over), Some(under)) = (numerator.variable(), denominator.variable())
         && over != under
     {
         check.error(&format!("{path}.denominator"), "numerator and denominator mix `s` and `z`");
     }
-    sample_time_of_z(transfer, path, sample_time, check);
+    sample_time_of_z(ratio, path, sample_time, check);
 }
 
-fn sample_time_of_z(transfer: &Transfer, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
-    if is_discrete(transfer) && sample_time.is_none() {
+fn sample_time_of_z(
+    ratio: &RationalFunction,
+    path: &str,
+    sample_time: Option<f64>,
+    check: &mut Check<'_, '_>,
+) {
+    if ratio.is_sampled() && sample_time.is_none() {
         let table = path.split('.').next().unwrap_or(path);
         let message = format!("missing `sample_time` in [{table}]: it is written in `z`");
         check.missing(path, "sample_time", message);
@@ -201,18 +213,19 @@ fn excess(transfer: &Transfer) -> Option<i64> {
 /// Zeros less poles of an element, where they can be told.
 pub(super) fn element_excess(element: &Element) -> Option<i64> {
     let power = |count: usize| i64::try_from(count).ok();
-    Some(match element.kind {
-        ElementKind::Gain | ElementKind::Lead | ElementKind::Lag | ElementKind::Notch => 0,
-        ElementKind::ProportionalIntegral | ElementKind::ProportionalIntegralDerivative => 0,
-        ElementKind::Zero | ElementKind::Differentiator => 1,
-        ElementKind::Pole | ElementKind::Integrator => -1,
-        ElementKind::ComplexZeros => 2,
-        ElementKind::ComplexPoles | ElementKind::RollOff => -2,
-        ElementKind::General => match (&element.numerator, &element.denominator) {
+    Some(match &element.kind {
+        ElementKind::Gain { .. } | ElementKind::Lead { .. } | ElementKind::Lag { .. } => 0,
+        ElementKind::Notch { .. } | ElementKind::ProportionalIntegral { .. } => 0,
+        ElementKind::ProportionalIntegralDerivative { .. } => 0,
+        ElementKind::Zero { .. } | ElementKind::Differentiator => 1,
+        ElementKind::Pole { .. } | ElementKind::Integrator => -1,
+        ElementKind::ComplexZeros { .. } => 2,
+        ElementKind::ComplexPoles { .. } | ElementKind::RollOff { .. } => -2,
+        ElementKind::General(ratio) => match (&ratio.numerator, &ratio.denominator) {
             (Some(numerator), Some(denominator)) => {
                 power(numerator.polynomial()?.len())? - power(denominator.polynomial()?.len())?
             }
-            _ => power(element.zeros.len())? - power(element.poles.len())?,
+            _ => power(ratio.zeros.len())? - power(ratio.poles.len())?,
         },
     })
 }
@@ -242,80 +255,32 @@ pub(super) fn one_element(
     if !check.declared(&kind) || check.refused(&kind) {
         return; // nothing follows from a kind that is not known
     }
-    let (needs, may) = keys_of(element.kind);
-    for name in ELEMENT_KEYS {
-        let written = check.declared(&format!("{path}.{name}"));
-        if needs.contains(&name) && !written {
-            check.missing(path, name, format!("this element needs `{name}`"));
+    let missing = |check: &Check<'_, '_>, name: &str| !check.declared(&format!("{path}.{name}"));
+    match element.kind {
+        ElementKind::Gain { value: 0.0 } if !missing(check, "value") => {
+            check.error(&format!("{path}.value"), "a gain of zero");
         }
-        if written && !needs.contains(&name) && !may.contains(&name) {
-            check.error(&format!("{path}.{name}"), format!("`{name}` has no meaning for this element"));
+        ElementKind::ProportionalIntegral { proportional_gain: 0.0, integral_gain: 0.0 }
+        | ElementKind::ProportionalIntegralDerivative {
+            proportional_gain: 0.0,
+            integral_gain: 0.0,
+            derivative_gain: 0.0,
+            ..
+        } if !missing(check, "proportional_gain") && !missing(check, "integral_gain") => {
+            check.error(&format!("{path}.proportional_gain"), "a gain of zero");
         }
-    }
-    let zero = |value: Option<f64>| value == Some(0.0);
-    let all_zero = match element.kind {
-        ElementKind::Gain => zero(element.value),
-        ElementKind::ProportionalIntegral => zero(element.proportional_gain) && zero(element.integral_gain),
-        ElementKind::ProportionalIntegralDerivative => {
-            zero(element.proportional_gain) && zero(element.integral_gain) && zero(element.derivative_gain)
+        ElementKind::Lag { zero_frequency, pole_frequency }
+            if zero_frequency <= pole_frequency && !missing(check, "zero_frequency") =>
+        {
+            let message = "a lag has its zero above its pole";
+            check.error_with_help(&format!("{path}.zero_frequency"), message, "write kind = \"lead\"");
         }
-        _ => false,
-    };
-    if all_zero {
-        let name = if element.kind == ElementKind::Gain { "value" } else { "proportional_gain" };
-        check.error(&format!("{path}.{name}"), "a gain of zero");
-    }
-    if let (ElementKind::Lag, Some(zero), Some(pole)) =
-        (element.kind, element.zero_frequency, element.pole_frequency)
-        && zero <= pole
-    {
-        let message = "a lag has its zero above its pole";
-        check.error_with_help(&format!("{path}.zero_frequency"), message, "write kind = \"lead\"");
-    }
-    if element.kind == ElementKind::General {
-        general(element, path, sample_time, check);
+        ElementKind::General(ref ratio) => general(ratio, path, sample_time, check),
+        _ => {}
     }
 }
 
-/// Every key of an element but `kind` and `enabled`.
-const ELEMENT_KEYS: [&str; 16] = [
-    "value",
-    "frequency",
-    "damping_ratio",
-    "numerator_damping_ratio",
-    "zero_frequency",
-    "pole_frequency",
-    "proportional_gain",
-    "integral_gain",
-    "derivative_gain",
-    "filter_time",
-    "numerator",
-    "denominator",
-    "gain",
-    "zeros",
-    "poles",
-    "domain",
-];
-
-/// What an element needs, and what else it takes.
-fn keys_of(kind: ElementKind) -> (&'static [&'static str], &'static [&'static str]) {
-    match kind {
-        ElementKind::Gain => (&["value"], &[]),
-        ElementKind::Integrator | ElementKind::Differentiator => (&[], &[]),
-        ElementKind::Zero | ElementKind::Pole => (&["frequency"], &[]),
-        ElementKind::ComplexZeros | ElementKind::ComplexPoles => (&["frequency", "damping_ratio"], &[]),
-        ElementKind::Lead | ElementKind::Lag => (&["zero_frequency", "pole_frequency"], &[]),
-        ElementKind::Notch => (&["frequency", "damping_ratio", "numerator_damping_ratio"], &[]),
-        ElementKind::RollOff => (&["frequency"], &["damping_ratio"]),
-        ElementKind::ProportionalIntegral => (&["proportional_gain", "integral_gain"], &[]),
-        ElementKind::ProportionalIntegralDerivative => {
-            (&["proportional_gain", "integral_gain", "derivative_gain", "filter_time"], &[])
-        }
-        ElementKind::General => (&[], &["numerator", "denominator", "gain", "zeros", "poles", "domain"]),
-    }
-}
-
-fn general(element: &Element, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
+fn general(ratio: &RationalFunction, path: &str, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
     let declared = |check: &Check<'_, '_>, name: &str| check.declared(&format!("{path}.{name}"));
     let polynomials = ["numerator", "denominator"].iter().any(|name| declared(check, name));
     let factors = ["gain", "zeros", "poles"].iter().any(|name| declared(check, name));
@@ -327,14 +292,5 @@ fn general(element: &Element, path: &str, sample_time: Option<f64>, check: &mut 
         }
         _ => {}
     }
-    let transfer = Transfer {
-        numerator: element.numerator.clone(),
-        denominator: element.denominator.clone(),
-        gain: element.gain,
-        zeros: element.zeros.clone(),
-        poles: element.poles.clone(),
-        domain: element.domain,
-        elements: vec![],
-    };
-    rational_form(&transfer, path, sample_time, [polynomials, factors], check);
+    rational_form(ratio, path, sample_time, [polynomials, factors], check);
 }

@@ -2,8 +2,7 @@
 
 use super::{Check, line_motion};
 use crate::project::{
-    Actuator, Cylinder, Friction, FrictionModel, Interval, Line, Lines, Load, LoadModel, Supply, SupplyModel,
-    Valve,
+    Actuator, Cylinder, Friction, FrictionLaw, Interval, Line, Lines, StribeckCurve, Supply, Valve,
 };
 use crate::quantity::{self, PRESSURE};
 
@@ -12,7 +11,6 @@ pub(super) fn actuator(actuator: &Actuator, check: &mut Check<'_, '_>) {
     valve(&actuator.valve, &actuator.supply, check);
     cylinder(&actuator.cylinder, check);
     lines(actuator, &actuator.line, check);
-    load(&actuator.load, check);
 }
 
 fn supply(actuator: &Actuator, check: &mut Check<'_, '_>) {
@@ -22,19 +20,7 @@ fn supply(actuator: &Actuator, check: &mut Check<'_, '_>) {
             if check.declared("supply.tank_pressure") { "supply.tank_pressure" } else { "supply.pressure" };
         check.error(at, "`tank_pressure` must be below `pressure`");
     }
-    if supply.model == SupplyModel::PumpLimited && supply.flow.is_none() {
-        check.missing("supply", "flow", "a pump-limited supply needs `flow`");
-    }
-    for name in PUMP_KEYS {
-        let path = format!("supply.{name}");
-        if supply.model == SupplyModel::Constant && check.declared(&path) {
-            check.warning(&path, format!("`{name}` has no effect with model \"constant\""));
-        }
-    }
 }
-
-/// What only a limited pump has.
-const PUMP_KEYS: [&str; 4] = ["relief_override", "volume", "effective_bulk_modulus", "accumulator"];
 
 fn imperfections(valve: &Valve, check: &mut Check<'_, '_>) {
     if let (Some(width), Some(threshold)) = (valve.hysteresis, valve.threshold)
@@ -127,40 +113,20 @@ fn piston(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
 }
 
 fn friction(friction: &Friction, check: &mut Check<'_, '_>) {
-    let path = "cylinder.friction";
-    let values = [
-        ("coulomb", friction.coulomb, 1),
-        ("static", friction.static_friction, 1),
-        ("stribeck_velocity", friction.stribeck_velocity, 1),
-        ("bristle_stiffness", friction.bristle_stiffness, 2),
-        ("bristle_damping", friction.bristle_damping, 2),
-    ];
-    let (level, model) = match friction.model {
-        FrictionModel::Viscous => (0, "viscous"),
-        FrictionModel::Stribeck => (1, "stribeck"),
-        FrictionModel::LuGre => (2, "lugre"),
+    let (FrictionLaw::Stribeck { curve, .. } | FrictionLaw::LuGre { curve, .. }) = &friction.law else {
+        return;
     };
-    for (name, value, needed_from) in values {
-        if value.is_none() && level >= needed_from {
-            check.missing(path, name, format!("missing `{name}` in [{path}]: model \"{model}\" needs it"));
-        }
-        if value.is_some() && level < needed_from {
-            check
-                .warning(&format!("{path}.{name}"), format!("`{name}` has no effect with model \"{model}\""));
-        }
+    let StribeckCurve { coulomb, static_friction: breakaway, .. } = *curve;
+    if !check.declared("cylinder.friction.static") || !check.declared("cylinder.friction.coulomb") {
+        return;
     }
-    if friction.regular_velocity.is_some() && friction.model != FrictionModel::Stribeck {
-        let message = format!("`regular_velocity` has no effect with model \"{model}\"");
-        check.warning(&format!("{path}.regular_velocity"), message);
-    }
-    let (Some(coulomb), Some(breakaway)) = (friction.coulomb, friction.static_friction) else { return };
     if breakaway < coulomb {
         check.error("cylinder.friction.static", "`static` friction is below `coulomb` friction");
         return;
     }
-    let Some(bristle_damping) = friction.bristle_damping else { return };
+    let FrictionLaw::LuGre { bristle_damping, .. } = friction.law else { return };
     let least = bristle_damping * (breakaway - coulomb) / coulomb;
-    if friction.model == FrictionModel::LuGre && friction.viscous < least {
+    if friction.viscous < least {
         let message = format!(
             "this LuGre friction can give out energy: it is passive for `viscous` of at least {least} N.s/m \
              (bristle_damping (static - coulomb)/coulomb; Barabanov and Ortega, 2000)"
@@ -300,33 +266,6 @@ impl Check<'_, '_> {
         }
         if maximum < nominal {
             self.error(&format!("{path}.maximum"), "`maximum` is below `nominal`");
-        }
-    }
-}
-
-fn load(load: &Load, check: &mut Check<'_, '_>) {
-    let (model, uses): (&str, &[&str]) = match load.model {
-        LoadModel::Prescribed => ("prescribed", &[]),
-        LoadModel::SpringMassDamper => ("spring_mass_damper", &["mass", "stiffness", "damping"]),
-        LoadModel::Wall => ("wall", &["mass", "stiffness", "damping", "gap", "relative_damping"]),
-    };
-    let relative_damping = Some(load.relative_damping).filter(|_| check.declared("load.relative_damping"));
-    let values = [
-        ("mass", load.mass),
-        ("stiffness", load.stiffness),
-        ("damping", load.damping),
-        ("gap", load.gap),
-        ("relative_damping", relative_damping),
-    ];
-    for (name, value) in values {
-        if value.is_some() && !uses.contains(&name) {
-            check.warning(&format!("load.{name}"), format!("`{name}` has no effect with model \"{model}\""));
-        }
-        // only a simulation asks for the mass before a wall
-        let needed = name == "stiffness" || (name == "mass" && load.model == LoadModel::SpringMassDamper);
-        let needed = needed && uses.contains(&name);
-        if value.is_none() && needed {
-            check.missing("load", name, format!("missing `{name}` in [load]: model \"{model}\" needs it"));
         }
     }
 }

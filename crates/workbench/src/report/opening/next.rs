@@ -134,7 +134,7 @@ fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) 
 fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
     match &view.design.status {
         DesignStatus::Met if view.agreement() == Agreement::Contradicts => format!(
-            "do not use the designed one (`{DESIGNED_PROJECT}`) before the machine agrees: it keeps to every specification over the family, and the machine contradicts it"
+            "do not use the designed one (`{DESIGNED_PROJECT}`) before the machine agrees: it keeps to every specification over the family, and the machine contradicts it; `phea design` goes on from there with the plant that does, or says what cannot be had"
         ),
         DesignStatus::Met if given_is_met => {
             format!("keep it, or take the designed one of `{DESIGNED_PROJECT}` where its numbers are better")

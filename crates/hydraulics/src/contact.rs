@@ -1,3 +1,5 @@
+//! A surface that is pressed into: an end stop, a wall.
+
 use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};
@@ -42,7 +44,7 @@ impl<S: Scalar> Contact<S> {
     ///
     /// # Example
     /// ```
-    /// use phea_hydraulics::machine::Contact;
+    /// use phea_hydraulics::contact::Contact;
     /// let stop = Contact { stiffness: 1e8, relative_damping: 0.5 };
     /// assert_eq!(stop.force(-1e-6, 0.3), 0.0);
     /// assert_eq!(stop.force(0.5, 0.0), 5e7);

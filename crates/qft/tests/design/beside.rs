@@ -1,0 +1,91 @@
+//! Designs that serve a plant beside their family: they must be those of a family that has it among its members.
+
+use phea_dynamics::uncertain_plant::UncertainPlant;
+use phea_qft::design::{Design, DesignOptions, DesignProblem, DesignRun, DesignStatus};
+use phea_qft::family::{Extent, Family, UncertainFamily};
+use phea_qft::specification::Requirement;
+use phea_qft::verification::{TrackingJudgement, Verdict};
+
+use super::problems::{
+    EVERYWHERE, assert_met, audited, demand, designed, high_frequency_gain, least_gain, problem, rational,
+    stability, structure, uncertain,
+};
+
+/// k/((s + 1)(T s + 1)), these values the nominal ones.
+fn lagging([gain, lag]: [f64; 2]) -> UncertainPlant {
+    let parameters = [("k", gain, 1.0, 4.0), ("T", lag, 0.01, 0.4)];
+    uncertain(&parameters, |p| (vec![p[0]], vec![p[1], p[1] + 1.0.into(), 1.0.into()]))
+}
+
+const QUICK: [f64; 2] = [1.0, 0.01];
+const LATE: [f64; 2] = [4.0, 0.2];
+
+/// |T| <= 1.3 and |S| <= 2 |s/(s + 3)|, of the quick plant and these others.
+fn regulation(others: &[[f64; 2]]) -> DesignProblem {
+    let frequencies = [0.1, 1.0, 10.0];
+    let sensitivity = Requirement::Sensitivity(rational(&[2.0, 0.0], &[1.0, 3.0]));
+    let specifications = vec![stability(1.3, &frequencies), demand(sensitivity, &frequencies, EVERYWHERE)];
+    let members = others.iter().map(|one| one.to_vec()).collect();
+    let family = UncertainFamily::new(lagging(QUICK), vec![], members, Extent::Members).unwrap();
+    problem(Family::Uncertain(family), specifications)
+}
+
+fn options() -> DesignOptions {
+    least_gain(structure("I Z P", [0.01, 1e4], [0.01, 1e3], [0.1, 2.0]), 1)
+}
+
+fn assert_same(one: &Design, other: &Design) {
+    let [one, other] = [one, other].map(high_frequency_gain);
+    assert!((one.0 - other.0).abs() < 0.02 && one.1 == other.1, "{one:?} {other:?}");
+}
+
+#[test]
+fn a_plant_beside_the_family_counts_as_a_member_does() {
+    let both = regulation(&[LATE]);
+    let truth = designed(&both, options());
+    assert_met(&both, &truth, TrackingJudgement::Spread);
+
+    let alone = regulation(&[]);
+    let without = designed(&alone, options());
+    assert_met(&alone, &without, TrackingJudgement::Spread);
+    // the plant is worth taking in: the design that does not know it breaks a limit with it
+    assert_eq!(audited(&both, &without, TrackingJudgement::Spread).verdict, Verdict::Violated);
+
+    let beside = DesignProblem { beside: vec![lagging(LATE)], ..alone };
+    let found = designed(&beside, options());
+    assert_met(&beside, &found, TrackingJudgement::Spread);
+    assert_eq!(found.beside.len(), 1);
+    assert_eq!(found.beside[0].verdict, Verdict::Met);
+    assert_eq!(audited(&both, &found, TrackingJudgement::Spread).verdict, Verdict::Met);
+    assert_same(&found, &truth);
+}
+
+#[test]
+fn a_design_goes_on_with_a_plant_that_it_takes_in() {
+    let both = regulation(&[LATE]);
+    let mut run = DesignRun::new(regulation(&[]), options());
+    while run.step().unwrap() {}
+    let rounds = run.design().unwrap().rounds.clone();
+    let mut run = run.taking_in(lagging(LATE)).unwrap();
+    while run.step().unwrap() {}
+    let found = run.design().unwrap();
+    assert_eq!(found.status, DesignStatus::Met);
+    assert!(found.rounds.starts_with(&rounds) && found.rounds.len() > rounds.len());
+    assert_eq!(audited(&both, found, TrackingJudgement::Spread).verdict, Verdict::Met);
+    assert_same(found, &designed(&both, options()));
+}
+
+/// What a plant and a second one cannot both have is told by the relaxation of a family of both.
+#[test]
+fn what_cannot_be_had_with_it_is_told_with_the_least_relaxation() {
+    let too_late = [4.0, 0.4];
+    let relaxation = |design: &Design| match &design.status {
+        DesignStatus::Infeasible(relaxation) => relaxation.relaxation_db,
+        other => panic!("{other:?}"),
+    };
+    let truth = relaxation(&designed(&regulation(&[too_late]), options()));
+    let beside = DesignProblem { beside: vec![lagging(too_late)], ..regulation(&[]) };
+    let found = designed(&beside, options());
+    assert!(truth > 0.1 && (relaxation(&found) - truth).abs() < 0.03, "{} {truth}", relaxation(&found));
+    assert_eq!(found.beside[0].verdict, Verdict::Violated);
+}

@@ -1,0 +1,147 @@
+//! What a design does when the machine contradicts it.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use phea_workbench::answer::Answer;
+use phea_workbench::command::{self, CommandError, Progress, Request};
+use phea_workbench::design::{DESIGNED_PROJECT, NEAREST_PROJECT};
+use serde_json::Value;
+
+use super::ask::{HOSE, answer, json, load, number, source};
+
+const REPAIRED: Request = Request::Design { seed: None, stages: false, repair: true };
+const LEFT: Request = Request::Design { seed: None, stages: false, repair: false };
+
+/// The hose without its family: one rig, whose chambers and hoses have their own compliance.
+fn one_rig() -> String {
+    let (before, rest) = HOSE.split_once("[uncertainty]").unwrap();
+    let (_, after) = rest.split_once("[[specification]]").unwrap();
+    format!("{before}[[specification]]{after}")
+}
+
+fn object(said: &Answer) -> Value {
+    serde_json::from_str(&said.json).unwrap()
+}
+
+fn file<'a>(said: &'a Answer, name: &str) -> Option<&'a str> {
+    let found = said.files.iter().find(|file| file.name == name)?;
+    Some(std::str::from_utf8(&found.bytes).unwrap())
+}
+
+fn worst_margin(audit: &Value) -> f64 {
+    let findings = audit["specifications"].as_array().unwrap();
+    findings.iter().map(|finding| number(finding, "worst_margin_db")).fold(f64::INFINITY, f64::min)
+}
+
+/// Over the box of Table 6.3 and with waves in the rig itself, order 4 does not do: the limits have to give, and the controller for wider
+/// ones is one with which the machine with waves comes to rest.
+#[test]
+fn what_cannot_be_had_with_waves_is_told() {
+    let said = answer(HOSE, &[], &[], &REPAIRED);
+    let object = object(&said);
+    let repair = &object["repair"];
+    // the design is that of the declared family, as it was
+    assert!(!said.affirmative);
+    assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
+    assert_eq!((&repair["status"], &repair["plant_before"]["stable"]), (&"infeasible".into(), &false.into()));
+    assert_eq!(repair["taken_in"], "the same with waves in its lines");
+    // the controller that is told comes as near as is told, to the family and to the plant with waves
+    let relaxation = number(repair, "relaxation_db");
+    assert!(relaxation > 0.01, "{relaxation} dB");
+    let both = [&repair["nearest"]["verification"], &repair["plant_after"]];
+    let worst = both.map(worst_margin).into_iter().fold(f64::INFINITY, f64::min);
+    assert!((worst + relaxation).abs() < 0.01, "{worst} {relaxation}");
+    let runs = repair["nearest_machine"]["runs"].as_array().unwrap();
+    let waves = runs.iter().find(|run| run["what"] == repair["taken_in"]).unwrap();
+    assert_eq!(waves["agreement"], "agrees");
+    // the project that is written with it says the same
+    let written = json(file(&said, NEAREST_PROJECT).unwrap(), &[], &[], &Request::Verify);
+    assert_eq!(written["stable"], true);
+    assert!((worst_margin(&written) - worst_margin(&repair["nearest"]["verification"])).abs() < 1e-3);
+    // ORIGIN: analytic, pi c/(2 L) with the wave's speed in the hose at 35 bar
+    assert!((number(repair, "quarter_wave_rad_per_s") - 560.0).abs() < 1.0);
+    for words in
+        ["Repair: infeasible", "beyond the quarter wave", "what would help: a line shorter than 0.63 m"]
+    {
+        assert!(said.text.contains(words), "{words}: {}", said.text);
+    }
+}
+
+/// The hose with limits so much wider that a controller of order 4 serves waves too; at the corners of its box and in between.
+fn wider() -> String {
+    let changes = [
+        ("\nlimit = 1.3\n", "\nlimit = 1.36\n"),
+        ("2116*(s + 75)/75", "2116*1.05*(s + 75)/75"),
+        ("\"400*50\"", "\"400*50*0.95\""),
+        ("points = 3", "points = 2"),
+        ("points = 5", "points = 2"),
+    ];
+    changes.into_iter().fold(HOSE.to_string(), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    })
+}
+
+/// A controller that the machine with waves contradicts is replaced by one that serves both.
+#[test]
+fn a_design_is_repaired_where_it_can_be() {
+    let first = object(&answer(&wider(), &[], &[], &LEFT));
+    assert_eq!((&first["status"], &first["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
+    assert_eq!((&first["repair"], &first["repair_reason"]), (&Value::Null, &"it was not asked for".into()));
+
+    let said = answer(&wider(), &[], &[], &REPAIRED);
+    let object = object(&said);
+    let repair = &object["repair"];
+    assert_eq!((&object["status"], &repair["status"]), (&"met".into(), &"met".into()), "{repair}");
+    assert_eq!(object["machine"]["verdict"], "agrees");
+    assert!(said.affirmative);
+    assert_eq!(repair["plant_after"]["verdict"], "met");
+    // the first design is told beside it
+    assert_eq!(repair["before"]["controller"], first["controller"]);
+    assert!(said.text.contains("before the repair"), "{}", said.text);
+    // what it does with waves in every plant is what the audit of the same project says that declares them
+    let written = file(&said, DESIGNED_PROJECT).unwrap();
+    let declared = json(written, &["line.model=transmission_line"], &[], &Request::Verify);
+    let whole = &repair["family_with_waves"];
+    assert_eq!((&declared["verdict"], &declared["stable"]), (&whole["verdict"], &whole["stable"]));
+    assert!((worst_margin(&declared) - worst_margin(whole)).abs() < 1e-6);
+    assert_eq!(file(&said, NEAREST_PROJECT), None);
+}
+
+/// A command that reaches its limit at once is in no linear plant: nothing is taken in, and the answer says what to change.
+#[test]
+fn what_no_plant_explains_is_told() {
+    let settings = [
+        "line.model=segments",
+        "line.segments=4",
+        "line.relaxation_time=0.3 ms",
+        "controller.saturation=0.02 V",
+    ];
+    let said = answer(&one_rig(), &settings, &[], &REPAIRED);
+    let object = object(&said);
+    assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
+    let repair = &object["repair"];
+    assert_eq!((&repair["status"], &repair["taken_in"]), (&"nothing_to_take_in".into(), &Value::Null));
+    let sentences = repair["sentences"].as_array().unwrap();
+    assert!(
+        sentences.iter().any(|one| one.as_str().unwrap().contains("command was at its limit")),
+        "{repair}"
+    );
+}
+
+/// A repair that is stopped leaves the design as it was.
+#[test]
+fn a_repair_may_be_stopped() {
+    let loaded = load(&wider(), &[], &[]);
+    let mut stages = Vec::new();
+    let mut watch = |progress: Progress| {
+        stages.push(progress.stage);
+        !progress.stage.starts_with("designing again")
+    };
+    let said: Result<Answer, CommandError> =
+        command::answer_watched(&source(&wider()), &loaded, &[], &REPAIRED, &mut watch);
+    let said = said.unwrap();
+    let object = object(&said);
+    assert_eq!((&object["status"], &object["repair"]["status"]), (&"met".into(), &"stopped".into()));
+    assert!(!said.affirmative && stages.iter().any(|stage| stage.starts_with("designing again")));
+}
