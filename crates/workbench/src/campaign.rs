@@ -71,14 +71,6 @@ pub enum CampaignError {
         /// As written.
         path: String,
     },
-    /// A scenario without a controller.
-    #[error(
-        "a campaign draws machines under a controller: scenario \"{name}\" states a `command` and runs open loop"
-    )]
-    OpenLoop {
-        /// Of the scenario.
-        name: String,
-    },
     /// A start that was saved is what it is.
     #[error("[campaign] varies `{path}`, but the scenario goes on from a saved state")]
     SavedStart {

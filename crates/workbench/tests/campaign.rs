@@ -72,6 +72,72 @@ fn rows_are_the_same_in_lanes_one_by_one_and_on_any_number_of_threads() {
     }
 }
 
+/// The campaign without a controller: a command steps to 0.5 V, and the load moves.
+fn open_loop() -> (Memory, Loaded) {
+    let without = |text: &str, table: &str| {
+        let (before, after) = text.split_once(table).unwrap();
+        let (_, after) = after.split_once("\n\n").unwrap();
+        [before, after].concat()
+    };
+    let closed = without(&without(CAMPAIGN, "[controller]\n"), "[prefilter]\n");
+    let reference = "reference = [{ at = \"2 s\", force = \"4 kN\" }]";
+    let command = "command = { at = \"0.05 s\", voltage = \"0.5 V\" }";
+    let text = closed.replace(reference, command).replace("\"1 ms\"", "\"0.25 ms\"");
+    let source = Memory::default().with("open.toml", text);
+    let settings: Vec<String> =
+        SHORT.iter().filter(|text| !text.contains("reference")).map(|text| (*text).to_string()).collect();
+    let loaded =
+        project::read(&source, "open.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
+    (source, loaded)
+}
+
+/// Machines that a stated command drives: the same rows in lanes and alone, and each as `simulate` has it.
+#[test]
+fn an_open_loop_is_drawn_as_a_closed_one_is() {
+    let (source, loaded) = open_loop();
+    let plan = Plan::new(&source, &loaded, 1).unwrap();
+    let expected = plan.rows(0..45, SCALAR).unwrap();
+    assert!(expected.iter().all(|row| row.status() == "completed"));
+    for threads in [1, 2] {
+        let rows = plan.rows(0..45, lanes(threads)).unwrap();
+        assert_eq!(plan.table(&rows), plan.table(&expected), "{threads} threads");
+    }
+    // a force is asked for by nobody, whatever begins
+    let header = plan.table(&[]);
+    for (event, metric) in [(1, "force_peak_n"), (2, "force_peak_n"), (2, "control_rms_v")] {
+        assert!(header.contains(&format!(",event{event}_{metric}")), "{header}");
+    }
+    assert!(!header.contains("disturbance") && !header.contains("settling") && !header.contains("error"));
+    let summary = Summary::of(&plan, &expected);
+    let spreads: Vec<usize> = summary.metrics.iter().map(|of| of.iter().flatten().count()).collect();
+    assert_eq!(spreads, [3, 3]);
+    for run in 0..2 {
+        let request = CampaignRequest { seed: 1, asked: CampaignRuns::One(run), files: false };
+        let answer = command::answer(&source, &loaded, &[], &Request::Campaign(request)).unwrap();
+        assert!(answer.text.contains("open loop"), "{}", answer.text);
+        let project = plan.settings(&plan.draw(run));
+        let settings: Vec<String> = SHORT
+            .iter()
+            .filter(|text| !text.contains("reference"))
+            .map(|text| (*text).to_string())
+            .chain(project)
+            .collect();
+        let drawn = project::read(&source, "open.toml", &settings, &[]).unwrap();
+        let simulated =
+            simulate_project(&source, &Setup::new(&drawn.project).unwrap(), &mut |_| true).unwrap().remove(0);
+        let force_n = plan.forces(run..run + 1, lanes(1)).unwrap().remove(0);
+        let seen = simulated.record.signal("force_n");
+        assert_eq!((simulated.looks_per_row, seen.len()), (1, force_n.len()));
+        assert!(seen.iter().zip(&force_n).all(|(one, other)| one.to_bits() == other.to_bits()), "run {run}");
+        let row = &expected[run as usize];
+        for ((_, metrics), numbers) in simulated.windows.iter().zip(&row.ran().unwrap().metrics) {
+            let of = |name: &str| numbers[METRIC_NAMES.iter().position(|known| *known == name).unwrap()];
+            assert_eq!(metrics.force_peak_n.ok(), of("force_peak_n"));
+            assert!(metrics.force_peak_n.is_ok() && of("control_peak_v") == Some(0.5));
+        }
+    }
+}
+
 /// More runs than a thread takes at once: the rows of several batches come in their order.
 #[test]
 fn batches_come_in_their_order_on_any_number_of_threads() {

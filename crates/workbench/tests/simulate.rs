@@ -374,9 +374,9 @@ fn a_long_scenario_says_how_often_it_was_looked_at() {
 
 #[test]
 fn projects_stand_side_by_side() {
-    let [one, other] = ["1.9e-4", "3.03e-5"].map(|volume| {
-        let volume = format!("line.volume={volume}");
-        load(BENCHMARK, &[volume.as_str(), "scenario.0.duration=3.4 s"])
+    let [one, other] = [("1.9e-4", "10 kN"), ("3.03e-5", "3 kN")].map(|(volume, capacity)| {
+        let settings = [format!("line.volume={volume}"), format!("force_sensor.capacity={capacity}")];
+        load(BENCHMARK, &[settings[0].as_str(), settings[1].as_str(), "scenario.0.duration=3.4 s"])
     });
     let answer = command::compare_watched(&Memory::default(), &[one, other], true, &mut |_| true).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
@@ -390,6 +390,9 @@ fn projects_stand_side_by_side() {
     assert_eq!(names.len(), 6, "{names:?}");
     assert!(names.contains(&"compare-1.svg") && names.contains(&"compare-1-event-2.png"), "{names:?}");
     assert!(answer.text.contains("disturbance peak"), "{}", answer.text);
+    let overloads: Vec<&str> = answer.text.lines().filter(|line| line.contains("is overloaded")).collect();
+    assert!(overloads.len() == 1 && overloads[0].starts_with("   B: from 2."), "{}", answer.text);
+    assert!(overloads[0].contains("its capacity is 3 kN"), "{}", answer.text);
 }
 
 /// Peaks of the force deviation for a load that moves by 5 mm as a first-order lag, hose and pipe with the controller of each.

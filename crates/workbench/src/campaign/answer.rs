@@ -199,7 +199,7 @@ fn events(plan: &Plan, summary: &Summary) -> Vec<EventRow> {
             kind: window.cause.word(),
             time_s: window.start_s,
             until_s: window.end_s,
-            metrics: meaningful(window)
+            metrics: meaningful(window, plan.is_open_loop())
                 .map(|metric| MetricRow {
                     name: METRIC_NAMES[metric],
                     spread: spread_row(spreads[metric], summary.driven()),

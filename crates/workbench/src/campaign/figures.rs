@@ -38,7 +38,10 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
         let words = Words::new(
             format!("campaign-bands-event-{}", index + 1),
             format!("Enlarged: {}", cause_words(window)),
-            format!("The bands around what begins it, and the run with the worst {}.", worst_words(window)),
+            format!(
+                "The bands around what begins it, and the run with the worst {}.",
+                worst_words(window, plan.is_open_loop())
+            ),
         );
         let span = [(window.start_s - BEFORE_S).max(0.0), (window.start_s + AFTER_S).min(end)];
         figures.push(picture(words, plan, summary, span, worst_series(plan, summary, index)?));
@@ -47,8 +50,9 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
 }
 
 /// What a window's worst run is chosen by.
-fn worst_metric(window: &Window) -> &'static str {
+fn worst_metric(window: &Window, open_loop: bool) -> &'static str {
     match window.cause {
+        _ if open_loop => "force_peak_n",
         Cause::ReferenceStep { .. } => "overshoot_percent",
         Cause::ReferenceMotion { .. } => "tracking_error_peak_n",
         Cause::CommandStep { .. } | Cause::CommandMotion { .. } => "force_peak_n",
@@ -56,8 +60,9 @@ fn worst_metric(window: &Window) -> &'static str {
     }
 }
 
-fn worst_words(window: &Window) -> &'static str {
+fn worst_words(window: &Window, open_loop: bool) -> &'static str {
     match window.cause {
+        _ if open_loop => "force",
         Cause::ReferenceStep { .. } => "overshoot",
         Cause::ReferenceMotion { .. } => "tracking error",
         Cause::CommandStep { .. } | Cause::CommandMotion { .. } => "force",
@@ -67,7 +72,7 @@ fn worst_words(window: &Window) -> &'static str {
 
 /// The whole course of a window's worst run.
 fn worst_series(plan: &Plan, summary: &Summary, index: usize) -> Result<Option<TimeSeries>, CampaignError> {
-    let metric = plan.windows().get(index).map(worst_metric);
+    let metric = plan.windows().get(index).map(|window| worst_metric(window, plan.is_open_loop()));
     let place = METRIC_NAMES.iter().position(|name| Some(*name) == metric);
     let spread = place.and_then(|place| summary.metrics.get(index).and_then(|spreads| spreads[place]));
     let Some((_, run)) = spread.map(|spread| spread.worst) else { return Ok(None) };
@@ -89,11 +94,11 @@ fn picture(
         times_s: bands.times_s.clone(),
         values: bands.force_n.iter().map(|forces| forces[quantile]).collect(),
     };
-    let reference = TimeSeries {
+    let reference = (!plan.is_open_loop()).then(|| TimeSeries {
         name: "reference".to_string(),
         times_s: plan.times_s.clone(),
         values: plan.reference_n.clone(),
-    };
+    });
     let inside = |window: &&Window| window.start_s >= span_s[0] && window.start_s <= span_s[1];
     let event =
         |window: &Window| TimeEvent { time_s: window.start_s, label: window.cause.label().to_string() };

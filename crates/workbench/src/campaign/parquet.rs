@@ -100,7 +100,10 @@ fn contents(columns: &Columns, rows: &[Row]) -> Vec<Column> {
     all.extend((0..columns.paths.len()).map(|place| double(&|row| row.values.get(place).copied())));
     all.extend((0..3).map(|lump| double(&|row| row.lumps.map(|lumps| lumps[lump]))));
     for (number, window) in columns.windows.iter().enumerate() {
-        all.extend(meaningful(window).map(|metric| double(&|row| row.ran()?.metrics.get(number)?[metric])));
+        all.extend(
+            meaningful(window, columns.open_loop)
+                .map(|metric| double(&|row| row.ran()?.metrics.get(number)?[metric])),
+        );
     }
     let force = |index: usize| rows.iter().map(|row| row.ran()?.force_n.get(index).copied()).collect();
     all.extend((0..columns.times_s.len()).map(|index| Column::Single(force(index))));

@@ -55,7 +55,7 @@ pub struct Plan {
     pub(super) columns: Columns,
     /// Of every look, s.
     pub(super) times_s: Vec<f64>,
-    /// At every look, N; at a step, as it is from then on.
+    /// At every look, N; at a step, as it is from then on. Zero in an open loop.
     pub(super) reference_n: Vec<f64>,
     /// Looks at the times of the bands.
     pub(super) band_looks: Vec<usize>,
@@ -93,9 +93,6 @@ impl Plan {
                 .ok_or_else(|| CampaignError::NoSuchScenario { name: name.clone() })?,
         };
         let scenario = project.scenarios.get(place).ok_or(CampaignError::NoScenario)?.clone();
-        if scenario.is_open_loop() {
-            return Err(CampaignError::OpenLoop { name: scenario.name });
-        }
         let ranges = ranges(&project, campaign, &scenario)?;
         let bench = Bench::of_scenario(&Setup::new(&project).map_err(SimulateError::from)?, &scenario)?;
         let driven = driven(source, &project, &bench, &scenario)?;
@@ -113,6 +110,7 @@ impl Plan {
                 .map(|time_s| plain(*time_s))
                 .collect(),
             windows,
+            open_loop: scenario.is_open_loop(),
         };
         let look = look(&bench.control);
         Ok(Plan {
@@ -144,6 +142,11 @@ impl Plan {
     /// What is looked at by itself in each run.
     pub fn windows(&self) -> &[Window] {
         &self.columns.windows
+    }
+
+    /// Whether a stated command drives the valve, and no controller.
+    pub(crate) fn is_open_loop(&self) -> bool {
+        self.columns.open_loop
     }
 
     /// Where the random numbers come from.
@@ -202,6 +205,9 @@ impl Plan {
 
     /// The gain of a feed-forward that the project leaves to be derived: the drawn machine must not change the controller.
     fn feed_forward(&self) -> Option<String> {
+        if self.is_open_loop() {
+            return None;
+        }
         let declared = self.project.controller.as_ref()?.load_velocity_feed_forward.as_ref()?;
         let linear = &self.bench.rig.linear;
         let gain = linear.useful_area / linear.flow_gain;
@@ -265,7 +271,7 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
         MotionShape::File { file } => Some(file),
         _ => None,
     });
-    let signals = scenario.reference.iter().chain(&scenario.external_force);
+    let signals = scenario.reference.iter().chain(&scenario.command).chain(&scenario.external_force);
     let signals = signals.filter_map(|signal| signal.file.as_ref());
     let signals = signals.chain(scenario.start.iter().filter_map(|start| start.file.as_ref()));
     for bytes in motion.chain(signals).filter_map(|name| source.read(&project.path_of(name)).ok()) {

@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::scalar::Lanes;
 use phea_dynamics::simulation::{
     ClosedLoop, HeldPlant, Lane, Outcome, Queue, Sensed, SimulationError, Status, Task, drive,
@@ -114,13 +115,21 @@ pub(super) fn in_lanes<const L: usize>(
     give: Give<'_>,
 ) -> Result<(), CampaignError> {
     let plan = shared.plan;
-    if !matches!(plan.bench.control, Control::Continuous(_)) {
+    if matches!(plan.bench.control, Control::Sampled(_)) {
         return one_by_one(shared, most, give);
     }
     let settings = &plan.bench.settings;
     let machine = plan.bench.machine.convert(&mut |value| Lanes([value; L]));
     let setup = Setup::new(&plan.project).map_err(SimulateError::from)?;
     let sensed = Sensed::new(machine, &setup.sensor).map_err(SimulateError::from)?;
+    if plan.is_open_loop() {
+        let prefilter = TransferFunction::gain_only(1.0);
+        let mut held = HeldPlant::new(sensed, &prefilter).map_err(SimulateError::from)?;
+        let machine: fn(&mut HeldPlant<Sensed<Machine<Lanes<L>>>>) -> &mut Machine<Lanes<L>> = in_hold;
+        return driven(shared, (most, give), |batch| {
+            drive(&mut held, &mut Lanewise { batch, machine }, settings)
+        });
+    }
     let control = setup.controller.ok_or(SimulateError::NoController)?;
     let gain = plan.bench.feed_forward;
     let mut closed = ClosedLoop::new(sensed, &control, gain).map_err(SimulateError::from)?;
@@ -132,7 +141,7 @@ fn in_loop<S>(system: &mut ClosedLoop<Sensed<Machine<S>>>) -> &mut Machine<S> {
     system.plant_mut().plant_mut()
 }
 
-fn in_hold(system: &mut HeldPlant<Sensed<Machine>>) -> &mut Machine {
+fn in_hold<S>(system: &mut HeldPlant<Sensed<Machine<S>>>) -> &mut Machine<S> {
     system.plant_mut().plant_mut()
 }
 

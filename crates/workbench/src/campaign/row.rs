@@ -32,6 +32,16 @@ pub const STATUS_WORDS: [&str; 6] =
 
 const REFUSED: &str = "refused";
 
+/// What is measured against the force that is asked for.
+const OF_A_REFERENCE: [&str; 6] = [
+    "overshoot_percent",
+    "rise_time_s",
+    "settling_time_s",
+    "disturbance_peak_n",
+    "steady_state_error_n",
+    "tracking_error_peak_n",
+];
+
 /// Hexadecimal digits of the sum that ends a row.
 const CHECK_LENGTH: usize = 8;
 
@@ -118,21 +128,15 @@ pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; METRIC_NAMES.len()] {
     ]
 }
 
-/// Which of [`METRIC_NAMES`] a window can have.
-pub(crate) fn meaningful(window: &Window) -> impl Iterator<Item = usize> + use<> {
+/// Which of [`METRIC_NAMES`] a window can have; in an open loop no force is asked for.
+pub(crate) fn meaningful(window: &Window, open_loop: bool) -> impl Iterator<Item = usize> + use<> {
     let left_out: &[&str] = match window.cause {
         Cause::ReferenceStep { .. } => &["disturbance_peak_n", "tracking_error_peak_n", "force_peak_n"],
         Cause::ReferenceMotion { .. } => {
             &["overshoot_percent", "rise_time_s", "settling_time_s", "disturbance_peak_n", "force_peak_n"]
         }
-        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => &[
-            "overshoot_percent",
-            "rise_time_s",
-            "settling_time_s",
-            "disturbance_peak_n",
-            "steady_state_error_n",
-            "tracking_error_peak_n",
-        ],
+        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => &OF_A_REFERENCE,
+        Cause::LoadMotion | Cause::ExternalForce if open_loop => &OF_A_REFERENCE,
         Cause::LoadMotion | Cause::ExternalForce => {
             &["overshoot_percent", "rise_time_s", "tracking_error_peak_n", "force_peak_n"]
         }
@@ -147,6 +151,8 @@ pub(super) struct Columns {
     pub(super) mark: String,
     pub(super) paths: Vec<String>,
     pub(super) windows: Vec<Window>,
+    /// Whether a stated command drives the valve.
+    pub(super) open_loop: bool,
     /// Of the bands, s.
     pub(super) times_s: Vec<f64>,
 }
@@ -160,7 +166,7 @@ impl Columns {
             let _ = write!(text, ",{name}");
         }
         for (number, window) in self.windows.iter().enumerate() {
-            for metric in meaningful(window) {
+            for metric in meaningful(window, self.open_loop) {
                 let _ = write!(text, ",event{}_{}", number + 1, METRIC_NAMES[metric]);
             }
         }
@@ -208,7 +214,7 @@ impl Columns {
         }
         for (number, window) in self.windows.iter().enumerate() {
             let metrics = ran.and_then(|ran| ran.metrics.get(number));
-            for metric in meaningful(window) {
+            for metric in meaningful(window, self.open_loop) {
                 cell(&mut text, metrics.and_then(|metrics| metrics[metric]));
             }
         }
@@ -257,7 +263,7 @@ impl Columns {
         };
         let mut metrics = vec![[None; METRIC_NAMES.len()]; self.windows.len()];
         for (window, numbers) in self.windows.iter().zip(&mut metrics) {
-            for metric in meaningful(window) {
+            for metric in meaningful(window, self.open_loop) {
                 numbers[metric] = number(cells.next()?)?;
             }
         }
@@ -346,6 +352,7 @@ mod tests {
                 Window { cause: step, start_s: 1.0, end_s: 2.0 },
                 Window { cause: Cause::LoadMotion, start_s: 2.0, end_s: 3.0 },
             ],
+            open_loop: false,
             times_s: vec![0.0, 1.5, 3.0],
         }
     }

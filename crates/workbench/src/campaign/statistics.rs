@@ -57,7 +57,8 @@ impl Summary {
         let metrics: Vec<[Option<Spread>; METRIC_NAMES.len()]> = (0..plan.windows().len())
             .map(|window| {
                 let mut spreads = [None; METRIC_NAMES.len()];
-                for metric in plan.windows().get(window).into_iter().flat_map(meaningful) {
+                let of_window = |window| meaningful(window, plan.is_open_loop());
+                for metric in plan.windows().get(window).into_iter().flat_map(of_window) {
                     spreads[metric] = spread(driven.iter().map(|(run, ran)| {
                         (*run, ran.metrics.get(window).and_then(|numbers| numbers[metric]))
                     }));

@@ -106,7 +106,7 @@ fn metrics(plan: &Plan, summary: &Summary) -> String {
     let mut rows = table(&heads.iter().map(String::as_str).collect::<Vec<_>>());
     for (window, spreads) in plan.windows().iter().zip(&summary.metrics) {
         let mut name = cause_words(window);
-        for metric in meaningful(window) {
+        for metric in meaningful(window, plan.is_open_loop()) {
             let missing =
                 without(metric, spreads[metric], driven).map_or(String::new(), |text| format!("; {text}"));
             let mut cells = vec![std::mem::take(&mut name), format!("{}{missing}", metric_words(metric))];

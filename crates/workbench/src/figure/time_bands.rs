@@ -33,8 +33,8 @@ pub struct TimeBandsInput {
     pub middle: TimeSeries,
     /// A run apart from the others.
     pub single: Option<TimeSeries>,
-    /// What is commanded.
-    pub reference: TimeSeries,
+    /// What is commanded, where a force is.
+    pub reference: Option<TimeSeries>,
     /// Instants to mark.
     pub events: Vec<TimeEvent>,
     /// From and to, s.
@@ -44,8 +44,10 @@ pub struct TimeBandsInput {
 /// Draws the figure.
 pub fn time_bands(words: Words, input: &TimeBandsInput) -> Figure {
     let [start, end] = input.span_s;
-    let lines: Vec<(&TimeSeries, Stroke)> = [(&input.reference, reference_stroke())]
-        .into_iter()
+    let lines: Vec<(&TimeSeries, Stroke)> = input
+        .reference
+        .iter()
+        .map(|series| (series, reference_stroke()))
         .chain(input.single.iter().map(|series| (series, single_stroke())))
         .chain([(&input.middle, middle_stroke())])
         .collect();

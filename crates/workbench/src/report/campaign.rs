@@ -112,7 +112,8 @@ fn metrics(plan: &Plan, summary: &Summary) -> Markup {
     heads.push("worst (run)");
     let driven = summary.driven();
     let of_window = |(window, spreads): (&Window, &[Option<Spread>; METRIC_NAMES.len()])| {
-        let rows = meaningful(window).map(|metric| spread_row(metric, spreads[metric], driven));
+        let rows =
+            meaningful(window, plan.is_open_loop()).map(|metric| spread_row(metric, spreads[metric], driven));
         (cause_words(window), rows.collect())
     };
     let windows = plan.windows().iter().zip(&summary.metrics);

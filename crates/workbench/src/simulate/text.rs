@@ -244,6 +244,11 @@ pub(crate) fn compare_text(comparison: &Comparison<'_>, asked: &[Loaded]) -> Str
     for name in comparison.scenarios() {
         let columns: Vec<Option<&ScenarioRun>> = comparison.runs_of(name).collect();
         out.push_str(&format!("\n{name}\n{}\n", side_by_side(&columns)));
+        for (number, run) in columns.iter().enumerate() {
+            for exceeded in run.iter().flat_map(|run| &run.exceeded) {
+                out.push_str(&format!("   {}: {}\n", letter(number), exceeded::words(exceeded)));
+            }
+        }
     }
     out
 }
