@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use num_complex::Complex64;
-use phea_dynamics::portable::pow;
+use phea_dynamics::analytic::Disc;
+use phea_dynamics::linear::Polynomial;
+use phea_dynamics::portable::{exp_complex, pow};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::simulation::small_signal;
@@ -15,7 +17,7 @@ use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, Member, Segments};
 use phea_hydraulics::machine::{Chambers, LoadModel, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
-use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
+use phea_hydraulics::plant::{BehindLines, Lateness, LinearLoad, Plant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
 use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -146,6 +148,24 @@ fn drawn(number: u64) -> Drawn {
 }
 
 impl Drawn {
+    /// F_e and the velocity of the load, by the command and by the ground, where nothing is fed forward.
+    fn force_and_velocity(&self, frequency: f64) -> [[Complex64; 2]; 2] {
+        let s = Complex64::new(0.0, frequency);
+        let inputs = [&[self.command], &self.inputs[..]].concat();
+        let (zero, one) = (Complex64::ZERO, Complex64::ONE);
+        [[one, zero, zero], [zero, one, s]].map(|drive| {
+            let found =
+                small_signal(&Commanded(self.machine, 0.0), &self.state, &inputs, &drive, frequency).unwrap();
+            let velocity = |part: fn(&Complex64) -> f64| {
+                let inputs: Vec<f64> =
+                    drive[1..].iter().map(part).chain(vec![0.0; self.inputs.len() - 2]).collect();
+                let state: Vec<f64> = found.iter().map(part).collect();
+                phea_dynamics::simulation::Plant::<f64>::disturbance(&self.machine, &state, &inputs)
+            };
+            [found[4] * self.sensor, Complex64::new(velocity(|value| value.re), velocity(|value| value.im))]
+        })
+    }
+
     fn small_signal(&self, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
         let inputs = [&[self.command], &self.inputs[..]].concat();
         let (zero, one) = (Complex64::ZERO, Complex64::ONE);
@@ -176,6 +196,84 @@ fn it_is_the_machine_for_small_motions() {
             }
         }
     }
+}
+
+/// The machine's own derivatives, its load's velocity on the command by algebra: K_x e^(-s tau), and behind a hold.
+#[test]
+fn a_late_feed_forward_is_the_machine_with_a_late_command() {
+    let mut prescribed = 0;
+    for number in 0..36 {
+        let rig = drawn(number);
+        let hold = if rig.plant.load == LinearLoad::Prescribed { 2e-3 } else { 0.0 };
+        prescribed += usize::from(hold > 0.0);
+        let (gain, delay) = (25.0, 1e-4 * pow(100.0, number as f64 / 35.0));
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind).fed_forward(Some(gain));
+        let moving = moving.late(Lateness { delay, hold });
+        for step in 0..14 {
+            let frequency = 0.01 * pow(1e6, f64::from(step) / 13.0);
+            let s = Complex64::new(0.0, frequency);
+            let held = if hold > 0.0 { (1.0 - exp_complex(-s * hold)) / (s * hold) } else { Complex64::ONE };
+            let gain = gain * exp_complex(-s * delay) * held;
+            let [[force, velocity], [ground_force, ground_velocity]] = rig.force_and_velocity(frequency);
+            let back = gain * force / (1.0 - gain * velocity);
+            let expected = [back / gain, ground_force + back * ground_velocity];
+            let told = moving.response(s);
+            for (told, expected) in told.into_iter().zip(expected) {
+                let error = (told / expected - 1.0).norm_sqr().sqrt();
+                assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");
+            }
+        }
+    }
+    assert_eq!(prescribed, 12);
+}
+
+/// Discs hold the response of a late plant between two frequencies, and shrink.
+#[test]
+fn a_late_feed_forward_is_enclosed() {
+    for number in [1, 4, 8, 14] {
+        let rig = drawn(number);
+        let plant = PlantInMotion::lumped(&rig.plant).fed_forward(Some(10.0));
+        let late = plant.late(Lateness { delay: 1e-3, hold: 0.0 });
+        for (start, width) in [(3.0, 1e-3), (80.0, 1e-4), (2000.0, 1e-5)] {
+            let ends = [start, start * (1.0 + width)];
+            let held: Disc = late.enclosure(ends);
+            for share in [0.0, 0.3, 1.0] {
+                let [command, _] = late.response(Complex64::new(0.0, start * (1.0 + share * width)));
+                assert!(held.contains(command) && held.radius() < 0.2 * command.norm_sqr().sqrt());
+            }
+        }
+    }
+}
+
+/// The plant's own poles in the right half plane against those with e^(-s tau) as six quotients of second order.
+#[test]
+fn poles_of_a_late_plant_are_counted() {
+    let plant = Plant::of_load_pressure(
+        &phea_hydraulics::reference_rig::nominal_plant(),
+        0.0,
+        LinearLoad::Yielding { mass: 100.0, damping: 500.0, stiffness: 2e5 },
+    );
+    let alone = Polynomial::new(plant.coefficients().command.denominator);
+    let mut seen = [0; 3];
+    for gain in [5.0, 20.0, 29.0, 40.0] {
+        let fed =
+            Plant { load_velocity_feed_forward: Some(gain), ..plant }.coefficients().command.denominator;
+        let back = Polynomial::new(fed).sum(&alone.scaled(-1.0));
+        for delay in [0.0, 1e-3, 3e-3, 1e-2, 2e-2, 3e-2, 4e-2] {
+            let part = delay / 6.0;
+            let quotient = |sign: f64| {
+                let one = Polynomial::new(vec![part * part / 12.0, sign * part / 2.0, 1.0]);
+                (0..6).fold(Polynomial::new(vec![1.0]), |product, _| product.product(&one))
+            };
+            let characteristic = alone.product(&quotient(1.0)).sum(&back.product(&quotient(-1.0)));
+            let growing = characteristic.roots().unwrap().iter().filter(|root| root.re > 0.0).count();
+            let late = PlantInMotion::lumped(&plant).fed_forward(Some(gain));
+            let late = late.late(Lateness { delay, hold: 0.0 });
+            assert_eq!(late.unstable_poles(), Some(growing), "{gain} V s/m, {delay} s");
+            seen[(growing / 2).min(2)] += 1;
+        }
+    }
+    assert!(seen[0] > 3 && seen[1] > 3, "{seen:?}");
 }
 
 /// Lumped lines make the quotient of polynomials, whatever numbers are stated.

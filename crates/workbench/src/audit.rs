@@ -112,8 +112,8 @@ pub struct ProjectAudit {
     pub members: usize,
     /// Whether everything between them belongs to the family.
     pub whole_box: bool,
-    /// Whether its plants have no polynomials, their lines being in motion.
-    pub in_motion: bool,
+    /// Why its plants have no polynomials; `None` where they have.
+    pub without_polynomials: Option<&'static str>,
     /// s; `None` for a continuous controller.
     pub sample_time_s: Option<f64>,
     /// Delay of the loop, s.
@@ -195,7 +195,7 @@ impl ProjectAudit {
                 Family::Uncertain(family) => family.members().len(),
                 Family::Measured(family) => family.plants().len(),
             },
-            in_motion: matches!(family, Family::Uncertain(family) if !family.plant().is_rational()),
+            without_polynomials: problem.without_polynomials,
             whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
@@ -214,7 +214,8 @@ impl ProjectAudit {
     }
 
     fn family_sentence(&self) -> String {
-        let moving = if self.in_motion { ", every plant by its response with lines in motion" } else { "" };
+        let why = self.without_polynomials.map(|why| format!(", every plant by its response with {why}"));
+        let moving = why.unwrap_or_default();
         match &self.names {
             PlantNames::Measured(names) => format!("Family: {}.", counted(names.len(), "measured response")),
             PlantNames::Parameters(names) if names.is_empty() => format!("Family: one plant{moving}."),

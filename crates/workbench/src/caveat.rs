@@ -3,8 +3,9 @@
 //! A simulation is of the whole machine. What the linear plant cannot count is told before the verdict; where a specification depends
 //! on it, the verdict is not proven.
 
-use crate::project::{LineModel, Load, Project, Pump, SpecificationKind, SupplyModel};
+use crate::project::{LineModel, Load, Project, Pump, SupplyModel};
 use crate::quantity::DisplayUnit;
+use crate::rig::limits_load_motion;
 use crate::setup::Setup;
 
 /// Something declared that the linear loop does not count.
@@ -110,8 +111,8 @@ fn is_measured(project: &Project) -> bool {
     project.family.as_ref().is_some_and(|family| !family.measured.is_empty())
 }
 
-/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion. A loop that acts at once
-/// counts it.
+/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion. A loop in continuous time
+/// counts it, late or not; one that samples counts the path where lines move.
 fn feed_forward(project: &Project) -> Option<Caveat> {
     let controller = project.controller.as_ref()?;
     let declared = controller.load_velocity_feed_forward?;
@@ -120,29 +121,33 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
     let why = match (actuator, controller.sample_time) {
         (None, _) => "no load is known of a [plant]",
         _ if is_measured(project) => "the plants of the family were measured without it",
-        (Some(_), Some(_)) => "the controller samples it",
-        (Some(_), None) if controller.delay > 0.0 => "controller.delay makes it late",
+        (Some(_), Some(_)) if yields || moving(project).is_none() => "the controller samples it",
         _ => return None,
+    };
+    let what = match yields || actuator.is_none() {
+        true => "this is the loop without it, and only a simulation is of the loop with it",
+        false => "of all specifications load_motion alone depends on it, and only a simulation has it",
     };
     (declared.gain != Some(0.0)).then(|| Caveat {
         sentence: format!(
-            "the load velocity that [controller] feeds forward is not counted, as {why}: this is the loop without it, and only a \
-             simulation is of the loop with it"
+            "the load velocity that [controller] feeds forward is not counted, as {why}: {what}"
         ),
-        unproven: yields || limits(project, SpecificationKind::LoadMotion),
+        unproven: yields || limits_load_motion(project),
     })
 }
 
 /// What the models of a linearisation, which are of the rig without its controller, do not count of the load's velocity.
 fn fed_in_loop(project: &Project) -> Option<String> {
-    let declared = project.controller.as_ref()?.load_velocity_feed_forward?;
+    let controller = project.controller.as_ref()?;
+    let declared = controller.load_velocity_feed_forward?;
+    let why = match controller.sample_time {
+        None if controller.delay == 0.0 => "which have no controller",
+        None => "as controller.delay makes it late",
+        Some(_) => "as the controller samples it",
+    };
     (declared.gain != Some(0.0) && feed_forward(project).is_none()).then(|| {
-        "the load velocity that [controller] feeds forward is not in these models, which have no controller: verify, design and \
-         simulate count it"
-            .to_string()
+        format!(
+            "the load velocity that [controller] feeds forward is not in these models, {why}: verify, design and simulate count it"
+        )
     })
-}
-
-fn limits(project: &Project, kind: SpecificationKind) -> bool {
-    project.specifications.iter().any(|specification| specification.kind == kind)
 }

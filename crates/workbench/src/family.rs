@@ -60,10 +60,10 @@ pub enum FamilyError {
     /// Measured responses that are no family.
     #[error("[family] `measured`: {0}")]
     Measured(#[from] MeasurementError),
-    /// A member with lines in motion and a coefficient that gives energy: how many of its own poles grow is not known.
+    /// A member without polynomials and with a coefficient that gives energy: how many of its own poles grow is not known.
     #[error(
-        "with lines in motion every coefficient of friction, leakage, valve and load must be zero or more, or the plant's own stability \
-         is not known: {member}"
+        "with lines in motion, or a load velocity fed forward late, every coefficient of friction, leakage, valve and load must be zero or \
+         more, or the plant's own stability is not known: {member}"
     )]
     NotPassive {
         /// The member's parameters with their values.

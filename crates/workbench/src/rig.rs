@@ -27,7 +27,8 @@ use phea_hydraulics::two_pressure::{
 use crate::project::{self, Project};
 
 pub(crate) use assembly::{actuator, components};
-pub(crate) use in_loop::feed_forward;
+pub use in_loop::FedForward;
+pub(crate) use in_loop::{as_response, feed_forward, limits_load_motion};
 pub(crate) use lines::{in_motion, lines};
 pub(crate) use numbers::Numbers;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
@@ -67,8 +68,8 @@ pub struct Rig {
     pub plant: Plant,
     /// The same with its lines in motion, which is then what every verdict is of; `None` where both are lumped.
     pub in_motion: Option<PlantInMotion>,
-    /// Gain of the load's velocity on the command, V s/m, where it is fed forward at once; [`Rig::in_loop`] counts it.
-    pub fed_at_once: Option<f64>,
+    /// What the linear loop counts of the load's velocity that is fed forward; [`Rig::in_loop`] has it.
+    pub fed: Option<FedForward>,
 }
 
 /// Why a project has no rig to compute with.
@@ -156,7 +157,7 @@ impl Rig {
             load,
             plant,
             in_motion,
-            fed_at_once: in_loop::fed_at_once(project, &linear),
+            fed: FedForward::of(project, &linear),
         })
     }
 }

@@ -38,6 +38,8 @@ pub struct RobustProblem {
     pub specification_names: Vec<String>,
     /// The rig itself as a family of one, where the family does not contain it, and what of it is outside.
     pub rig_outside: Option<(Family, String)>,
+    /// Why the plants of the family have no polynomials; `None` where they have.
+    pub without_polynomials: Option<&'static str>,
     /// What is declared that none of this counts.
     pub caveats: Vec<Caveat>,
 }
@@ -95,8 +97,10 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
     };
     let (specifications, specification_names) =
         named_specifications(setup, compensation.highest_frequency_rad_per_s())?;
+    let family = family(setup, source)?;
     Ok(RobustProblem {
-        family: family(setup, source)?,
+        without_polynomials: without_polynomials(setup, &family),
+        family,
         compensation,
         has_controller: setup.controller.is_some(),
         has_prefilter: setup.prefilter.is_some(),
@@ -108,6 +112,13 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
         },
         caveats: caveats(setup),
     })
+}
+
+fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static str> {
+    let Family::Uncertain(family) = family else { return None };
+    let moves = setup.rig().is_ok_and(|rig| rig.in_motion.is_some());
+    let why = if moves { "lines in motion" } else { "the load's velocity fed forward late" };
+    (!family.plant().is_rational()).then_some(why)
 }
 
 /// What must be kept to, and what it is called. Bounds on the rounding of converters are drawn at every design frequency that the loop

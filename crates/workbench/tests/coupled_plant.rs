@@ -7,6 +7,7 @@ use phea_dynamics::portable::exp;
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::Verdict;
 use phea_workbench::audit::{self, ProjectAudit, audit_project};
+use phea_workbench::command::Request;
 use phea_workbench::linear_loop::linear_loop;
 use phea_workbench::linearize::{Linearization, linearize};
 use phea_workbench::project::{self, Project};
@@ -14,6 +15,9 @@ use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
+use serde_json::Value;
+
+use super::ask::answer;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 /// 100 kg between the load cell and a spring of 200 kN/m.
@@ -113,9 +117,9 @@ fn what_is_not_counted_is_told_first() {
                 "load.stiffness=1e9",
                 "load.damping=1e5",
                 "controller.load_velocity_feed_forward={}",
-                "controller.delay=0.1 ms",
+                "controller.sample_time=0.1 ms",
             ],
-            "the load velocity that [controller] feeds forward is not counted, as controller.delay makes it late",
+            "the load velocity that [controller] feeds forward is not counted, as the controller samples it: this is the loop without it",
         ),
     ] {
         let view = audited(&satisfied(settings));
@@ -161,13 +165,18 @@ fn a_limited_pump_is_counted() {
     assert!((found.supply.pressure - (70e5 - falls)).abs() < 1e-3, "{found:?}");
 }
 
+/// The hose as one rig.
+fn without_uncertainty() -> String {
+    let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
+    let (_, specifications) = rest.split_once("[[specification]]").unwrap();
+    format!("{start}[[specification]]{specifications}")
+}
+
 /// A load that yields and is fed forward swings up once the gain is too large, with lumped lines as with waves in them: so do the
 /// machines of theory/feed_forward.md, 0.7 and 1.3 times A/K_qU.
 #[test]
 fn a_load_velocity_that_is_fed_forward_is_in_the_loop() {
-    let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
-    let (_, specifications) = rest.split_once("[[specification]]").unwrap();
-    let certain = format!("{start}[[specification]]{specifications}");
+    let certain = without_uncertainty();
     let area_over_gain = 29.3;
     for line in [&[][..], &["line.model=creeping", "line.relaxation_time=0.01"]] {
         for (share, stable) in [(0.0, true), (0.7, true), (1.3, false)] {
@@ -185,10 +194,66 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_loop() {
     }
 }
 
+/// A load that yields and is fed forward late: the loop is unstable behind 8.5 ms, stable behind 10 and unstable behind 13 again, where
+/// without the feed-forward none of them is stable, and so is the machine with viscous friction.
+#[test]
+fn a_late_feed_forward_is_in_the_loop() {
+    let text = without_uncertainty();
+    for (gain, delay_ms, stable) in
+        [(15, 1.0, true), (15, 8.5, false), (15, 10.0, true), (15, 13.0, false), (0, 10.0, false)]
+    {
+        let delay = format!("controller.delay={delay_ms} ms");
+        let fed = format!("controller.load_velocity_feed_forward.gain={gain}");
+        let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
+        let said =
+            answer(&text, &[&SPRUNG[..], &[viscous, &delay, &fed]].concat(), &[], &Request::VerifyOnMachine);
+        let object: Value = serde_json::from_str(&said.json).unwrap();
+        assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", said.text);
+        let run = &object["machine"]["runs"][0];
+        let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();
+        let machine = overshoot("machine").unwrap();
+        assert_eq!(machine < 40.0, stable, "{gain} {delay_ms}: {run}");
+        if let (true, Some(linear)) = (stable, overshoot("linear")) {
+            assert!((machine - linear).abs() < 4.0, "{gain} {delay_ms}: {run}");
+            assert_eq!(run["agrees"], Value::from(true), "{gain} {delay_ms}: {run}");
+        }
+        let words = "every plant by its response with the load's velocity fed forward late";
+        assert_eq!(said.text.contains(words), gain != 0, "{}", said.text);
+    }
+}
+
+/// Beside a prescribed load a late feed-forward is a path of its motion: P_d + K s P e^(-s tau), and the loop itself stays.
+#[test]
+fn a_late_feed_forward_of_a_prescribed_load_is_a_path_of_its_motion() {
+    let limit = "[[specification]]\nkind = \"load_motion\"\nlimit = 1e6\nfrequencies = [1, 10, 100]\n\n[[specification]]";
+    let text = without_uncertainty().replacen("[[specification]]", limit, 1);
+    let problem = |settings: &[&str]| {
+        robust_problem(&Memory::default(), &Setup::new(&loaded(&text, settings)).unwrap()).unwrap()
+    };
+    let late = "controller.delay=1 ms";
+    let [own, fed] = [problem(&[late]), problem(&[late, "controller.load_velocity_feed_forward.gain=25"])];
+    assert!(own.without_polynomials.is_none() && fed.without_polynomials.is_some());
+    assert!(fed.caveats.is_empty(), "{:?}", fed.caveats);
+    let [own, member] = [&own, &fed].map(|problem| problem.nominal().unwrap().unwrap());
+    for frequency in [0.1, 10.0, 300.0, 2000.0] {
+        let [alone, seen] = [&own, &member].map(|member| member.response(frequency).unwrap());
+        // the delay of the loop is within P
+        let expected = alone.load_motion + 25.0 * Complex64::new(0.0, frequency) * alone.plant;
+        assert!((seen.load_motion / expected - 1.0).norm_sqr() < 1e-18, "{frequency}");
+        assert!((seen.plant / alone.plant - 1.0).norm_sqr() < 1e-18, "{frequency}");
+    }
+    assert_eq!(member_stability(&member, &fed.compensation).status, StabilityStatus::Stable);
+    let sampled = problem(&["controller.sample_time=1 ms", "controller.load_velocity_feed_forward={}"]);
+    assert!(sampled.without_polynomials.is_none() && sampled.caveats[0].unproven);
+    assert!(sampled.caveats[0].sentence.contains("load_motion alone depends on it"), "{:?}", sampled.caveats);
+}
+
 /// What changes no specification is told, and the verdict stays.
 #[test]
 fn a_path_that_no_specification_limits_decides_nothing() {
-    for (settings, told) in [(vec![], 1), (vec!["controller.delay=0.1 ms"], 2)] {
+    for (settings, told) in
+        [(vec![], 1), (vec!["controller.delay=0.1 ms"], 1), (vec!["controller.sample_time=0.1 ms"], 2)]
+    {
         let fed = [&["controller.load_velocity_feed_forward={}"], &settings[..]].concat();
         let view = audited(&satisfied(&fed));
         assert_eq!((view.audit.verdict, view.caveats.len()), (Verdict::Met, told), "{settings:?}");

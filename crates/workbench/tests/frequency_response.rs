@@ -112,7 +112,8 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_linear_loop() {
         "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
     let gain = "controller.numerator=0.0001*s + 0.0008";
     let fed = "controller.load_velocity_feed_forward.gain=20";
-    for lines in [&[][..], &[waves, gain]] {
+    let late = "controller.delay=2 ms";
+    for lines in [&[][..], &[waves, gain], &[late], &[waves, gain, late]] {
         let with = [&[sprung, fed][..], lines].concat();
         let [with, without] = [&with[..], &with[..1]]
             .map(|settings| shaken(&smooth(settings), &[5.0, 40.0, 300.0], [1e-4, 1.0]).closed_loop.unwrap());

@@ -4,7 +4,7 @@ use phea_dynamics::analytic::Analytic;
 
 use super::supply::{Coupled, Over};
 use super::{Chamber, Chambers, LinearLoad, Plant, YieldingSupply};
-use crate::line::{DynamicLine, TransferMatrix};
+use crate::line::{DynamicLine, Segments, TransferMatrix};
 
 /// The plant with lines that have dynamics of their own: what no quotient of polynomials is, but a response at every frequency.
 ///
@@ -47,6 +47,16 @@ pub struct PlantInMotion {
     sides: [Side; 2],
     /// Whether both lines are the same.
     alike: bool,
+    lateness: Lateness,
+}
+
+/// How late the velocity of the load that is fed forward acts. Units: s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lateness {
+    /// Delay tau of the command.
+    pub delay: f64,
+    /// Time T for which a sample is held; zero where nothing is sampled.
+    pub hold: f64,
 }
 
 /// What the chambers of a plant consist of. Units: m3/Pa.
@@ -96,6 +106,28 @@ impl PlantInMotion {
         PlantInMotion { plant: Plant { load_velocity_feed_forward, ..self.plant }, ..self }
     }
 
+    /// The same with what is fed forward so late: exact behind a delay. Of what is sampled it is the part at the frequency of the motion
+    /// itself, which is for a prescribed load; a load that yields would feed its images back as well.
+    ///
+    /// ```text
+    /// K_x(s) = K_x e^(-s tau) (1 - e^(-s T))/(s T)
+    /// ```
+    #[must_use]
+    pub fn late(self, lateness: Lateness) -> PlantInMotion {
+        PlantInMotion { lateness, ..self }
+    }
+
+    /// The plant with its lumped lines as they are: for a load velocity that is fed forward late, of which there is no quotient of
+    /// polynomials.
+    pub fn lumped(plant: &Plant) -> PlantInMotion {
+        let compliances = [0, 1].map(|side| plant.chambers.side(side).compliance);
+        let none = DynamicLine::Segments(Segments::lumped(0.0));
+        PlantInMotion::new(
+            plant,
+            &BehindLines { lines: [none; 2], chambers: compliances, lumped: compliances },
+        )
+    }
+
     /// The plant with these chambers and lines in place of its lumped ones.
     pub fn new(plant: &Plant, behind: &BehindLines) -> PlantInMotion {
         let side = |side: usize| {
@@ -106,7 +138,8 @@ impl PlantInMotion {
             Side { area, compliance, flow_gain, flow_pressure, line }
         };
         let sides = [side(0), side(1)];
-        PlantInMotion { plant: *plant, sides, alike: sides[0].line == sides[1].line }
+        let alike = sides[0].line == sides[1].line;
+        PlantInMotion { plant: *plant, sides, alike, lateness: Lateness::default() }
     }
 
     /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of [`Plant::coefficients`].
@@ -127,7 +160,7 @@ impl PlantInMotion {
         let spool = A::from(square) / (s * s + turned + A::from(square));
         let driven = (spool * driven).scaled(sensor);
         let fed = match self.plant.load_velocity_feed_forward {
-            Some(gain) => s.scaled(gain) * driven,
+            Some(gain) => self.lateness.at(s) * s.scaled(gain) * driven,
             None => A::from(0.0),
         };
         match self.plant.load {
@@ -225,6 +258,13 @@ impl PlantInMotion {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
         let longest = delays.fold(0.0, f64::max);
         (longest > 0.0).then(|| std::f64::consts::FRAC_PI_2 / longest)
+    }
+}
+
+impl Lateness {
+    fn at<A: Analytic>(&self, s: A) -> A {
+        let held = if self.hold > 0.0 { s.scaled(self.hold).mean_of_decay() } else { A::from(1.0) };
+        if self.delay > 0.0 { s.scaled(-self.delay).exponential() * held } else { held }
     }
 }
 

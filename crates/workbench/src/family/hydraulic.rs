@@ -21,8 +21,8 @@ use super::FamilyError;
 use super::visited::Visited;
 use crate::project::{Actuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
-    self, Numbers, Rig, components, linear, place, plant, settled_supply, stated, with_supply, yielding_load,
-    yielding_supply,
+    self, FedForward, Numbers, Rig, components, linear, place, plant, settled_supply, stated, with_supply,
+    yielding_load, yielding_supply,
 };
 use crate::setup::Setup;
 
@@ -47,7 +47,7 @@ pub(super) fn uncertain_plant(
     }
 }
 
-/// The plant of one member behind lines in motion; `None` where both lines are lumped.
+/// The plant of one member behind lines in motion, or with what is fed forward late; `None` where both lines are lumped and nothing is.
 ///
 /// # Errors
 /// A line that its model does not fit.
@@ -60,7 +60,8 @@ pub(super) fn in_motion(
     let Some(declared) = &project.actuator else { return Ok(None) };
     let open = Open { project, declared, rig, names };
     let (place, plant) = open.plant(values, *moved, *equal);
-    rig::in_motion(&declared.line, &place.components, &place.point, &place.chambers, &plant)
+    let moving = rig::in_motion(&declared.line, &place.components, &place.point, &place.chambers, &plant)?;
+    Ok(rig::as_response(rig.fed, moving, &plant))
 }
 
 /// A rig with some of its numbers open.
@@ -133,7 +134,7 @@ impl Open<'_> {
             }
             _ => plant,
         };
-        let load_velocity_feed_forward = self.rig.fed_at_once.map(S::from);
+        let load_velocity_feed_forward = self.rig.fed.as_ref().and_then(FedForward::at_once).map(S::from);
         (place, Plant { load_velocity_feed_forward, ..plant })
     }
 

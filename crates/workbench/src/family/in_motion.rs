@@ -1,4 +1,4 @@
-//! The family of a rig whose lines move: plants without polynomials over the same box.
+//! The family of a rig whose lines move, or whose load's velocity is fed forward late: plants without polynomials over the same box.
 //!
 //! ```text
 //! parameters -> PlantInMotion, at every point of the box -> UncertainPlant -> the members that are looked at
@@ -23,12 +23,12 @@ const MEMBERS_MAXIMUM: usize = 200;
 /// Boxes with more coordinates have too many corners to look at.
 const CORNER_COORDINATES: usize = 6;
 
-/// The family with lines in motion; `None` where both are lumped.
+/// The family without polynomials; `None` where there are.
 pub(super) fn family(
     setup: &Setup<'_>,
     lumped: &UncertainFamily,
 ) -> Result<Option<UncertainFamily>, FamilyError> {
-    if setup.rig().ok().and_then(|rig| rig.in_motion).is_none() {
+    if setup.rig().ok().and_then(|rig| rig.in_loop().in_motion).is_none() {
         return Ok(None);
     }
     let parameters = lumped.plant().parameters().to_vec();
@@ -47,7 +47,7 @@ pub(super) fn family(
     Ok(Some(UncertainFamily::new(plant, coordinates, members, lumped.extent())?))
 }
 
-/// A rig with lines in motion, its uncertain numbers open.
+/// A rig without polynomials, its uncertain numbers open.
 #[derive(Debug)]
 struct Moving {
     project: Project,

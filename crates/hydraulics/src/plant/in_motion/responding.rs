@@ -20,6 +20,8 @@ const FAR: f64 = 100.0;
 const STEPS_MAXIMUM: usize = 100_000;
 const SMALL_TURN: f64 = 0.5;
 const LARGE_STEP: f64 = 1.05;
+/// What is fed back and is less cannot reach one from a step to the next.
+const SMALL_FED: f64 = 0.25;
 
 impl RespondingPlant for PlantInMotion {
     fn response(&self, frequency_rad_per_s: f64) -> [Complex64; 2] {
@@ -125,7 +127,7 @@ impl RespondingPlant for PlantInMotion {
                 return Some(((argument(here.1) - turn) / PI).round().max(0.0) as usize);
             };
             let step = argument(next.1 / here.1);
-            if step.abs() < SMALL_TURN && next.0 < LARGE_STEP * here.0 {
+            if step.abs() < SMALL_TURN && self.is_near([here, next]) {
                 turn += step;
                 here = next;
                 ahead.pop();
@@ -152,11 +154,22 @@ impl RespondingPlant for PlantInMotion {
 
     fn echo_s(&self) -> f64 {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
-        2.0 * delays.fold(0.0, f64::max)
+        let waves = 2.0 * delays.fold(0.0, f64::max);
+        let fed = self.plant.load_velocity_feed_forward.map_or(0.0, |_| self.lateness.delay);
+        waves + fed
     }
 }
 
 impl PlantInMotion {
+    /// Whether 1 less what is fed back cannot have turned around zero from one of these points to the other: a delay turns it as often as
+    /// the frequency says, which counts where it is large.
+    fn is_near(&self, [here, next]: [(f64, Complex64); 2]) -> bool {
+        let turned = (next.0 - here.0) * self.lateness.delay;
+        let fed = [here, next].map(|(_, difference)| (difference - 1.0).norm_sqr());
+        let is_small = fed.iter().all(|fed| *fed < SMALL_FED * SMALL_FED);
+        next.0 < LARGE_STEP * here.0 && (turned < SMALL_TURN || is_small)
+    }
+
     /// The most power in W that can leave valve and supply for the square of a volt: their sources k less their conductances G,
     ///
     /// ```text
