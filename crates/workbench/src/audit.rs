@@ -25,6 +25,7 @@ use phea_qft::verification::{Audit, SpecificationFinding, TOLERANCE_DB, Tracking
 
 use crate::caveat::Caveat;
 use crate::command::{CommandError, Progress, Watch};
+use crate::project::Project;
 use crate::quantity::DisplayUnit;
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
@@ -88,9 +89,10 @@ pub(crate) fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result
 }
 
 /// What the plants of a family are called.
-pub(crate) fn names(family: &Family) -> PlantNames {
+pub(crate) fn names(project: &Project, family: &Family) -> PlantNames {
     match family {
         Family::Uncertain(family) => PlantNames::of_parameters(
+            project,
             family.plant().parameters().iter().map(|parameter| parameter.name.as_str()),
         ),
         Family::Measured(family) => {
@@ -189,7 +191,7 @@ impl ProjectAudit {
         ProjectAudit {
             reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
             audit,
-            names: names(family),
+            names: problem.names.clone(),
             specification_names: problem.specification_names.clone(),
             members: match family {
                 Family::Uncertain(family) => family.members().len(),

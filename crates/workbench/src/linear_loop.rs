@@ -1,5 +1,7 @@
 //! The linear loop of a rig with its given controller and prefilter: margins and step response.
 
+pub(crate) mod of_responses;
+
 use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::{Margins, margins};
 use phea_dynamics::linear::{Discretization, LinearError, TimeDomain, TransferFunction};

@@ -13,7 +13,7 @@ use phea_qft::specification::{LoopResponse, Specification};
 use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::PlantPoint;
 
-use crate::audit::{kind_words, outside};
+use crate::audit::{PlantNames, kind_words, names, outside};
 use crate::caveat::{Caveat, caveats};
 use crate::command::{CommandError, Progress, Watch};
 use crate::family::family;
@@ -26,6 +26,8 @@ use crate::specification::{of_rounding, specifications};
 pub struct RobustProblem {
     /// The plants.
     pub family: Family,
+    /// What the numbers of a plant are called.
+    pub names: PlantNames,
     /// The loop; with a controller of 1 where none is given.
     pub compensation: Compensation,
     /// Whether the project gives a controller.
@@ -100,6 +102,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
     let family = family(setup, source)?;
     Ok(RobustProblem {
         without_polynomials: without_polynomials(setup, &family),
+        names: names(setup.project, &family),
         family,
         compensation,
         has_controller: setup.controller.is_some(),

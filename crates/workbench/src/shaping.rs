@@ -20,7 +20,7 @@ use phea_qft::stability::StabilityAudit;
 use phea_qft::template::{TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::{StabilityFinding, TrackingJudgement};
 
-use crate::audit::{PlantNames, names};
+use crate::audit::PlantNames;
 use crate::command::{CommandError, Progress, Watch};
 use crate::project::{self, Element, Findings, Loaded, Report};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
@@ -135,7 +135,7 @@ pub fn shape(
         shaped,
         changes: changes.len(),
         elements,
-        names: names(&problem.family),
+        names: problem.names.clone(),
         stability: stability(&problem, watch)?,
         margins: chart.margins(&problem.compensation, tracking),
         points: chart.points(&problem.compensation),

@@ -173,6 +173,25 @@ fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {
     }
 }
 
+/// Waves under a sampled controller: the loop is that of the plant in motion, the images of its response folded onto one another.
+#[test]
+fn a_sampled_loop_around_waves_is_that_of_their_response() {
+    let waves =
+        "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
+    let gain = "controller.numerator=0.0002*s + 0.0016";
+    let sensor = "sensor={ numerator = \"2000\", denominator = \"s + 2000\", delay = \"0.5 ms\" }";
+    for more in [
+        &["controller.sample_time=1 ms"][..],
+        &["controller.sample_time=2 ms", "controller.delay=1 ms", sensor],
+    ] {
+        let settings = [&[waves, gain][..], more].concat();
+        let closed = shaken(&smooth(&settings), &[5.0, 40.0, 150.0, 300.0, 600.0], [1e-3, 1.0]).closed_loop;
+        for point in &closed.unwrap().points {
+            assert!(apart(point.machine, point.linear_plant) < 5e-3, "{settings:?} {point:?}");
+        }
+    }
+}
+
 /// Bristles hold the piston: below their break-away the machine is stiffer than any plant of viscous friction, and the sines see it.
 /// A spring of 1e7 N/m beside the load cell of 2e7 N/m leaves two thirds of the force.
 #[test]

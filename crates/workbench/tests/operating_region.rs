@@ -277,6 +277,17 @@ fn the_box_of_the_thesis_is_that_of_an_operating_region() {
     assert!(range(&poor, "flow_pressure_coefficient").maximum.value < 0.55 * 7e-11);
 }
 
+/// A range that is refused is no absent one: its own error alone is told.
+#[test]
+fn a_wrong_range_is_one_error() {
+    for value in ["position = [\"1 kg\", 0.2]", "load_force = \"2 kN\"", "velocity = [0, \"fast\"]"] {
+        let region = format!("[family.operating_region]\n{value}\n");
+        let refused = read(&text("", &region, ""), &[]).unwrap_err();
+        assert_eq!(refused.matches("error").count(), 1, "{refused}");
+        assert!(!refused.contains("is empty"), "{refused}");
+    }
+}
+
 /// What contradicts itself is refused where it stands.
 #[test]
 fn contradictions_are_refused() {

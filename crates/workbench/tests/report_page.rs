@@ -47,6 +47,14 @@ fn plain_report(project: &str) -> Report {
     report_of(&without_design(project), &[])
 }
 
+/// Families with lines in motion have no polynomials, and step responses all the same.
+#[test]
+fn a_family_with_lines_in_motion_has_its_steps_drawn() {
+    let settings = ["line.model=segments", "line.segments=4", "line.relaxation_time=0.3 ms"];
+    let report = report_of(&without_design(HOSE), &settings);
+    assert!(report.figures.iter().any(|found| found.name == "family_steps"));
+}
+
 /// Everything between `<name` and `</name>`, the tags included.
 fn elements<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
     let (open, close) = (format!("<{name}"), format!("</{name}>"));

@@ -145,3 +145,19 @@ fn a_number_set_outside_of_its_own_range_is_refused_with_the_cure() {
         assert!(words.contains(part), "{part} is missing in: {words}");
     }
 }
+
+/// The numbers of a plant have the units of the keys that they are, and none where the project does not know them.
+#[test]
+fn plants_are_named_with_the_units_of_their_numbers() {
+    let hose = include_str!("../../../examples/ybitu/hose.toml");
+    let source = phea_workbench::source::Memory::default().with("rig.toml", hose);
+    let settings =
+        ["load={ model = \"spring_mass_damper\", mass = 80, stiffness = 2e6, damping = 500 }".to_string()];
+    let loaded = phea_workbench::project::read(&source, "rig.toml", &settings, &[]).unwrap();
+    let names = ["load.mass", "load.stiffness", "viscous_friction", "operating_point.velocity", "other"];
+    let names = phea_workbench::audit::PlantNames::of_parameters(&loaded.project, names.into_iter());
+    let plant = phea_qft::verification::PlantPoint::Parameters(vec![80.0, 2e6, 100.0, 0.02, 3.0]);
+    let expected = "load.mass 80 kg, load.stiffness 2 kN/mm, viscous_friction 100 N.s/m, \
+                    operating_point.velocity 20 mm/s, other 3";
+    assert_eq!(names.text(&plant), expected);
+}

@@ -3,7 +3,7 @@
 use phea_qft::verification::PlantPoint;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use crate::project::LINEAR_PARAMETERS;
+use crate::project::Project;
 use crate::quantity::{Dimension, RATIO, display};
 
 /// What the numbers of a plant are called.
@@ -26,9 +26,11 @@ enum NamedValue {
 }
 
 impl PlantNames {
-    /// Names of the parameters of an uncertain plant, with the dimension of those of the linear model.
-    pub fn of_parameters<'a>(names: impl Iterator<Item = &'a str>) -> PlantNames {
-        PlantNames::Parameters(dimensioned(names))
+    /// Names of the parameters of an uncertain plant, with the dimension of those that are numbers of the project or of its linear model.
+    pub fn of_parameters<'a>(project: &Project, names: impl Iterator<Item = &'a str>) -> PlantNames {
+        let known = project.dimensions();
+        let dimension = |name: &str| known.get(name).copied().unwrap_or(&RATIO);
+        PlantNames::Parameters(names.map(|name| (name.to_string(), dimension(name))).collect())
     }
 
     /// Names and values of a plant that has any.
@@ -88,17 +90,6 @@ impl PlantNames {
             }
         }
     }
-}
-
-/// Names with what they measure.
-fn dimensioned<'a>(names: impl Iterator<Item = &'a str>) -> Vec<(String, &'static Dimension)> {
-    let dimension = |name: &str| {
-        LINEAR_PARAMETERS
-            .iter()
-            .find(|parameter| parameter.key.name == name)
-            .map_or(&RATIO, |parameter| parameter.key.dimension)
-    };
-    names.map(|name| (name.to_string(), dimension(name))).collect()
 }
 
 impl Serialize for NamedPlant {

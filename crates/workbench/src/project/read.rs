@@ -15,7 +15,7 @@ use super::text::{Findings, Found, Place};
 use super::tree::{self, Node};
 use super::{Actuator, Loaded, Project, setting, validate};
 use crate::catalogue::Catalogue;
-use crate::quantity::{RATIO, display};
+use crate::quantity::{Dimension, RATIO, display};
 use crate::source::Source;
 
 /// Reads a project file, applies `path=value` settings, and looks names up in the catalogue, to which the given files
@@ -223,6 +223,12 @@ impl Project {
         let mut listing = Listing::default();
         self.clone().visit_system(&mut listing);
         listing.numbers.get(path).map(|(_, value)| *value)
+    }
+
+    /// What each number measures, by its path or its name in the linear model.
+    pub(crate) fn dimensions(&self) -> BTreeMap<String, &'static Dimension> {
+        let (named, _) = numbers(&mut self.clone());
+        named.into_iter().map(|(path, key)| (path, key.dimension)).collect()
     }
 
     /// A value of the number at a path, in a unit of its dimension.

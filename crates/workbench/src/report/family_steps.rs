@@ -1,8 +1,13 @@
 //! Step responses of the family inside the band of the tracking limits' own step responses.
 
+use std::sync::Arc;
+
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TransferFunction};
-use phea_dynamics::time_response::{TimeResponseError, delayed_loop_step, step_response, uniform_times};
-use phea_dynamics::uncertain_plant::PlantCoefficients;
+use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::time_response::{
+    TimeResponseError, delayed_loop_step, step_of_frequency_response, step_response, uniform_times,
+};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember};
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::verification::{PlantPoint, Verdict};
@@ -10,6 +15,7 @@ use phea_qft::verification::{PlantPoint, Verdict};
 use super::closed_loops::DRAWN_MEMBERS;
 use crate::audit::ProjectAudit;
 use crate::figure::{FamilyStepInput, Figure, TimeBounds, TimeSeries, Words, family_step};
+use crate::linear_loop::of_responses::real_parts;
 use crate::robust::RobustProblem;
 
 /// Samples of each response.
@@ -36,9 +42,6 @@ pub(super) fn figure(
     let Family::Uncertain(family) = &problem.family else {
         return Some(Err("measured responses have no step response".to_string()));
     };
-    if !family.plant().is_rational() {
-        return Some(Err("with lines in motion only the trial on the machine has steps".to_string()));
-    }
     let drawn = drawn(problem, family, view, limits);
     Some(drawn.map(|input| family_step(words(names), &input)).map_err(|error| error.to_string()))
 }
@@ -63,8 +66,14 @@ fn drawn(
         Ok::<_, TimeResponseError>(TimeSeries { name: name.to_string(), values, times_s: times_s.to_vec() })
     };
     let member = |name: &str, values: &[f64]| {
-        let plant =
-            family.plant().coefficients(values).ok_or(TimeResponseError::from(LinearError::NoPlant))?;
+        let member = family.plant().member(values).ok_or(TimeResponseError::from(LinearError::NoPlant))?;
+        let plant = match member {
+            PlantMember::Rational(plant) => plant,
+            PlantMember::Responding(plant) => {
+                let (times_s, values) = step_in_motion(problem, &plant, duration)?;
+                return Ok(TimeSeries { name: name.to_string(), times_s, values });
+            }
+        };
         let delayed = plant.dead_time_s + problem.compensation.delay_s() > 0.0;
         if problem.compensation.sample_time_s().is_none() && delayed {
             let (times_s, values) = delayed_step(problem, plant, duration)?;
@@ -146,6 +155,22 @@ fn delayed_step(
     delayed_loop_step(&forward, compensation.sensor(), compensation.prefilter(), duration, DELAYED_STEPS)
 }
 
+/// The same of a plant that is known by its response, its lines being in motion.
+fn step_in_motion(
+    problem: &RobustProblem,
+    plant: &Arc<dyn RespondingPlant>,
+    duration: f64,
+) -> Result<(Vec<f64>, Vec<f64>), TimeResponseError> {
+    let sample_time_s = problem.compensation.sample_time_s();
+    let step_s = sample_time_s.unwrap_or(duration / STEPS_IN_MOTION);
+    let count = (duration / step_s).ceil().clamp(10.0, 20_000.0) as usize + 1;
+    let points = real_parts(plant, &problem.compensation)?;
+    let values = step_of_frequency_response(&points, step_s, count, sample_time_s.is_some());
+    Ok(((0..count).map(|sample| sample as f64 * step_s).collect(), values))
+}
+
+/// Steps that a response of lines in motion is computed in.
+const STEPS_IN_MOTION: f64 = 1200.0;
 /// Steps that a response with dead time is computed in.
 const DELAYED_STEPS: usize = 4000;
 

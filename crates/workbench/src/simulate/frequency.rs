@@ -14,9 +14,7 @@ pub(crate) use figures::pictures;
 pub(crate) use text::text;
 
 use num_complex::Complex64;
-use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::Settings;
-use phea_hydraulics::linear::transfer_functions;
 use phea_hydraulics::machine::{Beginning, Machine};
 
 use super::SimulateError;
@@ -84,7 +82,6 @@ struct Rested {
     /// What the supply can push with, N.
     push_n: f64,
     settings: Settings,
-    plant: TransferFunction,
 }
 
 impl FrequencyResponse {
@@ -137,9 +134,7 @@ fn rested(setup: &Setup<'_>) -> Result<Rested, SimulateError> {
     let components = rig.actuator.components();
     let area = 0.5 * (components.cylinder.area_a + components.cylinder.area_b);
     let push_n = area * (components.supply.pressure - components.supply.tank_pressure);
-    let plant =
-        transfer_functions(&rig.in_loop().plant.coefficients()).map_err(SimulateError::Plant)?.command;
-    Ok(Rested { machine, rest, force_n, push_n, settings: settings(project), plant, rig })
+    Ok(Rested { machine, rest, force_n, push_n, settings: settings(project), rig })
 }
 
 /// Those asked for by rising frequency, or the usual ones.

@@ -71,7 +71,8 @@ fn operating_region(project: &Project, region: &OperatingRegion, check: &mut Che
         ("load_force", region.load_force, point.load_force),
         ("velocity", region.velocity, point.velocity),
     ];
-    if ranges.iter().all(|(_, range, _)| range.is_none()) {
+    let written = |name: &str| check.declared(&format!("{path}.{name}"));
+    if ranges.iter().all(|(name, range, _)| range.is_none() && !written(name)) {
         return check.error(
             path,
             "`operating_region` is empty: give ranges of `position`, `load_force` or `velocity`",

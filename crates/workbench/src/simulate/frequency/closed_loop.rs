@@ -2,18 +2,19 @@
 
 use std::cell::RefCell;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
-use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_dynamics::simulation::{ClosedLoop, Input, Profile, Sensed, Settings, small_signal};
 use phea_hydraulics::machine::Machine;
+use phea_qft::closed_loop::{Compensation, Member};
 
 use super::open_loop::profile;
 use super::point::{ResponsePoint, Shaken, finer, force_amplitude, point, respond};
 use super::{FrequencyRequest, Response, Rested, USUAL_AMPLITUDE, curve};
-use crate::linear_loop::{LinearLoop, linear_loop};
 use crate::rig::Rig;
 use crate::setup::Setup;
 use crate::simulate::SimulateError;
@@ -84,14 +85,20 @@ impl Shared<'_> {
         [Input::Value(ground.clone()), Input::Rate(ground)]
     }
 
-    fn response(&self, points: Vec<ResponsePoint>, frequencies: &[f64], machine: Vec<Complex64>) -> Response {
+    fn response(
+        &self,
+        points: Vec<ResponsePoint>,
+        frequencies: &[f64],
+        machine: Vec<Complex64>,
+    ) -> Result<Response, SimulateError> {
         let curve_rad_per_s = curve(frequencies);
-        Response {
+        let linear_plant = curve_rad_per_s.iter().map(|frequency| self.model.at(*frequency));
+        Ok(Response {
             points,
-            linear_plant: curve_rad_per_s.iter().map(|frequency| self.model.at(*frequency)).collect(),
+            linear_plant: linear_plant.collect::<Result<_, _>>()?,
             linearised_machine: machine,
             curve_rad_per_s,
-        }
+        })
     }
 
     fn continuous(
@@ -126,11 +133,11 @@ impl Shared<'_> {
             };
             let sine = [*frequency, self.amplitude];
             let found = respond(shaken, None, sine, &mut || goes_on(index))?;
-            points.push(point(sine, &found, self.model.at(*frequency), linearised));
+            points.push(point(sine, &found, self.model.at(*frequency)?, linearised));
         }
         let machine = curve(frequencies).into_iter().map(|frequency| Some(force(&orbit(frequency)?)));
         let machine = machine.collect::<Option<Vec<_>>>().unwrap_or_default();
-        Ok(self.response(points, frequencies, machine))
+        self.response(points, frequencies, machine)
     }
 
     /// At the nearest frequencies whose period is a whole number of samples, and without the noise of the sensor.
@@ -175,9 +182,9 @@ impl Shared<'_> {
             let digital = Box::new(Digital::new(&quiet, &waking, &log));
             let sine = [*frequency, self.amplitude];
             let found = respond(shaken, Some(digital), sine, &mut || goes_on(index))?;
-            points.push(point(sine, &found, self.model.at(*frequency), None));
+            points.push(point(sine, &found, self.model.at(*frequency)?, None));
         }
-        Ok(self.response(points, &sampled, Vec::new()))
+        self.response(points, &sampled, Vec::new())
     }
 }
 
@@ -187,64 +194,47 @@ fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
     (samples >= FEWEST_SAMPLES).then(|| TAU / (samples * sample_time_s))
 }
 
-/// The loop that the linear plant closes, from reference to force.
+/// The loop that the linear plant closes, from reference to force; with lines in motion that of their response.
 ///
 /// ```text
 /// T = F G P e^(-s d)/(1 + G P H e^(-s d))
 /// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of what is between the samples.
-/// L in z has lumped lines
 /// ```
 struct Model {
     /// As the loop sees it.
     rig: Rig,
-    sensor: TransferFunction,
-    delay_s: f64,
-    feedback: TransferFunction,
-    prefilter: TransferFunction,
-    /// Sample time and loop in z.
-    sampled: Option<(f64, LinearLoop)>,
+    compensation: Compensation,
+    /// The rig within its loop, sampled where that samples.
+    member: Member,
 }
 
 impl Model {
     fn new(setup: &Setup<'_>, rested: &Rested, given: &Controller) -> Result<Model, SimulateError> {
-        let sensor = setup.sensor.clone();
-        let sampled = match given.timing.sample_time_s {
-            None => None,
-            Some(sample_time_s) => {
-                let deployed = setup.deployed(given)?;
-                Some((sample_time_s, linear_loop(&rested.plant, &deployed, &sensor, 1.0)?))
-            }
+        let rig = rested.rig.in_loop();
+        let compensation = match given.timing.sample_time_s {
+            None => Compensation::new(given, setup.sensor.clone())?,
+            Some(_) => setup.compensation(given)?,
         };
-        let prefilter = match &sampled {
-            None => given.prefilter.transfer_function()?,
-            Some((_, sampled)) => sampled.prefilter.clone(),
+        let member = match rig.in_motion {
+            Some(moving) => compensation.responding(Arc::new(moving)),
+            None => compensation.member(rig.plant.coefficients()).map_err(SimulateError::Plant)?,
         };
-        Ok(Model {
-            rig: rested.rig.in_loop(),
-            sensor,
-            delay_s: given.timing.delay_s,
-            feedback: given.feedback.transfer_function()?,
-            prefilter,
-            sampled,
-        })
+        Ok(Model { rig, compensation, member })
     }
 
-    fn at(&self, frequency: f64) -> Complex64 {
-        let late = portable::exp_complex(Complex64::new(0.0, -frequency * self.delay_s));
-        let plant = self.rig.response(frequency) * late;
-        let prefilter = self.prefilter.at_frequency(frequency);
-        match &self.sampled {
-            None => {
-                let feedback = self.feedback.at_frequency(frequency);
-                prefilter * feedback * plant / (1.0 + feedback * plant * self.sensor.at_frequency(frequency))
-            }
-            Some((sample_time_s, sampled)) => {
+    fn at(&self, frequency: f64) -> Result<Complex64, SimulateError> {
+        let plant = self.member.response(frequency).ok_or(SimulateError::Plant(LinearError::NoPlant))?;
+        let feedback = self.compensation.feedback().at_frequency(frequency);
+        let between = match self.compensation.sample_time_s() {
+            None => plant.plant,
+            Some(sample_time_s) => {
+                let late = Complex64::new(0.0, -frequency * self.compensation.delay_s());
                 let turn = Complex64::new(0.0, frequency * sample_time_s);
                 let hold = (1.0 - portable::exp_complex(-turn)) / turn;
-                let (feedback, loop_) =
-                    (sampled.controller.at_frequency(frequency), sampled.open_loop.at_frequency(frequency));
-                prefilter * feedback / (1.0 + loop_) * hold * plant
+                hold * self.rig.response(frequency) * portable::exp_complex(late)
             }
-        }
+        };
+        let closed = feedback / (1.0 + feedback * plant.plant * plant.sensor);
+        Ok(self.compensation.prefilter().at_frequency(frequency) * closed * between)
     }
 }
