@@ -14,19 +14,12 @@ pub use number::Number;
 pub use number_table::{NumberTable, TableFormat};
 pub use table::table;
 
+pub use crate::source::OutputFile;
+
 use crate::project::Loaded;
 
 /// Version of the JSON layout.
 pub const SCHEMA: u32 = 1;
-
-/// A file that a command produced, named relative to the output folder.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OutputFile {
-    /// File name with its ending.
-    pub name: String,
-    /// Content.
-    pub bytes: Vec<u8>,
-}
 
 /// What a command has to say, ready to be printed and written by a shell.
 #[derive(Clone, Debug, PartialEq)]

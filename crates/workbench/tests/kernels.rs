@@ -4,8 +4,6 @@
 
 #[path = "../src/simulate/columns.rs"]
 mod columns;
-#[path = "../src/figure/family_step/edge.rs"]
-mod edge;
 #[path = "../src/design/factors.rs"]
 mod factors;
 #[path = "../src/simulate/file_names.rs"]
@@ -26,14 +24,10 @@ mod samples;
 mod shortest_number;
 #[path = "../src/campaign/spread.rs"]
 mod spread;
-#[path = "../src/project/rewrite/statement.rs"]
-mod statement;
 #[path = "../src/simulate/sum.rs"]
 mod sum;
 #[path = "../src/campaign/supply.rs"]
 mod supply;
-#[path = "../src/project/rewrite/surgery.rs"]
-mod surgery;
 #[path = "../src/simulate/tally.rs"]
 mod tally;
 

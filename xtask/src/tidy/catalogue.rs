@@ -1,12 +1,12 @@
 //! Every number in the built-in catalogue has a source.
 //!
-//! A file in `crates/workbench/catalogue/` describes one product and is called after it. `source` holds for every
+//! A file in `crates/project/catalogue/` describes one product and is called after it. `source` holds for every
 //! number of the file, `[sources]` for single ones.
 
 use super::Violation;
 use crate::repository::Repository;
 
-const FOLDER: &str = "crates/workbench/catalogue/";
+const FOLDER: &str = "crates/project/catalogue/";
 
 /// A source shorter than this names no document.
 const SHORTEST_SOURCE: usize = 12;
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     fn messages(text: &str) -> Vec<String> {
-        let path = "crates/workbench/catalogue/hoses/example.toml";
+        let path = "crates/project/catalogue/hoses/example.toml";
         let text = format!("schema = 1\nname = \"example\"\n{text}");
         check(&Repository::from_texts(&[(path, &text)])).iter().map(|v| v.message.clone()).collect()
     }
@@ -85,7 +85,7 @@ mod tests {
     #[test]
     fn a_file_is_called_after_its_product() {
         assert_eq!(messages("").len(), 0);
-        let other = Repository::from_texts(&[("crates/workbench/catalogue/a.toml", "name = \"b\"")]);
+        let other = Repository::from_texts(&[("crates/project/catalogue/a.toml", "name = \"b\"")]);
         assert_eq!(check(&other).len(), 1);
     }
 }

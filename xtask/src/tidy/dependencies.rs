@@ -1,9 +1,9 @@
 //! Who may depend on whom.
 //!
 //! ```text
-//! dynamics <--- hydraulics <---+
-//!    ^                         +--- workbench <--- cli | python | web | fmu
-//!    +--------- qft <----------+
+//! dynamics <- hydraulics <- project <-+
+//! dynamics <- qft <------------------ +- workbench <- cli | python | web | fmu
+//! quantity <- figure, project <-------+
 //! ```
 
 use std::collections::BTreeSet;
@@ -16,7 +16,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("crates/dynamics", &[]),
     ("crates/hydraulics", &["phea-dynamics"]),
     ("crates/qft", &["phea-dynamics"]),
-    ("crates/workbench", &["phea-dynamics", "phea-hydraulics", "phea-qft"]),
+    ("crates/quantity", &["phea-dynamics"]),
+    ("crates/figure", &["phea-dynamics", "phea-qft", "phea-quantity"]),
+    ("crates/project", &["phea-dynamics", "phea-hydraulics", "phea-quantity"]),
+    (
+        "crates/workbench",
+        &["phea-dynamics", "phea-figure", "phea-hydraulics", "phea-project", "phea-qft", "phea-quantity"],
+    ),
     ("apps/cli", &["phea-workbench"]),
     ("fuzz", &["phea-workbench"]),
     ("benches/peers/sundials", &["phea-dynamics", "phea-hydraulics", "phea-workbench"]),
@@ -24,7 +30,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
 ];
 
 /// The folders of the crates that compute and do nothing else.
-pub(super) const LOWER_CRATES: [&str; 3] = ["crates/dynamics/", "crates/hydraulics/", "crates/qft/"];
+pub(super) const LOWER_CRATES: [&str; 4] = ["crates/dynamics/", "crates/hydraulics/", "crates/qft/", "crates/quantity/"];
 
 /// What a crate that only computes has no use for: files formats, clocks, threads, unseeded random numbers.
 const FOREIGN_TO_LOWER_CRATES: [&str; 10] =

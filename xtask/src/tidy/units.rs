@@ -1,10 +1,10 @@
-//! SI inside: the factor between another unit and SI stands in `workbench::quantity` and nowhere else.
+//! SI inside: the factor between another unit and SI stands in `crates/quantity` and nowhere else.
 
 use super::Violation;
 use crate::repository::{Repository, RustFile};
 
 /// Where text is parsed and printed.
-const HOME: &str = "crates/workbench/src/quantity";
+const HOME: &str = "crates/quantity/src";
 
 /// The digits of factors that no other number is likely to have, and what they convert.
 const FACTORS: [(f64, &str); 7] = [
@@ -71,7 +71,7 @@ mod tests {
 
     #[test]
     fn home_tests_and_other_numbers_are_left_alone() {
-        assert_eq!(count("crates/workbench/src/quantity/unit.rs", "const A: f64 = 6894.757293168;"), 0);
+        assert_eq!(count("crates/quantity/src/unit.rs", "const A: f64 = 6894.757293168;"), 0);
         assert_eq!(count("crates/qft/src/lib.rs", "#[cfg(test)] mod tests { const A: f64 = 0.3048; }"), 0);
         assert_eq!(count("crates/qft/src/lib.rs", "const A: [f64; 4] = [0.3, 6.9, 3.785, 0.0];"), 0);
     }

@@ -1,0 +1,197 @@
+//! Texts, places in them, and findings: what everything that reads a file shares.
+
+use super::diagnostic::{Diagnostic, Report, Severity};
+
+/// Where something is written: which text, and its bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    /// Index into the texts.
+    pub text: usize,
+    /// First byte.
+    pub start: usize,
+    /// First byte after it.
+    pub end: usize,
+}
+
+/// The texts that are read, and what was found in them.
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    texts: Vec<Text>,
+    found: Vec<Found>,
+    /// How many errors and warnings are kept, and how many findings are not.
+    errors: usize,
+    warnings: usize,
+    more: usize,
+}
+
+/// A named text.
+#[derive(Clone, Debug)]
+struct Text {
+    name: String,
+    content: String,
+    /// Bytes of the file before the content, such as a byte order mark.
+    skipped: usize,
+    line_starts: Vec<usize>,
+}
+
+/// A finding before its line and column are counted.
+#[derive(Clone, Debug)]
+pub struct Found {
+    severity: Severity,
+    place: Place,
+    message: String,
+    expected: Option<String>,
+    help: Option<String>,
+    /// Whether it can be the consequence of a syntax error elsewhere.
+    consequence: bool,
+    syntax: bool,
+}
+
+impl Found {
+    /// An error at a place.
+    pub fn error(place: Place, message: impl Into<String>) -> Self {
+        let message = message.into();
+        let severity = Severity::Error;
+        Found { severity, place, message, expected: None, help: None, consequence: false, syntax: false }
+    }
+
+    /// A warning at a place.
+    pub fn warning(place: Place, message: impl Into<String>) -> Self {
+        Found { severity: Severity::Warning, ..Found::error(place, message) }
+    }
+
+    /// The same with what was expected instead.
+    pub fn expected(mut self, expected: impl Into<String>) -> Self {
+        self.expected = Some(expected.into());
+        self
+    }
+
+    /// The same with what was expected instead, where that is known.
+    pub fn maybe_expected(mut self, expected: Option<String>) -> Self {
+        self.expected = expected.or(self.expected);
+        self
+    }
+
+    /// The same with what to do about it.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// The same with what to do about it, where that is known.
+    pub fn maybe_help(mut self, help: Option<String>) -> Self {
+        self.help = help.or(self.help);
+        self
+    }
+
+    /// Something is missing, which a syntax error may be to blame for.
+    pub fn consequence(mut self) -> Self {
+        self.consequence = true;
+        self
+    }
+
+    /// The same as an error of syntax, for which others may be a consequence.
+    pub fn syntax(mut self) -> Self {
+        self.syntax = true;
+        self
+    }
+}
+
+/// More findings than this are counted but not listed.
+const MAXIMUM_LISTED: usize = 200;
+/// More errors, or warnings, than this are counted but not kept, so that the work for each stays small.
+const MAXIMUM_KEPT: usize = 400;
+
+impl Findings {
+    /// Takes a text in and gives its index.
+    pub fn add_text(&mut self, name: &str, content: &str, skipped: usize) -> usize {
+        let starts = content.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
+        let line_starts = std::iter::once(0).chain(starts).collect();
+        self.texts.push(Text { name: name.to_string(), content: content.to_string(), skipped, line_starts });
+        self.texts.len() - 1
+    }
+
+    /// Index of the text taken in last.
+    pub fn last_text(&self) -> usize {
+        self.texts.len().saturating_sub(1)
+    }
+
+    /// Takes a finding in; beyond the most that are kept it is only counted.
+    pub fn push(&mut self, found: Found) {
+        let kept = if found.severity == Severity::Error { &mut self.errors } else { &mut self.warnings };
+        if *kept < MAXIMUM_KEPT {
+            *kept += 1;
+            self.found.push(found);
+        } else {
+            self.more += 1;
+        }
+    }
+
+    /// The content of a text; empty for an index without one.
+    pub fn content(&self, text: usize) -> &str {
+        self.texts.get(text).map_or("", |text| &text.content)
+    }
+
+    /// How many errors are kept.
+    pub fn error_count(&self) -> usize {
+        self.errors
+    }
+
+    /// Whether an error was found.
+    pub fn has_errors(&self) -> bool {
+        self.found.iter().any(|found| found.severity == Severity::Error)
+    }
+
+    /// Whether something within a place was refused already.
+    pub fn has_error_within(&self, place: Place) -> bool {
+        let within = |inner: &Place| {
+            inner.text == place.text && inner.start >= place.start && inner.end <= place.end && place.end > 0
+        };
+        self.found.iter().any(|found| found.severity == Severity::Error && within(&found.place))
+    }
+
+    /// Everything found, in order of place, without what a syntax error of the same text explains.
+    pub fn report(self) -> Report {
+        let Findings { texts, mut found, more, .. } = self;
+        let line = |place: &Place| texts.get(place.text).map_or(0, |text| text.line(place.start));
+        let broken: Vec<(usize, usize)> =
+            found.iter().filter(|f| f.syntax).map(|f| (f.place.text, line(&f.place))).collect();
+        found.retain(|f| {
+            let explained = broken.contains(&(f.place.text, line(&f.place)));
+            f.syntax || !(explained || f.consequence && !broken.is_empty())
+        });
+        found.sort_by(|a, b| (a.severity, a.place, &a.message).cmp(&(b.severity, b.place, &b.message)));
+        found.dedup_by(|a, b| a.place == b.place && a.message == b.message);
+        let more = more + found.len().saturating_sub(MAXIMUM_LISTED);
+        found.truncate(MAXIMUM_LISTED);
+        let diagnostics = found.iter().filter_map(|f| Some(texts.get(f.place.text)?.diagnostic(f))).collect();
+        Report { diagnostics, more, texts: texts.into_iter().map(|text| (text.name, text.content)).collect() }
+    }
+}
+
+impl Text {
+    /// From 1.
+    fn line(&self, at: usize) -> usize {
+        self.line_starts.partition_point(|start| *start <= at)
+    }
+
+    fn diagnostic(&self, found: &Found) -> Diagnostic {
+        let end = self.content.len();
+        let (from, to) = (found.place.start.min(end), found.place.end.min(end));
+        let line = self.line(from);
+        let line_start =
+            line.checked_sub(1).and_then(|index| self.line_starts.get(index)).copied().unwrap_or(0);
+        let whole_file = self.content.is_empty();
+        let before = self.content.get(line_start..from).unwrap_or_default();
+        Diagnostic {
+            severity: found.severity,
+            message: found.message.clone(),
+            file: self.name.clone(),
+            line: if whole_file { 0 } else { line },
+            column: if whole_file { 0 } else { before.chars().count() + 1 },
+            span: from + self.skipped..to.max(from) + self.skipped,
+            expected: found.expected.clone(),
+            help: found.help.clone(),
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! A TOML text as a tree whose every part knows where it is written.
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+use toml_parser::Source;
+use toml_parser::lexer::TokenKind;
+
+use super::text::{Findings, Found, Place};
+
+/// A value and its place.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Where it is written.
+    pub place: Place,
+    /// What is written there.
+    pub value: Value,
+}
+
+/// A value of the tree.
+#[derive(Clone, Debug)]
+pub enum Value {
+    /// A text.
+    Text(String),
+    /// A number.
+    Number(f64),
+    /// True or false.
+    Flag(bool),
+    /// A date, which no key takes.
+    Date,
+    /// A list.
+    List(Vec<Node>),
+    /// A table, its keys in the order of the file.
+    Table(Vec<Entry>),
+}
+
+/// A key of a table with its value.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// The key.
+    pub key: String,
+    /// Where the key is written.
+    pub key_place: Place,
+    /// Its value.
+    pub node: Node,
+}
+
+impl Node {
+    /// The keys of a table; none of anything else.
+    pub fn entries(&self) -> &[Entry] {
+        if let Value::Table(entries) = &self.value { entries } else { &[] }
+    }
+
+    /// A key of a table with its value.
+    pub fn get(&self, key: &str) -> Option<&Entry> {
+        self.entries().iter().find(|entry| entry.key == key)
+    }
+
+    /// What it is, with its article.
+    pub fn kind(&self) -> &'static str {
+        match &self.value {
+            Value::Text(_) => "a text",
+            Value::Number(_) => "a number",
+            Value::Flag(_) => "true or false",
+            Value::Date => "a date",
+            Value::List(_) => "a list",
+            Value::Table(_) => "a table",
+        }
+    }
+}
+
+/// Largest file, in bytes.
+pub(crate) const MAXIMUM_BYTES: usize = 1 << 20;
+/// Deepest nesting of brackets, and most parts of a dotted name.
+const MAXIMUM_DEPTH: usize = 16;
+/// Most syntax errors that are looked at.
+const MAXIMUM_SYNTAX_ERRORS: usize = 200;
+
+/// Takes a file in: its encoding, size and nesting are checked, then its syntax. `None` if nothing can be read.
+pub fn read(name: &str, bytes: &[u8], findings: &mut Findings) -> Option<Node> {
+    if bytes.len() > MAXIMUM_BYTES {
+        let text = findings.add_text(name, "", 0);
+        let message = format!("the file has {} bytes; at most {MAXIMUM_BYTES} are read", bytes.len());
+        findings.push(Found::error(Place { text, start: 0, end: 0 }, message).syntax());
+        return None;
+    }
+    let skipped = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+    let content = &bytes[skipped..];
+    match std::str::from_utf8(content) {
+        Ok(content) => {
+            let text = findings.add_text(name, content, skipped);
+            document(text, findings)
+        }
+        Err(error) => {
+            let valid = error.valid_up_to();
+            let shown = String::from_utf8_lossy(content);
+            let text = findings.add_text(name, &shown, skipped);
+            let place = Place { text, start: valid, end: valid + '\u{fffd}'.len_utf8() };
+            let message = format!("byte {} of the file is not valid UTF-8", valid + skipped + 1);
+            findings.push(Found::error(place, message).syntax().help("save the file as UTF-8"));
+            None
+        }
+    }
+}
+
+/// Reads a text of TOML.
+pub(crate) fn document(text: usize, findings: &mut Findings) -> Option<Node> {
+    let content = findings.content(text).to_string();
+    if let Some(found) = too_deep(text, &content) {
+        findings.push(found);
+        return None;
+    }
+    let (table, errors) = DeTable::parse_recoverable(&content);
+    for error in errors.iter().take(MAXIMUM_SYNTAX_ERRORS) {
+        findings.push(syntax_error(text, &content, error));
+    }
+    let mut converter = Converter { text, findings };
+    Some(converter.table(table.get_ref(), Place { text, start: 0, end: 0 }))
+}
+
+/// Reads a single value of TOML.
+pub(crate) fn value(text: usize, range: std::ops::Range<usize>, findings: &mut Findings) -> Option<Node> {
+    let content = findings.content(text).get(range.clone())?.to_string();
+    if too_deep(text, &content).is_some() {
+        return None;
+    }
+    let value = DeValue::parse(&content).ok()?;
+    let mut node = Converter { text, findings }.node(&value);
+    shift(&mut node, range.start);
+    Some(node)
+}
+
+/// The same, its syntax error among the findings.
+pub fn value_or_finding(text: usize, range: std::ops::Range<usize>, findings: &mut Findings) -> Option<Node> {
+    let content = findings.content(text).get(range.clone())?.to_string();
+    let found = value(text, range.clone(), findings);
+    if found.is_none() {
+        let error = DeValue::parse(&content).err();
+        let span = error.as_ref().and_then(toml::de::Error::span).unwrap_or(0..content.len());
+        let message = error.map_or("nested too deep".to_string(), |error| error.message().to_string());
+        let place = Place { text, start: range.start + span.start, end: range.start + span.end };
+        findings.push(Found::error(place, message).syntax());
+    }
+    found
+}
+
+/// Moves a whole tree to where it stands in the text.
+fn shift(node: &mut Node, by: usize) {
+    node.place.start += by;
+    node.place.end += by;
+    match &mut node.value {
+        Value::List(items) => items.iter_mut().for_each(|item| shift(item, by)),
+        Value::Table(entries) => entries.iter_mut().for_each(|entry| {
+            entry.key_place.start += by;
+            entry.key_place.end += by;
+            shift(&mut entry.node, by);
+        }),
+        _ => {}
+    }
+}
+
+/// Nesting is checked on the tokens, so that no later walk over the tree can be deep.
+fn too_deep(text: usize, content: &str) -> Option<Found> {
+    let (mut depth, mut parts) = (0_usize, 0_usize);
+    for token in Source::new(content).lex() {
+        match token.kind() {
+            TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket => depth += 1,
+            TokenKind::RightSquareBracket | TokenKind::RightCurlyBracket => depth = depth.saturating_sub(1),
+            TokenKind::Dot => parts += 1,
+            TokenKind::Equals | TokenKind::Comma | TokenKind::Newline => parts = 0,
+            _ => {}
+        }
+        if depth > MAXIMUM_DEPTH || parts > MAXIMUM_DEPTH {
+            let place = Place { text, start: token.span().start(), end: token.span().end() };
+            let message = format!("nested deeper than {MAXIMUM_DEPTH}");
+            return Some(Found::error(place, message).syntax());
+        }
+    }
+    None
+}
+
+fn syntax_error(text: usize, content: &str, error: &toml::de::Error) -> Found {
+    let span = error.span().unwrap_or(0..0);
+    let place = Place { text, start: span.start, end: span.end };
+    let message = match content.get(span.clone()) {
+        Some(key) if error.message() == "duplicate key" => format!("duplicate key `{key}`"),
+        _ => error.message().to_string(),
+    };
+    let found = Found::error(place, message).syntax();
+    let line_start = content[..boundary(content, span.start)].rfind('\n').map_or(0, |at| at + 1);
+    let line = content[line_start..].lines().next().unwrap_or_default();
+    let help = line.split_once('=').and_then(|(_, value)| quote_help(value.trim()));
+    found.maybe_help(help)
+}
+
+/// The nearest position at or before `at` where a character begins.
+fn boundary(content: &str, at: usize) -> usize {
+    (0..=at.min(content.len())).rev().find(|at| content.is_char_boundary(*at)).unwrap_or(0)
+}
+
+/// `70 bar` without its quotes.
+fn quote_help(value: &str) -> Option<String> {
+    let value = value.split('#').next().unwrap_or_default().trim();
+    let begins_with_digit = value.starts_with(|c: char| c.is_ascii_digit());
+    let has_letter = value.contains(|c: char| c.is_alphabetic());
+    let plain = !value.contains(['"', '\'', '[', '{', ',']);
+    (begins_with_digit && has_letter && plain)
+        .then(|| format!("a quantity with its unit is written in quotes: \"{value}\""))
+}
+
+/// Makes the tree, and refuses numbers that f64 cannot hold.
+struct Converter<'a> {
+    text: usize,
+    findings: &'a mut Findings,
+}
+
+impl Converter<'_> {
+    fn place(&self, span: std::ops::Range<usize>) -> Place {
+        Place { text: self.text, start: span.start, end: span.end }
+    }
+
+    /// Entries in the order they are written.
+    fn table(&mut self, table: &DeTable<'_>, place: Place) -> Node {
+        let mut entries: Vec<Entry> = Vec::with_capacity(table.len());
+        for (key, value) in table {
+            let key_place = self.place(key.span());
+            let node = self.node(value);
+            entries.push(Entry { key: key.get_ref().to_string(), key_place, node });
+        }
+        entries.sort_by_key(|entry| (entry.key_place, entry.node.place));
+        Node { place, value: Value::Table(entries) }
+    }
+
+    fn node(&mut self, value: &Spanned<DeValue<'_>>) -> Node {
+        let place = self.place(value.span());
+        let value = match value.get_ref() {
+            DeValue::String(text) => Value::Text(text.to_string()),
+            DeValue::Integer(digits) if digits.radix() == 10 => self.number(digits.as_str(), place),
+            DeValue::Integer(digits) => {
+                let number = u64::from_str_radix(digits.as_str(), digits.radix()).map(|number| number as f64);
+                self.check(number.unwrap_or(f64::INFINITY), place, false)
+            }
+            DeValue::Float(text) => self.number(text.as_str(), place),
+            DeValue::Boolean(value) => Value::Flag(*value),
+            DeValue::Datetime(_) => Value::Date,
+            DeValue::Array(items) => Value::List(items.iter().map(|item| self.node(item)).collect()),
+            DeValue::Table(table) => return self.table(table, place),
+        };
+        Node { place, value }
+    }
+
+    fn number(&mut self, text: &str, place: Place) -> Value {
+        let infinite = text.contains("inf");
+        let value: f64 = text.parse().unwrap_or(f64::NAN);
+        let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
+        if value == 0.0 && mantissa.contains(|c: char| c.is_ascii_digit() && c != '0') {
+            let message = "the number is too small to be told from zero";
+            self.findings.push(Found::error(place, message));
+        }
+        self.check(value, place, infinite)
+    }
+
+    fn check(&mut self, value: f64, place: Place, may_be_infinite: bool) -> Value {
+        if value.is_infinite() && !may_be_infinite {
+            self.findings.push(Found::error(place, "the number is too large"));
+        }
+        Value::Number(value)
+    }
+}

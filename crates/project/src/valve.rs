@@ -1,0 +1,148 @@
+//! `[valve]`.
+
+use super::Supply;
+use super::key::{key, plain};
+use super::visitor::Visitor;
+use crate::catalogue::Kind;
+use phea_quantity::{
+    ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,
+};
+
+/// The servovalve, by coefficients of its four edges or by its data sheet.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Valve {
+    /// Name of the catalogue entry the values came from.
+    pub model: Option<String>,
+    /// V, command of full opening.
+    pub nominal_voltage: f64,
+    /// rad/s.
+    pub natural_frequency: f64,
+    /// Damping ratio of the spool's dynamics.
+    pub damping_ratio: f64,
+    /// λ of sech(λ U/U_n) in the leakage; zero keeps the leakage constant.
+    pub leakage_shape: f64,
+    /// m³/s, pilot stage flow from supply to tank.
+    pub tare_flow: f64,
+    /// Pa, drop from supply to tank at which the tare flow is stated; absent: the supply's.
+    pub tare_pressure: Option<f64>,
+    /// V, spool position at which the valve is at null.
+    pub null_bias: f64,
+    /// V, width of the loop over a slow full cycle, threshold included.
+    pub hysteresis: Option<f64>,
+    /// V, change of command that a reversal takes.
+    pub threshold: Option<f64>,
+    /// V/s, greatest rate of the spool.
+    pub rate_limit: Option<f64>,
+    /// Pa, pressure drop below which the square root is made regular.
+    pub transition_pressure: f64,
+    /// K_v3 to K_v6, m³/(s·√Pa).
+    pub flow_coefficients: Option<EdgeCoefficients>,
+    /// K_vin3 to K_vin6, m³/(s·√Pa).
+    pub leakage_coefficients: Option<EdgeCoefficients>,
+    /// m³/s, rated flow of the data sheet.
+    pub nominal_flow: Option<f64>,
+    /// Pa, drop over both edges at the rated flow.
+    pub nominal_pressure_drop: Option<f64>,
+    /// m³/s, leakage at null of the data sheet, tare flow included.
+    pub null_leakage: Option<f64>,
+    /// m³/s, highest leakage at null of the data sheet, tare flow included, where it prints a range.
+    pub null_leakage_maximum: Option<f64>,
+    /// Pa, supply pressure the null leakage was measured at.
+    pub null_leakage_pressure: Option<f64>,
+    /// s, step response time of the data sheet; for information.
+    pub response_time: Option<f64>,
+}
+
+/// One number for each edge of a four-way spool.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EdgeCoefficients {
+    /// Edge 3.
+    pub supply_to_a: f64,
+    /// Edge 4.
+    pub a_to_tank: f64,
+    /// Edge 5.
+    pub supply_to_b: f64,
+    /// Edge 6.
+    pub b_to_tank: f64,
+}
+
+impl EdgeCoefficients {
+    /// All four, to be changed.
+    pub fn each_mut(&mut self) -> [&mut f64; 4] {
+        [&mut self.supply_to_a, &mut self.a_to_tank, &mut self.supply_to_b, &mut self.b_to_tank]
+    }
+
+    /// In the order of edges 3, 4, 5, 6.
+    pub fn in_order(&self) -> [f64; 4] {
+        [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("supply_to_a", &FLOW_COEFFICIENT, "Edge 3, from supply to chamber A.").not_negative();
+        v.quantity(k, &mut self.supply_to_a);
+        let k = key("a_to_tank", &FLOW_COEFFICIENT, "Edge 4, from chamber A to tank.").not_negative();
+        v.quantity(k, &mut self.a_to_tank);
+        let k = key("supply_to_b", &FLOW_COEFFICIENT, "Edge 5, from supply to chamber B.").not_negative();
+        v.quantity(k, &mut self.supply_to_b);
+        let k = key("b_to_tank", &FLOW_COEFFICIENT, "Edge 6, from chamber B to tank.").not_negative();
+        v.quantity(k, &mut self.b_to_tank);
+    }
+}
+
+impl Valve {
+    /// Pa, drop from supply to tank at which the tare flow is stated.
+    pub fn tare_drop(&self, supply: &Supply) -> f64 {
+        self.tare_pressure.unwrap_or(supply.pressure - supply.tank_pressure)
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.catalogue(plain("model", "Name of a valve of the catalogue."), Kind::Valve, &mut self.model);
+        let k = key("nominal_voltage", &VOLTAGE, "Command of full opening.").positive().or(10.0);
+        v.quantity(k, &mut self.nominal_voltage);
+        let k = key("natural_frequency", &ANGULAR_FREQUENCY, "Natural frequency of the spool's dynamics.");
+        v.quantity(k.positive(), &mut self.natural_frequency);
+        let k = key("damping_ratio", &RATIO, "Damping ratio of the spool's dynamics.").positive();
+        v.quantity(k, &mut self.damping_ratio);
+        let k = key("leakage_shape", &RATIO, "λ of sech(λ U/U_n) in the leakage; 0 keeps it constant.");
+        v.quantity(k.not_negative().or(0.0), &mut self.leakage_shape);
+        let k = key("tare_flow", &FLOW, "Pilot stage flow from supply to tank.").not_negative().or(0.0);
+        v.quantity(k, &mut self.tare_flow);
+        let k = key("transition_pressure", &PRESSURE, "Drop below which the square root is made regular.");
+        v.quantity(k.positive().or(1000.0), &mut self.transition_pressure);
+        let k = plain("flow_coefficients", "K_v3 to K_v6: a table, or an array in this order.");
+        v.record(k, &mut self.flow_coefficients, EdgeCoefficients::visit);
+        let k = plain("leakage_coefficients", "K_vin3 to K_vin6: a table, or an array in this order.");
+        v.record(k, &mut self.leakage_coefficients, EdgeCoefficients::visit);
+        self.visit_imperfections(v);
+        self.visit_data_sheet(v);
+    }
+
+    fn visit_imperfections<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("tare_pressure", &PRESSURE, "Drop at which `tare_flow` is stated; absent: the supply's.");
+        v.optional(k.positive(), &mut self.tare_pressure);
+        let k = key("null_bias", &VOLTAGE, "Spool position at which the valve is at null.").or(0.0);
+        v.quantity(k, &mut self.null_bias);
+        let k = key("hysteresis", &VOLTAGE, "Width of the loop over a slow full cycle, threshold included.");
+        v.optional(k.positive(), &mut self.hysteresis);
+        let k = key("threshold", &VOLTAGE, "Change of command that a reversal takes.").positive();
+        v.optional(k, &mut self.threshold);
+        let k = key("rate_limit", &VOLTAGE_RATE, "Greatest rate of the spool, as equivalent command.");
+        v.optional(k.positive(), &mut self.rate_limit);
+    }
+
+    fn visit_data_sheet<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("nominal_flow", &FLOW, "Rated flow of the data sheet.").positive();
+        v.optional(k, &mut self.nominal_flow);
+        let k = key("nominal_pressure_drop", &PRESSURE, "Drop over both edges together at the rated flow.");
+        v.optional(k.positive(), &mut self.nominal_pressure_drop);
+        let k = key("null_leakage", &FLOW, "Leakage at null, tare flow included; the lowest of a range.");
+        v.optional(k.not_negative(), &mut self.null_leakage);
+        let k =
+            key("null_leakage_maximum", &FLOW, "Highest leakage at null, where the data sheet has a range.");
+        v.optional(k.not_negative(), &mut self.null_leakage_maximum);
+        let k = key("null_leakage_pressure", &PRESSURE, "Supply pressure the null leakage was measured at.");
+        v.optional(k.positive(), &mut self.null_leakage_pressure);
+        let k = key("response_time", &TIME, "Step response time of the data sheet; for information.");
+        v.optional(k.positive(), &mut self.response_time);
+    }
+}

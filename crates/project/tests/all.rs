@@ -1,0 +1,9 @@
+//! The language of a rig from outside: what is read, what is refused, and how.
+#![cfg(test)]
+
+mod formula;
+mod kernels;
+mod malformed;
+mod mutation;
+mod plausible;
+mod reading;

@@ -1,0 +1,20 @@
+//! Quantities in text: `"70 bar"`, `"4.7 cc/ft"`, `"9.8 L/min"`, and back.
+//!
+//! The only place of the workspace with factors between units. Inside, every number is SI. Pressures are gauge
+//! unless the name of their key says `absolute`.
+
+mod dimension;
+mod display_unit;
+mod exact;
+mod parse;
+mod print;
+mod significant;
+pub mod spelling;
+mod unit;
+
+pub use dimension::*;
+pub use display_unit::DisplayUnit;
+pub use parse::{QuantityError, parse};
+pub use print::print_bare;
+pub use print::{display, fitting, print};
+pub use significant::significant;

@@ -1,0 +1,4 @@
+//! Quantities in text from outside.
+#![cfg(test)]
+
+mod text;
