@@ -198,14 +198,14 @@ fn tidy(root: &Path) -> Outcome {
     if crate::tidy::report(root) { Outcome::Passed } else { Outcome::Failed("see above".to_string()) }
 }
 
-/// The three lower crates build for the browser.
+/// The crates that only compute build for the browser.
 fn wasm32(root: &Path) -> Outcome {
     const TARGET: &str = "wasm32-unknown-unknown";
     if let Err(missing) = tools::target(TARGET) {
         println!("\n**** SKIPPED: {missing}\n**** nothing is known about {TARGET} from this run\n");
         return Outcome::Skipped(missing);
     }
-    let packages = ["-p", "phea-dynamics", "-p", "phea-hydraulics", "-p", "phea-qft"];
+    let packages = ["-p", "phea-machine", "-p", "phea-qft", "-p", "phea-quantity"];
     execute(root, "cargo", &[&["check", "--target", TARGET][..], &packages].concat())
 }
 

@@ -3,6 +3,7 @@
 //! Loop shaping edits the elements, verification takes the responses, simulation and generated code take the sample
 //! step of [`SampledController`]: four users of one value.
 
+mod converter;
 mod element;
 mod integral;
 mod sampled;
@@ -10,6 +11,7 @@ mod section;
 
 pub(crate) use integral::integral_row;
 
+pub use converter::{Converter, ConverterError};
 pub use element::{Compensator, Element, Stage};
 pub use sampled::{ControllerOutput, ControllerState, SampledController};
 pub use section::Section;

@@ -98,8 +98,8 @@ pub(crate) fn timing(project: &Project) -> Timing {
 pub(crate) fn quantisation(project: &Project) -> Result<Quantisation, ControlError> {
     let declared = project.controller.as_ref().and_then(|controller| controller.quantization.clone());
     let Some(declared) = declared else { return Ok(Quantisation::default()) };
-    let converter = |bits: u32, range: Option<[f64; 2]>| {
-        range.filter(|_| bits > 0).map(|range| Converter::new(bits, range)).transpose()
+    let converter = |bits: u32, range: Option<[f64; 2]>| -> Result<_, QuantisationError> {
+        Ok(range.filter(|_| bits > 0).map(|range| Converter::new(bits, range)).transpose()?)
     };
     Ok(Quantisation {
         command: converter(declared.command_bits, declared.command_range)?,

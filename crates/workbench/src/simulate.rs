@@ -6,7 +6,6 @@ mod check;
 mod columns;
 mod compare;
 mod course;
-mod digital;
 mod equilibrium;
 mod exceeded;
 mod figures;
@@ -21,7 +20,6 @@ mod metrics;
 mod motion_file;
 mod record;
 mod run;
-mod samples;
 mod saved;
 mod shortest_number;
 mod signal;
@@ -45,9 +43,8 @@ pub use run::{BeyondExpansion, COMMAND_LIMIT, Occurrence, ScenarioRun, Stopped, 
 pub use saved::SavedState;
 
 pub(crate) use answer::{Body, body, compare_json, frequency_json, json};
-pub(crate) use bench::{Control, options};
+pub(crate) use bench::options;
 pub(crate) use course::{Driven, course_of, driven};
-pub(crate) use digital::{Digital, Waking};
 pub(crate) use figures::{comparison_files, figure_files, picture_files, pictures};
 pub(crate) use file_names::table_names;
 pub(crate) use files::{Table, files};
@@ -56,8 +53,6 @@ pub(crate) use frequency::{
     files as frequency_files, pictures as frequency_pictures, text as frequency_text,
 };
 pub(crate) use run::occurrences;
-pub(crate) use samples::Samples;
-pub(crate) use sums::size as loop_size;
 pub(crate) use text::{
     ABSENT, MEASURED, METRICS, cause_words, cells_of, coarse_sentence, compare_text, headline,
     measured_cells, occurrence_sentences, small_as_zero, text,

@@ -18,8 +18,6 @@ mod range;
 mod record;
 #[path = "../src/campaign/row.rs"]
 mod row;
-#[path = "../src/simulate/samples.rs"]
-mod samples;
 #[path = "../src/simulate/shortest_number.rs"]
 mod shortest_number;
 #[path = "../src/campaign/spread.rs"]

@@ -1,9 +1,9 @@
 //! Who may depend on whom.
 //!
 //! ```text
-//! dynamics <- hydraulics <- project <-+
-//! dynamics <- qft <------------------ +- workbench <- cli | python | web | fmu
-//! quantity <- figure, project <-------+
+//! dynamics <- hydraulics <- machine, project <-+
+//! dynamics <- qft <----------------------------+- workbench <- cli | python | web | fmu
+//! quantity <- figure, project <----------------+
 //! ```
 
 use std::collections::BTreeSet;
@@ -16,12 +16,21 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("crates/dynamics", &[]),
     ("crates/hydraulics", &["phea-dynamics"]),
     ("crates/qft", &["phea-dynamics"]),
+    ("crates/machine", &["phea-dynamics", "phea-hydraulics"]),
     ("crates/quantity", &["phea-dynamics"]),
     ("crates/figure", &["phea-dynamics", "phea-qft", "phea-quantity"]),
     ("crates/project", &["phea-dynamics", "phea-hydraulics", "phea-quantity"]),
     (
         "crates/workbench",
-        &["phea-dynamics", "phea-figure", "phea-hydraulics", "phea-project", "phea-qft", "phea-quantity"],
+        &[
+            "phea-dynamics",
+            "phea-figure",
+            "phea-hydraulics",
+            "phea-machine",
+            "phea-project",
+            "phea-qft",
+            "phea-quantity",
+        ],
     ),
     ("apps/cli", &["phea-workbench"]),
     ("fuzz", &["phea-workbench"]),
@@ -30,7 +39,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
 ];
 
 /// The folders of the crates that compute and do nothing else.
-pub(super) const LOWER_CRATES: [&str; 4] = ["crates/dynamics/", "crates/hydraulics/", "crates/qft/", "crates/quantity/"];
+pub(super) const LOWER_CRATES: [&str; 5] =
+    ["crates/dynamics/", "crates/hydraulics/", "crates/machine/", "crates/qft/", "crates/quantity/"];
 
 /// What a crate that only computes has no use for: files formats, clocks, threads, unseeded random numbers.
 const FOREIGN_TO_LOWER_CRATES: [&str; 10] =

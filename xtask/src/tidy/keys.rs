@@ -19,9 +19,8 @@ const NO_KEYS: [&str; 2] = ["crates/project/src/lib.rs", "crates/project/src/cat
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let mut declared = Declared::default();
-    let declares = |path: &str| {
-        path.starts_with(DECLARATIONS) && !NO_KEYS.iter().any(|other| path.starts_with(other))
-    };
+    let declares =
+        |path: &str| path.starts_with(DECLARATIONS) && !NO_KEYS.iter().any(|other| path.starts_with(other));
     for file in repository.rust_files().iter().filter(|file| declares(&file.path)) {
         if let Ok(tokens) = file.text.parse::<TokenStream>() {
             declared.collect(tokens, &file.path, false);

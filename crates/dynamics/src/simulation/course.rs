@@ -75,6 +75,66 @@ pub trait Observer {
     }
 }
 
+impl<O: Observer + ?Sized> Observer for &mut O {
+    fn wanted(&self) -> &[usize] {
+        (**self).wanted()
+    }
+
+    fn wants_row(&self, row: u64) -> bool {
+        (**self).wants_row(row)
+    }
+
+    fn observe(&mut self, time_s: f64, states: &[f64], inputs: &[f64]) {
+        (**self).observe(time_s, states, inputs);
+    }
+
+    fn wants_inputs(&self) -> bool {
+        (**self).wants_inputs()
+    }
+
+    fn attention(&self) -> Attention {
+        (**self).attention()
+    }
+
+    fn follow(&mut self, stretch: &Stretch<'_>) {
+        (**self).follow(stretch);
+    }
+
+    fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
+        (**self).looks_closer(stretch)
+    }
+}
+
+impl<O: Observer + ?Sized> Observer for Box<O> {
+    fn wanted(&self) -> &[usize] {
+        (**self).wanted()
+    }
+
+    fn wants_row(&self, row: u64) -> bool {
+        (**self).wants_row(row)
+    }
+
+    fn observe(&mut self, time_s: f64, states: &[f64], inputs: &[f64]) {
+        (**self).observe(time_s, states, inputs);
+    }
+
+    fn wants_inputs(&self) -> bool {
+        (**self).wants_inputs()
+    }
+
+    fn attention(&self) -> Attention {
+        (**self).attention()
+    }
+
+    fn follow(&mut self, stretch: &Stretch<'_>) {
+        (**self).follow(stretch);
+    }
+
+    fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
+        (**self).looks_closer(stretch)
+    }
+}
+
 /// How closely an observer follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Attention {

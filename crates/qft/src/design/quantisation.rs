@@ -12,31 +12,10 @@ mod rounding_effect;
 pub use coefficients::{CoefficientEffect, CoefficientFormat, RoundedController, rounded};
 pub use rounding_effect::{LimitCycle, RoundingEffect, RoundingEffects, rounding_effects};
 
+pub use phea_dynamics::controller::{Converter, ConverterError};
 use phea_dynamics::linear::LinearError;
 
 use crate::specification::{Limit, Requirement, Specification};
-
-/// A converter that rounds to the nearest of 2^bits levels over its range.
-///
-/// ```text
-/// q = (maximum - minimum)/2^bits
-/// ```
-///
-/// # Example
-/// 12 bits over a valve command of -10 V to 10 V: steps of 4.9 mV.
-/// ```
-/// use phea_qft::design::quantisation::Converter;
-/// let converter = Converter::new(12, [-10.0, 10.0])?;
-/// assert_eq!(converter.step(), 0.0048828125);
-/// // ORIGIN: analytic, 2/q = 409.6, so that 2 lies between levels 409 and 410
-/// assert_eq!(converter.rounded(2.0), 410.0 * converter.step());
-/// # Ok::<(), phea_qft::design::quantisation::QuantisationError>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Converter {
-    step: f64,
-    range: [f64; 2],
-}
 
 /// The converters and the coefficients of the computer that runs a controller; a converter that is absent does not round.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -52,16 +31,9 @@ pub struct Quantisation {
 /// Why the effect of rounding cannot be told.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum QuantisationError {
-    /// Between 1 and 32 bits over a range that is finite and increases.
-    #[error("{bits} bits from {minimum} to {maximum} are no converter")]
-    Converter {
-        /// Bits.
-        bits: u32,
-        /// Lower end.
-        minimum: f64,
-        /// Upper end.
-        maximum: f64,
-    },
+    /// A converter is impossible.
+    #[error(transparent)]
+    Converter(#[from] ConverterError),
     /// A continuous controller has no samples to round.
     #[error("rounding needs a sampled loop")]
     Continuous,
@@ -87,34 +59,6 @@ pub enum QuantisationError {
     /// A part is no transfer function that can be run.
     #[error("{0}")]
     Linear(#[from] LinearError),
-}
-
-impl Converter {
-    /// A converter with so many bits over a range `[minimum, maximum]`.
-    ///
-    /// # Errors
-    /// [`QuantisationError::Converter`].
-    pub fn new(bits: u32, range: [f64; 2]) -> Result<Converter, QuantisationError> {
-        let [minimum, maximum] = range;
-        let levels =
-            f64::from(bits.checked_sub(1).map_or(0, |rest| 1_u32.checked_shl(rest).unwrap_or(0))) * 2.0;
-        let step = (maximum - minimum) / levels;
-        if levels == 0.0 || !(step.is_finite() && step > 0.0) {
-            return Err(QuantisationError::Converter { bits, minimum, maximum });
-        }
-        Ok(Converter { step, range })
-    }
-
-    /// q, in the unit of the signal.
-    pub fn step(&self) -> f64 {
-        self.step
-    }
-
-    /// The nearest level, the end of the range beyond it.
-    pub fn rounded(&self, value: f64) -> f64 {
-        let [minimum, maximum] = self.range;
-        ((value / self.step).round() * self.step).clamp(minimum, maximum)
-    }
 }
 
 impl Quantisation {
@@ -147,7 +91,7 @@ impl Quantisation {
         allowed_rms: f64,
         frequencies_rad_per_s: Vec<f64>,
     ) -> Option<Specification> {
-        let limit = Limit::Constant(allowed_rms / (0.5 * self.command?.step));
+        let limit = Limit::Constant(allowed_rms / (0.5 * self.command?.step()));
         Some(everywhere(Requirement::PlantInputDisturbance(limit), frequencies_rad_per_s))
     }
 
@@ -163,7 +107,7 @@ impl Quantisation {
         allowed_rms: f64,
         frequencies_rad_per_s: Vec<f64>,
     ) -> Option<Specification> {
-        let limit = Limit::Constant(allowed_rms / (0.5 * self.measurement?.step));
+        let limit = Limit::Constant(allowed_rms / (0.5 * self.measurement?.step()));
         Some(everywhere(Requirement::ControlEffort(limit), frequencies_rad_per_s))
     }
 }

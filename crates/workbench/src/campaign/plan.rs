@@ -3,6 +3,7 @@
 use phea_dynamics::random;
 use phea_dynamics::scalar::Dependence;
 use phea_dynamics::simulation::Plant;
+use phea_machine::Control;
 use sha2::{Digest, Sha256};
 
 use super::CampaignError;
@@ -11,7 +12,7 @@ use super::row::Columns;
 use super::varied::ranges;
 use crate::project::{Loaded, MotionShape, Project, Scenario, print};
 use crate::setup::Setup;
-use crate::simulate::{Bench, Control, Driven, SimulateError, Window, driven, loop_size};
+use crate::simulate::{Bench, Driven, SimulateError, Window, driven};
 use crate::source::Source;
 
 /// Most times at which the bands of the force are given over the whole scenario, and as many more around what begins its windows.
@@ -285,7 +286,7 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
 fn look(control: &Control) -> Vec<usize> {
     let variables =
         |count: usize, from: usize| -> Vec<Dependence> { (from..from + count).map(Dependence::on).collect() };
-    let [states, inputs] = loop_size(control);
+    let [states, inputs] = control.size();
     let (state, input) = (variables(states, 0), variables(inputs, states));
     let needed = match control {
         Control::Continuous(closed) => {

@@ -1,19 +1,18 @@
 //! One run, ready to be driven, and who looks at it.
 
 use std::cell::RefCell;
+use std::rc::Rc;
 
-use phea_dynamics::simulation::{
-    Attention, Course, Input, Observer, Outcome, Sampler, Stretch, System, Task,
-};
+use phea_dynamics::simulation::{Attention, Course, Input, Observer, Outcome, Sampler, Stretch, Task};
 use phea_hydraulics::machine::{Machine, MachineOptions};
+use phea_machine::{Control, Digital, Samples, Waking, Watcher};
 
 use super::plan::{Draw, Plan};
 use super::row::{Ran, Row, RowOutcome, numbers};
 use crate::rig::{RigError, actuator};
 use crate::setup::Setup;
 use crate::simulate::{
-    Bench, COMMAND_LIMIT, Control, Digital, Follower, Occurrence, Samples, SimulateError, Stopped, Waking,
-    course_of, occurrences, options,
+    Bench, COMMAND_LIMIT, Follower, Occurrence, SimulateError, Stopped, course_of, occurrences, options,
 };
 
 /// A run ready to be driven.
@@ -83,17 +82,17 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
 
 impl Prepared {
     /// What is to be done in a lane.
-    pub(super) fn task<'a>(&'a self, plan: &'a Plan, every_look: bool) -> Task<'a, Watched<'a>> {
+    pub(super) fn task<'a>(&'a self, observer: Watcher<'a>) -> Task<'a, Watcher<'a>> {
         let sampler: Option<Box<dyn Sampler + 'a>> = match &self.bench.control {
             Control::Continuous(_) | Control::Open(_) => None,
             Control::Sampled(sampled) => Some(Box::new(Digital::new(sampled, &self.waking, &self.log))),
         };
-        let observer = Watched::new(plan, self, every_look);
         Task { start: self.start.clone(), course: &self.course, sampler, observer }
     }
 
     /// What came of it.
     pub(super) fn row(&self, outcome: &Outcome, seen: &Watched<'_>) -> Row {
+        let seen = seen.seen.borrow();
         let metrics = seen.follower.metrics();
         let stopped = Stopped::of(outcome.status);
         let mut kinds: Vec<&'static str> = Vec::new();
@@ -125,46 +124,55 @@ impl Prepared {
             Input::Command => 0.0,
         };
         let mut first: Vec<f64> = self.course.inputs.iter().map(value).collect();
-        match &self.bench.control {
-            Control::Continuous(closed) => {
-                first.extend(self.start.iter().skip(System::<f64>::states(closed.as_ref())));
-                occurrences(closed.as_ref(), &self.start, &first, &outcome.events)
-            }
-            Control::Sampled(sampled) => {
-                first.extend(self.start.iter().skip(System::<f64>::states(&sampled.held)));
-                let mut found = occurrences(&sampled.held, &self.start, &first, &outcome.events);
-                if let Some((time_s, begins)) = self.log.borrow().limits.first().copied() {
-                    found.push(Occurrence { time_s, kind: COMMAND_LIMIT, begins });
-                }
-                found
-            }
-            Control::Open(held) => {
-                first.extend(self.start.iter().skip(System::<f64>::states(held.as_ref())));
-                occurrences(held.as_ref(), &self.start, &first, &outcome.events)
-            }
+        let control = &self.bench.control;
+        let [states, _] = control.size();
+        first.extend(self.start.iter().skip(states));
+        let mut found = occurrences(control, &self.start, &first, &outcome.events);
+        if let Some((time_s, begins)) = self.log.borrow().limits.first().copied() {
+            found.push(Occurrence { time_s, kind: COMMAND_LIMIT, begins });
         }
+        found
     }
 }
 
-/// Looks at force and command of a run.
+/// What is seen of a run, by whom watches it and by whom it is for.
 pub(super) struct Watched<'a> {
+    plan: &'a Plan,
+    seen: Rc<RefCell<Seen<'a>>>,
+}
+
+/// Force and command of a run.
+struct Seen<'a> {
     plan: &'a Plan,
     follower: Follower<'a>,
     /// Whether all looks are kept, or those of the bands alone.
     every_look: bool,
     /// N.
-    pub(super) force_n: Vec<f64>,
+    force_n: Vec<f64>,
 }
 
 impl<'a> Watched<'a> {
-    fn new(plan: &'a Plan, prepared: &'a Prepared, every_look: bool) -> Watched<'a> {
+    pub(super) fn new(plan: &'a Plan, prepared: &'a Prepared, every_look: bool) -> Watched<'a> {
         let windows = (plan.windows(), plan.scenario.settling_band_percent);
         let reference = &plan.driven.reference;
         let follower = Follower::of(&prepared.bench, &plan.look, &prepared.log, reference, windows);
         let kept = if every_look { plan.times_s.len() } else { plan.band_looks.len() };
-        Watched { plan, follower, every_look, force_n: Vec::with_capacity(kept) }
+        let seen = Seen { plan, follower, every_look, force_n: Vec::with_capacity(kept) };
+        Watched { plan, seen: Rc::new(RefCell::new(seen)) }
     }
 
+    /// Who watches the run.
+    pub(super) fn watcher(&self) -> Watcher<'a> {
+        Box::new(Watched { plan: self.plan, seen: Rc::clone(&self.seen) })
+    }
+
+    /// The force at every look that was kept, N.
+    pub(super) fn force_n(&self) -> Vec<f64> {
+        self.seen.borrow().force_n.clone()
+    }
+}
+
+impl Seen<'_> {
     /// The force at the times of the bands, as far as it went, N.
     fn of_bands(&self) -> impl Iterator<Item = f64> {
         let places = self.plan.band_looks.iter().enumerate();
@@ -179,12 +187,14 @@ impl Observer for Watched<'_> {
     }
 
     fn wants_row(&self, row: u64) -> bool {
-        let next = self.plan.band_looks.get(self.force_n.len());
-        self.every_look || next.is_some_and(|look| *look as u64 == row)
+        let seen = self.seen.borrow();
+        let next = self.plan.band_looks.get(seen.force_n.len());
+        seen.every_look || next.is_some_and(|look| *look as u64 == row)
     }
 
     fn observe(&mut self, _time_s: f64, states: &[f64], _inputs: &[f64]) {
-        self.force_n.push(self.follower.force_n(states));
+        let seen = &mut *self.seen.borrow_mut();
+        seen.force_n.push(seen.follower.force_n(states));
     }
 
     fn wants_inputs(&self) -> bool {
@@ -196,10 +206,10 @@ impl Observer for Watched<'_> {
     }
 
     fn follow(&mut self, stretch: &Stretch<'_>) {
-        self.follower.follow(stretch);
+        self.seen.borrow_mut().follower.follow(stretch);
     }
 
     fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
-        self.follower.looks_closer(stretch)
+        self.seen.borrow().follower.looks_closer(stretch)
     }
 }

@@ -6,24 +6,18 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::scalar::Lanes;
-use phea_dynamics::simulation::{
-    ClosedLoop, HeldPlant, Lane, Outcome, Queue, Sensed, SimulationError, Status, Task, drive,
-};
-use phea_hydraulics::machine::Machine;
+use phea_dynamics::simulation::{Outcome, SimulationError, Status, Task};
+use phea_hydraulics::machine::{Machine, MachineError};
+use phea_machine::{Control, Fleet, Lanewise, Watcher};
 
 use super::plan::Plan;
 use super::prepared::{Prepared, Watched, prepared};
 use super::row::{Row, RowOutcome};
 use super::supply::Supply;
 use crate::setup::Setup;
-use crate::simulate::{Control, SimulateError};
+use crate::simulate::SimulateError;
 
 use super::CampaignError;
-
-/// Lanes of a vector: two registers of the widest kind that is common, which hide the time that divisions and roots take.
-pub(super) const LANES: usize = 4;
 
 /// Machines that a thread makes before it forgets them: its lanes run empty at the end of so many runs.
 pub(super) const MACHINES: usize = 256;
@@ -86,21 +80,7 @@ pub(super) type Give<'g> = &'g mut dyn FnMut(Finished);
 /// As [`in_lanes`].
 pub(super) fn one_by_one(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Result<(), CampaignError> {
     let bench = &shared.plan.bench;
-    let settings = &bench.settings;
-    driven(shared, (most, give), |batch| match &bench.control {
-        Control::Continuous(closed) => {
-            let machine: fn(&mut ClosedLoop<Sensed<Machine>>) -> &mut Machine = in_loop;
-            drive::<f64, _, _>(&mut closed.as_ref().clone(), &mut Lanewise { batch, machine }, settings)
-        }
-        Control::Sampled(sampled) => {
-            let machine: fn(&mut HeldPlant<Sensed<Machine>>) -> &mut Machine = in_hold;
-            drive::<f64, _, _>(&mut sampled.held.clone(), &mut Lanewise { batch, machine }, settings)
-        }
-        Control::Open(held) => {
-            let machine: fn(&mut HeldPlant<Sensed<Machine>>) -> &mut Machine = in_hold;
-            drive::<f64, _, _>(&mut held.as_ref().clone(), &mut Lanewise { batch, machine }, settings)
-        }
-    })
+    driven(shared, (most, give), |batch| phea_machine::one_by_one(&bench.control, batch, &bench.settings))
 }
 
 /// Drives so many runs at most in lanes; those that were stopped are not given. Under a sampled controller they are driven one by
@@ -109,40 +89,21 @@ pub(super) fn one_by_one(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Re
 ///
 /// # Errors
 /// A start or course that does not fit the machine.
-pub(super) fn in_lanes<const L: usize>(
-    shared: &Shared<'_>,
-    most: usize,
-    give: Give<'_>,
-) -> Result<(), CampaignError> {
+pub(super) fn in_lanes(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Result<(), CampaignError> {
     let plan = shared.plan;
     if matches!(plan.bench.control, Control::Sampled(_)) {
         return one_by_one(shared, most, give);
     }
-    let settings = &plan.bench.settings;
-    let machine = plan.bench.machine.convert(&mut |value| Lanes([value; L]));
     let setup = Setup::new(&plan.project).map_err(SimulateError::from)?;
-    let sensed = Sensed::new(machine, &setup.sensor).map_err(SimulateError::from)?;
-    if plan.is_open_loop() {
-        let prefilter = TransferFunction::gain_only(1.0);
-        let mut held = HeldPlant::new(sensed, &prefilter).map_err(SimulateError::from)?;
-        let machine: fn(&mut HeldPlant<Sensed<Machine<Lanes<L>>>>) -> &mut Machine<Lanes<L>> = in_hold;
-        return driven(shared, (most, give), |batch| {
-            drive(&mut held, &mut Lanewise { batch, machine }, settings)
-        });
-    }
-    let control = setup.controller.ok_or(SimulateError::NoController)?;
-    let gain = plan.bench.feed_forward;
-    let mut closed = ClosedLoop::new(sensed, &control, gain).map_err(SimulateError::from)?;
-    let machine: fn(&mut ClosedLoop<Sensed<Machine<Lanes<L>>>>) -> &mut Machine<Lanes<L>> = in_loop;
-    driven(shared, (most, give), |batch| drive(&mut closed, &mut Lanewise { batch, machine }, settings))
-}
-
-fn in_loop<S>(system: &mut ClosedLoop<Sensed<Machine<S>>>) -> &mut Machine<S> {
-    system.plant_mut().plant_mut()
-}
-
-fn in_hold<S>(system: &mut HeldPlant<Sensed<Machine<S>>>) -> &mut Machine<S> {
-    system.plant_mut().plant_mut()
+    let controller = match plan.is_open_loop() {
+        true => None,
+        false => {
+            Some((setup.controller.as_ref().ok_or(SimulateError::NoController)?, plan.bench.feed_forward))
+        }
+    };
+    let lanes = Lanewise::new(&plan.bench.machine, &setup.sensor, controller);
+    let mut lanes = lanes.map_err(SimulateError::from)?;
+    driven(shared, (most, give), |batch| lanes.in_lanes(batch, &plan.bench.settings))
 }
 
 /// Lets runs be driven, each made when its turn comes.
@@ -167,7 +128,7 @@ struct Batch<'a> {
     made: &'a [OnceCell<Prepared>],
     /// The first place that is free.
     next: usize,
-    in_lanes: Vec<Option<&'a Prepared>>,
+    in_lanes: Vec<Option<(&'a Prepared, Watched<'a>)>>,
     /// Whether a run was taken.
     works: bool,
     give: Give<'a>,
@@ -180,56 +141,52 @@ impl Batch<'_> {
     }
 }
 
-/// A batch for a kind of system, and where its machine is.
-struct Lanewise<'b, 'a, E, S> {
-    batch: &'b mut Batch<'a>,
-    machine: fn(&mut E) -> &mut Machine<S>,
-}
-
-impl<'a, E, S: Lane> Queue<'a, E> for Lanewise<'_, 'a, E, S> {
-    type Observer = Watched<'a>;
-
-    fn next(&mut self, system: &mut E, lane: usize) -> Option<Task<'a, Watched<'a>>> {
-        let batch = &mut *self.batch;
-        let (shared, made) = (batch.shared, batch.made);
+impl<'a> Fleet<'a> for Batch<'a> {
+    fn next(
+        &mut self,
+        lane: usize,
+        put: &mut dyn FnMut(&Machine) -> Result<(), MachineError>,
+    ) -> Option<Task<'a, Watcher<'a>>> {
+        let (shared, made) = (self.shared, self.made);
         loop {
-            let place = made.get(batch.next)?;
-            let driving = batch.in_lanes.iter().flatten().count();
-            let run = shared.take(driving, &mut batch.works)?;
+            let place = made.get(self.next)?;
+            let driving = self.in_lanes.iter().flatten().count();
+            let run = shared.take(driving, &mut self.works)?;
             let prepared = match prepared(shared.plan, shared.plan.draw(run)) {
                 Ok(prepared) => prepared,
                 Err(row) => {
-                    batch.refuse(*row);
+                    self.refuse(*row);
                     continue;
                 }
             };
-            if let Err(error) = (self.machine)(system).put(lane, &prepared.bench.machine) {
+            if let Err(error) = put(&prepared.bench.machine) {
                 let outcome = RowOutcome::Refused(error.to_string());
                 let Prepared { draw, lumps, .. } = prepared;
-                batch.refuse(Row { run: draw.run, values: draw.values, lumps, outcome });
+                self.refuse(Row { run: draw.run, values: draw.values, lumps, outcome });
                 continue;
             }
             let prepared = place.get_or_init(|| prepared);
-            batch.next += 1;
-            batch.in_lanes.resize(batch.in_lanes.len().max(lane + 1), None);
-            batch.in_lanes[lane] = Some(prepared);
-            return Some(prepared.task(shared.plan, shared.forces));
+            self.next += 1;
+            self.in_lanes.resize_with(self.in_lanes.len().max(lane + 1), || None);
+            let watched = Watched::new(shared.plan, prepared, shared.forces);
+            let task = prepared.task(watched.watcher());
+            self.in_lanes[lane] = Some((prepared, watched));
+            return Some(task);
         }
     }
 
-    fn done(&mut self, lane: usize, outcome: Outcome, observer: Watched<'a>) {
-        let Batch { shared, in_lanes, give, .. } = &mut *self.batch;
-        let prepared = in_lanes.get_mut(lane).and_then(Option::take);
+    fn done(&mut self, lane: usize, outcome: Outcome) {
+        let found = self.in_lanes.get_mut(lane).and_then(Option::take);
         let stopped = matches!(outcome.status, Status::Cancelled { .. });
-        if let (false, Some(prepared)) = (stopped, prepared) {
-            let row = prepared.row(&outcome, &observer);
-            let force_n = if shared.forces { observer.force_n } else { Vec::new() };
-            shared.done.fetch_add(1, Ordering::Relaxed);
-            give(Finished { row, force_n });
+        if let (false, Some((prepared, watched))) = (stopped, found) {
+            let row = prepared.row(&outcome, &watched);
+            let force_n = if self.shared.forces { watched.force_n() } else { Vec::new() };
+            self.shared.done.fetch_add(1, Ordering::Relaxed);
+            (self.give)(Finished { row, force_n });
         }
     }
 
-    fn goes_on(&mut self, _lane: usize, _time_s: f64) -> bool {
-        !self.batch.shared.stop.load(Ordering::Relaxed)
+    fn goes_on(&mut self) -> bool {
+        !self.shared.stop.load(Ordering::Relaxed)
     }
 }

@@ -7,7 +7,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use super::plan::Plan;
-use super::queue::{Finished, LANES, MACHINES, Shared, in_lanes, one_by_one};
+use super::queue::{Finished, MACHINES, Shared, in_lanes, one_by_one};
 use super::{CampaignError, Row};
 
 /// How long rows are collected before they are told, and whoever watches is asked again: a round.
@@ -96,7 +96,7 @@ fn work(shared: &Shared<'_>, effort: Effort, sender: &mpsc::Sender<Message>) {
         let outcome = match (effort.lanes, in_lanes_next) {
             (false, _) => one_by_one(shared, MACHINES, &mut give),
             (true, false) => one_by_one(shared, 1, &mut give),
-            (true, true) => in_lanes::<LANES>(shared, MACHINES, &mut give),
+            (true, true) => in_lanes(shared, MACHINES, &mut give),
         };
         if let Err(error) = outcome {
             drop(sender.send(Err(error)));

@@ -1,6 +1,6 @@
 //! What all scenarios of a project share: the machine as its controller sees it, and the controller as it is deployed.
 
-use phea_dynamics::controller::{Controller, SampledController};
+use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Method, Sensed, Settings};
 use phea_hydraulics::actuator::Actuator;
@@ -8,7 +8,7 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::line::Member;
 use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions};
 use phea_hydraulics::servovalve::SpoolImperfection;
-use phea_qft::design::quantisation::Quantisation;
+use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
 use crate::project::{self, FrictionLaw, Project, Scenario, StepMethod};
@@ -29,31 +29,6 @@ pub struct Bench {
     pub(crate) expansion_stated_at: [Option<f64>; 2],
     /// What the force sensor survives, N, where it is stated.
     pub(crate) force_capacity_n: Option<f64>,
-}
-
-/// A machine under its controller.
-#[derive(Clone, Debug)]
-pub(crate) enum Control {
-    /// The controller acts continuously.
-    Continuous(Box<ClosedLoop<Sensed<Machine>>>),
-    /// It acts once a sample.
-    Sampled(Box<Sampled>),
-    /// There is none: a stated command goes to the valve.
-    Open(Box<HeldPlant<Sensed<Machine>>>),
-}
-
-/// A machine behind a hold, and what commands it.
-#[derive(Clone, Debug)]
-pub(crate) struct Sampled {
-    pub(crate) held: HeldPlant<Sensed<Machine>>,
-    pub(crate) controller: SampledController,
-    pub(crate) delay_s: f64,
-    pub(crate) command_limit: f64,
-    pub(crate) feed_forward: f64,
-    pub(crate) converters: Quantisation,
-    /// Root mean square of the noise in N, and where its random numbers begin.
-    pub(crate) noise: f64,
-    pub(crate) seed: u64,
 }
 
 impl Bench {
@@ -124,21 +99,8 @@ impl Bench {
         let mut bench = self.clone();
         bench.machine = machine;
         bench.rig.actuator = actuator;
-        match &mut bench.control {
-            Control::Continuous(closed) => *closed.plant_mut().plant_mut() = machine,
-            Control::Sampled(sampled) => *sampled.held.plant_mut().plant_mut() = machine,
-            Control::Open(held) => *held.plant_mut().plant_mut() = machine,
-        }
+        bench.control = bench.control.around(machine);
         bench
-    }
-
-    /// The plant as the controller sees it.
-    pub(crate) fn sensed(&self) -> &Sensed<Machine> {
-        match &self.control {
-            Control::Continuous(closed) => closed.plant(),
-            Control::Sampled(sampled) => sampled.held.plant(),
-            Control::Open(held) => held.plant(),
-        }
     }
 }
 
@@ -189,7 +151,8 @@ fn sampled(
         command_limit: controller.command_limit.unwrap_or(f64::INFINITY),
         controller: controller.sampled(sample_time_s)?,
         feed_forward,
-        converters: setup.quantisation,
+        command_converter: setup.quantisation.command,
+        measurement_converter: setup.quantisation.measurement,
         noise,
         seed: u64::from(project.simulation.seed),
     })

@@ -1,12 +1,12 @@
 //! Where a scenario begins, and what drives it.
 
-use phea_dynamics::simulation::{Input, Plant, Profile, ProfileError, System};
+use phea_dynamics::simulation::{Input, Plant, Profile, ProfileError};
 use phea_hydraulics::machine::{Beginning, Start};
 use phea_hydraulics::operating_point::{Condition, Load, operating_point};
+use phea_machine::{Control, Rest, Standing, Waking};
 
-use super::bench::{Bench, Control};
-use super::digital::Waking;
-use super::equilibrium::{Rest, Standing, rest};
+use super::bench::Bench;
+use super::equilibrium::{Rested, rest};
 use super::motion_file::{self, Column};
 use super::saved::{self, SavedState};
 use super::signal::{self, Beginning as Begun};
@@ -108,7 +108,8 @@ pub(crate) fn course_of(
     let at = driven.at_start();
     let near = near_rest(bench, scenario, at.reference_n)?;
     let guess = loop_start(bench, &near, Some(at.reference_n));
-    let Rest { start, ground_m, measured_n, command_v } = rest(bench, &guess, &near, at, &scenario.name)?;
+    let Rested { rest: Rest { start, measured_n, command_v, .. }, ground_m } =
+        rest(bench, &guess, &near, at, &scenario.name)?;
     let waking = Waking::Holding([at.reference_n, measured_n, command_v]);
     Ok(driven.course(bench, ground_m, start, waking))
 }
@@ -194,7 +195,7 @@ fn loop_start(bench: &Bench, beginning: &Beginning, held_at: Option<f64>) -> Vec
     let mut start = beginning.state.clone();
     let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
     let reference = held_at.unwrap_or(0.0);
-    let mut sensor = bench.sensed().sensor_at_rest(measured);
+    let mut sensor = bench.control.sensed().sensor_at_rest(measured);
     let mut control = match &bench.control {
         Control::Continuous(closed) => closed.controller_at_rest(reference, measured, beginning.command),
         Control::Sampled(sampled) => sampled.held.prefilter_at_rest(reference),
@@ -206,34 +207,13 @@ fn loop_start(bench: &Bench, beginning: &Beginning, held_at: Option<f64>) -> Vec
     }
     start.extend(sensor);
     start.extend(control);
-    let waves = match &bench.control {
-        Control::Continuous(closed) => under_way(closed.as_ref(), &start, &[reference], beginning),
-        Control::Sampled(sampled) => under_way(&sampled.held, &start, &[0.0, reference], beginning),
-        Control::Open(held) => under_way(held.as_ref(), &start, &[0.0, reference], beginning),
+    let leading: &[f64] = match &bench.control {
+        Control::Continuous(_) => &[reference],
+        Control::Sampled(_) | Control::Open(_) => &[0.0, reference],
     };
+    let waves = bench.control.under_way(&start, leading, beginning);
     start.extend(waves);
     start
-}
-
-/// What is under way in each delay: the waves of the lines, and then what sensor and controller sent until now, the one from
-/// the other. `first` stands before the inputs of the machine.
-pub(super) fn under_way(
-    system: &impl System<f64>,
-    state: &[f64],
-    first: &[f64],
-    beginning: &Beginning,
-) -> Vec<f64> {
-    let mut inputs = [first, &beginning.all_inputs()].concat();
-    let (known, lines) = (inputs.len(), beginning.waves.len());
-    inputs.resize(system.inputs(), 0.0);
-    let mut sent = vec![0.0; system.delays().len()];
-    for _ in known..inputs.len() {
-        system.outgoing(state, &inputs, &mut sent);
-        for (input, wave) in inputs.iter_mut().skip(known).zip(sent.iter().skip(lines)) {
-            *input = *wave;
-        }
-    }
-    inputs.split_off(known - lines)
 }
 
 /// One for whatever begins in reference, command and force from outside, and for the motion of the load, each until the next.

@@ -3,8 +3,8 @@
 use std::cell::RefCell;
 
 use phea_dynamics::simulation::{Piece, Profile, Quartic, Stretch};
+use phea_machine::Samples;
 
-use super::samples::Samples;
 use super::sum::Sum;
 use super::tally::{Command, Passed, Tally};
 use super::{Metrics, Window};

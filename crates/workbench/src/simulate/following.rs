@@ -3,11 +3,11 @@
 use std::cell::RefCell;
 
 use phea_dynamics::simulation::Profile;
+use phea_machine::{Control, Samples};
 
 use super::Window;
-use super::bench::{Bench, Control};
+use super::bench::Bench;
 use super::follower::{Commanded, Follower};
-use super::samples::Samples;
 use super::sums;
 
 impl<'a> Follower<'a> {
@@ -28,7 +28,7 @@ impl<'a> Follower<'a> {
             Control::Sampled(_) => Commanded::Sampled(samples),
         };
         let reference = if matches!(bench.control, Control::Open(_)) { None } else { Some(reference) };
-        let [_, inputs] = sums::size(&bench.control);
+        let [_, inputs] = bench.control.size();
         Follower::new(sums::force(bench, wanted), commanded, inputs, reference, (windows, band))
     }
 }

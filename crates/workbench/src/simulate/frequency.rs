@@ -130,7 +130,7 @@ fn rested(setup: &Setup<'_>) -> Result<Rested, SimulateError> {
     let machine =
         Machine::new(&rig.actuator, &options(project, &rig.actuator)?).map_err(SimulateError::Machine)?;
     let rest = machine.rest(&rig.point).map_err(SimulateError::Machine)?;
-    let force_n = point::force(&machine, &rest.state);
+    let force_n = phea_machine::force(&machine, &rest.state);
     let components = rig.actuator.components();
     let area = 0.5 * (components.cylinder.area_a + components.cylinder.area_b);
     let push_n = area * (components.supply.pressure - components.supply.tank_pressure);

@@ -3,14 +3,14 @@
 use std::cell::{Cell, RefCell};
 
 use phea_dynamics::simulation::{Attention, Observer, Stretch};
+use phea_machine::{Control, Sample, Samples};
 
-use super::bench::{Bench, Control};
+use super::bench::Bench;
 use super::course::Course;
 use super::files::Table;
 use super::follower::Follower;
 use super::measured::{Measurement, Overlay, Overlaying};
 use super::record::{Look, Record};
-use super::samples::{Sample, Samples};
 use super::sum::Sum;
 use super::sums;
 use super::{Metrics, SimulateError};
@@ -57,7 +57,7 @@ impl<'a> Looking<'a> {
         full: &'a Cell<bool>,
         (course, band): (&'a Course, f64),
     ) -> Looking<'a> {
-        let [states, _] = sums::size(&bench.control);
+        let [states, _] = bench.control.size();
         let wanted: Vec<usize> = (0..states).collect();
         let windows = (course.windows.as_slice(), band);
         let follower = Follower::of(bench, &wanted, samples, &course.reference, windows);

@@ -2,20 +2,17 @@
 
 use std::cell::{Cell, RefCell};
 
-use phea_dynamics::simulation::{
-    Course as Drive, Event, Input, Outcome, Sampler, SimulationError, Status, System, Task, Work, drive_one,
-};
+use phea_dynamics::simulation::{Course as Drive, Event, Input, Outcome, Sampler, Status, Task, Work};
 use phea_hydraulics::machine::INDICATORS;
+use phea_machine::{Control, Digital, Memory, Samples, Watcher};
 
-use super::bench::{Bench, Control};
+use super::bench::Bench;
 use super::course::Course;
-use super::digital::{Digital, Memory};
 use super::exceeded::{Exceeded, exceeded};
 use super::look::{Looking, Sighted};
 use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
 use super::record::Record;
-use super::samples::Samples;
 use super::saved::{self, SavedState};
 use super::{Check, SimulateError, Table, Window};
 use crate::project::Scenario;
@@ -168,11 +165,20 @@ pub(super) fn run(
     inputs.extend(course.machine_inputs());
     let drive = Drive { duration_s: scenario.duration, output_step_s: look_s, inputs };
     let band = scenario.settling_band_percent;
-    let observer = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
-    let driven = driven(bench, course, (&drive, observer), (&samples, &memory), &mut watch);
+    let mut looking =
+        Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
+    let sampler = match &bench.control {
+        Control::Continuous(_) | Control::Open(_) => None,
+        Control::Sampled(sampled) => {
+            let digital = Digital::new(sampled, &course.waking, &samples).remembered_in(&memory);
+            Some(Box::new(digital) as Box<dyn Sampler + '_>)
+        }
+    };
+    let observer: Watcher<'_> = Box::new(&mut looking);
+    let task = Task { start: course.start.clone(), course: &drive, sampler, observer };
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
-    let (outcome, seen) = driven.map_err(named)?;
-    let Sighted { record, metrics, peak_pressures_pa, measured } = seen.finish()?;
+    let outcome = bench.control.drive(task, &bench.settings, &mut watch).map_err(named)?;
+    let Sighted { record, metrics, peak_pressures_pa, measured } = looking.finish()?;
     let occurrences = found(bench, course, &outcome, &samples.borrow());
     let windows = course.windows.iter().copied().zip(metrics).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
@@ -200,54 +206,22 @@ pub(super) fn run(
     })
 }
 
-/// The machine under its controller, looked at on the way.
-fn driven<'a>(
-    bench: &'a Bench,
-    course: &Course,
-    (drive, observer): (&'a Drive, Looking<'a>),
-    (samples, memory): (&'a RefCell<Samples>, &'a RefCell<Memory>),
-    watch: &mut dyn FnMut(f64) -> bool,
-) -> Result<(Outcome, Looking<'a>), SimulationError> {
-    let start = course.start.clone();
-    match &bench.control {
-        Control::Continuous(closed) => {
-            let task = Task { start, course: drive, sampler: None, observer };
-            drive_one(closed.as_ref(), task, &bench.settings, watch)
-        }
-        Control::Sampled(sampled) => {
-            let digital = Digital::new(sampled, &course.waking, samples).remembered_in(memory);
-            let digital: Box<dyn Sampler + 'a> = Box::new(digital);
-            let task = Task { start, course: drive, sampler: Some(digital), observer };
-            drive_one(&sampled.held, task, &bench.settings, watch)
-        }
-        Control::Open(held) => {
-            let task = Task { start, course: drive, sampler: None, observer };
-            drive_one(held.as_ref(), task, &bench.settings, watch)
-        }
-    }
-}
-
 /// All that happened on the way.
 fn found(bench: &Bench, course: &Course, outcome: &Outcome, samples: &Samples) -> Vec<Occurrence> {
     let reference = course.reference.value(0.0);
-    match &bench.control {
-        Control::Continuous(closed) => {
-            let first = inputs_at_start(course, vec![reference], closed.as_ref());
-            occurrences(closed.as_ref(), &course.start, &first, &outcome.events)
-        }
-        Control::Sampled(sampled) => {
-            let first = inputs_at_start(course, vec![0.0, reference], &sampled.held);
-            let mut found = occurrences(&sampled.held, &course.start, &first, &outcome.events);
-            let limits = samples.limits.iter();
-            found.extend(limits.map(|&(time_s, begins)| Occurrence { time_s, kind: COMMAND_LIMIT, begins }));
-            found.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
-            found
-        }
-        Control::Open(held) => {
-            let first = inputs_at_start(course, vec![course.command.value(0.0), reference], held.as_ref());
-            occurrences(held.as_ref(), &course.start, &first, &outcome.events)
-        }
+    let leading = match &bench.control {
+        Control::Continuous(_) => vec![reference],
+        Control::Sampled(_) => vec![0.0, reference],
+        Control::Open(_) => vec![course.command.value(0.0), reference],
+    };
+    let first = inputs_at_start(course, leading, &bench.control);
+    let mut found = occurrences(&bench.control, &course.start, &first, &outcome.events);
+    if matches!(bench.control, Control::Sampled(_)) {
+        let limits = samples.limits.iter();
+        found.extend(limits.map(|&(time_s, begins)| Occurrence { time_s, kind: COMMAND_LIMIT, begins }));
+        found.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
     }
+    found
 }
 
 /// When a chamber first cavitates or has no volume, or the piston leaves a stroke that nothing limits.
@@ -278,26 +252,27 @@ fn looks_per_row(scenario: &Scenario) -> usize {
 pub const COMMAND_LIMIT: &str = "command_limit";
 
 /// Inputs at time zero: those before the machine's, its ground, the force from outside, and the waves under way.
-fn inputs_at_start(course: &Course, mut first: Vec<f64>, system: &impl System<f64>) -> Vec<f64> {
+fn inputs_at_start(course: &Course, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
     first.extend([course.ground.value(0.0), course.ground.rate(0.0)]);
     first.extend(course.external_force.as_ref().map(|force| force.value(0.0)));
-    first.extend(course.start.iter().skip(system.states()));
+    let [states, _] = control.size();
+    first.extend(course.start.iter().skip(states));
     first
 }
 
 /// What there is from the start, and every change of an indicator. Those of the machine are positive while all is well, that of
 /// the command's limit while it is reached.
 pub(crate) fn occurrences(
-    system: &impl System<f64>,
+    control: &Control,
     start: &[f64],
     first: &[f64],
     events: &[Event],
 ) -> Vec<Occurrence> {
     let kind = |index: usize| INDICATORS.get(index).copied().unwrap_or(COMMAND_LIMIT);
     let begins = |index: usize, positive: bool| positive != (index < INDICATORS.len());
-    let mut indicators = vec![1.0; system.indicators()];
-    let state: Vec<f64> = start.iter().copied().take(system.states()).collect();
-    system.indicate(&state, first, &mut indicators);
+    let [states, _] = control.size();
+    let state: Vec<f64> = start.iter().copied().take(states).collect();
+    let indicators = control.indicators(&state, first);
     let from_start = indicators.iter().enumerate().filter(|(index, value)| begins(*index, **value > 0.0));
     let mut found: Vec<Occurrence> =
         from_start.map(|(index, _)| Occurrence { time_s: 0.0, kind: kind(index), begins: true }).collect();

@@ -16,11 +16,11 @@
 
 use std::fmt::Write as _;
 
-use phea_dynamics::simulation::{Status, System};
+use phea_dynamics::simulation::Status;
+use phea_machine::{Control, Memory};
 
-use super::bench::{Bench, Control};
+use super::bench::Bench;
 use super::course::Course;
-use super::digital::Memory;
 use super::shortest_number::number;
 use crate::project::{Findings, Found, Node, Project, Report, TreeValue, read_tree};
 use crate::source::Source;
@@ -43,7 +43,7 @@ pub struct SavedState {
 fn state_names(bench: &Bench) -> Vec<String> {
     let states = |count: usize, of: &'static str| (1..=count).map(move |number| format!("{of}_{number}"));
     let mut names = bench.machine.state_names();
-    let sensed = bench.sensed();
+    let sensed = bench.control.sensed();
     names.extend(states(sensed.sensor_at_rest(0.0).len(), "sensor"));
     match &bench.control {
         Control::Continuous(closed) => names.extend(states(closed.controller_states(), "controller")),
@@ -82,12 +82,7 @@ pub(super) fn of_end(
     if status != Status::Completed {
         return Err("it did not come to its end");
     }
-    let delays = match &bench.control {
-        Control::Continuous(closed) => System::<f64>::delays(closed.as_ref()),
-        Control::Sampled(sampled) => System::<f64>::delays(&sampled.held),
-        Control::Open(held) => System::<f64>::delays(held.as_ref()),
-    };
-    if !delays.is_empty() {
+    if !bench.control.delays().is_empty() {
         return Err("what is under way in a delay or along a line is no state");
     }
     let mut values = end.to_vec();

@@ -8,20 +8,18 @@ use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
-use phea_dynamics::simulation::{ClosedLoop, Input, Profile, Sensed, Settings, small_signal};
+use phea_dynamics::simulation::{ClosedLoop, Input, Profile, Sensed, Settings};
 use phea_hydraulics::machine::Machine;
+use phea_machine::{Control, Digital, Sampled, Samples, Waking, force_amplitude};
 use phea_qft::closed_loop::{Compensation, Member};
 
 use super::open_loop::profile;
-use super::point::{ResponsePoint, Shaken, finer, force_amplitude, point, respond};
+use super::point::{ResponsePoint, Resting, finer, point, respond};
 use super::{FrequencyRequest, Response, Rested, USUAL_AMPLITUDE, curve};
 use crate::rig::Rig;
 use crate::setup::Setup;
 use crate::simulate::SimulateError;
-use crate::simulate::bench::{Bench, Control, Sampled};
-use crate::simulate::course::under_way;
-use crate::simulate::digital::{Digital, Waking};
-use crate::simulate::samples::Samples;
+use crate::simulate::bench::Bench;
 
 /// Fewest samples of a period: a command that changes its sign at each has no other form than a square.
 const FEWEST_SAMPLES: f64 = 4.0;
@@ -49,7 +47,9 @@ pub(super) fn measured(
     }
     let shared = Shared { rested, model: &model, reference_n, amplitude };
     match &bench.control {
-        Control::Continuous(closed) => shared.continuous(closed, frequencies, goes_on).map(Ok),
+        Control::Continuous(closed) => {
+            shared.continuous((&bench.control, closed), frequencies, goes_on).map(Ok)
+        }
         Control::Sampled(sampled) => shared.sampled(sampled, frequencies, goes_on).map(Ok),
         Control::Open(_) => Ok(Err("nobody closes the loop".to_string())),
     }
@@ -103,7 +103,7 @@ impl Shared<'_> {
 
     fn continuous(
         &self,
-        closed: &ClosedLoop<Sensed<Machine>>,
+        (control, closed): (&Control, &ClosedLoop<Sensed<Machine>>),
         frequencies: &[f64],
         goes_on: &mut dyn FnMut(usize) -> bool,
     ) -> Result<Response, SimulateError> {
@@ -111,9 +111,9 @@ impl Shared<'_> {
         let mut state = rest.state.clone();
         state.extend(closed.plant().sensor_at_rest(self.rested.force_n));
         state.extend(closed.controller_at_rest(self.reference_n, self.rested.force_n, rest.command));
-        let waves = under_way(closed, &state, &[self.reference_n], rest);
+        let waves = control.under_way(&state, &[self.reference_n], rest);
         let inputs = [&[self.reference_n], &rest.inputs[..], &waves].concat();
-        let orbit = |frequency: f64| small_signal(closed, &state, &inputs, &[Complex64::ONE], frequency);
+        let orbit = |frequency: f64| control.orbit(&state, &inputs, frequency);
         let force = |orbit: &Vec<Complex64>| force_amplitude(&self.rested.machine, orbit);
         let start = [state.as_slice(), &waves].concat();
         let mut points = Vec::new();
@@ -123,16 +123,15 @@ impl Shared<'_> {
             }
             let orbit = orbit(*frequency);
             let linearised = orbit.as_ref().map(force);
-            let shaken = Shaken {
-                system: closed,
-                rest: &start,
+            let resting = Resting {
+                control,
+                start: &start,
                 orbit: orbit.unwrap_or_default(),
                 inputs: [self.reference(*frequency)?].into_iter().chain(self.ground()).collect(),
-                machine: &self.rested.machine,
                 settings: self.settings(),
             };
             let sine = [*frequency, self.amplitude];
-            let found = respond(shaken, None, sine, &mut || goes_on(index))?;
+            let found = respond(resting, None, sine, &mut || goes_on(index))?;
             points.push(point(sine, &found, self.model.at(*frequency)?, linearised));
         }
         let machine = curve(frequencies).into_iter().map(|frequency| Some(force(&orbit(frequency)?)));
@@ -152,7 +151,8 @@ impl Shared<'_> {
         let mut state = rest.state.clone();
         state.extend(held.plant().sensor_at_rest(self.rested.force_n));
         state.extend(held.prefilter_at_rest(self.reference_n));
-        let waves = under_way(held, &state, &[rest.command, self.reference_n], rest);
+        let control = Control::Sampled(Box::new(quiet.clone()));
+        let waves = control.under_way(&state, &[rest.command, self.reference_n], rest);
         let start = [state.as_slice(), &waves].concat();
         let filtered = held.sampled::<f64, f64>(
             &state,
@@ -166,22 +166,21 @@ impl Shared<'_> {
             if !goes_on(index) {
                 break;
             }
-            let shaken = Shaken {
-                system: held,
-                rest: &start,
+            let resting = Resting {
+                control: &control,
+                start: &start,
                 orbit: Vec::new(),
                 inputs: [Input::Command, self.reference(*frequency)?]
                     .into_iter()
                     .chain(self.ground())
                     .collect(),
-                machine: &self.rested.machine,
                 settings: self.settings(),
             };
             let log = RefCell::new(Samples::default());
             let waking = Waking::Holding([filtered[0], filtered[1], rest.command]);
             let digital = Box::new(Digital::new(&quiet, &waking, &log));
             let sine = [*frequency, self.amplitude];
-            let found = respond(shaken, Some(digital), sine, &mut || goes_on(index))?;
+            let found = respond(resting, Some(digital), sine, &mut || goes_on(index))?;
             points.push(point(sine, &found, self.model.at(*frequency)?, None));
         }
         self.response(points, &sampled, Vec::new())

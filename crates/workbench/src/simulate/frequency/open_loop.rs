@@ -3,10 +3,10 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
-use phea_dynamics::simulation::{HeldPlant, Input, Plant, Profile, small_signal};
-use phea_hydraulics::machine::Machine;
+use phea_dynamics::simulation::{HeldPlant, Input, Plant, Profile, Sensed};
+use phea_machine::{Control, force_amplitude};
 
-use super::point::{Shaken, finer, force_amplitude, point, respond};
+use super::point::{Resting, finer, point, respond};
 use super::{FrequencyRequest, Response, Rested, SimulateError, USUAL_AMPLITUDE, curve};
 
 /// Measures the response at these frequencies; ends before the first for which `goes_on` is false.
@@ -16,13 +16,15 @@ pub(super) fn measured(
     request: &FrequencyRequest,
     goes_on: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Response, SimulateError> {
-    let held = HeldPlant::new(rested.machine, &TransferFunction::gain_only(1.0))?;
+    let through = TransferFunction::gain_only(1.0);
+    let held = HeldPlant::new(Sensed::new(rested.machine, &through)?, &through)?;
+    let control = Control::Open(Box::new(held));
     let mut points = Vec::new();
     for (index, frequency) in frequencies.iter().enumerate() {
         if !goes_on(index) {
             break;
         }
-        let orbit = orbit(&held, rested, *frequency);
+        let orbit = orbit(&control, rested, *frequency);
         let linearised = orbit.as_deref().map(|orbit| force_amplitude(&rested.machine, orbit));
         let plant = rested.rig.response(*frequency);
         let amplitude =
@@ -31,9 +33,9 @@ pub(super) fn measured(
         let ground = Profile::constant(rested.rest.inputs[0]);
         let typical: f64 = Plant::<f64>::command_scale(&rested.machine);
         let start = [rested.rest.state.as_slice(), &rested.rest.waves].concat();
-        let shaken = Shaken {
-            system: &held,
-            rest: &start,
+        let resting = Resting {
+            control: &control,
+            start: &start,
             orbit: orbit.unwrap_or_default(),
             inputs: vec![
                 Input::Value(sine),
@@ -41,15 +43,14 @@ pub(super) fn measured(
                 Input::Value(ground.clone()),
                 Input::Rate(ground),
             ],
-            machine: &rested.machine,
             settings: finer(rested.settings, amplitude / typical),
         };
-        let found = respond(shaken, None, [*frequency, amplitude], &mut || goes_on(index))?;
+        let found = respond(resting, None, [*frequency, amplitude], &mut || goes_on(index))?;
         points.push(point([*frequency, amplitude], &found, plant, linearised));
     }
     let curve_rad_per_s = curve(frequencies);
     let of_machine =
-        |frequency: &f64| Some(force_amplitude(&rested.machine, &orbit(&held, rested, *frequency)?));
+        |frequency: &f64| Some(force_amplitude(&rested.machine, &orbit(&control, rested, *frequency)?));
     Ok(Response {
         points,
         linear_plant: curve_rad_per_s.iter().map(|frequency| rested.rig.response(*frequency)).collect(),
@@ -59,9 +60,9 @@ pub(super) fn measured(
 }
 
 /// States on the orbit of a command of one volt.
-fn orbit(held: &HeldPlant<Machine>, rested: &Rested, frequency: f64) -> Option<Vec<Complex64>> {
+fn orbit(control: &Control, rested: &Rested, frequency: f64) -> Option<Vec<Complex64>> {
     let inputs = [&[rested.rest.command, 0.0], rested.rest.all_inputs().as_slice()].concat();
-    small_signal(held, &rested.rest.state, &inputs, &[Complex64::ONE], frequency)
+    control.orbit(&rested.rest.state, &inputs, frequency)
 }
 
 fn usual(rested: &Rested, response: Complex64) -> f64 {

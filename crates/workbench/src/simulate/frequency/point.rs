@@ -4,10 +4,9 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_dynamics::simulation::{
-    Input, Plant, Sampler, Settings, SinePlan, SineResponse, System, sine_response,
-};
-use phea_hydraulics::machine::{INDICATORS, Machine};
+use phea_dynamics::simulation::{Input, Sampler, Settings, SinePlan, SineResponse};
+use phea_hydraulics::machine::INDICATORS;
+use phea_machine::{Control, Shaken};
 
 use crate::simulate::SimulateError;
 use crate::simulate::run::{COMMAND_LIMIT, Stopped};
@@ -58,40 +57,27 @@ impl ResponsePoint {
     }
 }
 
-/// Force on the load at a state of a machine, or of what begins with it.
-pub(super) fn force(machine: &Machine, state: &[f64]) -> f64 {
-    let own: usize = Plant::<f64>::states(machine);
-    state.get(..own).map_or(f64::NAN, |state| Plant::<f64>::measurement(machine, state, &[]))
-}
-
-/// The same of complex amplitudes, in which it is linear.
-pub(super) fn force_amplitude(machine: &Machine, amplitudes: &[Complex64]) -> Complex64 {
-    let part = |of: fn(&Complex64) -> f64| force(machine, &amplitudes.iter().map(of).collect::<Vec<_>>());
-    Complex64::new(part(|amplitude| amplitude.re), part(|amplitude| amplitude.im))
-}
-
 /// What is shaken, and from where.
-pub(super) struct Shaken<'a, E> {
-    pub(super) system: &'a E,
+pub(super) struct Resting<'a> {
+    pub(super) control: &'a Control,
     /// Of all states, and behind them the waves under way.
-    pub(super) rest: &'a [f64],
+    pub(super) start: &'a [f64],
     /// Amplitudes of the states on the orbit of the linearised system, for an amplitude of one; empty where there is none.
     pub(super) orbit: Vec<Complex64>,
     pub(super) inputs: Vec<Input>,
-    pub(super) machine: &'a Machine,
     pub(super) settings: Settings,
 }
 
 /// What a machine answers to a sine of this frequency and amplitude. It begins on the orbit that its derivatives have, so that
 /// only what they leave out has to settle.
-pub(super) fn respond<E: System<f64> + Clone>(
-    shaken: Shaken<'_, E>,
+pub(super) fn respond(
+    resting: Resting<'_>,
     sampler: Option<Box<dyn Sampler + '_>>,
     [frequency, amplitude]: [f64; 2],
     watch: &mut dyn FnMut() -> bool,
 ) -> Result<SineResponse, SimulateError> {
-    let Shaken { system, rest, orbit, inputs, machine, settings } = shaken;
-    let mut start = rest.to_vec();
+    let Resting { control, start, orbit, inputs, settings } = resting;
+    let mut start = start.to_vec();
     for (state, part) in start.iter_mut().zip(&orbit) {
         *state += amplitude * part.im;
     }
@@ -102,13 +88,13 @@ pub(super) fn respond<E: System<f64> + Clone>(
         most_windows: MOST_WINDOWS,
         change: CHANGE,
     };
-    let output = |state: &[f64], _: &[f64]| force(machine, state);
     let mut steps = 0_u32;
     let mut watch = |_: f64| {
         steps = steps.wrapping_add(1);
         !steps.is_multiple_of(1024) || watch()
     };
-    let answered = sine_response(system, &start, inputs, sampler, &settings, &plan, &output, &mut watch);
+    let shaken = Shaken { start: &start, inputs, sampler, settings, plan };
+    let answered = control.shaken(shaken, &mut watch);
     answered.map_err(|error| SimulateError::Simulation { name: "frequency response".to_string(), error })
 }
 

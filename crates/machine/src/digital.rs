@@ -6,23 +6,23 @@ use phea_dynamics::controller::ControllerState;
 use phea_dynamics::random;
 use phea_dynamics::simulation::{Plant, Sampler};
 
-use super::bench::Sampled;
+use super::control::Sampled;
 use super::samples::{Sample, Samples};
 
 /// All that a sampled controller knows.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Memory {
+pub struct Memory {
     /// Its last command, V.
-    pub(crate) command_v: f64,
+    pub command_v: f64,
     /// Of its sections.
-    pub(crate) memories: Vec<f64>,
+    pub memories: Vec<f64>,
     /// Where its random numbers are.
-    pub(crate) random: u64,
+    pub random: u64,
 }
 
 /// How a sampled controller begins.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Waking {
+pub enum Waking {
     /// At rest.
     AtRest,
     /// Holding a command while reference and measurement stand still: these three.
@@ -37,7 +37,7 @@ pub(crate) enum Waking {
 /// m = AD(y + n)                                    y the sensor's, n white noise, AD rounds and ends at its range
 /// u = DA(limit(G (F r - m) + k v_L))               k v_L the feed-forward, DA rounds
 /// ```
-pub(crate) struct Digital<'a> {
+pub struct Digital<'a> {
     sampled: &'a Sampled,
     state: ControllerState,
     random: u64,
@@ -50,7 +50,7 @@ pub(crate) struct Digital<'a> {
 
 impl<'a> Digital<'a> {
     /// A controller that begins so.
-    pub(crate) fn new(sampled: &'a Sampled, waking: &Waking, log: &'a RefCell<Samples>) -> Digital<'a> {
+    pub fn new(sampled: &'a Sampled, waking: &Waking, log: &'a RefCell<Samples>) -> Digital<'a> {
         let controller = &sampled.controller;
         let (state, held, random) = match waking {
             Waking::AtRest => (controller.at_rest(), 0.0, sampled.seed),
@@ -67,7 +67,7 @@ impl<'a> Digital<'a> {
     }
 
     /// Leaves what it knows after each sample.
-    pub(crate) fn remembered_in(self, memory: &'a RefCell<Memory>) -> Digital<'a> {
+    pub fn remembered_in(self, memory: &'a RefCell<Memory>) -> Digital<'a> {
         Digital { memory: Some(memory), ..self }
     }
 }
@@ -86,12 +86,12 @@ impl Sampler for Digital<'_> {
     }
 
     fn command(&mut self, time_s: f64, state: &[f64], inputs: &[f64]) -> f64 {
-        let Sampled { held, controller, converters, noise, feed_forward, command_limit, .. } = self.sampled;
+        let Sampled { held, controller, noise, feed_forward, command_limit, .. } = self.sampled;
         let [reference, mut measurement] = held.sampled(state, inputs);
         if *noise > 0.0 {
             measurement += noise * random::normal(&mut self.random);
         }
-        if let Some(converter) = converters.measurement {
+        if let Some(converter) = self.sampled.measurement_converter {
             measurement = converter.rounded(measurement);
         }
         let output = controller.step(&mut self.state, reference, measurement);
@@ -102,7 +102,7 @@ impl Sampler for Digital<'_> {
         }
         let wanted = output.command + forward;
         let within = wanted.clamp(-command_limit, *command_limit);
-        let command_v = converters.command.map_or(within, |converter| converter.rounded(within));
+        let command_v = self.sampled.command_converter.map_or(within, |converter| converter.rounded(within));
         self.log.borrow_mut().take(Sample {
             time_s,
             filtered_reference_n: output.filtered_reference,

@@ -1,0 +1,137 @@
+//! Many machines, one after the other or a machine in each lane, each with its own time and step.
+
+use phea_dynamics::controller::Controller;
+use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::scalar::Lanes;
+use phea_dynamics::simulation::{
+    ClosedLoop, HeldPlant, Lane, Outcome, Queue, Sensed, Settings, SimulationError, Task, drive,
+};
+use phea_hydraulics::machine::{Machine, MachineError};
+
+use super::control::{Control, Watcher};
+
+/// Lanes of a vector: two registers of the widest kind that is common, which hide the time that divisions and roots take.
+const LANES: usize = 4;
+
+/// Where machines come from, and where their outcomes go.
+pub trait Fleet<'a> {
+    /// The next machine, put into its lane, and what is to be done with it; `None` when there are no more.
+    fn next(
+        &mut self,
+        lane: usize,
+        put: &mut dyn FnMut(&Machine) -> Result<(), MachineError>,
+    ) -> Option<Task<'a, Watcher<'a>>>;
+
+    /// Takes what came of the machine in this lane.
+    fn done(&mut self, lane: usize, outcome: Outcome);
+
+    /// Asked once a step: false ends everything.
+    fn goes_on(&mut self) -> bool;
+}
+
+/// Drives machines one by one, until there are none. It is what lanes are held to.
+///
+/// # Errors
+/// [`SimulationError`] when a task does not fit its machine.
+pub fn one_by_one<'a>(
+    control: &Control,
+    fleet: &mut dyn Fleet<'a>,
+    settings: &Settings,
+) -> Result<(), SimulationError> {
+    match control {
+        Control::Continuous(closed) => {
+            let machine: InLoop<f64> = in_loop;
+            drive::<f64, _, _>(&mut closed.as_ref().clone(), &mut Queued { fleet, machine }, settings)
+        }
+        Control::Sampled(sampled) => {
+            let machine: OnHold<f64> = on_hold;
+            drive::<f64, _, _>(&mut sampled.held.clone(), &mut Queued { fleet, machine }, settings)
+        }
+        Control::Open(held) => {
+            let machine: OnHold<f64> = on_hold;
+            drive::<f64, _, _>(&mut held.as_ref().clone(), &mut Queued { fleet, machine }, settings)
+        }
+    }
+}
+
+/// A machine in each lane, under one continuous controller or a stated command.
+pub struct Lanewise(System);
+
+enum System {
+    Closed(Box<ClosedLoop<Sensed<Machine<Lanes<LANES>>>>>),
+    Open(Box<HeldPlant<Sensed<Machine<Lanes<LANES>>>>>),
+}
+
+impl Lanewise {
+    /// Lanes of machines built like this one, behind this sensor, under a controller with what it feeds forward of the load's velocity in
+    /// V s/m; without one under a stated command.
+    ///
+    /// # Errors
+    /// [`LinearError`] for a sensor or a controller that cannot be simulated.
+    pub fn new(
+        machine: &Machine,
+        sensor: &TransferFunction,
+        controller: Option<(&Controller, f64)>,
+    ) -> Result<Lanewise, LinearError> {
+        let machine = machine.convert(&mut |value| Lanes([value; LANES]));
+        let sensed = Sensed::new(machine, sensor)?;
+        Ok(Lanewise(match controller {
+            Some((controller, gain)) => System::Closed(Box::new(ClosedLoop::new(sensed, controller, gain)?)),
+            None => System::Open(Box::new(HeldPlant::new(sensed, &TransferFunction::gain_only(1.0))?)),
+        }))
+    }
+
+    /// Drives machines until there are none.
+    ///
+    /// # Errors
+    /// As [`one_by_one`].
+    pub fn in_lanes<'a>(
+        &mut self,
+        fleet: &mut dyn Fleet<'a>,
+        settings: &Settings,
+    ) -> Result<(), SimulationError> {
+        match &mut self.0 {
+            System::Closed(closed) => {
+                let machine: InLoop<Lanes<LANES>> = in_loop;
+                drive(closed.as_mut(), &mut Queued { fleet, machine }, settings)
+            }
+            System::Open(held) => {
+                let machine: OnHold<Lanes<LANES>> = on_hold;
+                drive(held.as_mut(), &mut Queued { fleet, machine }, settings)
+            }
+        }
+    }
+}
+
+type InLoop<S> = fn(&mut ClosedLoop<Sensed<Machine<S>>>) -> &mut Machine<S>;
+type OnHold<S> = fn(&mut HeldPlant<Sensed<Machine<S>>>) -> &mut Machine<S>;
+
+fn in_loop<S>(system: &mut ClosedLoop<Sensed<Machine<S>>>) -> &mut Machine<S> {
+    system.plant_mut().plant_mut()
+}
+
+fn on_hold<S>(system: &mut HeldPlant<Sensed<Machine<S>>>) -> &mut Machine<S> {
+    system.plant_mut().plant_mut()
+}
+
+/// A fleet for a kind of system, and where its machine is.
+struct Queued<'f, 'a, E, S> {
+    fleet: &'f mut dyn Fleet<'a>,
+    machine: fn(&mut E) -> &mut Machine<S>,
+}
+
+impl<'a, E, S: Lane> Queue<'a, E> for Queued<'_, 'a, E, S> {
+    type Observer = Watcher<'a>;
+
+    fn next(&mut self, system: &mut E, lane: usize) -> Option<Task<'a, Watcher<'a>>> {
+        self.fleet.next(lane, &mut |machine| (self.machine)(system).put(lane, machine))
+    }
+
+    fn done(&mut self, lane: usize, outcome: Outcome, _: Watcher<'a>) {
+        self.fleet.done(lane, outcome);
+    }
+
+    fn goes_on(&mut self, _lane: usize, _time_s: f64) -> bool {
+        self.fleet.goes_on()
+    }
+}

@@ -1,0 +1,25 @@
+//! The nonlinear machine with what commands it: a continuous controller, a computer that samples, or a stated command.
+//!
+//! ```text
+//! Machine (hydraulics) -> Sensed -> Control { Continuous | Sampled | Open }
+//! Control + Task  -> Control::drive                 -> Outcome      one machine
+//! Control + Fleet -> one_by_one, Lanewise::in_lanes -> Outcome...   many, a machine in each lane
+//! Control         -> at_rest, Control::orbit, Control::shaken       rest, small signals, sines
+//! ```
+//!
+//! The methods of [`phea_dynamics::simulation`] are generic; here they meet the one machine there is, so that each is compiled once, and
+//! optimised in test builds too.
+
+mod control;
+mod digital;
+mod lanes;
+mod rest;
+mod samples;
+mod shaken;
+
+pub use control::{Control, Sampled, Watcher};
+pub use digital::{Digital, Memory, Waking};
+pub use lanes::{Fleet, Lanewise, one_by_one};
+pub use rest::{Rest, Standing, at_rest};
+pub use samples::{Sample, Samples};
+pub use shaken::{Shaken, force, force_amplitude};

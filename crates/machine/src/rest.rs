@@ -1,0 +1,127 @@
+//! A loop at rest: the rates that are simulated, all zero.
+
+use phea_dynamics::scalar::Scalar;
+use phea_dynamics::simulation::{EquilibriumError, HeldPlant, Plant, Sensed, System, equilibrium};
+use phea_hydraulics::machine::{Beginning, Machine};
+
+use super::control::Control;
+
+/// What stands still while a loop rests.
+#[derive(Clone, Copy, Debug)]
+pub struct Standing {
+    /// N.
+    pub reference_n: f64,
+    /// Of an open loop, V.
+    pub command_v: f64,
+    /// On the load from outside, N, where the machine has that input.
+    pub external_n: f64,
+}
+
+/// A loop in equilibrium.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    /// States of the loop, and the waves under way.
+    pub start: Vec<f64>,
+    /// What the controller measures, N.
+    pub measured_n: f64,
+    /// What the controller wants, V.
+    pub command_v: f64,
+    /// Largest magnitude of the command, V.
+    pub limit_v: f64,
+}
+
+/// The rest of a loop under what stands still, near a guess of its states; `beginning` is where its machine stands there.
+///
+/// # Errors
+/// [`EquilibriumError`] where none is found.
+pub fn at_rest(
+    control: &Control,
+    guess: &[f64],
+    beginning: &Beginning,
+    standing: Standing,
+) -> Result<Rest, EquilibriumError> {
+    let machine = control.sensed().plant();
+    let [ground, _] = beginning.inputs;
+    let kept = machine.memories();
+    let mut inputs = vec![standing.reference_n, ground, 0.0];
+    inputs.extend(machine.has_external_force().then_some(standing.external_n));
+    Ok(match control {
+        Control::Open(held) => {
+            inputs.insert(0, standing.command_v);
+            let start = equilibrium(held.as_ref(), guess, &inputs, &kept)?;
+            let (state, waves) = start.split_at(System::<f64>::states(held.as_ref()));
+            let [_, measured_n] = held.sampled::<f64, f64>(state, &[inputs.as_slice(), waves].concat());
+            Rest { measured_n, command_v: standing.command_v, limit_v: f64::INFINITY, start }
+        }
+        Control::Continuous(closed) => {
+            let free = closed.as_ref().clone().unlimited();
+            let start = equilibrium(&free, guess, &inputs, &kept)?;
+            let (state, waves) = start.split_at(System::<f64>::states(&free));
+            let signals = free.signals::<f64, f64>(state, &[inputs.as_slice(), waves].concat());
+            let limit_v = closed.limit();
+            Rest { measured_n: signals.measurement, command_v: signals.wanted, limit_v, start }
+        }
+        Control::Sampled(sampled) => {
+            let resting = Resting { held: &sampled.held, gains: sampled.controller.steady_gains() };
+            let mut guess = guess.to_vec();
+            let states = System::<f64>::states(&sampled.held);
+            guess.insert(states, beginning.command);
+            let mut start = equilibrium(&resting, &guess, &inputs, &kept)?;
+            let command_v = start.remove(states);
+            let (state, waves) = start.split_at(states);
+            let all = [&[command_v][..], &inputs, waves].concat();
+            let [_, measured_n] = sampled.held.sampled::<f64, f64>(state, &all);
+            Rest { measured_n, command_v, limit_v: sampled.command_limit, start }
+        }
+    })
+}
+
+/// A machine behind a hold under a controller that stands still.
+///
+/// ```text
+/// 0 = F(1) r - m                 where the controller integrates
+/// 0 = G(1) (F(1) r - m) - u      where it does not
+/// ```
+///
+/// Its last state is the command u.
+struct Resting<'a> {
+    held: &'a HeldPlant<Sensed<Machine>>,
+    /// F(1) and G(1).
+    gains: [Option<f64>; 2],
+}
+
+impl System<f64> for Resting<'_> {
+    fn states(&self) -> usize {
+        System::<f64>::states(self.held) + 1
+    }
+
+    fn inputs(&self) -> usize {
+        System::<f64>::inputs(self.held) - 1
+    }
+
+    fn scales(&self) -> Vec<f64> {
+        let command = Plant::<f64>::command_scale(self.held.plant());
+        System::<f64>::scales(self.held).into_iter().chain([command]).collect()
+    }
+
+    fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
+        let Some((&command, state)) = state.split_last() else { return };
+        let Some((closing, rates)) = rates.split_last_mut() else { return };
+        let inputs = [&[command][..], inputs].concat();
+        self.held.rates(state, &inputs, rates);
+        let [reference, measurement] = self.held.sampled::<f64, T>(state, &inputs);
+        let [of_prefilter, of_feedback] = self.gains;
+        let error = reference.times(of_prefilter.unwrap_or(0.0)) - measurement;
+        *closing = of_feedback.map_or(error, |gain| error.times(gain) - command);
+    }
+
+    fn delays(&self) -> Vec<f64> {
+        System::<f64>::delays(self.held)
+    }
+
+    fn outgoing<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
+        let Some((&command, state)) = state.split_last() else { return };
+        let inputs = [&[command][..], inputs].concat();
+        self.held.outgoing(state, &inputs, waves);
+    }
+}

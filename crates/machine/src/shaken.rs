@@ -1,0 +1,77 @@
+//! A machine that is shaken: by its exact derivatives, and by sines until what it answers has settled.
+
+use num_complex::Complex64;
+use phea_dynamics::simulation::{
+    Input, Plant, Sampler, Settings, SimulationError, SinePlan, SineResponse, sine_response, small_signal,
+};
+use phea_hydraulics::machine::Machine;
+
+use super::control::Control;
+
+/// What is shaken, and from where.
+pub struct Shaken<'a> {
+    /// States at the start, and behind them the waves under way.
+    pub start: &'a [f64],
+    /// What drives it.
+    pub inputs: Vec<Input>,
+    /// The computer that commands it, if there is one.
+    pub sampler: Option<Box<dyn Sampler + 'a>>,
+    /// How exactly.
+    pub settings: Settings,
+    /// For how long.
+    pub plan: SinePlan,
+}
+
+impl Control {
+    /// What the force on the load answers to the sine of an input; `watch` is told the simulated time and ends it by false.
+    ///
+    /// # Errors
+    /// [`SimulationError`] when start or inputs do not fit the machine.
+    pub fn shaken(
+        &self,
+        shaken: Shaken<'_>,
+        watch: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<SineResponse, SimulationError> {
+        let Shaken { start, inputs, sampler, settings, plan } = shaken;
+        let force = |state: &[f64], _: &[f64]| force(self.sensed().plant(), state);
+        match self {
+            Control::Continuous(closed) => {
+                sine_response(closed.as_ref(), start, inputs, sampler, &settings, &plan, &force, watch)
+            }
+            Control::Sampled(sampled) => {
+                sine_response(&sampled.held, start, inputs, sampler, &settings, &plan, &force, watch)
+            }
+            Control::Open(held) => {
+                sine_response(held.as_ref(), start, inputs, sampler, &settings, &plan, &force, watch)
+            }
+        }
+    }
+
+    /// Amplitudes of the states for a sine of amplitude one at the first input, by exact derivatives; `None` where they are no linear system.
+    pub fn orbit(&self, state: &[f64], inputs: &[f64], frequency_rad_per_s: f64) -> Option<Vec<Complex64>> {
+        let amplitude = [Complex64::ONE];
+        match self {
+            Control::Continuous(closed) => {
+                small_signal(closed.as_ref(), state, inputs, &amplitude, frequency_rad_per_s)
+            }
+            Control::Sampled(sampled) => {
+                small_signal(&sampled.held, state, inputs, &amplitude, frequency_rad_per_s)
+            }
+            Control::Open(held) => {
+                small_signal(held.as_ref(), state, inputs, &amplitude, frequency_rad_per_s)
+            }
+        }
+    }
+}
+
+/// Force on the load at a state of a machine, or of what begins with it; not a number for fewer states.
+pub fn force(machine: &Machine, state: &[f64]) -> f64 {
+    let own: usize = Plant::<f64>::states(machine);
+    state.get(..own).map_or(f64::NAN, |state| Plant::<f64>::measurement(machine, state, &[]))
+}
+
+/// The same of complex amplitudes, in which it is linear.
+pub fn force_amplitude(machine: &Machine, amplitudes: &[Complex64]) -> Complex64 {
+    let part = |of: fn(&Complex64) -> f64| force(machine, &amplitudes.iter().map(of).collect::<Vec<_>>());
+    Complex64::new(part(|amplitude| amplitude.re), part(|amplitude| amplitude.im))
+}
