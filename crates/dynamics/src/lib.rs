@@ -15,3 +15,4 @@ pub mod scalar;
 pub mod simulation;
 pub mod time_response;
 pub mod uncertain_plant;
+pub mod watch;

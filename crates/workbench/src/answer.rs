@@ -4,14 +4,13 @@
 //! do not exist, and the same tables.
 
 mod number;
-mod number_table;
 mod table;
 
 use serde::Serialize;
 
 pub use crate::quantity::significant;
 pub use number::Number;
-pub use number_table::{NumberTable, TableFormat};
+pub use phea_engineering::number_table::{NumberTable, TableFormat};
 pub use table::table;
 
 pub use crate::source::OutputFile;

@@ -6,6 +6,7 @@ mod refusal;
 mod simulate;
 
 pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
+pub use phea_engineering::error::ProcedureError;
 pub use refusal::{error_json, failure_json, refusal_json};
 pub use simulate::{FrequencyOptions, SimulateRequest};
 
@@ -14,13 +15,12 @@ use phea_qft::verification::Verdict;
 use serde::Serialize;
 
 use crate::answer::{self, Answer, OutputFile};
-use crate::audit::{self, AuditError, audit_project, outside};
-use crate::campaign::{CampaignError, Nowhere};
+use crate::audit::{self, audit_project, outside};
+use crate::campaign::Nowhere;
 use crate::caveat::caveats;
-use crate::control::ControlError;
 use crate::derived::{self, derive};
-use crate::design::{self, DesignError, design_and_repair, design_project};
-use crate::family::{FamilyError, family, visited_box};
+use crate::design::{self, design_and_repair, design_project};
+use crate::family::{family, visited_box};
 use crate::figure::FigureError;
 use crate::linearize::SweepRequest;
 use crate::project::{Loaded, Report as Refusal};
@@ -29,7 +29,7 @@ use crate::report::{Decision, Report, report};
 use crate::rig::{RigError, sizing_problem};
 use crate::robust::robust_problem;
 use crate::setup::Setup;
-use crate::shaping::{self, RequestedChange, Shaped, ShapingError, shape};
+use crate::shaping::{self, RequestedChange, Shaped, shape};
 use crate::simulate::{SimulateError, compare_projects};
 use crate::sizing::{self, Question, size};
 use crate::source::{Destination, Held, Source};
@@ -109,70 +109,18 @@ impl Request {
 /// Why a sound project has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum CommandError {
-    /// The rig cannot be computed with.
+    /// A procedure has no result.
     #[error(transparent)]
-    Rig(#[from] RigError),
-    /// The controller is no transfer function.
-    #[error(transparent)]
-    Control(#[from] ControlError),
-    /// A linear system cannot be computed.
-    #[error("the linear models: {0}")]
-    Linear(#[from] phea_dynamics::linear::LinearError),
-    /// A response in time cannot be computed.
-    #[error("a response: {0}")]
-    Time(#[from] phea_dynamics::time_response::TimeResponseError),
-    /// The loop cannot be closed.
-    #[error("the linear loop: {0}")]
-    Loop(#[from] crate::linear_loop::LoopError),
+    Procedure(ProcedureError),
     /// A figure cannot be drawn.
     #[error("a figure: {0}")]
-    Figure(#[from] FigureError),
-    /// A quantity of the command line is wrong.
-    #[error("--{option} {text}: {message}")]
-    Option {
-        /// Name of the option.
-        option: &'static str,
-        /// As written.
-        text: String,
-        /// What is wrong with it.
-        message: String,
-    },
-    /// The catalogue cannot be read.
-    #[error("{0}")]
-    Catalogue(Refusal),
-    /// The project does not say what to size for.
-    #[error("{0}")]
-    Sizing(#[from] crate::rig::SizingError),
-    /// There is nothing that could be audited.
-    #[error(transparent)]
-    Audit(#[from] AuditError),
-    /// There is nothing to design for, or nothing was found.
-    #[error(transparent)]
-    Design(#[from] DesignError),
-    /// There is no family of plants.
-    #[error(transparent)]
-    Family(#[from] FamilyError),
-    /// A specification is none.
-    #[error(transparent)]
-    Specification(#[from] crate::specification::SpecificationError),
-    /// Templates or bounds cannot be computed.
-    #[error(transparent)]
-    Robust(#[from] crate::robust::RobustError),
-    /// A controller cannot be shaped so.
-    #[error(transparent)]
-    Shaping(ShapingError),
+    Figure(FigureError),
     /// A plant that is no actuator, and nothing demanded of it.
     #[error(
         "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
     )]
     NothingToReport,
-    /// The machine cannot be simulated.
-    #[error(transparent)]
-    Simulate(#[from] SimulateError),
-    /// There is no campaign.
-    #[error(transparent)]
-    Campaign(#[from] CampaignError),
-    /// The same, of one project among several.
+    /// The machine of one project among several cannot be simulated.
     #[error("{path}: {error}")]
     Compare {
         /// Of the project.
@@ -180,50 +128,31 @@ pub enum CommandError {
         /// Why not.
         error: SimulateError,
     },
-    /// Whoever watched a long command stopped it.
-    #[error("stopped")]
-    Stopped,
 }
 
 impl CommandError {
     /// The findings, where files that the project names were refused with a place for each.
     pub fn refusal(&self) -> Option<&Refusal> {
         match self {
-            CommandError::Catalogue(report) => Some(report),
-            CommandError::Family(FamilyError::Measurement(report)) => Some(report),
-            CommandError::Shaping(ShapingError::Refused(report)) => Some(report),
-            CommandError::Simulate(SimulateError::Motion(report))
-            | CommandError::Campaign(
-                CampaignError::Settings(report) | CampaignError::Simulate(SimulateError::Motion(report)),
-            )
-            | CommandError::Compare { error: SimulateError::Motion(report), .. } => Some(report),
-            _ => None,
+            CommandError::Procedure(error) => error.refusal(),
+            CommandError::Compare { error, .. } => error.refusal(),
+            CommandError::Figure(_) | CommandError::NothingToReport => None,
         }
     }
 
     /// Whether a file could not be written or read back: nothing is wrong with what was asked.
     pub fn is_of_files(&self) -> bool {
-        matches!(
-            self,
-            CommandError::Simulate(SimulateError::Write(_))
-                | CommandError::Campaign(
-                    CampaignError::Ledger(_) | CampaignError::Simulate(SimulateError::Write(_))
-                )
-        )
+        matches!(self, CommandError::Procedure(error) if error.is_of_files())
     }
 }
 
-/// How far a long command is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// What is being done.
-    pub stage: &'static str,
-    /// Share of it that is done, 0 to 1.
-    pub share: f64,
+impl<E: Into<ProcedureError>> From<E> for CommandError {
+    fn from(error: E) -> CommandError {
+        CommandError::Procedure(error.into())
+    }
 }
 
-/// Told the progress of a long command from time to time; it stops where the answer is `false`.
-pub type Watch<'a> = &'a mut dyn FnMut(Progress) -> bool;
+pub use phea_dynamics::watch::{Progress, Watch};
 
 /// Answers a request on a project; `catalogues` are the user's files and folders.
 ///
@@ -241,7 +170,7 @@ pub fn answer(
 /// The same, telling its progress.
 ///
 /// # Errors
-/// Those of [`answer()`], and [`CommandError::Stopped`].
+/// Those of [`answer()`], and [`ProcedureError::Stopped`].
 pub fn answer_watched(
     source: &dyn Source,
     loaded: &Loaded,
@@ -341,7 +270,7 @@ fn without_derived(source: &dyn Source, setup: &Setup<'_>) -> Result<&'static st
 
 fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, CommandError> {
     let positive = |option: &'static str, text: &str, dimension: &quantity::Dimension| {
-        let refuse = |message: String| CommandError::Option { option, text: text.to_string(), message };
+        let refuse = |message: String| ProcedureError::Option { option, text: text.to_string(), message };
         // A bare number is SI, as everywhere.
         let bare = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
         let value = match bare {
@@ -352,11 +281,11 @@ fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, Comman
         };
         if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string())) }
     };
-    match (gain, length) {
-        (Some(text), _) => positive("gain", text, &VOLTAGE_PER_FORCE).map(Question::Gain),
-        (None, Some(text)) => positive("length", text, &LENGTH).map(Question::Length),
-        (None, None) => Ok(Question::Both),
-    }
+    Ok(match (gain, length) {
+        (Some(text), _) => Question::Gain(positive("gain", text, &VOLTAGE_PER_FORCE)?),
+        (None, Some(text)) => Question::Length(positive("length", text, &LENGTH)?),
+        (None, None) => Question::Both,
+    })
 }
 
 /// What is wrong with a quantity, and what would be right.
@@ -372,7 +301,7 @@ fn size_answer(
     question: Question,
 ) -> Result<Answer, CommandError> {
     let setup = Setup::new(&loaded.project)?;
-    let catalogue = crate::catalogue::load(source, catalogues).map_err(CommandError::Catalogue)?;
+    let catalogue = crate::catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
     let problem = sizing_problem(&setup, &catalogue)?;
     let sizing = size(&problem, question);
     Ok(Answer {
@@ -444,7 +373,11 @@ pub fn compare_watched(
     Ok(Answer {
         text: crate::simulate::compare_text(&comparison, projects),
         json: crate::simulate::compare_json(&comparison),
-        files: if figures { crate::simulate::comparison_files(&comparison)? } else { vec![] },
+        files: if figures {
+            crate::simulate::comparison_files(&comparison).map_err(CommandError::Figure)?
+        } else {
+            vec![]
+        },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     })
 }
@@ -473,7 +406,7 @@ fn report_answer(
     let problem = match loaded.project.sizing {
         None => None,
         Some(_) => {
-            let catalogue = crate::catalogue::load(source, catalogues).map_err(CommandError::Catalogue)?;
+            let catalogue = crate::catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
             Some(sizing_problem(&setup, &catalogue)?)
         }
     };
@@ -484,5 +417,10 @@ fn report_answer(
         figures: report.figures.iter().map(|figure| figure.name.clone()).collect(),
         decision: report.decision.clone(),
     };
-    Ok(Answer { text, json: answer::json("report", loaded, body), files: files(&report)?, affirmative: true })
+    Ok(Answer {
+        text,
+        json: answer::json("report", loaded, body),
+        files: files(&report).map_err(CommandError::Figure)?,
+        affirmative: true,
+    })
 }

@@ -17,7 +17,6 @@ mod feed_forward;
 mod frequency_response;
 mod golden_ybitu;
 mod json_contract;
-mod kernels;
 mod linearize_and_derived;
 mod lines_in_motion;
 mod noise;

@@ -12,7 +12,7 @@ use parquet::record::Field;
 use phea_workbench::campaign::{
     CampaignError, Effort, Ledger, METRIC_NAMES, Plan, Row, RowOutcome, STATUS_WORDS, Shard, Summary, Wanted,
 };
-use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
+use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, ProcedureError, Request};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;

@@ -4,7 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::ask::{answer, json, try_answer};
-use phea_workbench::command::{CommandError, Request};
+use phea_workbench::command::{CommandError, ProcedureError, Request};
 use phea_workbench::project::{self, Element, ElementKind, Loaded};
 use phea_workbench::shaping::{Change, RequestedChange, Shaped};
 use phea_workbench::source::Memory;
@@ -298,7 +298,7 @@ fn the_prefilter_is_shaped_by_itself() {
     assert!((pole - 4.0).abs() < 1e-9, "{pole}");
     assert!(saved.contains(POLYNOMIALS) && saved.contains("[prefilter] # soft\n"));
     let refused = try_answer(SERVO, &[], &[], &request);
-    assert!(matches!(refused, Err(CommandError::Shaping(_))));
+    assert!(matches!(refused, Err(CommandError::Procedure(ProcedureError::Shaping(_)))));
 }
 
 /// Message, column and help of a change that is refused.

@@ -4,7 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::ask::{self, HOSE, answer, json, try_answer};
-use phea_workbench::command::{CommandError, Progress, Request, answer_watched};
+use phea_workbench::command::{CommandError, ProcedureError, Progress, Request, answer_watched};
 use phea_workbench::shaping::Shaped;
 use serde_json::Value;
 
@@ -119,7 +119,7 @@ fn a_feed_forward_is_told_to_be_left_out() {
 fn without_a_controller_there_is_nothing_to_verify() {
     let bare = HOSE.split("[controller]").next().unwrap();
     let refused = try_answer(bare, &[], &[], &Request::Verify);
-    assert!(matches!(refused, Err(CommandError::Audit(_))), "{refused:?}");
+    assert!(matches!(refused, Err(CommandError::Procedure(ProcedureError::Audit(_)))), "{refused:?}");
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn a_watcher_sees_progress_rise_and_can_stop_it() {
         shares.len() < 50
     };
     let stopped = answer_watched(&source, &loaded, &[], &Request::Verify, &mut watch);
-    assert!(matches!(stopped, Err(CommandError::Stopped)));
+    assert!(matches!(stopped, Err(CommandError::Procedure(ProcedureError::Stopped))));
     assert_eq!(shares.len(), 50);
     assert!(shares.is_sorted() && shares.iter().all(|share| (0.0..=1.0).contains(share)));
 }

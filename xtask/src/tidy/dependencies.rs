@@ -2,8 +2,9 @@
 //!
 //! ```text
 //! dynamics <- hydraulics <- machine, project <-+
-//! dynamics <- qft <----------------------------+- workbench <- cli | python | web | fmu
-//! quantity <- figure, project <----------------+
+//! dynamics <- qft <----------------------------+- engineering <-+
+//! quantity <- project <------------------------+                +- workbench <- cli | python | web | fmu
+//! quantity, qft <- figure <-------------------------------------+
 //! ```
 
 use std::collections::BTreeSet;
@@ -21,9 +22,14 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("crates/figure", &["phea-dynamics", "phea-qft", "phea-quantity"]),
     ("crates/project", &["phea-dynamics", "phea-hydraulics", "phea-quantity"]),
     (
+        "crates/engineering",
+        &["phea-dynamics", "phea-hydraulics", "phea-machine", "phea-project", "phea-qft", "phea-quantity"],
+    ),
+    (
         "crates/workbench",
         &[
             "phea-dynamics",
+            "phea-engineering",
             "phea-figure",
             "phea-hydraulics",
             "phea-machine",

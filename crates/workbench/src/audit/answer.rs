@@ -1,9 +1,9 @@
 use phea_qft::verification::{SpecificationFinding, Verdict, ViolatedBand, WorstCase};
 use serde::Serialize;
 
-use super::plant::{NamedPlant, PlantNames};
-use super::words::{evidence_key, kind_key, kind_words, verdict_key};
+use super::{NamedPlant, PlantNames};
 use super::{ProjectAudit, Reached};
+use super::{evidence_key, kind_key, kind_words, verdict_key};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 use crate::trial::{self, Trial};

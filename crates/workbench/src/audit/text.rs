@@ -1,10 +1,10 @@
-use phea_qft::verification::{SpecificationFinding, StabilityFinding, Verdict, WorstCase};
+use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
-use super::words::{
+use super::ProjectAudit;
+use super::{
     closed_loop_symbol, evidence_sentence, finding_sentence, frequency_number, margin_words, place_words,
-    verdict_words, worst_at_design,
+    stability_sentence, verdict_words, worst_at_design,
 };
-use super::{PlantNames, ProjectAudit};
 use crate::answer::{significant, table};
 use crate::quantity::DisplayUnit;
 
@@ -41,23 +41,6 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
         finding_sentence(&view.numbered(index), finding, reached, stable)
     }));
     sentences
-}
-
-/// Whether the family is stable, and how it is known.
-pub(crate) fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
-    let plant = names.text(&stability.plant);
-    let rate = |value: f64| significant(value, 3);
-    match (stability.verdict, stability.largest_real_part) {
-        (Verdict::Met, Some(real)) => {
-            format!("every plant is stable; the slowest closed-loop pole lies at {} 1/s", rate(real))
-        }
-        (Verdict::Met, None) => format!("every plant is stable: {}", stability.reason),
-        (Verdict::Violated, Some(real)) if real >= 0.0 => {
-            format!("unstable: a closed-loop pole lies at {} 1/s, with {plant}", rate(real))
-        }
-        (Verdict::Violated, _) => format!("unstable, with {plant}: {}", stability.reason),
-        (Verdict::NotProven, _) => format!("stability is not proven: {} ({plant})", stability.reason),
-    }
 }
 
 fn delay_sentence(view: &ProjectAudit) -> Option<String> {

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::ledger::Wanted;
-use super::plan::{Draw, Plan};
-use super::row::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
-use super::spread::{QUANTILES, Spread};
-use super::statistics::{Bands, Summary};
+use super::Wanted;
+use super::{Bands, Summary};
+use super::{Draw, Plan};
+use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
+use super::{QUANTILES, Spread};
 use crate::answer;
 use crate::project::Loaded;
 use crate::simulate::{self, ScenarioRun};

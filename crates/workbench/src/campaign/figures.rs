@@ -1,10 +1,10 @@
 //! Figures of a campaign: the bands of the force over time, with the worst run in them.
 
-use super::plan::Plan;
-use super::row::{METRIC_NAMES, Row};
-use super::spread::QUANTILES;
-use super::statistics::Summary;
+use super::Plan;
+use super::QUANTILES;
+use super::Summary;
 use super::{CampaignError, Effort, Shard};
+use super::{METRIC_NAMES, Row};
 use crate::answer::OutputFile;
 use crate::figure::{
     DisplayUnit, Figure, TimeBands, TimeBandsInput, TimeEvent, TimeSeries, Words, time_bands,
@@ -131,11 +131,11 @@ pub(crate) fn files(
 ) -> Result<Vec<OutputFile>, crate::command::CommandError> {
     let mut files = vec![OutputFile {
         name: format!("{}.parquet", shard.name()),
-        bytes: super::parquet::table(&plan.columns, rows).map_err(CampaignError::Ledger)?,
+        bytes: plan.parquet(rows).map_err(CampaignError::Ledger)?,
     }];
     let part = shard.part();
     for figure in pictures(plan, summary)? {
-        let png = figure.to_png(PNG_SCALE).map_err(crate::command::CommandError::from)?;
+        let png = figure.to_png(PNG_SCALE).map_err(crate::command::CommandError::Figure)?;
         let svg = figure.to_svg_standalone().into_bytes();
         files.push(OutputFile { name: format!("{}{part}.svg", figure.name), bytes: svg });
         files.push(OutputFile { name: format!("{}{part}.png", figure.name), bytes: png });

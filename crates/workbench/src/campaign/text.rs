@@ -1,10 +1,10 @@
 //! What `campaign` says to people.
 
-use super::ledger::Wanted;
-use super::plan::{Draw, Plan};
-use super::row::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
-use super::spread::{QUANTILES, Spread};
-use super::statistics::Summary;
+use super::Summary;
+use super::Wanted;
+use super::{Draw, Plan};
+use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
+use super::{QUANTILES, Spread};
 use crate::answer::{significant, table};
 use crate::project::Loaded;
 use crate::simulate::{self, ScenarioRun, cause_words};

@@ -10,6 +10,7 @@ use crate::simulate::{
     frequency_response, frequency_text, json, picture_files, simulate_checked, simulate_into, text,
 };
 use crate::source::{Destination, Source};
+use phea_engineering::error::ProcedureError;
 
 /// What is asked of `simulate`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -39,7 +40,7 @@ impl FrequencyOptions {
     /// What they ask for, in SI.
     ///
     /// # Errors
-    /// [`CommandError::Option`] for a text that is no positive quantity of its kind.
+    /// [`ProcedureError::Option`] for a text that is no positive quantity of its kind.
     ///
     /// # Example
     /// ```
@@ -79,7 +80,7 @@ pub(super) fn simulate_answer(
     };
     let mut written = files(loaded, &runs);
     if asked.figures {
-        written.extend(figure_files(&runs)?);
+        written.extend(figure_files(&runs).map_err(CommandError::Figure)?);
     }
     let all = runs.len() == loaded.project.scenarios.len();
     Ok(Answer {
@@ -100,7 +101,7 @@ fn frequency_answer(
     // nothing that is written to memory can fail
     let mut written: Vec<OutputFile> = frequency_files(&found, asked.table).unwrap_or_default();
     if asked.figures {
-        written.extend(picture_files(&frequency_pictures(&found))?);
+        written.extend(picture_files(&frequency_pictures(&found)).map_err(CommandError::Figure)?);
     }
     Ok(Answer {
         text: frequency_text(&found),
@@ -138,11 +139,11 @@ fn positive(
     part: &str,
     dimension: &'static Dimension,
 ) -> Result<f64, CommandError> {
-    let refuse = |message: String| CommandError::Option { option, text: text.to_string(), message };
+    let refuse = |message: String| ProcedureError::Option { option, text: text.to_string(), message };
     let bare = part.parse::<f64>().ok().filter(|value| value.is_finite());
     let value = match bare {
         Some(value) => value,
         None => quantity::parse(part, dimension).map_err(|error| refuse(error_words(&error, dimension)))?,
     };
-    if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string())) }
+    if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string()).into()) }
 }

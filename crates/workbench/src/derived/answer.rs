@@ -95,7 +95,7 @@ pub fn json(
         reason: quantity.reason.as_deref(),
     });
     let warnings = loaded.warnings.iter().map(|warning| warning.message.clone());
-    let wishes = wishes.iter().map(CheckedWish::row);
+    let wishes = wishes.iter().map(WishRow::of);
     let body = Body {
         derived: rows.collect(),
         visited_box: visited.map(|ranges| ranges.iter().map(RangeRow::from).collect()),

@@ -1,4 +1,5 @@
 mod repair;
+mod rounding;
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::{LinearError, TimeDomain};
@@ -7,11 +8,11 @@ use phea_qft::loop_shaping::{Part, Structure};
 use phea_qft::verification::PlantPoint;
 use serde::Serialize;
 
-use super::factors::Factors;
-use super::rounding::RoundingRow;
-use super::side::Side;
-use super::words::{objective_key, part_key, status_key};
+use self::rounding::RoundingRow;
+use super::Factors;
+use super::Side;
 use super::{Explanation, ProjectDesign};
+use super::{objective_key, part_key, status_key};
 use crate::answer::{self, Number};
 use crate::audit::{self, NamedPlant, PlantNames};
 use crate::project::Loaded;
@@ -191,7 +192,7 @@ pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
             relaxation.conflicts.iter().map(|one| conflict(view, one)).collect()
         }),
         explanations: view.explanations.iter().map(|one| explanation(view, one)).collect(),
-        rounding: view.rounding.as_ref().map(|rounding| rounding.row(&view.designed.view.names)),
+        rounding: view.rounding.as_ref().map(|rounding| rounding::row(rounding, &view.designed.view.names)),
         machine: view.trial.as_ref().map(trial::body),
         machine_reason: view.trial.is_none().then_some(match view.stopped {
             true => "the design was stopped before it was tried on the machine",

@@ -8,8 +8,8 @@ use phea_dynamics::portable;
 use phea_qft::bound::Placement;
 use phea_qft::specification::Requirement;
 
-use super::factors::Factors;
-use super::words::structure_words;
+use super::Factors;
+use super::{DESIGNED_PROJECT, NEAREST_PROJECT, structure_words};
 use super::{ProjectDesign, Repair, Side};
 use crate::answer::OutputFile;
 use crate::audit;
@@ -17,12 +17,6 @@ use crate::command::{CommandError, Watch};
 use crate::project::{Loaded, with_laws};
 use crate::report::bound_files;
 use crate::robust::{DesignFrequency, RobustProblem};
-
-/// Name of the file with the project that a design makes.
-pub const DESIGNED_PROJECT: &str = "designed.toml";
-
-/// Name of the file with the project under the controller that comes nearest to what the machine asks for and cannot be had.
-pub const NEAREST_PROJECT: &str = "nearest.toml";
 
 /// How far the drawn frequencies reach beyond the design frequencies.
 const BEYOND: [f64; 2] = [0.1, 30.0];

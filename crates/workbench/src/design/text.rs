@@ -2,10 +2,10 @@ use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
 use phea_qft::design::{DesignStatus, Objective, Starts};
 use phea_qft::verification::{PlantPoint, Verdict};
 
-use super::comparison::compared;
-use super::factors::factored;
-use super::words::{repair_words, status_sentence, structure_words};
+use super::compared;
+use super::factored;
 use super::{Explanation, ProjectDesign, Repair, RepairStatus, Rounding};
+use super::{repair_words, status_sentence, structure_words};
 use crate::answer::{significant, table};
 use crate::audit::{self, frequency_number, margin_words, summary};
 use crate::project::{Loaded, snippet};

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::root_list;
-use super::sweep::{Sweep, SweepPoint, Swept};
+use super::{Sweep, SweepPoint, Swept};
 use crate::answer::{OutputFile, significant, table};
 use crate::figure::{Figure, PoleSweepInput, PoleSweepPoint, Words, pole_sweep};
 use crate::quantity::DisplayUnit;

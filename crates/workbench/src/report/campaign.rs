@@ -1,6 +1,7 @@
 //! The chapter on what the machine does when its numbers are not quite those of the project: bands over time, and the worst runs.
 
 use maud::{Markup, html};
+use phea_engineering::error::ProcedureError;
 
 use super::chapter::{Chapter, cell, grouped, place, table, unbroken};
 use super::derived::unit;
@@ -35,7 +36,7 @@ pub(super) struct Campaign {
 /// The campaign of a report; `None` for a project without `[campaign]`.
 ///
 /// # Errors
-/// [`CommandError::Stopped`] where the watch stops it.
+/// [`ProcedureError::Stopped`] where the watch stops it.
 pub(super) fn driven(
     source: &dyn Source,
     loaded: &Loaded,
@@ -55,7 +56,7 @@ pub(super) fn driven(
     };
     let (body, figures, fact) = match told() {
         Err(error) => (html! { div.callout.bad-edge { p { "Not driven: " (error) "." } } }, vec![], None),
-        Ok((_, count, _, _)) if count < RUNS => return Err(CommandError::Stopped),
+        Ok((_, count, _, _)) if count < RUNS => return Err(ProcedureError::Stopped.into()),
         Ok((plan, _, summary, figures)) => {
             (body(&plan, &summary, &figures), figures, Some(("Campaign", words(&plan, &summary))))
         }

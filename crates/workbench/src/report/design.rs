@@ -8,6 +8,7 @@ mod sampling;
 mod tables;
 
 use maud::{Markup, html};
+use phea_engineering::error::ProcedureError;
 use phea_qft::design::DesignStatus;
 use phea_qft::verification::Verdict;
 
@@ -57,15 +58,15 @@ pub(super) fn designed(
     watch: Watch<'_>,
 ) -> Result<Designed, CommandError> {
     let view = match design_project(source, setup, None, watch) {
-        Ok(view) if view.stopped => return Err(CommandError::Stopped),
+        Ok(view) if view.stopped => return Err(ProcedureError::Stopped.into()),
         Ok(view) => view,
-        Err(CommandError::Design(DesignError::NoController(mut sentences))) => {
+        Err(ProcedureError::Design(DesignError::NoController(mut sentences))) => {
             sentences
                 .insert(0, "the search ended without a controller that makes every plant stable".to_string());
             return Ok(Designed::Nothing(sentences));
         }
-        Err(CommandError::Design(error)) => return Ok(Designed::Nothing(vec![error.to_string()])),
-        Err(error) => return Err(error),
+        Err(ProcedureError::Design(error)) => return Ok(Designed::Nothing(vec![error.to_string()])),
+        Err(error) => return Err(error.into()),
     };
     Ok(Designed::Found(Box::new(FoundDesign { view })))
 }

@@ -10,6 +10,7 @@ use crate::simulate::{
 };
 use crate::source::Source;
 use crate::specification::wishes;
+use phea_engineering::error::ProcedureError;
 
 /// Name of the controller that the project gives.
 pub(super) const GIVEN: &str = "given";
@@ -35,7 +36,7 @@ pub(super) struct DrivenSide {
 /// Drives the scenarios under the given controller, and under the `designed` one where there is one; `None` without scenarios.
 ///
 /// # Errors
-/// [`CommandError::Stopped`] where the watch stops it, and a wish in time that is none.
+/// [`ProcedureError::Stopped`] where the watch stops it, and a wish in time that is none.
 pub(super) fn driven(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -53,7 +54,7 @@ pub(super) fn driven(
     for (name, setup) in given.into_iter().chain(designed) {
         let runs = simulate_project(source, &setup, watch);
         if runs.iter().flatten().any(ScenarioRun::was_cancelled) {
-            return Err(CommandError::Stopped);
+            return Err(ProcedureError::Stopped.into());
         }
         sides.push(DrivenSide { name, runs });
     }

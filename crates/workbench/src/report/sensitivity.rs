@@ -1,6 +1,7 @@
 //! The appendix on what is not known well: the first scenario with the load cell and the friction multiplied.
 
 use maud::{Markup, html};
+use phea_engineering::error::ProcedureError;
 
 use super::chapter::{Chapter, cell, grouped, unbroken};
 use super::driven::Driven;
@@ -20,7 +21,7 @@ const FRICTION_FACTORS: [(f64, &str); 4] = [(0.0, "none"), (0.5, "half"), (1.0, 
 /// The chapter, of the first controller that was driven, whose project this is; `None` where none was.
 ///
 /// # Errors
-/// [`CommandError::Stopped`] where the watch stops it.
+/// [`ProcedureError::Stopped`] where the watch stops it.
 pub(super) fn chapter(
     source: &dyn Source,
     project: &Project,
@@ -89,7 +90,7 @@ fn vary(
     watch: Watch<'_>,
 ) -> Result<Varied, CommandError> {
     let run = match simulate_project(source, &Setup::new(project)?, watch) {
-        Ok(runs) if runs.iter().any(ScenarioRun::was_cancelled) => return Err(CommandError::Stopped),
+        Ok(runs) if runs.iter().any(ScenarioRun::was_cancelled) => return Err(ProcedureError::Stopped.into()),
         Ok(runs) => runs.into_iter().next().ok_or_else(|| "no scenario".to_string()),
         Err(error) => Err(error.to_string()),
     };

@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
+use super::FrequencyResponse;
+use super::Measured;
 use super::check::{self, CheckRow};
-use super::file_names::state_names;
-use super::frequency::{self, FrequencyResponse};
-use super::metrics::Measured;
+use super::frequency;
+use super::state_names;
 use super::{
     BeyondExpansion, Cause, Comparison, Exceeded, Metrics, Occurrence, Overlay, ScenarioRun, Window,
 };

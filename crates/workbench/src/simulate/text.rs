@@ -1,9 +1,8 @@
 //! What `simulate` and `compare` say to people.
 
 use super::check;
-use super::exceeded;
-use super::metrics::{Measured, NOT_SETTLED};
 use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, Overlay, ScenarioRun, Stopped, Window};
+use super::{Measured, NOT_SETTLED, exceeded_words};
 use crate::answer::{significant, table};
 use crate::project::Loaded;
 use crate::quantity::{DisplayUnit, FORCE, PRESSURE, TIME, VOLTAGE, display};
@@ -196,7 +195,7 @@ pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
         sentences.push(format!("and {} more changes of this kind, listed in the JSON", found.len() - TOLD));
     }
     sentences.extend(run.beyond_expansion.iter().map(beyond_words));
-    sentences.extend(run.exceeded.iter().map(exceeded::words));
+    sentences.extend(run.exceeded.iter().map(exceeded_words));
     sentences.extend(run.outside_model_s.map(|time_s| {
         let from = DisplayUnit::SECOND.number(time_s, 5);
         format!("from {from} s on the equations do not hold: what follows is theirs, not that of a machine")
@@ -246,7 +245,7 @@ pub(crate) fn compare_text(comparison: &Comparison<'_>, asked: &[Loaded]) -> Str
         out.push_str(&format!("\n{name}\n{}\n", side_by_side(&columns)));
         for (number, run) in columns.iter().enumerate() {
             for exceeded in run.iter().flat_map(|run| &run.exceeded) {
-                out.push_str(&format!("   {}: {}\n", letter(number), exceeded::words(exceeded)));
+                out.push_str(&format!("   {}: {}\n", letter(number), exceeded_words(exceeded)));
             }
         }
     }

@@ -168,15 +168,17 @@ fn force_measured(runs: &[Named<'_>]) -> Option<TimeSeries> {
 }
 
 fn forces(runs: &[Named<'_>], height: f64, span_s: [f64; 2], wish: Option<&Wish>) -> TimePanel {
-    let mut series = each(runs, |record| record.signal("force_n"));
-    series.extend(force_measured(runs));
+    let mut curves = each(runs, |record| record.signal("force_n"));
+    curves.extend(force_measured(runs));
     let first = runs.first().map(|named| named.run);
     let windows = first.map(|run| run.windows.as_slice()).unwrap_or_default();
-    let lines = wish.map(|wish| wish.lines(windows.iter().map(|(window, _)| window), span_s));
+    let lines = wish.map(|wish| {
+        wish.lines(windows.iter().map(|(window, _)| window), span_s).iter().map(series).collect()
+    });
     TimePanel {
         reference: first.and_then(|run| asked_for(&run.record)),
         wished: lines.unwrap_or_default(),
-        ..panel("Force F_e", DisplayUnit::KILONEWTON, height, series)
+        ..panel("Force F_e", DisplayUnit::KILONEWTON, height, curves)
     }
 }
 
@@ -224,4 +226,10 @@ fn commands(runs: &[Named<'_>], height: f64) -> TimePanel {
     // the longer title does not fit beside a low frame
     let title = if height < 100.0 { "U_C" } else { "Command U_C" };
     panel(title, DisplayUnit::VOLT, height, each(runs, |record| record.control_v.clone()))
+}
+
+/// A line that the force should not cross.
+fn series(line: &Vec<[f64; 2]>) -> TimeSeries {
+    let (times_s, values) = line.iter().map(|[time_s, value]| (*time_s, *value)).unzip();
+    TimeSeries { name: String::new(), times_s, values }
 }

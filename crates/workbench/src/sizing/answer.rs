@@ -1,6 +1,6 @@
 use serde::Serialize;
 
-use super::branch::model_name;
+use super::model_name;
 use super::{BoreVerdict, Candidate, Severity, Sizing};
 use crate::answer::{self, Number, OutputFile, significant, table};
 use crate::project::Loaded;

@@ -1,5 +1,4 @@
 use phea_dynamics::time_response::Settling;
-use phea_qft::specification::WishOutcome;
 use serde::Serialize;
 
 use super::CheckedWish;
@@ -24,14 +23,9 @@ struct StepRow {
     reason: Option<String>,
 }
 
-impl CheckedWish {
-    /// Whether the limit does what was wished.
-    pub fn is_met(&self) -> bool {
-        self.check.outcome() == WishOutcome::Met
-    }
-
-    pub(crate) fn row(&self) -> WishRow {
-        let (wished, reached) = (self.check.wished, self.check.reached);
+impl WishRow {
+    pub(crate) fn of(wish: &CheckedWish) -> WishRow {
+        let (wished, reached) = (wish.check.wished, wish.check.reached);
         let reason = match reached.settling {
             Settling::Settled { .. } => None,
             Settling::NotSettled { deviation_percent } => {
@@ -39,8 +33,8 @@ impl CheckedWish {
             }
         };
         WishRow {
-            specification: self.number,
-            limit: self.key,
+            specification: wish.number,
+            limit: wish.key,
             wished: StepRow {
                 overshoot_percent: wished.overshoot_percent,
                 settling_time_s: Some(wished.settling_time_s),
@@ -53,7 +47,7 @@ impl CheckedWish {
                 settling_band_percent: wished.settling_band_percent,
                 reason,
             },
-            met: self.is_met(),
+            met: wish.is_met(),
         }
     }
 }

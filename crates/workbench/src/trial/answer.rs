@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::run::percent_words;
-use super::{Agreement, Run, Step, Trial};
+use super::percent_words;
+use super::{Agreement, Run, Step, Trial, agreement_word};
 use crate::answer::table;
 use crate::audit::NamedPlant;
 use crate::quantity::DisplayUnit;
@@ -42,15 +42,6 @@ struct StepRow {
     settling_time_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     settling_time_s_reason: Option<&'static str>,
-}
-
-/// The word of an agreement.
-pub(crate) fn agreement_word(agreement: Agreement) -> &'static str {
-    match agreement {
-        Agreement::Agrees => "agrees",
-        Agreement::Differs => "differs",
-        Agreement::Contradicts => "contradicts",
-    }
 }
 
 fn step(step: &Step) -> StepRow {

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{LimitRow, PublishedRow, RoundRow, conflict, published, round};
 use crate::answer::Number;
 use crate::audit;
-use crate::design::words::repair_key;
+use crate::design::repair_key;
 use crate::design::{ProjectDesign, Repair, RepairStatus};
 use crate::trial;
 use phea_qft::design::DesignStatus;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Check, Difference, MetricDifferences};
 use crate::answer::significant;
-use crate::simulate::metrics::Measured;
+use crate::simulate::Measured;
 
 #[derive(Serialize)]
 pub(crate) struct CheckRow {

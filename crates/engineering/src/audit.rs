@@ -1,0 +1,263 @@
+//! The audit of a given controller: family, loop and specifications from the project, findings from `phea_qft`, and how
+//! they are told.
+
+mod alone;
+mod plant;
+mod words;
+pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
+
+pub use alone::outside;
+pub use plant::{NamedPlant, PlantNames};
+pub use words::{
+    closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words, margin_words, meaning,
+    stability_sentence, verdict_key, verdict_words, worst_at_design,
+};
+
+use phea_dynamics::portable;
+use phea_qft::audit::AuditRun;
+use phea_qft::family::{Extent, Family};
+use phea_qft::verification::{Audit, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Verdict};
+
+use crate::caveat::Caveat;
+use crate::error::ProcedureError;
+use crate::project::Project;
+use crate::quantity::DisplayUnit;
+use crate::robust::{RobustProblem, robust_problem};
+use crate::setup::Setup;
+use crate::source::Source;
+use phea_dynamics::watch::{Progress, Watch};
+
+/// Why there is nothing to audit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AuditError {
+    /// There is no controller.
+    #[error("the project gives no [controller] to be verified")]
+    NoController,
+    /// There is a controller without a law.
+    #[error(
+        "[controller] says only when it acts, and leaves its law to be designed: `phea design` does that"
+    )]
+    NoLaw,
+    /// There is nothing that it must keep to.
+    #[error("the project states no [[specification]] to verify the controller by")]
+    NoSpecification,
+}
+
+/// Audits the given controller and prefilter over the whole family and band.
+///
+/// # Errors
+/// [`ProcedureError`] for a project without a controller, a part of it that is no transfer function, a family that cannot be
+/// built, or a watcher that stops.
+pub fn audit_project(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    watch: Watch<'_>,
+) -> Result<ProjectAudit, ProcedureError> {
+    let project = setup.project;
+    match &project.controller {
+        None => return Err(AuditError::NoController.into()),
+        Some(controller) if !controller.has_law() => return Err(AuditError::NoLaw.into()),
+        Some(_) => {}
+    }
+    if project.specifications.is_empty() {
+        return Err(AuditError::NoSpecification.into());
+    }
+    audit_problem(&robust_problem(source, setup)?, watch)
+}
+
+/// The same of a robust problem that is at hand already.
+///
+/// # Errors
+/// [`ProcedureError::Stopped`] where the watcher stops it.
+pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, ProcedureError> {
+    let RobustProblem { family, compensation, specifications, .. } = problem;
+    let tracking = match problem.has_prefilter {
+        true => TrackingJudgement::Magnitude,
+        false => TrackingJudgement::Spread,
+    };
+    let mut run = AuditRun::new(family, compensation, specifications, tracking, TOLERANCE_DB);
+    while run.step() {
+        if !watch(Progress { stage: "auditing", share: run.progress() }) {
+            return Err(ProcedureError::Stopped);
+        }
+    }
+    Ok(ProjectAudit::new(problem, run.audit()))
+}
+
+/// What the plants of a family are called.
+pub fn names(project: &Project, family: &Family) -> PlantNames {
+    match family {
+        Family::Uncertain(family) => PlantNames::of_parameters(
+            project,
+            family.plant().parameters().iter().map(|parameter| parameter.name.as_str()),
+        ),
+        Family::Measured(family) => {
+            PlantNames::Measured(family.plants().iter().map(|plant| plant.name.clone()).collect())
+        }
+    }
+}
+
+/// An audit with the names of its project.
+#[derive(Clone, Debug)]
+pub struct ProjectAudit {
+    /// What was found.
+    pub audit: Audit,
+    /// What the numbers of a plant are called.
+    pub names: PlantNames,
+    /// What each specification is called.
+    pub specification_names: Vec<String>,
+    /// Number of plants of the family.
+    pub members: usize,
+    /// Whether everything between them belongs to the family.
+    pub whole_box: bool,
+    /// Why its plants have no polynomials; `None` where they have.
+    pub without_polynomials: Option<&'static str>,
+    /// s; `None` for a continuous controller.
+    pub sample_time_s: Option<f64>,
+    /// Delay of the loop, s.
+    pub delay_s: f64,
+    /// What is declared that the audit does not count.
+    pub caveats: Vec<Caveat>,
+    /// What the worst plant of each specification reaches, where that is a magnitude against a limit.
+    pub reached: Vec<Option<Reached>>,
+}
+
+/// A closed-loop magnitude and the limit that it comes nearest to, or leaves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached {
+    /// The magnitude.
+    pub magnitude: f64,
+    /// The limit.
+    pub limit: f64,
+    /// Which of its limits that is.
+    pub side: LimitSide,
+}
+
+/// On which side of a magnitude a limit lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitSide {
+    /// The only one, an upper one.
+    Only,
+    /// The upper of two.
+    Upper,
+    /// The lower of two.
+    Lower,
+}
+
+/// 20 log10(e)
+const DECIBELS_PER_NEPER: f64 = 20.0 * std::f64::consts::LOG10_E;
+
+/// What the worst plant reaches; `None` for a spread, and at the ends of the frequency axis where there are two limits.
+fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Reached> {
+    let worst = finding.worst.as_ref().filter(|worst| worst.other.is_none())?;
+    let frequency = worst.frequency_rad_per_s;
+    let (lower, upper) = finding.requirement.limits();
+    let upper = upper.magnitude(frequency)?;
+    if !(frequency > 0.0 && frequency.is_finite()) {
+        // A loop has no response there, but its margin has a limit, and so the magnitude where the limit is one.
+        let single = lower.is_none() && upper > 0.0 && upper.is_finite();
+        let magnitude = upper * portable::exp(-worst.margin_db / DECIBELS_PER_NEPER);
+        return single.then_some(Reached { magnitude, limit: upper, side: LimitSide::Only });
+    }
+    let response = problem.response(&problem.member(&worst.plant)?, frequency)?;
+    let magnitude = portable::magnitude(finding.requirement.closed_loop(&response));
+    let (limit, side) = match lower {
+        None => (upper, LimitSide::Only),
+        Some(lower) => {
+            let lower = lower.magnitude(frequency)?;
+            if magnitude / lower < upper / magnitude {
+                (lower, LimitSide::Lower)
+            } else {
+                (upper, LimitSide::Upper)
+            }
+        }
+    };
+    Some(Reached { magnitude, limit, side })
+}
+
+impl ProjectAudit {
+    /// An audit of the loop of this problem.
+    pub fn new(problem: &RobustProblem, mut audit: Audit) -> ProjectAudit {
+        let RobustProblem { family, compensation, .. } = problem;
+        let caveats: Vec<Caveat> =
+            alone::caveat(problem).into_iter().chain(problem.caveats.clone()).collect();
+        if audit.verdict == Verdict::Met && caveats.iter().any(|caveat| caveat.unproven) {
+            audit.verdict = Verdict::NotProven;
+        }
+        ProjectAudit {
+            reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
+            audit,
+            names: problem.names.clone(),
+            specification_names: problem.specification_names.clone(),
+            members: match family {
+                Family::Uncertain(family) => family.members().len(),
+                Family::Measured(family) => family.plants().len(),
+            },
+            without_polynomials: problem.without_polynomials,
+            whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
+            sample_time_s: compensation.sample_time_s(),
+            delay_s: compensation.delay_s(),
+            caveats,
+        }
+    }
+
+    /// What a specification is called.
+    pub fn name_of(&self, index: usize) -> &str {
+        self.specification_names.get(index).map_or("", String::as_str)
+    }
+
+    /// A specification by its number, from 1, and name.
+    pub fn numbered(&self, index: usize) -> String {
+        format!("{} {}", index + 1, self.name_of(index))
+    }
+
+    /// Which plants were audited, in a sentence.
+    pub fn family_sentence(&self) -> String {
+        let why = self.without_polynomials.map(|why| format!(", every plant by its response with {why}"));
+        let moving = why.unwrap_or_default();
+        match &self.names {
+            PlantNames::Measured(names) => format!("Family: {}.", counted(names.len(), "measured response")),
+            PlantNames::Parameters(names) if names.is_empty() => format!("Family: one plant{moving}."),
+            PlantNames::Parameters(names) if self.whole_box => format!(
+                "Family: {} plants of a box over {}, and what lies between them{moving}.",
+                self.members,
+                counted(names.len(), "uncertain parameter")
+            ),
+            PlantNames::Parameters(names) => {
+                format!(
+                    "Family: {} with {}{moving}.",
+                    counted(self.members, "given plant"),
+                    counted(names.len(), "uncertain parameter")
+                )
+            }
+        }
+    }
+
+    /// Delay and samples of the loop, in a sentence.
+    pub fn loop_sentence(&self) -> String {
+        let delay = match self.delay_s {
+            0.0 => "without delay".to_string(),
+            delay => format!("with a delay of {}", DisplayUnit::MILLISECOND.text(delay, 3)),
+        };
+        match self.sample_time_s {
+            None => format!("Loop: continuous, {delay}."),
+            Some(sample_time) => {
+                let images = match self.names {
+                    PlantNames::Measured(_) => {
+                        " What lies beyond the measurements is taken as no larger than at their ends."
+                    }
+                    PlantNames::Parameters(_) => "",
+                };
+                format!(
+                    "Loop: sampled every {} with a zero-order hold, {delay}.{images}",
+                    DisplayUnit::MILLISECOND.text(sample_time, 3)
+                )
+            }
+        }
+    }
+}
+
+/// `1 plant`, `2 plants`.
+fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}

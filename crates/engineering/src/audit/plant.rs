@@ -1,0 +1,106 @@
+//! How the plants of a family are named to people and programs.
+
+use phea_qft::verification::PlantPoint;
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use crate::project::Project;
+use crate::quantity::{Dimension, RATIO, display};
+
+/// What the numbers of a plant are called.
+#[derive(Clone, Debug)]
+pub enum PlantNames {
+    /// Uncertain parameters in the order of the plant, with what they measure.
+    Parameters(Vec<(String, &'static Dimension)>),
+    /// Names of the measurements.
+    Measured(Vec<String>),
+}
+
+/// One plant with its names, as JSON shows it: an object of name to SI value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedPlant(Vec<(String, NamedValue)>);
+
+#[derive(Clone, Debug, PartialEq)]
+enum NamedValue {
+    Number(f64),
+    Text(String),
+}
+
+impl PlantNames {
+    /// Names of the parameters of an uncertain plant, with the dimension of those that are numbers of the project or of its linear model.
+    pub fn of_parameters<'a>(project: &Project, names: impl Iterator<Item = &'a str>) -> PlantNames {
+        let known = project.dimensions();
+        let dimension = |name: &str| known.get(name).copied().unwrap_or(&RATIO);
+        PlantNames::Parameters(names.map(|name| (name.to_string(), dimension(name))).collect())
+    }
+
+    /// Names and values of a plant that has any.
+    pub fn numbers<'a>(
+        &'a self,
+        plant: &'a PlantPoint,
+    ) -> Option<impl Iterator<Item = (&'a str, &'static Dimension, f64)>> {
+        let (names, values) = match (self, plant) {
+            (PlantNames::Parameters(names), PlantPoint::Parameters(values)) => (names, values),
+            _ => return None,
+        };
+        Some(names.iter().zip(values).map(|((name, dimension), value)| (name.as_str(), *dimension, *value)))
+    }
+
+    /// `viscous_friction 100 N.s/m, flow_gain 5.61e-5 m3/(s.V)`, or the name of the measurement.
+    pub fn text(&self, plant: &PlantPoint) -> String {
+        let Some(numbers) = self.numbers(plant) else {
+            return match (self, plant) {
+                (_, PlantPoint::Beside(_)) => "the plant that was taken in".to_string(),
+                (PlantNames::Measured(names), PlantPoint::Measured(index)) => {
+                    names.get(*index).cloned().unwrap_or_default()
+                }
+                _ => String::new(),
+            };
+        };
+        let parts: Vec<String> = numbers
+            .map(|(name, dimension, value)| format!("{name} {}", display(value, dimension, 4)))
+            .collect();
+        if parts.is_empty() { "the nominal plant".to_string() } else { parts.join(", ") }
+    }
+
+    /// The values of a plant one by one, as the columns of a table; in the order of [`PlantNames::headings`].
+    pub fn cells(&self, plant: &PlantPoint) -> Vec<String> {
+        match self.numbers(plant) {
+            Some(numbers) => numbers.map(|(_, dimension, value)| display(value, dimension, 4)).collect(),
+            None => vec![self.text(plant)],
+        }
+    }
+
+    /// What stands above the columns of [`PlantNames::cells`].
+    pub fn headings(&self) -> Vec<&str> {
+        match self {
+            PlantNames::Parameters(names) => names.iter().map(|(name, _)| name.as_str()).collect(),
+            PlantNames::Measured(_) => vec!["measurement"],
+        }
+    }
+
+    /// The plant for JSON.
+    pub fn named(&self, plant: &PlantPoint) -> NamedPlant {
+        match self.numbers(plant) {
+            Some(numbers) => NamedPlant(
+                numbers.map(|(name, _, value)| (name.to_string(), NamedValue::Number(value))).collect(),
+            ),
+            None => {
+                let key = if matches!(plant, PlantPoint::Beside(_)) { "beside" } else { "measured" };
+                NamedPlant(vec![(key.to_string(), NamedValue::Text(self.text(plant)))])
+            }
+        }
+    }
+}
+
+impl Serialize for NamedPlant {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            match value {
+                NamedValue::Number(number) => map.serialize_entry(name, number)?,
+                NamedValue::Text(text) => map.serialize_entry(name, text)?,
+            }
+        }
+        map.end()
+    }
+}

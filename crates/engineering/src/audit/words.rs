@@ -1,0 +1,193 @@
+//! Verdicts, requirements and worst cases in words.
+
+use phea_qft::specification::Requirement;
+use phea_qft::verification::{Evidence, SpecificationFinding, StabilityFinding, Verdict, WorstCase};
+
+use super::{LimitSide, PlantNames, Reached};
+use crate::quantity::significant;
+use crate::quantity::{RATIO, display};
+
+/// The word of a verdict in JSON.
+pub fn verdict_key(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Met => "met",
+        Verdict::Violated => "violated",
+        Verdict::NotProven => "not_proven",
+    }
+}
+
+/// The same for people.
+pub fn verdict_words(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NotProven => "not proven",
+        other => verdict_key(other),
+    }
+}
+
+/// The word of the evidence in JSON.
+pub fn evidence_key(evidence: Evidence) -> &'static str {
+    match evidence {
+        Evidence::Grid => "grid",
+        Evidence::Search => "search",
+        Evidence::Proof => "proof",
+    }
+}
+
+/// What a verdict rests on, in a sentence.
+pub fn evidence_sentence(evidence: Evidence, one_plant: bool) -> &'static str {
+    match evidence {
+        Evidence::Search if one_plant => {
+            "The plant was looked at over the whole band, between the frequencies of any grid too; a search is no proof."
+        }
+        Evidence::Grid => "Looked at the plants of the family one by one; nothing between them is claimed.",
+        Evidence::Search => {
+            "The worst case was searched over the whole parameter box and band, not only on the grid; a search is no proof."
+        }
+        Evidence::Proof => "Proven for every plant of the box and every frequency of the band.",
+    }
+}
+
+/// The word of a kind, as the project file spells it.
+pub fn kind_key(requirement: &Requirement) -> &'static str {
+    match requirement {
+        Requirement::RobustStability(_) => "robust_stability",
+        Requirement::Sensitivity(_) => "sensitivity",
+        Requirement::PlantInputDisturbance(_) => "plant_input_disturbance",
+        Requirement::ControlEffort(_) => "control_effort",
+        Requirement::LoadMotion(_) => "load_motion",
+        Requirement::Tracking { .. } => "tracking",
+    }
+}
+
+/// The kind for people.
+pub fn kind_words(requirement: &Requirement) -> String {
+    kind_key(requirement).replace('_', " ")
+}
+
+/// The closed loop that a kind limits.
+pub fn closed_loop_symbol(requirement: &Requirement) -> &'static str {
+    match requirement {
+        Requirement::RobustStability(_) => "|L/(1+L)|",
+        Requirement::Sensitivity(_) => "|1/(1+L)|",
+        Requirement::PlantInputDisturbance(_) => "|P/(1+L)|",
+        Requirement::ControlEffort(_) => "|G/(1+L)|",
+        Requirement::LoadMotion(_) => "|Pd/(1+L)|",
+        Requirement::Tracking { .. } => "|F L/(1+L)|",
+    }
+}
+
+/// `4.31 dB`, with its sign; the zero of a limit that is just reached without one.
+pub fn margin_words(margin_db: f64) -> String {
+    match margin_db {
+        _ if margin_db == f64::INFINITY => "unlimited".to_string(),
+        _ if margin_db.abs() < 5e-4 => "0.000 dB".to_string(),
+        _ if margin_db.abs() < 1.0 => format!("{margin_db:+.3} dB"),
+        _ => format!("{margin_db:+.2} dB"),
+    }
+}
+
+/// `at 1304 rad/s`, `towards zero frequency`, `towards infinite frequency`.
+pub fn frequency_words(frequency_rad_per_s: f64) -> String {
+    match frequency_rad_per_s {
+        0.0 => "towards zero frequency".to_string(),
+        f64::INFINITY => "towards infinite frequency".to_string(),
+        _ => format!("at {} rad/s", frequency_number(frequency_rad_per_s)),
+    }
+}
+
+/// A frequency with four digits, without zeros that say nothing: `0.01`, `1304`.
+pub fn frequency_number(frequency_rad_per_s: f64) -> String {
+    if frequency_rad_per_s == f64::INFINITY {
+        "inf".to_string()
+    } else {
+        display(frequency_rad_per_s, &RATIO, 4)
+    }
+}
+
+/// The worst margin among the design frequencies.
+pub fn worst_at_design(finding: &SpecificationFinding) -> Option<&WorstCase> {
+    finding.at_design_frequencies.iter().min_by(|a, b| a.margin_db.total_cmp(&b.margin_db))
+}
+
+/// One sentence on a specification: what it says, whether it holds, and where it is worst.
+pub fn finding_sentence(
+    name: &str,
+    finding: &SpecificationFinding,
+    reached: Option<&Reached>,
+    stable: bool,
+) -> String {
+    let Some(worst) = &finding.worst else {
+        return match finding.verdict {
+            Verdict::Violated => format!("{name} is violated: an unstable loop keeps to no specification"),
+            _ => format!("{name}: nothing could be judged"),
+        };
+    };
+    let place = place_words(worst.frequency_rad_per_s);
+    let size = significant(worst.margin_db.abs(), 3);
+    let symbol = closed_loop_symbol(&finding.requirement);
+    let reached = reached.map_or(String::new(), |reached| reached_words(symbol, reached));
+    match finding.verdict {
+        Verdict::Violated => {
+            let hidden = match worst_at_design(finding) {
+                Some(design) if stable && design.margin_db >= 0.0 => {
+                    "; at the design frequencies alone it would have passed"
+                }
+                _ => "",
+            };
+            format!("{name} is violated by {size} dB {place}{reached}{hidden}")
+        }
+        Verdict::Met if worst.margin_db < 5e-4 => format!("{name} is met, just so, {place}"),
+        Verdict::Met => format!("{name} is met, with {size} dB to spare {place}"),
+        Verdict::NotProven => {
+            format!("{name} is not proven; worst margin found {} {place}", margin_words(worst.margin_db))
+        }
+    }
+}
+
+/// `: |L/(1+L)| reaches 11.89, limit 1.3`
+fn reached_words(symbol: &str, reached: &Reached) -> String {
+    let (magnitude, limit) = (significant(reached.magnitude, 4), display(reached.limit, &RATIO, 4));
+    match reached.side {
+        LimitSide::Only => format!(": {symbol} reaches {magnitude}, limit {limit}"),
+        LimitSide::Upper => format!(": {symbol} reaches {magnitude}, upper limit {limit}"),
+        LimitSide::Lower => format!(": {symbol} falls to {magnitude}, lower limit {limit}"),
+    }
+}
+
+/// The same as [`frequency_words`], with the frequency in Hz too.
+pub fn place_words(frequency_rad_per_s: f64) -> String {
+    let words = frequency_words(frequency_rad_per_s);
+    if !(frequency_rad_per_s > 0.0 && frequency_rad_per_s.is_finite()) {
+        return words;
+    }
+    format!("{words} ({} Hz)", significant(frequency_rad_per_s / std::f64::consts::TAU, 3))
+}
+
+/// What a customer wants to know of a kind.
+pub fn meaning(requirement: &Requirement) -> &'static str {
+    match requirement {
+        Requirement::RobustStability(_) => "no resonance of the closed loop above the limit",
+        Requirement::Sensitivity(_) => "disturbances of the output are suppressed",
+        Requirement::PlantInputDisturbance(_) => "disturbances at the input of the plant are suppressed",
+        Requirement::ControlEffort(_) => "the plant is not driven harder than allowed",
+        Requirement::LoadMotion(_) => "motion of the load disturbs the output no more than allowed",
+        Requirement::Tracking { .. } => "the output follows its reference within its limits",
+    }
+}
+
+/// Whether the family is stable, and how it is known.
+pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
+    let plant = names.text(&stability.plant);
+    let rate = |value: f64| significant(value, 3);
+    match (stability.verdict, stability.largest_real_part) {
+        (Verdict::Met, Some(real)) => {
+            format!("every plant is stable; the slowest closed-loop pole lies at {} 1/s", rate(real))
+        }
+        (Verdict::Met, None) => format!("every plant is stable: {}", stability.reason),
+        (Verdict::Violated, Some(real)) if real >= 0.0 => {
+            format!("unstable: a closed-loop pole lies at {} 1/s, with {plant}", rate(real))
+        }
+        (Verdict::Violated, _) => format!("unstable, with {plant}: {}", stability.reason),
+        (Verdict::NotProven, _) => format!("stability is not proven: {} ({plant})", stability.reason),
+    }
+}

@@ -1,0 +1,148 @@
+//! Monte Carlo campaigns: the nonlinear machine with drawn numbers, many times, through one scenario.
+//!
+//! ```text
+//! seed, index -> numbers -> machine, start -> driven in lanes -> row -> table, quantiles, bands, worst runs
+//! ```
+//!
+//! A run follows from seed and index alone. Rows are in the order of the runs and the same bytes for any number of threads, in
+//! lanes or one by one; a draw that is no machine is a row that says so, never drawn again.
+
+mod ledger;
+mod parquet;
+mod plan;
+mod prepared;
+mod queue;
+mod range;
+mod row;
+mod spread;
+mod statistics;
+mod supply;
+mod varied;
+mod workers;
+
+pub use ledger::{Ledger, Nowhere, Shard, Wanted};
+pub use plan::{Draw, Plan};
+pub use range::VariedRange;
+pub use row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS};
+pub use spread::{QUANTILES, Spread};
+pub use statistics::{Bands, Summary, Worst};
+pub use workers::Effort;
+
+pub use ledger::campaign;
+pub use row::meaningful;
+
+use crate::project::{self, Report};
+use crate::quantity;
+use crate::simulate::{self, SimulateError};
+
+/// Why a sound project has no campaign.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CampaignError {
+    /// It declares none.
+    #[error("the project has no [campaign]: name the numbers that vary in [campaign.parameters]")]
+    Absent,
+    /// It varies nothing.
+    #[error("[campaign] varies nothing: name numbers in [campaign.parameters]")]
+    Nothing,
+    /// There is nothing to drive.
+    #[error("there is nothing to drive: the project has no [[scenario]]")]
+    NoScenario,
+    /// The scenario it names is not there.
+    #[error("[campaign] names a scenario \"{name}\" that the project does not have")]
+    NoSuchScenario {
+        /// As named.
+        name: String,
+    },
+    /// A path that leads to no number.
+    #[error("[campaign] varies `{path}`, but this project has no such number")]
+    Unknown {
+        /// As written.
+        path: String,
+    },
+    /// A start that is an equilibrium has no numbers.
+    #[error("[campaign] varies `{path}`, but the scenario states no `start` and begins in equilibrium")]
+    NoStart {
+        /// As written.
+        path: String,
+    },
+    /// A start that was saved is what it is.
+    #[error("[campaign] varies `{path}`, but the scenario goes on from a saved state")]
+    SavedStart {
+        /// As written.
+        path: String,
+    },
+    /// A spread around nothing.
+    #[error(
+        "[campaign] spreads `{path}` around a number that is not stated or zero: give `minimum` and `maximum`"
+    )]
+    NotStated {
+        /// As written.
+        path: String,
+    },
+    /// A logarithm of a number that has none.
+    #[error("[campaign] draws the logarithm of `{path}`, whose least value is {minimum}")]
+    NoLogarithm {
+        /// As written.
+        path: String,
+        /// In SI.
+        minimum: f64,
+    },
+    /// A part of a campaign that is none.
+    #[error("--shard {text}: a part has the form 2/4, the second of four")]
+    NoShard {
+        /// As written.
+        text: String,
+    },
+    /// More runs than are held at once.
+    #[error("{runs} runs are more than {} at once: draw shards of them", ledger::MOST_RUNS)]
+    TooMany {
+        /// As asked for.
+        runs: u64,
+    },
+    /// What is kept there is of another campaign.
+    #[error(
+        "line {line} of the kept table is no row of this campaign: choose another folder, or remove the table"
+    )]
+    OtherCampaign {
+        /// Counted from 1.
+        line: usize,
+    },
+    /// A row that is kept there is not what was written.
+    #[error(
+        "line {line} of the kept table {fault}: remove it and all lines after it (head -n {} keeps those before), and the same command drives them again",
+        .line - 1
+    )]
+    Damaged {
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        fault: &'static str,
+    },
+    /// Another program has written the table anew.
+    #[error(
+        "line {line} of the kept table ends in CR LF, where LF was written: give it back its line ends, or remove the table"
+    )]
+    LineEnds {
+        /// Counted from 1.
+        line: usize,
+    },
+    /// More is kept there than is asked for.
+    #[error(
+        "the kept table has {kept} rows, more than the {asked} that are asked for: choose another folder"
+    )]
+    MoreKept {
+        /// Rows.
+        kept: u64,
+        /// Runs.
+        asked: u64,
+    },
+    /// Rows cannot be kept.
+    #[error("{0}")]
+    Ledger(String),
+    /// The machine or its controller cannot be simulated.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// A run, written as settings, is no project any more.
+    #[error("{0}")]
+    Settings(Box<Report>),
+}

@@ -1,0 +1,258 @@
+//! A campaign from its first row or from where it was interrupted, its rows kept as they come.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::plan::Plan;
+use super::row::{NoRow, Row};
+use super::workers::{Asked, News, run};
+use super::{CampaignError, Effort};
+use phea_dynamics::watch::{Progress, Watch};
+
+/// Rows that are held at once.
+pub(super) const MOST_RUNS: u64 = 1_000_000;
+
+/// What is asked of a campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// Runs of the whole campaign.
+    pub runs: u64,
+    /// Which part of it.
+    pub shard: Shard,
+    /// How it is computed.
+    pub effort: Effort,
+}
+
+/// A part of a campaign: whole parts, one after the other, are the whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    number: u64,
+    of: u64,
+}
+
+/// All of it.
+impl Default for Shard {
+    fn default() -> Shard {
+        Shard { number: 1, of: 1 }
+    }
+}
+
+impl Shard {
+    /// From a text such as `2/4`, the second of four.
+    ///
+    /// # Errors
+    /// [`CampaignError::NoShard`].
+    ///
+    /// # Example
+    /// ```
+    /// use phea_engineering::campaign::Shard;
+    /// let parts = ["1/3", "2/3", "3/3"].map(|text| Shard::read(text).map(|shard| shard.runs_of(10)));
+    /// assert_eq!(parts, [Ok(0..3), Ok(3..6), Ok(6..10)]);
+    /// assert!(Shard::read("4/3").is_err());
+    /// ```
+    pub fn read(text: &str) -> Result<Shard, CampaignError> {
+        let parts = text.split_once('/').map(|(number, of)| (number.trim().parse(), of.trim().parse()));
+        match parts {
+            Some((Ok(number), Ok(of))) if number >= 1 && number <= of && of <= MOST_RUNS => {
+                Ok(Shard { number, of })
+            }
+            _ => Err(CampaignError::NoShard { text: text.to_string() }),
+        }
+    }
+
+    /// Its runs, of so many.
+    pub fn runs_of(&self, runs: u64) -> Range<u64> {
+        let share = |number: u64| (u128::from(runs) * u128::from(number) / u128::from(self.of)) as u64;
+        share(self.number - 1)..share(self.number)
+    }
+
+    /// Whether it begins the table, with the line above the rows.
+    fn begins(&self) -> bool {
+        self.number == 1
+    }
+
+    /// Name of its table without an ending: `runs`, or `runs-2-of-4`.
+    pub fn name(&self) -> String {
+        format!("runs{}", self.part())
+    }
+
+    /// What tells its files from those of other parts: nothing, or `-2-of-4`, numbers of one length.
+    pub fn part(&self) -> String {
+        let Shard { number, of } = *self;
+        let digits = of.to_string().len();
+        if of == 1 { String::new() } else { format!("-{number:0digits$}-of-{of}") }
+    }
+}
+
+/// Where the rows of a campaign are kept while it runs: a text that grows at its end.
+pub trait Ledger {
+    /// All of it.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    fn kept(&mut self) -> Result<String, String>;
+
+    /// Keeps so many bytes from its beginning and drops the rest.
+    ///
+    /// # Errors
+    /// Why it cannot be cut.
+    fn cut(&mut self, bytes: usize) -> Result<(), String>;
+
+    /// Adds to its end.
+    ///
+    /// # Errors
+    /// Why it cannot be written.
+    fn append(&mut self, text: &str) -> Result<(), String>;
+
+    /// Rows that wait for one before them, as they were kept by [`Ledger::keep_ahead`]; whatever else is there is passed over.
+    ///
+    /// # Errors
+    /// Why they cannot be read.
+    fn ahead(&mut self) -> Result<String, String> {
+        Ok(String::new())
+    }
+
+    /// Keeps rows that wait for one before them, so that they are not driven again after an end in between. A ledger may keep none.
+    ///
+    /// # Errors
+    /// Why they cannot be written.
+    fn keep_ahead(&mut self, _text: &str) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Forgets them: all are in the table.
+    ///
+    /// # Errors
+    /// Why they cannot be removed.
+    fn forget_ahead(&mut self) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// A ledger that keeps nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Nowhere;
+
+impl Ledger for Nowhere {
+    fn kept(&mut self) -> Result<String, String> {
+        Ok(String::new())
+    }
+
+    fn cut(&mut self, _bytes: usize) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn append(&mut self, _text: &str) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// Drives what is missing of a campaign, and gives all rows there are: fewer than asked for where it was stopped.
+///
+/// # Errors
+/// [`CampaignError`] where the ledger holds another campaign or cannot be written.
+pub fn campaign(
+    plan: &Plan,
+    wanted: Wanted,
+    ledger: &mut dyn Ledger,
+    watch: Watch<'_>,
+) -> Result<Vec<Row>, CampaignError> {
+    let runs = wanted.shard.runs_of(wanted.runs);
+    let asked = runs.end - runs.start;
+    if asked > MOST_RUNS {
+        return Err(CampaignError::TooMany { runs: asked });
+    }
+    let mut rows = resumed(plan, wanted, ledger)?;
+    let missing = runs.start + rows.len() as u64..runs.end;
+    let known = ahead(plan, &missing, ledger)?;
+    let before = (rows.len() + known.len()) as u64;
+    let mut tell = |news: News| match news {
+        News::Done(done) => {
+            let share = (before + done) as f64 / (asked.max(1)) as f64;
+            Ok(watch(Progress { stage: "driving", share }))
+        }
+        News::Rows(more) => {
+            let text: String = more.iter().map(|one| plan.columns.line(&one.row)).collect();
+            ledger.append(&text).map_err(CampaignError::Ledger)?;
+            rows.extend(more.into_iter().map(|one| one.row));
+            Ok(true)
+        }
+        News::Ahead(more) => {
+            let text: String = more.iter().map(|row| plan.columns.line(row)).collect();
+            ledger.keep_ahead(&text).map_err(CampaignError::Ledger)?;
+            Ok(true)
+        }
+    };
+    run(plan, Asked { runs: missing, known, forces: false }, wanted.effort, &mut tell)?;
+    if rows.len() as u64 == asked {
+        ledger.forget_ahead().map_err(CampaignError::Ledger)?;
+    }
+    Ok(rows)
+}
+
+/// Rows of these runs that were done before others: a line that is not as it was written is driven again.
+fn ahead(
+    plan: &Plan,
+    missing: &Range<u64>,
+    ledger: &mut dyn Ledger,
+) -> Result<BTreeMap<u64, Row>, CampaignError> {
+    let text = ledger.ahead().map_err(CampaignError::Ledger)?;
+    let rows = text.lines().filter_map(|line| plan.columns.row(line).ok());
+    let ours = |row: &Row| missing.contains(&row.run) && row.values == plan.draw(row.run).values;
+    Ok(rows.filter(ours).map(|row| (row.run, row)).collect())
+}
+
+/// A kept row, as it must have been written for that run.
+fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, CampaignError> {
+    let row = plan.columns.row(text).map_err(|fault| match fault {
+        NoRow::Other => CampaignError::OtherCampaign { line },
+        NoRow::LineEnd => CampaignError::LineEnds { line },
+        NoRow::Changed => CampaignError::Damaged { line, fault: "is not as it was written" },
+    })?;
+    if row.run != run {
+        return Err(CampaignError::Damaged { line, fault: "is another run than belongs there" });
+    }
+    if row.values != plan.draw(run).values {
+        return Err(CampaignError::Damaged { line, fault: "has other numbers than its run draws" });
+    }
+    Ok(row)
+}
+
+/// The rows that are kept already; whatever was torn at the end is dropped, and an empty ledger is begun.
+fn resumed(plan: &Plan, wanted: Wanted, ledger: &mut dyn Ledger) -> Result<Vec<Row>, CampaignError> {
+    let runs = wanted.shard.runs_of(wanted.runs);
+    let text = ledger.kept().map_err(CampaignError::Ledger)?;
+    let (whole, torn) = text.split_at(text.rfind('\n').map_or(0, |last| last + 1));
+    let header = if wanted.shard.begins() { plan.columns.header() } else { String::new() };
+    let (mut rows, mut lines) = (Vec::new(), whole.split_terminator('\n').zip(1..));
+    if !header.is_empty()
+        && let Some((first, line)) = lines.next()
+        && first != header.trim_end()
+    {
+        return Err(match first.strip_suffix('\r') == Some(header.trim_end()) {
+            true => CampaignError::LineEnds { line },
+            false => CampaignError::OtherCampaign { line },
+        });
+    }
+    for (text, line) in lines {
+        rows.push(kept_row(plan, runs.start + rows.len() as u64, text, line)?);
+    }
+    let kept = rows.len() as u64;
+    let beginning = match (whole.is_empty(), header.is_empty()) {
+        (true, false) => header.clone(),
+        _ => plan.columns.beginning(runs.start + kept),
+    };
+    if !(torn.starts_with(&beginning) || beginning.starts_with(torn)) {
+        return Err(CampaignError::OtherCampaign { line: whole.lines().count() + 1 });
+    }
+    if kept > runs.end - runs.start {
+        return Err(CampaignError::MoreKept { kept, asked: runs.end - runs.start });
+    }
+    if !torn.is_empty() {
+        ledger.cut(whole.len()).map_err(CampaignError::Ledger)?;
+    }
+    if whole.is_empty() && !header.is_empty() {
+        ledger.append(&header).map_err(CampaignError::Ledger)?;
+    }
+    Ok(rows)
+}

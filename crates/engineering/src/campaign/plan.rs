@@ -1,0 +1,318 @@
+//! What all runs of a campaign share.
+
+use phea_dynamics::random;
+use phea_dynamics::scalar::Dependence;
+use phea_dynamics::simulation::Plant;
+use phea_machine::Control;
+use sha2::{Digest, Sha256};
+
+use super::CampaignError;
+use super::range::VariedRange;
+use super::row::Columns;
+use super::varied::ranges;
+use crate::project::{Loaded, MotionShape, Project, Scenario, print};
+use crate::setup::Setup;
+use crate::simulate::{Bench, Driven, SimulateError, Window, driven};
+use crate::source::Source;
+
+/// Most times at which the bands of the force are given over the whole scenario, and as many more around what begins its windows.
+const BAND_TIMES: usize = 125;
+/// How long after what begins a window the force is looked at more often, s.
+const EVENT_S: f64 = 0.5;
+/// Letters of the mark by which rows of a campaign are known.
+const MARK_LENGTH: usize = 16;
+/// Of seeds of the noise that a sampled controller sees, which are drawn too.
+const SEEDS: f64 = 4e9;
+
+/// A Monte Carlo campaign of the nonlinear machine: a scenario of a project, and what of it is drawn for each run.
+///
+/// # Example
+/// Every run follows from seed and index.
+/// ```
+/// use phea_engineering::campaign::Plan;
+/// use phea_project;
+/// use phea_project::source::Memory;
+/// let text = include_str!("../../../../examples/benchmark/campaign.toml");
+/// let source = Memory::default().with("campaign.toml", text);
+/// let loaded = project::read(&source, "campaign.toml", &[], &[])?;
+/// let plan = Plan::new(&source, &loaded, 1)?;
+/// let draw = plan.draw(7);
+/// assert_eq!(draw, Plan::new(&source, &loaded, 1)?.draw(7));
+/// assert!(draw.values != plan.draw(8).values);
+/// for (range, value) in plan.ranges().iter().zip(&draw.values) {
+///     assert!((range.minimum..range.maximum).contains(value));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Plan {
+    pub(super) project: Project,
+    /// The one that is driven.
+    pub(super) scenario: Scenario,
+    /// Its place in the project.
+    place: usize,
+    /// Machine and controller as declared.
+    pub(super) bench: Bench,
+    pub(super) driven: Driven,
+    pub(super) columns: Columns,
+    /// Of every look, s.
+    pub times_s: Vec<f64>,
+    /// At every look, N; at a step, as it is from then on. Zero in an open loop.
+    pub reference_n: Vec<f64>,
+    /// Looks at the times of the bands.
+    pub(super) band_looks: Vec<usize>,
+    /// Indices of the states that force and command depend on.
+    pub(super) look: Vec<usize>,
+    ranges: Vec<VariedRange>,
+    seed: u32,
+}
+
+/// The drawn numbers of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draw {
+    /// Index of the run.
+    pub run: u64,
+    /// In SI, in the order of [`Plan::ranges`].
+    pub values: Vec<f64>,
+    /// Of the noise that a sampled controller sees, where there is noise.
+    pub(super) noise_seed: Option<u32>,
+}
+
+impl Plan {
+    /// Rows as a Parquet table.
+    ///
+    /// # Errors
+    /// What the writer of the format says.
+    pub fn parquet(&self, rows: &[super::Row]) -> Result<Vec<u8>, String> {
+        super::parquet::table(&self.columns, rows)
+    }
+
+    /// The campaign that a project declares, with these random numbers.
+    ///
+    /// # Errors
+    /// [`CampaignError`] if it declares none, or nothing that can be driven.
+    pub fn new(source: &dyn Source, loaded: &Loaded, seed: u32) -> Result<Plan, CampaignError> {
+        let project = loaded.project.clone();
+        let campaign = project.campaign.as_ref().ok_or(CampaignError::Absent)?;
+        let place = match &campaign.scenario {
+            None => 0,
+            Some(name) => project
+                .scenarios
+                .iter()
+                .position(|scenario| scenario.name == *name)
+                .ok_or_else(|| CampaignError::NoSuchScenario { name: name.clone() })?,
+        };
+        let scenario = project.scenarios.get(place).ok_or(CampaignError::NoScenario)?.clone();
+        let ranges = ranges(&project, campaign, &scenario)?;
+        let bench = Bench::of_scenario(&Setup::new(&project).map_err(SimulateError::from)?, &scenario)?;
+        let driven = driven(source, &project, &bench, &scenario)?;
+        let looks = (scenario.duration / scenario.output_step * (1.0 + 4.0 * f64::EPSILON)) as usize + 1;
+        let times_s: Vec<f64> = (0..looks).map(|look| look as f64 * scenario.output_step).collect();
+        let reference_n = times_s.iter().map(|time_s| driven.reference.value(*time_s)).collect();
+        let windows = driven.windows.clone();
+        let band_looks = band_looks(&times_s, &windows);
+        let columns = Columns {
+            mark: mark(source, &project, &scenario, seed),
+            paths: ranges.iter().map(|range| range.path.clone()).collect(),
+            times_s: band_looks
+                .iter()
+                .filter_map(|look| times_s.get(*look))
+                .map(|time_s| plain(*time_s))
+                .collect(),
+            windows,
+            open_loop: scenario.is_open_loop(),
+        };
+        let look = look(&bench.control);
+        Ok(Plan {
+            project,
+            scenario,
+            place,
+            bench,
+            driven,
+            columns,
+            times_s,
+            reference_n,
+            band_looks,
+            look,
+            ranges,
+            seed,
+        })
+    }
+
+    /// What is varied, in file order.
+    pub fn ranges(&self) -> &[VariedRange] {
+        &self.ranges
+    }
+
+    /// Name of the scenario.
+    pub fn scenario(&self) -> &str {
+        &self.scenario.name
+    }
+
+    /// What is looked at by itself in each run.
+    pub fn windows(&self) -> &[Window] {
+        &self.columns.windows
+    }
+
+    /// Whether a stated command drives the valve, and no controller.
+    pub fn is_open_loop(&self) -> bool {
+        self.columns.open_loop
+    }
+
+    /// Where the random numbers come from.
+    pub fn seed(&self) -> u32 {
+        self.seed
+    }
+
+    /// Bounds of an uncertain parameter of the linear model, where the project states them.
+    pub fn bounds(&self, parameter: &str) -> Option<[f64; 2]> {
+        let uncertain = self.project.uncertainty.iter().find(|uncertain| uncertain.name == parameter)?;
+        Some([uncertain.minimum, uncertain.maximum])
+    }
+
+    /// What is drawn for a run.
+    pub fn draw(&self, run: u64) -> Draw {
+        let mut stream = random::stream(u64::from(self.seed), run);
+        let values = self.ranges.iter().map(|range| range.draw(&mut stream)).collect();
+        let noisy = match &self.bench.control {
+            Control::Sampled(sampled) => sampled.noise > 0.0,
+            Control::Continuous(_) | Control::Open(_) => false,
+        };
+        let noise_seed = noisy.then(|| (random::share(&mut stream) * SEEDS) as u32);
+        Draw { run, values, noise_seed }
+    }
+
+    /// A run as `path=value` settings of the project: `simulate` with them drives the same machine.
+    pub fn settings(&self, draw: &Draw) -> Vec<String> {
+        let drawn = self.drawn(draw);
+        let mut settings: Vec<String> = Vec::new();
+        for (range, value) in self.ranges.iter().zip(&draw.values) {
+            let path = match (range.path.strip_prefix("start."), range.path.rsplit_once('.')) {
+                (Some(state), _) => format!("scenario.{}.start.{state}", self.place),
+                // a table that may be written as an array: both are replaced by an array
+                (None, Some((table, _))) if EDGES.contains(&table) => {
+                    let all = ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"].map(|edge| {
+                        drawn.as_ref().and_then(|project| project.number(&format!("{table}.{edge}")))
+                    });
+                    let texts =
+                        all.map(|value| value.map_or("nan".to_string(), |value| format!("{value:e}")));
+                    let setting = format!("{table}=[{}]", texts.join(", "));
+                    if !settings.contains(&setting) {
+                        settings.push(setting);
+                    }
+                    continue;
+                }
+                (None, _) => range.path.clone(),
+            };
+            settings.push(format!("{path}={value:e}"));
+        }
+        if let Some(seed) = draw.noise_seed {
+            settings.push(format!("simulation.seed={seed}"));
+        }
+        settings.extend(self.feed_forward());
+        settings
+    }
+
+    /// The gain of a feed-forward that the project leaves to be derived: the drawn machine must not change the controller.
+    fn feed_forward(&self) -> Option<String> {
+        if self.is_open_loop() {
+            return None;
+        }
+        let declared = self.project.controller.as_ref()?.load_velocity_feed_forward.as_ref()?;
+        let linear = &self.bench.rig.linear;
+        let gain = linear.useful_area / linear.flow_gain;
+        declared.gain.is_none().then(|| format!("controller.load_velocity_feed_forward.gain={gain:e}"))
+    }
+
+    /// The project with the drawn numbers in it; the start's are in the scenario.
+    pub(super) fn drawn(&self, draw: &Draw) -> Option<Project> {
+        let numbers: Vec<(&str, f64)> = self
+            .ranges
+            .iter()
+            .zip(&draw.values)
+            .filter(|(range, _)| !range.path.starts_with("start."))
+            .map(|(range, value)| (range.path.as_str(), *value))
+            .collect();
+        self.project.with_numbers(&numbers)
+    }
+
+    /// The scenario with the drawn start in it.
+    pub(super) fn drawn_scenario(&self, draw: &Draw) -> Scenario {
+        let mut scenario = self.scenario.clone();
+        for (range, value) in self.ranges.iter().zip(&draw.values) {
+            if let (Some(state), Some(start)) = (range.path.strip_prefix("start."), &mut scenario.start) {
+                start.set_number(state, *value);
+            }
+        }
+        scenario
+    }
+}
+
+/// Evenly over the scenario, and more often where a window has begun.
+fn band_looks(times_s: &[f64], windows: &[Window]) -> Vec<usize> {
+    let mut looks: Vec<usize> = (0..times_s.len()).step_by(times_s.len().div_ceil(BAND_TIMES)).collect();
+    let each = (BAND_TIMES / windows.len().max(1)).max(1);
+    for window in windows {
+        let from = times_s.partition_point(|time_s| *time_s < window.start_s);
+        let until = times_s.partition_point(|time_s| *time_s < window.end_s.min(window.start_s + EVENT_S));
+        looks.extend((from..until).step_by((until.max(from + 1) - from).div_ceil(each)));
+    }
+    looks.push(times_s.len().saturating_sub(1));
+    looks.sort_unstable();
+    looks.dedup();
+    looks
+}
+
+/// A time without what rounding left of its step: twelve digits are its own.
+fn plain(time_s: f64) -> f64 {
+    format!("{time_s:.11e}").parse().unwrap_or(time_s)
+}
+
+/// Tables of the project that may be written as arrays.
+const EDGES: [&str; 2] = ["valve.flow_coefficients", "valve.leakage_coefficients"];
+
+/// What everything follows from: project with settings and catalogue in it, the files it names, seed, and version.
+fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) -> String {
+    let mut hash = Sha256::new();
+    hash.update(print(project));
+    hash.update(env!("CARGO_PKG_VERSION"));
+    hash.update(seed.to_le_bytes());
+    let motion = scenario.load_motion.iter().filter_map(|motion| match &motion.shape {
+        MotionShape::File { file } => Some(file),
+        _ => None,
+    });
+    let signals = scenario.reference.iter().chain(&scenario.command).chain(&scenario.external_force);
+    let signals = signals.filter_map(|signal| signal.file.as_ref());
+    let signals = signals.chain(scenario.start.iter().filter_map(|start| start.file.as_ref()));
+    for bytes in motion.chain(signals).filter_map(|name| source.read(&project.path_of(name)).ok()) {
+        hash.update(bytes);
+    }
+    let text: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    text.chars().take(MARK_LENGTH).collect()
+}
+
+/// Indices of the states that force and command depend on: all that has to be looked at.
+fn look(control: &Control) -> Vec<usize> {
+    let variables =
+        |count: usize, from: usize| -> Vec<Dependence> { (from..from + count).map(Dependence::on).collect() };
+    let [states, inputs] = control.size();
+    let (state, input) = (variables(states, 0), variables(inputs, states));
+    let needed = match control {
+        Control::Continuous(closed) => {
+            let force = closed.plant().plant().measurement(&state, &input[1..]);
+            [force, closed.signals::<f64, Dependence>(&state, &input).command]
+        }
+        Control::Sampled(sampled) => {
+            let force = sampled.held.plant().plant().measurement(&state, &input[2..]);
+            [force, Dependence::from(0.0)]
+        }
+        Control::Open(held) => {
+            let force = held.plant().plant().measurement(&state, &input[2..]);
+            [force, Dependence::from(0.0)]
+        }
+    };
+    (0..states).filter(|index| includes(&needed, *index)).collect()
+}
+
+fn includes(needed: &[Dependence], index: usize) -> bool {
+    needed.iter().any(|one| one.includes(index))
+}

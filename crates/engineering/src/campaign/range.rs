@@ -1,0 +1,150 @@
+//! Where the varied numbers lie, and what is drawn from there.
+
+use phea_dynamics::{portable, random};
+
+use super::project::{Distribution, Key};
+use super::quantity::{self, DisplayUnit};
+
+/// A varied number: between two ends, as distributed.
+///
+/// ```text
+/// uniform         a + s (b - a)                                            s a share in [0, 1)
+/// normal          (a + b)/2 + n (b - a)/4                                  n standard normal: a and b two deviations away
+/// log-uniform     exp(ln a + s (ln b - ln a))
+/// triangular      a + (b - a) sqrt(s/2) below the middle, b - (b - a) sqrt((1 - s)/2) above
+/// ```
+#[derive(Clone, Debug)]
+pub struct VariedRange {
+    /// Of the project, or `start.` and a state.
+    pub path: String,
+    /// How it is distributed.
+    pub distribution: Distribution,
+    /// In SI.
+    pub minimum: f64,
+    /// In SI.
+    pub maximum: f64,
+    /// What the project says of such a number.
+    pub(super) key: Key,
+}
+
+impl VariedRange {
+    /// The next number from a stream of random ones.
+    pub(super) fn draw(&self, stream: &mut u64) -> f64 {
+        let (low, high) = (self.minimum, self.maximum);
+        let width = high - low;
+        match self.distribution {
+            Distribution::Uniform => low + width * random::share(stream),
+            Distribution::Normal => 0.5 * (low + high) + 0.25 * width * random::normal(stream),
+            Distribution::LogUniform => {
+                let (from, to) = (portable::ln(low), portable::ln(high));
+                portable::exp(from + random::share(stream) * (to - from))
+            }
+            Distribution::Triangular => match random::share(stream) {
+                share if share < 0.5 => low + width * (0.5 * share).sqrt(),
+                share => high - width * (0.5 * (1.0 - share)).sqrt(),
+            },
+        }
+    }
+
+    /// Why the project would not accept this number.
+    pub(super) fn problem(&self, value: f64) -> Option<String> {
+        let Key { range, dimension, .. } = self.key;
+        if range.contains(value) {
+            return None;
+        }
+        let show = |value: f64| quantity::display(value, dimension, 6);
+        let low = if range.above_minimum { "above" } else { "at least" };
+        let high = if range.below_maximum { "below" } else { "at most" };
+        let ends = [
+            (range.minimum > f64::MIN).then(|| format!("{low} {}", show(range.minimum))),
+            (range.maximum < f64::MAX).then(|| format!("{high} {}", show(range.maximum))),
+        ];
+        let ends: Vec<String> = ends.into_iter().flatten().collect();
+        Some(format!("{} = {} is outside its range ({})", self.path, show(value), ends.join(" and ")))
+    }
+
+    /// The unit in which people expect numbers of this range.
+    pub fn unit(&self) -> DisplayUnit {
+        quantity::fitting(self.minimum.abs().max(self.maximum.abs()), self.key.dimension)
+    }
+
+    /// In words, as in a project file.
+    pub fn distribution_word(&self) -> &'static str {
+        match self.distribution {
+            Distribution::Uniform => "uniform",
+            Distribution::Normal => "normal",
+            Distribution::LogUniform => "log_uniform",
+            Distribution::Triangular => "triangular",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::project::Range;
+    use super::super::quantity::{Dimension, PRESSURE, RATIO, VOLUME};
+    use super::*;
+
+    fn key(dimension: &'static Dimension, range: Range) -> Key {
+        Key { name: "a", dimension, range, default: None, doc: "" }
+    }
+
+    fn range(distribution: Distribution, minimum: f64, maximum: f64) -> VariedRange {
+        VariedRange { path: "a".to_string(), distribution, minimum, maximum, key: key(&RATIO, Range::ANY) }
+    }
+
+    /// Mean and variance of each distribution over a hundred thousand draws, within five standard errors.
+    #[test]
+    fn draws_have_the_moments_of_their_distribution() {
+        // ORIGIN: analytic, width 2: 2^2/12, (2/4)^2, 2^2/24; of ln a in [0, ln 100]: (ln 100)^2/12
+        let logarithm = portable::ln(100.0);
+        let cases = [
+            (Distribution::Uniform, [3.0, 5.0], 4.0, 4.0 / 12.0),
+            (Distribution::Normal, [3.0, 5.0], 4.0, 0.25),
+            (Distribution::Triangular, [3.0, 5.0], 4.0, 4.0 / 24.0),
+            (Distribution::LogUniform, [1.0, 100.0], 0.5 * logarithm, logarithm * logarithm / 12.0),
+        ];
+        for (distribution, [low, high], mean, variance) in cases {
+            let range = range(distribution, low, high);
+            let count = 100_000_u32;
+            let values: Vec<f64> = (0..count)
+                .map(|index| range.draw(&mut random::stream(3, u64::from(index))))
+                .map(
+                    |value| {
+                        if distribution == Distribution::LogUniform { portable::ln(value) } else { value }
+                    },
+                )
+                .collect();
+            let found = values.iter().sum::<f64>() / f64::from(count);
+            let spread =
+                values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / f64::from(count);
+            let error = 5.0 / f64::from(count).sqrt();
+            assert!((found - mean).abs() < error * variance.sqrt(), "{distribution:?}: mean {found}");
+            assert!((spread / variance - 1.0).abs() < error * 2.0_f64.sqrt(), "{distribution:?}: {spread}");
+        }
+    }
+
+    #[test]
+    fn what_the_project_would_not_accept_is_a_problem() {
+        let positive = Range { minimum: 0.0, above_minimum: true, ..Range::ANY };
+        let mass = VariedRange { key: key(&RATIO, positive), ..range(Distribution::Normal, -1.0, 3.0) };
+        assert_eq!(mass.problem(0.5), None);
+        assert_eq!(mass.problem(-0.5), Some("a = -0.5 is outside its range (above 0)".to_string()));
+        let between = Range { minimum: -1e5, maximum: 1e8, below_maximum: true, ..Range::ANY };
+        let pressure = VariedRange { key: key(&PRESSURE, between), ..range(Distribution::Normal, -1e6, 3e6) };
+        let expected = "a = -46.5 bar is outside its range (at least -1 bar and below 1000 bar)";
+        assert_eq!(pressure.problem(-4.65e6), Some(expected.to_string()));
+    }
+
+    #[test]
+    fn a_range_is_shown_in_the_unit_of_its_larger_end() {
+        let of = |dimension, minimum, maximum| {
+            let key = key(dimension, Range::ANY);
+            let unit = VariedRange { key, ..range(Distribution::Uniform, minimum, maximum) }.unit();
+            (unit.symbol, unit.number(maximum, 3))
+        };
+        assert_eq!(of(&PRESSURE, 0.0, 8.4e6), ("bar", "84.0".to_string()));
+        assert_eq!(of(&VOLUME, 1.52e-4, 2.28e-4), ("mL", "228".to_string()));
+        assert_eq!(of(&RATIO, 0.1, 0.2), ("1", "0.200".to_string()));
+    }
+}

@@ -1,0 +1,424 @@
+//! One run as a line of a table: what was drawn, how it ended, what is read off it.
+
+use std::fmt::Write as _;
+
+use phea_hydraulics::machine::INDICATORS;
+use sha2::{Digest, Sha256};
+
+use super::simulate::{COMMAND_LIMIT, Cause, Metrics, Window};
+
+/// Names of the metrics, in the order of a row.
+pub const METRIC_NAMES: [&str; 9] = [
+    "overshoot_percent",
+    "rise_time_s",
+    "settling_time_s",
+    "disturbance_peak_n",
+    "steady_state_error_n",
+    "control_peak_v",
+    "control_rms_v",
+    "tracking_error_peak_n",
+    "force_peak_n",
+];
+
+/// Parameters of the linear model that a drawn machine visits: K_H, K_qU, K_c.
+pub const LUMP_NAMES: [&str; 3] = ["hydraulic_stiffness", "flow_gain", "flow_pressure_coefficient"];
+
+const LUMP_COLUMNS: [&str; 3] =
+    ["hydraulic_stiffness_n_per_m", "flow_gain_m3_per_s_v", "flow_pressure_coefficient_m3_per_s_pa"];
+
+/// How a run ended, in the words of a row.
+pub const STATUS_WORDS: [&str; 6] =
+    ["completed", "refused", "step_too_small", "not_finite", "too_many_steps", "unresolved_oscillation"];
+
+const REFUSED: &str = "refused";
+
+/// What is measured against the force that is asked for.
+const OF_A_REFERENCE: [&str; 6] = [
+    "overshoot_percent",
+    "rise_time_s",
+    "settling_time_s",
+    "disturbance_peak_n",
+    "steady_state_error_n",
+    "tracking_error_peak_n",
+];
+
+/// Hexadecimal digits of the sum that ends a row.
+const CHECK_LENGTH: usize = 8;
+
+/// Why a line is no row that was written here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NoRow {
+    /// Of another campaign, or of none.
+    Other,
+    /// It ends in CR LF.
+    LineEnd,
+    /// It does not have its own sum.
+    Changed,
+}
+
+/// One run of a campaign.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Its index: with the seed it gives every drawn number.
+    pub run: u64,
+    /// What was drawn, in SI, in the order of the campaign.
+    pub values: Vec<f64>,
+    /// [`LUMP_NAMES`] of the machine that was drawn, in SI, where it has a linear model.
+    pub lumps: Option<[f64; 3]>,
+    /// What came of it.
+    pub outcome: RowOutcome,
+}
+
+/// What came of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RowOutcome {
+    /// There is no such machine, or it cannot start so.
+    Refused(String),
+    /// It was driven.
+    Driven(Ran),
+}
+
+/// What is read off a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ran {
+    /// One of [`STATUS_WORDS`].
+    pub status: &'static str,
+    /// When it ended before its time, s.
+    pub ended_s: Option<f64>,
+    /// Accepted steps.
+    pub steps: u64,
+    /// What began on the way, each kind once: `cavitation_a`, `command_limit` and so on.
+    pub occurrences: Vec<&'static str>,
+    /// [`METRIC_NAMES`] of each window; absent where there is no such number.
+    pub metrics: Vec<[Option<f64>; METRIC_NAMES.len()]>,
+    /// Force at the times of the bands, N; as far as it went.
+    pub force_n: Vec<f32>,
+}
+
+impl Row {
+    /// How it ended, in one of [`STATUS_WORDS`].
+    pub fn status(&self) -> &'static str {
+        match &self.outcome {
+            RowOutcome::Refused(_) => REFUSED,
+            RowOutcome::Driven(ran) => ran.status,
+        }
+    }
+
+    /// What was read off it, if it was driven.
+    pub fn ran(&self) -> Option<&Ran> {
+        match &self.outcome {
+            RowOutcome::Refused(_) => None,
+            RowOutcome::Driven(ran) => Some(ran),
+        }
+    }
+}
+
+/// The metrics of a window, absent where there is none.
+pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; METRIC_NAMES.len()] {
+    [
+        metrics.overshoot_percent.ok(),
+        metrics.rise_time_s.ok(),
+        metrics.settling_time_s.ok(),
+        metrics.disturbance_peak_n.ok(),
+        metrics.steady_state_error_n.ok(),
+        metrics.control_peak_v.ok(),
+        metrics.control_rms_v.ok(),
+        metrics.tracking_error_peak_n.ok(),
+        metrics.force_peak_n.ok(),
+    ]
+}
+
+/// Which of [`METRIC_NAMES`] a window can have; in an open loop no force is asked for.
+pub fn meaningful(window: &Window, open_loop: bool) -> impl Iterator<Item = usize> + use<> {
+    let left_out: &[&str] = match window.cause {
+        Cause::ReferenceStep { .. } => &["disturbance_peak_n", "tracking_error_peak_n", "force_peak_n"],
+        Cause::ReferenceMotion { .. } => {
+            &["overshoot_percent", "rise_time_s", "settling_time_s", "disturbance_peak_n", "force_peak_n"]
+        }
+        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => &OF_A_REFERENCE,
+        Cause::LoadMotion | Cause::ExternalForce if open_loop => &OF_A_REFERENCE,
+        Cause::LoadMotion | Cause::ExternalForce => {
+            &["overshoot_percent", "rise_time_s", "tracking_error_peak_n", "force_peak_n"]
+        }
+    };
+    (0..METRIC_NAMES.len()).filter(move |metric| !left_out.contains(&METRIC_NAMES[*metric]))
+}
+
+/// The columns of a campaign's table.
+#[derive(Clone, Debug)]
+pub(super) struct Columns {
+    /// What tells these rows from those of any other campaign.
+    pub(super) mark: String,
+    pub(super) paths: Vec<String>,
+    pub(super) windows: Vec<Window>,
+    /// Whether a stated command drives the valve.
+    pub(super) open_loop: bool,
+    /// Of the bands, s.
+    pub(super) times_s: Vec<f64>,
+}
+
+impl Columns {
+    /// The line above the rows.
+    pub(super) fn header(&self) -> String {
+        let mut text = "run,campaign,status,reason,ended_s,steps,occurrences".to_string();
+        let paths = self.paths.iter().map(String::as_str);
+        for name in paths.chain(LUMP_COLUMNS) {
+            let _ = write!(text, ",{name}");
+        }
+        for (number, window) in self.windows.iter().enumerate() {
+            for metric in meaningful(window, self.open_loop) {
+                let _ = write!(text, ",event{}_{}", number + 1, METRIC_NAMES[metric]);
+            }
+        }
+        for time_s in &self.times_s {
+            let _ = write!(text, ",force_n_at_{time_s}_s");
+        }
+        text.push_str(",check\n");
+        text
+    }
+
+    /// How the line of a run begins.
+    pub(super) fn beginning(&self, run: u64) -> String {
+        format!("{run},{},", self.mark)
+    }
+
+    /// A row as a line.
+    pub(super) fn line(&self, row: &Row) -> String {
+        let text = self.text(row);
+        format!("{text},{}\n", check(&text))
+    }
+
+    /// What ends the line of a row.
+    pub(super) fn check(&self, row: &Row) -> String {
+        check(&self.text(row))
+    }
+
+    /// A row without what ends it.
+    fn text(&self, row: &Row) -> String {
+        let mut text = self.beginning(row.run);
+        let _ = write!(text, "{},", row.status());
+        let ran = row.ran();
+        if let RowOutcome::Refused(reason) = &row.outcome {
+            let _ = write!(text, "\"{}\"", reason.replace('"', "\"\"").replace(['\n', '\r'], " "));
+        }
+        cell(&mut text, ran.and_then(|ran| ran.ended_s));
+        text.push(',');
+        if let Some(ran) = ran {
+            let _ = write!(text, "{}", ran.steps);
+        }
+        text.push(',');
+        text.push_str(&ran.map(|ran| ran.occurrences.join(";")).unwrap_or_default());
+        row.values.iter().for_each(|value| cell(&mut text, Some(*value)));
+        for lump in 0..LUMP_NAMES.len() {
+            cell(&mut text, row.lumps.map(|lumps| lumps[lump]));
+        }
+        for (number, window) in self.windows.iter().enumerate() {
+            let metrics = ran.and_then(|ran| ran.metrics.get(number));
+            for metric in meaningful(window, self.open_loop) {
+                cell(&mut text, metrics.and_then(|metrics| metrics[metric]));
+            }
+        }
+        for index in 0..self.times_s.len() {
+            text.push(',');
+            if let Some(force) = ran.and_then(|ran| ran.force_n.get(index)) {
+                let _ = write!(text, "{force}");
+            }
+        }
+        text
+    }
+
+    /// The row that a line holds.
+    ///
+    /// # Errors
+    /// Why it holds none.
+    pub(super) fn row(&self, line: &str) -> Result<Row, NoRow> {
+        let (text, sum) = line.rsplit_once(',').ok_or(NoRow::Other)?;
+        if text.split(',').nth(1) != Some(self.mark.as_str()) {
+            return Err(NoRow::Other);
+        }
+        if sum.ends_with('\r') {
+            return Err(NoRow::LineEnd);
+        }
+        if sum != check(text) {
+            return Err(NoRow::Changed);
+        }
+        self.read(text).ok_or(NoRow::Other)
+    }
+
+    fn read(&self, text: &str) -> Option<Row> {
+        let cells = cells(text);
+        let mut cells = cells.iter().map(String::as_str);
+        let run = cells.next()?.parse().ok()?;
+        let _mark = cells.next()?;
+        let status = word(&STATUS_WORDS, cells.next()?)?;
+        let reason = cells.next()?.to_string();
+        let ended_s = number(cells.next()?)?;
+        let steps = cells.next()?;
+        let happened = cells.next()?;
+        let values = self.paths.iter().map(|_| number(cells.next()?)?).collect::<Option<Vec<f64>>>()?;
+        let lumps = [number(cells.next()?)?, number(cells.next()?)?, number(cells.next()?)?];
+        let lumps = match lumps {
+            [Some(one), Some(other), Some(third)] => Some([one, other, third]),
+            _ => None,
+        };
+        let mut metrics = vec![[None; METRIC_NAMES.len()]; self.windows.len()];
+        for (window, numbers) in self.windows.iter().zip(&mut metrics) {
+            for metric in meaningful(window, self.open_loop) {
+                numbers[metric] = number(cells.next()?)?;
+            }
+        }
+        let forces = self.times_s.iter().map(|_| cells.next()).collect::<Option<Vec<&str>>>()?;
+        if cells.next().is_some() {
+            return None;
+        }
+        if status == REFUSED {
+            return Some(Row { run, values, lumps, outcome: RowOutcome::Refused(reason) });
+        }
+        let known = || INDICATORS.iter().chain(std::iter::once(&COMMAND_LIMIT));
+        let kinds = happened.split(';').filter(|kind| !kind.is_empty());
+        let occurrences = kinds.map(|kind| known().find(|known| **known == kind).copied());
+        let went = forces.iter().take_while(|force| !force.is_empty());
+        let outcome = RowOutcome::Driven(Ran {
+            status,
+            ended_s,
+            steps: steps.parse().ok()?,
+            occurrences: occurrences.collect::<Option<Vec<_>>>()?,
+            metrics,
+            force_n: went.map(|force| force.parse().ok()).collect::<Option<Vec<f32>>>()?,
+        });
+        Some(Row { run, values, lumps, outcome })
+    }
+}
+
+/// The sum of a row: the first digits of SHA-256 of its text.
+fn check(text: &str) -> String {
+    let sum: String = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect();
+    sum.chars().take(CHECK_LENGTH).collect()
+}
+
+fn word(words: &[&'static str], text: &str) -> Option<&'static str> {
+    words.iter().copied().find(|word| *word == text)
+}
+
+/// An empty cell is no number; another must be one.
+fn number(cell: &str) -> Option<Option<f64>> {
+    if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) }
+}
+
+/// The shortest text that reads back as the same number.
+fn cell(text: &mut String, value: Option<f64>) {
+    text.push(',');
+    if let Some(value) = value {
+        let size = value.abs();
+        let _ = match size == 0.0 || (1e-4..1e15).contains(&size) {
+            true => write!(text, "{value}"),
+            false => write!(text, "{value:e}"),
+        };
+    }
+}
+
+/// At the commas that are not inside quotes; a doubled quote inside is one.
+fn cells(line: &str) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let mut inside = false;
+    let mut letters = line.chars().peekable();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '"' if inside && letters.next_if_eq(&'"').is_some() => push(&mut cells, '"'),
+            '"' => inside = !inside,
+            ',' if !inside => cells.push(String::new()),
+            letter => push(&mut cells, letter),
+        }
+    }
+    cells
+}
+
+fn push(cells: &mut [String], letter: char) {
+    if let Some(last) = cells.last_mut() {
+        last.push(letter);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns() -> Columns {
+        let step = Cause::ReferenceStep { from_n: 0.0, to_n: 4e3 };
+        Columns {
+            mark: "abc".to_string(),
+            paths: vec!["supply.pressure".to_string(), "start.position".to_string()],
+            windows: vec![
+                Window { cause: step, start_s: 1.0, end_s: 2.0 },
+                Window { cause: Cause::LoadMotion, start_s: 2.0, end_s: 3.0 },
+            ],
+            open_loop: false,
+            times_s: vec![0.0, 1.5, 3.0],
+        }
+    }
+
+    fn driven() -> Row {
+        let ran = Ran {
+            status: "too_many_steps",
+            ended_s: Some(2.5),
+            steps: 17,
+            occurrences: vec![INDICATORS[0], COMMAND_LIMIT],
+            metrics: vec![
+                [Some(1.0 / 3.0), Some(0.15), None, None, Some(-2e-7), Some(3.0), Some(0.0), None, None],
+                [None, None, Some(0.25), Some(2015.0), None, Some(-0.0), Some(6e22), None, None],
+            ],
+            force_n: vec![0.1, -4e-9],
+        };
+        let lumps = Some([2.2e6, 5.6e-5, 6.4e-13]);
+        Row { run: 12, values: vec![7e6, 0.25], lumps, outcome: RowOutcome::Driven(ran) }
+    }
+
+    #[test]
+    fn lines_read_back_as_the_rows_they_are_of() {
+        let columns = columns();
+        let reason = "a \"bad\" one, twice".to_string();
+        let outcome = RowOutcome::Refused(reason);
+        let refused = Row { run: 13, values: vec![-7e6, 0.1], lumps: None, outcome };
+        for row in [driven(), refused] {
+            let line = columns.line(&row);
+            assert_eq!(line.matches('\n').count(), 1);
+            assert_eq!(columns.row(line.trim_end()), Ok(row));
+        }
+    }
+
+    #[test]
+    fn a_line_has_a_cell_for_each_name() {
+        let columns = columns();
+        let count = columns.header().split(',').count();
+        assert_eq!(cells(&columns.line(&driven())).len(), count);
+    }
+
+    #[test]
+    fn lines_of_other_campaigns_and_torn_ones_hold_no_row() {
+        let (columns, line) = (columns(), columns().line(&driven()));
+        let other = Columns { mark: "other".to_string(), ..columns.clone() };
+        assert_eq!(other.row(line.trim_end()), Err(NoRow::Other));
+        let torn = line.rsplit_once(',').unwrap().0;
+        assert_eq!(columns.row(torn), Err(NoRow::Changed));
+        assert_eq!(columns.row(""), Err(NoRow::Other));
+    }
+
+    /// Whatever letter of a row is another than was written, it is seen.
+    #[test]
+    fn a_changed_line_holds_no_row() {
+        let (columns, line) = (columns(), columns().line(&driven()));
+        let line = line.trim_end();
+        for at in 0..line.len() {
+            let letter = if line[at..].starts_with('7') { "8" } else { "7" };
+            let changed = format!("{}{letter}{}", &line[..at], &line[at + 1..]);
+            assert!(columns.row(&changed).is_err(), "{changed}");
+        }
+        assert_eq!(columns.row(&format!("{line}\r")), Err(NoRow::LineEnd));
+    }
+
+    #[test]
+    fn the_sum_of_a_row_is_that_of_other_programs() {
+        // ORIGIN: paper, FIPS 180-4 (2015), the published sum of "abc"
+        assert_eq!(check("abc"), "ba7816bf");
+    }
+}

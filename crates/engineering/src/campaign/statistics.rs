@@ -1,0 +1,135 @@
+//! What all runs of a campaign say together: counts, quantiles, bands over time, and the worst of them.
+
+use super::plan::Plan;
+use super::row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS, meaningful};
+use super::spread::{Spread, quantiles, spread};
+
+/// Quantiles of the force over time, of all runs that got so far.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bands {
+    /// s.
+    pub times_s: Vec<f64>,
+    /// [`QUANTILES`](super::QUANTILES) in N at each time.
+    pub force_n: Vec<[f64; 5]>,
+}
+
+/// A run to look at again, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Worst {
+    /// Its index.
+    pub run: u64,
+    /// Window counted from 0 and place in [`METRIC_NAMES`] of all it is worst in.
+    pub of: Vec<(usize, usize)>,
+}
+
+/// What the runs of a campaign say together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// How many ended in each of [`STATUS_WORDS`].
+    pub statuses: [usize; STATUS_WORDS.len()],
+    /// Runs that are no machine, with the reason.
+    pub refused: Vec<(u64, String)>,
+    /// Runs that ended before their time, with the word for it and the time in s.
+    pub ended: Vec<(u64, &'static str, f64)>,
+    /// What happened on the way: its kind, in how many runs, and the first of them.
+    pub occurrences: Vec<(&'static str, usize, u64)>,
+    /// For each window, of each of [`METRIC_NAMES`] that it can have and a run has.
+    pub metrics: Vec<[Option<Spread>; METRIC_NAMES.len()]>,
+    /// Of [`LUMP_NAMES`].
+    pub lumps: [Option<Spread>; LUMP_NAMES.len()],
+    /// Runs whose machine has one outside its bounds in `[uncertainty]`, where there are bounds.
+    pub outside: [Option<usize>; LUMP_NAMES.len()],
+    /// Of the force.
+    pub bands: Bands,
+    /// Runs to look at again, in the order of what they are worst in.
+    pub worst: Vec<Worst>,
+}
+
+impl Summary {
+    /// Runs that were driven, to their end or not.
+    pub fn driven(&self) -> usize {
+        self.statuses.iter().sum::<usize>() - self.refused.len()
+    }
+
+    /// The summary of rows.
+    pub fn of(plan: &Plan, rows: &[Row]) -> Summary {
+        let driven: Vec<(u64, &Ran)> = rows.iter().filter_map(|row| Some((row.run, row.ran()?))).collect();
+        let metrics: Vec<[Option<Spread>; METRIC_NAMES.len()]> = (0..plan.windows().len())
+            .map(|window| {
+                let mut spreads = [None; METRIC_NAMES.len()];
+                let of_window = |window| meaningful(window, plan.is_open_loop());
+                for metric in plan.windows().get(window).into_iter().flat_map(of_window) {
+                    spreads[metric] = spread(driven.iter().map(|(run, ran)| {
+                        (*run, ran.metrics.get(window).and_then(|numbers| numbers[metric]))
+                    }));
+                }
+                spreads
+            })
+            .collect();
+        let lump = |lump: usize| spread(rows.iter().map(|row| (row.run, row.lumps.map(|lumps| lumps[lump]))));
+        let refused = |row: &Row| match &row.outcome {
+            RowOutcome::Refused(reason) => Some((row.run, reason.clone())),
+            RowOutcome::Driven(_) => None,
+        };
+        Summary {
+            statuses: STATUS_WORDS.map(|word| rows.iter().filter(|row| row.status() == word).count()),
+            refused: rows.iter().filter_map(refused).collect(),
+            ended: driven.iter().filter_map(|(run, ran)| Some((*run, ran.status, ran.ended_s?))).collect(),
+            occurrences: occurrences(&driven),
+            worst: worst(&metrics),
+            metrics,
+            lumps: [lump(0), lump(1), lump(2)],
+            outside: [outside(plan, rows, 0), outside(plan, rows, 1), outside(plan, rows, 2)],
+            bands: bands(&plan.columns.times_s, &driven),
+        }
+    }
+}
+
+fn outside(plan: &Plan, rows: &[Row], lump: usize) -> Option<usize> {
+    let [low, high] = plan.bounds(LUMP_NAMES[lump])?;
+    // a bound that a draw meets up to rounding is met
+    let beyond = |value: f64| value < low * (1.0 - 1e-9) || value > high * (1.0 + 1e-9);
+    Some(rows.iter().filter(|row| row.lumps.is_some_and(|lumps| beyond(lumps[lump]))).count())
+}
+
+fn occurrences(driven: &[(u64, &Ran)]) -> Vec<(&'static str, usize, u64)> {
+    let mut found: Vec<(&'static str, usize, u64)> = Vec::new();
+    for (run, kind) in
+        driven.iter().flat_map(|(run, ran)| ran.occurrences.iter().map(move |kind| (*run, *kind)))
+    {
+        match found.iter_mut().find(|(known, _, _)| *known == kind) {
+            Some((_, count, _)) => *count += 1,
+            None => found.push((kind, 1, run)),
+        }
+    }
+    found
+}
+
+fn bands(times_s: &[f64], driven: &[(u64, &Ran)]) -> Bands {
+    let mut bands = Bands::default();
+    for (index, time_s) in times_s.iter().enumerate() {
+        let forces = driven.iter().filter_map(|(_, ran)| ran.force_n.get(index));
+        let mut forces: Vec<f64> = forces.map(|force| f64::from(*force)).collect();
+        if forces.is_empty() {
+            break;
+        }
+        forces.sort_by(f64::total_cmp);
+        bands.times_s.push(*time_s);
+        bands.force_n.push(quantiles(&forces));
+    }
+    bands
+}
+
+fn worst(metrics: &[[Option<Spread>; METRIC_NAMES.len()]]) -> Vec<Worst> {
+    let mut found: Vec<Worst> = Vec::new();
+    for (window, spreads) in metrics.iter().enumerate() {
+        for (metric, spread) in spreads.iter().enumerate() {
+            let Some((_, run)) = spread.map(|spread| spread.worst) else { continue };
+            match found.iter_mut().find(|known| known.run == run) {
+                Some(known) => known.of.push((window, metric)),
+                None => found.push(Worst { run, of: vec![(window, metric)] }),
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,153 @@
+//! What a verdict on the linear loop does not speak of, although the project declares it.
+//!
+//! A simulation is of the whole machine. What the linear plant cannot count is told before the verdict; where a specification depends
+//! on it, the verdict is not proven.
+
+use crate::project::{LineModel, Load, Project, Pump, SupplyModel};
+use crate::quantity::DisplayUnit;
+use crate::rig::limits_load_motion;
+use crate::setup::Setup;
+
+/// Something declared that the linear loop does not count.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Caveat {
+    /// What it is, and where it is counted.
+    pub sentence: String,
+    /// Whether a specification may fail for it that the linear loop satisfies.
+    pub unproven: bool,
+}
+
+/// What is declared and in no linear loop.
+pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
+    apart_from_lines(setup.project).chain(supply(setup)).collect()
+}
+
+/// What is declared and in no linear model, in sentences.
+pub fn of_models(project: &Project) -> Vec<String> {
+    let others = apart_from_lines(project).map(|caveat| caveat.sentence);
+    lumped(project)
+        .into_iter()
+        .chain(others)
+        .chain(constant_supply(project))
+        .chain(fed_in_loop(project))
+        .collect()
+}
+
+/// What no linear model counts.
+fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
+    [load(project), feed_forward(project)].into_iter().flatten()
+}
+
+/// A wall whose mass nobody states.
+fn load(project: &Project) -> Option<Caveat> {
+    let load = &project.actuator.as_ref()?.load;
+    matches!(load, Load::Wall { mass: None, .. }).then(|| Caveat {
+        sentence: "load.model = \"wall\" is not counted without load.mass: this is the loop with a load that does not yield"
+            .to_string(),
+        unproven: true,
+    })
+}
+
+/// What the models of a linearisation do not count of the lines.
+fn lumped(project: &Project) -> Option<String> {
+    let (place, model) = moving(project)?;
+    Some(format!(
+        "{place} = \"{model}\" is not counted in these models, which have lumped lines: verify, design and simulate count it"
+    ))
+}
+
+/// The key that sets lines in motion, and its word.
+fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
+    let line = &project.actuator.as_ref()?.line;
+    let [a, b] = [&line.a, &line.b].map(|line| line.motion.model);
+    let (place, model) = match (a, b) {
+        (LineModel::Lumped, LineModel::Lumped) => return None,
+        (a, b) if a == b => ("line.model", a),
+        (LineModel::Lumped, b) => ("line.b.model", b),
+        (a, _) => ("line.a.model", a),
+    };
+    Some((place, model.word()))
+}
+
+/// A supply that yields is counted as small motions see it, which a large step is not; where more is taken than the pump gives there is no
+/// rest to be linearised at.
+fn supply(setup: &Setup<'_>) -> Option<Caveat> {
+    let project = setup.project;
+    let supply = &project.actuator.as_ref()?.supply;
+    let SupplyModel::PumpLimited(Pump { flow: gives, .. }) = supply.model else { return None };
+    if is_measured(project) {
+        return None;
+    }
+    let found = setup.rig().ok()?.supply?;
+    let flow = |value: f64| DisplayUnit::LITRE_PER_MINUTE.text(value, 3);
+    let (taken, gives_words) = (flow(found.taken), flow(gives));
+    let pressure = DisplayUnit::BAR.text(found.supply.pressure, 4);
+    let rests = found.taken < gives;
+    let sentence = match rests {
+        true => format!(
+            "supply.model = \"pump_limited\" is counted as small motions see it, at {pressure} where the valve takes {taken} of the \
+             pump's {gives_words}: what a large step takes beyond it only a simulation shows"
+        ),
+        false => format!(
+            "supply.model = \"pump_limited\" does not rest at the operating point, where the valve takes {taken} and the pump gives \
+             {gives_words}: the plant is that at {pressure}, where the relief valve shuts"
+        ),
+    };
+    Some(Caveat { sentence, unproven: !rests })
+}
+
+/// What the models of a linearisation do not count of the supply.
+fn constant_supply(project: &Project) -> Option<String> {
+    let supply = &project.actuator.as_ref()?.supply;
+    matches!(supply.model, SupplyModel::PumpLimited(_)).then(|| {
+        "supply.model = \"pump_limited\" is counted in the plant alone: the other models have the pressure at which it settles, held \
+         constant"
+            .to_string()
+    })
+}
+
+/// Whether the plants of the family are responses that were measured.
+fn is_measured(project: &Project) -> bool {
+    project.family.as_ref().is_some_and(|family| !family.measured.is_empty())
+}
+
+/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion. A loop in continuous time
+/// counts it, late or not; one that samples counts the path where lines move.
+fn feed_forward(project: &Project) -> Option<Caveat> {
+    let controller = project.controller.as_ref()?;
+    let declared = controller.load_velocity_feed_forward?;
+    let actuator = project.actuator.as_ref();
+    let yields = actuator.is_some_and(|actuator| actuator.load != Load::Prescribed);
+    let why = match (actuator, controller.sample_time) {
+        (None, _) => "no load is known of a [plant]",
+        _ if is_measured(project) => "the plants of the family were measured without it",
+        (Some(_), Some(_)) if yields || moving(project).is_none() => "the controller samples it",
+        _ => return None,
+    };
+    let what = match yields || actuator.is_none() {
+        true => "this is the loop without it, and only a simulation is of the loop with it",
+        false => "of all specifications load_motion alone depends on it, and only a simulation has it",
+    };
+    (declared.gain != Some(0.0)).then(|| Caveat {
+        sentence: format!(
+            "the load velocity that [controller] feeds forward is not counted, as {why}: {what}"
+        ),
+        unproven: yields || limits_load_motion(project),
+    })
+}
+
+/// What the models of a linearisation, which are of the rig without its controller, do not count of the load's velocity.
+fn fed_in_loop(project: &Project) -> Option<String> {
+    let controller = project.controller.as_ref()?;
+    let declared = controller.load_velocity_feed_forward?;
+    let why = match controller.sample_time {
+        None if controller.delay == 0.0 => "which have no controller",
+        None => "as controller.delay makes it late",
+        Some(_) => "as the controller samples it",
+    };
+    (declared.gain != Some(0.0) && feed_forward(project).is_none()).then(|| {
+        format!(
+            "the load velocity that [controller] feeds forward is not in these models, {why}: verify, design and simulate count it"
+        )
+    })
+}

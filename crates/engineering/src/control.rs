@@ -1,0 +1,226 @@
+//! The controller and prefilter of a project as values of `phea_dynamics`; [`Setup`](crate::setup::Setup) holds them.
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Stage, Timing};
+use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_qft::design::quantisation::{CoefficientFormat, Converter, Quantisation, QuantisationError};
+
+use crate::project::{
+    self, ElementKind, Formula, FormulaError, Project, Rational, RationalFunction, Transfer,
+};
+
+/// Why a declared controller or prefilter is no transfer function.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ControlError {
+    /// The text is no ratio of polynomials.
+    #[error("{place}: {error}", error = error.message)]
+    Formula {
+        /// `[controller]`, `[prefilter]` or `[sensor]`.
+        place: &'static str,
+        /// What is wrong with it.
+        error: FormulaError,
+    },
+    /// The factors or polynomials make no transfer function.
+    #[error("{place}: {error}")]
+    Linear {
+        /// `[controller]`, `[prefilter]` or `[sensor]`.
+        place: &'static str,
+        /// What is wrong with it.
+        error: LinearError,
+    },
+    /// What is rounded cannot be.
+    #[error("[controller.quantization]: {0}")]
+    Quantisation(#[from] QuantisationError),
+    /// Zeros and poles without the factor before them.
+    #[error("{place}: `zeros` and `poles` need `gain`, the leading coefficient")]
+    Gain {
+        /// `[controller]`, `[prefilter]` or `[sensor]`.
+        place: &'static str,
+    },
+    /// A text in z without a sample time.
+    #[error("{place}: a transfer function in z needs `sample_time`")]
+    SampleTime {
+        /// `[controller]`, `[prefilter]` or `[sensor]`.
+        place: &'static str,
+    },
+}
+
+/// The given controller with its prefilter; `None` where the project gives no law for one.
+///
+/// # Errors
+/// [`ControlError`] if one of them is no transfer function.
+pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError> {
+    let Some(declared) = project.controller.as_ref().filter(|controller| controller.has_law()) else {
+        return Ok(None);
+    };
+    Ok(Some(Controller {
+        feedback: compensator("[controller]", &declared.transfer, declared.sample_time)?,
+        prefilter: prefilter(project)?.unwrap_or_default(),
+        timing: timing(project),
+        command_limit: declared.saturation,
+        anti_windup: match declared.anti_windup {
+            project::AntiWindup::None => AntiWindup::None,
+            project::AntiWindup::BackCalculation => AntiWindup::BackCalculation,
+            project::AntiWindup::Clamping => AntiWindup::Clamping,
+        },
+    }))
+}
+
+/// The given prefilter; `None` where the project gives none.
+///
+/// # Errors
+/// [`ControlError`] if it is no transfer function.
+pub fn prefilter(project: &Project) -> Result<Option<Compensator>, ControlError> {
+    let Some(declared) = &project.prefilter else { return Ok(None) };
+    let sample_time = declared.sample_time.or(timing(project).sample_time_s);
+    compensator("[prefilter]", &declared.transfer, sample_time).map(Some)
+}
+
+/// When the controller acts, be its law given or to be designed; continuous and without delay where the project says nothing.
+pub fn timing(project: &Project) -> Timing {
+    let Some(declared) = &project.controller else { return Timing::default() };
+    Timing {
+        sample_time_s: declared.sample_time,
+        delay_s: declared.delay,
+        discretization: match declared.discretization {
+            project::Discretization::Tustin => Discretization::Tustin,
+            project::Discretization::ZeroOrderHold => Discretization::ZeroOrderHold,
+            project::Discretization::Matched => Discretization::Matched,
+        },
+        continuous_prefilter: project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous),
+    }
+}
+
+/// What the computer of the controller rounds: nothing where the project does not say.
+///
+/// # Errors
+/// [`ControlError::Quantisation`] for a converter that is none.
+pub fn quantisation(project: &Project) -> Result<Quantisation, ControlError> {
+    let declared = project.controller.as_ref().and_then(|controller| controller.quantization.clone());
+    let Some(declared) = declared else { return Ok(Quantisation::default()) };
+    let converter = |bits: u32, range: Option<[f64; 2]>| -> Result<_, QuantisationError> {
+        Ok(range.filter(|_| bits > 0).map(|range| Converter::new(bits, range)).transpose()?)
+    };
+    Ok(Quantisation {
+        command: converter(declared.command_bits, declared.command_range)?,
+        measurement: converter(declared.measurement_bits, declared.measurement_range)?,
+        coefficients: match declared.coefficients {
+            project::Coefficients::Double => CoefficientFormat::Double,
+            project::Coefficients::Single => CoefficientFormat::Single,
+        },
+    })
+}
+
+/// H; 1 where the project says nothing of a sensor.
+///
+/// # Errors
+/// [`ControlError`] if what it says is no transfer function.
+pub fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
+    let Some(declared) = &project.sensor else { return Ok(TransferFunction::gain_only(1.0)) };
+    let place = "[sensor]";
+    let Rational { numerator, denominator } = &declared.transfer;
+    let function =
+        from_formulas(numerator, denominator).map_err(|error| ControlError::Formula { place, error })?;
+    let delayed = function.and_then(|function| function.with_dead_time(declared.delay));
+    delayed.map_err(|error| ControlError::Linear { place, error })
+}
+
+/// The elements in series, those that do not act among them.
+pub fn compensator(
+    place: &'static str,
+    transfer: &Transfer,
+    sample_time: Option<f64>,
+) -> Result<Compensator, ControlError> {
+    let stage = |declared: &project::Element| {
+        Ok(Stage { element: element(place, declared, sample_time)?, enabled: declared.enabled })
+    };
+    Ok(Compensator { stages: transfer.as_elements().iter().map(stage).collect::<Result<_, ControlError>>()? })
+}
+
+/// A ratio of two formulas without parameters.
+pub fn from_formulas(
+    numerator: &Formula,
+    denominator: &Formula,
+) -> Result<Result<TransferFunction, LinearError>, FormulaError> {
+    let (upper, lower) = (numerator.numbers()?, denominator.numbers()?);
+    let polynomial = |one: Vec<f64>, other: Vec<f64>| Polynomial::new(one).product(&Polynomial::new(other));
+    let top = polynomial(upper.numerator, lower.denominator);
+    let bottom = polynomial(lower.numerator, upper.denominator);
+    Ok(TransferFunction::from_polynomials(&top, &bottom))
+}
+
+/// An element as the loop has it.
+pub fn element(
+    place: &'static str,
+    declared: &project::Element,
+    sample_time: Option<f64>,
+) -> Result<Element, ControlError> {
+    Ok(match declared.kind {
+        ElementKind::Gain { value } => Element::Gain(value),
+        ElementKind::Integrator => Element::Integrator,
+        ElementKind::Differentiator => Element::Differentiator,
+        ElementKind::Zero { frequency } => Element::RealZero { frequency },
+        ElementKind::Pole { frequency } => Element::RealPole { frequency },
+        ElementKind::ComplexZeros { frequency, damping_ratio } => {
+            Element::ComplexZeros { natural_frequency: frequency, damping_ratio }
+        }
+        ElementKind::ComplexPoles { frequency, damping_ratio } => {
+            Element::ComplexPoles { natural_frequency: frequency, damping_ratio }
+        }
+        ElementKind::Lead { zero_frequency, pole_frequency }
+        | ElementKind::Lag { zero_frequency, pole_frequency } => {
+            Element::LeadLag { zero_frequency, pole_frequency }
+        }
+        ElementKind::Notch { frequency, damping_ratio, numerator_damping_ratio } => Element::Notch {
+            natural_frequency: frequency,
+            zero_damping_ratio: numerator_damping_ratio,
+            pole_damping_ratio: damping_ratio,
+        },
+        ElementKind::RollOff { frequency, damping_ratio } => Element::ComplexPoles {
+            natural_frequency: frequency,
+            damping_ratio: damping_ratio.unwrap_or(std::f64::consts::FRAC_1_SQRT_2),
+        },
+        ElementKind::ProportionalIntegral { proportional_gain, integral_gain } => {
+            Element::ProportionalIntegral { proportional_gain, integral_gain }
+        }
+        ElementKind::ProportionalIntegralDerivative {
+            proportional_gain,
+            integral_gain,
+            derivative_gain,
+            filter_time,
+        } => Element::ProportionalIntegralDerivative {
+            proportional_gain,
+            integral_gain,
+            derivative_gain,
+            filter_time,
+        },
+        ElementKind::General(ref ratio) => Element::General(general(place, ratio, sample_time)?),
+    })
+}
+
+/// A ratio of polynomials, or factors.
+fn general(
+    place: &'static str,
+    declared: &RationalFunction,
+    sample_time: Option<f64>,
+) -> Result<TransferFunction, ControlError> {
+    let linear = |error| ControlError::Linear { place, error };
+    let function = match (&declared.numerator, &declared.denominator) {
+        (Some(numerator), Some(denominator)) => from_formulas(numerator, denominator)
+            .map_err(|error| ControlError::Formula { place, error })?
+            .map_err(linear)?,
+        _ => {
+            let roots = |pairs: &[[f64; 2]]| pairs.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
+            let gain = declared.gain.ok_or(ControlError::Gain { place })?;
+            TransferFunction::from_factors(gain, roots(&declared.zeros), roots(&declared.poles))
+                .map_err(linear)?
+        }
+    };
+    match (declared.is_sampled(), sample_time) {
+        (false, _) => Ok(function),
+        (true, None) => Err(ControlError::SampleTime { place }),
+        (true, Some(sample_time_s)) => {
+            function.in_domain(TimeDomain::Discrete { sample_time_s }).map_err(linear)
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Every quantity that follows from what a project declares, with its equation, and where it contradicts a declared one.
+
+mod list;
+mod rig;
+mod valve;
+
+pub use rig::derive;
+
+/// A quantity that follows from the project.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Derived {
+    /// Chapter of the list, in words.
+    pub group: &'static str,
+    /// Name, unique, with dots between its parts.
+    pub name: String,
+    /// Symbol as in the notation, such as `K_H`.
+    pub symbol: &'static str,
+    /// Value, SI.
+    pub value: f64,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Equation it follows from.
+    pub equation: &'static str,
+    /// The value that holds instead, where the project states one.
+    pub stated: Option<Stated>,
+    /// Why the value does not exist, where it is not a number.
+    pub reason: Option<String>,
+}
+
+/// A value that the project states for a quantity that also follows from the rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stated {
+    /// Value, SI.
+    pub value: f64,
+    /// Where it stands, such as `[linear]`, `[uncertainty]` or `[sizing]`.
+    pub place: &'static str,
+    /// Bounds, where stated.
+    pub bounds: Option<[f64; 2]>,
+}
+
+/// Relative difference above which a stated value is called a contradiction: more than rounding to two digits explains.
+const CONTRADICTION: f64 = 0.05;
+
+/// The same for stated bounds, which are printed to three digits.
+const BEYOND_BOUNDS: f64 = 0.01;
+
+impl Derived {
+    /// How far the stated value is from the derived one, in percent of the latter; zero where both are zero.
+    pub fn difference_percent(&self) -> Option<f64> {
+        self.stated.as_ref().map(|stated| match stated.value == self.value {
+            true => 0.0,
+            false => 100.0 * (stated.value - self.value) / self.value,
+        })
+    }
+
+    /// Whether the stated value lies outside the bounds that the project states for it.
+    pub fn outside_own_bounds(&self) -> bool {
+        let outside = |stated: &Stated| {
+            stated.bounds.is_some_and(|[minimum, maximum]| !(minimum..=maximum).contains(&stated.value))
+        };
+        self.stated.as_ref().is_some_and(outside)
+    }
+
+    /// Whether what is stated contradicts itself or the derived value.
+    pub fn contradicts(&self) -> bool {
+        self.outside_own_bounds() || self.contradicts_derived()
+    }
+
+    /// Whether the derived value contradicts what is stated: it lies more than 1 % outside the stated
+    /// bounds, or without bounds more than 5 % away.
+    pub fn contradicts_derived(&self) -> bool {
+        match self.stated.as_ref() {
+            None => false,
+            Some(Stated { bounds: Some([minimum, maximum]), .. }) => {
+                let slack = BEYOND_BOUNDS * self.value.abs();
+                self.value < *minimum - slack || self.value > *maximum + slack
+            }
+            Some(stated) => (stated.value - self.value).abs() > CONTRADICTION * self.value.abs(),
+        }
+    }
+}

@@ -1,0 +1,279 @@
+//! The design of a controller and its prefilter: from the project to a law that keeps to every specification, beside the one that was
+//! published, and how both are told.
+
+mod comparison;
+mod explanation;
+mod factors;
+mod problem;
+mod repair;
+mod rounding;
+mod side;
+mod words;
+pub use factors::factored;
+pub use words::{objective_key, part_key, repair_key, repair_words, status_key};
+
+pub use explanation::Explanation;
+pub use factors::Factors;
+pub use problem::{design_options, design_problem};
+pub use repair::{Repair, RepairStatus};
+pub use rounding::Rounding;
+pub use side::{LoopFigures, NominalMargins, Side};
+
+pub use comparison::compared;
+pub use words::{status_sentence, structure_words};
+
+use phea_dynamics::controller::{Controller, Timing};
+use phea_qft::closed_loop::Compensation;
+use phea_qft::design::{Design, DesignOptions, DesignProblem, DesignRun, PrefilterChoice};
+use phea_qft::verification::Verdict;
+
+use crate::audit::{ProjectAudit, audit_problem};
+use crate::error::ProcedureError;
+use crate::project::{self, Project};
+use crate::quantity;
+use crate::robust::{RobustProblem, robust_problem};
+use crate::setup::Setup;
+use crate::source::Source;
+use crate::trial::{Agreement, Trial, tried};
+use phea_dynamics::watch::{Progress, Watch};
+
+/// Name of the file with the project that a design makes.
+pub const DESIGNED_PROJECT: &str = "designed.toml";
+
+/// Name of the file with the project under the controller that comes nearest to what the machine asks for and cannot be had.
+pub const NEAREST_PROJECT: &str = "nearest.toml";
+
+/// Why nothing is designed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DesignError {
+    /// There is nothing that a controller must keep to.
+    #[error("the project states no [[specification]] to design a controller for")]
+    NoSpecification,
+    /// The search found no controller at all; with what could be said of the problem before it.
+    #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
+    NoController(Vec<String>),
+    /// A part of the problem cannot be searched with.
+    #[error(transparent)]
+    Search(#[from] phea_qft::design::DesignError),
+}
+
+/// A design, beside the controller that was published.
+#[derive(Clone, Debug)]
+pub struct ProjectDesign {
+    /// What was found.
+    pub design: Design,
+    /// How it was looked for.
+    pub options: DesignOptions,
+    /// Delay beyond that of the loop that was asked for, s.
+    pub minimum_delay_margin_s: f64,
+    /// Whether the designed loop tolerates it, whatever else it does.
+    pub bears_its_delay: bool,
+    /// Whether whoever watched it stopped it: then it is the best so far.
+    pub stopped: bool,
+    /// The designed controller with its audit.
+    pub designed: Side,
+    /// The controller that the project gives, with its audit; absent where it gives none.
+    pub published: Option<Side>,
+    /// In a sampled loop: the design that was made for the continuous one, sampled and audited as the loop is.
+    pub continuous: Option<Side>,
+    /// What no controller can do, and what will be hard, whatever the search found.
+    pub explanations: Vec<Explanation>,
+    /// What the computer's converters do to the designed loop; absent where nothing is rounded.
+    pub rounding: Option<Rounding>,
+    /// What the nonlinear machine does under the designed controller; absent without a machine, and where the design was stopped.
+    pub trial: Option<Trial>,
+    /// What was done about a machine that contradicts it; absent where none does, or nothing was asked for.
+    pub repair: Option<Repair>,
+    /// The designed controller as a project declares it.
+    pub declared_controller: project::Controller,
+    /// The designed prefilter likewise; absent where none was designed.
+    pub declared_prefilter: Option<project::Prefilter>,
+}
+
+impl ProjectDesign {
+    /// A design with what is to be told of it alone: without a published controller beside it, and without explanations. The family
+    /// in the loop of the project is `given`, and what was `asked` for is the problem that was designed for.
+    ///
+    /// # Errors
+    /// [`ProcedureError`] for a law or a sensor that is no transfer function.
+    pub fn new(
+        setup: &Setup<'_>,
+        given: &RobustProblem,
+        asked: &DesignProblem,
+        design: Design,
+        options: DesignOptions,
+    ) -> Result<ProjectDesign, ProcedureError> {
+        let project = setup.project;
+        let has_prefilter = options.prefilter != PrefilterChoice::None;
+        let law = design.law.clone();
+        let problem = RobustProblem {
+            compensation: Compensation::new(&design.controller, setup.sensor.clone())?,
+            has_controller: true,
+            has_prefilter,
+            ..given.clone()
+        };
+        let view = ProjectAudit::new(&problem, design.audit.clone());
+        let rounding = rounding::rounding(setup, &problem)?;
+        let declared = project.controller.clone().unwrap_or_default();
+        let declared_controller = project::Controller {
+            transfer: factors::declared(&law.feedback.transfer_function()?),
+            ..declared
+        };
+        let declared_prefilter = match options.prefilter {
+            PrefilterChoice::Grow { .. } => Some(project::Prefilter {
+                transfer: factors::declared(&law.prefilter.transfer_function()?),
+                sample_time: None,
+                continuous: project.prefilter.as_ref().is_some_and(|given| given.continuous),
+            }),
+            PrefilterChoice::None | PrefilterChoice::Given(_) => None,
+        };
+        let designed = Side::new(law, problem, view)?;
+        Ok(ProjectDesign {
+            bears_its_delay: asked.bears_its_delay(designed.figures.delay_margin_s.unwrap_or(0.0)),
+            minimum_delay_margin_s: asked.minimum_delay_margin_s,
+            designed,
+            design,
+            options,
+            stopped: false,
+            published: None,
+            continuous: None,
+            explanations: vec![],
+            rounding,
+            trial: None,
+            repair: None,
+            declared_controller,
+            declared_prefilter,
+        })
+    }
+
+    /// The project with the designed laws in place of its own.
+    pub fn deployed(&self, project: &Project) -> Project {
+        Project {
+            controller: Some(self.declared_controller.clone()),
+            prefilter: self.declared_prefilter.clone().or_else(|| project.prefilter.clone()),
+            ..project.clone()
+        }
+    }
+
+    /// How the machine does beside the linear loop, as far as it was tried.
+    pub fn agreement(&self) -> Agreement {
+        self.trial.as_ref().map_or(Agreement::Agrees, Trial::agreement)
+    }
+
+    /// Whether the designed controller keeps to every specification.
+    pub fn is_met(&self) -> bool {
+        self.designed.view.audit.verdict == Verdict::Met && self.bears_its_delay
+    }
+}
+
+/// Designs a controller for the project, and goes on where the machine contradicts it: the plant that does is taken in.
+///
+/// # Errors
+/// Those of [`design_project`].
+pub fn design_and_repair(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    seed: Option<u32>,
+    watch: Watch<'_>,
+) -> Result<ProjectDesign, ProcedureError> {
+    let (run, told) = designed(source, setup, seed, watch)?;
+    repair::repaired((source, setup), run, told, watch)
+}
+
+/// Designs a controller for the project, after the audit of the one that it gives.
+///
+/// # Errors
+/// [`ProcedureError`] for a project without a specification, a part of it that is no transfer function, a family that cannot be
+/// built, or a watcher that stops it before anything was found.
+pub fn design_project(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    seed: Option<u32>,
+    watch: Watch<'_>,
+) -> Result<ProjectDesign, ProcedureError> {
+    designed(source, setup, seed, watch).map(|(_, told)| told)
+}
+
+/// The design with the run that made it.
+fn designed(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    seed: Option<u32>,
+    watch: Watch<'_>,
+) -> Result<(DesignRun, ProjectDesign), ProcedureError> {
+    let project = setup.project;
+    if project.specifications.is_empty() {
+        return Err(DesignError::NoSpecification.into());
+    }
+    let given = robust_problem(source, setup)?;
+    let published = match &setup.controller {
+        None => None,
+        Some(law) => {
+            let view = audit_problem(&given, watch)?;
+            Some(Side::new(law.clone(), given.clone(), view)?)
+        }
+    };
+    let problem = design_problem(setup, &given);
+    let options = design_options(setup, &given, seed)?;
+    let mut run = DesignRun::new(problem, options);
+    let explanations = run.findings().iter().map(Explanation::of).collect::<Vec<_>>();
+    let mut stopped = false;
+    while !stopped && run.step().map_err(DesignError::from)? {
+        stopped = !watch(Progress { stage: run.stage(), share: run.progress() });
+    }
+    if stopped {
+        run.conclude().map_err(DesignError::from)?;
+    }
+    let (options, found) = (run.options().clone(), run.design().cloned());
+    match found {
+        Some(design) => {
+            let told = ProjectDesign::new(setup, &given, run.problem(), design, options)?;
+            let continuous = if stopped { None } else { continuous_as_sampled(setup, &run, &told, watch)? };
+            let trial = if stopped { None } else { tried_design(source, project, &told, watch)? };
+            Ok((run, ProjectDesign { stopped, published, explanations, continuous, trial, ..told }))
+        }
+        None if stopped => Err(ProcedureError::Stopped),
+        None => {
+            let sentences = explanations.into_iter().map(|explanation| explanation.sentence).collect();
+            Err(DesignError::NoController(sentences).into())
+        }
+    }
+}
+
+/// The machine under the designed controller, as the project would declare it.
+fn tried_design(
+    source: &dyn Source,
+    project: &Project,
+    told: &ProjectDesign,
+    watch: Watch<'_>,
+) -> Result<Option<Trial>, ProcedureError> {
+    let deployed = told.deployed(project);
+    tried(source, &Setup::new(&deployed)?, &told.designed.problem, &told.designed.view, watch)
+}
+
+/// What a design that knows nothing of samples and delay becomes by them: made for the continuous loop, audited in the sampled one. `None`
+/// where the loop does not sample, or no such design is found.
+fn continuous_as_sampled(
+    setup: &Setup<'_>,
+    sampled: &DesignRun,
+    told: &ProjectDesign,
+    watch: Watch<'_>,
+) -> Result<Option<Side>, ProcedureError> {
+    let timing = sampled.problem().timing;
+    if timing.sample_time_s.is_none() {
+        return Ok(None);
+    }
+    let problem = DesignProblem { timing: Timing::default(), ..sampled.problem().clone() };
+    let mut run = DesignRun::new(problem, sampled.options().clone());
+    while run.step().map_err(DesignError::from)? {
+        if !watch(Progress { stage: "designing without samples", share: run.progress() }) {
+            return Ok(None);
+        }
+    }
+    let Some(design) = run.design() else { return Ok(None) };
+    let controller = Controller { timing, ..design.law.clone() };
+    let compensation = setup.compensation(&controller)?;
+    let problem = RobustProblem { compensation, ..told.designed.problem.clone() };
+    let view = audit_problem(&problem, watch)?;
+    Ok(Some(Side::new(controller, problem, view)?))
+}

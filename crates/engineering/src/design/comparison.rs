@@ -1,0 +1,72 @@
+//! What controllers are compared by, in words.
+
+use phea_qft::verification::Verdict;
+
+use super::side::Side;
+use crate::audit::{margin_words, verdict_words};
+use crate::quantity::DisplayUnit;
+use crate::quantity::significant;
+
+/// Name and value of everything that a controller is compared by: verdicts first, then size, then margins. The same names for
+/// every controller of a project.
+pub fn compared(side: &Side) -> Vec<(String, String)> {
+    let mut rows = vec![("verdict".to_string(), verdict_words(side.view.audit.verdict).to_string())];
+    rows.extend(side.view.audit.specifications.iter().enumerate().map(|(index, finding)| {
+        let margin = finding.worst.as_ref().map_or("-".to_string(), |worst| margin_words(worst.margin_db));
+        (format!("margin of {}", side.view.numbered(index)), margin)
+    }));
+    let figures = &side.figures;
+    let nominal = figures.nominal.as_ref();
+    let or_dash = |text: Option<String>| text.unwrap_or("-".to_string());
+    let named = [
+        ("order of controller and prefilter", format!("{} and {}", figures.order, figures.prefilter_order)),
+        ("high-frequency gain", high_frequency_words(side)),
+        (
+            "crossover of the nominal loop",
+            or_dash(nominal.map(|margins| match margins.crossover_rad_per_s {
+                0.0 => "none".to_string(),
+                crossover => format!("{} rad/s", significant(crossover, 3)),
+            })),
+        ),
+        (
+            "gain margin of the nominal loop",
+            or_dash(nominal.map(|margins| limited(margins.gain_margin_db, "dB"))),
+        ),
+        (
+            "phase margin of the nominal loop",
+            or_dash(nominal.map(|margins| phase_words(side, margins.phase_margin_deg))),
+        ),
+        (
+            "modulus margin of the family",
+            or_dash(figures.modulus_margin.map(|margin| significant(margin, 3))),
+        ),
+        (
+            "delay margin of the family",
+            or_dash(figures.delay_margin_s.map(|delay| limited(DisplayUnit::MILLISECOND.of(delay), "ms"))),
+        ),
+    ];
+    rows.extend(named.map(|(name, text)| (name.to_string(), text)));
+    rows
+}
+
+fn high_frequency_words(side: &Side) -> String {
+    let gain = significant(side.figures.high_frequency_gain_db, 5);
+    match side.figures.relative_degree {
+        _ if side.is_in_z() => format!("{gain} dB, |G| at pi/T"),
+        0 => format!("{gain} dB"),
+        1 => format!("{gain} dB, s G"),
+        degree => format!("{gain} dB, s^{degree} G"),
+    }
+}
+
+/// The least change of phase that reaches -1; a stable loop with several crossovers may be nearest to it in lead.
+fn phase_words(side: &Side, phase_deg: f64) -> String {
+    match side.view.audit.stability.verdict {
+        Verdict::Met if phase_deg < 0.0 => format!("{}, of lead", limited(-phase_deg, "deg")),
+        _ => limited(phase_deg, "deg"),
+    }
+}
+
+fn limited(value: f64, unit: &str) -> String {
+    if value == f64::INFINITY { "unlimited".to_string() } else { format!("{} {unit}", significant(value, 3)) }
+}

@@ -1,0 +1,121 @@
+//! From a project to what a design begins with.
+
+use phea_dynamics::controller::Element;
+use phea_qft::design::{
+    ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice, gain_range,
+};
+use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::specification::Requirement;
+use phea_qft::verification::TOLERANCE_DB;
+
+use crate::control::{ControlError, element};
+use crate::error::ProcedureError;
+use crate::project::{DesignObjective, PartKind, StructurePart};
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+
+/// How far corner frequencies may lie below and above the design frequencies.
+const FREQUENCY_FACTORS: [f64; 2] = [0.1, 100.0];
+/// Damping ratios of a pair whose project says nothing of them.
+const DAMPING_RATIOS: [f64; 2] = [0.1, 5.0];
+
+/// What must be kept to, by which plants, in which loop.
+pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem {
+    DesignProblem {
+        family: given.family.clone(),
+        beside: vec![],
+        sensor: setup.sensor.clone(),
+        timing: setup.timing,
+        specifications: given.specifications.clone(),
+        minimum_delay_margin_s: setup.project.design.clone().unwrap_or_default().minimum_delay_margin,
+    }
+}
+
+/// How a design is made: by `[design]`, or its defaults; `seed` in place of the project's.
+///
+/// # Errors
+/// [`ProcedureError`] for a prefilter that is no transfer function, or a nominal plant that cannot be sampled.
+pub fn design_options(
+    setup: &Setup<'_>,
+    given: &RobustProblem,
+    seed: Option<u32>,
+) -> Result<DesignOptions, ProcedureError> {
+    let design = setup.project.design.clone().unwrap_or_default();
+    let controller = if design.structure.is_empty() {
+        ControllerChoice::Grow { maximum_order: count(design.maximum_order) }
+    } else {
+        let problem = design_problem(setup, given);
+        let frequencies = given.design_frequencies();
+        ControllerChoice::Given(structure(&design.structure, design.gain, &problem, &frequencies)?)
+    };
+    Ok(DesignOptions {
+        objective: match design.objective {
+            DesignObjective::LeastHighFrequencyGain => Objective::LeastHighFrequencyGain,
+            DesignObjective::LeastBandwidth => Objective::LeastBandwidth,
+            DesignObjective::BestWorstMargin => Objective::BestWorstMargin,
+        },
+        controller,
+        prefilter: prefilter_choice(setup, given, design.prefilter_maximum_order)?,
+        seed: u64::from(seed.unwrap_or(design.seed)),
+        tolerance_db: TOLERANCE_DB,
+        coefficients: setup.quantisation.coefficients,
+    })
+}
+
+fn count(number: u32) -> usize {
+    usize::try_from(number).unwrap_or(usize::MAX)
+}
+
+/// A prefilter is designed for tracking alone, and never in place of one that stands beside a controller without a law.
+fn prefilter_choice(
+    setup: &Setup<'_>,
+    given: &RobustProblem,
+    maximum_order: u32,
+) -> Result<PrefilterChoice, ProcedureError> {
+    let tracks = |one: &phea_qft::specification::Specification| {
+        matches!(one.requirement, Requirement::Tracking { .. })
+    };
+    let is_designed = given.specifications.iter().any(tracks) && maximum_order > 0;
+    let is_kept = setup.prefilter.is_some() && (!given.has_controller || !is_designed);
+    Ok(match &setup.prefilter {
+        Some(kept) if is_kept => PrefilterChoice::Given(kept.transfer_function()?),
+        _ if is_designed => PrefilterChoice::Grow { maximum_order: count(maximum_order) },
+        _ => PrefilterChoice::None,
+    })
+}
+
+fn structure(
+    declared: &[StructurePart],
+    gain: Option<[f64; 2]>,
+    problem: &DesignProblem,
+    frequencies: &[f64],
+) -> Result<Structure, ControlError> {
+    let first = frequencies.first().copied().unwrap_or(1.0);
+    let last = frequencies.last().copied().unwrap_or(1.0);
+    let wide = [first * FREQUENCY_FACTORS[0], last * FREQUENCY_FACTORS[1]];
+    let parts = declared.iter().map(|one| part(one, wide)).collect::<Result<Vec<Part>, ControlError>>()?;
+    let (sign, gain) = match gain {
+        Some([low, high]) if high < 0.0 => (-1.0, [-high, -low]),
+        Some(gain) => (1.0, gain),
+        None => gain_range(problem),
+    };
+    Ok(Structure { sign, gain, parts })
+}
+
+/// A part that the project declares; validated, so that a fixed one has its element.
+fn part(declared: &StructurePart, wide: [f64; 2]) -> Result<Part, ControlError> {
+    let frequency = declared.frequency.unwrap_or(wide);
+    let damping_ratio = declared.damping_ratio.unwrap_or(DAMPING_RATIOS);
+    Ok(match declared.kind {
+        PartKind::Integrator => Part::Fixed(Element::Integrator),
+        PartKind::Zero => Part::RealZero { frequency },
+        PartKind::Pole => Part::RealPole { frequency },
+        PartKind::ZeroPair => Part::ZeroPair { natural_frequency: frequency, damping_ratio },
+        PartKind::PolePair => Part::PolePair { natural_frequency: frequency, damping_ratio },
+        PartKind::Fixed => Part::Fixed(match &declared.element {
+            // in s, as every factor is
+            Some(fixed) => element("[design]", fixed, None)?,
+            None => Element::Gain(1.0),
+        }),
+    })
+}

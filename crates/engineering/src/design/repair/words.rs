@@ -1,0 +1,217 @@
+//! What a repair did, and what cannot be had, in sentences.
+
+use phea_qft::design::ControllerChoice;
+use phea_qft::verification::Verdict;
+
+use super::{Repair, RepairStatus};
+use crate::audit::{ProjectAudit, frequency_words, margin_words, stability_sentence};
+use crate::design::{NEAREST_PROJECT, ProjectDesign};
+use crate::project::{Component, Line, Project};
+use crate::quantity::significant;
+use crate::quantity::{DisplayUnit, FORCE, display};
+use crate::trial::{Agreement, Run, agreement_word};
+
+/// What was taken in, what that came to, and what would help where it came to nothing.
+pub(super) fn sentences(
+    project: &Project,
+    repair: &Repair,
+    told: &ProjectDesign,
+    found: &ProjectDesign,
+) -> Vec<String> {
+    let mut sentences: Vec<String> = repair.before.iter().map(before).collect();
+    sentences.push(outcome(repair, found));
+    sentences.extend(repair.after.iter().map(|after| with_waves(repair.status, after)));
+    if repair.status != RepairStatus::Met {
+        sentences.extend(crossover(repair, told));
+        sentences.push(help(project, repair, told));
+        sentences.extend(nearest(found));
+    }
+    sentences.push(whole(repair.whole.as_ref()));
+    sentences
+}
+
+/// What is known of the plants that were not taken in.
+fn whole(view: Option<&ProjectAudit>) -> String {
+    let every = "with `line.model = \"transmission_line\"` waves are in every plant of the family";
+    let told = match view {
+        None => return format!("taken in was the plant of the rig itself: {every}"),
+        Some(view) if view.audit.verdict == Verdict::Met => {
+            "the controller keeps to every specification with those too".to_string()
+        }
+        Some(view) if view.audit.stability.verdict != Verdict::Met => {
+            stability_sentence(&view.audit.stability, &view.names)
+        }
+        Some(view) => format!("every plant is stable, with {}", margins(view)),
+    };
+    format!(
+        "taken in was the plant of the rig itself, and nothing is promised of the others; {every}: {told}"
+    )
+}
+
+/// What the loop of the first design does with the plant.
+fn before(view: &ProjectAudit) -> String {
+    match view.audit.stability.verdict {
+        Verdict::Met => format!(
+            "the linear loop knows what the machine does once waves are in its plant: {}",
+            margins(view)
+        ),
+        _ => format!(
+            "the linear loop knows what the machine does once waves are in its plant: {}",
+            stability_sentence(&view.audit.stability, &view.names)
+        ),
+    }
+}
+
+fn outcome(repair: &Repair, found: &ProjectDesign) -> String {
+    let both = "over the family and with the waves at once";
+    match repair.status {
+        RepairStatus::Met => {
+            let crossover = crossover_of(found)
+                .map_or(String::new(), |crossover| format!(", and crosses over at {}", frequency(crossover)));
+            format!("that plant was taken in: the controller keeps to every specification {both}{crossover}")
+        }
+        RepairStatus::Infeasible { relaxation_db } => format!(
+            "that plant was taken in: no controller that was tried keeps to every specification {both}; with every limit {} dB wider one does",
+            significant(relaxation_db, 3)
+        ),
+        RepairStatus::NotStabilised => {
+            format!("that plant was taken in: no controller that was tried is stable {both}")
+        }
+        RepairStatus::NotConverged | RepairStatus::Stopped | RepairStatus::NothingToTakeIn => format!(
+            "that plant was taken in: the search for a controller that keeps to every specification {both} has not converged; another `design.seed` may find one"
+        ),
+    }
+}
+
+/// What the loop that was found does with the plant.
+fn with_waves(status: RepairStatus, view: &ProjectAudit) -> String {
+    let whose = if status == RepairStatus::Met { "with waves" } else { "with waves, the nearest controller" };
+    match view.audit.stability.verdict {
+        Verdict::Met => format!("{whose}: {}", margins(view)),
+        _ => format!("{whose}: {}", stability_sentence(&view.audit.stability, &view.names)),
+    }
+}
+
+/// `1 robust stability +0.1 dB at 330 rad/s, ...`
+fn margins(view: &ProjectAudit) -> String {
+    let findings = view.audit.specifications.iter().enumerate();
+    let told = findings.filter_map(|(index, finding)| {
+        let worst = finding.worst.as_ref()?;
+        Some(format!(
+            "{} {} {}",
+            view.numbered(index),
+            margin_words(worst.margin_db),
+            frequency_words(worst.frequency_rad_per_s)
+        ))
+    });
+    told.collect::<Vec<_>>().join(", ")
+}
+
+fn crossover_of(design: &ProjectDesign) -> Option<f64> {
+    let nominal = design.designed.figures.nominal.as_ref()?;
+    Some(nominal.crossover_rad_per_s).filter(|crossover| *crossover > 0.0)
+}
+
+/// Where the loop crosses over and where the line is a quarter wave long.
+fn crossover(repair: &Repair, told: &ProjectDesign) -> Option<String> {
+    let (own, quarter) = (crossover_of(told)?, repair.quarter_wave_rad_per_s?);
+    let beyond = if own > quarter { "beyond" } else { "below" };
+    Some(format!(
+        "the loop that satisfies the family crosses over at {}, {beyond} the quarter wave of its slower line at {}",
+        frequency(own),
+        frequency(quarter)
+    ))
+}
+
+fn frequency(rad_per_s: f64) -> String {
+    format!("{} rad/s ({})", significant(rad_per_s, 3), DisplayUnit::HERTZ.text(rad_per_s, 3))
+}
+
+/// What would help: a line so short that its quarter wave lies beyond the crossover, a wall that damps, less bandwidth.
+fn help(project: &Project, repair: &Repair, told: &ProjectDesign) -> String {
+    let mut ways = Vec::new();
+    let lines = project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
+    let longest = lines.iter().flatten().filter_map(|line| line.length).fold(0.0, f64::max);
+    if let (Some(own), Some(quarter)) = (crossover_of(told), repair.quarter_wave_rad_per_s)
+        && own > quarter
+        && longest > 0.0
+    {
+        let length = DisplayUnit::METRE.text(longest * quarter / own, 2);
+        ways.push(format!("a line shorter than {length}, whose quarter wave lies beyond that crossover"));
+    }
+    let is_hose = |line: &&Line| matches!(line.component(), Some(Component::Hose { .. }));
+    if lines.iter().flatten().any(is_hose) {
+        ways.push(
+            "what is known of the wall that damps its waves (`line.model = \"segments\"` with `line.relaxation_time`)"
+                .to_string(),
+        );
+    }
+    if let ControllerChoice::Grow { maximum_order } = told.options.controller {
+        ways.push(format!("a controller of higher order (`design.maximum_order`, now {maximum_order})"));
+    }
+    let wider = match repair.status {
+        RepairStatus::Infeasible { relaxation_db } => {
+            format!(" (limits {} dB wider are enough)", significant(relaxation_db, 3))
+        }
+        _ => String::new(),
+    };
+    ways.push(format!("specifications that ask for less bandwidth{wider}"));
+    format!("what would help: {}", ways.join("; "))
+}
+
+/// What the machine does under the controller that comes nearest.
+fn nearest(found: &ProjectDesign) -> Option<String> {
+    let trial = found.trial.as_ref()?;
+    let waves = trial.runs.iter().find(|run| run.quarter_wave_rad_per_s.is_some())?;
+    Some(format!(
+        "under the nearest controller (`{NEAREST_PROJECT}`) the machine with waves {} with its linear loop: {}",
+        agreement_word(waves.agreement),
+        waves.reason
+    ))
+}
+
+/// A machine with waves that contradicts, though its plant keeps to everything in the loop.
+pub(super) fn stable_with_waves(run: &Run) -> String {
+    format!(
+        "the linear loop keeps to every specification with waves in its plant too, and {} contradicts it all the same: that is none of the waves",
+        run.what
+    )
+}
+
+/// No controller at all.
+pub(super) fn nothing_found() -> String {
+    "that plant was taken in, and the search ended without a controller that makes every plant stable"
+        .to_string()
+}
+
+/// What no linear plant explains, run by run, and what to change.
+pub(super) fn left<'a>(runs: impl Iterator<Item = &'a Run>) -> Vec<String> {
+    let contradicting = runs.filter(|run| run.agreement == Agreement::Contradicts);
+    let others = contradicting.filter(|run| run.quarter_wave_rad_per_s.is_none());
+    others.map(|run| format!("{}: {}: {}", run.what, run.reason, advice(run))).collect()
+}
+
+/// What to change, by what the run met.
+fn advice(run: &Run) -> String {
+    let [from, to] = run.reference_n;
+    let step = display((to - from).abs(), &FORCE, 3);
+    let met = |names: &[&str]| run.met.iter().any(|one| names.iter().any(|name| one.starts_with(name)));
+    if run.machine.is_none() {
+        return "no linear plant has this; the machine must find its rest first, at a reference and a position that it can hold".to_string();
+    }
+    if met(&["cavitation", "empty", "supply_lost"]) {
+        return format!(
+            "no linear plant has this; a smaller step than {step}, more supply, or a higher tank pressure"
+        );
+    }
+    if met(&["end_stop", "load_contact"]) {
+        return format!("no linear plant has this; more room for the piston, or a smaller step than {step}");
+    }
+    if met(&["command_limit"]) {
+        return format!(
+            "no linear plant has this: the command was at its limit; a smaller step than {step}, a larger valve or supply, `controller.anti_windup`, or a loop with less bandwidth"
+        );
+    }
+    "no linear plant has this: a cycle of friction and of the valve about null, as far as nothing was met on the way; or a loop with less gain"
+        .to_string()
+}

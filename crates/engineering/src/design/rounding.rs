@@ -1,0 +1,85 @@
+//! What the converters of the controller's computer do to its loop.
+
+use phea_qft::design::quantisation::{LimitCycle, RoundingEffect, RoundingEffects, rounding_effects};
+use phea_qft::family::Family;
+use phea_qft::verification::PlantPoint;
+
+use crate::error::ProcedureError;
+use crate::quantity::significant;
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+
+/// What the converters do, or why that cannot be told.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rounding {
+    effects: Result<RoundingEffects, String>,
+    /// The plants that the effects count.
+    plants: Vec<PlantPoint>,
+}
+
+/// `None` where no converter rounds.
+pub(super) fn rounding(
+    setup: &Setup<'_>,
+    problem: &RobustProblem,
+) -> Result<Option<Rounding>, ProcedureError> {
+    let quantisation = setup.quantisation;
+    if quantisation.command.is_none() && quantisation.measurement.is_none() {
+        return Ok(None);
+    }
+    let effects = rounding_effects(&problem.compensation, &problem.members()?, &quantisation);
+    let plants = match &problem.family {
+        Family::Uncertain(family) => family.members().iter().cloned().map(PlantPoint::Parameters).collect(),
+        Family::Measured(family) => (0..family.plants().len()).map(PlantPoint::Measured).collect(),
+    };
+    Ok(Some(Rounding { effects: effects.map_err(|error| error.to_string()), plants }))
+}
+
+impl Rounding {
+    /// What is rounded, what that acts on, and the effect.
+    pub fn each(&self) -> Vec<(&'static str, &'static str, RoundingEffect)> {
+        let Ok(effects) = &self.effects else { return vec![] };
+        let rows = [
+            ("command", "output", effects.force_from_command),
+            ("measurement", "output", effects.force_from_measurement),
+            ("measurement", "command", effects.command_from_measurement),
+        ];
+        rows.into_iter().filter_map(|(of, on, effect)| Some((of, on, effect?))).collect()
+    }
+
+    /// What the converters do; or why that cannot be told.
+    pub fn effects(&self) -> Result<&RoundingEffects, &str> {
+        self.effects.as_ref().map_err(String::as_str)
+    }
+
+    /// The plant of this number among those that the effects count.
+    pub fn plant(&self, index: usize) -> PlantPoint {
+        self.plants.get(index).cloned().unwrap_or(PlantPoint::Measured(index))
+    }
+
+    /// In sentences.
+    pub fn sentences(&self) -> Vec<String> {
+        let effects = match &self.effects {
+            Ok(effects) => effects,
+            Err(reason) => return vec![format!("what the converters do cannot be told: {reason}")],
+        };
+        let mut sentences: Vec<String> = self
+            .each()
+            .into_iter()
+            .map(|(of, on, effect)| {
+                let [peak, rms] = [effect.peak, effect.rms].map(|size| significant(size, 3));
+                format!("the rounded {of} moves the {on} by {rms} rms, and by {peak} at most (SI)")
+            })
+            .collect();
+        sentences.extend(effects.limit_cycle.and_then(|cycle| match cycle {
+            LimitCycle::NotIntegrating => None,
+            LimitCycle::CanRest { .. } => {
+                Some("the loop can come to rest between the levels of its converters".to_string())
+            }
+            LimitCycle::Expected { .. } => Some(
+                "no level of the command leaves an error that the measurement does not show: expect the command to wander between two"
+                    .to_string(),
+            ),
+        }));
+        sentences
+    }
+}

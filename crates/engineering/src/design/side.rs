@@ -1,0 +1,129 @@
+//! A controller with its audit and the figures that an engineer compares controllers by.
+
+use phea_dynamics::controller::Controller;
+use phea_dynamics::frequency::{decibels, margins};
+use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::portable;
+use phea_qft::closed_loop::Member;
+use phea_qft::verification::Verdict;
+
+use crate::audit::ProjectAudit;
+use crate::robust::RobustProblem;
+
+/// A controller with its audit.
+#[derive(Clone, Debug)]
+pub struct Side {
+    /// Controller, prefilter, timing.
+    pub controller: Controller,
+    /// The family in its loop.
+    pub problem: RobustProblem,
+    /// Its audit.
+    pub view: ProjectAudit,
+    /// What it is compared by.
+    pub figures: LoopFigures,
+}
+
+/// What controllers are compared by, beside their verdicts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopFigures {
+    /// Poles of the controller: of the continuous law where there is one, even in a sampled loop.
+    pub order: usize,
+    /// Poles less zeros of the same.
+    pub relative_degree: i64,
+    /// lim s^r G(s) for that relative degree r, of the continuous law where there is one; of a law in z |G| at pi/T; dB.
+    pub high_frequency_gain_db: f64,
+    /// Poles of the prefilter, likewise.
+    pub prefilter_order: usize,
+    /// Of the nominal loop; `None` for an unstable or measured family.
+    pub nominal: Option<NominalMargins>,
+    /// The least |1 + L| of the family; `None` unless it is stable.
+    pub modulus_margin: Option<f64>,
+    /// The least delay that makes a plant unstable, s; `None` unless the family is stable.
+    pub delay_margin_s: Option<f64>,
+}
+
+/// Margins of the nominal loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NominalMargins {
+    /// The factor by which the gain may grow, dB.
+    pub gain_margin_db: f64,
+    /// The factor to which it may fall, dB; minus infinity where it may vanish.
+    pub gain_reduction_db: f64,
+    /// Degrees.
+    pub phase_margin_deg: f64,
+    /// The highest frequency at which |L| = 1, rad/s; zero where there is none.
+    pub crossover_rad_per_s: f64,
+}
+
+impl Side {
+    /// A controller with the audit of its loop.
+    ///
+    /// # Errors
+    /// [`LinearError`] for a controller or a nominal plant that is no transfer function.
+    pub fn new(
+        controller: Controller,
+        problem: RobustProblem,
+        view: ProjectAudit,
+    ) -> Result<Side, LinearError> {
+        let figures = figures(&controller, &problem, &view)?;
+        Ok(Side { controller, problem, view, figures })
+    }
+
+    /// Whether the law itself is given in z.
+    pub fn is_in_z(&self) -> bool {
+        let law = self.controller.feedback.transfer_function();
+        law.is_ok_and(|law| law.domain() != TimeDomain::Continuous)
+    }
+}
+
+fn figures(
+    controller: &Controller,
+    problem: &RobustProblem,
+    view: &ProjectAudit,
+) -> Result<LoopFigures, LinearError> {
+    let law = controller.feedback.transfer_function()?;
+    let (zeros, poles) = (law.zeros().len() as i64, law.poles().len() as i64);
+    let stability = &view.audit.stability;
+    let nominal = if stability.verdict == Verdict::Violated { None } else { nominal_margins(problem)? };
+    let deployed = problem.compensation.feedback();
+    let end = problem.compensation.highest_frequency_rad_per_s();
+    Ok(LoopFigures {
+        order: law.poles().len(),
+        relative_degree: poles - zeros,
+        high_frequency_gain_db: decibels(match law.domain() {
+            TimeDomain::Continuous => law.gain().abs(),
+            TimeDomain::Discrete { .. } => portable::magnitude(deployed.at_frequency(end)),
+        }),
+        prefilter_order: controller.prefilter.transfer_function()?.poles().len(),
+        nominal,
+        modulus_margin: stability.closest_approach.as_ref().map(|approach| approach.distance),
+        delay_margin_s: view.audit.delay_margin.as_ref().map(|margin| margin.delay_s),
+    })
+}
+
+fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalMargins>, LinearError> {
+    let Some(plant) = nominal_plant(problem)? else { return Ok(None) };
+    let found = margins(&plant.series(problem.compensation.feedback())?);
+    let crossover = found.phase_margins.iter().map(|margin| margin.frequency_rad_per_s).fold(0.0, f64::max);
+    Ok(Some(NominalMargins {
+        gain_margin_db: decibels(found.gain_increase_factor()),
+        gain_reduction_db: decibels(found.gain_decrease_factor()),
+        phase_margin_deg: found.phase_margin_deg(),
+        crossover_rad_per_s: crossover,
+    }))
+}
+
+/// P H of the nominal plant with the delay of the loop, in z where it samples; `None` for one without polynomials.
+fn nominal_plant(problem: &RobustProblem) -> Result<Option<TransferFunction>, LinearError> {
+    Ok(match problem.nominal()? {
+        Some(Member::Continuous { plant, sensor }) => {
+            let command = TransferFunction::from_polynomials(
+                &Polynomial::new(plant.command.numerator),
+                &Polynomial::new(plant.command.denominator),
+            )?;
+            Some(command.with_dead_time(plant.dead_time_s)?.series(&sensor)?)
+        }
+        Some(Member::Sampled { with_sensor, .. }) => Some(with_sensor),
+        Some(Member::Responding { .. } | Member::Measured { .. }) | None => None,
+    })
+}

@@ -1,0 +1,105 @@
+//! Status, objective and structure in words.
+
+use phea_dynamics::controller::Element;
+use phea_qft::design::{ControllerChoice, DesignStatus, Objective};
+use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::verification::Verdict;
+
+use super::{ProjectDesign, Repair, RepairStatus};
+use crate::project::DESIGN_OBJECTIVES;
+use crate::project::DesignObjective;
+use crate::quantity::significant;
+
+/// The word of a status in JSON.
+pub fn status_key(view: &ProjectDesign) -> &'static str {
+    match view.design.status {
+        _ if view.stopped => "stopped",
+        DesignStatus::Met if view.designed.view.audit.verdict == Verdict::NotProven => "not_proven",
+        DesignStatus::Met => "met",
+        DesignStatus::Infeasible(_) => "infeasible",
+        DesignStatus::NotConverged { .. } => "not_converged",
+        DesignStatus::NotStabilised => "not_stabilised",
+    }
+}
+
+/// The same for people, with what it means.
+pub fn status_sentence(view: &ProjectDesign) -> String {
+    let verdict =
+        if view.is_met() { "keeps to every specification" } else { "does not keep to every specification" };
+    if view.stopped {
+        return format!("stopped: this is the best controller found so far, and it {verdict}");
+    }
+    match &view.design.status {
+        DesignStatus::Met if view.designed.view.audit.verdict == Verdict::NotProven => {
+            "not proven: the controller satisfies every specification over the family, which does not count all that is declared"
+                .to_string()
+        }
+        DesignStatus::Met => "met: the controller keeps to every specification".to_string(),
+        DesignStatus::Infeasible(relaxation) => format!(
+            "infeasible: no controller that was tried{} keeps to every specification; with every limit {} dB wider one does",
+            tried(&view.options.controller),
+            significant(relaxation.relaxation_db, 3)
+        ),
+        DesignStatus::NotConverged { rounds } => format!(
+            "not converged: after {rounds} rounds of search and audit the audit still finds what the search did not see; the controller {verdict}"
+        ),
+        DesignStatus::NotStabilised => {
+            format!(
+                "not stabilised: no controller that was tried{} makes every plant stable",
+                tried(&view.options.controller)
+            )
+        }
+    }
+}
+
+/// The word of what a repair came to, in JSON.
+pub fn repair_key(repair: &Repair) -> &'static str {
+    match repair.status {
+        RepairStatus::Met => "met",
+        RepairStatus::Infeasible { .. } => "infeasible",
+        RepairStatus::NotConverged => "not_converged",
+        RepairStatus::NotStabilised => "not_stabilised",
+        RepairStatus::Stopped => "stopped",
+        RepairStatus::NothingToTakeIn => "nothing_to_take_in",
+    }
+}
+
+/// The same for people.
+pub fn repair_words(repair: &Repair) -> String {
+    repair_key(repair).replace('_', " ")
+}
+
+fn tried(choice: &ControllerChoice) -> String {
+    match choice {
+        ControllerChoice::Given(_) => ", all of the given structure,".to_string(),
+        ControllerChoice::Grow { maximum_order } => format!(", of order {maximum_order} at most,"),
+    }
+}
+
+/// The word of an objective, as the project file spells it.
+pub fn objective_key(objective: Objective) -> &'static str {
+    let declared = match objective {
+        Objective::LeastHighFrequencyGain => DesignObjective::LeastHighFrequencyGain,
+        Objective::LeastBandwidth => DesignObjective::LeastBandwidth,
+        Objective::BestWorstMargin => DesignObjective::BestWorstMargin,
+    };
+    DESIGN_OBJECTIVES.iter().find(|(_, value)| *value == declared).map_or("", |(word, _)| word)
+}
+
+/// `integrator, zero, pole pair`
+pub fn structure_words(structure: &Structure) -> String {
+    let words: Vec<String> = structure.parts.iter().map(|part| part_key(part).replace('_', " ")).collect();
+    if words.is_empty() { "gain".to_string() } else { words.join(", ") }
+}
+
+/// The word of a factor, as the project file spells it.
+pub fn part_key(part: &Part) -> &'static str {
+    match part {
+        Part::Fixed(Element::Integrator) => "integrator",
+        Part::Fixed(_) => "fixed",
+        Part::RealZero { .. } => "zero",
+        Part::RealPole { .. } => "pole",
+        Part::ZeroPair { .. } => "zero_pair",
+        Part::PolePair { .. } => "pole_pair",
+    }
+}

@@ -1,0 +1,102 @@
+//! Why a procedure that is made of several has no result.
+
+use phea_project::Report as Refusal;
+
+use crate::audit::AuditError;
+use crate::campaign::CampaignError;
+use crate::control::ControlError;
+use crate::design::DesignError;
+use crate::family::FamilyError;
+use crate::rig::RigError;
+use crate::shaping::ShapingError;
+use crate::simulate::SimulateError;
+
+/// Why a procedure that is made of several has no result: the error of the one that failed.
+#[derive(Debug, thiserror::Error)]
+pub enum ProcedureError {
+    /// The rig cannot be computed with.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// The controller is no transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// A linear system cannot be computed.
+    #[error("the linear models: {0}")]
+    Linear(#[from] phea_dynamics::linear::LinearError),
+    /// A response in time cannot be computed.
+    #[error("a response: {0}")]
+    Time(#[from] phea_dynamics::time_response::TimeResponseError),
+    /// The loop cannot be closed.
+    #[error("the linear loop: {0}")]
+    Loop(#[from] crate::linear_loop::LoopError),
+    /// A quantity of the command line is wrong.
+    #[error("--{option} {text}: {message}")]
+    Option {
+        /// Name of the option.
+        option: &'static str,
+        /// As written.
+        text: String,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// The catalogue, or a project that was changed, cannot be read.
+    #[error("{0}")]
+    Catalogue(Refusal),
+    /// The project does not say what to size for.
+    #[error("{0}")]
+    Sizing(#[from] crate::rig::SizingError),
+    /// There is nothing that could be audited.
+    #[error(transparent)]
+    Audit(#[from] AuditError),
+    /// There is nothing to design for, or nothing was found.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    /// There is no family of plants.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+    /// A specification cannot be met by any loop, or is contradictory.
+    #[error(transparent)]
+    Specification(#[from] crate::specification::SpecificationError),
+    /// Templates or bounds cannot be computed.
+    #[error(transparent)]
+    Robust(#[from] crate::robust::RobustError),
+    /// A controller cannot be shaped so.
+    #[error(transparent)]
+    Shaping(#[from] ShapingError),
+    /// The machine cannot be simulated.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// There is no campaign.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
+    /// Whoever watched a long procedure stopped it.
+    #[error("stopped")]
+    Stopped,
+}
+
+impl ProcedureError {
+    /// The findings, where files that the project names were refused with a place for each.
+    pub fn refusal(&self) -> Option<&Refusal> {
+        match self {
+            ProcedureError::Catalogue(report) => Some(report),
+            ProcedureError::Family(FamilyError::Measurement(report)) => Some(report),
+            ProcedureError::Shaping(ShapingError::Refused(report)) => Some(report),
+            ProcedureError::Campaign(CampaignError::Settings(report)) => Some(report),
+            ProcedureError::Simulate(error) | ProcedureError::Campaign(CampaignError::Simulate(error)) => {
+                error.refusal()
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a file could not be written or read back: nothing is wrong with what was asked.
+    pub fn is_of_files(&self) -> bool {
+        matches!(
+            self,
+            ProcedureError::Simulate(SimulateError::Write(_))
+                | ProcedureError::Campaign(
+                    CampaignError::Ledger(_) | CampaignError::Simulate(SimulateError::Write(_))
+                )
+        )
+    }
+}

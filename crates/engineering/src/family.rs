@@ -1,0 +1,174 @@
+//! From a project to the family of plants that robust design works on.
+
+mod formula;
+mod hydraulic;
+mod in_motion;
+pub mod measured;
+mod region;
+mod uncertain;
+mod visited;
+mod visited_box;
+
+use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant, UncertainPlantError};
+use phea_hydraulics::line::LineError;
+use phea_qft::family::{Family, MeasurementError};
+
+use crate::project::{FormulaError, Project, Report, SpecificationKind};
+use crate::rig::RigError;
+use crate::setup::Setup;
+use crate::source::Source;
+
+pub use visited_box::{Extreme, VisitedRange, visited_box};
+
+/// Why a project has no uncertain plant.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FamilyError {
+    /// The rig cannot be computed with.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// A parameter of the linear model that is set outright, outside of its own range.
+    #[error(
+        "`linear.{name}` = {value:e} lies outside of its range in [uncertainty], {minimum:e} to {maximum:e}: widen the range, or take the number out of [linear]"
+    )]
+    Linear {
+        /// The parameter.
+        name: String,
+        /// What `[linear]` says, SI.
+        value: f64,
+        /// Lower end of the range, SI.
+        minimum: f64,
+        /// Upper end of the range, SI.
+        maximum: f64,
+    },
+    /// The box is empty or its coefficients are.
+    #[error("[uncertainty]: {0}")]
+    Plant(#[from] UncertainPlantError),
+    /// The members are no plants of the box.
+    #[error("[uncertainty]: {0}")]
+    Members(#[from] phea_qft::family::FamilyError),
+    /// A dead time that is negative, or no number, at a member.
+    #[error("[plant] `delay` is {delay_s} s at {member}")]
+    Delay {
+        /// What the formula gives, s.
+        delay_s: f64,
+        /// The member's parameters with their values.
+        member: String,
+    },
+    /// Files of measured responses that cannot be taken as they are, with every place.
+    #[error("[family] `measured` cannot be taken as it is\n{0}")]
+    Measurement(Box<Report>),
+    /// Measured responses that are no family.
+    #[error("[family] `measured`: {0}")]
+    Measured(#[from] MeasurementError),
+    /// A member without polynomials and with a coefficient that gives energy: how many of its own poles grow is not known.
+    #[error(
+        "with lines in motion, or a load velocity fed forward late, every coefficient of friction, leakage, valve and load must be zero or \
+         more, or the plant's own stability is not known: {member}"
+    )]
+    NotPassive {
+        /// The member's parameters with their values.
+        member: String,
+    },
+    /// A line of a member that its model does not fit.
+    #[error("[line] model: {error}, at {member}")]
+    Line {
+        /// What is wrong.
+        error: LineError,
+        /// The member's parameters with their values.
+        member: String,
+    },
+    /// A limit on load motion, and a measured plant without that path.
+    #[error("\"load_motion\" needs the columns `load_motion_...`, which {0} lacks")]
+    LoadMotion(String),
+    /// The plant's text is no ratio of polynomials.
+    #[error("[plant]: {message}", message = .0.message)]
+    Formula(FormulaError),
+    /// No operating point at a plant of the box, or none that is known to be the rig's.
+    #[error("no operating point at {member}: {reason}")]
+    OperatingPoint {
+        /// The parameters that move it, with their values.
+        member: String,
+        /// Why there is none.
+        reason: String,
+    },
+    /// A region that the pump does not reach.
+    #[error("[family.operating_region] `velocity`: {0}")]
+    Region(String),
+    /// An uncertain path without a formula that carries it into the linear model.
+    #[error("[uncertainty] `{path}`: {reason}")]
+    Path {
+        /// The path.
+        path: String,
+        /// Why there is none, and what to use instead.
+        reason: String,
+    },
+}
+
+/// The family of a project: the linear model of its actuator, or the transfer function it states, over the box of
+/// `[uncertainty]`; or the plants that were measured. Where lines move its plants have no polynomials.
+///
+/// `[family]` says which plants of the box are looked at: its `grid`, its `vertices`, points at `random`, explicit `cases`, or several
+/// of them together; the grid where it says nothing. Where the `cases` stand alone nothing between them belongs to the family.
+///
+/// # Errors
+/// [`FamilyError`] if there is no rig, an uncertain name is no parameter of the plant, or a member lies outside of the box.
+///
+/// # Example
+/// ```
+/// use phea_qft::family::Family;
+/// use phea_project::source::Memory;
+/// let text = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\
+///             [uncertainty]\nk = { nominal = 2, minimum = 1, maximum = 4, points = 3, spacing = \"log\" }\n";
+/// let source = Memory::default().with("servo.toml", text);
+/// let project = phea_project::read(&source, "servo.toml", &[], &[])?.project;
+/// let setup = phea_engineering::setup::Setup::new(&project)?;
+/// let Family::Uncertain(family) = phea_engineering::family::family(&setup, &source)? else { panic!("a box") };
+/// let gains: Vec<f64> = family.members().iter().map(|values| values[0].round()).collect();
+/// assert_eq!(gains, [2.0, 1.0, 4.0]); // the nominal plant first, then what else is on the grid
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn family(setup: &Setup<'_>, source: &dyn Source) -> Result<Family, FamilyError> {
+    let project = setup.project;
+    let family = match &project.family {
+        Some(declared) if !declared.measured.is_empty() => {
+            Family::Measured(measured::family(project, declared, source)?)
+        }
+        _ => {
+            let lumped = uncertain::family(project, uncertain_plant(setup)?)?;
+            visited::check(setup, &lumped)?;
+            Family::Uncertain(in_motion::family(setup, &lumped)?.unwrap_or(lumped))
+        }
+    };
+    check_second_path(project, &family)?;
+    Ok(family)
+}
+
+/// A limit on load motion needs a path from it.
+fn check_second_path(project: &Project, family: &Family) -> Result<(), FamilyError> {
+    let wanted = project.specifications.iter().any(|one| one.kind == SpecificationKind::LoadMotion);
+    match family {
+        Family::Measured(family) if wanted => {
+            let without = family.plants().iter().find(|plant| plant.disturbance.is_none());
+            without.map_or(Ok(()), |plant| Err(FamilyError::LoadMotion(plant.name.clone())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The plant over the box of its uncertain parameters.
+fn uncertain_plant(setup: &Setup<'_>) -> Result<UncertainPlant, FamilyError> {
+    let project = setup.project;
+    let parameters = uncertain::parameters(project)?;
+    let is_outside = |one: &&UncertainParameter| {
+        let set = project.linear.get(&one.name);
+        set.is_some_and(|value| value < one.minimum || value > one.maximum)
+    };
+    if let Some(UncertainParameter { name, nominal, minimum, maximum }) = parameters.iter().find(is_outside) {
+        let (value, minimum, maximum) = (*nominal, *minimum, *maximum);
+        return Err(FamilyError::Linear { name: name.clone(), value, minimum, maximum });
+    }
+    match &project.plant {
+        Some(plant) => formula::uncertain_plant(plant, parameters),
+        None => hydraulic::uncertain_plant(setup, parameters),
+    }
+}

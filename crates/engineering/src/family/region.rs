@@ -1,0 +1,51 @@
+//! What of an operating region the pump can give.
+
+use phea_hydraulics::servovalve::tare_flow;
+
+use super::FamilyError;
+use crate::project::{Project, Uncertain};
+use crate::quantity::{VELOCITY, display};
+use crate::rig::{Numbers, components};
+
+/// Path of the number that a pump limits.
+const PATH: &str = "operating_point.velocity";
+
+/// The uncertain numbers, the velocity of `[family.operating_region]` cut to what the pump can give at the declared numbers.
+///
+/// ```text
+/// -(q_pump - q_tare)/A_B <= v <= (q_pump - q_tare)/A_A          the chamber that supply fills; leakage is left aside
+/// ```
+///
+/// # Errors
+/// [`FamilyError::Region`] if nothing of the range is left, or the nominal velocity is not within it.
+pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, FamilyError> {
+    let mut numbers = project.uncertain_numbers();
+    let region = project.family.as_ref().and_then(|family| family.operating_region.as_ref());
+    let is_velocity = |one: &&mut Uncertain| one.name == PATH;
+    let velocity = numbers.iter_mut().find(is_velocity);
+    let (Some(velocity), Some([least, most])) = (velocity, limits(project)) else { return Ok(numbers) };
+    if region.is_none_or(|region| region.velocity.is_none()) {
+        return Ok(numbers);
+    }
+    velocity.minimum = velocity.minimum.max(least);
+    velocity.maximum = velocity.maximum.min(most);
+    let within = velocity.minimum..=velocity.maximum;
+    if !within.contains(&velocity.nominal) {
+        let [nominal, least, most] =
+            [velocity.nominal, least, most].map(|value| display(value, &VELOCITY, 4));
+        let message = format!("the pump gives {least} to {most}, and the nominal velocity is {nominal}");
+        return Err(FamilyError::Region(message));
+    }
+    Ok(numbers)
+}
+
+/// The least and the greatest velocity in m/s that the pump can give; `None` where no flow is declared.
+pub(super) fn limits(project: &Project) -> Option<[f64; 2]> {
+    let declared = project.actuator.as_ref()?;
+    let components = components(declared, &Numbers::declared());
+    let drop = components.supply.pressure - components.supply.tank_pressure;
+    let reference = declared.valve.tare_pressure.unwrap_or(drop);
+    let left =
+        (declared.supply.flow()? - tare_flow(&components.valve, &components.supply, reference)).max(0.0);
+    Some([-left / components.cylinder.area_b, left / components.cylinder.area_a])
+}

@@ -1,0 +1,179 @@
+//! The operating points of a family: recorded with what moves them, checked at its plants, and the box of linear parameters that they visit.
+
+use std::collections::BTreeSet;
+
+use phea_dynamics::expression::Expression;
+use phea_dynamics::uncertain_plant::UncertainParameter;
+use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+use phea_hydraulics::operating_point::{Settled, operating_point};
+use phea_qft::family::{Extent, UncertainFamily};
+
+use super::FamilyError;
+use super::hydraulic::{Equal, Open};
+use crate::project::Project;
+use crate::quantity::significant;
+use crate::rig::{Numbers, Rig, RigError, are_equal, components, sides, states_one_pressure};
+use crate::setup::Setup;
+
+/// Relative error of a pressure that is none.
+const EXACT: f64 = 1e-9;
+/// Most corners of a box that are looked at one by one.
+const CORNERS: usize = 4096;
+/// Points within a box at which equal chambers are looked for.
+const WITHIN: usize = 64;
+
+/// The rig of a family with its uncertain numbers open.
+#[derive(Debug)]
+pub(super) struct Visited {
+    pub(super) rig: Rig,
+    pub(super) names: Vec<String>,
+    /// Whether an uncertain number moves the pressures.
+    pub(super) moved: bool,
+    /// What is equal on both sides of every plant.
+    pub(super) equal: Equal,
+    /// The uncertain numbers that move them.
+    movers: Vec<usize>,
+    /// Command and both pressures.
+    settled: Expression,
+}
+
+impl Visited {
+    pub(super) fn new(setup: &Setup<'_>, parameters: &[UncertainParameter]) -> Result<Visited, FamilyError> {
+        let (project, rig) = (setup.project, setup.rig()?.clone());
+        let Some(declared) = &project.actuator else { return Err(RigError::NoActuator.into()) };
+        let names: Vec<String> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
+        let open = Open { project, declared, rig: &rig, names: &names };
+        let all: Vec<&str> = names.iter().map(String::as_str).collect();
+        let settled = Expression::record(&all, |values| {
+            let (_, steady, balance) = open.balance(values);
+            let Settled { command, pressures: [a, b] } = balance.settle(steady);
+            vec![command, a, b]
+        });
+        let movers: Vec<usize> = (0..names.len()).filter(|index| settled.depends_on(*index)).collect();
+        let moved = !movers.is_empty();
+        let both = Expression::record(&all, |values| {
+            let place = open.place(values, moved);
+            let edges = place.supply.map_or([0.0.into(); 2], |supply| supply.edges);
+            [edges].into_iter().chain(sides(&place.chambers)).flatten().collect()
+        });
+        let plants = within(parameters);
+        let nominal: Vec<f64> = parameters.iter().map(|parameter| parameter.nominal).collect();
+        let pairs: Vec<Vec<[f64; 2]>> = [&nominal]
+            .into_iter()
+            .chain(&plants)
+            .map(|values| both.evaluate(values).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect())
+            .collect();
+        let equal = |from: usize, to: usize| {
+            pairs.iter().all(|pairs| are_equal(pairs.iter().copied().take(to).skip(from)))
+        };
+        let edges = equal(0, 1);
+        let chambers = are_equal(sides(&rig.two_pressure)) && equal(1, usize::MAX);
+        let one_pressure = states_one_pressure(&rig.parameters, &names) || (chambers && edges);
+        Ok(Visited { rig, names, moved, equal: Equal { one_pressure, edges }, movers, settled })
+    }
+
+    /// What is wrong at a plant; nothing where its recorded pressures are those of its operating point.
+    fn problem(&self, open: &Open<'_>, values: &[f64]) -> Option<String> {
+        let (position, steady, balance) = open.balance(values);
+        let results = self.settled.evaluate(values);
+        let &[command, pressure_a, pressure_b] = results.first_chunk()?;
+        let settled = Settled { command, pressures: [pressure_a, pressure_b] };
+        let stroke = Numbers::open(open.names, values).at("cylinder.stroke", open.declared.cylinder.stroke);
+        let sound = balance.error(steady, &settled) <= EXACT
+            && command.abs() <= balance.valve.nominal_voltage
+            && pressure_a.min(pressure_b) > -ATMOSPHERIC_PRESSURE_ABSOLUTE
+            && (0.0..=stroke).contains(&position);
+        if sound && balance.is_unique(steady) {
+            return None;
+        }
+        let components = components(open.declared, &Numbers::open(open.names, values));
+        let components = Components { supply: balance.supply, ..components };
+        let afresh = Actuator::new(components).map_err(|error| error.to_string()).and_then(|actuator| {
+            let point = operating_point(&actuator, position, steady.into());
+            point.map_err(|error| error.to_string())
+        });
+        let point = match afresh {
+            Err(reason) => return Some(reason),
+            Ok(point) => point,
+        };
+        let drop = balance.supply.pressure - balance.supply.tank_pressure;
+        let error = (command - point.command).abs() / balance.valve.nominal_voltage
+            + (pressure_a - point.pressure_a).abs() / drop
+            + (pressure_b - point.pressure_b).abs() / drop;
+        (error.is_nan() || error > EXACT).then(|| {
+            let error = significant(100.0 * error, 2);
+            format!("the pressures recorded for it miss those that balance by {error} % of the supply's")
+        })
+    }
+
+    /// The parameters that move the operating point, with their values.
+    fn member(&self, project: &Project, values: &[f64]) -> String {
+        let named =
+            self.movers.iter().filter_map(|&index| Some((self.names.get(index)?, values.get(index)?)));
+        let named: Vec<String> =
+            named.map(|(name, value)| format!("{name} = {}", project.in_words(name, *value))).collect();
+        named.join(", ")
+    }
+
+    /// The plants of a family, and the corners of its box, that differ in what moves the operating point.
+    fn places(&self, family: &UncertainFamily) -> Vec<Vec<f64>> {
+        let moves = |parameters: &[usize]| parameters.iter().any(|index| self.movers.contains(index));
+        let axes: Vec<usize> = (0..family.coordinates().len())
+            .filter(|&axis| family.coordinates().get(axis).is_some_and(|one| moves(&one.parameters)))
+            .collect();
+        let count = match family.extent() {
+            Extent::Box => 1_usize.checked_shl(axes.len() as u32).unwrap_or(CORNERS).min(CORNERS),
+            Extent::Members => 0,
+        };
+        let nominal = family.shares(&family.plant().nominal());
+        let corner = |corner: usize| {
+            let mut shares = nominal.clone();
+            for (place, &axis) in axes.iter().enumerate() {
+                shares[axis] = f64::from(u8::from(corner >> place & 1 == 1));
+            }
+            family.values(&shares)
+        };
+        let mut seen = BTreeSet::new();
+        let bits = |values: &Vec<f64>| -> Vec<u64> {
+            self.movers.iter().filter_map(|&index| values.get(index)).map(|value| value.to_bits()).collect()
+        };
+        let all = family.members().iter().cloned().chain((0..count).map(corner));
+        all.filter(|values| seen.insert(bits(values))).collect()
+    }
+}
+
+/// Looks at every plant of the family, and at every corner of its box, whether the recorded pressures are those of its operating point.
+///
+/// # Errors
+/// [`FamilyError::OperatingPoint`] with the first where they are not, and why.
+pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), FamilyError> {
+    let project = setup.project;
+    let Some(declared) = &project.actuator else { return Ok(()) };
+    let visited = Visited::new(setup, family.plant().parameters())?;
+    if !visited.moved {
+        return Ok(());
+    }
+    let open = Open { project, declared, rig: &visited.rig, names: &visited.names };
+    for values in visited.places(family) {
+        if let Some(reason) = visited.problem(&open, &values) {
+            return Err(FamilyError::OperatingPoint { member: visited.member(project, &values), reason });
+        }
+    }
+    Ok(())
+}
+
+/// Both ends of a box and points within it: multiples of the golden ratio fill the unit interval evenly.
+fn within(parameters: &[UncertainParameter]) -> Vec<Vec<f64>> {
+    let mut share = 0.0_f64;
+    let at = |parameter: &UncertainParameter, share: f64| {
+        parameter.minimum + share * (parameter.maximum - parameter.minimum)
+    };
+    let mut next = |parameter: &UncertainParameter| {
+        share = (share + 0.618_033_988_749_895).fract();
+        at(parameter, share)
+    };
+    let mut points: Vec<Vec<f64>> = (0..WITHIN).map(|_| parameters.iter().map(&mut next).collect()).collect();
+    points.extend([0.0, 1.0].map(|share| parameters.iter().map(|one| at(one, share)).collect()));
+    points
+}

@@ -1,0 +1,33 @@
+//! The engineer's procedures: what a project says becomes a rig, and what is asked of it an answer in values.
+//!
+//! ```text
+//! Project -> setup::Setup { rig, controller, prefilter, sensor, timing }
+//! Setup   -> derived, sizing, linearize                       what follows from the rig
+//! Setup   -> family -> robust::RobustProblem -> audit, shaping, design (-> trial on the machine -> repair)
+//! Setup   -> simulate::Bench -> simulate, campaign            the nonlinear machine
+//! ```
+//!
+//! Results are values; text, JSON and figures of them are made in the workbench.
+
+pub mod audit;
+pub mod campaign;
+pub mod caveat;
+pub mod control;
+pub mod derived;
+pub mod design;
+pub mod error;
+pub mod family;
+pub mod linear_loop;
+pub mod linearize;
+pub mod number_table;
+pub mod rig;
+pub mod robust;
+pub mod setup;
+pub mod shaping;
+pub mod simulate;
+pub mod sizing;
+pub mod specification;
+pub mod trial;
+
+pub(crate) use phea_project::{self as project, catalogue, source};
+pub(crate) use phea_quantity::{self as quantity, spelling};

@@ -1,0 +1,195 @@
+//! The linear loop of a rig with its given controller and prefilter: margins and step response.
+
+pub mod of_responses;
+
+use phea_dynamics::controller::Controller;
+use phea_dynamics::frequency::{Margins, margins};
+use phea_dynamics::linear::{Discretization, LinearError, TimeDomain, TransferFunction};
+use phea_dynamics::time_response::{
+    Settling, StepBaseline, StepMetrics, TimeResponseError, step_metrics, step_response, uniform_times,
+};
+
+/// The loop, closed, and what is read off it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearLoop {
+    /// G
+    pub controller: TransferFunction,
+    /// F: in s where it acts before the samples of the loop.
+    pub prefilter: TransferFunction,
+    /// L = P G H with the delay of the loop.
+    pub open_loop: TransferFunction,
+    /// Gain, phase, modulus and delay margin of L.
+    pub margins: Margins,
+    /// Whether the closed loop is stable.
+    pub stability: LoopStability,
+    /// F P G/(1 + L), where it can be had.
+    pub step: Result<StepView, String>,
+}
+
+/// Whether a closed loop is stable.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoopStability {
+    /// Every pole of the closed loop decays.
+    Stable,
+    /// A pole of the closed loop does not decay.
+    Unstable,
+    /// Its poles cannot be had, and why.
+    Unknown(String),
+}
+
+/// A unit step through prefilter and closed loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepView {
+    /// s
+    pub times_s: Vec<f64>,
+    /// Force over the reference's height.
+    pub response: Vec<f64>,
+    /// The prefiltered reference over its height.
+    pub filtered_reference: Vec<f64>,
+    /// The command per newton of reference, V/N.
+    pub command_v_per_n: Vec<f64>,
+    /// With the band they are stated for.
+    pub metrics: StepMetrics,
+}
+
+/// Why there is no linear loop.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LoopError {
+    /// A system cannot be built.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    /// A response cannot be computed.
+    #[error(transparent)]
+    Time(#[from] TimeResponseError),
+}
+
+/// Number of samples of a step response.
+const SAMPLES: usize = 2000;
+
+/// Closes the loop of plant P with a controller that sees the output through the sensor H.
+///
+/// A continuous controller in a continuous loop; a sampled one with the plant held by a zero-order hold, the delay of the
+/// loop in it. A prefilter that acts before the samples is met by a step as the samples of its step response.
+///
+/// # Errors
+/// A system that cannot be built or discretised.
+pub fn linear_loop(
+    plant: &TransferFunction,
+    controller: &Controller,
+    sensor: &TransferFunction,
+    band_percent: f64,
+) -> Result<LinearLoop, LoopError> {
+    let (feedback, prefilter) =
+        (controller.feedback.transfer_function()?, controller.prefilter.transfer_function()?);
+    let delay_s = controller.timing.delay_s;
+    let (plant, with_sensor, feedback, prefilter, of_step) = match controller.timing.sample_time_s {
+        None => {
+            let late = plant.clone().with_dead_time(delay_s)?;
+            let with_sensor = late.series(sensor)?;
+            (late, with_sensor, feedback, prefilter.clone(), prefilter)
+        }
+        Some(sample_time_s) => {
+            let sampled = |function: TransferFunction| match function.domain() {
+                TimeDomain::Continuous => {
+                    function.discretized(sample_time_s, controller.timing.discretization)
+                }
+                TimeDomain::Discrete { .. } => Ok(function),
+            };
+            let held = |function: TransferFunction| {
+                function.discretized(sample_time_s, Discretization::ZeroOrderHold)
+            };
+            let late = plant.clone().with_dead_time(delay_s)?;
+            let with_sensor = held(late.series(sensor)?)?;
+            let [acts, of_step] = match controller.timing.continuous_prefilter {
+                true => [prefilter.clone(), held(prefilter)?],
+                false => [sampled(prefilter.clone())?, sampled(prefilter)?],
+            };
+            (held(late)?, with_sensor, sampled(feedback)?, acts, of_step)
+        }
+    };
+    let open_loop = with_sensor.series(&feedback)?;
+    let stability = stability(&open_loop)?;
+    let step = match () {
+        () if stability == LoopStability::Unstable => {
+            Err("the closed loop is unstable, its response grows without bound".to_string())
+        }
+        () if !prefilter.is_stable() => Err("the prefilter is unstable".to_string()),
+        () => step_view(&plant, &with_sensor, &feedback, &of_step, band_percent)
+            .map_err(|error| error.to_string()),
+    };
+    Ok(LinearLoop {
+        margins: margins(&open_loop),
+        controller: feedback,
+        prefilter,
+        open_loop,
+        stability,
+        step,
+    })
+}
+
+fn stability(open_loop: &TransferFunction) -> Result<LoopStability, LinearError> {
+    let reason = |words: String| Ok(LoopStability::Unknown(words));
+    if open_loop.dead_time_s() > 0.0 && open_loop.domain() == TimeDomain::Continuous {
+        return reason("with dead time it has no finite number of poles".to_string());
+    }
+    let unity = TransferFunction::gain_only(1.0).in_domain(open_loop.domain())?;
+    match open_loop.feedback(&unity) {
+        Ok(closed) if closed.is_stable() => Ok(LoopStability::Stable),
+        Ok(_) => Ok(LoopStability::Unstable),
+        Err(error) => reason(error.to_string()),
+    }
+}
+
+fn step_view(
+    plant: &TransferFunction,
+    with_sensor: &TransferFunction,
+    feedback: &TransferFunction,
+    prefilter: &TransferFunction,
+    band_percent: f64,
+) -> Result<StepView, LoopError> {
+    // U/R = F G/(1 + G P H), closed from the factors of G and P H; the poles of P are its zeros and cancel exactly in Y = P U.
+    let command = prefilter.series(&feedback.feedback(with_sensor)?)?;
+    let through = command.series(plant)?.without_common_factors(0.0);
+    let duration = duration(&through);
+    let times_s = match plant.domain() {
+        TimeDomain::Continuous => uniform_times(duration, SAMPLES)?,
+        TimeDomain::Discrete { sample_time_s } => {
+            let samples = (duration / sample_time_s).ceil().clamp(10.0, 100_000.0) as usize;
+            (0..samples).map(|sample| sample as f64 * sample_time_s).collect()
+        }
+    };
+    let response = step_response(&through, &times_s)?;
+    let baseline = StepBaseline::to_value(1.0);
+    let metrics = step_metrics(&times_s, &response, baseline, band_percent)?;
+    Ok(StepView {
+        filtered_reference: step_response(prefilter, &times_s)?,
+        command_v_per_n: step_response(&command, &times_s)?,
+        metrics,
+        response,
+        times_s,
+    })
+}
+
+/// Eight time constants of the slowest pole that matters for what is seen, within a tenth of a second and a minute.
+fn duration(through: &TransferFunction) -> f64 {
+    let rate = |pole: &num_complex::Complex64| match through.domain() {
+        TimeDomain::Continuous => -pole.re,
+        TimeDomain::Discrete { sample_time_s } => {
+            -phea_dynamics::portable::ln(phea_dynamics::portable::magnitude(*pole).max(1e-300))
+                / sample_time_s
+        }
+    };
+    let slowest = through.without_common_factors(0.05).poles().iter().map(rate).fold(f64::INFINITY, f64::min);
+    if slowest > 0.0 { (8.0 / slowest).clamp(0.1, 60.0) } else { 1.0 }
+}
+
+/// A settling time in words, with its band.
+pub fn settling_words(metrics: &StepMetrics) -> String {
+    let band = crate::quantity::significant(metrics.settling_band_percent, 2);
+    match metrics.settling {
+        Settling::Settled { time_s, .. } => {
+            format!("{} s (band {band} %)", crate::quantity::significant(time_s, 3))
+        }
+        _ => format!("not settled within the time shown (band {band} %)"),
+    }
+}

@@ -1,0 +1,62 @@
+//! The closed loop around a plant that is known by its response, as its steps are computed from it.
+
+use std::sync::Arc;
+
+use num_complex::Complex64;
+use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::responding::RespondingPlant;
+use phea_qft::closed_loop::{Compensation, Member};
+use phea_qft::family::{FINE, tabulated};
+
+/// Part of the step by which the closed loop's response may lie off the line between two points.
+const STRAIGHT: f64 = 1e-3;
+/// Two points are no closer than this part of their frequency.
+const CLOSEST: f64 = 1e-6;
+
+/// Frequencies in rad/s with the real part of F P G/(1 + L) there, straight between them: what
+/// [`step_of_frequency_response`](phea_dynamics::time_response::step_of_frequency_response) takes.
+///
+/// # Errors
+/// [`LinearError`] where the prefilter cannot be sampled.
+pub fn real_parts(
+    plant: &Arc<dyn RespondingPlant>,
+    compensation: &Compensation,
+) -> Result<Vec<(f64, f64)>, LinearError> {
+    let member = compensation.responding(plant.clone());
+    let highest = compensation.highest_frequency_rad_per_s();
+    let grid = tabulated(plant.as_ref(), plant.range_rad_per_s(), FINE).frequencies_rad_per_s;
+    let prefilter = compensation.prefilter_of_step()?;
+    Ok(straight(&grid, highest, |frequency| closed(&member, compensation, &prefilter, frequency)))
+}
+
+/// F P G/(1 + L), F as a step meets it.
+fn closed(
+    member: &Member,
+    compensation: &Compensation,
+    prefilter: &TransferFunction,
+    frequency: f64,
+) -> Option<Complex64> {
+    let plant = member.response(frequency)?;
+    let forward = plant.plant * compensation.feedback().at_frequency(frequency);
+    Some(prefilter.at_frequency(frequency) * forward / (1.0 + forward * plant.sensor))
+}
+
+/// The real part at these frequencies, and between them until it is straight there.
+fn straight(grid: &[f64], highest: f64, response: impl Fn(f64) -> Option<Complex64>) -> Vec<(f64, f64)> {
+    let at = |frequency: f64| response(frequency).map(|value| (frequency, value.re));
+    let within = grid.iter().rev().filter(|frequency| **frequency <= highest);
+    let mut left: Vec<(f64, f64)> = within.filter_map(|frequency| at(*frequency)).collect();
+    let mut found: Vec<(f64, f64)> = left.pop().into_iter().collect();
+    while let (Some(&next), Some(&last)) = (left.last(), found.last()) {
+        let close = next.0 - last.0 <= CLOSEST * next.0;
+        let middle = at(0.5 * (last.0 + next.0)).filter(|middle| {
+            let mean = 0.5 * (last.1 + next.1);
+            !close && (middle.1 - mean).abs() > STRAIGHT
+        });
+        match middle {
+            Some(middle) => left.push(middle),
+            None => found.extend(left.pop()),
+        }
+    }
+    found
+}

@@ -1,0 +1,319 @@
+//! The linear models of a rig side by side: two-pressure, fifth order (6.7), decomposed (6.12), first order (6.13);
+//! what they leave out, what the load feels, and whether that is passive.
+
+mod agreement;
+mod sweep;
+
+use std::f64::consts::FRAC_PI_2;
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{Controller, Timing};
+use phea_dynamics::frequency::{PassivityReport, logarithmic_grid, passivity};
+use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::portable;
+use phea_hydraulics::impedance::{
+    Asymptote, closed_loop_impedance, closed_loop_load_motion, compliance_hidden_above,
+    final_force_after_load_step, impedance_asymptotes, open_loop_impedance,
+};
+use phea_hydraulics::line::Member;
+use phea_hydraulics::linear::{
+    LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance,
+    first_order_model, linear_model, response_difference, transfer_functions,
+};
+use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, Plant};
+use phea_hydraulics::stiffness::{
+    ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference,
+};
+use phea_hydraulics::two_pressure::two_pressure_coefficients;
+
+pub use agreement::Agreement;
+pub use agreement::{WITHIN_DB, WITHIN_DEG};
+pub use sweep::{MOST_POINTS, POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
+
+use crate::rig::Rig;
+
+/// Frequency up to which the thesis compares its models, rad/s.
+const COMPARISON_END: f64 = 1000.0;
+
+/// Everything that the linear view of a rig says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linearization {
+    /// Stiffness over the stroke by the project's model: nominal, softest and stiffest wall.
+    pub stiffness: [StrokeStiffness; 3],
+    /// Both stiffness models side by side, nominal.
+    pub stiffness_models: ModelDifference,
+    /// The plant that every verdict is of: with its load, its leakage, and the parameters that hold.
+    pub plant: LinearModel,
+    /// Whether 6.7 is the plant: one load pressure, no leakage across the piston, a load whose motion is prescribed.
+    pub plant_is_fifth_order: bool,
+    /// The linearised two-pressure model of the rig as declared, at its operating point.
+    pub two_pressure: LinearModel,
+    /// The fifth-order model of the parameters that hold, equation 6.7, K_c with the leakage across the piston beside it.
+    pub full: LinearModel,
+    /// The same of the derived parameters: what the two-pressure model is compared with.
+    pub derived_full: LinearModel,
+    /// Equation 6.12 as printed, and with the damping corrected.
+    pub decomposed: [TransferFunction; 2],
+    /// Equation 6.13.
+    pub first_order: TransferFunction,
+    /// Where each reduction is the plant.
+    pub agreement: Vec<Agreement>,
+    /// What the fifth order leaves out of the two-pressure model, both with derived parameters.
+    pub reduction: Comparison,
+    /// Equation 6.12 as printed against 6.7.
+    pub printed_decomposition: Comparison,
+    /// Equation 6.12 corrected against 6.7.
+    pub corrected_decomposition: Comparison,
+    /// Equation 6.13 against 6.7.
+    pub truncation: Comparison,
+    /// Share of each mode in the step response of 6.7.
+    pub modes: Vec<ModeShare>,
+    /// What the load feels with the command held still.
+    pub open_loop: PortView,
+    /// What it feels with the given controller, where that is continuous and without dead time.
+    pub closed_loop: Option<PortView>,
+    /// Why there is no closed-loop view.
+    pub closed_loop_absent: Option<String>,
+    /// Above this frequency the piston's mass hides the compliance, rad/s.
+    pub compliance_hidden_above_rad_per_s: f64,
+}
+
+/// Largest differences of two responses: below 1000 rad/s, and everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Comparison {
+    /// Up to 1000 rad/s.
+    pub low: ResponseDifference,
+    /// Over the whole grid, resonance included.
+    pub all: ResponseDifference,
+}
+
+/// The driving-point impedance and what follows from it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PortView {
+    /// Z = -F_e/(s X_L), N s/m.
+    pub impedance: TransferFunction,
+    /// Its straight lines.
+    pub asymptotes: Vec<Asymptote>,
+    /// Whether it is passive, and where not.
+    pub passivity: PassivityReport,
+    /// Force that a load step of 1 mm leaves in the end, N (Proposition 6.2: none); absent if unstable.
+    pub final_force_n: Option<f64>,
+}
+
+/// Linearises a rig; `controller` is the given one, if there is one, which sees the force through the sensor H.
+///
+/// # Errors
+/// A model without finite roots: parameters so extreme that the arithmetic ends.
+pub fn linearize(
+    rig: &Rig,
+    controller: Option<&Controller>,
+    sensor: &TransferFunction,
+) -> Result<Linearization, LinearError> {
+    let feedback = controller.map(|given| given.feedback.transfer_function()).transpose()?;
+    // Load motion is answered by G H.
+    let feedback = match feedback {
+        Some(function) if is_continuous(&function) => Some(function.series(sensor)?),
+        other => other,
+    };
+    let plant = transfer_functions(&rig.plant.coefficients())?;
+    let leaking = rig.leaking();
+    let full = linear_model(&leaking)?;
+    let port = felt(&rig.plant)?;
+    let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.two_pressure))?;
+    let decomposed = [
+        decomposed_model(&leaking, MechanicalDamping::Printed)?,
+        decomposed_model(&leaking, MechanicalDamping::Corrected)?,
+    ];
+    let first_order = first_order_model(&leaking)?;
+    let derived_full = linear_model(&rig.derived)?;
+    let grid = frequency_grid(&full.command)?;
+    let against_full = |other: &TransferFunction| compare(&grid, &full.command, other);
+    let rational = controller.is_some_and(|given| {
+        given.timing == Timing { discretization: given.timing.discretization, ..Timing::default() }
+    });
+    let rational = rational && sensor.dead_time_s() == 0.0;
+    let continuous = feedback.as_ref().filter(|function| rational && is_continuous(function));
+    let closed_loop = continuous.map(|controller| closed_loop_view(rig, controller)).transpose()?;
+    let reductions = [&two_pressure.command, &full.command, &decomposed[1], &first_order];
+    let agreement = agreement::agreement(rig, &frequency_grid(&plant.command)?, &plant.command, reductions);
+    Ok(Linearization {
+        plant_is_fifth_order: is_fifth_order(rig),
+        agreement,
+        stiffness: [Member::Nominal, Member::Minimum, Member::Maximum]
+            .map(|member| stroke_stiffness(rig, member)),
+        stiffness_models: stiffness_models(rig),
+        reduction: compare(
+            &frequency_grid(&two_pressure.command)?,
+            &two_pressure.command,
+            &derived_full.command,
+        ),
+        printed_decomposition: against_full(&decomposed[0]),
+        corrected_decomposition: against_full(&decomposed[1]),
+        truncation: against_full(&first_order),
+        modes: dominance(&full.command),
+        open_loop: open_loop_view(rig, &port)?,
+        closed_loop_absent: absence(feedback.as_ref(), closed_loop.as_ref()),
+        closed_loop,
+        compliance_hidden_above_rad_per_s: compliance_hidden_above(
+            rig.linear.hydraulic_stiffness,
+            rig.linear.moving_mass,
+        ),
+        plant,
+        two_pressure,
+        full,
+        derived_full,
+        decomposed,
+        first_order,
+    })
+}
+
+fn is_continuous(function: &TransferFunction) -> bool {
+    function.domain() == phea_dynamics::linear::TimeDomain::Continuous
+}
+
+fn absence(controller: Option<&TransferFunction>, view: Option<&PortView>) -> Option<String> {
+    let reason = match (controller, view) {
+        (_, Some(_)) => return None,
+        (None, None) => "the project gives no controller",
+        (Some(_), None) => {
+            "the controller is sampled or the loop has dead time: its impedance is no rational function"
+        }
+    };
+    Some(reason.to_string())
+}
+
+fn open_loop_view(rig: &Rig, port: &LinearModel) -> Result<PortView, LinearError> {
+    let impedance = open_loop_impedance(port)?;
+    Ok(PortView {
+        passivity: passivity(&impedance)?,
+        asymptotes: impedance_asymptotes(&rig.leaking(), None),
+        final_force_n: final_force_after_load_step(&port.load_position, 1e-3),
+        impedance,
+    })
+}
+
+/// Whether the plant is thesis (6.7): one load pressure, a prescribed load, and neither leakage nor a supply that is seen.
+fn is_fifth_order(rig: &Rig) -> bool {
+    matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
+        && rig.internal_leakage == 0.0
+        && rig.load.is_none()
+        && rig.plant.supply.is_none()
+}
+
+/// What the load feels: the actuator without it.
+fn felt(plant: &Plant) -> Result<LinearModel, LinearError> {
+    transfer_functions(&Plant { load: LinearLoad::Prescribed, ..*plant }.coefficients())
+}
+
+fn closed_loop_view(rig: &Rig, controller: &TransferFunction) -> Result<PortView, LinearError> {
+    let port = &felt(&rig.in_loop().plant)?;
+    let impedance = closed_loop_impedance(port, controller)?;
+    Ok(PortView {
+        passivity: passivity(&impedance)?,
+        asymptotes: impedance_asymptotes(&rig.leaking(), Some(controller)),
+        final_force_n: final_force_after_load_step(&closed_loop_load_motion(port, controller)?, 1e-3),
+        impedance,
+    })
+}
+
+/// Stiffness over the stroke by the project's model, for one member of the stiffening interval.
+pub fn stroke_stiffness(rig: &Rig, member: Member) -> StrokeStiffness {
+    rig.actuator.chamber_compliance([rig.point.pressure_a, rig.point.pressure_b], member).over_stroke()
+}
+
+/// Stiffness at a position by either model.
+pub fn stiffness_at(rig: &Rig, model: StiffnessModel, member: Member, position: f64) -> f64 {
+    let components = rig.actuator.components();
+    let lines = [&components.line_a, &components.line_b];
+    let chambers = chamber_compliance(model, fluid_moduli(rig), &components.cylinder, lines, member);
+    phea_hydraulics::stiffness::hydraulic_stiffness(&chambers, position)
+}
+
+/// Both stiffness models of a rig, nominal.
+pub fn stiffness_models(rig: &Rig) -> ModelDifference {
+    let components = rig.actuator.components();
+    let lines = [&components.line_a, &components.line_b];
+    model_difference(fluid_moduli(rig), &components.cylinder, lines, Member::Nominal)
+}
+
+/// Bulk modulus of the fluid on either side at the operating point, Pa.
+fn fluid_moduli(rig: &Rig) -> [f64; 2] {
+    let fluid = &rig.actuator.components().fluid;
+    [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| fluid.modulus_at(pressure))
+}
+
+/// Frequencies for comparing and drawing: from a decade below the slowest pole to a decade above the fastest, at least
+/// 0.01 to 10 000 rad/s, with each resonance resolved.
+pub fn frequency_grid(function: &TransferFunction) -> Result<Vec<f64>, LinearError> {
+    let moduli: Vec<f64> = function.poles().iter().map(|pole| portable::magnitude(*pole)).collect();
+    let slowest = moduli.iter().copied().filter(|modulus| *modulus > 0.0).fold(0.1, f64::min);
+    let fastest = moduli.iter().copied().fold(1e3, f64::max);
+    let (first, last) = ((slowest / 10.0).max(1e-6), (fastest * 10.0).min(1e9));
+    let mut grid = logarithmic_grid(first, last, 600)?;
+    grid.extend(function.poles().iter().filter(|pole| pole.im > 0.0).flat_map(resonance_grid));
+    grid.retain(|frequency| (first..=last).contains(frequency));
+    grid.sort_by(f64::total_cmp);
+    grid.dedup();
+    Ok(grid)
+}
+
+/// The lightly damped pole of a system, upper half plane: the complex one with the smallest damping ratio.
+pub fn resonance(function: &TransferFunction) -> Option<Complex64> {
+    let damping_ratio = |pole: &Complex64| -pole.re / portable::magnitude(*pole);
+    let complex = function.poles().iter().copied().filter(|pole| pole.im > 0.0);
+    complex
+        .filter(|pole| damping_ratio(pole) < LIGHT_DAMPING)
+        .min_by(|one, other| damping_ratio(one).total_cmp(&damping_ratio(other)))
+}
+
+/// Damping ratio from which a pole has no resonance peak, 1/sqrt(2).
+const LIGHT_DAMPING: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Frequencies around a pole over which its phase turns in equal steps: the peak of a lightly damped pole is much
+/// narrower than the steps of a grid over decades.
+fn resonance_grid(pole: &Complex64) -> impl Iterator<Item = f64> + use<> {
+    const STEPS: i32 = 64;
+    let (centre, half_width) = (pole.im, pole.re.abs());
+    (1 - STEPS..STEPS).map(move |step| {
+        let turn = FRAC_PI_2 * f64::from(step) / f64::from(STEPS);
+        centre + half_width * portable::sin(turn) / portable::cos(turn)
+    })
+}
+
+fn compare(grid: &[f64], reference: &TransferFunction, other: &TransferFunction) -> Comparison {
+    let difference =
+        |grid: &[f64]| response_difference(grid, |w| reference.at_frequency(w), |w| other.at_frequency(w));
+    let low: Vec<f64> = grid.iter().copied().filter(|frequency| *frequency <= COMPARISON_END).collect();
+    Comparison { low: difference(&low), all: difference(grid) }
+}
+
+/// Share by which the two stiffness models may differ and still be said to agree.
+const AGREEMENT: f64 = 0.005;
+
+/// One sentence on the two stiffness models.
+pub fn stiffness_sentence(difference: &ModelDifference) -> String {
+    let number = |value: f64| crate::quantity::DisplayUnit::MEGANEWTON_PER_METRE.number(value, 3);
+    let range = |stiffness: &StrokeStiffness| {
+        format!("{} to {} MN/m", number(stiffness.minimum), number(stiffness.maximum))
+    };
+    let percent = |share: f64| crate::quantity::significant(100.0 * share, 2);
+    let ratios = [difference.minimum_ratio, difference.maximum_ratio];
+    if ratios.iter().all(|ratio| (ratio - 1.0).abs() < AGREEMENT) {
+        return format!(
+            "K_H is {} over the stroke, by either stiffness model (uniform, by_volume): the lines are hardly softer \
+             than the oil, and {} % of the oil is in the chambers.",
+            range(&difference.by_volume),
+            percent(difference.chamber_volume_share)
+        );
+    }
+    format!(
+        "With one modulus for line and chamber (uniform) K_H is {} over the stroke; with the chamber's oil keeping its \
+         own (by_volume) it is {}, {} times as stiff at its least: {} % of the oil is in the chambers, and only {} % \
+         of the compliance is the lines'.",
+        range(&difference.uniform),
+        range(&difference.by_volume),
+        crate::quantity::significant(difference.minimum_ratio, 3),
+        percent(difference.chamber_volume_share),
+        percent(difference.line_compliance_share),
+    )
+}

@@ -1,0 +1,310 @@
+//! The linear models of a rig while one number of its project goes from one end to another.
+//!
+//! ```text
+//! line.length=0.5 m..3 m -> range -> values -> read again with --set -> Rig -> linearize -> SweepPoint
+//! ```
+
+use num_complex::Complex64;
+use phea_dynamics::controller::Controller;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable;
+use phea_hydraulics::linear::transfer_functions;
+
+use super::{Linearization, linearize, resonance};
+use crate::caveat::{Caveat, caveats};
+use crate::error::ProcedureError;
+use crate::linear_loop::{LinearLoop, LoopStability, linear_loop};
+use crate::project::{self, Key, KeyEntry, Loaded};
+use crate::quantity::{self, DisplayUnit, display};
+use crate::setup::Setup;
+use crate::source::Source;
+use crate::spelling::nearest;
+
+/// What is asked for, as written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SweepRequest {
+    /// Such as `line.length=0.5 m..3 m`; a unit at the end holds for a bare number at the start.
+    pub range: String,
+    /// How many values, both ends among them; absent: [`POINTS`].
+    pub points: Option<usize>,
+}
+
+/// Values where no number of them is asked for.
+pub const POINTS: usize = 11;
+/// Most values.
+pub const MOST_POINTS: usize = 1000;
+/// Ends of one sign that lie more than this factor apart are stepped by ratio.
+const DECADES: f64 = 100.0;
+/// Part by which a pole must move to be said to follow the swept number.
+const MOVED: f64 = 1e-9;
+/// Band of the settling time that a loop is computed with, percent; no step is told.
+const BAND_PERCENT: f64 = 2.0;
+
+/// A sweep.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// The swept key.
+    pub path: String,
+    /// What people read it in.
+    pub unit: DisplayUnit,
+    /// The unit of its values.
+    pub si: &'static str,
+    /// Whether the values are evenly spaced by ratio.
+    pub by_ratio: bool,
+    /// Whether the plant that every verdict is of follows the key. Where the project states the parameters of the linear model it
+    /// may not: then everything told of poles is of the derived parameters.
+    pub plant_follows: bool,
+    /// What no verdict on the linear loop counts of the project.
+    pub caveats: Vec<Caveat>,
+    /// In order.
+    pub points: Vec<SweepPoint>,
+}
+
+/// One value.
+#[derive(Clone, Debug)]
+pub struct SweepPoint {
+    /// SI.
+    pub value: f64,
+    /// What the models are there, or why there are none.
+    pub found: Result<Swept, String>,
+}
+
+/// The models at one value.
+#[derive(Clone, Debug)]
+pub struct Swept {
+    /// As `linearize` tells it.
+    pub linearization: Linearization,
+    /// Poles of the plant, or of the derived parameters where the plant does not follow, rad/s.
+    pub poles: Vec<Complex64>,
+    /// The least damped of them with a resonance.
+    pub resonance: Option<Complex64>,
+    /// Up to which force over reference stays within 3 dB of its value towards zero frequency, rad/s; or why not.
+    pub bandwidth_rad_per_s: Result<f64, &'static str>,
+}
+
+/// Sweeps a number of a project.
+///
+/// # Errors
+/// [`ProcedureError::Option`] for a key, a range or a number of points that is none, [`ProcedureError::Catalogue`] for a project that one of the
+/// values makes wrong.
+pub fn sweep(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    request: &SweepRequest,
+) -> Result<Sweep, ProcedureError> {
+    let Range { path, key, ends } = range(&request.range)?;
+    let count = points(request.points)?;
+    let by_ratio = ends[0] * ends[1] > 0.0 && {
+        let ratio = (ends[1] / ends[0]).abs();
+        ratio.max(1.0 / ratio) > DECADES
+    };
+    let mut found = Vec::new();
+    for value in values(ends, count, by_ratio) {
+        let mut settings = loaded.settings.clone();
+        settings.push(format!("{path}={value:e}"));
+        let there =
+            project::read(source, &loaded.path, &settings, catalogues).map_err(ProcedureError::Catalogue)?;
+        found.push((value, linearized(&there)));
+    }
+    let plant_follows = moves(&found);
+    let points = found
+        .into_iter()
+        .map(|(value, found)| SweepPoint { value, found: found.map(|models| swept(models, plant_follows)) })
+        .collect();
+    let unit = quantity::fitting(ends[0].abs().max(ends[1].abs()), key.dimension);
+    let caveats = caveats(&Setup::new(&loaded.project)?);
+    Ok(Sweep { path, unit, si: key.dimension.si, by_ratio, plant_follows, caveats, points })
+}
+
+/// A range, read.
+struct Range {
+    path: String,
+    key: Key,
+    /// SI.
+    ends: [f64; 2],
+}
+
+fn refused(text: &str, message: String) -> ProcedureError {
+    ProcedureError::Option { option: "sweep", text: text.to_string(), message }
+}
+
+fn range(text: &str) -> Result<Range, ProcedureError> {
+    let form =
+        || refused(text, "a sweep has the form KEY=FROM..TO, such as line.length=0.5 m..3 m".to_string());
+    let (path, ends) = text.split_once('=').ok_or_else(form)?;
+    let (from, to) = ends.split_once("..").ok_or_else(form)?;
+    let [path, from, to] = [path, from, to].map(str::trim);
+    if from.is_empty() || to.is_empty() {
+        return Err(form());
+    }
+    let key = key(text, path)?;
+    // the unit of the end holds for a bare start, as in a list
+    let from = if bare(from).is_some() && bare(to).is_none() {
+        format!("{from} {}", unit_of(to))
+    } else {
+        from.to_string()
+    };
+    let ends = [number(text, &from, &key)?, number(text, to, &key)?];
+    if ends[0] == ends[1] {
+        return Err(refused(text, "both ends are the same: there is nothing to sweep".to_string()));
+    }
+    Ok(Range { path: path.to_string(), key, ends })
+}
+
+/// What is known of the key, or the nearest spelling.
+fn key(text: &str, path: &str) -> Result<Key, ProcedureError> {
+    let keys = project::keys();
+    let is_number = |entry: &&KeyEntry| entry.takes == entry.key.dimension.name;
+    let named = |entry: &&KeyEntry| entry.path == path;
+    if let Some(entry) = keys.iter().filter(is_number).find(named) {
+        return Ok(entry.key);
+    }
+    if let Some(entry) = keys.iter().find(named) {
+        return Err(refused(text, format!("`{path}` takes {}, and only a number can be swept", entry.takes)));
+    }
+    let names = keys.iter().filter(is_number).map(|entry| entry.path.as_str());
+    let help = nearest(path, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    Err(refused(text, format!("the project file has no number `{path}`{help}")))
+}
+
+fn bare(text: &str) -> Option<f64> {
+    text.parse::<f64>().ok().filter(|value| value.is_finite())
+}
+
+/// What stands behind the number.
+fn unit_of(text: &str) -> &str {
+    let number =
+        (0..text.len()).rev().find(|end| text.get(..*end).is_some_and(|start| bare(start.trim()).is_some()));
+    number.and_then(|end| text.get(end..)).unwrap_or_default().trim()
+}
+
+fn number(text: &str, part: &str, key: &Key) -> Result<f64, ProcedureError> {
+    let value = match bare(part) {
+        Some(value) => value,
+        None => quantity::parse(part, key.dimension).map_err(|error| {
+            let help = error.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
+            let dimension = key.dimension;
+            refused(text, format!("{error}; write {}, such as {}{help}", dimension.name, dimension.examples))
+        })?,
+    };
+    if key.range.contains(value) {
+        return Ok(value);
+    }
+    let shown = display(value, key.dimension, 6);
+    Err(refused(text, format!("{shown} is outside of what `{}` may be", key.name)))
+}
+
+fn points(asked: Option<usize>) -> Result<usize, ProcedureError> {
+    match asked.unwrap_or(POINTS) {
+        count @ 2..=MOST_POINTS => Ok(count),
+        count => Err(ProcedureError::Option {
+            option: "points",
+            text: count.to_string(),
+            message: format!("a sweep has 2 to {MOST_POINTS} points"),
+        }),
+    }
+}
+
+fn values([from, to]: [f64; 2], count: usize, by_ratio: bool) -> Vec<f64> {
+    let last = count.saturating_sub(1).max(1) as f64;
+    let at = |index: usize| {
+        let share = index as f64 / last;
+        match (index, by_ratio) {
+            (0, _) => from,
+            _ if index + 1 == count => to,
+            (_, true) => from * portable::exp(share * portable::ln(to / from)),
+            (_, false) => from + share * (to - from),
+        }
+    };
+    (0..count).map(at).collect()
+}
+
+/// The models with the controller that goes around them.
+struct Models {
+    linearization: Linearization,
+    /// From command to force, as the loop sees it.
+    seen: TransferFunction,
+    given: Option<Controller>,
+    sensor: TransferFunction,
+}
+
+fn linearized(loaded: &Loaded) -> Result<Models, String> {
+    let found = || -> Result<Models, ProcedureError> {
+        let setup = Setup::new(&loaded.project)?;
+        let seen = transfer_functions(&setup.rig()?.in_loop().plant.coefficients())?.command;
+        let linearization = linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?;
+        Ok(Models { linearization, seen, given: setup.controller, sensor: setup.sensor })
+    };
+    found().map_err(|error| error.to_string())
+}
+
+/// Whether a pole of the plant is elsewhere at another value.
+fn moves(found: &[(f64, Result<Models, String>)]) -> bool {
+    let mut plants =
+        found.iter().filter_map(|(_, found)| Some(found.as_ref().ok()?.linearization.plant.command.poles()));
+    let Some(first) = plants.next() else { return true };
+    let near = |one: &Complex64, other: &Complex64| {
+        portable::magnitude(one - other) <= MOVED * portable::magnitude(*one)
+    };
+    plants.any(|poles| {
+        poles.len() != first.len() || !first.iter().zip(poles).all(|(one, other)| near(one, other))
+    })
+}
+
+fn swept(models: Models, plant_follows: bool) -> Swept {
+    let Models { linearization, seen, given, sensor } = models;
+    let [function, seen] = match plant_follows {
+        true => [linearization.plant.command.clone(), seen],
+        false => [linearization.derived_full.command.clone(), linearization.derived_full.command.clone()],
+    };
+    let closed = given.map(|given| linear_loop(&seen, &given, &sensor, BAND_PERCENT));
+    let bandwidth_rad_per_s = match closed {
+        None => Err("the project gives no controller"),
+        Some(Err(_)) => Err("the loop cannot be closed"),
+        Some(Ok(closed)) => bandwidth(&closed, &sensor),
+    };
+    Swept {
+        poles: function.poles().to_vec(),
+        resonance: resonance(&function),
+        bandwidth_rad_per_s,
+        linearization,
+    }
+}
+
+/// Frequencies between which a bandwidth is looked for, rad/s, and how finely.
+const LOOKED_AT: [f64; 2] = [1e-2, 1e5];
+const STEPS_PER_DECADE: f64 = 200.0;
+
+/// Where |F L/(1 + L)/H| first leaves 3 dB around its value towards zero frequency downwards.
+fn bandwidth(closed: &LinearLoop, sensor: &TransferFunction) -> Result<f64, &'static str> {
+    if closed.stability == LoopStability::Unstable {
+        return Err("the closed loop is unstable");
+    }
+    let magnitude = |frequency: f64| {
+        let open = closed.open_loop.at_frequency(frequency);
+        let tracked = closed.prefilter.at_frequency(frequency) * open / (1.0 + open);
+        portable::magnitude(tracked / sensor.at_frequency(frequency))
+    };
+    let [first, last] = LOOKED_AT;
+    let least = magnitude(first) * std::f64::consts::FRAC_1_SQRT_2;
+    let factor = portable::exp(std::f64::consts::LN_10 / STEPS_PER_DECADE);
+    let mut low = first;
+    while low < last {
+        let high = low * factor;
+        if magnitude(high) < least {
+            return Ok(bisected(low, high, |frequency| magnitude(frequency) < least));
+        }
+        low = high;
+    }
+    Err("the force follows up to every frequency that was looked at")
+}
+
+fn bisected(mut low: f64, mut high: f64, is_beyond: impl Fn(f64) -> bool) -> f64 {
+    const HALVINGS: usize = 40;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if is_beyond(middle) { high = middle } else { low = middle }
+    }
+    0.5 * (low + high)
+}

@@ -1,0 +1,178 @@
+//! A table of numbers, written row by row: as text with commas, or as Apache Parquet.
+
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use parquet::basic::{Repetition, Type as Physical};
+use parquet::data_type::DoubleType;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::Type;
+
+/// How a table of numbers is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TableFormat {
+    /// Text with commas, a first row of names; a number that does not exist is an empty cell.
+    #[default]
+    Csv,
+    /// Apache Parquet, columns of doubles; a number that does not exist is null.
+    Parquet,
+}
+
+impl TableFormat {
+    /// Ending of a file.
+    pub fn ending(self) -> &'static str {
+        match self {
+            TableFormat::Csv => "csv",
+            TableFormat::Parquet => "parquet",
+        }
+    }
+}
+
+impl std::str::FromStr for TableFormat {
+    type Err = String;
+
+    /// The format with this ending.
+    fn from_str(text: &str) -> Result<TableFormat, String> {
+        match text {
+            "csv" => Ok(TableFormat::Csv),
+            "parquet" => Ok(TableFormat::Parquet),
+            _ => Err("a table is written as `csv` or `parquet`".to_string()),
+        }
+    }
+}
+
+/// Rows of a group, which is held until it is written: half a megabyte for each column.
+const GROUP: usize = 65_536;
+
+/// A table of numbers that grows by rows. Text is written as it comes, Parquet by groups of rows.
+///
+/// # Example
+/// ```
+/// use phea_engineering::answer::{NumberTable, TableFormat};
+/// let mut table = NumberTable::new(Vec::new(), TableFormat::Csv, &["time_s", "force_n"])?;
+/// table.row(&[0.0, -4000.0])?;
+/// table.row(&[2.5e-4, f64::NAN])?;
+/// assert_eq!(table.finish()?, b"time_s,force_n\n0,-4000\n0.00025,\n");
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub struct NumberTable<W: Write + Send>(Writing<W>);
+
+enum Writing<W: Write + Send> {
+    Csv { sink: W, line: Vec<u8>, columns: usize },
+    Parquet { file: Box<SerializedFileWriter<W>>, group: Vec<Vec<f64>> },
+}
+
+impl<W: Write + Send> NumberTable<W> {
+    /// A table with these columns and no row yet.
+    ///
+    /// # Errors
+    /// Those of the sink, and a name that the format does not take.
+    pub fn new(mut sink: W, format: TableFormat, columns: &[&str]) -> io::Result<Self> {
+        let writing = match format {
+            TableFormat::Csv => {
+                writeln!(sink, "{}", columns.join(","))?;
+                Writing::Csv { sink, line: Vec::new(), columns: columns.len() }
+            }
+            TableFormat::Parquet => {
+                let field = |name: &&str| {
+                    let double = Type::primitive_type_builder(name, Physical::DOUBLE);
+                    Ok(Arc::new(double.with_repetition(Repetition::OPTIONAL).build()?))
+                };
+                let fields = columns.iter().map(field).collect::<Result<_, _>>().map_err(refused)?;
+                let schema =
+                    Type::group_type_builder("table").with_fields(fields).build().map_err(refused)?;
+                let properties = Arc::new(WriterProperties::builder().build());
+                let file = SerializedFileWriter::new(sink, Arc::new(schema), properties).map_err(refused)?;
+                Writing::Parquet { file: Box::new(file), group: vec![Vec::new(); columns.len()] }
+            }
+        };
+        Ok(NumberTable(writing))
+    }
+
+    /// Adds a row, a value for each column; what is missing does not exist, what is too much is refused.
+    ///
+    /// # Errors
+    /// Those of the sink; [`io::ErrorKind::InvalidInput`] for more values than columns.
+    pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
+        let count = match &self.0 {
+            Writing::Csv { columns, .. } => *columns,
+            Writing::Parquet { group, .. } => group.len(),
+        };
+        if values.len() > count {
+            let message = format!("{} values for {count} columns", values.len());
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        }
+        let row = (0..count).map(|column| values.get(column).copied().unwrap_or(f64::NAN));
+        match &mut self.0 {
+            Writing::Csv { sink, line, .. } => {
+                line.clear();
+                for (column, value) in row.enumerate() {
+                    if column > 0 {
+                        line.push(b',');
+                    }
+                    push_number(line, value);
+                }
+                line.push(b'\n');
+                sink.write_all(line)
+            }
+            Writing::Parquet { file, group } => {
+                for (column, value) in group.iter_mut().zip(row) {
+                    column.push(value);
+                }
+                if group.first().is_some_and(|column| column.len() >= GROUP) {
+                    write_group(file, group)?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Ends the table and gives back what it was written to.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn finish(self) -> io::Result<W> {
+        match self.0 {
+            Writing::Csv { sink, .. } => Ok(sink),
+            Writing::Parquet { mut file, mut group } => {
+                write_group(&mut file, &mut group)?;
+                file.into_inner().map_err(refused)
+            }
+        }
+    }
+}
+
+fn refused(error: parquet::errors::ParquetError) -> io::Error {
+    io::Error::other(error.to_string())
+}
+
+fn write_group<W: Write + Send>(
+    file: &mut SerializedFileWriter<W>,
+    columns: &mut [Vec<f64>],
+) -> io::Result<()> {
+    if columns.iter().all(Vec::is_empty) {
+        return Ok(());
+    }
+    let mut group = file.next_row_group().map_err(refused)?;
+    for values in columns {
+        let Some(mut column) = group.next_column().map_err(refused)? else { break };
+        let levels: Vec<i16> = values.iter().map(|value| i16::from(!value.is_nan())).collect();
+        values.retain(|value| !value.is_nan());
+        column.typed::<DoubleType>().write_batch(values, Some(&levels), None).map_err(refused)?;
+        column.close().map_err(refused)?;
+        values.clear();
+    }
+    group.close().map_err(refused).map(|_| ())
+}
+
+/// Appends the shortest text that reads back as the same number; nothing for a number that does not exist.
+pub fn push_number(text: &mut Vec<u8>, value: f64) {
+    if value.is_finite() {
+        let mut buffer = zmij::Buffer::new();
+        let digits = buffer.format_finite(value);
+        text.extend(digits.strip_suffix(".0").unwrap_or(digits).bytes());
+    } else if !value.is_nan() {
+        text.extend(if value > 0.0 { "inf" } else { "-inf" }.bytes());
+    }
+}

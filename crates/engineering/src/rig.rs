@@ -1,0 +1,163 @@
+//! From what is declared to what is computed with: the actuator as physics, its operating point, and every parameter
+//! of the linear model with where it comes from.
+
+mod assembly;
+mod in_loop;
+mod lines;
+mod numbers;
+mod parameters;
+mod place;
+mod plant;
+mod sizing;
+mod supply;
+
+use num_complex::Complex64;
+use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
+use phea_hydraulics::line::{LineError, Member};
+use phea_hydraulics::linear::LinearParameters;
+use phea_hydraulics::operating_point::{
+    Balance, Condition, OperatingPoint, OperatingPointError, Settled, SettledSupply, operating_point,
+};
+use phea_hydraulics::plant::{LinearLoad, Plant, PlantInMotion};
+use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::two_pressure::{
+    TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
+};
+
+use crate::project::{self, Project};
+
+pub use assembly::{actuator, components};
+pub use in_loop::FedForward;
+pub use in_loop::{as_response, feed_forward, limits_load_motion};
+pub use lines::{in_motion, lines};
+pub use numbers::Numbers;
+pub use parameters::{ParameterOrigin, ResolvedParameter};
+pub use place::place;
+pub use plant::{
+    YieldingLoad, are_equal, linear, plant, sides, stated, states_one_pressure, with_supply, yielding_load,
+};
+pub use sizing::{SizingError, sizing_problem};
+pub use supply::{power_unit, settled_supply, yielding_supply};
+
+/// A rig ready to be computed with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rig {
+    /// The actuator as physics.
+    pub actuator: Actuator,
+    /// Where the linear models are taken.
+    pub point: OperatingPoint,
+    /// Where a supply that yields settles at that point; `None` of one with a constant pressure.
+    pub supply: Option<SettledSupply>,
+    /// What is known of that point.
+    pub condition: Condition,
+    /// The nonlinear two-pressure model, nominal stiffening.
+    pub model: TwoPressureModel,
+    /// Its linearisation at the operating point.
+    pub two_pressure: TwoPressureLinearParameters,
+    /// Parameters of the fifth-order model as they follow from the rig.
+    pub derived: LinearParameters,
+    /// The same with what the project sets: `[linear]` before the nominal of `[uncertainty]` before the derived value.
+    pub parameters: Vec<ResolvedParameter>,
+    /// The values that hold.
+    pub linear: LinearParameters,
+    /// Leakage across the piston in m3/(s Pa).
+    pub internal_leakage: f64,
+    /// What the force sensor pushes on, where it yields.
+    pub load: Option<YieldingLoad>,
+    /// The linear plant that every verdict is of: nominal, at the operating point, with lumped lines.
+    pub plant: Plant,
+    /// The same with its lines in motion, which is then what every verdict is of; `None` where both are lumped.
+    pub in_motion: Option<PlantInMotion>,
+    /// What the linear loop counts of the load's velocity that is fed forward; [`Rig::in_loop`] has it.
+    pub fed: Option<FedForward>,
+}
+
+/// Why a project has no rig to compute with.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RigError {
+    /// The project describes another plant.
+    #[error("the project has a [plant] and no actuator: this command needs [valve], [cylinder] and [line]")]
+    NoActuator,
+    /// Parameters outside physics.
+    #[error(transparent)]
+    Actuator(#[from] ActuatorError),
+    /// No equilibrium at the declared operating point.
+    #[error("[operating_point]: {0}")]
+    OperatingPoint(#[from] OperatingPointError),
+    /// A line that its model does not fit.
+    #[error("[line] model: {0}")]
+    Line(#[from] LineError),
+}
+
+impl Rig {
+    /// F_e/U_C in N/V at a frequency in rad/s: of the plant that every verdict is of.
+    pub fn response(&self, frequency_rad_per_s: f64) -> Complex64 {
+        match &self.in_motion {
+            Some(plant) => plant.response(Complex64::new(0.0, frequency_rad_per_s))[0],
+            None => self.plant.coefficients().command.at_frequency(frequency_rad_per_s),
+        }
+    }
+
+    /// The linear parameters that hold, the leakage across the piston beside K_c: with one load pressure it is the same.
+    pub fn leaking(&self) -> LinearParameters {
+        let flow_pressure_coefficient = self.linear.flow_pressure_coefficient + self.internal_leakage;
+        LinearParameters { flow_pressure_coefficient, ..self.linear }
+    }
+
+    /// Assembles the rig of a project and linearises it: [`Setup`](crate::setup::Setup) holds it.
+    ///
+    /// # Errors
+    /// [`RigError`] if a parameter is impossible, or nothing balances at the operating point.
+    pub fn of(project: &Project, declared: &project::Actuator) -> Result<Rig, RigError> {
+        let actuator = assembly::actuator(declared)?;
+        let components = actuator.components();
+        let numbers = Numbers::declared();
+        let (position, steady) = place(project, components.cylinder.stroke, &numbers);
+        let condition = Condition::from(steady);
+        let balance = Balance::of(components);
+        let supply = settled_supply(declared, &numbers, &balance, steady);
+        let supply = supply.filter(|found| found.supply.pressure.is_finite());
+        // the valve at the pressure that the pump holds there, lines and stall forces at the stated one
+        let settled = supply.map_or(components.supply, |found| found.supply);
+        let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
+        let point = operating_point(&at_valve, position, condition)?;
+        let pressures = [point.pressure_a, point.pressure_b];
+        let supply = supply
+            .map(|found| SettledSupply { settled: Settled { command: point.command, pressures }, ..found });
+        let friction = components.friction.viscous();
+        let model = TwoPressureModel::new(&at_valve, pressures, Member::Nominal, friction);
+        let two_pressure = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+        let derived = reduce(&two_pressure);
+        let parameters = parameters::resolve(project, &derived);
+        let linear = linear(&two_pressure, stated(&parameters));
+        let internal_leakage = components.cylinder.internal_leakage.unwrap_or(0.0);
+        let load = yielding_load(&declared.load, &numbers, point.hydraulic_force);
+        let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found));
+        let unseen = yielding.is_none_or(|supply| are_equal([supply.edges]));
+        let equal = are_equal(sides(&two_pressure)) && unseen;
+        let one_pressure = states_one_pressure(&parameters, &[]) || equal;
+        let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
+        let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
+        let plant = match yielding {
+            Some(supply) if !(one_pressure && unseen) => with_supply(plant, supply, &two_pressure),
+            _ => plant,
+        };
+        let in_motion = in_motion(&declared.line, components, &point, &two_pressure, &plant)?;
+        Ok(Rig {
+            actuator,
+            point,
+            supply,
+            condition,
+            model,
+            two_pressure,
+            derived,
+            parameters,
+            linear,
+            internal_leakage,
+            load,
+            plant,
+            in_motion,
+            fed: FedForward::of(project, &linear),
+        })
+    }
+}

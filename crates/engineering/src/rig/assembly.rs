@@ -1,0 +1,284 @@
+use phea_dynamics::scalar::Scalar;
+use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
+use phea_hydraulics::contact::Contact;
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
+use phea_hydraulics::fluid::{EntrainedAir, Fluid};
+use phea_hydraulics::force_sensor::ForceSensor;
+use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
+use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
+use phea_hydraulics::servovalve::{
+    Edges, Servovalve, Supply, flow_coefficient_from_rating, leakage_coefficient_from_rating,
+};
+use phea_hydraulics::stiffness::StiffnessModel;
+
+use super::numbers::Numbers;
+use crate::project::{self, Compliance, Component, EdgeCoefficients, FrictionLaw, Interval, StribeckCurve};
+
+/// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: taken where a project states none.
+pub(super) const KINEMATIC_VISCOSITY: f64 = 46e-6;
+
+/// The declared rig as the components of `phea_hydraulics`.
+///
+/// # Errors
+/// Every parameter that is impossible as physics.
+pub fn actuator(declared: &project::Actuator) -> Result<Actuator, ActuatorError> {
+    Actuator::new(components(declared, &Numbers::declared()))
+}
+
+/// The same over any scalar, before it is checked: each number of the project is taken at its path.
+pub fn components<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_, S>) -> Components<S> {
+    let pressure = numbers.at("supply.pressure", declared.supply.pressure);
+    let tank_pressure = numbers.at("supply.tank_pressure", declared.supply.tank_pressure);
+    let pressures = ExpansionPressures::of(pressure, tank_pressure);
+    let line = |side, declared: &project::Line| line(declared, &numbers.of_line(side), pressures);
+    Components {
+        fluid: fluid(&declared.fluid, numbers),
+        supply: Supply { pressure, tank_pressure },
+        valve: valve(&declared.valve, numbers, pressure - tank_pressure),
+        line_a: line("a", &declared.line.a),
+        line_b: line("b", &declared.line.b),
+        cylinder: cylinder(&declared.cylinder, numbers),
+        friction: friction(declared.cylinder.friction.as_ref(), numbers),
+        force_sensor: ForceSensor {
+            stiffness: numbers.at("force_sensor.stiffness", declared.force_sensor.stiffness),
+        },
+        stiffness_model: stiffness_model(declared.line.compliance),
+    }
+}
+
+pub(super) fn stiffness_model(compliance: Compliance) -> StiffnessModel {
+    match compliance {
+        Compliance::Uniform => StiffnessModel::Uniform,
+        Compliance::ByVolume => StiffnessModel::ByVolume,
+    }
+}
+
+fn fluid<S: Scalar>(declared: &project::Fluid, numbers: &Numbers<'_, S>) -> Fluid<S> {
+    let numbers = numbers.within("fluid");
+    let at = |key: &str, value: f64| numbers.at(key, value);
+    let holds = |fraction: &f64| *fraction > 0.0 || numbers.is_open("fluid.entrained_air");
+    Fluid {
+        bulk_modulus: at("bulk_modulus", declared.bulk_modulus),
+        density: at("density", declared.density),
+        kinematic_viscosity: at(
+            "kinematic_viscosity",
+            declared.kinematic_viscosity.unwrap_or(KINEMATIC_VISCOSITY),
+        ),
+        entrained_air: declared.entrained_air.filter(holds).map(|fraction| EntrainedAir {
+            volume_fraction: at("entrained_air", fraction),
+            polytropic_index: at("polytropic_exponent", declared.polytropic_exponent),
+        }),
+    }
+}
+
+/// Coefficients as declared; without them, those of the data sheet, equal for all edges.
+fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_drop: S) -> Servovalve<S> {
+    let numbers = numbers.within("valve");
+    let at = |key: &str, value: f64| numbers.at(key, value);
+    let stated = |key: &str, value: Option<f64>| at(key, value.unwrap_or(f64::NAN));
+    let edges = |table: &'static str, edges: EdgeCoefficients| {
+        let [supply_to_a, a_to_tank, supply_to_b, b_to_tank] = edges.in_order();
+        let numbers = numbers.within(table);
+        let at = |key: &str, value: f64| numbers.at(key, value);
+        Edges {
+            supply_to_a: at("supply_to_a", supply_to_a),
+            a_to_tank: at("a_to_tank", a_to_tank),
+            supply_to_b: at("supply_to_b", supply_to_b),
+            b_to_tank: at("b_to_tank", b_to_tank),
+        }
+    };
+    let tare_flow = at("tare_flow", declared.tare_flow);
+    let tare_drop = declared.tare_pressure.map_or(supply_drop, |drop| at("tare_pressure", drop));
+    let from_rating = || {
+        let rated_flow = stated("nominal_flow", declared.nominal_flow);
+        let rated_drop = stated("nominal_pressure_drop", declared.nominal_pressure_drop);
+        Edges::equal(flow_coefficient_from_rating(rated_flow, rated_drop))
+    };
+    let from_leakage = || {
+        let leakage = stated("null_leakage", declared.null_leakage);
+        let pressure = stated("null_leakage_pressure", declared.null_leakage_pressure);
+        Edges::equal(leakage_coefficient_from_rating(leakage, tare_flow, tare_drop, pressure))
+    };
+    let (flow, leakage) = (declared.flow_coefficients, declared.leakage_coefficients);
+    Servovalve {
+        flow_coefficients: flow.map_or_else(from_rating, |flow| edges("flow_coefficients", flow)),
+        leakage_coefficients: leakage
+            .map_or_else(from_leakage, |leakage| edges("leakage_coefficients", leakage)),
+        leakage_shape: at("leakage_shape", declared.leakage_shape),
+        tare_flow,
+        nominal_voltage: at("nominal_voltage", declared.nominal_voltage),
+        natural_frequency: at("natural_frequency", declared.natural_frequency),
+        damping_ratio: at("damping_ratio", declared.damping_ratio),
+        transition_pressure: at("transition_pressure", declared.transition_pressure),
+    }
+}
+
+/// The line as physics.
+fn line<S: Scalar>(
+    declared: &project::Line,
+    numbers: &Numbers<'_, S>,
+    pressures: ExpansionPressures<S>,
+) -> Line<S> {
+    let at = |key: &str, value: f64| numbers.at(key, value);
+    match declared.component() {
+        Some(Component::Volume { volume, effective_bulk_modulus }) => Line::Volume {
+            volume: at("volume", volume),
+            effective_bulk_modulus: at("effective_bulk_modulus", effective_bulk_modulus),
+        },
+        Some(Component::Pipe { pipe, length }) => {
+            Line::Pipe { pipe: self::pipe(pipe, numbers), length: at("length", length) }
+        }
+        Some(Component::Hose { bore, expansion, expansion_pressure, expansion_slope, length, .. }) => {
+            let measured = expansion.map(|value| at("volumetric_expansion", value));
+            let pressure = expansion_pressure.map(|value| at("volumetric_expansion_pressure", value));
+            let slope = match (declared.hose_properties.volumetric_expansion_slope, measured, pressure) {
+                (None, Some(expansion), Some(pressure)) => expansion / pressure,
+                _ => at("volumetric_expansion_slope", expansion_slope),
+            };
+            let expansion = Expansion { measured, at: pressure, slope };
+            let stiffening = stiffening(declared.dynamic_stiffening, numbers);
+            Line::Hose {
+                hose: hose(at("bore", bore), expansion, pressures, stiffening),
+                length: at("length", length),
+            }
+        }
+        // A project that was read without error has a component; refused as physics otherwise.
+        None => Line::Volume { volume: S::from(f64::NAN), effective_bulk_modulus: S::from(f64::NAN) },
+    }
+}
+
+/// Pressures in Pa at which a hose's expansion is wanted.
+#[derive(Clone, Copy)]
+pub(super) struct ExpansionPressures<S = f64> {
+    /// The supply's: the thesis refers the wall's modulus to it.
+    working: S,
+    /// Midway between supply and tank, where the chambers of an idle actuator stand.
+    operating: S,
+}
+
+impl<S: Scalar> ExpansionPressures<S> {
+    /// Those of a supply and its tank.
+    pub(super) fn of(supply: S, tank: S) -> ExpansionPressures<S> {
+        ExpansionPressures { working: supply, operating: S::from(0.5) * (supply + tank) }
+    }
+}
+
+/// What a catalogue says of a hose's volumetric expansion, m3/m, Pa and m3/(m Pa).
+#[derive(Clone, Copy)]
+pub(super) struct Expansion<S = f64> {
+    pub(super) measured: Option<S>,
+    pub(super) at: Option<S>,
+    pub(super) slope: S,
+}
+
+impl<S: Scalar> Expansion<S> {
+    /// The declared point and the slope from there, or the slope from zero, m3/m; a point without a pressure is taken as that of
+    /// the working pressure.
+    fn at(self, pressure: S, working_pressure: S) -> S {
+        match self.measured {
+            Some(measured) => measured + self.slope * (pressure - self.at.unwrap_or(working_pressure)),
+            None => self.slope * pressure,
+        }
+    }
+}
+
+pub(super) fn hose<S: Scalar>(
+    bore: S,
+    expansion: Expansion<S>,
+    pressures: ExpansionPressures<S>,
+    dynamic_stiffening: Stiffening<S>,
+) -> Hose<S> {
+    let ExpansionPressures { working, operating } = pressures;
+    Hose {
+        bore,
+        volumetric_expansion: expansion.at(working, working),
+        operating_expansion: expansion.at(operating, working),
+        expansion_slope: expansion.slope,
+        dynamic_stiffening,
+    }
+}
+
+/// A ratio without spread is open as a whole, one with spread by its parts.
+pub(super) fn stiffening<S: Scalar>(declared: Option<Interval>, numbers: &Numbers<'_, S>) -> Stiffening<S> {
+    let Interval { nominal, minimum, maximum } = declared.unwrap_or(Interval::exactly(1.0));
+    let at = |part: &str, value: f64| {
+        let whole = numbers.get("dynamic_stiffening");
+        whole.unwrap_or_else(|| numbers.within("dynamic_stiffening").at(part, value))
+    };
+    Stiffening {
+        nominal: at("nominal", nominal),
+        minimum: at("minimum", minimum),
+        maximum: at("maximum", maximum),
+    }
+}
+
+fn pipe<S: Scalar>(declared: &project::Pipe, numbers: &Numbers<'_, S>) -> Pipe<S> {
+    let numbers = numbers.within("pipe");
+    let at = |key: &str, value: f64| numbers.at(key, value);
+    let wall = match (declared.wall_thickness, declared.youngs_modulus) {
+        (Some(thickness), Some(youngs_modulus)) => PipeWall::Elastic {
+            thickness: at("wall_thickness", thickness),
+            youngs_modulus: at("youngs_modulus", youngs_modulus),
+            poisson_ratio: at("poisson_ratio", declared.poisson_ratio),
+            anchoring: Anchoring::Throughout,
+            thick: true,
+        },
+        _ => PipeWall::Rigid,
+    };
+    Pipe { bore: at("bore", declared.bore), wall }
+}
+
+fn cylinder<S: Scalar>(declared: &project::Cylinder, numbers: &Numbers<'_, S>) -> Cylinder<S> {
+    let numbers = numbers.within("cylinder");
+    let at = |key: &str, value: f64| numbers.at(key, value);
+    // two numbers in one key are never open; one number for both sides is
+    let both = |pair: Option<[f64; 2]>, key: &str, single: Option<f64>| match pair {
+        Some(pair) => pair.map(S::from),
+        None => [at(key, single.unwrap_or(0.0)); 2],
+    };
+    let [area_a, area_b] = match (declared.piston_areas, declared.piston_area) {
+        (None, None) => {
+            let piston = at("piston_diameter", declared.piston_diameter.unwrap_or(0.0));
+            let rods = both(declared.rod_diameters, "rod_diameter", declared.rod_diameter);
+            rods.map(|rod| annulus_area(piston, rod))
+        }
+        (areas, area) => both(areas, "piston_area", area),
+    };
+    let [dead_volume_a, dead_volume_b] = both(declared.dead_volumes, "dead_volume", declared.dead_volume);
+    Cylinder {
+        area_a,
+        area_b,
+        stroke: at("stroke", declared.stroke),
+        moving_mass: at("moving_mass", declared.moving_mass),
+        dead_volume_a,
+        dead_volume_b,
+        internal_leakage: declared.internal_leakage.map(|value| at("internal_leakage", value)),
+        end_stops: declared.end_stops.map(|stops| Contact {
+            stiffness: at("end_stops.stiffness", stops.stiffness),
+            relative_damping: at("end_stops.relative_damping", stops.relative_damping),
+        }),
+    }
+}
+
+fn friction<S: Scalar>(declared: Option<&project::Friction>, numbers: &Numbers<'_, S>) -> Friction<S> {
+    let Some(declared) = declared else { return Friction::Viscous { viscous: S::from(0.0) } };
+    let numbers = numbers.within("cylinder.friction");
+    let at = |key: &str, value: f64| numbers.at(key, value);
+    let viscous = at("viscous", declared.viscous);
+    let stribeck = |curve: &StribeckCurve| Stribeck {
+        coulomb: at("coulomb", curve.coulomb),
+        breakaway: at("static", curve.static_friction),
+        stribeck_velocity: at("stribeck_velocity", curve.stribeck_velocity),
+        stribeck_exponent: at("stribeck_exponent", curve.stribeck_exponent),
+        viscous,
+    };
+    match &declared.law {
+        FrictionLaw::Viscous => Friction::Viscous { viscous },
+        FrictionLaw::Stribeck { curve, .. } => Friction::Stribeck(stribeck(curve)),
+        FrictionLaw::LuGre { curve, bristle_stiffness, bristle_damping } => Friction::LuGre(LuGre {
+            curve: stribeck(curve),
+            bristle_stiffness: at("bristle_stiffness", *bristle_stiffness),
+            bristle_damping: at("bristle_damping", *bristle_damping),
+        }),
+    }
+}

@@ -1,0 +1,121 @@
+//! The lines of a rig in motion, as they are declared.
+
+use phea_hydraulics::actuator::Components;
+use phea_hydraulics::fluid::Fluid;
+use phea_hydraulics::line::{
+    BraidedWall, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Member,
+    Stiffening,
+};
+use phea_hydraulics::operating_point::OperatingPoint;
+use phea_hydraulics::plant::{BehindLines, Plant, PlantInMotion};
+use phea_hydraulics::servovalve::Supply;
+use phea_hydraulics::stiffness::compliance_at;
+use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
+
+use crate::project::{self, LineFriction, LineMotion, LineWall};
+
+/// The plant with lines as they move, in place of its lumped ones; `None` where both are lumped.
+///
+/// # Errors
+/// A line that its model does not fit.
+pub fn in_motion(
+    declared: &project::Lines,
+    components: &Components,
+    point: &OperatingPoint,
+    chambers: &TwoPressureLinearParameters,
+    plant: &Plant,
+) -> Result<Option<PlantInMotion>, LineError> {
+    let [line_a, line_b] = [components.line_a, components.line_b].map(stiffened_alike);
+    let Supply { pressure, tank_pressure } = components.supply;
+    let moving = lines(declared, [&line_a, &line_b], &components.fluid, 0.5 * (pressure + tank_pressure))?;
+    let [line_a, line_b] = [line_a, line_b].map(without_volume);
+    let bare = Components { line_a, line_b, ..*components };
+    let bare = bare.chamber_compliance([point.pressure_a, point.pressure_b], Member::Nominal);
+    let chambers_alone = compliance_at(&bare, point.position);
+    Ok(moving.map(|lines| {
+        let behind = BehindLines { lines, chambers: chambers_alone, lumped: chambers.compliances };
+        PlantInMotion::new(plant, &behind)
+    }))
+}
+
+/// A hose of one stiffening: what a member of a family has for it is its own, and need not lie in the declared interval.
+fn stiffened_alike(line: Line) -> Line {
+    match line {
+        Line::Hose { mut hose, length } => {
+            let nominal = hose.dynamic_stiffening.nominal;
+            hose.dynamic_stiffening = Stiffening { nominal, minimum: nominal, maximum: nominal };
+            Line::Hose { hose, length }
+        }
+        Line::Pipe { .. } | Line::Volume { .. } => line,
+    }
+}
+
+/// The same line, holding nothing.
+fn without_volume(mut line: Line) -> Line {
+    match &mut line {
+        Line::Hose { length, .. } | Line::Pipe { length, .. } => *length = 0.0,
+        Line::Volume { volume, .. } => *volume = 0.0,
+    }
+    line
+}
+
+/// These lines as the project says that they move, filled with a fluid at a mean pressure in Pa; `None` where both are lumped, and
+/// nothing of them moves.
+///
+/// # Errors
+/// A line that its model does not fit.
+pub fn lines(
+    declared: &project::Lines,
+    lines: [&Line; 2],
+    fluid: &Fluid,
+    pressure: f64,
+) -> Result<Option<[DynamicLine; 2]>, LineError> {
+    let [a, b] = [&declared.a.motion, &declared.b.motion];
+    if [a.model, b.model] == [project::LineModel::Lumped; 2] {
+        return Ok(None);
+    }
+    let of = |line: &Line, motion: &LineMotion| {
+        DynamicLine::new(line, fluid, pressure, Member::Nominal, &line_model(motion, line))
+    };
+    let [line_a, line_b] = lines;
+    Ok(Some([of(line_a, a)?, of(line_b, b)?]))
+}
+
+fn line_model(motion: &LineMotion, line: &Line) -> LineModel {
+    let end_share = motion.end_share.unwrap_or(END_SHARE);
+    match motion.model {
+        project::LineModel::Lumped => LineModel::Lumped,
+        // a validated project states the relaxation time of a wall that creeps
+        project::LineModel::Creeping => {
+            LineModel::Creeping { relaxation_time: motion.relaxation_time.unwrap_or(f64::NAN) }
+        }
+        project::LineModel::Segments => LineModel::Segments {
+            count: motion.segments.unwrap_or(LineMotion::SEGMENTS) as usize,
+            friction: match motion.friction {
+                Some(LineFriction::Steady) => LaminarFriction::Steady,
+                Some(LineFriction::FrequencyDependent) | None => LaminarFriction::FrequencyDependent,
+            },
+            relaxation_time: motion.relaxation_time,
+        },
+        project::LineModel::TransmissionLine => LineModel::TransmissionLine { end_share },
+        project::LineModel::TwoWave => {
+            let hose = if let Line::Hose { hose, .. } = line { Some(hose) } else { None };
+            let wall = motion.wall.as_ref().zip(hose).map(|(wall, hose)| braided_wall(wall, hose));
+            LineModel::TwoWave { end_share, wall }
+        }
+    }
+}
+
+/// What is not stated is assumed, but for what follows from the rest: a braid at its neutral angle, and the catalogue's expansion.
+fn braided_wall(declared: &LineWall, hose: &Hose) -> BraidedWall {
+    let assumed = BraidedWall::assumed(hose, Member::Nominal);
+    let axial_compliance = declared.axial_compliance.unwrap_or(assumed.axial_compliance);
+    let coupling_compliance = declared.coupling_compliance.unwrap_or(-axial_compliance);
+    let mass_per_length = declared.mass_per_length.unwrap_or(assumed.mass_per_length);
+    let member = Member::Nominal;
+    let wall = BraidedWall::of_hose(hose, member, axial_compliance, coupling_compliance, mass_per_length);
+    BraidedWall {
+        pressure_compliance: declared.pressure_compliance.unwrap_or(wall.pressure_compliance),
+        ..wall
+    }
+}

@@ -1,0 +1,70 @@
+use phea_dynamics::scalar::Scalar;
+
+/// The numbers of a project at their paths: as they are declared, but for those that are open. Every plant of a family asks for all of
+/// them, so that paths are compared part by part and never written.
+#[derive(Clone, Copy, Debug)]
+pub struct Numbers<'a, S = f64> {
+    names: &'a [String],
+    values: &'a [S],
+    /// `a` or `b` inside of a line, whose keys are then without their table.
+    side: Option<&'static str>,
+    /// The tables that keys are in, one within the other; the empty ones are none.
+    tables: [&'static str; 2],
+}
+
+impl Numbers<'_, f64> {
+    /// All as declared.
+    pub fn declared() -> Numbers<'static, f64> {
+        Numbers::open(&[], &[])
+    }
+}
+
+impl<'a, S: Scalar> Numbers<'a, S> {
+    /// These numbers open, in their order.
+    pub fn open(names: &'a [String], values: &'a [S]) -> Numbers<'a, S> {
+        Numbers { names, values, side: None, tables: [""; 2] }
+    }
+
+    /// Inside of the line to chamber `a` or `b`: a number of one line goes before the same of both.
+    pub(super) fn of_line(&self, side: &'static str) -> Numbers<'a, S> {
+        Numbers { side: Some(side), ..*self }
+    }
+
+    /// Inside of a table, and of one in it.
+    pub(super) fn within(&self, table: &'static str) -> Numbers<'a, S> {
+        let [first, _] = self.tables;
+        Numbers { tables: if first.is_empty() { [table, ""] } else { [first, table] }, ..*self }
+    }
+
+    /// The value of an open number.
+    pub fn get(&self, path: &str) -> Option<S> {
+        let found = |is_named: &dyn Fn(&str) -> Option<bool>| {
+            let mut numbers = self.names.iter().zip(self.values);
+            numbers.find(|(name, _)| is_named(name) == Some(true)).map(|(_, value)| *value)
+        };
+        let rest = |name: &str| self.within_tables(name).map(|key| key == path);
+        let Some(side) = self.side else { return found(&rest) };
+        let of_side = |name: &str| rest(inside(inside(name, "line")?, side)?);
+        found(&of_side).or_else(|| found(&|name| rest(inside(name, "line")?)))
+    }
+
+    /// What of a path is left inside of the tables.
+    fn within_tables<'n>(&self, name: &'n str) -> Option<&'n str> {
+        let mut tables = self.tables.iter().filter(|table| !table.is_empty());
+        tables.try_fold(name, |name, table| inside(name, table))
+    }
+
+    pub(super) fn is_open(&self, path: &str) -> bool {
+        self.get(path).is_some()
+    }
+
+    /// The number at a path, its declared value known.
+    pub fn at(&self, path: &str, declared: f64) -> S {
+        self.get(path).unwrap_or_else(|| S::from(declared))
+    }
+}
+
+/// What of a path is left inside of a table.
+fn inside<'n>(name: &'n str, table: &str) -> Option<&'n str> {
+    name.strip_prefix(table)?.strip_prefix('.')
+}

@@ -1,0 +1,73 @@
+use phea_hydraulics::linear::LinearParameters;
+
+use crate::project::{LINEAR_PARAMETERS, Project};
+
+/// Who decides the value of a parameter of the linear model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterOrigin {
+    /// Set outright in `[linear]`.
+    Linear,
+    /// The nominal value in `[uncertainty]`.
+    Uncertainty,
+    /// It follows from the rig.
+    Derived,
+}
+
+/// A parameter of the linear model with its derived value beside the one that holds, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResolvedParameter {
+    /// Its key in `[linear]` and `[uncertainty]`.
+    pub name: &'static str,
+    /// The value that holds.
+    pub value: f64,
+    /// Who decided it.
+    pub origin: ParameterOrigin,
+    /// What follows from the rig.
+    pub derived: f64,
+    /// Its bounds, where `[uncertainty]` states them.
+    pub bounds: Option<[f64; 2]>,
+}
+
+impl ResolvedParameter {
+    /// How far the value that holds is from the derived one, relative to the latter.
+    pub fn relative_difference(&self) -> f64 {
+        (self.value - self.derived) / self.derived
+    }
+}
+
+/// The one place that says which field of the linear model belongs to which key.
+pub(super) fn parameter_field<'a, S>(
+    parameters: &'a mut LinearParameters<S>,
+    name: &str,
+) -> Option<&'a mut S> {
+    match name {
+        "viscous_friction" => Some(&mut parameters.viscous_friction),
+        "flow_gain" => Some(&mut parameters.flow_gain),
+        "flow_pressure_coefficient" => Some(&mut parameters.flow_pressure_coefficient),
+        "hydraulic_stiffness" => Some(&mut parameters.hydraulic_stiffness),
+        "valve_natural_frequency" => Some(&mut parameters.valve_natural_frequency),
+        "valve_damping_ratio" => Some(&mut parameters.valve_damping_ratio),
+        "moving_mass" => Some(&mut parameters.moving_mass),
+        "piston_area" => Some(&mut parameters.useful_area),
+        "sensor_stiffness" => Some(&mut parameters.sensor_stiffness),
+        _ => None,
+    }
+}
+
+pub(super) fn resolve(project: &Project, derived: &LinearParameters) -> Vec<ResolvedParameter> {
+    LINEAR_PARAMETERS
+        .iter()
+        .filter_map(|parameter| {
+            let name = parameter.key.name;
+            let derived = *parameter_field(&mut derived.clone(), name)?;
+            let uncertain = project.uncertainty.iter().find(|uncertain| uncertain.name == name);
+            let (value, origin) = match (project.linear.get(name), uncertain) {
+                (Some(value), _) => (value, ParameterOrigin::Linear),
+                (None, Some(uncertain)) => (uncertain.nominal, ParameterOrigin::Uncertainty),
+                (None, None) => (derived, ParameterOrigin::Derived),
+            };
+            let bounds = uncertain.map(|uncertain| [uncertain.minimum, uncertain.maximum]);
+            Some(ResolvedParameter { name, value, origin, derived, bounds })
+        })
+        .collect()
+}

@@ -1,0 +1,31 @@
+//! Where the linear model is taken: what the project states of the operating point, over any scalar.
+
+use phea_dynamics::scalar::Scalar;
+use phea_hydraulics::operating_point::{Load, Steady};
+
+use super::numbers::Numbers;
+use crate::project::{self, Project};
+
+/// The position in m and what is known of the pressures. Null blocks the piston; a command moves it, with no load pressure where none is
+/// declared, thesis (4.18); a velocity has no load where none is declared.
+pub fn place<S: Scalar>(project: &Project, stroke: S, numbers: &Numbers<'_, S>) -> (S, Steady<S>) {
+    let declared = project.resolved_operating_point();
+    let numbers = numbers.within("operating_point");
+    let at = |name: &str, value: Option<f64>| value.map(|value| numbers.at(name, value));
+    let position = at("position", declared.position).unwrap_or(stroke / S::from(2.0));
+    let project::OperatingPoint { load_pressure, load_force, velocity, command, .. } = declared;
+    let pressure = at("load_pressure", load_pressure);
+    let force = at("load_force", load_force);
+    let none = S::from(0.0);
+    let load = pressure.map(Load::Pressure).or(force.map(Load::Force));
+    let steady = match (command, pressure) {
+        (Some(command), Some(pressure)) => Steady::Matched(S::from(command), pressure),
+        (Some(command), None) if command != 0.0 => Steady::Matched(S::from(command), none),
+        _ if load.is_none() && velocity.is_none() => Steady::Command(none),
+        _ => Steady::Moving {
+            velocity: at("velocity", velocity).unwrap_or(none),
+            load: load.unwrap_or(Load::Force(none)),
+        },
+    };
+    (position, steady)
+}

@@ -1,0 +1,155 @@
+//! The linear plant of a rig: at its operating point, with its load and its leakage, and with what the project states of it.
+
+use phea_dynamics::scalar::Scalar;
+use phea_hydraulics::linear::LinearParameters;
+use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, Plant, YieldingSupply};
+use phea_hydraulics::servovalve::ChamberCoefficients;
+use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
+
+use super::numbers::Numbers;
+use super::parameters::{ParameterOrigin, ResolvedParameter, parameter_field};
+use crate::project;
+
+/// Parameters of the linear model that speak of one load pressure.
+const OF_LOAD_PRESSURE: [&str; 4] =
+    ["piston_area", "flow_gain", "flow_pressure_coefficient", "hydraulic_stiffness"];
+/// Chambers whose numbers differ by less, relative to them, are equal.
+const EQUAL: f64 = 1e-9;
+
+/// What the load is to the plant, before it is given a value. Units: kg, N s/m, N/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct YieldingLoad<S = f64> {
+    /// Moving mass.
+    pub mass: S,
+    /// Damping of the load itself.
+    pub damping: S,
+    /// Zero where the load touches no wall.
+    pub stiffness: S,
+    /// What the touch of a wall damps.
+    pub contact_damping: S,
+}
+
+impl<S: Scalar> YieldingLoad<S> {
+    /// The load in the linear plant, its damping and that of the contact in one.
+    pub fn linear(&self) -> LinearLoad<S> {
+        LinearLoad::Yielding {
+            mass: self.mass,
+            damping: self.damping + self.contact_damping,
+            stiffness: self.stiffness,
+        }
+    }
+}
+
+/// The load at a force on it in N; `None` where its motion is prescribed. A wall is touched where the force presses on it, or where
+/// there is no gap. Hunt and Crossley's damping K c d of a wall pressed by d = F/K is c F.
+pub fn yielding_load<S: Scalar>(
+    declared: &project::Load,
+    numbers: &Numbers<'_, S>,
+    force: S,
+) -> Option<YieldingLoad<S>> {
+    let none = S::from(0.0);
+    let of_load = numbers.within("load");
+    let at = |key: &str, value: f64| of_load.at(key, value);
+    match *declared {
+        project::Load::Prescribed => None,
+        project::Load::SpringMassDamper { mass, stiffness, damping } => Some(YieldingLoad {
+            mass: at("mass", mass),
+            damping: at("damping", damping),
+            stiffness: at("stiffness", stiffness),
+            contact_damping: none,
+        }),
+        project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => {
+            let wall = at("stiffness", stiffness);
+            let touched = S::select(none.less_than(force), wall, none);
+            Some(YieldingLoad {
+                mass: at("mass", mass?),
+                damping: at("damping", damping),
+                stiffness: if gap == 0.0 { wall } else { touched },
+                contact_damping: at("relative_damping", relative_damping) * force.maximum(none),
+            })
+        }
+    }
+}
+
+/// Whether the project states a parameter of the linear model that speaks of one load pressure; `uncertain` are names of its numbers.
+pub fn states_one_pressure(parameters: &[ResolvedParameter], uncertain: &[String]) -> bool {
+    let speaks = |name: &str| OF_LOAD_PRESSURE.contains(&name);
+    let stated = |one: &ResolvedParameter| one.origin != ParameterOrigin::Derived && speaks(one.name);
+    parameters.iter().any(stated) || uncertain.iter().any(|name| speaks(name))
+}
+
+/// Whether numbers of both chambers are equal, so that one load pressure tells all of them.
+pub fn are_equal(sides: impl IntoIterator<Item = [f64; 2]>) -> bool {
+    sides.into_iter().all(|[a, b]| (a - b).abs() <= EQUAL * a.abs())
+}
+
+/// Areas, compliances and flow-pressure coefficients of both chambers.
+pub fn sides<S: Scalar>(chambers: &TwoPressureLinearParameters<S>) -> [[S; 2]; 3] {
+    let ChamberCoefficients { flow_pressure_a, flow_pressure_b, .. } = chambers.chambers;
+    [chambers.areas, chambers.compliances, [flow_pressure_a, flow_pressure_b]]
+}
+
+/// The parameters of the fifth-order model as these chambers have them, each stated one in its place, in their order.
+pub fn linear<'n, S: Scalar>(
+    chambers: &TwoPressureLinearParameters<S>,
+    stated: impl Iterator<Item = (&'n str, S)>,
+) -> LinearParameters<S> {
+    let mut linear = reduce(chambers);
+    for (name, value) in stated {
+        if let Some(slot) = parameter_field(&mut linear, name) {
+            *slot = value;
+        }
+    }
+    linear
+}
+
+/// The plant of these chambers with what is stated of it.
+pub fn plant<S: Scalar>(
+    chambers: &TwoPressureLinearParameters<S>,
+    linear: &LinearParameters<S>,
+    one_pressure: bool,
+    leakage: S,
+    load: LinearLoad<S>,
+) -> Plant<S> {
+    if one_pressure {
+        return Plant::of_load_pressure(linear, leakage, load);
+    }
+    let stated = TwoPressureLinearParameters {
+        moving_mass: linear.moving_mass,
+        viscous_friction: linear.viscous_friction,
+        sensor_stiffness: linear.sensor_stiffness,
+        valve_natural_frequency: linear.valve_natural_frequency,
+        valve_damping_ratio: linear.valve_damping_ratio,
+        ..*chambers
+    };
+    Plant::of_two_pressures(&stated, leakage, load)
+}
+
+/// The same plant at a supply that yields. Where a stated number makes the valve of one load pressure another than its parts are, what
+/// it takes from the supply is another alike.
+pub fn with_supply<S: Scalar>(
+    plant: Plant<S>,
+    supply: YieldingSupply<S>,
+    chambers: &TwoPressureLinearParameters<S>,
+) -> Plant<S> {
+    let supply = match plant.chambers {
+        ChamberDynamics::TwoPressures { .. } => supply,
+        ChamberDynamics::LoadPressure { flow_gain, flow_pressure_coefficient, .. } => {
+            let (two, own) = (S::from(2.0), &chambers.chambers);
+            let both = two * flow_pressure_coefficient;
+            let [edge_a, edge_b] = supply.edges;
+            YieldingSupply {
+                edges: [edge_a * both / own.flow_pressure_a, edge_b * both / own.flow_pressure_b],
+                flow_gain: supply.flow_gain * two * flow_gain / (own.flow_gain_a + own.flow_gain_b),
+                ..supply
+            }
+        }
+    };
+    Plant { supply: Some(supply), ..plant }
+}
+
+/// What the project states of the linear model: name and value.
+pub fn stated(parameters: &[ResolvedParameter]) -> impl Iterator<Item = (&'static str, f64)> {
+    let stated = parameters.iter().filter(|one| one.origin != ParameterOrigin::Derived);
+    stated.map(|one| (one.name, one.value))
+}

@@ -1,0 +1,155 @@
+use phea_dynamics::portable::ln;
+use phea_hydraulics::linear::LinearParameters;
+
+use super::assembly::{Expansion, ExpansionPressures, hose, stiffening};
+use super::numbers::Numbers;
+use crate::catalogue::{Catalogue, DASH_SIZES, Kind};
+use crate::project::{self, HoseProperties};
+use crate::quantity::significant;
+use crate::setup::Setup;
+use crate::sizing::{HoseOption, SizingProblem};
+
+/// Recommended oil velocity of pressure lines, m/s (Rabie 2009, quoted in Ledezma 2019, section 6.3.1.1).
+const OIL_VELOCITY: [f64; 2] = [2.1, 4.6];
+/// Least practical gain, V/N (Ledezma 2019, section 6.3.2, step j).
+const MINIMUM_GAIN: f64 = 1e-4;
+/// Gain at which the search starts, V/N (the same, step f: a unitary value).
+const MAXIMUM_GAIN: f64 = 1.0;
+/// Acceptable length of a line where the project states none, m.
+const HOSE_LENGTH: [f64; 2] = [0.1, 10.0];
+
+/// Why a project cannot be sized.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SizingError {
+    /// The rig cannot be computed with.
+    #[error(transparent)]
+    Rig(#[from] super::RigError),
+    /// There is nothing to size for.
+    #[error(
+        "the project has no [sizing]: add one with `time_constant`, or `settling_time` and `settling_band_percent`"
+    )]
+    Absent,
+    /// No time constant can be had.
+    #[error("[sizing] needs `time_constant`, or `settling_time` with `settling_band_percent`")]
+    TimeConstant,
+    /// No flow limits the bore.
+    #[error("sizing needs the largest flow: `flow` in [supply], or `nominal_flow` in [valve]")]
+    Flow,
+    /// The catalogue holds nothing to choose from.
+    #[error("no hose with bore and volumetric expansion in the catalogue or the project")]
+    NoHose,
+}
+
+/// Everything the sizing procedure needs, resolved from project, rig and catalogue.
+///
+/// # Errors
+/// [`SizingError`] if the project does not say what to size for.
+pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<SizingProblem, SizingError> {
+    let (project, rig) = (setup.project, setup.rig()?);
+    let wish = project.sizing.as_ref().ok_or(SizingError::Absent)?;
+    let actuator = project.actuator.as_ref().ok_or(SizingError::NoHose)?;
+    let components = rig.actuator.components();
+    let (time_constant, time_constant_origin) = time_constant(wish)?;
+    let (maximum_flow, maximum_flow_origin) = maximum_flow(actuator)?;
+    let hoses = hoses(actuator, catalogue);
+    if hoses.is_empty() {
+        return Err(SizingError::NoHose);
+    }
+    // The valve at null, unless [linear] sets it outright; the nominal of [uncertainty] belongs to the controller's plant.
+    let outright = |name: &str, derived: f64| project.linear.get(name).unwrap_or(derived);
+    let leakage = rig.parameters.iter().find(|parameter| parameter.name == "flow_pressure_coefficient");
+    Ok(SizingProblem {
+        cylinder: components.cylinder,
+        linear: LinearParameters {
+            flow_gain: wish.flow_gain.unwrap_or(outright("flow_gain", rig.derived.flow_gain)),
+            flow_pressure_coefficient: rig.internal_leakage
+                + wish
+                    .flow_pressure_coefficient
+                    .unwrap_or(outright("flow_pressure_coefficient", rig.derived.flow_pressure_coefficient)),
+            ..rig.linear
+        },
+        fluid_modulus: components.fluid.modulus_at(rig.actuator.mean_pressure()),
+        density: components.fluid.density,
+        flow_pressure_coefficient_maximum: leakage
+            .and_then(|parameter| parameter.bounds)
+            .map(|bounds| bounds[1] + rig.internal_leakage),
+        internal_leakage: rig.internal_leakage,
+        time_constant,
+        time_constant_origin,
+        maximum_flow,
+        maximum_flow_origin,
+        oil_velocity: wish.oil_velocity.unwrap_or(OIL_VELOCITY),
+        minimum_gain: wish.minimum_gain.unwrap_or(MINIMUM_GAIN),
+        maximum_gain: wish.maximum_gain.unwrap_or(MAXIMUM_GAIN),
+        length_increment: wish.length_increment,
+        stock_length: wish.stock_length,
+        hose_length: wish.hose_length.unwrap_or(HOSE_LENGTH),
+        supply_pressure: actuator.supply.pressure,
+        model: components.stiffness_model,
+        hoses,
+        market_bores: DASH_SIZES.iter().map(|(name, bore)| (name.to_string(), *bore)).collect(),
+    })
+}
+
+/// A first-order response enters a band of b percent after ln(100/b) time constants.
+fn time_constant(wish: &project::Sizing) -> Result<(f64, String), SizingError> {
+    match (wish.time_constant, wish.settling_time, wish.settling_band_percent) {
+        (Some(time_constant), _, _) => Ok((time_constant, "stated".to_string())),
+        (None, Some(settling_time), Some(band)) => {
+            let constants = ln(100.0 / band);
+            let origin = format!(
+                "{} s to {band} % is {} time constants of a first-order response (the thesis takes four whatever the band: for its numbers state `time_constant`)",
+                significant(settling_time, 4),
+                significant(constants, 3)
+            );
+            Ok((settling_time / constants, origin))
+        }
+        _ => Err(SizingError::TimeConstant),
+    }
+}
+
+fn maximum_flow(actuator: &project::Actuator) -> Result<(f64, String), SizingError> {
+    match (actuator.supply.flow(), actuator.valve.nominal_flow) {
+        (Some(pump), Some(valve)) if pump <= valve => {
+            Ok((pump, "the pump's, less than the valve's rated flow".to_string()))
+        }
+        (Some(_), Some(valve)) => Ok((valve, "the valve's rated flow, less than the pump's".to_string())),
+        (Some(pump), None) => Ok((pump, "the pump's".to_string())),
+        (None, Some(valve)) => Ok((valve, "the valve's rated flow".to_string())),
+        (None, None) => Err(SizingError::Flow),
+    }
+}
+
+/// The hoses of the catalogue, with what the project says of one by the same name; its own hose if it has no name.
+fn hoses(actuator: &project::Actuator, catalogue: &Catalogue) -> Vec<HoseOption> {
+    let line = &actuator.line.a;
+    let pressures = ExpansionPressures::of(actuator.supply.pressure, actuator.supply.tank_pressure);
+    let option = |name: &str, properties: &HoseProperties| {
+        let slope = properties.expansion_slope()?;
+        let (measured, at) = (properties.volumetric_expansion, properties.volumetric_expansion_pressure);
+        let expansion = Expansion { measured, at, slope };
+        Some(HoseOption {
+            name: name.to_string(),
+            hose: hose(
+                properties.bore?,
+                expansion,
+                pressures,
+                stiffening(line.dynamic_stiffening, &Numbers::declared()),
+            ),
+            working_pressure: properties.working_pressure,
+            minimum_bend_radius: properties.minimum_bend_radius,
+        })
+    };
+    let mut hoses: Vec<HoseOption> = catalogue
+        .entries(Kind::Hose)
+        .filter_map(|entry| {
+            let own = line.hose.as_deref() == Some(entry.name.as_str());
+            let properties = if own { Some(&line.hose_properties) } else { entry.hose.as_ref() };
+            option(&entry.name, properties?)
+        })
+        .collect();
+    if line.hose.is_none() {
+        hoses.extend(option("the project's hose", &line.hose_properties));
+    }
+    hoses
+}

@@ -1,0 +1,63 @@
+//! The supply of a rig as it is declared, and where it settles, over any scalar.
+
+use phea_dynamics::scalar::Scalar;
+use phea_hydraulics::machine::{Accumulator, PowerUnit, PumpLimited};
+use phea_hydraulics::operating_point::{Balance, SettledSupply, Steady};
+use phea_hydraulics::plant::YieldingSupply;
+use phea_hydraulics::servovalve::Direction;
+
+use super::numbers::Numbers;
+use crate::project::{self, SupplyModel};
+
+/// Where the supply pressure comes from.
+pub fn power_unit<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_, S>) -> PowerUnit<S> {
+    let SupplyModel::PumpLimited(pump) = &declared.supply.model else { return PowerUnit::Constant };
+    let of_supply = numbers.within("supply");
+    let at = |key: &str, value: f64| of_supply.at(key, value);
+    let of_fluid = || numbers.at("fluid.bulk_modulus", declared.fluid.bulk_modulus);
+    let modulus = pump.effective_bulk_modulus;
+    PowerUnit::PumpLimited(PumpLimited {
+        pump_flow: at("flow", pump.flow),
+        relief_override: at("relief_override", pump.relief_override),
+        volume: at("volume", pump.volume),
+        effective_bulk_modulus: modulus.map_or_else(of_fluid, |value| at("effective_bulk_modulus", value)),
+        accumulator: pump.accumulator.map(|accumulator| Accumulator {
+            gas_volume: at("accumulator.gas_volume", accumulator.gas_volume),
+            precharge_pressure: at("accumulator.precharge_pressure", accumulator.precharge_pressure),
+            polytropic_index: at("accumulator.polytropic_exponent", accumulator.polytropic_exponent),
+        }),
+    })
+}
+
+/// Where a limited pump settles with valve and chambers, the balance being that of the stated supply; `None` of a constant pressure.
+pub fn settled_supply<S: Scalar>(
+    declared: &project::Actuator,
+    numbers: &Numbers<'_, S>,
+    balance: &Balance<S>,
+    steady: Steady<S>,
+) -> Option<SettledSupply<S>> {
+    match power_unit(declared, numbers) {
+        PowerUnit::Constant => None,
+        PowerUnit::PumpLimited(unit) => {
+            Some(balance.settled_supply(&unit, tare_drop(declared, numbers, balance), steady))
+        }
+    }
+}
+
+/// That supply for small motions.
+pub fn yielding_supply<S: Scalar>(
+    declared: &project::Actuator,
+    numbers: &Numbers<'_, S>,
+    balance: &Balance<S>,
+    settled: &SettledSupply<S>,
+) -> Option<YieldingSupply<S>> {
+    let PowerUnit::PumpLimited(unit) = power_unit(declared, numbers) else { return None };
+    let drops = [balance.supply.pressure, tare_drop(declared, numbers, balance)];
+    Some(YieldingSupply::new(&unit, balance, drops, settled, Direction::Mean))
+}
+
+/// Drop in Pa at which the tare flow is stated: that of the stated supply where nothing is said.
+fn tare_drop<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_, S>, balance: &Balance<S>) -> S {
+    let whole = balance.supply.pressure - balance.supply.tank_pressure;
+    declared.valve.tare_pressure.map_or(whole, |drop| numbers.at("valve.tare_pressure", drop))
+}

@@ -1,0 +1,303 @@
+//! What the robust method sees of a project: its family within its loop, templates and bounds at the design frequencies, and
+//! where the given loop lies among them.
+
+use num_complex::Complex64;
+use phea_dynamics::controller::Controller;
+use phea_dynamics::frequency::logarithmic_grid;
+use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
+use phea_dynamics::portable;
+use phea_qft::bound::{BoundError, CombinedBound, Fill, FrequencyBounds, PhaseGrid, Placement};
+use phea_qft::closed_loop::{Compensation, Member};
+use phea_qft::family::{Family, UncertainFamily};
+use phea_qft::specification::{LoopResponse, Specification};
+use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Templates};
+use phea_qft::verification::PlantPoint;
+
+use crate::audit::{PlantNames, kind_words, names, outside};
+use crate::caveat::{Caveat, caveats};
+use crate::error::ProcedureError;
+use crate::family::family;
+use crate::setup::Setup;
+use crate::source::Source;
+use crate::specification::{of_rounding, specifications};
+use phea_dynamics::watch::{Progress, Watch};
+
+/// A family of plants within a loop, and what the loop must keep to.
+#[derive(Clone, Debug)]
+pub struct RobustProblem {
+    /// The plants.
+    pub family: Family,
+    /// What the numbers of a plant are called.
+    pub names: PlantNames,
+    /// The loop; with a controller of 1 where none is given.
+    pub compensation: Compensation,
+    /// Whether the project gives a controller.
+    pub has_controller: bool,
+    /// Whether it gives a prefilter; tracking is judged by its spread where not.
+    pub has_prefilter: bool,
+    /// What must be kept to: the specifications in file order, then what the rounding of converters may do.
+    pub specifications: Vec<Specification>,
+    /// What each of them is called: by its kind, or by what is rounded.
+    pub specification_names: Vec<String>,
+    /// The rig itself as a family of one, where the family does not contain it, and what of it is outside.
+    pub rig_outside: Option<(Family, String)>,
+    /// Why the plants of the family have no polynomials; `None` where they have.
+    pub without_polynomials: Option<&'static str>,
+    /// What is declared that none of this counts.
+    pub caveats: Vec<Caveat>,
+}
+
+/// Template and bounds at one design frequency.
+#[derive(Clone, Debug)]
+pub struct DesignFrequency {
+    /// rad/s
+    pub frequency_rad_per_s: f64,
+    /// The plants there.
+    pub template: BuiltTemplate,
+    /// Bounds with the template's interior counted as plants.
+    pub bounds: CombinedBound,
+    /// The same before they were sampled: they judge any loop there.
+    pub exact_bounds: FrequencyBounds,
+    /// The nominal loop L0 there.
+    pub nominal_loop: Complex64,
+    /// Where it lies among bounds that count the plants of the template alone.
+    pub placement: Placement,
+    /// Where it lies among bounds that count the template's interior too.
+    pub filled_placement: Placement,
+}
+
+/// Why templates or bounds cannot be computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RobustError {
+    /// A template.
+    #[error("a template: {0}")]
+    Template(#[from] TemplateError),
+    /// A bound.
+    #[error("a bound at {frequency_rad_per_s} rad/s: {error}")]
+    Bound {
+        /// rad/s
+        frequency_rad_per_s: f64,
+        /// What is wrong.
+        error: BoundError,
+    },
+    /// A member of the family cannot be put into the loop.
+    #[error("a plant of the family: {0}")]
+    Member(#[from] LinearError),
+}
+
+/// The robust problem of a project.
+///
+/// # Errors
+/// [`ProcedureError`] for parts that are no transfer functions, families or limits.
+pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustProblem, ProcedureError> {
+    let compensation = match &setup.controller {
+        Some(given) => setup.compensation(given)?,
+        None => {
+            let prefilter = setup.prefilter.clone().unwrap_or_default();
+            let open = Controller { prefilter, timing: setup.timing, ..Controller::default() };
+            Compensation::new(&open, setup.sensor.clone())?
+        }
+    };
+    let (specifications, specification_names) =
+        named_specifications(setup, compensation.highest_frequency_rad_per_s())?;
+    let family = family(setup, source)?;
+    Ok(RobustProblem {
+        without_polynomials: without_polynomials(setup, &family),
+        names: names(setup.project, &family),
+        family,
+        compensation,
+        has_controller: setup.controller.is_some(),
+        has_prefilter: setup.prefilter.is_some(),
+        specifications,
+        specification_names,
+        rig_outside: match outside(setup) {
+            Some((alone, beyond)) => Some((self::family(&Setup::new(&alone)?, source)?, beyond)),
+            None => None,
+        },
+        caveats: caveats(setup),
+    })
+}
+
+fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static str> {
+    let Family::Uncertain(family) = family else { return None };
+    let moves = setup.rig().is_ok_and(|rig| rig.in_motion.is_some());
+    let why = if moves { "lines in motion" } else { "the load's velocity fed forward late" };
+    (!family.plant().is_rational()).then_some(why)
+}
+
+/// What must be kept to, and what it is called. Bounds on the rounding of converters are drawn at every design frequency that the loop
+/// reaches.
+fn named_specifications(
+    setup: &Setup<'_>,
+    highest_frequency_rad_per_s: f64,
+) -> Result<(Vec<Specification>, Vec<String>), ProcedureError> {
+    let mut specifications = specifications(setup.project)?;
+    let mut names: Vec<String> = specifications.iter().map(|one| kind_words(&one.requirement)).collect();
+    let mut frequencies: Vec<f64> =
+        specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied()).collect();
+    frequencies.retain(|frequency| *frequency <= highest_frequency_rad_per_s);
+    frequencies.sort_by(f64::total_cmp);
+    frequencies.dedup();
+    for (specification, name) in of_rounding(setup, &frequencies) {
+        specifications.push(specification);
+        names.push(name.to_string());
+    }
+    Ok((specifications, names))
+}
+
+impl RobustProblem {
+    /// What a specification is called.
+    pub fn name_of(&self, index: usize) -> &str {
+        self.specification_names.get(index).map_or("", String::as_str)
+    }
+
+    /// Every frequency at which a bound is drawn, rad/s, increasing.
+    pub fn design_frequencies(&self) -> Vec<f64> {
+        let all = self.specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied());
+        let mut frequencies: Vec<f64> =
+            all.filter(|&frequency| frequency <= self.compensation.highest_frequency_rad_per_s()).collect();
+        frequencies.sort_by(f64::total_cmp);
+        frequencies.dedup();
+        frequencies
+    }
+
+    /// Templates and bounds at every design frequency that the family reaches.
+    ///
+    /// # Errors
+    /// [`ProcedureError::Robust`], and [`ProcedureError::Stopped`] where the watcher stops it.
+    pub fn at_design_frequencies(&self, watch: Watch<'_>) -> Result<Vec<DesignFrequency>, ProcedureError> {
+        let frequencies = self.design_frequencies();
+        let options = TemplateOptions::default();
+        let mut found = Vec::new();
+        let templates = Templates::new(&self.family, &self.compensation, &frequencies, options);
+        for (index, built) in templates.enumerate() {
+            match built {
+                // beyond a measurement nothing is known, so that there is no template either
+                Err(TemplateError::OutOfReach { .. }) => {}
+                built => found.push(self.at_template(built.map_err(RobustError::from)?)?),
+            }
+            let share = (index + 1) as f64 / frequencies.len() as f64;
+            if !watch(Progress { stage: "templates and bounds", share }) {
+                return Err(ProcedureError::Stopped);
+            }
+        }
+        Ok(found)
+    }
+
+    fn at_template(&self, template: BuiltTemplate) -> Result<DesignFrequency, RobustError> {
+        let frequency_rad_per_s = template.template.frequency_rad_per_s;
+        let explain = |error| RobustError::Bound { frequency_rad_per_s, error };
+        let bounds =
+            |fill| FrequencyBounds::new(&template.template, &self.specifications, fill).map_err(explain);
+        let (points, filled) = (bounds(Fill::Points)?, bounds(Fill::Filled)?);
+        let nominal_loop =
+            template.template.nominal * self.compensation.response(frequency_rad_per_s).feedback;
+        Ok(DesignFrequency {
+            frequency_rad_per_s,
+            bounds: filled.combined(&PhaseGrid::default()),
+            nominal_loop,
+            placement: points.placement(nominal_loop),
+            filled_placement: filled.placement(nominal_loop),
+            exact_bounds: filled,
+            template,
+        })
+    }
+
+    /// The nominal plant within the loop.
+    ///
+    /// # Errors
+    /// [`LinearError`] where it cannot be sampled.
+    pub fn nominal(&self) -> Result<Option<Member>, LinearError> {
+        match &self.family {
+            Family::Uncertain(family) => {
+                self.compensation.member_of(family.plant(), &family.plant().nominal()).map(Some)
+            }
+            Family::Measured(family) => {
+                Ok(family.plants().first().map(|plant| self.compensation.measured(plant)))
+            }
+        }
+    }
+
+    /// Every member within the loop.
+    ///
+    /// # Errors
+    /// [`LinearError`] where one cannot be sampled.
+    pub fn members(&self) -> Result<Vec<Member>, LinearError> {
+        match &self.family {
+            Family::Uncertain(family) => {
+                let plants = family.members().iter();
+                plants.map(|values| self.compensation.member_of(family.plant(), values)).collect()
+            }
+            Family::Measured(family) => {
+                Ok(family.plants().iter().map(|plant| self.compensation.measured(plant)).collect())
+            }
+        }
+    }
+
+    /// One plant of the family within the loop; `None` where it cannot be sampled.
+    pub fn member(&self, plant: &PlantPoint) -> Option<Member> {
+        match (&self.family, plant) {
+            (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
+                self.compensation.member_of(family.plant(), values).ok()
+            }
+            (Family::Measured(family), PlantPoint::Measured(index)) => {
+                family.plants().get(*index).map(|plant| self.compensation.measured(plant))
+            }
+            _ => None,
+        }
+    }
+
+    /// The whole loop of a member at a frequency; `None` where a measurement does not reach.
+    pub fn response(&self, member: &Member, frequency_rad_per_s: f64) -> Option<LoopResponse> {
+        let found = member.response(frequency_rad_per_s)?;
+        let loop_side = self.compensation.response(frequency_rad_per_s);
+        Some(LoopResponse {
+            plant: found.plant,
+            load_motion: found.load_motion,
+            controller: loop_side.feedback,
+            prefilter: loop_side.prefilter,
+            sensor: found.sensor,
+        })
+    }
+
+    /// Frequencies for drawing from `from` to `to`: even in their logarithm, and denser around the lightly damped roots of the
+    /// nominal plant and of the controller, rad/s.
+    pub fn drawn_frequencies(&self, from: f64, to: f64) -> Vec<f64> {
+        let to = to.min(self.compensation.highest_frequency_rad_per_s());
+        let mut frequencies = logarithmic_grid(from, to, GRID_POINTS).unwrap_or_default();
+        let mut roots: Vec<Complex64> = self.compensation.feedback().zeros().to_vec();
+        roots.extend(self.compensation.feedback().poles());
+        if let Family::Uncertain(family) = &self.family {
+            roots.extend(nominal_roots(family));
+        }
+        for root in roots.iter().filter(|root| root.im > 0.0) {
+            let (size, width) = (portable::magnitude(*root), root.re.abs());
+            let offsets = (-ROOT_POINTS..=ROOT_POINTS).map(|step| {
+                let share = f64::from(step) / f64::from(ROOT_POINTS);
+                size + ROOT_WIDTHS * width * share * share * share
+            });
+            frequencies.extend(offsets.filter(|frequency| (from..=to).contains(frequency)));
+        }
+        frequencies.extend(self.design_frequencies().into_iter().filter(|f| (from..=to).contains(f)));
+        frequencies.sort_by(f64::total_cmp);
+        frequencies.dedup();
+        frequencies
+    }
+}
+
+/// Points of the even grid.
+const GRID_POINTS: usize = 500;
+/// Points to each side of a lightly damped root.
+const ROOT_POINTS: i32 = 20;
+/// How far they reach, in half widths of its resonance.
+const ROOT_WIDTHS: f64 = 12.0;
+
+fn nominal_roots(family: &UncertainFamily) -> Vec<Complex64> {
+    let Some(plant) = family.plant().member(&family.plant().nominal()) else { return Vec::new() };
+    let plant = plant.slow().command;
+    let function = TransferFunction::from_polynomials(
+        &Polynomial::new(plant.numerator),
+        &Polynomial::new(plant.denominator),
+    );
+    function.map_or_else(|_| vec![], |function| [function.zeros(), function.poles()].concat())
+}

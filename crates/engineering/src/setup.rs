@@ -1,0 +1,106 @@
+//! A project, lowered: what every procedure computes with, made of what is declared in this one place.
+//!
+//! ```text
+//! Project -> Setup { rig, controller, prefilter, sensor, timing, quantisation } -> machine, plant, family, sizing, reductions
+//! ```
+
+use phea_dynamics::controller::{Compensator, Controller, Timing};
+use phea_dynamics::linear::TransferFunction;
+use phea_qft::closed_loop::Compensation;
+use phea_qft::design::quantisation::{CoefficientFormat, Quantisation, rounded};
+
+use crate::control::{self, ControlError};
+use crate::project::Project;
+use crate::rig::{Rig, RigError};
+
+/// The rig of a project with its controller, as values to compute with. Another rig, with a number changed, is another setup.
+#[derive(Clone, Debug)]
+pub struct Setup<'a> {
+    /// What was declared, and what is asked of it: specifications, scenarios, wishes.
+    pub project: &'a Project,
+    /// The given controller with its prefilter; `None` where the project gives no law for one.
+    pub controller: Option<Controller>,
+    /// The given prefilter; `None` where the project gives none.
+    pub prefilter: Option<Compensator>,
+    /// H; 1 where the project says nothing of a sensor.
+    pub sensor: TransferFunction,
+    /// When the controller acts, be its law given or to be designed; continuous and without delay where the project says nothing.
+    pub timing: Timing,
+    /// What the computer of the controller rounds: nothing where the project does not say.
+    pub quantisation: Quantisation,
+    rig: Result<Rig, RigError>,
+}
+
+impl<'a> Setup<'a> {
+    /// Lowers a project.
+    ///
+    /// # Errors
+    /// [`ControlError`] for a controller, prefilter or sensor that is not a transfer function. What is wrong with the rig is told where it is
+    /// asked for.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_engineering::setup::Setup;
+    /// use phea_project::source::Memory;
+    /// let source = Memory::default().with("rig.toml", include_str!("../../../examples/ybitu/hose.toml"));
+    /// let loaded = phea_project::read(&source, "rig.toml", &[], &[])?;
+    /// let setup = Setup::new(&loaded.project)?;
+    /// assert!((setup.rig()?.linear.sensor_stiffness - 2e7).abs() < 1.0);
+    /// assert!(setup.controller.is_some_and(|given| given.timing == setup.timing));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new(project: &'a Project) -> Result<Setup<'a>, ControlError> {
+        Ok(Setup {
+            project,
+            controller: control::controller(project)?,
+            prefilter: control::prefilter(project)?,
+            sensor: control::sensor(project)?,
+            timing: control::timing(project),
+            quantisation: control::quantisation(project)?,
+            rig: Setup::rig_of(project),
+        })
+    }
+
+    /// The rig of a project alone.
+    ///
+    /// # Errors
+    /// As [`Setup::rig`].
+    pub fn rig_of(project: &Project) -> Result<Rig, RigError> {
+        Rig::of(project, project.actuator.as_ref().ok_or(RigError::NoActuator)?)
+    }
+
+    /// The rig.
+    ///
+    /// # Errors
+    /// [`RigError`] for a project without an actuator, a rig that is impossible, and one that does not rest at its operating point.
+    pub fn rig(&self) -> Result<&Rig, RigError> {
+        self.rig.as_ref().map_err(Clone::clone)
+    }
+
+    /// The same rig and controller, of which something else is asked: in its scenarios, specifications and settings alone may the project
+    /// differ.
+    pub fn asked<'b>(&self, project: &'b Project) -> Setup<'b> {
+        let Setup { controller, prefilter, sensor, timing, quantisation, rig, .. } = self.clone();
+        Setup { project, controller, prefilter, sensor, timing, quantisation, rig }
+    }
+
+    /// A controller as the project's computer runs it: in z with rounded coefficients, or as it is where nothing is rounded.
+    ///
+    /// # Errors
+    /// [`ControlError::Quantisation`] for coefficients that cannot be stored.
+    pub fn deployed(&self, controller: &Controller) -> Result<Controller, ControlError> {
+        match self.quantisation.coefficients {
+            CoefficientFormat::Double => Ok(controller.clone()),
+            format => Ok(rounded(controller, format)?.controller),
+        }
+    }
+
+    /// The loop around the plant that a controller makes as it is deployed.
+    ///
+    /// # Errors
+    /// [`ControlError`] if it cannot be sampled or rounded.
+    pub fn compensation(&self, controller: &Controller) -> Result<Compensation, ControlError> {
+        let linear = |error| ControlError::Linear { place: "[controller]", error };
+        Compensation::new(&self.deployed(controller)?, self.sensor.clone()).map_err(linear)
+    }
+}

@@ -1,0 +1,190 @@
+//! Shaping by hand on a project: the elements of its controller or prefilter are changed one by one, judged at the design frequencies,
+//! and written back into its file.
+
+mod change;
+mod piece;
+mod save;
+mod wish;
+mod workpiece;
+
+pub use change::{Change, RequestedChange};
+
+use num_complex::Complex64;
+use phea_dynamics::controller::Compensator;
+use phea_qft::manual_shaping::{DesignChart, DesignMargin, DesignPoint, History};
+use phea_qft::stability::StabilityAudit;
+use phea_qft::template::{TemplateError, TemplateOptions, Templates};
+use phea_qft::verification::{StabilityFinding, TrackingJudgement};
+
+use crate::audit::PlantNames;
+use crate::error::ProcedureError;
+use crate::project::{self, Element, Findings, Loaded, Report};
+use crate::robust::{RobustError, RobustProblem, robust_problem};
+use crate::setup::Setup;
+use crate::source::Source;
+use phea_dynamics::watch::{Progress, Watch};
+use workpiece::Workpiece;
+
+/// What of a project is shaped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shaped {
+    /// G
+    #[default]
+    Controller,
+    /// F
+    Prefilter,
+}
+
+impl Shaped {
+    /// The table of the project file.
+    pub fn table(self) -> &'static str {
+        match self {
+            Shaped::Controller => "controller",
+            Shaped::Prefilter => "prefilter",
+        }
+    }
+}
+
+/// Why a controller cannot be shaped.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ShapingError {
+    /// Changes that cannot be made, each with its place.
+    #[error("{0}")]
+    Refused(Report),
+    /// A prefilter without a loop behind it.
+    #[error("the project gives no [controller]: shape it first, the prefilter stands in front of its loop")]
+    NoController,
+    /// Elements in tables with others between them.
+    #[error("the elements of [{table}] stand in tables with others between them: bring them together first")]
+    Scattered {
+        /// `controller` or `prefilter`.
+        table: &'static str,
+    },
+    /// A file that would not read back as what was to be written.
+    #[error("the project file cannot be rewritten: {reason}")]
+    NotWritten {
+        /// Why.
+        reason: String,
+    },
+}
+
+/// A project with its elements changed, and what every plant makes of them.
+#[derive(Clone, Debug)]
+pub struct Shaping {
+    /// What was shaped.
+    pub shaped: Shaped,
+    /// How many changes were made.
+    pub changes: usize,
+    /// The elements, those that do not act among them.
+    pub elements: Vec<Element>,
+    /// The problem with these elements in its loop.
+    pub problem: RobustProblem,
+    /// What the numbers of a plant are called.
+    pub names: PlantNames,
+    /// Whether every plant is stable.
+    pub stability: StabilityFinding,
+    /// At the design frequencies, the worst first.
+    pub margins: Vec<DesignMargin>,
+    /// The nominal loop at the design frequencies.
+    pub points: Vec<DesignPoint>,
+    /// Design frequencies that a measurement does not reach, rad/s.
+    pub unreached_rad_per_s: Vec<f64>,
+    /// The project file with these elements, all else as it was.
+    pub saved: Vec<u8>,
+}
+
+/// Makes the changes in order, and judges the result.
+///
+/// # Errors
+/// [`ProcedureError::Shaping`] for a change that cannot be made; those of [`robust_problem`]; [`ProcedureError::Stopped`].
+pub fn shape(
+    source: &dyn Source,
+    loaded: &Loaded,
+    shaped: Shaped,
+    changes: &[RequestedChange],
+    watch: Watch<'_>,
+) -> Result<Shaping, ProcedureError> {
+    let has_law = loaded.project.controller.as_ref().is_some_and(project::Controller::has_law);
+    if shaped == Shaped::Prefilter && !has_law {
+        return Err(ShapingError::NoController.into());
+    }
+    let mut workpiece = Workpiece::new(&loaded.project, shaped)?;
+    // without the elements, which may be none that can be sampled before they are changed
+    let bare = workpiece::with_elements(&loaded.project, shaped, &[]);
+    let bare = robust_problem(source, &Setup::new(&bare)?)?;
+    let mut history = History::new(workpiece.given().clone());
+    for requested in changes {
+        let mut findings = Findings::default();
+        let edit = change::edit(requested, &mut workpiece, history.present(), &bare, &mut findings);
+        let edit = edit?.ok_or_else(|| ShapingError::Refused(findings.clone().report()))?;
+        if let Err(error) = history.edit(&edit) {
+            return Err(ShapingError::Refused(change::refused(requested, &error)).into());
+        }
+    }
+    let elements = workpiece.declared(history.present());
+    let saved = save::saved(source, loaded, shaped, &elements)?;
+    let edited = workpiece::with_elements(&loaded.project, shaped, &elements);
+    let problem = robust_problem(source, &Setup::new(&edited)?)?;
+    let (chart, unreached_rad_per_s) = chart(&problem, watch)?;
+    let tracking =
+        if problem.has_prefilter { TrackingJudgement::Magnitude } else { TrackingJudgement::Spread };
+    Ok(Shaping {
+        shaped,
+        changes: changes.len(),
+        elements,
+        names: problem.names.clone(),
+        stability: stability(&problem, watch)?,
+        margins: chart.margins(&problem.compensation, tracking),
+        points: chart.points(&problem.compensation),
+        unreached_rad_per_s,
+        problem,
+        saved,
+    })
+}
+
+/// Templates and bounds at the design frequencies, and those that the family does not reach.
+fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<f64>), ProcedureError> {
+    let frequencies = problem.design_frequencies();
+    let options = TemplateOptions::default();
+    let (mut found, mut unreached) = (Vec::new(), Vec::new());
+    let templates = Templates::new(&problem.family, &problem.compensation, &frequencies, options);
+    for (index, built) in templates.enumerate() {
+        match built {
+            Err(TemplateError::OutOfReach { frequency_rad_per_s }) => unreached.push(frequency_rad_per_s),
+            built => found.push(built.map_err(RobustError::from)?.template),
+        }
+        let share = (index + 1) as f64 / frequencies.len() as f64;
+        proceed(watch, "templates", share)?;
+    }
+    let frequency_rad_per_s = found.first().map_or(f64::NAN, |template| template.frequency_rad_per_s);
+    let chart = DesignChart::new(&problem.family, found, &problem.specifications)
+        .map_err(|error| RobustError::Bound { frequency_rad_per_s, error })?;
+    Ok((chart, unreached))
+}
+
+fn stability(problem: &RobustProblem, watch: Watch<'_>) -> Result<StabilityFinding, ProcedureError> {
+    let mut audit = StabilityAudit::new(&problem.family, &problem.compensation);
+    while audit.step() {
+        proceed(watch, "stability", audit.progress())?;
+    }
+    Ok(audit.result().finding)
+}
+
+fn proceed(watch: Watch<'_>, stage: &'static str, share: f64) -> Result<(), ProcedureError> {
+    if watch(Progress { stage, share }) { Ok(()) } else { Err(ProcedureError::Stopped) }
+}
+
+/// Where what is shaped lies at a frequency: the nominal loop L0, or the prefilter F. `None` where it is not known.
+fn present(
+    workpiece: &Workpiece<'_>,
+    bare: &RobustProblem,
+    compensator: &Compensator,
+    frequency_rad_per_s: f64,
+) -> Result<Option<Complex64>, ProcedureError> {
+    let own = workpiece.response(compensator, frequency_rad_per_s)?;
+    if workpiece.shaped() == Shaped::Prefilter {
+        return Ok(Some(own));
+    }
+    let nominal = bare.nominal()?.and_then(|member| member.response(frequency_rad_per_s));
+    Ok(nominal.map(|plant| plant.plant * plant.sensor * own))
+}

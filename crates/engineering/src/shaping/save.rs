@@ -1,0 +1,194 @@
+//! The elements written back into the file they came from: they are replaced, and every other byte stays.
+
+mod array;
+mod section;
+
+use std::ops::Range;
+
+use super::{Shaped, ShapingError};
+use crate::error::ProcedureError;
+use crate::project::{
+    self, Element, Entry, Findings, Loaded, Node, Transfer, TreeValue, read_tree, with_law,
+};
+use crate::source::{Source, SourceError};
+
+/// Some bytes of a text and what takes their place.
+struct Replacement {
+    range: Range<usize>,
+    text: String,
+}
+
+/// An element as a file has it.
+struct Written<'a> {
+    /// `None` where it cannot be read; it is then written anew.
+    element: Option<Element>,
+    node: &'a Node,
+}
+
+/// A file that is rewritten.
+struct Draft<'a> {
+    content: &'a str,
+    /// Its end of line.
+    newline: &'static str,
+    table: &'static str,
+    elements: &'a [Element],
+}
+
+/// The bytes of the project file with these elements; settings of the command line beside them are not written.
+pub(super) fn saved(
+    source: &dyn Source,
+    loaded: &Loaded,
+    shaped: Shaped,
+    elements: &[Element],
+) -> Result<Vec<u8>, ProcedureError> {
+    let bytes = &loaded.bytes;
+    let table = shaped.table();
+    let mut findings = Findings::default();
+    let Some(root) = read_tree(&loaded.path, bytes, &mut findings) else {
+        return Err(ShapingError::Refused(findings.report()).into());
+    };
+    let skipped = bytes.len() - findings.content(root.place.text).len();
+    let content = findings.content(root.place.text).to_string();
+    let newline = if content.contains("\r\n") { "\r\n" } else { "\n" };
+    let draft = Draft { content: &content, newline, table, elements };
+    let rewritten = draft.rewritten(&root, &mut findings)?;
+    let saved = [bytes.get(..skipped).unwrap_or_default(), rewritten.as_bytes()].concat();
+    read_back(source, loaded, shaped, elements, &saved)?;
+    Ok(saved)
+}
+
+/// What is to be written must say what was meant.
+fn read_back(
+    source: &dyn Source,
+    loaded: &Loaded,
+    shaped: Shaped,
+    elements: &[Element],
+    saved: &[u8],
+) -> Result<(), ProcedureError> {
+    if !loaded.settings.is_empty() {
+        return Ok(()); // the file alone need not be a valid project
+    }
+    let over = Over { source, path: &loaded.path, bytes: saved };
+    let again = match project::read(&over, &loaded.path, &[], &[]) {
+        Ok(again) => again,
+        // names of the user's own catalogue are known to the command line alone
+        Err(_) if !loaded.catalogue_files.iter().all(|file| file.starts_with("built-in:")) => return Ok(()),
+        Err(report) => return Err(ShapingError::Refused(report).into()),
+    };
+    let transfer = match shaped {
+        Shaped::Controller => again.project.controller.map(|controller| controller.transfer),
+        Shaped::Prefilter => again.project.prefilter.map(|prefilter| prefilter.transfer),
+    };
+    if transfer.map(|transfer| transfer.as_elements()).unwrap_or_default() == elements {
+        Ok(())
+    } else {
+        Err(ShapingError::NotWritten { reason: "it would not read back as these elements".to_string() }
+            .into())
+    }
+}
+
+/// A source in which one file has other bytes.
+struct Over<'a> {
+    source: &'a dyn Source,
+    path: &'a str,
+    bytes: &'a [u8],
+}
+
+impl Source for Over<'_> {
+    fn read(&self, path: &str) -> Result<Vec<u8>, SourceError> {
+        if path == self.path { Ok(self.bytes.to_vec()) } else { self.source.read(path) }
+    }
+
+    fn list(&self, path: &str) -> Result<Option<Vec<String>>, SourceError> {
+        self.source.list(path)
+    }
+}
+
+impl Draft<'_> {
+    fn rewritten(&self, root: &Node, findings: &mut Findings) -> Result<String, ShapingError> {
+        let table = root.get(self.table).map(|entry| &entry.node);
+        let given = table.map(|table| Transfer::read(table, findings).as_elements()).unwrap_or_default();
+        if given == self.elements {
+            return Ok(self.content.to_string());
+        }
+        let list = table.and_then(|table| table.get("elements").map(|list| (table, list)));
+        let Some((table, list)) = list else {
+            let elements = [("elements".to_string(), array::fresh(self))];
+            return Ok(with_law(self.content, self.table, &elements));
+        };
+        let mut replacements = self.in_list(table, list, findings)?;
+        replacements.sort_by_key(|replacement| std::cmp::Reverse(replacement.range.start));
+        let mut text = self.content.to_string();
+        for Replacement { range, text: new } in replacements {
+            text.replace_range(range, &new);
+        }
+        Ok(text)
+    }
+
+    fn in_list(
+        &self,
+        table: &Node,
+        list: &Entry,
+        findings: &mut Findings,
+    ) -> Result<Vec<Replacement>, ShapingError> {
+        let TreeValue::List(nodes) = &list.node.value else { return Ok(vec![]) };
+        // elements in z want a sample time, whichever
+        let read = |node| Written { element: Element::read(node, Some(1.0), findings), node };
+        let written: Vec<Written<'_>> = nodes.iter().map(read).collect();
+        let text = self.content.get(list.node.place.start..).unwrap_or_default();
+        if text.starts_with("[[") {
+            section::rewritten(self, table, &written)
+        } else {
+            let range = list.node.place.start..list.node.place.end;
+            Ok(vec![Replacement { text: array::rewritten(self, &range, &written), range }])
+        }
+    }
+}
+
+impl Written<'_> {
+    /// Its text, from `start`, where it is this element already or becomes it by its `enabled` alone: that is changed where it is written, or
+    /// comes behind the other keys.
+    fn text_as(&self, element: &Element, text: &str, start: usize, behind: (usize, &str)) -> Option<String> {
+        let own = self.element.as_ref()?;
+        if own == element {
+            return Some(text.to_string());
+        }
+        if (Element { enabled: element.enabled, ..own.clone() }) != *element {
+            return None;
+        }
+        let mut text = text.to_string();
+        match self.node.get("enabled").map(|entry| entry.node.place) {
+            Some(place) => {
+                text.replace_range(place.start - start..place.end - start, &element.enabled.to_string())
+            }
+            None => text.insert_str(behind.0, &behind.1.replace('?', &element.enabled.to_string())),
+        }
+        Some(text)
+    }
+
+    /// Where the last of its values ends.
+    fn last_value(&self) -> usize {
+        self.node.entries().iter().map(|entry| entry.node.place.end).fold(self.node.place.start, usize::max)
+    }
+}
+
+/// For each element the one of the file that it is: equal ones in order, then those that differ in `enabled` alone.
+fn matched(elements: &[Element], written: &[Written<'_>]) -> Vec<Option<usize>> {
+    let mut free: Vec<usize> = (0..written.len()).collect();
+    let mut found = vec![None; elements.len()];
+    for exactly in [true, false] {
+        for (element, slot) in elements.iter().zip(&mut found).filter(|(_, slot)| slot.is_none()) {
+            let alike = |index: &usize| {
+                let other = written.get(*index).and_then(|written| written.element.as_ref());
+                other.is_some_and(|other| {
+                    let enabled = if exactly { other.enabled } else { element.enabled };
+                    Element { enabled, ..other.clone() } == *element
+                })
+            };
+            if let Some(place) = free.iter().position(alike) {
+                *slot = Some(free.remove(place));
+            }
+        }
+    }
+    found
+}

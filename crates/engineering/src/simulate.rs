@@ -1,0 +1,247 @@
+//! The nonlinear machine under its controller, driven through the scenarios of a project.
+
+mod bench;
+mod check;
+mod columns;
+mod compare;
+mod course;
+mod equilibrium;
+mod exceeded;
+mod file_names;
+mod files;
+mod follower;
+mod following;
+mod frequency;
+mod look;
+mod measured;
+mod metrics;
+mod motion_file;
+mod record;
+mod run;
+mod saved;
+mod shortest_number;
+mod signal;
+mod sum;
+mod sums;
+mod tally;
+mod wish;
+pub use file_names::state_names;
+pub use metrics::NOT_SETTLED;
+
+pub use bench::Bench;
+pub use check::{Check, Difference, MetricDifferences, simulate_checked};
+pub use columns::LOOP_SIGNALS;
+pub use compare::{Comparison, compare_projects};
+pub use exceeded::{Exceeded, Limit, words as exceeded_words};
+pub use frequency::{FrequencyRequest, FrequencyResponse, Response, ResponsePoint, frequency_response};
+pub use measured::Overlay;
+pub use metrics::{Cause, Measured, Metrics, Window};
+pub use record::{Look, Record};
+pub use run::{BeyondExpansion, COMMAND_LIMIT, Occurrence, ScenarioRun, Stopped, UnresolvedMode};
+pub use saved::SavedState;
+
+pub use bench::options;
+pub use course::{Driven, course_of, driven};
+pub use file_names::table_names;
+pub use files::{Table, files};
+pub use follower::Follower;
+pub use run::occurrences;
+pub use wish::{Held, Wish};
+
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::simulation::{EquilibriumError, ProfileError, SimulationError};
+use phea_hydraulics::line::LineError;
+use phea_hydraulics::machine::MachineError;
+use phea_hydraulics::operating_point::OperatingPointError;
+
+use crate::control::ControlError;
+use crate::linear_loop::LoopError;
+use crate::number_table::TableFormat;
+use crate::project::{self, Report};
+use crate::quantity::{FORCE, VOLTAGE, display};
+use crate::rig::RigError;
+use crate::setup::Setup;
+use crate::source::{Destination, Source, WriteError};
+use phea_dynamics::watch::{Progress, Watch};
+
+/// Why a sound project is not simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimulateError {
+    /// The rig cannot be computed with.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// The controller is no transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// There is nothing to simulate.
+    #[error("there is nothing to simulate: the project has no [[scenario]]")]
+    NoScenario,
+    /// Nobody commands the valve.
+    #[error("nobody commands the valve: [controller] gives no law, and a scenario states no `command`")]
+    NoController,
+    /// Controller, prefilter or sensor cannot be run in time.
+    #[error("[controller], [prefilter] or [sensor]: {0}")]
+    Loop(#[from] LinearError),
+    /// The linear plant cannot be computed.
+    #[error("the linear plant: {0}")]
+    Plant(LinearError),
+    /// The linear loop cannot be closed.
+    #[error("the linear loop: {0}")]
+    LinearLoop(#[from] LoopError),
+    /// A load before a wall that has no mass to be stopped.
+    #[error(
+        "[load] model \"wall\" is simulated with the `mass` of what moves beyond the load cell: none is stated"
+    )]
+    LoadMass,
+    /// A line that its model does not fit.
+    #[error("[line] model: {0}")]
+    Line(#[from] LineError),
+    /// The machine is impossible.
+    #[error("{0}")]
+    Machine(MachineError),
+    /// A scenario does not begin.
+    #[error("scenario \"{name}\": {error}")]
+    Start {
+        /// Of the scenario.
+        name: String,
+        /// What is wrong with its start.
+        error: MachineError,
+    },
+    /// There is no operating point to begin a search for rest with.
+    #[error(
+        "scenario \"{name}\" states no `start`, and there is no operating point without force at mid stroke: {error}"
+    )]
+    Equilibrium {
+        /// Of the scenario.
+        name: String,
+        /// Why not.
+        error: OperatingPointError,
+    },
+    /// There is no rest to begin with.
+    #[error(
+        "scenario \"{name}\" states no `start`, and the closed loop does not rest at its reference of {}: where \
+         all moves least, {what} still moves by {rate:.2e} of its typical magnitude a second",
+        display(*reference_n, &FORCE, 6)
+    )]
+    NoRest {
+        /// Of the scenario.
+        name: String,
+        /// At time zero, N.
+        reference_n: f64,
+        /// What moves.
+        what: &'static str,
+        /// 1/s.
+        rate: f64,
+    },
+    /// To rest takes more than the command may be.
+    #[error(
+        "scenario \"{name}\" states no `start`, and to rest at its reference of {} takes a command of {}, beyond the limit of {}",
+        display(*reference_n, &FORCE, 6), display(*command_v, &VOLTAGE, 4), display(*limit_v, &VOLTAGE, 6)
+    )]
+    RestBeyondLimit {
+        /// Of the scenario.
+        name: String,
+        /// At time zero, N.
+        reference_n: f64,
+        /// V.
+        command_v: f64,
+        /// V.
+        limit_v: f64,
+    },
+    /// The search for rest does not fit the loop.
+    #[error("scenario \"{name}\" states no `start`: {error}")]
+    Rest {
+        /// Of the scenario.
+        name: String,
+        /// What does not fit.
+        error: EquilibriumError,
+    },
+    /// A reference or motion that is no function of time.
+    #[error("scenario \"{name}\": {error}")]
+    Profile {
+        /// Of the scenario.
+        name: String,
+        /// What is wrong with it.
+        error: ProfileError,
+    },
+    /// A file with a motion, a signal, a state or a measurement was refused.
+    #[error("{0}")]
+    Motion(Box<Report>),
+    /// Start, course or settings do not fit the machine.
+    #[error("scenario \"{name}\": {error}")]
+    Simulation {
+        /// Of the scenario.
+        name: String,
+        /// What does not fit.
+        error: SimulationError,
+    },
+    /// A table cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+impl SimulateError {
+    /// The findings, where a file that the project names was refused with a place for each.
+    pub fn refusal(&self) -> Option<&Report> {
+        match self {
+            SimulateError::Motion(report) => Some(report),
+            _ => None,
+        }
+    }
+}
+
+/// Drives the machine of a project through each of its scenarios, in file order. Where the watch answers `false` the scenario
+/// under way ends there, with what it has, and no later one begins.
+///
+/// # Errors
+/// [`SimulateError`] if the project does not describe a machine with a controller and a scenario. What goes wrong on the way is
+/// in the status of its scenario.
+pub fn simulate_project(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    watch: Watch<'_>,
+) -> Result<Vec<ScenarioRun>, SimulateError> {
+    simulate_into(source, setup, None, watch)
+}
+
+/// The same, with a table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, its rows written as they come: no row is held, however many there are.
+///
+/// # Errors
+/// As [`simulate_project`], and [`SimulateError::Write`].
+pub fn simulate_into(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    destination: Option<(&dyn Destination, TableFormat)>,
+    watch: Watch<'_>,
+) -> Result<Vec<ScenarioRun>, SimulateError> {
+    let project = setup.project;
+    if project.scenarios.is_empty() {
+        return Err(SimulateError::NoScenario);
+    }
+    let mut prepared = Vec::new();
+    for scenario in &project.scenarios {
+        let bench = Bench::of_scenario(setup, scenario)?;
+        let course = course::course(source, project, &bench, scenario)?;
+        let measured = measured::measurements(source, project, scenario).map_err(SimulateError::Motion)?;
+        prepared.push((bench, course, measured));
+    }
+    let whole: f64 = project.scenarios.iter().map(|scenario| scenario.duration).sum();
+    let (mut before, mut runs) = (0.0, Vec::new());
+    let ending = destination.map_or("csv", |(_, format)| format.ending());
+    let names = table_names(project.scenarios.iter().map(|scenario| scenario.name.as_str()), ending);
+    for ((scenario, (bench, course, measured)), name) in project.scenarios.iter().zip(&prepared).zip(&names) {
+        let pushed = course.external_force.is_some();
+        let begin = |(destination, format)| Table::begin((destination, name), format, pushed);
+        let table = destination.map(begin).transpose()?;
+        let mut told =
+            |time_s: f64| watch(Progress { stage: "simulating", share: (before + time_s) / whole });
+        let run = run::run(bench, scenario, (course, measured), table, &mut told)?;
+        let stopped = run.was_cancelled();
+        runs.push(run);
+        before += scenario.duration;
+        if stopped {
+            break;
+        }
+    }
+    Ok(runs)
+}

@@ -1,0 +1,218 @@
+//! What all scenarios of a project share: the machine as its controller sees it, and the controller as it is deployed.
+
+use phea_dynamics::controller::Controller;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Method, Sensed, Settings};
+use phea_hydraulics::actuator::Actuator;
+use phea_hydraulics::contact::Contact;
+use phea_hydraulics::line::Member;
+use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions};
+use phea_hydraulics::servovalve::SpoolImperfection;
+use phea_machine::{Control, Sampled};
+
+use super::SimulateError;
+use crate::project::{self, FrictionLaw, Project, Scenario, StepMethod};
+use crate::rig::{Numbers, Rig, feed_forward, lines, power_unit};
+use crate::setup::Setup;
+
+/// A machine with its controller.
+#[derive(Clone, Debug)]
+pub struct Bench {
+    /// The rig it was made of.
+    pub rig: Rig,
+    /// The machine.
+    pub machine: Machine,
+    /// What commands it.
+    pub control: Control,
+    /// How exactly it is integrated.
+    pub settings: Settings,
+    /// From the load's velocity to the command, V s/m; zero where nothing is fed forward.
+    pub feed_forward: f64,
+    /// Pressures in Pa up to which the expansions of hoses A and B were measured, where they are stated.
+    pub expansion_stated_at: [Option<f64>; 2],
+    /// What the force sensor survives, N, where it is stated.
+    pub force_capacity_n: Option<f64>,
+}
+
+impl Bench {
+    /// The machine and the controller of a project.
+    ///
+    /// # Errors
+    /// [`SimulateError`] where one of them is missing or impossible.
+    pub fn new(setup: &Setup<'_>) -> Result<Bench, SimulateError> {
+        Bench::closed(setup, false)
+    }
+
+    /// What a scenario of the project is driven on: open loop where it states a command, with a force from outside where it states one.
+    ///
+    /// # Errors
+    /// As [`Bench::new`]; an open loop needs no controller.
+    pub fn of_scenario(setup: &Setup<'_>, scenario: &Scenario) -> Result<Bench, SimulateError> {
+        let external_force = !scenario.external_force.is_empty();
+        match scenario.is_open_loop() {
+            false => Bench::closed(setup, external_force),
+            true => Bench::open(setup, external_force),
+        }
+    }
+
+    fn closed(setup: &Setup<'_>, external_force: bool) -> Result<Bench, SimulateError> {
+        let project = setup.project;
+        let (rig, sensed) = rig_and_machine(setup, external_force)?;
+        let controller = setup.controller.clone().ok_or(SimulateError::NoController)?;
+        let feed_forward = feed_forward(project, &rig.linear);
+        let machine = *sensed.plant();
+        let control = match controller.timing.sample_time_s {
+            None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &controller, feed_forward)?)),
+            Some(sample_time_s) => {
+                Control::Sampled(Box::new(sampled(setup, sensed, controller, sample_time_s, feed_forward)?))
+            }
+        };
+        let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
+        Ok(Bench {
+            rig,
+            machine,
+            control,
+            settings,
+            feed_forward,
+            expansion_stated_at,
+            force_capacity_n: capacity(project),
+        })
+    }
+
+    /// The machine alone, for a command that is stated: limits, samples and delays of a controller do not act on it.
+    fn open(setup: &Setup<'_>, external_force: bool) -> Result<Bench, SimulateError> {
+        let project = setup.project;
+        let (rig, sensed) = rig_and_machine(setup, external_force)?;
+        let machine = *sensed.plant();
+        let control = Control::Open(Box::new(HeldPlant::new(sensed, &TransferFunction::gain_only(1.0))?));
+        let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
+        Ok(Bench {
+            rig,
+            machine,
+            control,
+            settings,
+            feed_forward: 0.0,
+            expansion_stated_at,
+            force_capacity_n: capacity(project),
+        })
+    }
+
+    /// The same controller around another machine, made of this actuator.
+    pub fn around(&self, machine: Machine, actuator: Actuator) -> Bench {
+        let mut bench = self.clone();
+        bench.machine = machine;
+        bench.rig.actuator = actuator;
+        bench.control = bench.control.around(machine);
+        bench
+    }
+}
+
+/// The rig, and its machine behind its sensor.
+fn rig_and_machine(setup: &Setup<'_>, external_force: bool) -> Result<(Rig, Sensed<Machine>), SimulateError> {
+    let rig = setup.rig()?;
+    let options = MachineOptions { external_force, ..options(setup.project, &rig.actuator)? };
+    let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
+    Ok((rig.clone(), Sensed::new(machine, &setup.sensor)?))
+}
+
+fn capacity(project: &Project) -> Option<f64> {
+    project.actuator.as_ref().and_then(|actuator| actuator.force_sensor.capacity)
+}
+
+fn expansion_stated_at(project: &Project) -> [Option<f64>; 2] {
+    let lines = project.actuator.as_ref().map(|actuator| &actuator.line);
+    lines.map_or([None; 2], |lines| [&lines.a, &lines.b].map(project::Line::expansion_stated_at))
+}
+
+/// How the project wants its machine integrated.
+pub(super) fn settings(project: &Project) -> Settings {
+    let declared = &project.simulation;
+    Settings {
+        tolerance: declared.tolerance,
+        maximum_steps: u64::from(declared.maximum_steps),
+        method: match declared.method {
+            StepMethod::Rosenbrock => Method::Rosenbrock,
+            StepMethod::DormandPrince => Method::DormandPrince,
+        },
+    }
+}
+
+fn sampled(
+    setup: &Setup<'_>,
+    sensed: Sensed<Machine>,
+    mut controller: Controller,
+    sample_time_s: f64,
+    feed_forward: f64,
+) -> Result<Sampled, SimulateError> {
+    let project = setup.project;
+    let between = between_samples(project, &mut controller)?;
+    let controller = setup.deployed(&controller)?;
+    let noise = project.actuator.as_ref().map_or(0.0, |actuator| actuator.force_sensor.noise);
+    Ok(Sampled {
+        held: HeldPlant::new(sensed, &between)?,
+        delay_s: controller.timing.delay_s,
+        command_limit: controller.command_limit.unwrap_or(f64::INFINITY),
+        controller: controller.sampled(sample_time_s)?,
+        feed_forward,
+        command_converter: setup.quantisation.command,
+        measurement_converter: setup.quantisation.measurement,
+        noise,
+        seed: u64::from(project.simulation.seed),
+    })
+}
+
+/// The prefilter, taken out of a sampled controller where the project lets it act between samples too.
+fn between_samples(
+    project: &Project,
+    controller: &mut Controller,
+) -> Result<TransferFunction, SimulateError> {
+    if project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous) {
+        return Ok(std::mem::take(&mut controller.prefilter).transfer_function()?);
+    }
+    Ok(TransferFunction::gain_only(1.0))
+}
+
+/// What the machine has beyond its actuator, whatever acts on it.
+pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions, SimulateError> {
+    let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
+    let friction_regular_velocity = match declared.cylinder.friction.as_ref().map(|friction| &friction.law) {
+        Some(FrictionLaw::Stribeck { regular_velocity, .. }) => *regular_velocity,
+        Some(FrictionLaw::Viscous | FrictionLaw::LuGre { .. }) | None => None,
+    };
+    Ok(MachineOptions {
+        spool: SpoolImperfection {
+            null_bias: declared.valve.null_bias,
+            hysteresis_width: declared.valve.hysteresis,
+            threshold: declared.valve.threshold,
+            rate_limit: declared.valve.rate_limit,
+        },
+        tare_reference_drop: declared.valve.tare_pressure,
+        friction_regular_velocity,
+        power_unit: power_unit(declared, &Numbers::declared()),
+        load: load(&declared.load)?,
+        external_force: false,
+        vapour_pressure_absolute: declared.fluid.vapour_pressure,
+        member: Member::Nominal,
+        lines: lines(
+            &declared.line,
+            [&actuator.components().line_a, &actuator.components().line_b],
+            &actuator.components().fluid,
+            actuator.mean_pressure(),
+        )?,
+    })
+}
+
+fn load(declared: &project::Load) -> Result<LoadModel, SimulateError> {
+    Ok(match *declared {
+        project::Load::Prescribed => LoadModel::Prescribed,
+        project::Load::SpringMassDamper { mass, stiffness, damping } => {
+            LoadModel::SpringMassDamper { mass, stiffness, damping }
+        }
+        project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => LoadModel::Wall {
+            mass: mass.ok_or(SimulateError::LoadMass)?,
+            damping,
+            gap,
+            contact: Contact { stiffness, relative_damping },
+        },
+    })
+}

@@ -1,0 +1,180 @@
+//! A second run at a tenth of the tolerance: how far it differs from the first is an estimate of the first one's error.
+
+use phea_hydraulics::machine::SIGNALS;
+
+use super::metrics::Measured;
+use super::{Metrics, Record, ScenarioRun, SimulateError, Stopped, Window, simulate_into, simulate_project};
+use crate::number_table::TableFormat;
+use crate::setup::Setup;
+use crate::source::{Destination, Source};
+use phea_dynamics::watch::{Progress, Watch};
+
+/// Of the second run's tolerance over that of the first.
+const TIGHTER: f64 = 0.1;
+/// Part of the peak from which on a difference of the force is worth a sentence.
+pub(super) const LARGEST_PART: f64 = 1e-3;
+/// Beside [`SIGNALS`].
+const COMMAND: &str = "control_v";
+const NOT_COMPARED: &str = "one of the two runs has none";
+
+/// How far a run at a tenth of the tolerance differs from the one that is told.
+///
+/// ```text
+/// d = max over t of |F_h(t) - F_h/10(t)|,      part = d/max(|F_h|, |F_h/10|, |F_ref|)
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// Of the second run.
+    pub tolerance: f64,
+    /// How the second run ended, if before its time: what follows is compared until then.
+    pub stopped: Option<Stopped>,
+    /// Time between two looks that are compared, s.
+    pub look_s: f64,
+    /// Of the force; `None` where the two runs have no look in common.
+    pub force: Option<Difference>,
+    /// Of the command and of all that the machine tells of itself.
+    pub signals: Vec<Difference>,
+    /// Of each window's metrics, in order.
+    pub metrics: Vec<MetricDifferences>,
+}
+
+/// The largest difference of one signal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// Its name, with its unit.
+    pub name: &'static str,
+    /// In that unit.
+    pub difference: f64,
+    /// When it is so large, s.
+    pub time_s: f64,
+    /// Largest magnitude in both runs; of the force, that of the reference too.
+    pub peak: f64,
+}
+
+/// The metrics of a window: how far each differs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MetricDifferences {
+    /// The window.
+    pub window: Window,
+    /// Name, with its unit, and magnitude of the difference in it.
+    pub differences: Vec<(&'static str, Measured)>,
+}
+
+impl MetricDifferences {
+    /// That of this name.
+    pub fn of(&self, name: &str) -> Option<Measured> {
+        self.differences.iter().find(|(found, _)| *found == name).map(|(_, difference)| *difference)
+    }
+}
+
+impl Difference {
+    /// The difference as a part of the peak; zero where nothing moves.
+    pub fn part_of_peak(&self) -> f64 {
+        if self.peak > 0.0 { self.difference / self.peak } else { 0.0 }
+    }
+}
+
+impl Check {
+    /// Whether the force differs by more than a thousandth of its peak.
+    pub fn is_doubtful(&self) -> bool {
+        self.force.as_ref().is_some_and(|force| force.part_of_peak() > LARGEST_PART)
+    }
+}
+
+/// As [`simulate_into`], and each scenario a second time at a tenth of the tolerance: its [`ScenarioRun::check`] is told.
+///
+/// # Errors
+/// As [`simulate_into`].
+pub fn simulate_checked(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    destination: Option<(&dyn Destination, TableFormat)>,
+    watch: Watch<'_>,
+) -> Result<Vec<ScenarioRun>, SimulateError> {
+    let half = |progress: Progress| Progress { share: 0.5 * progress.share, ..progress };
+    let mut runs = simulate_into(source, setup, destination, &mut |progress| watch(half(progress)))?;
+    if runs.iter().any(ScenarioRun::was_cancelled) {
+        return Ok(runs);
+    }
+    let mut tighter = setup.project.clone();
+    tighter.simulation.tolerance *= TIGHTER;
+    let mut told = |progress: Progress| {
+        watch(Progress { stage: "checking at a tenth of the tolerance", share: 0.5 + half(progress).share })
+    };
+    let others = simulate_project(source, &setup.asked(&tighter), &mut told)?;
+    for (run, other) in runs.iter_mut().zip(&others) {
+        run.check = Some(check(run, other, tighter.simulation.tolerance));
+    }
+    Ok(runs)
+}
+
+fn check(run: &ScenarioRun, other: &ScenarioRun, tolerance: f64) -> Check {
+    let signals = differences(&run.record, &other.record);
+    let metrics = run.windows.iter().zip(&other.windows).map(metric_differences).collect();
+    Check {
+        tolerance,
+        stopped: other.stopped(),
+        look_s: run.look_s * run.record.looks_apart.max(other.record.looks_apart) as f64,
+        force: signals.iter().find(|signal| signal.name == "force_n").cloned(),
+        signals,
+        metrics,
+    }
+}
+
+/// Of all signals, over the looks that both records have.
+fn differences(one: &Record, other: &Record) -> Vec<Difference> {
+    let rows = common_rows(one, other);
+    let reference = one.reference_n.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let of_machine = SIGNALS.iter().enumerate().map(|(index, name)| {
+        let values = |row: &(usize, usize)| [one.signals[row.0][index], other.signals[row.1][index]];
+        difference(name, &rows, &one.times_s, values)
+    });
+    let command = |row: &(usize, usize)| [one.control_v[row.0], other.control_v[row.1]];
+    let mut found: Vec<Difference> = of_machine.flatten().collect();
+    found.extend(difference(COMMAND, &rows, &one.times_s, command));
+    for force in found.iter_mut().filter(|signal| signal.name == "force_n") {
+        force.peak = force.peak.max(reference);
+    }
+    found
+}
+
+/// Places of the looks at the same times: one record may have been thinned out more than the other.
+fn common_rows(one: &Record, other: &Record) -> Vec<(usize, usize)> {
+    let apart = one.looks_apart.max(other.looks_apart);
+    let [first, second] = [one, other].map(|record| (apart / record.looks_apart) as usize);
+    let rows = (0..one.times_s.len()).step_by(first).zip((0..other.times_s.len()).step_by(second));
+    rows.collect()
+}
+
+fn difference(
+    name: &'static str,
+    rows: &[(usize, usize)],
+    times_s: &[f64],
+    values: impl Fn(&(usize, usize)) -> [f64; 2],
+) -> Option<Difference> {
+    let (&(first, _), _) = rows.split_first()?;
+    let mut found = Difference { name, difference: 0.0, time_s: times_s[first], peak: 0.0 };
+    for row in rows {
+        let [here, there] = values(row);
+        found.peak = found.peak.max(here.abs()).max(there.abs());
+        if (here - there).abs() > found.difference {
+            (found.difference, found.time_s) = ((here - there).abs(), times_s[row.0]);
+        }
+    }
+    Some(found)
+}
+
+fn metric_differences(
+    ((window, one), (_, other)): (&(Window, Metrics), &(Window, Metrics)),
+) -> MetricDifferences {
+    let apart = |((name, here), (_, there)): ((&'static str, Measured), (&'static str, Measured))| {
+        let difference = match (here, there) {
+            (Ok(here), Ok(there)) => Ok((here - there).abs()),
+            (Err(reason), Err(_)) => Err(reason),
+            _ => Err(NOT_COMPARED),
+        };
+        (name, difference)
+    };
+    let differences = one.named().into_iter().zip(other.named()).map(apart).collect();
+    MetricDifferences { window: *window, differences }
+}

@@ -1,0 +1,150 @@
+//! The columns of a scenario's table: what each is, with sign and unit in the guide.
+
+use phea_hydraulics::machine::SIGNALS;
+
+use super::record::{Look, Record};
+
+/// Names of what the control loop tells of itself beside reference and command, in the order of [`Record::of_loop`].
+///
+/// `command_v` is the command as it comes to the valve, behind the delay of the loop; `unlimited_control_v` what the controller
+/// would give out without its limit; `integral_v` the part of the command that the controller's integral part holds;
+/// `measurement_n` the force as the controller measures it, behind the sensor.
+pub const LOOP_SIGNALS: [&str; 4] = ["command_v", "unlimited_control_v", "integral_v", "measurement_n"];
+
+/// Where the numbers of a column come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    Time,
+    Reference,
+    Control,
+    FilteredReference,
+    /// Place in [`SIGNALS`].
+    Machine(usize),
+    /// Place in [`LOOP_SIGNALS`].
+    Loop(usize),
+    ExternalForce,
+}
+
+/// Columns that have stayed where they are: other programs read some of them by their place.
+const FIRST: [&str; 22] = [
+    "time_s",
+    "reference_n",
+    "force_n",
+    "control_v",
+    "spool_v",
+    "pressure_a_pa",
+    "pressure_b_pa",
+    "position_m",
+    "velocity_m_per_s",
+    "supply_pressure_pa",
+    "deflection_m",
+    "friction_n",
+    "end_stops_n",
+    "flow_a_m3_per_s",
+    "flow_b_m3_per_s",
+    "supply_flow_m3_per_s",
+    "load_position_m",
+    "load_velocity_m_per_s",
+    "port_pressure_a_pa",
+    "port_pressure_b_pa",
+    "hydraulic_force_n",
+    "filtered_reference_n",
+];
+
+/// The force on the load from outside.
+const EXTERNAL_FORCE: &str = "external_force_n";
+
+/// The columns of a table and where their numbers come from.
+pub(super) struct Columns(Vec<(&'static str, Source)>);
+
+impl Columns {
+    /// Those that have stayed, then those that came later, the last one for the force from outside where the load is `pushed`.
+    pub(super) fn new(pushed: bool) -> Columns {
+        let later = SIGNALS.iter().chain(&LOOP_SIGNALS).filter(|name| !FIRST.contains(name));
+        let pushed = pushed.then_some(&EXTERNAL_FORCE);
+        let all = FIRST.iter().chain(later).chain(pushed);
+        Columns(all.filter_map(|name| Some((*name, source(name)?))).collect())
+    }
+
+    pub(super) fn names(&self) -> Vec<&'static str> {
+        self.0.iter().map(|(name, _)| *name).collect()
+    }
+
+    /// The numbers of a row, in place of those of the last; what an open loop does not have is not a number.
+    pub(super) fn read(&self, look: &Look, values: &mut Vec<f64>) {
+        values.clear();
+        values.extend(self.0.iter().map(|(_, source)| source.of(look)));
+    }
+}
+
+impl Source {
+    /// Of a column; `None` for a name that is none.
+    pub(super) fn named(name: &str) -> Option<Source> {
+        source(name)
+    }
+
+    pub(super) fn of(self, look: &Look) -> f64 {
+        match self {
+            Source::Time => look.time_s,
+            Source::Reference => look.reference_n.unwrap_or(f64::NAN),
+            Source::Control => look.control_v,
+            Source::FilteredReference => look.filtered_reference_n.unwrap_or(f64::NAN),
+            Source::ExternalForce => look.external_force_n.unwrap_or(f64::NAN),
+            Source::Machine(place) => look.signals[place],
+            Source::Loop(place) => look.of_loop[place],
+        }
+    }
+}
+
+/// A column over time; empty for a name that is none.
+pub(super) fn signal(record: &Record, name: &str) -> Vec<f64> {
+    match source(name) {
+        Some(Source::Time) => record.times_s.clone(),
+        Some(Source::Reference) => record.reference_n.clone(),
+        Some(Source::Control) => record.control_v.clone(),
+        Some(Source::FilteredReference) => record.filtered_reference_n.clone(),
+        Some(Source::ExternalForce) => record.external_force_n.clone(),
+        Some(Source::Machine(place)) => record.signals.iter().map(|signals| signals[place]).collect(),
+        Some(Source::Loop(place)) => record.of_loop.iter().map(|signals| signals[place]).collect(),
+        None => Vec::new(),
+    }
+}
+
+fn source(name: &str) -> Option<Source> {
+    let place = |names: &[&str]| names.iter().position(|known| *known == name);
+    match name {
+        "time_s" => Some(Source::Time),
+        "reference_n" => Some(Source::Reference),
+        "control_v" => Some(Source::Control),
+        "filtered_reference_n" => Some(Source::FilteredReference),
+        EXTERNAL_FORCE => Some(Source::ExternalForce),
+        _ => place(&SIGNALS).map(Source::Machine).or_else(|| place(&LOOP_SIGNALS).map(Source::Loop)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What can be measured are the columns of the table but for time.
+    #[test]
+    fn every_column_can_be_measured() {
+        let mut columns = Columns::new(true).names();
+        columns.remove(0);
+        let mut measurable: Vec<&str> =
+            super::super::project::MEASURABLE.iter().map(|(name, _)| *name).collect();
+        columns.sort_unstable();
+        measurable.sort_unstable();
+        assert_eq!(columns, measurable);
+    }
+
+    #[test]
+    fn every_signal_has_one_column() {
+        let names = Columns::new(true).names();
+        assert_eq!(names.len(), FIRST.len() + 1 + LOOP_SIGNALS.len() + 1);
+        assert_eq!(names[..FIRST.len()], FIRST);
+        for name in SIGNALS.iter().chain(&LOOP_SIGNALS) {
+            assert_eq!(names.iter().filter(|known| known == &name).count(), 1, "{name}");
+        }
+    }
+}

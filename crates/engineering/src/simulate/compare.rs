@@ -1,0 +1,67 @@
+//! The same scenarios of several projects, side by side.
+
+use super::{ScenarioRun, SimulateError, simulate_project};
+use crate::project::Loaded;
+use crate::setup::Setup;
+use crate::source::Source;
+use phea_dynamics::watch::{Progress, Watch};
+
+/// Projects with what came of their scenarios.
+#[derive(Debug)]
+pub struct Comparison<'a> {
+    /// In the order they were named; one that was stopped is the last.
+    pub projects: Vec<(&'a Loaded, Vec<ScenarioRun>)>,
+}
+
+impl<'a> Comparison<'a> {
+    /// Names of all scenarios, those of the first project first.
+    pub fn scenarios(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for run in self.projects.iter().flat_map(|(_, runs)| runs) {
+            if !names.contains(&run.name.as_str()) {
+                names.push(&run.name);
+            }
+        }
+        names
+    }
+
+    /// The run of that name in each project.
+    pub fn runs_of<'s>(&'s self, name: &'s str) -> impl Iterator<Item = Option<&'s ScenarioRun>> {
+        self.projects.iter().map(move |(_, runs)| runs.iter().find(|run| run.name == name))
+    }
+
+    /// Whether every scenario of every project ran to its end.
+    pub fn is_complete(&self) -> bool {
+        let complete = |(loaded, runs): &(&Loaded, Vec<ScenarioRun>)| {
+            runs.len() == loaded.project.scenarios.len() && runs.iter().all(|run| run.stopped().is_none())
+        };
+        self.projects.iter().all(complete)
+    }
+}
+
+/// Simulates each project; a watch that answers `false` stops it there.
+///
+/// # Errors
+/// That of the first project that cannot be simulated, with its place in the list.
+pub fn compare_projects<'a>(
+    source: &dyn Source,
+    projects: &'a [Loaded],
+    watch: Watch<'_>,
+) -> Result<Comparison<'a>, (usize, SimulateError)> {
+    let count = projects.len() as f64;
+    let mut comparison = Comparison { projects: Vec::new() };
+    for (index, loaded) in projects.iter().enumerate() {
+        let mut told = |progress: Progress| {
+            watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
+        };
+        let named = |error: SimulateError| (index, error);
+        let setup = Setup::new(&loaded.project).map_err(|error| named(error.into()))?;
+        let runs = simulate_project(source, &setup, &mut told).map_err(named)?;
+        let stopped = runs.iter().any(ScenarioRun::was_cancelled);
+        comparison.projects.push((loaded, runs));
+        if stopped {
+            break;
+        }
+    }
+    Ok(comparison)
+}

@@ -1,0 +1,248 @@
+//! Where a scenario begins, and what drives it.
+
+use phea_dynamics::simulation::{Input, Plant, Profile, ProfileError};
+use phea_hydraulics::machine::{Beginning, Start};
+use phea_hydraulics::operating_point::{Condition, Load, operating_point};
+use phea_machine::{Control, Rest, Standing, Waking};
+
+use super::bench::Bench;
+use super::equilibrium::{Rested, rest};
+use super::motion_file::{self, Column};
+use super::saved::{self, SavedState};
+use super::signal::{self, Beginning as Begun};
+use super::{Cause, SimulateError, Window};
+use crate::project::{self, LoadMotion, MotionShape, Project, Scenario};
+use crate::source::Source;
+
+/// A scenario ready to be run.
+pub struct Course {
+    /// In N.
+    pub reference: Profile,
+    /// In V, of an open loop.
+    pub command: Profile,
+    /// Position of the load or of its ground in m.
+    pub ground: Profile,
+    /// On the load from outside in N, where the machine has that input.
+    pub external_force: Option<Profile>,
+    /// States of the machine, its sensor and all that is continuous in its controller, and the waves under way.
+    pub start: Vec<f64>,
+    /// How a sampled controller begins.
+    pub waking: Waking,
+    /// What is looked at by itself.
+    pub windows: Vec<Window>,
+}
+
+/// What drives a scenario, whatever machine it drives.
+pub struct Driven {
+    /// In N.
+    pub reference: Profile,
+    /// In V, of an open loop.
+    command: Profile,
+    /// On the load from outside in N.
+    external_force: Profile,
+    /// Of the load or of its ground in m, from where it starts.
+    pub motion: Profile,
+    /// What is looked at by itself.
+    pub windows: Vec<Window>,
+    /// Where it goes on from.
+    saved: Option<SavedState>,
+}
+
+impl Course {
+    /// What drives the machine beside its command.
+    pub fn machine_inputs(&self) -> Vec<Input> {
+        let ground = [Input::Value(self.ground.clone()), Input::Rate(self.ground.clone())];
+        ground.into_iter().chain(self.external_force.clone().map(Input::Value)).collect()
+    }
+}
+
+pub(super) fn course(
+    source: &dyn Source,
+    project: &Project,
+    bench: &Bench,
+    scenario: &Scenario,
+) -> Result<Course, SimulateError> {
+    let driven = driven(source, project, bench, scenario)?;
+    course_of(&driven, bench, scenario)
+}
+
+/// Reference and motion of a scenario.
+pub fn driven(
+    source: &dyn Source,
+    project: &Project,
+    bench: &Bench,
+    scenario: &Scenario,
+) -> Result<Driven, SimulateError> {
+    let named = |error: ProfileError| SimulateError::Profile { name: scenario.name.clone(), error };
+    let reference = signal::profile(source, project, &scenario.name, &scenario.reference, Column::FORCE)?;
+    let motion = match &scenario.load_motion {
+        None => Profile::constant(0.0),
+        Some(declared) => motion(source, project, declared).map_err(SimulateError::Motion)?.map_err(named)?,
+    };
+    let command = signal::profile(source, project, &scenario.name, &scenario.command, Column::VOLTAGE)?;
+    let external_force =
+        signal::profile(source, project, &scenario.name, &scenario.external_force, Column::FORCE)?;
+    let windows = windows(scenario, [&reference, &command, &external_force]);
+    let file = scenario.start.as_ref().and_then(|start| start.file.as_ref());
+    let read = |file: &String| saved::read(source, project, file, bench).map_err(SimulateError::Motion);
+    let saved = file.map(read).transpose()?;
+    Ok(Driven { reference, command, external_force, motion, windows, saved })
+}
+
+/// The scenario for the machine of a bench.
+pub fn course_of(driven: &Driven, bench: &Bench, scenario: &Scenario) -> Result<Course, SimulateError> {
+    if let Some(saved) = &driven.saved {
+        let waking = saved.memory(bench).map_or(Waking::AtRest, Waking::Resumed);
+        return Ok(driven.course(bench, saved.ground_m(), saved.states(bench), waking));
+    }
+    if let Some(stated) = &scenario.start {
+        let named = |error| SimulateError::Start { name: scenario.name.clone(), error };
+        let beginning = bench.machine.start(&stated_start(stated)).map_err(named)?;
+        let start = loop_start(bench, &beginning, None);
+        return Ok(driven.course(bench, beginning.inputs[0], start, Waking::AtRest));
+    }
+    let at = driven.at_start();
+    let near = near_rest(bench, scenario, at.reference_n)?;
+    let guess = loop_start(bench, &near, Some(at.reference_n));
+    let Rested { rest: Rest { start, measured_n, command_v, .. }, ground_m } =
+        rest(bench, &guess, &near, at, &scenario.name)?;
+    let waking = Waking::Holding([at.reference_n, measured_n, command_v]);
+    Ok(driven.course(bench, ground_m, start, waking))
+}
+
+impl Driven {
+    /// What stands still while the loop rests before time zero.
+    fn at_start(&self) -> Standing {
+        Standing {
+            reference_n: self.reference.value(0.0),
+            command_v: self.command.value(0.0),
+            external_n: self.external_force.value(0.0),
+        }
+    }
+
+    /// From a state, the ground of the load where it is in m.
+    fn course(&self, bench: &Bench, ground: f64, start: Vec<f64>, waking: Waking) -> Course {
+        Course {
+            reference: self.reference.clone(),
+            command: self.command.clone(),
+            ground: self.motion.clone().shifted(ground),
+            external_force: bench.machine.has_external_force().then(|| self.external_force.clone()),
+            start,
+            waking,
+            windows: self.windows.clone(),
+        }
+    }
+}
+
+/// The load motion as a function of time.
+fn motion(
+    source: &dyn Source,
+    project: &Project,
+    LoadMotion { shape, start }: &LoadMotion,
+) -> Result<Result<Profile, ProfileError>, Box<project::Report>> {
+    Ok(match shape {
+        MotionShape::SmoothStep { duration, distance } => Profile::smooth_step(*start, *duration, *distance),
+        MotionShape::FirstOrder { distance, time_constant } => {
+            Profile::first_order(*start, *time_constant, *distance)
+        }
+        MotionShape::Sine { amplitude, frequency } => Profile::sine(*start, *amplitude, *frequency),
+        MotionShape::Chirp { duration, amplitude, frequency, final_frequency } => {
+            Profile::chirp(*start, *duration, *amplitude, [*frequency, *final_frequency])
+        }
+        MotionShape::File { file } => motion_file::motion(source, project, file, *start)?,
+    })
+}
+
+/// Where the search for a rest begins: the machine at the position of its operating point under the force of the reference, or without force where there is
+/// no such operating point.
+fn near_rest(bench: &Bench, scenario: &Scenario, reference_n: f64) -> Result<Beginning, SimulateError> {
+    let position = bench.rig.point.position;
+    let near = |force: f64| -> Result<Beginning, SimulateError> {
+        let point = operating_point(&bench.rig.actuator, position, Condition::Load(Load::Force(force)))
+            .map_err(|error| SimulateError::Equilibrium { name: scenario.name.clone(), error })?;
+        let start = Start {
+            position: point.position,
+            pressure_a: point.pressure_a,
+            pressure_b: point.pressure_b,
+            spool: point.command,
+            ..Start::default()
+        };
+        let named = |error| SimulateError::Start { name: scenario.name.clone(), error };
+        bench.machine.rest_under_load(&point).or_else(|_| bench.machine.start(&start)).map_err(named)
+    };
+    near(reference_n).or_else(|_| near(0.0))
+}
+
+fn stated_start(stated: &project::Start) -> Start {
+    let number = |value: Option<f64>| value.unwrap_or(0.0);
+    Start {
+        position: number(stated.position),
+        velocity: number(stated.velocity),
+        pressure_a: number(stated.pressure_a),
+        pressure_b: number(stated.pressure_b),
+        force: number(stated.force),
+        spool: number(stated.spool),
+    }
+}
+
+/// States of the loop with its machine there, and the waves under way. Controller and sensor hold the machine at a reference in N; without
+/// one they begin at zero, as all that is not stated.
+fn loop_start(bench: &Bench, beginning: &Beginning, held_at: Option<f64>) -> Vec<f64> {
+    let mut start = beginning.state.clone();
+    let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
+    let reference = held_at.unwrap_or(0.0);
+    let mut sensor = bench.control.sensed().sensor_at_rest(measured);
+    let mut control = match &bench.control {
+        Control::Continuous(closed) => closed.controller_at_rest(reference, measured, beginning.command),
+        Control::Sampled(sampled) => sampled.held.prefilter_at_rest(reference),
+        Control::Open(held) => held.prefilter_at_rest(reference),
+    };
+    if held_at.is_none() {
+        sensor.fill(0.0);
+        control.fill(0.0);
+    }
+    start.extend(sensor);
+    start.extend(control);
+    let leading: &[f64] = match &bench.control {
+        Control::Continuous(_) => &[reference],
+        Control::Sampled(_) | Control::Open(_) => &[0.0, reference],
+    };
+    let waves = bench.control.under_way(&start, leading, beginning);
+    start.extend(waves);
+    start
+}
+
+/// One for whatever begins in reference, command and force from outside, and for the motion of the load, each until the next.
+fn windows(scenario: &Scenario, [reference, command, external]: [&Profile; 3]) -> Vec<Window> {
+    let end_s = scenario.duration;
+    let window = |cause: Cause, start_s: f64| Window { cause, start_s, end_s };
+    let referred = |begun: Begun| match begun {
+        Begun::Step { time_s, from, to } => window(Cause::ReferenceStep { from_n: from, to_n: to }, time_s),
+        Begun::Motion { time_s, kind } => window(Cause::ReferenceMotion { kind }, time_s),
+    };
+    let commanded = |begun: Begun| match begun {
+        Begun::Step { time_s, from, to } => window(Cause::CommandStep { from_v: from, to_v: to }, time_s),
+        Begun::Motion { time_s, kind } => window(Cause::CommandMotion { kind }, time_s),
+    };
+    let begun = signal::beginnings(&scenario.reference, reference, end_s).into_iter().map(referred);
+    let of_command = signal::beginnings(&scenario.command, command, end_s).into_iter().map(commanded);
+    let outside = signal::beginnings(&scenario.external_force, external, end_s).into_iter();
+    let outside = outside.map(|begun| window(Cause::ExternalForce, begun.time_s()));
+    // a loop that begins at rest begins with what stands at time zero
+    let stands = |window: &Window| {
+        let steps = matches!(window.cause, Cause::ReferenceStep { .. } | Cause::CommandStep { .. });
+        scenario.start.is_none() && steps && window.start_s <= 0.0
+    };
+    let begun = begun.chain(of_command).chain(outside);
+    let mut windows: Vec<Window> = begun.filter(|window| !stands(window)).collect();
+    if let Some(motion) = scenario.load_motion.as_ref().filter(|motion| motion.start < end_s) {
+        windows.push(window(Cause::LoadMotion, motion.start));
+    }
+    windows.sort_by(|one, other| one.start_s.total_cmp(&other.start_s));
+    let starts: Vec<f64> = windows.iter().map(|window| window.start_s).collect();
+    for window in &mut windows {
+        let next = starts.iter().copied().find(|start| *start > window.start_s);
+        window.end_s = next.unwrap_or(end_s);
+    }
+    windows
+}

@@ -1,0 +1,59 @@
+//! The files of `simulate`: a table for each scenario, and the state it ended in.
+
+use super::columns::Columns;
+use super::file_names::state_names;
+use super::{Look, ScenarioRun};
+use crate::project::Loaded;
+use crate::source::{Destination, Unfinished, WriteError};
+use crate::{
+    number_table::{NumberTable, TableFormat},
+    source::OutputFile,
+};
+
+/// The state each run ended in, where that can be saved.
+pub fn files(loaded: &Loaded, runs: &[ScenarioRun]) -> Vec<OutputFile> {
+    let names = state_names(runs.iter().map(|run| run.name.as_str()));
+    let state = |(run, name): (&ScenarioRun, String)| {
+        let end = run.end.as_ref().ok()?;
+        Some(OutputFile { name, bytes: end.text(&run.name, &loaded.sha256).into_bytes() })
+    };
+    runs.iter().zip(names).filter_map(state).collect()
+}
+
+/// A table that is written row by row, columns named with their units.
+pub struct Table<'a> {
+    name: String,
+    columns: Columns,
+    table: NumberTable<Box<dyn Unfinished + 'a>>,
+    /// The row that is being written.
+    values: Vec<f64>,
+}
+
+impl<'a> Table<'a> {
+    /// A table with its head, and a last column for the force from outside where the load is `pushed`.
+    pub(super) fn begin(
+        (destination, name): (&'a dyn Destination, &str),
+        format: TableFormat,
+        pushed: bool,
+    ) -> Result<Table<'a>, WriteError> {
+        let columns = Columns::new(pushed);
+        let table = NumberTable::new(destination.begin(name)?, format, &columns.names());
+        let table = table.map_err(|error| unwritten(name, &error))?;
+        Ok(Table { name: name.to_string(), columns, table, values: Vec::new() })
+    }
+
+    pub(super) fn row(&mut self, look: &Look) -> Result<(), WriteError> {
+        self.columns.read(look, &mut self.values);
+        self.table.row(&self.values).map_err(|error| unwritten(&self.name, &error))
+    }
+
+    /// Puts it under its name.
+    pub(super) fn finish(self) -> Result<(), WriteError> {
+        let Table { name, table, .. } = self;
+        table.finish().and_then(Unfinished::finish).map_err(|error| unwritten(&name, &error))
+    }
+}
+
+fn unwritten(name: &str, error: &std::io::Error) -> WriteError {
+    WriteError { path: name.to_string(), reason: error.to_string() }
+}

@@ -1,0 +1,354 @@
+//! Follows a run from step to step, so that what is measured of its windows is that of the solution, wherever rows fall.
+
+use std::cell::RefCell;
+
+use phea_dynamics::simulation::{Piece, Profile, Quartic, Stretch};
+use phea_machine::Samples;
+
+use super::sum::Sum;
+use super::tally::{Command, Passed, Tally};
+use super::{Metrics, Window};
+
+/// Parts of a step over each of which an input that is no polynomial is followed by one of degree four: a sine over a quarter of its
+/// period, the longest step there is, to 3e-7 of its amplitude.
+const PARTS: u32 = 4;
+/// Ends that are one but for rounding, in steps.
+const SAME: f64 = 1e-9;
+
+/// Where the command comes from.
+pub(super) enum Commanded<'a> {
+    /// A continuous controller, which wants this and is held within this limit in V; or what is stated in an open loop.
+    Continuously(Sum, f64),
+    /// What a sampled controller gave out last.
+    Sampled(&'a RefCell<Samples>),
+}
+
+/// Keeps what the windows of a run are measured by.
+pub struct Follower<'a> {
+    force: Sum,
+    commanded: Commanded<'a>,
+    /// None in an open loop.
+    reference: Option<&'a Profile>,
+    tallies: Vec<Tally>,
+    /// The first that has not come to its end.
+    first: usize,
+    /// Room for all inputs.
+    inputs: Vec<f64>,
+}
+
+impl<'a> Follower<'a> {
+    /// Of a loop with so many inputs, in windows in the order of their starts; the band of settling times in percent.
+    pub(super) fn new(
+        force: Sum,
+        commanded: Commanded<'a>,
+        inputs: usize,
+        reference: Option<&'a Profile>,
+        (windows, band): (&[Window], f64),
+    ) -> Follower<'a> {
+        let tally = |window: &Window| {
+            Tally::new(*window, band, reference.map(|reference| last_value(reference, window)))
+        };
+        let tallies = windows.iter().map(tally).collect();
+        Follower { force, commanded, reference, tallies, first: 0, inputs: vec![0.0; inputs] }
+    }
+
+    /// The metrics of each window, as far as it was followed.
+    pub fn metrics(&self) -> Vec<Metrics> {
+        self.tallies.iter().map(Tally::metrics).collect()
+    }
+
+    /// The force at one time, of the states that are wanted.
+    pub fn force_n(&self, states: &[f64]) -> f64 {
+        self.force.at(states)
+    }
+
+    /// Takes note of a step.
+    pub fn follow(&mut self, stretch: &Stretch<'_>) {
+        let (start_s, end_s) = (stretch.start_s(), stretch.end_s());
+        let rounding_s = SAME * (end_s - start_s);
+        while self.tallies.get(self.first).is_some_and(|one| one.window.end_s <= start_s + rounding_s) {
+            self.first += 1;
+        }
+        if self.tallies.get(self.first).is_none_or(|one| one.window.start_s >= end_s - rounding_s) {
+            return;
+        }
+        let force = self.force.over(stretch.states);
+        let piece = self.reference.map(|reference| reference.piece(0.5 * (start_s + end_s)));
+        let still = piece.as_ref().map(Piece::constant);
+        let moved = match &self.commanded {
+            Commanded::Continuously(sum, _) => sum.has_inputs() && !stretch.is_still(),
+            Commanded::Sampled(_) => false,
+        };
+        if !moved && still != Some(None) {
+            let passed = Passed {
+                times_s: [start_s, end_s],
+                force,
+                reference: still.flatten().map(Quartic::constant),
+                command: self.command(stretch, [0.0, 1.0]),
+            };
+            self.pass(&passed);
+            return;
+        }
+        for part in 0..PARTS {
+            let within = [part, part + 1].map(|part| f64::from(part) / f64::from(PARTS));
+            let times_s = within.map(|part| start_s + part * (end_s - start_s));
+            let reference = |piece: &Piece| match piece.constant() {
+                Some(value) => Quartic::constant(value),
+                None => through(times_s, |time_s| piece.at(time_s).value),
+            };
+            let passed = Passed {
+                times_s,
+                force: through(within, |part| force.at(part)),
+                reference: piece.as_ref().map(reference),
+                command: self.command(stretch, within),
+            };
+            self.pass(&passed);
+        }
+    }
+
+    /// The command over a part of a step.
+    fn command(&mut self, stretch: &Stretch<'_>, within: [f64; 2]) -> Command {
+        match &self.commanded {
+            Commanded::Sampled(log) => {
+                Command::Held(log.borrow().last.map_or(0.0, |sample| sample.command_v))
+            }
+            Commanded::Continuously(sum, limit) => {
+                let wanted = sum.over(stretch.states);
+                let inputs = &mut self.inputs;
+                let wanted = match (sum.has_inputs(), stretch.is_still()) {
+                    (false, _) if within == [0.0, 1.0] => wanted,
+                    (false, _) => through(within, |part| wanted.at(part)),
+                    (true, true) if within == [0.0, 1.0] => {
+                        wanted.plus(1.0, &Quartic::constant(sum.driven(stretch, 0.5, inputs)))
+                    }
+                    (true, _) => through(within, |part| wanted.at(part) + sum.driven(stretch, part, inputs)),
+                };
+                Command::Wanted { wanted, limit: *limit }
+            }
+        }
+    }
+
+    fn pass(&mut self, passed: &Passed) {
+        let [start_s, end_s] = passed.times_s;
+        let length_s = end_s - start_s;
+        for tally in self.tallies.iter_mut().skip(self.first) {
+            let span = [tally.window.start_s, tally.window.end_s].map(|time_s| (time_s - start_s) / length_s);
+            let from = if span[0] > SAME { span[0] } else { 0.0 };
+            let until = if span[1] < 1.0 - SAME { span[1] } else { 1.0 };
+            if from >= 1.0 - SAME {
+                return;
+            }
+            if until > SAME {
+                tally.pass(passed, [from, until]);
+            }
+        }
+    }
+
+    /// Whether a step from sample to sample may hold an extreme that counts, or leave a band: then it is to be known more exactly
+    /// than by a cubic.
+    pub fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
+        let (start_s, end_s) = (stretch.start_s(), stretch.end_s());
+        let open = |tally: &&Tally| tally.window.start_s < end_s && tally.window.end_s > start_s;
+        let mut open = self.tallies.iter().skip(self.first).filter(open).peekable();
+        if open.peek().is_none() {
+            return false;
+        }
+        let force = self.force.over(stretch.states);
+        if force.is_plainly_monotone() {
+            return false;
+        }
+        let at_end = |reference: &Profile| reference.piece(0.5 * (start_s + end_s)).at(end_s).value;
+        let reference = self.reference.map(at_end);
+        open.any(|tally| tally.looks_closer(&force, reference))
+    }
+}
+
+/// The reference where a window ends, before what begins there.
+fn last_value(reference: &Profile, window: &Window) -> f64 {
+    let before_s = window.end_s - 1e-6 * (window.end_s - window.start_s);
+    reference.piece(before_s).at(window.end_s).value
+}
+
+/// A function of time or of a part of a step as a polynomial over a span.
+fn through([from, until]: [f64; 2], mut value: impl FnMut(f64) -> f64) -> Quartic {
+    Quartic::through([0.0, 0.25, 0.5, 0.75, 1.0].map(|part| value(from + part * (until - from))))
+}
+
+#[cfg(test)]
+mod tests {
+    use phea_dynamics::portable;
+    use phea_dynamics::scalar::Scalar;
+    use phea_dynamics::simulation::{Attention, Course, Input, Observer, Settings, System, Task, drive_one};
+
+    use super::super::Cause;
+    use super::*;
+
+    /// y'' = w^2 (u - y) - 2 d w y'; its states stand for force and command.
+    #[derive(Clone)]
+    struct Swing {
+        frequency: f64,
+        damping: f64,
+    }
+
+    impl System<f64> for Swing {
+        fn states(&self) -> usize {
+            2
+        }
+        fn inputs(&self) -> usize {
+            1
+        }
+        fn scales(&self) -> Vec<f64> {
+            vec![1e3, 1e3 * self.frequency]
+        }
+        fn rates<T: Scalar + From<f64>>(&self, y: &[T], u: &[T], rates: &mut [T]) {
+            rates[0] = y[1];
+            rates[1] =
+                ((u[0] - y[0]).times(self.frequency) - y[1].times(2.0 * self.damping)).times(self.frequency);
+        }
+    }
+
+    struct Following<'a>(Follower<'a>);
+
+    impl Observer for Following<'_> {
+        fn wanted(&self) -> &[usize] {
+            &[0, 1]
+        }
+        fn observe(&mut self, _: f64, _: &[f64], _: &[f64]) {}
+        fn attention(&self) -> Attention {
+            Attention::Everything
+        }
+        fn follow(&mut self, stretch: &Stretch<'_>) {
+            self.0.follow(stretch);
+        }
+    }
+
+    /// A run of three seconds and what its window comes to.
+    fn measured(
+        swing: &Swing,
+        start: [f64; 2],
+        [driving, reference]: [&Profile; 2],
+        window: Window,
+        limit: f64,
+        output_step_s: f64,
+    ) -> Metrics {
+        let course = Course { duration_s: 3.0, output_step_s, inputs: vec![Input::Value(driving.clone())] };
+        let commanded = Commanded::Continuously(Sum::single(1), limit);
+        let follower = Follower::new(Sum::single(0), commanded, 1, Some(reference), (&[window], 1.0));
+        let observer = Following(follower);
+        let task = Task { start: start.to_vec(), course: &course, sampler: None, observer };
+        let settings = Settings { tolerance: 1e-11, ..Settings::default() };
+        let (_, seen) = drive_one(swing, task, &settings, &mut |_| true).unwrap();
+        seen.0.metrics().remove(0)
+    }
+
+    fn step() -> (Swing, Profile, Window) {
+        let reference = Profile::steps(0.0, &[(1.0, 2e3)]).unwrap();
+        let cause = Cause::ReferenceStep { from_n: 0.0, to_n: 2e3 };
+        (Swing { frequency: 40.0, damping: 0.3 }, reference, Window { cause, start_s: 1.0, end_s: 3.0 })
+    }
+
+    /// Closed forms of a step of 2 kN of a mode of 40 rad/s damped by 0.3, however rare the rows.
+    #[test]
+    fn a_step_is_measured_as_its_closed_form() {
+        let (swing, reference, window) = step();
+        let Swing { frequency, damping } = swing;
+        let sine = (1.0 - damping * damping).sqrt();
+        let angle = portable::atan2(sine, damping);
+        // of the step, after it
+        let response = |time_s: f64| {
+            let phase = frequency * sine * time_s + angle;
+            1.0 - portable::exp(-damping * frequency * time_s) * portable::sin(phase) / sine
+        };
+        let found = |output_step_s| {
+            measured(&swing, [0.0; 2], [&reference, &reference], window, f64::INFINITY, output_step_s)
+        };
+        let seen = found(1e-3);
+        let near = |found: f64, expected: f64| (found - expected).abs() < 1e-6 * expected.abs();
+        let overshoot = 100.0 * portable::exp(-std::f64::consts::PI * damping / sine);
+        assert!(near(seen.overshoot_percent.unwrap(), overshoot), "{seen:?}");
+        let fastest = 2e3 * frequency * portable::exp(-damping * angle / sine);
+        assert!(near(seen.control_peak_v.unwrap(), fastest), "{seen:?} {fastest}");
+        let rms = 2e3 * (frequency / (4.0 * damping) / 2.0).sqrt();
+        assert!(near(seen.control_rms_v.unwrap(), rms), "{seen:?} {rms}");
+        let crossing = |mut low: f64, mut high: f64, level: f64| {
+            let above = response(low) >= level;
+            for _ in 0..100 {
+                let middle = 0.5 * (low + high);
+                if (response(middle) >= level) == above { low = middle } else { high = middle }
+            }
+            low
+        };
+        let first_peak = std::f64::consts::PI / (frequency * sine);
+        let rise = crossing(0.0, first_peak, 0.9) - crossing(0.0, first_peak, 0.1);
+        assert!(near(seen.rise_time_s.unwrap(), rise), "{seen:?} {rise}");
+        // the peaks are exp(-n pi d/s): the last beyond a hundredth is the fourth, below the step
+        let last = crossing(4.0 * first_peak, 5.0 * first_peak, 0.99);
+        assert!(response(4.0 * first_peak) < 0.99 && response(5.0 * first_peak) < 1.01);
+        assert!(near(seen.settling_time_s.unwrap(), last), "{seen:?} {last}");
+        assert!(seen.steady_state_error_n.unwrap().abs() < 1e-6);
+        assert_eq!(seen, found(1e-6 * 999.0));
+        assert_eq!(seen, found(2.9));
+    }
+
+    /// The command's limit cuts its peak, and its mean square where it is reached.
+    #[test]
+    fn a_limit_cuts_the_command() {
+        let (swing, reference, window) = step();
+        let Swing { frequency, damping } = swing;
+        let sine = (1.0 - damping * damping).sqrt();
+        let limit = 2e4;
+        let seen = measured(&swing, [0.0; 2], [&reference, &reference], window, limit, 0.1);
+        assert_eq!(seen.control_peak_v, Ok(limit));
+        let command = |time_s: f64| {
+            let wave =
+                portable::exp(-damping * frequency * time_s) * portable::sin(frequency * sine * time_s);
+            2e3 * frequency / sine * wave
+        };
+        let squares =
+            (0..2_000_000).map(|place| command(1e-6 * (f64::from(place) + 0.5)).clamp(-limit, limit));
+        let rms = (squares.map(|value| value * value).sum::<f64>() / 2e6).sqrt();
+        assert!((seen.control_rms_v.unwrap() - rms).abs() < 1e-6 * rms, "{seen:?} {rms}");
+    }
+
+    #[test]
+    fn a_disturbance_is_measured_against_the_reference_and_a_run_that_ends_early_says_so() {
+        // critically damped: 1000 + 80 t exp(-5 t)
+        let swing = Swing { frequency: 5.0, damping: 1.0 };
+        let reference = Profile::constant(1e3);
+        let window = Window { cause: Cause::LoadMotion, start_s: 0.0, end_s: 3.0 };
+        let found =
+            |window| measured(&swing, [1e3, 80.0], [&reference, &reference], window, f64::INFINITY, 0.5);
+        let seen = found(window);
+        // ORIGIN: analytic, 80 t exp(-5 t) is largest at t = 0.2: 16/e
+        assert!((seen.disturbance_peak_n.unwrap() - 16.0 * portable::exp(-1.0)).abs() < 1e-6);
+        // the band of a hundredth of 1 kN is never left
+        assert_eq!(seen.settling_time_s, Ok(0.0));
+        let late = found(Window { end_s: 9.0, ..window });
+        assert!(late.settling_time_s.is_err() && late.disturbance_peak_n == seen.disturbance_peak_n);
+        let never = found(Window { start_s: 5.0, end_s: 6.0, ..window });
+        assert!(never.disturbance_peak_n.is_err() && never.control_rms_v.is_err());
+    }
+
+    /// A reference that moves as no polynomial does: the largest difference from a force that stands still.
+    #[test]
+    fn a_moving_reference_is_followed_within_each_step() {
+        let swing = Swing { frequency: 5.0, damping: 1.0 };
+        let (nothing, reference) = (Profile::constant(0.0), Profile::sine(0.1, 300.0, 7.0).unwrap());
+        let window = Window { cause: Cause::LoadMotion, start_s: 0.0, end_s: 3.0 };
+        // the steps are those of a course that it drives
+        let driven = measured(&swing, [0.0; 2], [&reference, &nothing], window, f64::INFINITY, 1.0);
+        assert!(driven.disturbance_peak_n.unwrap() > 1.0);
+        let course = Course {
+            duration_s: 3.0,
+            output_step_s: 1.0,
+            inputs: vec![Input::Value(Profile::sine(0.1, 1e-9, 7.0).unwrap())],
+        };
+        let commanded = Commanded::Continuously(Sum::single(1), f64::INFINITY);
+        let follower = Follower::new(Sum::single(0), commanded, 1, Some(&reference), (&[window], 1.0));
+        let observer = Following(follower);
+        let task = Task { start: vec![0.0; 2], course: &course, sampler: None, observer };
+        let (_, seen) = drive_one(&swing, task, &Settings::default(), &mut |_| true).unwrap();
+        let peak = seen.0.metrics().remove(0).disturbance_peak_n.unwrap();
+        assert!((peak - 300.0).abs() < 1e-6 * 300.0, "{peak}");
+    }
+}

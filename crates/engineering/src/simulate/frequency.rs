@@ -1,0 +1,158 @@
+//! The frequency response of the nonlinear machine, measured with sines as on a test bench, beside the linear plant.
+
+mod closed_loop;
+mod open_loop;
+mod point;
+
+pub use point::ResponsePoint;
+
+use num_complex::Complex64;
+use phea_dynamics::simulation::Settings;
+use phea_hydraulics::machine::{Beginning, Machine};
+
+use super::SimulateError;
+use super::bench::{options, settings};
+use crate::rig::Rig;
+use crate::setup::Setup;
+use phea_dynamics::watch::{Progress, Watch};
+
+/// Part of the nominal voltage, and of what the supply can push with, that a sine has where nothing is asked for.
+const USUAL_AMPLITUDE: f64 = 0.01;
+/// Usual number of frequencies, the first, and the last over the natural frequency of the valve.
+const POINTS: usize = 28;
+const FIRST_RAD_PER_S: f64 = 0.1;
+const LAST_OVER_VALVE: f64 = 3.0;
+
+/// What is asked of a frequency response; what is not stated is chosen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrequencyRequest {
+    /// rad/s; none: 28 from 0.1 rad/s to three times the natural frequency of the valve.
+    pub frequencies_rad_per_s: Vec<f64>,
+    /// Amplitude of the command of the open loop, V; absent: at each frequency a hundredth of the nominal voltage, or what makes a
+    /// hundredth of the force that the supply can push with, if that is less.
+    pub command_amplitude_v: Option<f64>,
+    /// Amplitude of the reference of the closed loop, N; absent: a hundredth of the force that the supply can push with.
+    pub reference_amplitude_n: Option<f64>,
+}
+
+/// Responses of a machine at its operating point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrequencyResponse {
+    /// Where the machine rests: position of the piston, m.
+    pub position_m: f64,
+    /// Force on the load, N.
+    pub force_n: f64,
+    /// Command, V.
+    pub command_v: f64,
+    /// From command to force, N/V.
+    pub open_loop: Response,
+    /// From reference to force; or why there is none.
+    pub closed_loop: Result<Response, String>,
+    /// Whether the watch stopped it.
+    pub stopped: bool,
+}
+
+/// A response at its frequencies, and its models on finer ones for a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// By rising frequency.
+    pub points: Vec<ResponsePoint>,
+    /// Frequencies of the models' curves, rad/s.
+    pub curve_rad_per_s: Vec<f64>,
+    /// The linear plant, or the loop it closes, at these.
+    pub linear_plant: Vec<Complex64>,
+    /// The machine's own exact derivatives at its rest, at these; empty where they are no linear system.
+    pub linearised_machine: Vec<Complex64>,
+}
+
+/// A machine at rest, ready to be shaken.
+struct Rested {
+    rig: Rig,
+    machine: Machine,
+    rest: Beginning,
+    /// On the load, N.
+    force_n: f64,
+    /// What the supply can push with, N.
+    push_n: f64,
+    settings: Settings,
+}
+
+impl FrequencyResponse {
+    /// Whether every point settled.
+    pub fn is_settled(&self) -> bool {
+        let closed = self.closed_loop.iter().flat_map(|response| &response.points);
+        !self.stopped && self.open_loop.points.iter().chain(closed).all(|point| point.settled)
+    }
+}
+
+/// Measures the machine of a project around its operating point: open from command to force, and closed from reference to force
+/// where the project gives a controller. Scenarios are not run.
+///
+/// # Errors
+/// [`SimulateError`] if the project describes no machine, or one that does not rest at the operating point.
+pub fn frequency_response(
+    setup: &Setup<'_>,
+    request: &FrequencyRequest,
+    watch: Watch<'_>,
+) -> Result<FrequencyResponse, SimulateError> {
+    let rested = rested(setup)?;
+    let frequencies = frequencies(request, &rested);
+    let count = 2.0 * frequencies.len() as f64;
+    let mut told = |done: usize| watch(Progress { stage: "frequency response", share: done as f64 / count });
+    let mut stopped = false;
+    let open_loop = open_loop::measured(&rested, &frequencies, request, &mut |index| {
+        stopped |= !told(index);
+        !stopped
+    })?;
+    let closed_loop = if stopped {
+        Err("it was stopped before".to_string())
+    } else {
+        let before = frequencies.len();
+        closed_loop::measured(setup, &rested, &frequencies, request, &mut |index| {
+            stopped |= !told(before + index);
+            !stopped
+        })?
+    };
+    let position_m = rested.rig.point.position;
+    let (force_n, command_v) = (rested.force_n, rested.rest.command);
+    Ok(FrequencyResponse { position_m, force_n, command_v, open_loop, closed_loop, stopped })
+}
+
+fn rested(setup: &Setup<'_>) -> Result<Rested, SimulateError> {
+    let (project, rig) = (setup.project, setup.rig()?.clone());
+    let machine =
+        Machine::new(&rig.actuator, &options(project, &rig.actuator)?).map_err(SimulateError::Machine)?;
+    let rest = machine.rest(&rig.point).map_err(SimulateError::Machine)?;
+    let force_n = phea_machine::force(&machine, &rest.state);
+    let components = rig.actuator.components();
+    let area = 0.5 * (components.cylinder.area_a + components.cylinder.area_b);
+    let push_n = area * (components.supply.pressure - components.supply.tank_pressure);
+    Ok(Rested { machine, rest, force_n, push_n, settings: settings(project), rig })
+}
+
+/// Those asked for by rising frequency, or the usual ones.
+fn frequencies(request: &FrequencyRequest, rested: &Rested) -> Vec<f64> {
+    let mut asked = request.frequencies_rad_per_s.clone();
+    if asked.is_empty() {
+        let last = LAST_OVER_VALVE * rested.rig.actuator.components().valve.natural_frequency;
+        asked = spread([FIRST_RAD_PER_S, last], POINTS);
+    }
+    asked.sort_by(f64::total_cmp);
+    asked.dedup();
+    asked
+}
+
+/// Frequencies at equal ratios, the ends among them.
+fn spread([first, last]: [f64; 2], count: usize) -> Vec<f64> {
+    let part = |index: usize| index as f64 / (count - 1) as f64;
+    let between = |index| first * phea_dynamics::portable::pow(last / first, part(index));
+    (0..count).map(|index| if index + 1 == count { last } else { between(index) }).collect()
+}
+
+/// Frequencies of a curve through these.
+fn curve(frequencies: &[f64]) -> Vec<f64> {
+    match (frequencies.first(), frequencies.last()) {
+        (Some(first), Some(last)) if first < last => spread([*first, *last], 241),
+        _ => frequencies.to_vec(),
+    }
+}

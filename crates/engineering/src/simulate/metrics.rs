@@ -1,0 +1,144 @@
+//! What is measured of a run: one window for each step of the reference and for the motion of the load.
+
+use super::project::SignalKind;
+
+/// Part of a run that is looked at by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// What begins it.
+    pub cause: Cause,
+    /// s.
+    pub start_s: f64,
+    /// s, where the next one begins or the scenario ends.
+    pub end_s: f64,
+}
+
+/// What begins a window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cause {
+    /// The reference changes.
+    ReferenceStep {
+        /// N.
+        from_n: f64,
+        /// N.
+        to_n: f64,
+    },
+    /// A part of the reference begins to move.
+    ReferenceMotion {
+        /// What kind of part.
+        kind: SignalKind,
+    },
+    /// The open-loop command changes.
+    CommandStep {
+        /// V.
+        from_v: f64,
+        /// V.
+        to_v: f64,
+    },
+    /// A part of the open-loop command begins to move.
+    CommandMotion {
+        /// What kind of part.
+        kind: SignalKind,
+    },
+    /// The load begins to move.
+    LoadMotion,
+    /// A force on the load from outside begins or changes.
+    ExternalForce,
+}
+
+impl Cause {
+    /// Its word in answers.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Cause::ReferenceStep { .. } => "reference_step",
+            Cause::ReferenceMotion { .. } => "reference_motion",
+            Cause::CommandStep { .. } => "command_step",
+            Cause::CommandMotion { .. } => "command_motion",
+            Cause::LoadMotion => "load_motion",
+            Cause::ExternalForce => "external_force",
+        }
+    }
+
+    /// What a figure says of the moment.
+    pub fn label(&self) -> &'static str {
+        match self {
+            Cause::ReferenceStep { .. } | Cause::CommandStep { .. } => "step",
+            Cause::ReferenceMotion { kind } | Cause::CommandMotion { kind } => kind.name(),
+            Cause::LoadMotion => "load moves",
+            Cause::ExternalForce => "force from outside",
+        }
+    }
+}
+
+/// A number, or why there is none.
+pub type Measured = Result<f64, &'static str>;
+
+/// What is measured of a window: of the solution itself over each step of the integration, wherever rows fall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metrics {
+    /// How far the force exceeds the new reference, percent of the step.
+    pub overshoot_percent: Measured,
+    /// From 10 % to 90 % of the step, each where the force first reaches it, s.
+    pub rise_time_s: Measured,
+    /// From the start of the window until the force stays within the band around the reference, s.
+    pub settling_time_s: Measured,
+    /// The band of the settling time: percent of the step, or of the reference that a load motion disturbs.
+    pub settling_band_percent: f64,
+    /// Largest difference of force and reference while the load moves, or is pushed from outside, and after, N.
+    pub disturbance_peak_n: Measured,
+    /// Largest difference of force and reference while the reference moves, N.
+    pub tracking_error_peak_n: Measured,
+    /// Largest magnitude of the force where no force is asked for, N.
+    pub force_peak_n: Measured,
+    /// Reference less force, mean over the last tenth of the window, N.
+    pub steady_state_error_n: Measured,
+    /// Largest magnitude of the command, V.
+    pub control_peak_v: Measured,
+    /// Root mean square of the command, V.
+    pub control_rms_v: Measured,
+}
+
+pub(super) const UNREACHED: &str = "the run ended before";
+pub(super) const NO_STEP: &str = "the reference does not step";
+pub(super) const NO_MOTION: &str = "the load does not begin to move";
+pub(super) const NOT_REACHED: &str = "the force does not come to 90 % of the step";
+pub(super) const BEGUN_BEYOND: &str = "the force is beyond 10 % of the step when it comes";
+/// Why there is no settling time of a step that was seen to its end.
+pub const NOT_SETTLED: &str = "outside the band at the end of the window";
+pub(super) const MOVES: &str = "the reference moves";
+pub(super) const OPEN_LOOP: &str = "open loop: no force is asked for";
+pub(super) const ASKED_FOR: &str = "the reference says which force there should be";
+pub(super) const STANDS_STILL: &str = "the reference stands still";
+pub(super) const NO_REFERENCE: &str = "the reference is zero: a band around it has no width";
+
+impl Metrics {
+    /// Each that is measured with its name, in the order of an answer.
+    pub fn named(&self) -> [(&'static str, Measured); 9] {
+        [
+            ("overshoot_percent", self.overshoot_percent),
+            ("rise_time_s", self.rise_time_s),
+            ("settling_time_s", self.settling_time_s),
+            ("disturbance_peak_n", self.disturbance_peak_n),
+            ("tracking_error_peak_n", self.tracking_error_peak_n),
+            ("force_peak_n", self.force_peak_n),
+            ("steady_state_error_n", self.steady_state_error_n),
+            ("control_peak_v", self.control_peak_v),
+            ("control_rms_v", self.control_rms_v),
+        ]
+    }
+
+    pub(super) fn none(reason: &'static str, settling_band_percent: f64) -> Metrics {
+        Metrics {
+            overshoot_percent: Err(reason),
+            rise_time_s: Err(reason),
+            settling_time_s: Err(reason),
+            settling_band_percent,
+            disturbance_peak_n: Err(reason),
+            tracking_error_peak_n: Err(reason),
+            force_peak_n: Err(reason),
+            steady_state_error_n: Err(reason),
+            control_peak_v: Err(reason),
+            control_rms_v: Err(reason),
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! One scenario, run.
+
+use std::cell::{Cell, RefCell};
+
+use phea_dynamics::simulation::{Course as Drive, Event, Input, Outcome, Sampler, Status, Task, Work};
+use phea_hydraulics::machine::INDICATORS;
+use phea_machine::{Control, Digital, Memory, Samples, Watcher};
+
+use super::bench::Bench;
+use super::course::Course;
+use super::exceeded::{Exceeded, exceeded};
+use super::look::{Looking, Sighted};
+use super::measured::{Measurement, Overlay};
+use super::metrics::Metrics;
+use super::record::Record;
+use super::saved::{self, SavedState};
+use super::{Check, SimulateError, Table, Window};
+use crate::project::Scenario;
+
+/// Longest time between two looks at the machine, of which figures are drawn: 1 ms would cut the peaks of a ringing load cell.
+const LONGEST_LOOK_S: f64 = 0.25e-3;
+/// Most looks where the project asks for fewer rows.
+const MOST_LOOKS: f64 = 400_000.0;
+/// Steps between two reports of progress.
+const STEPS_UNWATCHED: u32 = 64;
+
+/// What came of a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScenarioRun {
+    /// Its name.
+    pub name: String,
+    /// How it ended.
+    pub status: Status,
+    /// What it cost.
+    pub work: Work,
+    /// What was seen, every [`ScenarioRun::look_s`], or at fewer looks of a long run.
+    pub record: Record,
+    /// Looks between two rows of the result.
+    pub looks_per_row: usize,
+    /// Time between two looks, s: what is shorter is not drawn.
+    pub look_s: f64,
+    /// Each window with what is read off it.
+    pub windows: Vec<(Window, Metrics)>,
+    /// What happened on the way, in the order of time.
+    pub occurrences: Vec<Occurrence>,
+    /// From when on the machine is where its equations do not hold, s.
+    pub outside_model_s: Option<f64>,
+    /// Percent, of every settling time.
+    pub settling_band_percent: f64,
+    /// What was measured, beside what was simulated.
+    pub measured: Vec<Overlay>,
+    /// How far a run at a tenth of the tolerance differs; `None` where nobody asked.
+    pub check: Option<Check>,
+    /// Whether a stated command drove the valve, and no controller.
+    pub open_loop: bool,
+    /// Chambers whose pressure went beyond what the expansion of their hose was measured at.
+    pub beyond_expansion: Vec<BeyondExpansion>,
+    /// Limits of the rig that it goes beyond.
+    pub exceeded: Vec<Exceeded>,
+    /// Its end, to go on from, or why it is not saved.
+    pub end: Result<SavedState, &'static str>,
+}
+
+/// A chamber above the pressure up to which the expansion of its hose was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeyondExpansion {
+    /// `a` or `b`.
+    pub chamber: char,
+    /// Its highest pressure, Pa.
+    pub peak_pa: f64,
+    /// Where the expansion is stated, Pa.
+    pub stated_pa: f64,
+}
+
+/// Something that began or ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Occurrence {
+    /// s.
+    pub time_s: f64,
+    /// One of [`INDICATORS`], or `command_limit`.
+    pub kind: &'static str,
+    /// Whether it began.
+    pub begins: bool,
+}
+
+/// How a run ended before its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stopped {
+    /// s.
+    pub time_s: f64,
+    /// In one word, as in an answer.
+    pub word: &'static str,
+    /// The mode whose oscillation would take more steps than there are.
+    pub mode: Option<UnresolvedMode>,
+}
+
+/// A mode that grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnresolvedMode {
+    /// Magnitude of its eigenvalue in rad/s.
+    pub frequency_rad_per_s: f64,
+    /// Real part of its eigenvalue in 1/s.
+    pub growth_per_s: f64,
+}
+
+impl ScenarioRun {
+    /// Whether it is so long that it was looked at less often than its figures want.
+    pub fn is_coarse(&self) -> bool {
+        self.look_s > LONGEST_LOOK_S * (1.0 + 1e-9)
+    }
+
+    /// Whether whoever watched ended it.
+    pub fn was_cancelled(&self) -> bool {
+        matches!(self.status, Status::Cancelled { .. })
+    }
+
+    /// Why and when it ended before its time; `None` if it did not.
+    pub fn stopped(&self) -> Option<Stopped> {
+        Stopped::of(self.status)
+    }
+}
+
+impl Stopped {
+    /// What a status says; `None` of a run that came to its end.
+    pub fn of(status: Status) -> Option<Stopped> {
+        let mut mode = None;
+        let (time_s, word) = match status {
+            Status::Completed => return None,
+            Status::Cancelled { time_s } => (time_s, "cancelled"),
+            Status::StepTooSmall { time_s } => (time_s, "step_too_small"),
+            Status::NotFinite { time_s } => (time_s, "not_finite"),
+            Status::TooManySteps { time_s } => (time_s, "too_many_steps"),
+            Status::UnresolvedOscillation { time_s, frequency_rad_per_s, growth_per_s } => {
+                mode = Some(UnresolvedMode { frequency_rad_per_s, growth_per_s });
+                (time_s, "unresolved_oscillation")
+            }
+        };
+        Some(Stopped { time_s, word, mode })
+    }
+}
+
+/// Runs a scenario, its rows into a table where there is one; `watch` is told the simulated time now and then.
+pub(super) fn run(
+    bench: &Bench,
+    scenario: &Scenario,
+    (course, measurements): (&Course, &[Measurement]),
+    table: Option<Table<'_>>,
+    watch: &mut dyn FnMut(f64) -> bool,
+) -> Result<ScenarioRun, SimulateError> {
+    let looks_per_row = looks_per_row(scenario);
+    let look_s = scenario.output_step / looks_per_row as f64;
+    let (samples, full) = (RefCell::new(Samples::default()), Cell::new(false));
+    let memory = RefCell::new(Memory::default());
+    let mut steps = 0;
+    let mut watch = |time_s: f64| {
+        steps += 1;
+        steps % STEPS_UNWATCHED != 0 || (!full.get() && watch(time_s))
+    };
+    let reference = Input::Value(course.reference.clone());
+    let mut inputs = match &bench.control {
+        Control::Continuous(_) => vec![reference],
+        Control::Sampled(_) => vec![Input::Command, reference],
+        Control::Open(_) => vec![Input::Value(course.command.clone()), reference],
+    };
+    inputs.extend(course.machine_inputs());
+    let drive = Drive { duration_s: scenario.duration, output_step_s: look_s, inputs };
+    let band = scenario.settling_band_percent;
+    let mut looking =
+        Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
+    let sampler = match &bench.control {
+        Control::Continuous(_) | Control::Open(_) => None,
+        Control::Sampled(sampled) => {
+            let digital = Digital::new(sampled, &course.waking, &samples).remembered_in(&memory);
+            Some(Box::new(digital) as Box<dyn Sampler + '_>)
+        }
+    };
+    let observer: Watcher<'_> = Box::new(&mut looking);
+    let task = Task { start: course.start.clone(), course: &drive, sampler, observer };
+    let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
+    let outcome = bench.control.drive(task, &bench.settings, &mut watch).map_err(named)?;
+    let Sighted { record, metrics, peak_pressures_pa, measured } = looking.finish()?;
+    let occurrences = found(bench, course, &outcome, &samples.borrow());
+    let windows = course.windows.iter().copied().zip(metrics).collect();
+    let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
+    let memory = memory.into_inner();
+    let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
+    let end = saved::of_end(bench, course, (outcome.status, &outcome.end, scenario.duration), memory);
+    let exceeded = exceeded(bench, &record);
+    Ok(ScenarioRun {
+        name: scenario.name.clone(),
+        status: outcome.status,
+        work: outcome.work,
+        record,
+        looks_per_row,
+        look_s,
+        windows,
+        occurrences,
+        outside_model_s,
+        settling_band_percent: band,
+        measured,
+        open_loop: scenario.is_open_loop(),
+        beyond_expansion: beyond_expansion(bench, peak_pressures_pa),
+        exceeded,
+        end,
+        check: None,
+    })
+}
+
+/// All that happened on the way.
+fn found(bench: &Bench, course: &Course, outcome: &Outcome, samples: &Samples) -> Vec<Occurrence> {
+    let reference = course.reference.value(0.0);
+    let leading = match &bench.control {
+        Control::Continuous(_) => vec![reference],
+        Control::Sampled(_) => vec![0.0, reference],
+        Control::Open(_) => vec![course.command.value(0.0), reference],
+    };
+    let first = inputs_at_start(course, leading, &bench.control);
+    let mut found = occurrences(&bench.control, &course.start, &first, &outcome.events);
+    if matches!(bench.control, Control::Sampled(_)) {
+        let limits = samples.limits.iter();
+        found.extend(limits.map(|&(time_s, begins)| Occurrence { time_s, kind: COMMAND_LIMIT, begins }));
+        found.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+    }
+    found
+}
+
+/// When a chamber first cavitates or has no volume, or the piston leaves a stroke that nothing limits.
+fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
+    let outside = |kind: &str| match kind {
+        "cavitation_a" | "cavitation_b" | "empty_a" | "empty_b" => true,
+        "end_stop_a" | "end_stop_b" => !has_end_stops,
+        _ => false,
+    };
+    occurrences.iter().find(|one| one.begins && outside(one.kind)).map(|one| one.time_s)
+}
+
+fn beyond_expansion(bench: &Bench, peaks_pa: [f64; 2]) -> Vec<BeyondExpansion> {
+    let beyond = |((chamber, peak_pa), stated): ((char, f64), Option<f64>)| {
+        let stated_pa = stated?;
+        (peak_pa > stated_pa * (1.0 + 1e-6)).then_some(BeyondExpansion { chamber, peak_pa, stated_pa })
+    };
+    ['a', 'b'].into_iter().zip(peaks_pa).zip(bench.expansion_stated_at).filter_map(beyond).collect()
+}
+
+fn looks_per_row(scenario: &Scenario) -> usize {
+    let wanted = (scenario.output_step / LONGEST_LOOK_S).ceil().max(1.0);
+    let rows = scenario.duration / scenario.output_step;
+    wanted.min((MOST_LOOKS / rows).floor().max(1.0)) as usize
+}
+
+/// What an [`Occurrence`] is called while the command is at its limit, beside the names of what a machine tells of itself.
+pub const COMMAND_LIMIT: &str = "command_limit";
+
+/// Inputs at time zero: those before the machine's, its ground, the force from outside, and the waves under way.
+fn inputs_at_start(course: &Course, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
+    first.extend([course.ground.value(0.0), course.ground.rate(0.0)]);
+    first.extend(course.external_force.as_ref().map(|force| force.value(0.0)));
+    let [states, _] = control.size();
+    first.extend(course.start.iter().skip(states));
+    first
+}
+
+/// What there is from the start, and every change of an indicator. Those of the machine are positive while all is well, that of
+/// the command's limit while it is reached.
+pub fn occurrences(control: &Control, start: &[f64], first: &[f64], events: &[Event]) -> Vec<Occurrence> {
+    let kind = |index: usize| INDICATORS.get(index).copied().unwrap_or(COMMAND_LIMIT);
+    let begins = |index: usize, positive: bool| positive != (index < INDICATORS.len());
+    let [states, _] = control.size();
+    let state: Vec<f64> = start.iter().copied().take(states).collect();
+    let indicators = control.indicators(&state, first);
+    let from_start = indicators.iter().enumerate().filter(|(index, value)| begins(*index, **value > 0.0));
+    let mut found: Vec<Occurrence> =
+        from_start.map(|(index, _)| Occurrence { time_s: 0.0, kind: kind(index), begins: true }).collect();
+    found.extend(events.iter().map(|event| Occurrence {
+        time_s: event.time_s,
+        kind: kind(event.indicator),
+        begins: begins(event.indicator, event.rising),
+    }));
+    found
+}

@@ -1,0 +1,70 @@
+//! A signal as a sum of states and inputs.
+
+use phea_dynamics::simulation::{Quartic, Stretch};
+
+/// What is added up for a signal: places among the states that an observer wants, and inputs, each with its weight.
+///
+/// ```text
+/// s = sum of a_i y_i + sum of b_j w_j
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Sum {
+    states: Vec<(usize, f64)>,
+    inputs: Vec<(usize, f64)>,
+}
+
+impl Sum {
+    /// What a signal that is such a sum makes of each of these states, and of each input, alone.
+    pub(super) fn of(
+        wanted: &[usize],
+        [states, inputs]: [usize; 2],
+        signal: impl Fn(&[f64], &[f64]) -> f64,
+    ) -> Sum {
+        let unit = |count: usize, place: Option<usize>| {
+            (0..count).map(|index| f64::from(u8::from(Some(index) == place))).collect::<Vec<f64>>()
+        };
+        let of_state = |&state: &usize| signal(&unit(states, Some(state)), &unit(inputs, None));
+        let of_input = |input: usize| signal(&unit(states, None), &unit(inputs, Some(input)));
+        let some = |weights: Vec<f64>| -> Vec<(usize, f64)> {
+            weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0).collect()
+        };
+        Sum {
+            states: some(wanted.iter().map(of_state).collect()),
+            inputs: some((0..inputs).map(of_input).collect()),
+        }
+    }
+
+    /// Its states' part over a step.
+    #[inline]
+    pub(super) fn over(&self, states: &[Quartic]) -> Quartic {
+        self.states.iter().fold(Quartic::constant(0.0), |sum, &(place, weight)| {
+            states.get(place).map_or(sum, |state| sum.plus(weight, state))
+        })
+    }
+
+    /// Its states' part at one time.
+    pub(super) fn at(&self, states: &[f64]) -> f64 {
+        let part = |&(place, weight): &(usize, f64)| weight * states.get(place).copied().unwrap_or(f64::NAN);
+        self.states.iter().map(part).sum()
+    }
+
+    /// Whether inputs have a part in it.
+    pub(super) fn has_inputs(&self) -> bool {
+        !self.inputs.is_empty()
+    }
+
+    /// Its inputs' part at a part of a step.
+    pub(super) fn driven(&self, stretch: &Stretch<'_>, part: f64, inputs: &mut [f64]) -> f64 {
+        stretch.inputs_at(part, inputs);
+        let part = |&(place, weight): &(usize, f64)| weight * inputs.get(place).copied().unwrap_or(f64::NAN);
+        self.inputs.iter().map(part).sum()
+    }
+}
+
+#[cfg(test)]
+impl Sum {
+    /// One state by itself.
+    pub(super) fn single(place: usize) -> Sum {
+        Sum { states: vec![(place, 1.0)], inputs: Vec::new() }
+    }
+}

@@ -1,0 +1,111 @@
+//! What was wished of the force in time, and whether a step of the machine keeps to it.
+
+use super::metrics::NOT_SETTLED;
+use super::{Cause, Metrics, Window};
+use crate::quantity::significant;
+use crate::specification::CheckedWish;
+
+/// Percent of the wish by which a number may miss it and still count: what is told has three digits.
+const ROUNDED: f64 = 1e-6;
+
+/// Wishes of the first tracking specification that has any: the overshoot of its upper limit, the settling time of its lower one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wish {
+    /// Most overshoot, percent of the step.
+    pub overshoot_percent: Option<f64>,
+    /// Settled by then, s.
+    pub settling_time_s: Option<f64>,
+    /// The band of the settling time, percent of the step.
+    pub band_percent: f64,
+}
+
+/// A wish held against a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Held {
+    /// What the step does.
+    pub words: String,
+    /// Whether it is as was wished; `None` where the two are not of the same band, or the run ended before.
+    pub kept: Option<bool>,
+}
+
+impl Wish {
+    /// The wish of these limits; `None` without one.
+    pub fn of(wishes: &[CheckedWish]) -> Option<Wish> {
+        let number = wishes.first()?.number;
+        let side = |key: &str| {
+            let of_side = |wish: &&CheckedWish| wish.number == number && wish.key == key;
+            wishes.iter().find(of_side).map(|wish| wish.check.wished)
+        };
+        let (upper, lower) = (side("upper"), side("lower"));
+        Some(Wish {
+            overshoot_percent: upper.map(|wished| wished.overshoot_percent),
+            settling_time_s: lower.map(|wished| wished.settling_time_s),
+            band_percent: lower.or(upper)?.settling_band_percent,
+        })
+    }
+
+    /// What is wished of the overshoot, in words.
+    pub fn overshoot_words(&self) -> Option<String> {
+        let most = self.overshoot_percent?;
+        Some(if most == 0.0 { "no overshoot".to_string() } else { format!("at most {most} % overshoot") })
+    }
+
+    /// What is wished of the settling, in words.
+    pub fn settling_words(&self) -> Option<String> {
+        self.settling_time_s.map(|time_s| format!("settled within {} % in {time_s} s", self.band_percent))
+    }
+
+    /// The overshoot of a step beside its wish; `None` where nothing was wished of it or the window is of no step.
+    pub fn overshoot(&self, metrics: &Metrics) -> Option<Held> {
+        let most = self.overshoot_percent?;
+        let reached = metrics.overshoot_percent.ok()?;
+        let kept = reached <= most + ROUNDED * most.max(1.0);
+        Some(Held { words: format!("{} %", significant(reached, 3)), kept: Some(kept) })
+    }
+
+    /// The settling time of a step beside its wish, likewise.
+    pub fn settling(&self, metrics: &Metrics) -> Option<Held> {
+        let most = self.settling_time_s?;
+        metrics.overshoot_percent.ok()?;
+        let same_band = metrics.settling_band_percent == self.band_percent;
+        match metrics.settling_time_s {
+            Ok(reached) => {
+                let words = match same_band {
+                    true => format!("{} s", significant(reached, 3)),
+                    false => format!("{} s to {} %", significant(reached, 3), metrics.settling_band_percent),
+                };
+                Some(Held { words, kept: same_band.then_some(reached <= most * (1.0 + ROUNDED)) })
+            }
+            Err(NOT_SETTLED) => Some(Held { words: "not settled".to_string(), kept: Some(false) }),
+            Err(_) => None,
+        }
+    }
+
+    /// Lines of times in s and forces in N that the force should not cross after each step of these windows that begins within a span: above it, and below it once it
+    /// should have settled.
+    pub fn lines<'a>(
+        &self,
+        windows: impl Iterator<Item = &'a Window>,
+        [start_s, end_s]: [f64; 2],
+    ) -> Vec<Vec<[f64; 2]>> {
+        let seen = windows.filter(|window| (start_s..end_s).contains(&window.start_s));
+        seen.flat_map(|window| self.around(window, window.end_s.min(end_s))).collect()
+    }
+
+    fn around(&self, window: &Window, end_s: f64) -> Vec<Vec<[f64; 2]>> {
+        let Cause::ReferenceStep { from_n, to_n } = window.cause else { return vec![] };
+        let (start_s, step_n) = (window.start_s, to_n - from_n);
+        let at = |percent: f64| to_n + 0.01 * percent * step_n;
+        let settled_s = self.settling_time_s.map_or(end_s, |time_s| (start_s + time_s).min(end_s));
+        let mut lines = Vec::new();
+        if let Some(most) = self.overshoot_percent {
+            lines.push(vec![[start_s, at(most)], [settled_s, at(most)]]);
+        }
+        if settled_s < end_s {
+            let band = self.band_percent;
+            lines.push(vec![[settled_s, at(band)], [end_s, at(band)]]);
+            lines.push(vec![[settled_s, at(-band)], [end_s, at(-band)]]);
+        }
+        lines
+    }
+}

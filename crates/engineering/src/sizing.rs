@@ -1,0 +1,115 @@
+//! Sizing of high-volumetric-expansion hoses: the procedure of Ledezma (2019), section 6.3, over a whole catalogue.
+//!
+//! A first-order force response with time constant tau_d under a proportional gain K_p asks for one hydraulic
+//! stiffness; a hose of bore D and length L_ho gives one. [`size`] walks both branches of the flowchart (by gain, by
+//! length) for every hose and for both stiffness models, and records each decision with its numbers.
+
+mod bore;
+mod branch;
+mod candidate;
+mod problem;
+mod sensitivity;
+
+pub use bore::{BoreVerdict, CommercialBore};
+pub use branch::{Branch, GainStep, model_name};
+pub use candidate::{Candidate, Finding, Severity};
+pub use problem::{HoseOption, SizingProblem};
+pub use sensitivity::{Influence, sensitivity};
+
+use phea_hydraulics::stiffness::StiffnessModel;
+
+/// Which question is asked of every hose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Question {
+    /// Both branches: the gain is searched for, and the stock length is tried.
+    Both,
+    /// Which length does this gain need? K_p in V/N.
+    Gain(f64),
+    /// Which gain does this length need? Length of each line in m.
+    Length(f64),
+}
+
+/// One step of the procedure and what was decided there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decision {
+    /// Letter of the step in the flowchart, section 6.3.2.
+    pub step: &'static str,
+    /// What was decided, with its numbers.
+    pub text: String,
+}
+
+/// The outcome of the procedure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sizing {
+    /// Every bore considered, with its oil velocity.
+    pub bores: Vec<CommercialBore>,
+    /// Bores from equation 6.17 at the highest and at the lowest recommended velocity, m.
+    pub bore_range_m: [f64; 2],
+    /// Gain at which equation 6.16 asks for an infinitely stiff transmission, V/N.
+    pub pole_gain_v_per_n: f64,
+    /// The stiffness model of the project.
+    pub model: StiffnessModel,
+    /// Every candidate: accepted ones first, of those the project's model, of those shorter ones.
+    pub candidates: Vec<Candidate>,
+    /// The decisions in order.
+    pub decisions: Vec<Decision>,
+    /// Influence of what is uncertain on the best candidate of the project's stiffness model.
+    pub influences: Vec<Influence>,
+}
+
+/// Sizes every hose of the problem.
+pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
+    let mut decisions = problem.decisions();
+    let bores = bore::assess(problem, &mut decisions);
+    if question == Question::Both {
+        decisions.push(problem.search_decision());
+    }
+    let mut candidates = Vec::new();
+    for option in &problem.hoses {
+        for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
+            for branch in branch::branches(problem, option, model, question) {
+                branch.record(option, &mut decisions);
+                candidates.push(candidate::assess(problem, option, branch));
+            }
+        }
+    }
+    // Lengths that differ by the search's rounding are one length; ties keep the catalogue's order.
+    let micrometres = |candidate: &Candidate| (candidate.length_m() * 1e6).round();
+    let other_model = |candidate: &Candidate| candidate.branch.model != problem.model;
+    candidates.sort_by(|one, other| {
+        let accepted = other.accepted().cmp(&one.accepted());
+        let declared = other_model(one).cmp(&other_model(other));
+        accepted.then(declared).then(micrometres(one).total_cmp(&micrometres(other)))
+    });
+    let mut sizing = Sizing {
+        model: problem.model,
+        bores,
+        bore_range_m: bore::range(problem),
+        pole_gain_v_per_n: problem.pole_gain(),
+        candidates,
+        decisions,
+        influences: vec![],
+    };
+    sizing.influences = sizing.best().map(|candidate| sensitivity(problem, candidate)).unwrap_or_default();
+    sizing
+}
+
+impl Sizing {
+    /// The answer: the first accepted candidate of the project's own stiffness model.
+    pub fn best(&self) -> Option<&Candidate> {
+        self.best_of(self.model)
+    }
+
+    /// The stiffness model that the project does not declare.
+    pub fn other_model(&self) -> StiffnessModel {
+        match self.model {
+            StiffnessModel::Uniform => StiffnessModel::ByVolume,
+            StiffnessModel::ByVolume => StiffnessModel::Uniform,
+        }
+    }
+
+    /// The first accepted candidate of a stiffness model.
+    pub fn best_of(&self, model: StiffnessModel) -> Option<&Candidate> {
+        self.candidates.iter().find(|candidate| candidate.accepted() && candidate.branch.model == model)
+    }
+}

@@ -1,0 +1,207 @@
+use phea_hydraulics::line::{Line, Member};
+use phea_hydraulics::stiffness::{LineLength, StiffnessModel, StrokeStiffness, line_length_for_stiffness};
+
+use super::{Decision, HoseOption, Question, SizingProblem};
+use crate::quantity::significant;
+
+/// One trial of the iteration over the gain, steps f to j.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GainStep {
+    /// K_p, V/N.
+    pub gain_v_per_n: f64,
+    /// K_H of equation 6.16, N/m; infinite at or below the pole.
+    pub stiffness_n_per_m: f64,
+    /// L_ho for it, m: zero where no hose is needed.
+    pub length_m: f64,
+}
+
+/// A hose with the length and gain that one branch of the flowchart found for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Branch {
+    /// Whether the gain was given or searched for (left branch) and not the length (right branch).
+    pub by_gain: bool,
+    /// Stiffness model.
+    pub model: StiffnessModel,
+    /// The trials of the left branch.
+    pub steps: Vec<GainStep>,
+    /// Length of each line, m; zero where no hose is needed.
+    pub length_m: f64,
+    /// Stiffness over the stroke at that length.
+    pub stiffness: StrokeStiffness,
+    /// Gain for the desired time constant at the least stiffness, V/N.
+    pub gain_v_per_n: f64,
+}
+
+/// The branches of the flowchart that answer the question for one hose and one stiffness model.
+pub(super) fn branches(
+    problem: &SizingProblem,
+    option: &HoseOption,
+    model: StiffnessModel,
+    question: Question,
+) -> Vec<Branch> {
+    match question {
+        Question::Gain(gain) => vec![at_gain(problem, option, model, vec![], gain)],
+        Question::Length(length) => vec![at_length(problem, option, model, length)],
+        Question::Both => {
+            vec![
+                search(problem, option, model),
+                at_length(problem, option, model, problem.available_length()),
+            ]
+        }
+    }
+}
+
+/// Steps k and l: the stiffness of this length, and the gain it needs.
+fn at_length(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel, length: f64) -> Branch {
+    let stiffness = problem.stroke_stiffness(option.hose, length, model);
+    let gain_v_per_n = problem.gain_for_stiffness(stiffness.minimum);
+    Branch { by_gain: false, model, steps: vec![], length_m: length, stiffness, gain_v_per_n }
+}
+
+/// Steps g and h at one gain.
+fn at_gain(
+    problem: &SizingProblem,
+    option: &HoseOption,
+    model: StiffnessModel,
+    mut steps: Vec<GainStep>,
+    gain: f64,
+) -> Branch {
+    let step = gain_step(problem, option, model, gain);
+    steps.push(step);
+    let stiffness = problem.stroke_stiffness(option.hose, step.length_m, model);
+    Branch { by_gain: true, model, steps, length_m: step.length_m, stiffness, gain_v_per_n: gain }
+}
+
+/// Steps f to j: the gain starts at the largest and is halved until the hose is acceptably short or the gain at its floor;
+/// then the largest gain whose hose is acceptable lies between the last two trials and is found by bisection.
+fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -> Branch {
+    let trial = |gain| gain_step(problem, option, model, gain);
+    let fits = |step: &GainStep| step.length_m <= problem.available_length();
+    let floor = problem.minimum_gain.min(problem.maximum_gain);
+    let mut steps = Vec::new();
+    let mut last = trial(problem.maximum_gain);
+    while !fits(&last) && last.gain_v_per_n > floor {
+        steps.push(last);
+        last = trial((last.gain_v_per_n / 2.0).max(floor));
+    }
+    let gain = match steps.last() {
+        Some(too_long) if fits(&last) => {
+            largest_gain(last.gain_v_per_n, too_long.gain_v_per_n, |gain| fits(&trial(gain)))
+        }
+        _ => last.gain_v_per_n,
+    };
+    commercial(problem, option, at_gain(problem, option, model, steps, gain))
+}
+
+/// The largest gain that fits, between one that does and one that does not.
+fn largest_gain(mut fitting: f64, mut too_large: f64, fits: impl Fn(f64) -> bool) -> f64 {
+    // 40 halvings leave a relative interval of 1e-12.
+    for _ in 0..40 {
+        let middle = 0.5 * (fitting + too_large);
+        if fits(middle) {
+            fitting = middle;
+        } else {
+            too_large = middle;
+        }
+    }
+    fitting
+}
+
+/// The same hose cut to the next multiple of the increment that is still acceptable, with the gain for that length.
+fn commercial(problem: &SizingProblem, option: &HoseOption, exact: Branch) -> Branch {
+    let sound = exact.length_m > 0.0 && exact.length_m <= problem.available_length();
+    let Some(increment) = problem.length_increment.filter(|_| sound) else { return exact };
+    let tolerance = 1e-9;
+    let up = (exact.length_m / increment - tolerance).ceil() * increment;
+    let down = (problem.available_length() / increment + tolerance).floor() * increment;
+    if down <= 0.0 {
+        return exact;
+    }
+    let cut = at_length(problem, option, exact.model, up.min(down));
+    Branch { by_gain: true, steps: exact.steps, ..cut }
+}
+
+fn gain_step(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel, gain: f64) -> GainStep {
+    let stiffness_n_per_m = problem.stiffness_for_gain(gain);
+    let line = Line::Hose { hose: option.hose, length: 1.0 };
+    let length = line_length_for_stiffness(
+        model,
+        problem.fluid_modulus,
+        &problem.cylinder,
+        &line,
+        Member::Nominal,
+        stiffness_n_per_m,
+    );
+    let length_m = match length {
+        LineLength::Length(length) => length,
+        LineLength::NotNeeded { .. } => 0.0,
+        LineLength::OutOfReach => f64::INFINITY,
+    };
+    GainStep { gain_v_per_n: gain, stiffness_n_per_m, length_m }
+}
+
+/// The model's name in the project file.
+pub fn model_name(model: StiffnessModel) -> &'static str {
+    match model {
+        StiffnessModel::Uniform => "uniform",
+        StiffnessModel::ByVolume => "by_volume",
+    }
+}
+
+impl Branch {
+    /// The decisions of steps f to l; the single trials stay in `steps`.
+    pub(super) fn record(&self, option: &HoseOption, decisions: &mut Vec<Decision>) {
+        let name = format!("{}, {}", option.name, model_name(self.model));
+        let number = |value| significant(value, 4);
+        let mut decide =
+            |step, text: String| decisions.push(Decision { step, text: format!("{name}: {text}") });
+        if !self.by_gain {
+            let (length, stiffness) = (number(self.length_m), number(self.stiffness.minimum));
+            let gain = number(self.gain_v_per_n);
+            let text = format!(
+                "{length} m a line gives K_H = {stiffness} N/m at its least (6.26), which needs K_p = {gain} V/N (6.27)."
+            );
+            return decide("k, l", text);
+        }
+        let Some((end, trials)) = self.steps.split_last() else { return };
+        if let (Some(first), Some(last)) = (trials.first(), trials.last()) {
+            let text = format!(
+                "K_p = {} V/N asks for {} m of hose a line (6.16, 6.25), too long{}.",
+                number(first.gain_v_per_n),
+                number(first.length_m),
+                if trials.len() > 1 {
+                    format!(
+                        "; so does every half of it down to {} V/N with {} m, {} trials",
+                        number(last.gain_v_per_n),
+                        number(last.length_m),
+                        trials.len()
+                    )
+                } else {
+                    String::new()
+                }
+            );
+            decide("g, h", text);
+        }
+        let (gain, stiffness) = (number(end.gain_v_per_n), number(end.stiffness_n_per_m));
+        if end.stiffness_n_per_m == f64::INFINITY {
+            return decide(
+                "i, j",
+                format!("at K_p = {gain} V/N even a rigid transmission is too slow (6.16)."),
+            );
+        }
+        let length = match end.length_m {
+            0.0 => "for which no hose is needed".to_string(),
+            length => format!("which {} m of hose a line gives (6.25)", number(length)),
+        };
+        decide("i, j", format!("K_p = {gain} V/N asks for K_H = {stiffness} N/m (6.16), {length}."));
+        // Lengths that differ by the search's rounding are one length.
+        if (self.length_m - end.length_m).abs() > 1e-6 {
+            let (length, gain) = (number(self.length_m), number(self.gain_v_per_n));
+            let stiffness = number(self.stiffness.minimum);
+            let text = format!(
+                "cut to {length} m a line, which gives K_H = {stiffness} N/m and needs K_p = {gain} V/N."
+            );
+            decide("i", text);
+        }
+    }
+}

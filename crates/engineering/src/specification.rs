@@ -1,0 +1,165 @@
+//! From the specifications of a project to those of robust design.
+
+mod limit;
+mod rounding;
+
+use phea_dynamics::linear::LinearError;
+use phea_qft::specification::{
+    LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
+};
+
+use self::limit::{MarginOf, Side};
+pub use self::rounding::of_rounding;
+use crate::project::{self, FormulaError, Project, SpecificationKind};
+
+/// Why a declared specification cannot be judged by.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("[[specification]] {number}, `{key}`: {reason}")]
+pub struct SpecificationError {
+    /// Its place in the file, from 1.
+    pub number: usize,
+    /// `limit`, `upper` or `lower`.
+    pub key: &'static str,
+    /// What is wrong with it.
+    pub reason: SpecificationProblem,
+}
+
+/// What is wrong with a limit.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SpecificationProblem {
+    /// It is not there.
+    #[error("this kind of specification needs it")]
+    Missing,
+    /// The text is no ratio of polynomials.
+    #[error("{message}", message = .0.message)]
+    Formula(FormulaError),
+    /// The polynomials make no transfer function.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    /// The table is none.
+    #[error(transparent)]
+    Table(#[from] LimitError),
+    /// No limit guarantees the margins.
+    #[error(transparent)]
+    Margin(#[from] MarginError),
+    /// The wish in time has no limit, or the limit no response to check.
+    #[error(transparent)]
+    TimeDomain(#[from] TimeDomainError),
+    /// A form of limit that another kind of specification takes.
+    #[error("this kind of specification does not take {0}")]
+    Form(&'static str),
+}
+
+/// A limit of tracking that was wished in time, and what its own step response does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CheckedWish {
+    /// Place of the specification in the file, from 1.
+    pub number: usize,
+    /// `upper` or `lower`.
+    pub key: &'static str,
+    /// Wished and reached.
+    pub check: WishCheck,
+}
+
+impl CheckedWish {
+    /// Whether the limit does what was wished.
+    pub fn is_met(&self) -> bool {
+        self.check.outcome() == WishOutcome::Met
+    }
+}
+
+/// The specifications of a project, in file order.
+///
+/// # Errors
+/// [`SpecificationError`] for a limit that is absent or no function of frequency.
+///
+/// # Example
+/// ```
+/// use phea_project::source::Memory;
+/// let text = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s\"\n\
+///             [[specification]]\nkind = \"sensitivity\"\nlimit = \"s/(s + 15)\"\nfrequencies = [1, 15]\n";
+/// let source = Memory::default().with("servo.toml", text);
+/// let project = phea_project::read(&source, "servo.toml", &[], &[])?.project;
+/// let specifications = phea_engineering::specification::specifications(&project)?;
+/// assert_eq!(specifications[0].band_rad_per_s, [1.0, 15.0]); // the span of the frequencies
+/// let phea_qft::specification::Requirement::Sensitivity(limit) = &specifications[0].requirement else { panic!() };
+/// assert!((limit.magnitude(15.0).unwrap() - 0.5_f64.sqrt()).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn specifications(project: &Project) -> Result<Vec<Specification>, SpecificationError> {
+    let numbered = project.specifications.iter().enumerate();
+    numbered.map(|(index, declared)| specification(declared, index + 1)).collect()
+}
+
+/// Every limit of tracking that was wished in time, held against its wish; in file order.
+///
+/// # Errors
+/// [`SpecificationError`] for a wish without a limit, or a limit whose step response has no end.
+///
+/// # Example
+/// The thesis' upper limit (6.28), given outright, and what it was to reach:
+/// ```
+/// use phea_project::source::Memory;
+/// let text = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s\"\n\
+///             [[specification]]\nkind = \"tracking\"\nfrequencies = [1]\nlower = 1e-3\n[specification.upper]\n\
+///             numerator = \"2116*(s + 75)/75\"\ndenominator = \"s^2 + 73.6*s + 2116\"\n\
+///             overshoot_percent = 1\nsettling_time = \"0.1 s\"\nsettling_band_percent = 1\n";
+/// let source = Memory::default().with("servo.toml", text);
+/// let project = phea_project::read(&source, "servo.toml", &[], &[])?.project;
+/// let wishes = phea_engineering::specification::wishes(&project)?;
+/// assert_eq!((wishes[0].number, wishes[0].key), (1, "upper"));
+/// assert!((wishes[0].check.reached.overshoot_percent - 2.19).abs() < 0.005); // thesis: 1 %
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn wishes(project: &Project) -> Result<Vec<CheckedWish>, SpecificationError> {
+    let mut checked = Vec::new();
+    for (index, declared) in project.specifications.iter().enumerate() {
+        let number = index + 1;
+        for (key, side, limit) in
+            [("upper", Side::Upper, &declared.upper), ("lower", Side::Lower, &declared.lower)]
+        {
+            if let Some(project::Limit::Response(wish)) = limit {
+                let (_, check) = limit::of_wish(wish, side).map_err(|reason| SpecificationError {
+                    number,
+                    key,
+                    reason,
+                })?;
+                checked.push(CheckedWish { number, key, check });
+            }
+        }
+    }
+    Ok(checked)
+}
+
+fn specification(
+    declared: &project::Specification,
+    number: usize,
+) -> Result<Specification, SpecificationError> {
+    let found = |key: &'static str, limit: &Option<project::Limit>, takes: limit::Takes| {
+        let found = limit.as_ref().ok_or(SpecificationProblem::Missing);
+        let found = found.and_then(|limit| limit::over_frequency(limit, takes));
+        found.map_err(|reason| SpecificationError { number, key, reason })
+    };
+    let limit = |takes| found("limit", &declared.limit, takes);
+    let plain = || limit(limit::Takes::Neither);
+    let requirement = match declared.kind {
+        SpecificationKind::RobustStability => {
+            Requirement::RobustStability(limit(limit::Takes::Margins(MarginOf::RobustStability))?)
+        }
+        SpecificationKind::Sensitivity => {
+            Requirement::Sensitivity(limit(limit::Takes::Margins(MarginOf::Sensitivity))?)
+        }
+        SpecificationKind::PlantInputDisturbance => Requirement::PlantInputDisturbance(plain()?),
+        SpecificationKind::ControlEffort => Requirement::ControlEffort(plain()?),
+        SpecificationKind::LoadMotion => Requirement::LoadMotion(plain()?),
+        SpecificationKind::Tracking => Requirement::Tracking {
+            lower: found("lower", &declared.lower, limit::Takes::Wish(Side::Lower))?,
+            upper: found("upper", &declared.upper, limit::Takes::Wish(Side::Upper))?,
+        },
+    };
+    Ok(Specification {
+        requirement,
+        frequencies_rad_per_s: declared.frequencies.clone(),
+        band_rad_per_s: declared.band_rad_per_s(),
+    })
+}

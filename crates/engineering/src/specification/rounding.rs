@@ -1,0 +1,28 @@
+//! Specifications that the converters of a sampled controller make: how much of their rounding may reach force and command.
+
+use phea_qft::specification::Specification;
+
+use crate::setup::Setup;
+
+/// A specification and what it is called.
+pub(super) type Named = (Specification, &'static str);
+
+/// The specifications of `allowed_force_error` and `allowed_command_error`, with bounds at these frequencies, rad/s.
+pub fn of_rounding(setup: &Setup<'_>, frequencies_rad_per_s: &[f64]) -> Vec<Named> {
+    let Some(declared) = setup.project.controller.as_ref().and_then(|one| one.quantization.as_ref()) else {
+        return vec![];
+    };
+    let quantisation = setup.quantisation;
+    let frequencies = || frequencies_rad_per_s.to_vec();
+    let force = declared.allowed_force_error.and_then(|allowed| {
+        Some((
+            quantisation.force_specification(allowed, frequencies())?,
+            "force error of the rounded command",
+        ))
+    });
+    let command = declared.allowed_command_error.and_then(|allowed| {
+        let found = quantisation.command_specification(allowed, frequencies())?;
+        Some((found, "command error of the rounded measurement"))
+    });
+    force.into_iter().chain(command).collect()
+}

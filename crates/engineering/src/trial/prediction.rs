@@ -1,0 +1,87 @@
+//! The step response that the linear loop predicts: of polynomials, or of responses where lines move.
+
+use std::sync::Arc;
+
+use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::time_response::{StepBaseline, StepMetrics, step_metrics, step_of_frequency_response};
+use phea_dynamics::uncertain_plant::PlantMember;
+use phea_hydraulics::linear::transfer_functions;
+use phea_qft::closed_loop::Compensation;
+use phea_qft::stability::{StabilityStatus, member_stability};
+
+use super::rigs::Tried;
+use super::run::{BAND_PERCENT, Response};
+use crate::error::ProcedureError;
+use crate::linear_loop::of_responses::real_parts;
+use crate::linear_loop::{LinearLoop, LoopStability, linear_loop};
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+
+/// Durations that are tried until the response has settled, s, and the points of each.
+const DURATIONS_S: [f64; 3] = [0.5, 2.0, 10.0];
+const POINTS: usize = 4000;
+
+/// What the linear loop does after a unit step of its reference.
+pub(super) enum Prediction {
+    /// It settles, or would.
+    Step(StepMetrics, Response),
+    /// It grows without bound.
+    Grows,
+    /// It has no response that is known.
+    Unknown,
+}
+
+/// The prediction for one machine.
+pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Prediction, ProcedureError> {
+    match &tried.plant {
+        None => Ok(Prediction::Unknown),
+        Some(PlantMember::Responding(plant)) => {
+            Ok(of_responses(plant, &problem.compensation).unwrap_or(Prediction::Unknown))
+        }
+        Some(PlantMember::Rational(plant)) => {
+            let setup = Setup::new(&tried.project)?;
+            let Some(given) = &setup.controller else { return Ok(Prediction::Unknown) };
+            let given = setup.deployed(given)?;
+            let plant = transfer_functions(plant)?.command;
+            let closed = linear_loop(&plant, &given, &setup.sensor, BAND_PERCENT);
+            Ok(match closed {
+                Ok(LinearLoop { step: Ok(step), .. }) => {
+                    Prediction::Step(step.metrics, Response { times_s: step.times_s, values: step.response })
+                }
+                Ok(LinearLoop { stability: LoopStability::Unstable, .. }) => Prediction::Grows,
+                Ok(_) | Err(_) => Prediction::Unknown,
+            })
+        }
+    }
+}
+
+fn of_responses(
+    plant: &Arc<dyn RespondingPlant>,
+    compensation: &Compensation,
+) -> Result<Prediction, ProcedureError> {
+    let member = compensation.responding(plant.clone());
+    match member_stability(&member, compensation).status {
+        StabilityStatus::Stable => {}
+        StabilityStatus::Unstable(_) => return Ok(Prediction::Grows),
+        StabilityStatus::NotResolved(_) => return Ok(Prediction::Unknown),
+    }
+    let points = real_parts(plant, compensation)?;
+    let final_value = points.first().map_or(1.0, |(_, real)| *real);
+    let mut found = Prediction::Unknown;
+    for duration in DURATIONS_S {
+        let (step_s, count) = match compensation.sample_time_s() {
+            Some(sample_time) => (sample_time, (duration / sample_time).ceil() as usize + 1),
+            None => (duration / POINTS as f64, POINTS + 1),
+        };
+        let sampled = compensation.sample_time_s().is_some();
+        let values = step_of_frequency_response(&points, step_s, count, sampled);
+        let times_s: Vec<f64> = (0..count).map(|sample| sample as f64 * step_s).collect();
+        let metrics = step_metrics(&times_s, &values, StepBaseline::to_value(final_value), BAND_PERCENT)?;
+        let settles_early = metrics.settling.time_s().is_some_and(|time_s| time_s < 0.5 * duration);
+        found = Prediction::Step(metrics, Response { times_s, values });
+        if settles_early {
+            break;
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,231 @@
+//! Which machines a verdict is tried on: the declared one, the worst plants of the audit made into rigs, and lumped lines with their waves.
+
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+use phea_dynamics::uncertain_plant::PlantMember;
+use phea_hydraulics::line::{Conduit, Member};
+use phea_qft::family::Family;
+use phea_qft::verification::PlantPoint;
+
+use crate::audit::{NamedPlant, ProjectAudit};
+use crate::project::{
+    Actuator, Component, EdgeCoefficients, LINEAR_PARAMETERS, Line, LineModel, Linear, Project,
+};
+use crate::rig::{Rig, feed_forward};
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+
+/// A machine and the plant that the linear loop has for it.
+#[derive(Clone, Debug)]
+pub(super) struct Tried {
+    pub(super) what: String,
+    /// The plant of the audit that it was made of.
+    pub(super) named: Option<NamedPlant>,
+    /// Where the lines of a rig with waves begin to oscillate, rad/s.
+    pub(super) quarter_wave_rad_per_s: Option<f64>,
+    pub(super) project: Project,
+    /// `None` where none is known.
+    pub(super) plant: Option<PlantMember>,
+}
+
+/// Part by which a parameter of the linear model may miss that of a plant.
+const CLOSE: f64 = 1e-3;
+/// Passes over all parameters of a plant, which move one another a little.
+const PASSES: usize = 8;
+/// Change of a number by which its effect on a parameter is measured.
+const NUDGE: f64 = 1e-3;
+
+/// The machines, and what was said of plants that none was found for.
+pub(super) fn rigs(
+    setup: &Setup<'_>,
+    rig: &Rig,
+    problem: &RobustProblem,
+    view: &ProjectAudit,
+) -> (Vec<Tried>, Vec<String>) {
+    let project = setup.project;
+    let seen = rig.in_loop();
+    let plant = match seen.in_motion {
+        None => PlantMember::Rational(seen.plant.coefficients()),
+        Some(moving) => PlantMember::Responding(Arc::new(moving)),
+    };
+    let of = |what: &str, project: Project, quarter_wave_rad_per_s| Tried {
+        what: what.to_string(),
+        named: None,
+        quarter_wave_rad_per_s,
+        project,
+        plant: Some(plant.clone()),
+    };
+    let mut rigs = vec![of("the rig as declared", project.clone(), None)];
+    let waves = with_waves(project);
+    rigs.extend(waves.map(|project| of("the same with waves in its lines", project, quarter_wave(rig))));
+    let mut missing = Vec::new();
+    let mut known: Vec<&PlantPoint> = Vec::new();
+    for (index, finding) in view.audit.specifications.iter().enumerate() {
+        let Some(worst) = &finding.worst else { continue };
+        let Some(numbers) = view.names.numbers(&worst.plant) else { continue };
+        if known.contains(&&worst.plant) {
+            continue;
+        }
+        known.push(&worst.plant);
+        let (names, values): (Vec<&str>, Vec<f64>) = numbers.map(|(name, _, value)| (name, value)).unzip();
+        let what = format!("the worst plant of {}", view.numbered(index));
+        match made(setup, rig, &names, &values) {
+            Ok(project) => rigs.push(Tried {
+                what,
+                named: Some(view.names.named(&worst.plant)),
+                quarter_wave_rad_per_s: None,
+                project,
+                plant: match &problem.family {
+                    Family::Uncertain(family) => family.plant().member(&values),
+                    Family::Measured(_) => None,
+                },
+            }),
+            Err(reason) => missing.push(format!("{what} ({}): {reason}", view.names.text(&worst.plant))),
+        }
+    }
+    (rigs, missing)
+}
+
+/// The same rig, its lumped lines as transmission lines; `None` where nothing of them is lumped or long.
+pub fn with_waves(project: &Project) -> Option<Project> {
+    let mut other = project.clone();
+    let line = &mut other.actuator.as_mut()?.line;
+    let mut moved = false;
+    for side in [&mut line.a, &mut line.b] {
+        let long = matches!(side.component(), Some(Component::Hose { .. } | Component::Pipe { .. }));
+        if long && side.motion.model == LineModel::Lumped {
+            side.motion.model = LineModel::TransmissionLine;
+            moved = true;
+        }
+    }
+    moved.then_some(other)
+}
+
+/// The rig with waves as it is: without uncertainty, and without the numbers that stand in the place of those that follow from it, which no
+/// machine has. `None` where it has no waves besides.
+pub fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
+    let rig = setup.rig().ok()?;
+    let mut alone = with_waves(setup.project)?;
+    let fed = alone.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut());
+    if let Some(fed) = fed {
+        fed.gain = Some(feed_forward(setup.project, &rig.linear));
+    }
+    let operating_point = setup.project.resolved_operating_point();
+    Some(Project { uncertainty: vec![], family: None, linear: Linear::default(), operating_point, ..alone })
+}
+
+/// Where the slower line is a quarter of a wave long, rad/s: pi/(2 T), T the time that a wave takes through it.
+fn quarter_wave(rig: &Rig) -> Option<f64> {
+    let components = rig.actuator.components();
+    let delay =
+        |line| Conduit::of_line(line, &components.fluid, rig.actuator.mean_pressure(), Member::Nominal);
+    let delays = [&components.line_a, &components.line_b].into_iter().filter_map(|line| delay(line).ok());
+    let longest = delays.map(|conduit| conduit.delay()).fold(0.0, f64::max);
+    (longest > 0.0).then(|| FRAC_PI_2 / longest)
+}
+
+/// A project whose rig has these parameters: numbers of the project and of its operating point at their places, those of the linear
+/// model by what they follow from.
+fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Result<Project, String> {
+    let project = setup.project;
+    let is_linear = |name: &str| LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name);
+    let mut rig = project.clone();
+    rig.uncertainty.clear();
+    rig.family = None;
+    // what is fed forward is that of the declared rig
+    let gain = feed_forward(project, &declared.linear);
+    if let Some(given) = rig.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut()) {
+        given.gain = Some(gain);
+    }
+    let stated = names.iter().copied().zip(values.iter().copied()).filter(|(name, _)| !is_linear(name));
+    for (name, value) in stated {
+        if name == "operating_point.velocity" && value != 0.0 {
+            return Err("a machine is tried from rest, and this plant is one in motion".to_string());
+        }
+        rig = rig.with_number(name, value).ok_or_else(|| format!("no rig is known with another `{name}`"))?;
+    }
+    let wanted: Vec<(&str, f64)> =
+        names.iter().copied().zip(values.iter().copied()).filter(|(name, _)| is_linear(name)).collect();
+    let mut missed = Vec::new();
+    for _ in 0..PASSES {
+        missed.clear();
+        for (name, value) in &wanted {
+            let now = derived(&rig, name)?;
+            if (now - value).abs() > CLOSE * value.abs() {
+                missed.push(format!("{name} comes to {now:.4e} and not to {value:.4e}"));
+                rig = towards(&rig, name, now, *value)?;
+            }
+        }
+        if missed.is_empty() {
+            return Ok(rig);
+        }
+    }
+    Err(format!("no rig was found whose linear model has these parameters: {}", missed.join("; ")))
+}
+
+/// A parameter of the linear model as it follows from the rig.
+fn derived(project: &Project, name: &str) -> Result<f64, String> {
+    let rig = Setup::rig_of(project).map_err(|error| error.to_string())?;
+    let found = rig.parameters.iter().find(|parameter| parameter.name == name);
+    found.map(|parameter| parameter.derived).ok_or_else(|| format!("`{name}` is no parameter"))
+}
+
+/// The rig with what this parameter follows from changed by one secant step of its logarithm.
+fn towards(project: &Project, name: &str, now: f64, wanted: f64) -> Result<Project, String> {
+    use phea_dynamics::portable::{ln, pow};
+    let nudged = scaled(project, name, 1.0 + NUDGE)?;
+    let slope = ln(derived(&nudged, name)? / now) / ln(1.0 + NUDGE);
+    if slope.is_nan() || slope.abs() < 1e-6 {
+        return Err(format!("nothing in the rig moves `{name}`"));
+    }
+    scaled(project, name, pow(wanted / now, 1.0 / slope))
+}
+
+/// The rig with what a parameter of the linear model follows from, times a factor.
+fn scaled(project: &Project, name: &str, factor: f64) -> Result<Project, String> {
+    let mut rig = project.clone();
+    let Some(actuator) = rig.actuator.as_mut() else { return Err("there is no rig".to_string()) };
+    let numbers = behind(actuator, name);
+    if numbers.is_empty() {
+        return Err(format!("nothing in the rig moves `{name}` alone"));
+    }
+    for number in numbers {
+        *number *= factor;
+    }
+    Ok(rig)
+}
+
+/// The numbers that a parameter of the linear model follows from, and as little else as possible.
+fn behind<'a>(actuator: &'a mut Actuator, name: &str) -> Vec<&'a mut f64> {
+    match name {
+        "viscous_friction" => {
+            actuator.cylinder.friction.iter_mut().map(|friction| &mut friction.viscous).collect()
+        }
+        "flow_gain" => match &mut actuator.valve.flow_coefficients {
+            Some(edges) => edges.each_mut().into(),
+            None => actuator.valve.nominal_flow.iter_mut().collect(),
+        },
+        "flow_pressure_coefficient" => {
+            let edges = actuator.valve.leakage_coefficients.iter_mut();
+            edges.flat_map(EdgeCoefficients::each_mut).collect()
+        }
+        "hydraulic_stiffness" => {
+            let line = &mut actuator.line;
+            let walls: Vec<&mut f64> = [&mut line.a, &mut line.b].into_iter().flat_map(walls).collect();
+            if walls.is_empty() { vec![&mut actuator.fluid.bulk_modulus] } else { walls }
+        }
+        "valve_natural_frequency" => vec![&mut actuator.valve.natural_frequency],
+        "valve_damping_ratio" => vec![&mut actuator.valve.damping_ratio],
+        "moving_mass" => vec![&mut actuator.cylinder.moving_mass],
+        "sensor_stiffness" => vec![&mut actuator.force_sensor.stiffness],
+        _ => Vec::new(),
+    }
+}
+
+/// The stated modulus of a line, or the stiffening of its wall.
+fn walls(line: &mut Line) -> Vec<&mut f64> {
+    let stiffening = line.dynamic_stiffening.iter_mut();
+    let of_wall = stiffening.flat_map(|one| [&mut one.nominal, &mut one.minimum, &mut one.maximum]);
+    line.effective_bulk_modulus.iter_mut().chain(of_wall).collect()
+}

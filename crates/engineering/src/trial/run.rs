@@ -1,0 +1,324 @@
+//! One machine driven through a step of its reference, and judged by what the linear loop predicts.
+
+use std::f64::consts::PI;
+
+use phea_dynamics::portable::exp;
+use phea_qft::specification::Requirement;
+use phea_qft::verification::Verdict;
+
+use super::prediction::{Prediction, predicted};
+use super::rigs::Tried;
+use crate::audit::{NamedPlant, ProjectAudit};
+use crate::error::ProcedureError;
+use crate::project::{Component, LineModel, Project, Scenario, Signal};
+use crate::quantity::significant;
+use crate::quantity::{DisplayUnit, FORCE};
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+use crate::simulate::{ScenarioRun, SimulateError, simulate_project};
+use crate::source::Source;
+use phea_dynamics::watch::Watch;
+
+/// How a machine does beside its linear loop, the better first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Agreement {
+    /// It does what the linear loop predicts.
+    Agrees,
+    /// It settles, but not as predicted, or meets a limit on the way.
+    Differs,
+    /// It does not do what a verdict that is met promises.
+    Contradicts,
+}
+
+/// What a step of the reference does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Percent of the step.
+    pub overshoot_percent: Option<f64>,
+    /// s; `None` where it does not settle within the run.
+    pub settling_time_s: Option<f64>,
+}
+
+/// A step response from the step on: part of the step over time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Response {
+    /// s.
+    pub times_s: Vec<f64>,
+    /// 0 before, 1 at the new reference.
+    pub values: Vec<f64>,
+}
+
+/// One machine, one step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Which machine.
+    pub what: String,
+    /// The plant of the audit that it was made of, where it is one.
+    pub plant: Option<NamedPlant>,
+    /// Its status: `completed`, or the word of what ended it.
+    pub status: &'static str,
+    /// The reference, from and to, N.
+    pub reference_n: [f64; 2],
+    /// What the linear loop predicts; `None` where it has no response in closed form, or grows without bound.
+    pub linear: Option<Step>,
+    /// What the machine does; `None` where it did not start.
+    pub machine: Option<Step>,
+    /// The linear loop's response; empty where there is none.
+    pub linear_response: Response,
+    /// The machine's; empty where it did not start.
+    pub machine_response: Response,
+    /// The judgement.
+    pub agreement: Agreement,
+    /// Why, in a sentence.
+    pub reason: String,
+    /// Where the lines of a machine with waves begin to oscillate, rad/s; `None` of one without.
+    pub quarter_wave_rad_per_s: Option<f64>,
+    /// What was met on the way, as an occurrence is called: the limit of the command, cavitation, an end stop.
+    pub met: Vec<&'static str>,
+}
+
+/// The step over what the supply can push with.
+const STEP_SHARE: f64 = 0.1;
+/// The reference stays within this part of that.
+const REACH: f64 = 0.8;
+/// Percent of the step within which the force counts as settled.
+pub(super) const BAND_PERCENT: f64 = 2.0;
+/// s, before the step.
+const BEFORE_S: f64 = 0.05;
+/// So many settling times of the linear loop are driven, within these bounds in s.
+const SETTLING_TIMES: f64 = 5.0;
+const DURATION_S: [f64; 2] = [0.5, 20.0];
+/// Part of the step by which a force that has come to rest still moves.
+const STILL: f64 = 0.01;
+/// Factor by which settling times may differ.
+const SETTLING_RATIO: f64 = 2.0;
+/// Percent of the step by which an overshoot may differ: friction takes as much from a small step.
+const OVERSHOOT_ROOM_PERCENT: f64 = 5.0;
+
+/// Drives one machine; `None` where the watcher stops it.
+pub(super) fn run(
+    source: &dyn Source,
+    tried: &Tried,
+    problem: &RobustProblem,
+    view: &ProjectAudit,
+    watch: Watch<'_>,
+) -> Result<Option<Run>, ProcedureError> {
+    let predicted = predicted(tried, problem)?;
+    let grows = matches!(predicted, Prediction::Grows);
+    let (linear, linear_response) = match predicted {
+        Prediction::Step(metrics, response) => {
+            let settling_time_s = metrics.settling.time_s();
+            (Some(Step { overshoot_percent: Some(metrics.overshoot_percent), settling_time_s }), response)
+        }
+        Prediction::Grows | Prediction::Unknown => (None, Response::default()),
+    };
+    let [shortest, longest] = DURATION_S;
+    let settles_s = linear.and_then(|step| step.settling_time_s).unwrap_or(shortest);
+    let duration = BEFORE_S + (SETTLING_TIMES * settles_s).clamp(shortest, longest);
+    let reference_n = reference(&tried.project)?;
+    let project = stepped(&tried.project, reference_n, duration);
+    let (what, plant) = (tried.what.clone(), tried.named.clone());
+    let run = |status, met, (machine, machine_response), (agreement, reason)| {
+        Some(Run {
+            what,
+            plant,
+            status,
+            reference_n,
+            linear,
+            machine,
+            linear_response,
+            machine_response,
+            agreement,
+            reason,
+            quarter_wave_rad_per_s: tried.quarter_wave_rad_per_s,
+            met,
+        })
+    };
+    match simulate_project(source, &Setup::new(&project)?, watch) {
+        Ok(runs) => {
+            let Some(driven) = runs.first().filter(|driven| !driven.was_cancelled()) else { return Ok(None) };
+            let machine = step_of(driven);
+            let mut judged = judge((driven, reference_n), (linear.as_ref(), grows), &machine, problem, view);
+            if let (Some(quarter), true) = (tried.quarter_wave_rad_per_s, judged.0 != Agreement::Agrees) {
+                judged.1.push_str(&format!(
+                    ". The lines are a quarter wave long at {} rad/s: a shorter line,{} or a loop with less gain from there on",
+                    significant(quarter, 3),
+                    damping_wall(&project)
+                ));
+            }
+            let status = driven.stopped().map_or("completed", |stopped| stopped.word);
+            let course = (Some(machine), response_of(driven, reference_n));
+            Ok(run(status, met(driven), course, judged))
+        }
+        Err(error) => Ok(run("not_started", vec![], (None, Response::default()), not_started(&error, view))),
+    }
+}
+
+/// From the force of the operating point, towards where there is room.
+fn reference(project: &Project) -> Result<[f64; 2], ProcedureError> {
+    let rig = Setup::rig_of(project)?;
+    let components = rig.actuator.components();
+    let area = 0.5 * (components.cylinder.area_a + components.cylinder.area_b);
+    let push = area * (components.supply.pressure - components.supply.tank_pressure);
+    let from = rig.point.hydraulic_force;
+    let step = STEP_SHARE * push;
+    let towards = if from + step <= REACH * push { step } else { -step };
+    Ok([from, from + towards])
+}
+
+/// The project with one scenario: at rest under the first reference, then the second.
+fn stepped(project: &Project, [from, to]: [f64; 2], duration: f64) -> Project {
+    let at = |at, value| Signal { at: Some(at), value: Some(value), ..Signal::default() };
+    let scenario = Scenario {
+        name: "step".to_string(),
+        duration,
+        output_step: duration / 2000.0,
+        reference: vec![at(0.0, from), at(BEFORE_S, to)],
+        settling_band_percent: BAND_PERCENT,
+        ..Scenario::default()
+    };
+    Project { scenarios: vec![scenario], ..project.clone() }
+}
+
+fn step_of(driven: &ScenarioRun) -> Step {
+    let metrics = driven.windows.last().map(|(_, metrics)| metrics);
+    Step {
+        overshoot_percent: metrics.and_then(|metrics| metrics.overshoot_percent.ok()),
+        settling_time_s: metrics.and_then(|metrics| metrics.settling_time_s.ok()),
+    }
+}
+
+/// The force from the step on, as part of it.
+fn response_of(driven: &ScenarioRun, [from, to]: [f64; 2]) -> Response {
+    let rows = driven.record.times_s.iter().zip(driven.record.signal("force_n"));
+    let after = rows.filter(|(time_s, _)| **time_s >= BEFORE_S);
+    let (times_s, values) =
+        after.map(|(time_s, force)| (time_s - BEFORE_S, (force - from) / (to - from))).unzip();
+    Response { times_s, values }
+}
+
+/// A machine that has no rest under its controller, or no equations.
+fn not_started(error: &SimulateError, view: &ProjectAudit) -> (Agreement, String) {
+    let agreement =
+        if view.audit.verdict == Verdict::Met { Agreement::Contradicts } else { Agreement::Differs };
+    (agreement, format!("the machine does not start: {error}"))
+}
+
+fn judge(
+    (driven, reference_n): (&ScenarioRun, [f64; 2]),
+    (linear, grows): (Option<&Step>, bool),
+    machine: &Step,
+    problem: &RobustProblem,
+    view: &ProjectAudit,
+) -> (Agreement, String) {
+    let step_n = reference_n[1] - reference_n[0];
+    let promised = view.audit.verdict != Verdict::Violated;
+    let broken = if promised { Agreement::Contradicts } else { Agreement::Differs };
+    if let Some(stopped) = driven.stopped() {
+        let time = DisplayUnit::MILLISECOND.text(stopped.time_s, 3);
+        return (broken, format!("the run ended after {time} as {}", stopped.word));
+    }
+    let settles = !grows && linear.is_none_or(|step| step.settling_time_s.is_some());
+    if machine.settling_time_s.is_none() && settles {
+        let words = swing(driven).map_or(String::new(), |swing| format!(": {}", swing_words(swing)));
+        return (broken, format!("the force does not settle{words}"));
+    }
+    if machine.settling_time_s.is_none() {
+        return (Agreement::Agrees, "neither the linear loop nor the machine settles".to_string());
+    }
+    let overshoot = machine.overshoot_percent.unwrap_or(0.0);
+    let predicted = linear.and_then(|step| step.overshoot_percent);
+    let beside = predicted.map_or(String::new(), |predicted| {
+        format!(", where the linear loop has {}", percent_words(predicted))
+    });
+    let told = format!("it overshoots by {}{beside}", percent_words(overshoot));
+    let more = overshoot - predicted.unwrap_or(overshoot);
+    let most = most_overshoot_percent(problem);
+    if more > OVERSHOOT_ROOM_PERCENT && most.is_some_and(|most| overshoot > most) {
+        return (broken, format!("{told}: more than the limit on |L/(1+L)| lets a loop overshoot"));
+    }
+    if let Some(swing) = swing(driven).filter(|[low, high]| high - low > STILL * step_n.abs()) {
+        return (Agreement::Differs, format!("{told}, and does not come to rest: {}", swing_words(swing)));
+    }
+    if let Some((own, predicted)) = machine.settling_time_s.zip(linear.and_then(|step| step.settling_time_s))
+        && !(predicted / SETTLING_RATIO..=predicted * SETTLING_RATIO).contains(&own)
+    {
+        let [own, predicted] = [own, predicted].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
+        return (Agreement::Differs, format!("it settles in {own}, where the linear loop takes {predicted}"));
+    }
+    match (more.abs() > OVERSHOOT_ROOM_PERCENT, met(driven).first()) {
+        (true, _) => (Agreement::Differs, told),
+        (false, Some(kind)) => (Agreement::Differs, format!("{told}, and meets {}", kind.replace('_', " "))),
+        (false, None) => (Agreement::Agrees, told),
+    }
+}
+
+/// The limits and ends that the machine met, in the order in which it did.
+fn met(driven: &ScenarioRun) -> Vec<&'static str> {
+    driven.occurrences.iter().filter(|one| one.begins).map(|one| one.kind).collect()
+}
+
+/// `2.10 %`; what is less than a hundredth is none.
+pub fn percent_words(percent: f64) -> String {
+    if percent < 0.01 { "0 %".to_string() } else { format!("{} %", significant(percent, 3)) }
+}
+
+/// Between what the force swings over the last fifth of the run, N.
+fn swing(driven: &ScenarioRun) -> Option<[f64; 2]> {
+    let force = driven.record.signal("force_n");
+    let last = force.get(force.len() - force.len() / 5..)?;
+    let widest = |[low, high]: [f64; 2], force: &f64| [low.min(*force), high.max(*force)];
+    (!last.is_empty()).then(|| last.iter().fold([f64::INFINITY, f64::NEG_INFINITY], widest))
+}
+
+fn swing_words([low, high]: [f64; 2]) -> String {
+    let newton = |force| crate::quantity::display(force, &FORCE, 3);
+    format!("at the end it swings between {} and {}", newton(low), newton(high))
+}
+
+/// The overshoot of a system of second order whose resonance reaches the least limit on |L/(1+L)|, percent; `None` without such a limit.
+///
+/// ```text
+/// M = 1/(2 zeta sqrt(1 - zeta^2)),     overshoot = exp(-pi zeta/sqrt(1 - zeta^2))
+/// ```
+fn most_overshoot_percent(problem: &RobustProblem) -> Option<f64> {
+    let limits = problem.specifications.iter().filter_map(|one| match &one.requirement {
+        Requirement::RobustStability(limit) => limit.magnitude(0.0),
+        _ => None,
+    });
+    let peak =
+        limits.fold(None, |least: Option<f64>, limit| Some(least.map_or(limit, |least| least.min(limit))))?;
+    if peak <= 1.0 {
+        return Some(0.0);
+    }
+    let cosine_of_twice = (1.0 - 1.0 / (peak * peak)).sqrt();
+    let damping_squared = 0.5 * (1.0 - cosine_of_twice);
+    let ratio = (damping_squared / (1.0 - damping_squared)).sqrt();
+    Some(100.0 * exp(-PI * ratio))
+}
+
+/// The wall that may damp a wave in these lines, by what their models take; pipes have none.
+fn damping_wall(project: &Project) -> &'static str {
+    let Some(line) = project.actuator.as_ref().map(|actuator| &actuator.line) else { return "" };
+    let mut models = [&line.a, &line.b]
+        .into_iter()
+        .filter(|side| matches!(side.component(), Some(Component::Hose { .. })))
+        .map(|side| side.motion.model)
+        .peekable();
+    if models.peek().is_none() {
+        ""
+    } else if models.all(|model| matches!(model, LineModel::Segments | LineModel::Creeping)) {
+        " a wall that damps (line.relaxation_time)"
+    } else {
+        " a wall that damps (line.model = \"segments\" with line.relaxation_time)"
+    }
+}
+
+/// The word of an agreement.
+pub fn agreement_word(agreement: Agreement) -> &'static str {
+    match agreement {
+        Agreement::Agrees => "agrees",
+        Agreement::Differs => "differs",
+        Agreement::Contradicts => "contradicts",
+    }
+}
