@@ -184,7 +184,7 @@ impl SampledController {
 
     /// The command within its limit, and before it.
     fn feedback_step(&self, state: &mut [[f64; 2]], error: f64) -> (f64, f64) {
-        let before: Vec<[f64; 2]> = state.to_vec();
+        let before = (self.anti_windup == AntiWindup::Clamping).then(|| state.to_vec());
         let last = self.feedback.len().saturating_sub(1);
         let (mut signal, mut wanted) = (error, error);
         for (index, (section, memory)) in self.feedback.iter().zip(state.iter_mut()).enumerate() {
@@ -200,7 +200,7 @@ impl SampledController {
             *memory = section.advance(*memory, signal, continued);
             signal = output;
         }
-        if signal != wanted && self.anti_windup == AntiWindup::Clamping && wanted * error > 0.0 {
+        if let Some(before) = before.filter(|_| signal != wanted && wanted * error > 0.0) {
             state.copy_from_slice(&before);
         }
         (signal, wanted)

@@ -57,11 +57,13 @@ fn reduce(a: &mut DMatrix<f64>) {
                 continue;
             }
             a[(i, column)] = 0.0;
-            for j in row..order {
-                a[(i, j)] -= factor * a[(row, j)];
+            let columns = a.as_mut_slice();
+            for column in columns.chunks_exact_mut(order).skip(row) {
+                column[i] -= factor * column[row];
             }
-            for k in 0..order {
-                a[(k, row)] += factor * a[(k, i)];
+            let (before, from) = columns.split_at_mut(i * order);
+            for (entry, other) in before[row * order..].iter_mut().zip(&from[..order]) {
+                *entry += factor * other;
             }
         }
     }
@@ -100,7 +102,10 @@ fn sweep(h: &mut DMatrix<f64>, start: usize, end: usize, exceptional: bool) {
             h[(k, k - 1)] = mirror.image;
             (k + 1..k + count).for_each(|row| h[(row, k - 1)] = 0.0);
         }
-        mirror.reflect(h, k, [start, end]);
+        match count {
+            3 => mirror.reflect::<3>(h, k, [start, end]),
+            _ => mirror.reflect::<2>(h, k, [start, end]),
+        }
     }
 }
 
@@ -131,17 +136,25 @@ impl Mirror {
         })
     }
 
-    /// From both sides, on rows and columns from k on, within what is coupled.
-    fn reflect(&self, h: &mut DMatrix<f64>, k: usize, [start, end]: [usize; 2]) {
+    /// From both sides, on so many rows and columns from k on, within what is coupled.
+    fn reflect<const COUNT: usize>(&self, h: &mut DMatrix<f64>, k: usize, [start, end]: [usize; 2]) {
         let (v, u) = (&self.across, &self.along);
-        let last = (k + 3).min(end);
-        for j in k..end {
-            let sum: f64 = (k..last).map(|row| v[row - k] * h[(row, j)]).sum();
-            (k..last).for_each(|row| h[(row, j)] -= u[row - k] * sum);
+        let order = h.nrows();
+        let columns = h.as_mut_slice();
+        for column in columns[k * order..end * order].chunks_exact_mut(order) {
+            let rows = &mut column[k..k + COUNT];
+            let sum: f64 = v.iter().zip(&*rows).map(|(v, entry)| v * entry).sum();
+            rows.iter_mut().zip(u).for_each(|(entry, u)| *entry -= u * sum);
         }
-        for i in start..(k + 4).min(end) {
-            let sum: f64 = (k..last).map(|column| u[column - k] * h[(i, column)]).sum();
-            (k..last).for_each(|column| h[(i, column)] -= v[column - k] * sum);
+        let rows = start..(k + 4).min(end);
+        let mut columns = columns[k * order..].chunks_exact_mut(order);
+        let mut columns: [&mut [f64]; COUNT] =
+            std::array::from_fn(|_| columns.next().map_or(&mut [][..], |column| &mut column[rows.clone()]));
+        for row in 0..rows.len() {
+            let sum: f64 = u.iter().zip(&columns).map(|(u, column)| u * column[row]).sum();
+            for (column, v) in columns.iter_mut().zip(v) {
+                column[row] -= v * sum;
+            }
         }
     }
 }

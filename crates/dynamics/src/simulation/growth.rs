@@ -126,6 +126,8 @@ pub(super) struct GrowthWatch {
     delayed: bool,
     /// Modes that oscillate or grow.
     modes: Vec<Mode>,
+    /// Largest growth of those, in 1/s.
+    most: f64,
     /// Largest magnitude of those, in rad/s.
     fastest: f64,
     /// The step in which the fastest turns by the small angle, in s; zero where no mode oscillates, so that no step counts as small.
@@ -272,7 +274,7 @@ impl GrowthWatch {
         }
         self.age = Some(0);
         self.modes.clear();
-        (self.fastest, self.growth) = (0.0, f64::NEG_INFINITY);
+        (self.fastest, self.most) = (0.0, f64::NEG_INFINITY);
         for block in &self.blocks {
             let order = block.len();
             let matrix = DMatrix::from_fn(order, order, |row, column| jacobian[(block[row], block[column])]);
@@ -281,6 +283,7 @@ impl GrowthWatch {
                 if value.im > 0.0 || (value.im == 0.0 && value.re > 0.0) {
                     let mode = self.told(mode, value.im);
                     self.fastest = self.fastest.max(mode.magnitude);
+                    self.most = self.most.max(mode.growth);
                     self.modes.push(mode);
                 }
             }
@@ -300,6 +303,9 @@ impl GrowthWatch {
 
     /// The mode that asks for the shortest step, if friction has added so much to the growth of each.
     fn shortest(&self, added: f64, taken_s: f64) -> Option<Growing> {
+        if self.most + added <= 0.0 {
+            return None;
+        }
         let bounds = self.modes.iter().filter_map(|mode| mode.bound(mode.growth + added, self.lost, taken_s));
         bounds.min_by(|one, other| one.step_s.total_cmp(&other.step_s))
     }

@@ -134,7 +134,9 @@ where
     ) -> S {
         let scales = &self.scales;
         match &mut self.steps {
-            Steps::Implicit(method) => method.error_between(system, state, step, inputs, scales, tolerance),
+            Steps::Implicit(method) => {
+                Arch::new().dispatch(Between { method, system, state, step, inputs, scales, tolerance })
+            }
             Steps::Explicit(..) => S::from(0.0),
         }
     }
@@ -232,6 +234,31 @@ where
     fn with_simd<V: Simd>(self, _: V) -> S {
         let Attempt { method, system, state, step, inputs, scales, tolerance } = self;
         method.attempt(system, state, step, inputs, scales, tolerance)
+    }
+}
+
+/// [`Rosenbrock::error_between`] with the vector instructions that there are.
+struct Between<'m, S, E> {
+    method: &'m mut Rosenbrock<S>,
+    system: &'m E,
+    state: &'m [S],
+    step: S,
+    inputs: &'m [S],
+    scales: &'m [S],
+    tolerance: f64,
+}
+
+impl<S: Lane, E: System<S>> WithSimd for Between<'_, S, E>
+where
+    Dependence: From<S>,
+    Dual<DIRECTIONS, S>: From<f64> + From<S>,
+{
+    type Output = S;
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) -> S {
+        let Between { method, system, state, step, inputs, scales, tolerance } = self;
+        method.error_between(system, state, step, inputs, scales, tolerance)
     }
 }
 

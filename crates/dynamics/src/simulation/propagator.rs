@@ -1,6 +1,8 @@
 //! Steps of one and the same length, taken with matrices found once: how a machine that is nearly linear for a while gets
 //! from sample to sample.
 
+use pulp::{Arch, Simd, WithSimd};
+
 use super::rosenbrock::Rosenbrock;
 use super::square::Square;
 use super::{Lane, System};
@@ -80,28 +82,40 @@ impl<S: Lane> Propagator<S> {
     pub(super) fn learn(&mut self, lane: usize, step_s: f64, method: &Rosenbrock<S>, scales: &[S]) {
         let states = self.states;
         let scales: Vec<f64> = scales.iter().map(|scale| scale.lane(lane)).collect();
-        let mut scaled = vec![0.0; states * states];
+        let mut scaled = Square::new(states);
         self.jacobian.clear(lane);
         for (row, column, value) in method.jacobian_entries() {
-            let (place, value) = (row * states + column, value.lane(lane));
+            let value = value.lane(lane);
             self.jacobian.entry(row, column).set_lane(lane, value);
-            scaled[place] = step_s * value * scales[column] / scales[row];
+            *scaled.entry(row, column) = step_s * value * scales[column] / scales[row];
         }
-        let [first, third] = first_and_third(&scaled, states);
+        let [mut first, mut third] = Arch::new().dispatch(Functions { z: scaled });
+        let finite = first.is_finite() && third.is_finite();
         for row in 0..states {
             for column in 0..states {
-                let (place, unit) = (row * states + column, step_s * scales[row] / scales[column]);
-                self.first.entry(row, column).set_lane(lane, unit * first[place]);
-                self.third.entry(row, column).set_lane(lane, 2.0 * unit * third[place]);
+                let unit = step_s * scales[row] / scales[column];
+                self.first.entry(row, column).set_lane(lane, unit * *first.entry(row, column));
+                self.third.entry(row, column).set_lane(lane, 2.0 * unit * *third.entry(row, column));
             }
         }
-        self.step_s[lane] =
-            if first.iter().chain(&third).all(|value| value.is_finite()) { step_s } else { f64::NAN };
+        self.step_s[lane] = if finite { step_s } else { f64::NAN };
         self.age[lane] = 0;
     }
 
     /// The step from a state with inputs that stand still; the error of each lane in units of the tolerance.
     pub(super) fn attempt<E: System<S>>(
+        &mut self,
+        system: &E,
+        state: &[S],
+        inputs: &[S],
+        scales: &[S],
+        tolerance: f64,
+    ) -> S {
+        Arch::new().dispatch(Attempt { propagator: self, system, state, inputs, scales, tolerance })
+    }
+
+    #[inline(always)]
+    fn step<E: System<S>>(
         &mut self,
         system: &E,
         state: &[S],
@@ -134,67 +148,84 @@ impl<S: Lane> Propagator<S> {
     }
 }
 
+/// [`Propagator::step`] with the vector instructions that there are.
+struct Attempt<'p, S, E> {
+    propagator: &'p mut Propagator<S>,
+    system: &'p E,
+    state: &'p [S],
+    inputs: &'p [S],
+    scales: &'p [S],
+    tolerance: f64,
+}
+
+impl<S: Lane, E: System<S>> WithSimd for Attempt<'_, S, E> {
+    type Output = S;
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) -> S {
+        let Attempt { propagator, system, state, inputs, scales, tolerance } = self;
+        propagator.step(system, state, inputs, scales, tolerance)
+    }
+}
+
+/// [`first_and_third`] with the vector instructions that there are.
+struct Functions {
+    z: Square<f64>,
+}
+
+impl WithSimd for Functions {
+    type Output = [Square<f64>; 2];
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) -> [Square<f64>; 2] {
+        first_and_third(self.z)
+    }
+}
+
 /// phi_1(Z) and phi_3(Z) by the series of Z over a power of two, and doubling.
 ///
 /// ```text
 /// phi_k(Z) = sum over n of Z^n/(n + k)!,        phi_{k-1}(Z) = Z phi_k(Z) + 1/(k - 1)!
 /// phi_1(2 Z) = (e^Z + 1) phi_1/2,   phi_2(2 Z) = (phi_1^2 + 2 phi_2)/4,   phi_3(2 Z) = (phi_1 phi_2 + phi_2 + 2 phi_3)/8
 /// ```
-fn first_and_third(z: &[f64], states: usize) -> [Vec<f64>; 2] {
-    let norm = z.chunks_exact(states.max(1)).map(|row| row.iter().map(|x| x.abs()).sum()).fold(0.0, f64::max);
+#[inline(always)]
+fn first_and_third(mut z: Square<f64>) -> [Square<f64>; 2] {
+    let norm = z.largest_row_sum();
     let (mut halvings, mut part) = (0, 1.0);
     while norm * part > 0.5 && halvings < 60 {
         (halvings, part) = (halvings + 1, 0.5 * part);
     }
-    let z: Vec<f64> = z.iter().map(|x| x * part).collect();
+    z.entries_mut().for_each(|x| *x *= part);
     // Horner's scheme for the sum of Z^n/(n + 3)!, the terms left out below 0.5^12/15!.
-    let mut phi_3 = identity(states, 1.0);
+    let mut phi_3 = Square::new(z.order());
+    phi_3.add_identity(1.0);
     for order in (4..=14).rev() {
-        phi_3 = product(&z, &phi_3, states);
-        phi_3.iter_mut().for_each(|x| *x /= f64::from(order));
-        add_identity(&mut phi_3, states, 1.0);
+        phi_3 = z.after(&phi_3);
+        phi_3.entries_mut().for_each(|x| *x /= f64::from(order));
+        phi_3.add_identity(1.0);
     }
-    phi_3.iter_mut().for_each(|x| *x /= 6.0);
-    let mut phi_2 = product(&z, &phi_3, states);
-    add_identity(&mut phi_2, states, 0.5);
-    let mut phi_1 = product(&z, &phi_2, states);
-    add_identity(&mut phi_1, states, 1.0);
-    let mut exponential = product(&z, &phi_1, states);
-    add_identity(&mut exponential, states, 1.0);
+    phi_3.entries_mut().for_each(|x| *x /= 6.0);
+    let mut phi_2 = z.after(&phi_3);
+    phi_2.add_identity(0.5);
+    let mut phi_1 = z.after(&phi_2);
+    phi_1.add_identity(1.0);
+    let mut exponential = z.after(&phi_1);
+    exponential.add_identity(1.0);
     for _ in 0..halvings {
-        let mixed = product(&phi_1, &phi_2, states);
-        let square = product(&phi_1, &phi_1, states);
-        let doubled = product(&exponential, &phi_1, states);
-        for index in 0..phi_3.len() {
-            phi_3[index] = (mixed[index] + phi_2[index] + 2.0 * phi_3[index]) / 8.0;
-            phi_2[index] = (square[index] + 2.0 * phi_2[index]) / 4.0;
-            phi_1[index] = (doubled[index] + phi_1[index]) / 2.0;
+        let (mixed, square) = (phi_1.after(&phi_2), phi_1.after(&phi_1));
+        let doubled = exponential.after(&phi_1);
+        for ((third, second), mixed) in phi_3.entries_mut().zip(phi_2.entries()).zip(mixed.entries()) {
+            *third = (mixed + second + 2.0 * *third) / 8.0;
         }
-        exponential = product(&exponential, &exponential, states);
+        for (second, square) in phi_2.entries_mut().zip(square.entries()) {
+            *second = (square + 2.0 * *second) / 4.0;
+        }
+        for (first, doubled) in phi_1.entries_mut().zip(doubled.entries()) {
+            *first = (doubled + *first) / 2.0;
+        }
+        exponential = exponential.after(&exponential);
     }
     [phi_1, phi_3]
-}
-
-fn identity(states: usize, value: f64) -> Vec<f64> {
-    let mut matrix = vec![0.0; states * states];
-    add_identity(&mut matrix, states, value);
-    matrix
-}
-
-fn add_identity(matrix: &mut [f64], states: usize, value: f64) {
-    matrix.iter_mut().step_by(states + 1).for_each(|entry| *entry += value);
-}
-
-fn product(left: &[f64], right: &[f64], states: usize) -> Vec<f64> {
-    let mut result = vec![0.0; states * states];
-    for (row, left) in result.chunks_exact_mut(states).zip(left.chunks_exact(states)) {
-        for (&factor, right) in left.iter().zip(right.chunks_exact(states)) {
-            for (value, &entry) in row.iter_mut().zip(right) {
-                *value += factor * entry;
-            }
-        }
-    }
-    result
 }
 
 #[cfg(test)]
@@ -202,17 +233,26 @@ mod tests {
     use super::*;
     use crate::portable;
 
+    /// Of two states, given row by row.
+    fn functions(z: [f64; 4]) -> [Square<f64>; 2] {
+        let mut matrix = Square::new(2);
+        for (place, value) in z.into_iter().enumerate() {
+            *matrix.entry(place / 2, place % 2) = value;
+        }
+        first_and_third(matrix)
+    }
+
     /// One eigenvalue at a time: (e^z - 1)/z and (e^z - 1 - z - z^2/2)/z^3, and a nilpotent matrix, whose series ends.
     #[test]
     fn the_functions_agree_with_their_closed_forms() {
         for z in [-40.0, -3.0, -0.7, 0.9, 5.0] {
-            let [first, third] = first_and_third(&[z, 0.0, 0.0, -2.0], 2);
+            let [mut first, mut third] = functions([z, 0.0, 0.0, -2.0]);
             let expected = portable::expm1(z) / z;
-            assert!((first[0] / expected - 1.0).abs() < 1e-12);
+            assert!((*first.entry(0, 0) / expected - 1.0).abs() < 1e-12);
             let expected = (portable::expm1(z) - z - 0.5 * z * z) / (z * z * z);
-            assert!((third[0] / expected - 1.0).abs() < 1e-12);
+            assert!((*third.entry(0, 0) / expected - 1.0).abs() < 1e-12);
         }
-        let [first, third] = first_and_third(&[0.0, 6.0, 0.0, 0.0], 2);
-        assert!((first[1] - 3.0).abs() < 1e-14 && (third[1] - 0.25).abs() < 1e-15);
+        let [mut first, mut third] = functions([0.0, 6.0, 0.0, 0.0]);
+        assert!((*first.entry(0, 1) - 3.0).abs() < 1e-14 && (*third.entry(0, 1) - 0.25).abs() < 1e-15);
     }
 }

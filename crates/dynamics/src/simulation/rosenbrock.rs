@@ -290,6 +290,7 @@ where
     /// ```
     ///
     /// Where a state is bound stiffly to others or to an input the error at the end says nothing of what lies between.
+    #[inline(always)]
     pub(super) fn error_between<E: System<S>>(
         &mut self,
         system: &E,
@@ -363,6 +364,7 @@ where
     }
 
     /// One state over the last step.
+    #[inline(always)]
     pub(super) fn extension(&self, index: usize, start: S) -> Extension<S> {
         let mut coefficients = [S::from(0.0); 3];
         for (stage, increments) in self.increments[index / 4].iter().enumerate() {

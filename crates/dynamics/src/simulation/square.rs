@@ -33,14 +33,82 @@ impl<S: Lane> Square<S> {
     /// The product with a vector; what fills its last group up is zero.
     #[inline(always)]
     pub(super) fn times(&self, vector: &[S], product: &mut [[S; 4]]) {
-        for (group, product) in product.iter_mut().enumerate().take(self.groups) {
-            let mut sums = [S::from(0.0); 4];
-            for (rows, &factor) in self.columns.iter().skip(group).step_by(self.groups).zip(vector) {
-                for (sum, &entry) in sums.iter_mut().zip(rows) {
+        let parts = product[..self.groups].chunks_mut(4).enumerate();
+        for (part, product) in parts {
+            match product.len() {
+                1 => self.groups_times::<1>(4 * part, vector, product),
+                2 => self.groups_times::<2>(4 * part, vector, product),
+                3 => self.groups_times::<3>(4 * part, vector, product),
+                _ => self.groups_times::<4>(4 * part, vector, product),
+            }
+        }
+    }
+
+    /// So many groups of rows of the product: their sums stay in registers.
+    #[inline(always)]
+    fn groups_times<const GROUPS: usize>(&self, first: usize, vector: &[S], product: &mut [[S; 4]]) {
+        let mut sums = [[S::from(0.0); 4]; GROUPS];
+        for (column, &factor) in self.columns.chunks_exact(self.groups).zip(vector) {
+            for (sums, group) in sums.iter_mut().zip(&column[first..first + GROUPS]) {
+                for (sum, &entry) in sums.iter_mut().zip(group) {
                     *sum = *sum + entry * factor;
                 }
             }
-            *product = sums;
         }
+        for (product, sums) in product.iter_mut().zip(&sums) {
+            *product = *sums;
+        }
+    }
+}
+
+impl Square<f64> {
+    /// How many rows there are.
+    pub(super) fn order(&self) -> usize {
+        self.columns.len() / self.groups.max(1)
+    }
+
+    /// Every entry, and the zeros that fill the last groups up.
+    #[inline(always)]
+    pub(super) fn entries(&self) -> impl Iterator<Item = &f64> {
+        self.columns.as_flattened().iter()
+    }
+
+    /// The same, to be changed: what is zero is to stay so in what fills up.
+    #[inline(always)]
+    pub(super) fn entries_mut(&mut self) -> impl Iterator<Item = &mut f64> {
+        self.columns.as_flattened_mut().iter_mut()
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        self.entries().all(|entry| entry.is_finite())
+    }
+
+    /// A multiple of the identity is added.
+    #[inline(always)]
+    pub(super) fn add_identity(&mut self, factor: f64) {
+        let step = 4 * self.groups + 1;
+        self.entries_mut().step_by(step).for_each(|entry| *entry += factor);
+    }
+
+    /// Largest sum of magnitudes in a row.
+    #[inline(always)]
+    pub(super) fn largest_row_sum(&self) -> f64 {
+        let row = |row: usize| -> f64 {
+            let columns = self.columns.as_flattened().chunks_exact(4 * self.groups);
+            columns.map(|column| column[row].abs()).sum()
+        };
+        (0..self.order()).map(row).fold(0.0, f64::max)
+    }
+
+    /// The product with another of the same order, on its right: column by column.
+    #[inline(always)]
+    pub(super) fn after(&self, other: &Square<f64>) -> Square<f64> {
+        let mut product = Square::new(self.order());
+        let groups = self.groups.max(1);
+        let columns = other.columns.chunks_exact(groups);
+        for (product, column) in product.columns.chunks_exact_mut(groups).zip(columns) {
+            self.times(column.as_flattened(), product);
+        }
+        product
     }
 }

@@ -58,6 +58,17 @@ struct Inverse<S> {
 impl<S: Lane> Inverse<S> {
     #[inline(always)]
     fn find(&mut self, entries: &[S], inverses: &[S]) {
+        match self.groups {
+            0 | 1 => self.find_groups::<1>(entries, inverses),
+            2 => self.find_groups::<2>(entries, inverses),
+            3 => self.find_groups::<3>(entries, inverses),
+            _ => self.find_groups::<4>(entries, inverses),
+        }
+    }
+
+    /// Of so many groups of columns: sums of a number of terms that the compiler knows stay in registers.
+    #[inline(always)]
+    fn find_groups<const GROUPS: usize>(&mut self, entries: &[S], inverses: &[S]) {
         let (zero, one) = (S::from(0.0), S::from(1.0));
         let [first, last] = &mut self.triangles;
         first.take(entries);
@@ -66,28 +77,38 @@ impl<S: Lane> Inverse<S> {
             *row = [[zero; 4]; SMALL / 4];
             row[place / 4][place % 4] = one;
         }
-        first.substitute_rows(&mut self.rows, self.groups);
+        first.substitute_rows::<GROUPS>(&mut self.rows);
         for (row, &inverse) in self.rows.iter_mut().zip(inverses) {
-            for value in row[..self.groups].as_flattened_mut() {
+            for value in row[..GROUPS].as_flattened_mut() {
                 *value = *value * inverse;
             }
         }
-        last.substitute_rows(&mut self.rows, self.groups);
+        last.substitute_rows::<GROUPS>(&mut self.rows);
     }
 
     #[inline(always)]
     fn apply(&self, vector: &mut Column<S>, states: usize) {
-        let mut right = [S::from(0.0); SMALL];
-        right.copy_from_slice(&vector[..SMALL]);
-        let (solution, _) = vector.as_chunks_mut::<4>();
-        for (group, solution) in solution.iter_mut().enumerate().take(self.groups) {
-            let mut sums = [S::from(0.0); 4];
-            for (row, &right) in self.rows.iter().zip(&right).take(states) {
-                for (sum, &value) in sums.iter_mut().zip(&row[group % (SMALL / 4)]) {
+        match self.groups {
+            0 | 1 => self.apply_groups::<1>(vector, states),
+            2 => self.apply_groups::<2>(vector, states),
+            3 => self.apply_groups::<3>(vector, states),
+            _ => self.apply_groups::<4>(vector, states),
+        }
+    }
+
+    #[inline(always)]
+    fn apply_groups<const GROUPS: usize>(&self, vector: &mut Column<S>, states: usize) {
+        let mut sums = [[S::from(0.0); 4]; GROUPS];
+        for (row, &right) in self.rows[..states.min(SMALL)].iter().zip(&*vector) {
+            for (sums, group) in sums.iter_mut().zip(row) {
+                for (sum, &value) in sums.iter_mut().zip(group) {
                     *sum = *sum + value * right;
                 }
             }
-            *solution = sums;
+        }
+        let (solution, _) = vector.as_chunks_mut();
+        for (solution, sums) in solution.iter_mut().zip(&sums) {
+            *solution = *sums;
         }
     }
 }
@@ -124,11 +145,11 @@ impl<S: Lane> Triangle<S> {
     /// The same in every column of a matrix, given by rows of so many groups.
     #[inline(always)]
     #[allow(clippy::needless_range_loop, reason = "three rows of one matrix, of which one is changed")]
-    fn substitute_rows(&self, rows: &mut Rows<S>, groups: usize) {
+    fn substitute_rows<const GROUPS: usize>(&self, rows: &mut Rows<S>) {
         for Terms { values, others, state } in &self.terms {
             let [one, other] = others.map(|other| usize::from(other) % SMALL);
             let state = usize::from(*state) % SMALL;
-            for group in 0..groups.min(SMALL / 4) {
+            for group in 0..GROUPS {
                 let mut sums = rows[state][group];
                 for (sum, &other) in sums.iter_mut().zip(&rows[one][group]) {
                     *sum = *sum - values[0] * other;

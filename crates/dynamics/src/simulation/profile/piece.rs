@@ -63,7 +63,7 @@ impl Piece {
     }
 
     /// The function, its rate and its acceleration at a time.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, time_s: f64) -> Moment {
         let [mut value, mut rate, mut acceleration] = [0.0; 3];
         for moment in self.terms.iter().map(|shape| shape.at(time_s)) {
@@ -76,7 +76,7 @@ impl Piece {
 }
 
 impl Shape {
-    #[inline]
+    #[inline(always)]
     fn at(&self, time_s: f64) -> Moment {
         match *self {
             Shape::Constant { value } => Moment { value, rate: 0.0, acceleration: 0.0 },
@@ -131,6 +131,7 @@ impl Piece {
 }
 
 /// Horner's scheme, for the polynomial and both derivatives at once.
+#[inline(always)]
 fn polynomial(coefficients: [f64; 6], s: f64, span_s: f64) -> Moment {
     let (mut value, mut first, mut half_second) = (0.0, 0.0, 0.0);
     for coefficient in coefficients.into_iter().rev() {
