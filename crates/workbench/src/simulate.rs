@@ -75,7 +75,9 @@ use crate::answer::TableFormat;
 use crate::command::{Progress, Watch};
 use crate::control::ControlError;
 use crate::linear_loop::LoopError;
-use crate::project::{self, Report};
+#[cfg(test)]
+use crate::project;
+use crate::project::Report;
 use crate::quantity::{FORCE, VOLTAGE, display};
 use crate::rig::RigError;
 use crate::setup::Setup;
