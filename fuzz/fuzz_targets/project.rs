@@ -1,6 +1,6 @@
 //! Any bytes as a project file: the reader neither panics nor hangs, and what it accepts it prints and reads again.
 //!
-//! `cargo +nightly fuzz run project crates/workbench/tests/malformed crates/workbench/tests/project_valid`
+//! `cargo +nightly fuzz run project crates/project/tests/malformed crates/project/tests/valid`
 
 #![no_main]
 

@@ -16,7 +16,7 @@ use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
-const TIMED: &str = include_str!("project_valid/design.toml");
+const TIMED: &str = include_str!("../../project/tests/valid/design.toml");
 const CONTRADICTORY: &str = include_str!("../../../examples/qft/mistakes/contradictory_bounds.toml");
 const DESIGN: Request = Request::Design { seed: None, stages: false, repair: false };
 
@@ -107,7 +107,7 @@ fn a_controller_may_give_its_timing_alone() {
 
 #[test]
 fn nothing_is_designed_for_no_specification() {
-    let bare = include_str!("project_valid/design_growing.toml");
+    let bare = include_str!("../../project/tests/valid/design_growing.toml");
     let refused = try_answer(bare, &[], &[], &DESIGN).unwrap_err();
     assert!(matches!(refused, CommandError::Design(DesignError::NoSpecification)), "{refused}");
 }

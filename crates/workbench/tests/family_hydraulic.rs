@@ -135,7 +135,7 @@ fn physical_paths_reach_the_model_as_through_the_rig() {
             ("cylinder.moving_mass", [10.0, 13.1, 20.0]),
         ],
     );
-    let asymmetric = include_str!("project_valid/asymmetric.toml");
+    let asymmetric = include_str!("../../project/tests/valid/asymmetric.toml");
     let free = asymmetric.replace("hydraulic_stiffness =", "# ").replace("flow_gain = \"3.4", "# \"");
     let free = free.replace("model = \"transmission_line\"\n", "");
     follows_the_rig(
@@ -151,7 +151,7 @@ fn physical_paths_reach_the_model_as_through_the_rig() {
             ("line.a.dynamic_stiffening", [1.0, 4.5, 5.0]),
         ],
     );
-    let volumes = include_str!("project_valid/volumes.toml");
+    let volumes = include_str!("../../project/tests/valid/volumes.toml");
     let free = volumes.replace("piston_area = \"15.83 cm2\"\n", "");
     follows_the_rig(
         &free,

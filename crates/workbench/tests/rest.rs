@@ -9,7 +9,7 @@ use phea_workbench::simulate::{ScenarioRun, SimulateError, simulate_project};
 use phea_workbench::source::Memory;
 
 const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
-const EVERYTHING: &str = include_str!("project_valid/simulation.toml");
+const EVERYTHING: &str = include_str!("../../project/tests/valid/simulation.toml");
 const EXAMPLES: [&str; 5] = [
     BENCHMARK,
     include_str!("../../../examples/benchmark/closed_loop.toml"),

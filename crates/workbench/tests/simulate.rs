@@ -161,7 +161,7 @@ fn a_step_at_a_sample_is_not_a_sample_late() {
 /// At rest the machine stays at rest, sampled or not, with all its imperfections.
 #[test]
 fn an_equilibrium_is_kept() {
-    let everything = include_str!("project_valid/simulation.toml");
+    let everything = include_str!("../../project/tests/valid/simulation.toml");
     let still = "[[scenario]]\nname = \"still\"\nduration = \"0.2 s\"\n";
     let of = |text: &str| {
         let start = text.find("[[scenario]]").unwrap();

@@ -13,8 +13,8 @@ use phea_workbench::simulate::Bench;
 use phea_workbench::sizing::{Question, size};
 use phea_workbench::source::Memory;
 
-const SIMULATION: &str = include_str!("project_valid/simulation.toml");
-const ASYMMETRIC: &str = include_str!("project_valid/asymmetric.toml");
+const SIMULATION: &str = include_str!("../../project/tests/valid/simulation.toml");
+const ASYMMETRIC: &str = include_str!("../../project/tests/valid/asymmetric.toml");
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state what is asked of it.
 const TABLES: [&str; 11] = [
@@ -37,7 +37,7 @@ const PARTS: [&str; 5] = ["sizing", "plant", "loop", "sensor", "machine"];
 fn rigs() -> Vec<(String, Vec<&'static str>)> {
     let hose = || without_family(include_str!("../../../examples/ybitu/hose.toml"));
     let pipe = || without_family(include_str!("../../../examples/ybitu/pipe.toml"));
-    let volumes = include_str!("project_valid/volumes.toml");
+    let volumes = include_str!("../../project/tests/valid/volumes.toml");
     let two_wave = ["line.model=two_wave", "line.wall={ mass_per_length = 0.21, axial_compliance = 1e-5 }"];
     let wall_of_two =
         ["line.wall.coupling_compliance=-1e-5", "line.wall.pressure_compliance=3e-9", "line.end_share=0.02"];

@@ -1,0 +1,147 @@
+//! Cutting lines and polygons at a frame.
+//!
+//! A polyline is cut segment by segment (Liang and Barsky 1984): a segment that leaves the frame ends on its border, the
+//! next one that enters starts a new run, and a point that is not a number ends the run. Nothing is ever moved onto
+//! the border, so nothing smears along the frame. A polygon is cut side by side (Sutherland and Hodgman 1974).
+
+use super::scene::{Point, Rectangle, point};
+
+/// The part of the segment inside the frame, or `None`.
+///
+/// # Example
+/// ```
+/// use phea_figure::{clip::segment, scene::{Rectangle, point}};
+/// let frame = Rectangle { left: 0.0, top: 0.0, right: 1.0, bottom: 1.0 };
+/// let inside = segment(point(-1.0, 0.5), point(0.5, 0.5), &frame);
+/// assert_eq!(inside, Some((point(0.0, 0.5), point(0.5, 0.5))));
+/// assert_eq!(segment(point(-1.0, 2.0), point(2.0, 2.0), &frame), None);
+/// ```
+pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Point)> {
+    let (dx, dy) = (to.x - from.x, to.y - from.y);
+    if !(dx.is_finite() && dy.is_finite() && from.x.is_finite() && from.y.is_finite()) {
+        return None;
+    }
+    // Distance to each side, positive inside, at both ends.
+    let sides = [
+        (from.x - frame.left, to.x - frame.left),
+        (frame.right - from.x, frame.right - to.x),
+        (from.y - frame.top, to.y - frame.top),
+        (frame.bottom - from.y, frame.bottom - to.y),
+    ];
+    let (mut enter, mut leave) = (Along { done: 0.0, left: 1.0 }, Along { done: 1.0, left: 0.0 });
+    for (at_from, at_to) in sides {
+        if at_from < 0.0 && at_to < 0.0 {
+            return None;
+        }
+        let crossing = Along { done: at_from / (at_from - at_to), left: at_to / (at_to - at_from) };
+        if at_from < 0.0 && enter.is_before(crossing) {
+            enter = crossing;
+        } else if at_to < 0.0 && crossing.is_before(leave) {
+            leave = crossing;
+        }
+    }
+    if leave.is_before(enter) {
+        return None;
+    }
+    let at = |place: Along| {
+        let (x, y) = if place.done < 0.5 {
+            (from.x + place.done * dx, from.y + place.done * dy)
+        } else {
+            (to.x - place.left * dx, to.y - place.left * dy)
+        };
+        // Rounding may step over the border by an ulp; the answer lies on it.
+        point(x.clamp(frame.left, frame.right), y.clamp(frame.top, frame.bottom))
+    };
+    let start = if frame.contains_point(from) { from } else { at(enter) };
+    let end = if frame.contains_point(to) { to } else { at(leave) };
+    Some((start, end))
+}
+
+/// A place along a segment by the parts done and left: both, because one of them alone is lost to rounding when an end
+/// is very far away.
+#[derive(Clone, Copy)]
+struct Along {
+    done: f64,
+    left: f64,
+}
+
+impl Along {
+    fn is_before(self, other: Along) -> bool {
+        if self.done + other.done < 1.0 { self.done < other.done } else { self.left > other.left }
+    }
+}
+
+/// The runs of a polyline inside the frame, each of two points or more.
+pub fn polyline(points: &[Point], frame: &Rectangle) -> Vec<Vec<Point>> {
+    let mut runs: Vec<Vec<Point>> = Vec::new();
+    let mut current: Vec<Point> = Vec::new();
+    for pair in points.windows(2) {
+        let &[from, to] = pair else { continue };
+        let Some((start, end)) = segment(from, to, frame) else {
+            finish(&mut current, &mut runs);
+            continue;
+        };
+        if current.last() != Some(&start) {
+            finish(&mut current, &mut runs);
+            current.push(start);
+        }
+        if end != start {
+            current.push(end);
+        }
+    }
+    finish(&mut current, &mut runs);
+    runs
+}
+
+fn finish(current: &mut Vec<Point>, runs: &mut Vec<Vec<Point>>) {
+    if current.len() > 1 {
+        runs.push(std::mem::take(current));
+    } else {
+        current.clear();
+    }
+}
+
+/// The polygon inside the frame; empty when they do not meet or a corner is not a number.
+pub fn polygon(corners: &[Point], frame: &Rectangle) -> Vec<Point> {
+    if corners.iter().any(|p| !(p.x.is_finite() && p.y.is_finite())) {
+        return Vec::new();
+    }
+    let mut result = corners.to_vec();
+    for side in 0..4 {
+        let depth = |p: &Point| match side {
+            0 => p.x - frame.left,
+            1 => frame.right - p.x,
+            2 => p.y - frame.top,
+            _ => frame.bottom - p.y,
+        };
+        result = cut(&result, depth, frame);
+    }
+    result
+}
+
+/// Keeps what has a depth of zero or more.
+fn cut(corners: &[Point], depth: impl Fn(&Point) -> f64, frame: &Rectangle) -> Vec<Point> {
+    let mut result = Vec::with_capacity(corners.len() + 2);
+    let Some(mut previous) = corners.last() else { return result };
+    for corner in corners {
+        let (before, after) = (depth(previous), depth(corner));
+        if (before < 0.0) != (after < 0.0) {
+            let t = before / (before - after);
+            let mut crossing =
+                point(previous.x + t * (corner.x - previous.x), previous.y + t * (corner.y - previous.y));
+            // Rounding may leave the crossing an ulp outside its own side.
+            if depth(&crossing) < 0.0 {
+                crossing = point(
+                    crossing.x.clamp(frame.left, frame.right),
+                    crossing.y.clamp(frame.top, frame.bottom),
+                );
+            }
+            result.push(crossing);
+        }
+        if after >= 0.0 {
+            result.push(*corner);
+        }
+        previous = corner;
+    }
+    result
+}

@@ -1,0 +1,221 @@
+//! Pictures as plain values: numbers in, a scene of primitives out, SVG text and PNG bytes from it.
+//!
+//! ```text
+//! numbers -> builder (bode, nomograph, ...) -> Figure { scene } -> to_svg_inline | to_svg_standalone | to_png
+//! ```
+//!
+//! The layer is our own because one small list of primitives with roles for colours serves axes, the circuit diagram,
+//! the nomograph and control charts alike, and lets one SVG follow a light or dark page. The plotting libraries
+//! looked at resolve every colour when they draw: plotters 0.3 passes RGB values to its back ends; the themes of kuva
+//! 0.6 stop at axes and text, its clip paths are numbered by a counter of the process, so the same figure drawn twice
+//! differs, and the circuit diagram and the nomograph would have stayed our own drawing in either.
+//!
+//! Sizes: the view box is [`WIDTH`] units wide. Shown 680 px wide a unit is 1.21 px and the text of axes (13 units) is
+//! 16 px; printed 85 mm wide a unit is 0.152 mm and that text is 5.6 pt, the size of captions in a journal's column.
+
+pub mod axis;
+pub mod bode;
+pub mod clip;
+pub mod colour;
+pub mod family_magnitude;
+pub mod family_step;
+pub mod impedance;
+pub mod legend;
+pub mod measured_response;
+pub mod nichols;
+pub mod nomograph;
+mod open_loop;
+pub mod placement;
+pub mod plot;
+pub mod png;
+pub mod pole_map;
+pub mod pole_sweep;
+pub mod prefilter_band;
+pub mod scene;
+pub mod schematic;
+pub mod simplify;
+pub mod sizing_chart;
+pub mod step_response;
+pub mod stiffness_over_stroke;
+pub mod svg;
+pub mod templates;
+pub mod ticks;
+pub mod time_bands;
+pub mod time_panels;
+pub mod tornado;
+pub mod typeset;
+
+pub use bode::{BodeInput, FrequencySeries, bode};
+pub use colour::{Theme, style_sheet};
+pub use family_magnitude::{
+    FamilyEnvelope, FamilyMagnitudeInput, MagnitudeCurve, MagnitudeMark, family_magnitude,
+};
+pub use family_step::{FamilyStepInput, family_step};
+pub use impedance::{Asymptote, ImpedanceInput, impedance};
+pub use measured_response::{MeasuredResponseInput, ResponseCurve, measured_response};
+pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, nichols};
+pub use nomograph::{NomographBore, NomographInput, nomograph};
+pub use phea_quantity::DisplayUnit;
+pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
+pub use pole_sweep::{PoleSweepInput, PoleSweepPoint, pole_sweep};
+pub use prefilter_band::{PrefilterPanel, PrefilterPoint, prefilter_band};
+pub use schematic::{
+    ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, schematic,
+};
+pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};
+pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};
+pub use stiffness_over_stroke::{StiffnessCurve, StiffnessInput, stiffness_over_stroke};
+pub use templates::templates;
+pub use time_bands::{TimeBands, TimeBandsInput, time_bands};
+pub use time_panels::{TimePanel, TimePanelsInput, time_panels};
+pub use tornado::{TornadoBar, TornadoInput, tornado};
+
+use scene::Scene;
+use svg::{Destination, Names};
+
+/// Width of every figure's view box.
+pub const WIDTH: f64 = 560.0;
+/// Font size of axis titles.
+pub const TITLE_SIZE: f64 = 13.5;
+/// Font size of tick labels, legends and annotations.
+pub const LABEL_SIZE: f64 = 13.0;
+/// Smallest font size.
+pub const SMALL_SIZE: f64 = 12.0;
+
+/// Why a figure could not become a PNG.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FigureError {
+    /// The picture would have no pixel or more than forty million.
+    #[error("a scale of {scale} gives no drawable picture from {width} x {height} units")]
+    ScaleOutOfRange {
+        /// Pixels to a unit.
+        scale: f64,
+        /// Width of the view box.
+        width: f64,
+        /// Height of the view box.
+        height: f64,
+    },
+    /// The rasteriser refused the SVG text.
+    #[error("the picture could not be drawn: {0}")]
+    Raster(String),
+}
+
+/// A frequency worth marking, such as a resonance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrequencyMark {
+    /// What it is; its value is added.
+    pub label: String,
+    /// Where, rad/s.
+    pub frequency_rad_per_s: f64,
+}
+
+/// The words of a figure.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Words {
+    /// Name of files and of the anchor on a page, unique in a report.
+    pub name: String,
+    /// Short title.
+    pub title: String,
+    /// What to see in it, in a sentence or two.
+    pub caption: String,
+}
+
+impl Words {
+    /// From name, title and caption.
+    pub fn new(name: impl Into<String>, title: impl Into<String>, caption: impl Into<String>) -> Self {
+        Words { name: name.into(), title: title.into(), caption: caption.into() }
+    }
+
+    /// The figure that shows a scene.
+    fn with_scene(self, scene: Scene) -> Figure {
+        Figure { name: self.name, title: self.title, caption: self.caption, scene }
+    }
+}
+
+/// What a procedure decided about a candidate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Meets everything.
+    Accepted,
+    /// Usable, with a reservation.
+    Warned,
+    /// Not usable.
+    Rejected,
+}
+
+impl Verdict {
+    /// Its marker: form and colour both tell.
+    pub const fn marker(self) -> plot::MarkerStyle {
+        match self {
+            Verdict::Accepted => {
+                plot::MarkerStyle { marker: plot::Marker::Circle, role: colour::Role::Good, radius: 5.5 }
+            }
+            Verdict::Warned => {
+                plot::MarkerStyle { marker: plot::Marker::Triangle, role: colour::Role::Warning, radius: 5.5 }
+            }
+            Verdict::Rejected => {
+                plot::MarkerStyle { marker: plot::Marker::Cross, role: colour::Role::Bad, radius: 4.5 }
+            }
+        }
+    }
+
+    /// Its colour.
+    pub const fn role(self) -> colour::Role {
+        self.marker().role
+    }
+
+    /// Its name for legends.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Verdict::Accepted => "accepted",
+            Verdict::Warned => "accepted with a warning",
+            Verdict::Rejected => "rejected",
+        }
+    }
+
+    /// All of them, best first.
+    pub const ALL: [Verdict; 3] = [Verdict::Accepted, Verdict::Warned, Verdict::Rejected];
+}
+
+/// A picture with its words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Name of files and of the anchor on a page, unique in a report.
+    pub name: String,
+    /// Short title.
+    pub title: String,
+    /// What to see in it, in a sentence or two.
+    pub caption: String,
+    /// The picture.
+    pub scene: Scene,
+}
+
+impl Figure {
+    /// SVG for a page with the [`style_sheet`]: follows light, dark and print.
+    pub fn to_svg_inline(&self) -> String {
+        self.write(Destination::Page)
+    }
+
+    /// SVG for a file, in light colours.
+    pub fn to_svg_standalone(&self) -> String {
+        self.write(Destination::File(Theme::Light))
+    }
+
+    /// SVG for a file, in the colours of a theme.
+    pub fn to_svg_themed(&self, theme: Theme) -> String {
+        self.write(Destination::File(theme))
+    }
+
+    /// PNG bytes in light colours, `scale` pixels to a unit of the view box (2 gives 1120 pixels of width).
+    ///
+    /// # Errors
+    /// A scale that gives no pixel, or more than forty million.
+    pub fn to_png(&self, scale: f64) -> Result<Vec<u8>, FigureError> {
+        png::render(&self.to_svg_standalone(), self.scene.width, self.scene.height, scale)
+    }
+
+    fn write(&self, destination: Destination) -> String {
+        let names = Names { identifier: &self.name, title: &self.title, description: &self.caption };
+        svg::write(&self.scene, names, destination)
+    }
+}

@@ -1,0 +1,157 @@
+//! Bore from flow and oil velocity, Ledezma (2019), Figure 6.11, on logarithmic axes.
+//!
+//! ```text
+//! v = 4 q / (pi d^2)
+//! ```
+//!
+//! A bore is a straight line; the design flow is an upright line, and where they cross lies the velocity in that bore.
+
+use std::f64::consts::PI;
+
+use super::axis::Axis;
+use super::colour::Role;
+use super::legend::LegendEntry;
+use super::plot::{Direction, Mark, Panel, Plot, Side};
+use super::scene::{Dash, Fill, Stroke};
+use super::ticks::plain;
+use super::{Figure, Verdict, Words};
+use phea_quantity::DisplayUnit;
+
+/// A commercial bore.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NomographBore {
+    /// Inner diameter, m.
+    pub bore_m: f64,
+    /// Further name, such as the dash size; may be empty.
+    pub label: String,
+    /// What the procedure decided.
+    pub verdict: Verdict,
+}
+
+/// What the nomograph shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NomographInput {
+    /// Commercial bores.
+    pub bores: Vec<NomographBore>,
+    /// Largest flow of the system, m3/s.
+    pub design_flow_m3_per_s: f64,
+    /// Acceptable oil velocity, lowest and highest, m/s.
+    pub velocity_range_m_per_s: (f64, f64),
+}
+
+/// Velocity in a bore.
+fn velocity(flow_m3_per_s: f64, bore_m: f64) -> f64 {
+    4.0 * flow_m3_per_s / (PI * bore_m * bore_m)
+}
+
+/// Draws the nomograph.
+pub fn nomograph(words: Words, input: &NomographInput) -> Figure {
+    let unit = DisplayUnit::LITRE_PER_MINUTE;
+    let flow = unit.of(input.design_flow_m3_per_s);
+    let (slowest, fastest) = input.velocity_range_m_per_s;
+    let x = Axis::logarithmic(unit.title("Flow q"), flow / 5.0, flow * 2.2);
+    let ends = [1.0, 2.2].into_iter().flat_map(|factor| {
+        input.bores.iter().map(move |b| velocity(factor * input.design_flow_m3_per_s, b.bore_m))
+    });
+    let y = Axis::fit_logarithmic(
+        "Oil velocity v (m/s)",
+        ends.chain([slowest / 2.0, fastest * 2.0]).map(|v| v.max(slowest / 20.0).min(fastest * 10.0)),
+    );
+    let mut marks = vec![
+        Mark::Band {
+            direction: Direction::Y,
+            from: slowest,
+            to: fastest,
+            fill: Fill::tint(Role::Good),
+            hatched: false,
+            label: format!("{} to {} m/s", plain(slowest), plain(fastest)),
+        },
+        Mark::Reference {
+            direction: Direction::X,
+            at: flow,
+            stroke: Stroke::solid(Role::Accent, 1.8),
+            label: format!("design flow {} L/min", plain(flow)),
+        },
+    ];
+    marks.extend(input.bores.iter().map(|bore| bore_line(bore, &x)));
+    limits(&mut marks, input, &x);
+    bore_markers(&mut marks, input, flow);
+    marks.extend(input.bores.iter().map(|bore| bore_label(bore, &x)));
+    let used = |verdict: &Verdict| input.bores.iter().any(|bore| bore.verdict == *verdict);
+    let mut legend: Vec<LegendEntry> = Verdict::ALL
+        .into_iter()
+        .filter(used)
+        .map(|verdict| LegendEntry::marker(format!("bore {}", verdict.label()), verdict.marker()))
+        .collect();
+    legend.push(LegendEntry::area("acceptable velocity", Fill::tint(Role::Good)));
+    legend.push(LegendEntry::line("exact bores at its limits", limit_stroke()));
+    let panels = vec![Panel { y, height: 340.0, marks }];
+    words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+}
+
+fn limit_stroke() -> Stroke {
+    Stroke::solid(Role::Good, 1.3).dashed(Dash::Dashed)
+}
+
+/// A bore's line over the whole axis.
+fn line_of(bore_m: f64, x: &Axis) -> Vec<(f64, f64)> {
+    let unit = DisplayUnit::LITRE_PER_MINUTE;
+    [x.minimum, x.maximum].map(|flow| (flow, velocity(flow * unit.in_si, bore_m))).to_vec()
+}
+
+fn bore_line(bore: &NomographBore, x: &Axis) -> Mark {
+    let stroke = match bore.verdict {
+        Verdict::Accepted => Stroke::solid(Role::Good, 2.2),
+        Verdict::Warned => Stroke::solid(Role::Axis, 1.6),
+        Verdict::Rejected => Stroke::solid(Role::Muted, 1.0),
+    };
+    Mark::Line { points: line_of(bore.bore_m, x), stroke }
+}
+
+/// The exact bores at which the design flow runs at the limits of the range, and the feasible stretch of the flow line.
+fn limits(marks: &mut Vec<Mark>, input: &NomographInput, x: &Axis) {
+    let (slowest, fastest) = input.velocity_range_m_per_s;
+    let flow = DisplayUnit::LITRE_PER_MINUTE.of(input.design_flow_m3_per_s);
+    for limit in [slowest, fastest] {
+        let bore = (4.0 * input.design_flow_m3_per_s / (PI * limit)).sqrt();
+        marks.push(Mark::Line { points: line_of(bore, x), stroke: limit_stroke() });
+        let text = format!("{} mm", plain(DisplayUnit::MILLIMETRE.of(bore)));
+        marks.push(Mark::Label { at: vec![(flow, limit)], text, role: Role::Good, side: Side::Left });
+    }
+    marks.push(Mark::Line {
+        points: vec![(flow, slowest), (flow, fastest)],
+        stroke: Stroke::solid(Role::Accent, 5.0),
+    });
+}
+
+fn bore_markers(marks: &mut Vec<Mark>, input: &NomographInput, flow: f64) {
+    for verdict in Verdict::ALL {
+        let points: Vec<(f64, f64, String)> = input
+            .bores
+            .iter()
+            .filter(|bore| bore.verdict == verdict)
+            .map(|bore| {
+                let v = velocity(input.design_flow_m3_per_s, bore.bore_m);
+                let diameter = plain(DisplayUnit::MILLIMETRE.of(bore.bore_m));
+                (flow, v, format!("{diameter} mm: {} m/s, {}", plain(v), verdict.label()))
+            })
+            .collect();
+        marks.push(Mark::Markers { points, style: verdict.marker() });
+    }
+}
+
+/// The bore's name where its line ends on the right.
+fn bore_label(bore: &NomographBore, x: &Axis) -> Mark {
+    let diameter = plain(DisplayUnit::MILLIMETRE.of(bore.bore_m));
+    let text = match bore.label.as_str() {
+        "" => format!("{diameter} mm"),
+        label => format!("{diameter} mm ({label})"),
+    };
+    let role = match bore.verdict {
+        Verdict::Rejected => Role::Muted,
+        Verdict::Warned => Role::Text,
+        Verdict::Accepted => Role::Good,
+    };
+    let flow_m3_per_s = x.maximum * DisplayUnit::LITRE_PER_MINUTE.in_si;
+    Mark::EdgeLabel { at: velocity(flow_m3_per_s, bore.bore_m), text, role }
+}

@@ -1,0 +1,371 @@
+//! A picture as a list of primitives that name roles for their colours.
+//!
+//! Coordinates are those of the view box: x to the right, y down. Geometry that leaves its frame is cut before it
+//! enters a scene ([`clip`](crate::clip)), so no clip paths and no identifiers are needed, and several figures
+//! can share one page.
+
+use super::colour::Role;
+use super::typeset;
+
+/// A point of the view box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// To the right.
+    pub x: f64,
+    /// Down.
+    pub y: f64,
+}
+
+/// Shorthand for a [`Point`].
+pub const fn point(x: f64, y: f64) -> Point {
+    Point { x, y }
+}
+
+/// A rectangle with its sides along the axes; `left <= right` and `top <= bottom`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// Smallest x.
+    pub left: f64,
+    /// Smallest y.
+    pub top: f64,
+    /// Largest x.
+    pub right: f64,
+    /// Largest y.
+    pub bottom: f64,
+}
+
+impl Rectangle {
+    /// From two opposite corners in any order.
+    pub fn from_corners(a: Point, b: Point) -> Self {
+        Rectangle { left: a.x.min(b.x), top: a.y.min(b.y), right: a.x.max(b.x), bottom: a.y.max(b.y) }
+    }
+
+    /// Extent in x.
+    pub fn width(&self) -> f64 {
+        self.right - self.left
+    }
+
+    /// Extent in y.
+    pub fn height(&self) -> f64 {
+        self.bottom - self.top
+    }
+
+    /// Midpoint.
+    pub fn centre(&self) -> Point {
+        point(0.5 * (self.left + self.right), 0.5 * (self.top + self.bottom))
+    }
+
+    /// Grown by `margin` on each side (shrunk by a negative one).
+    pub fn grown(&self, margin: f64) -> Self {
+        Rectangle {
+            left: self.left - margin,
+            top: self.top - margin,
+            right: self.right + margin,
+            bottom: self.bottom + margin,
+        }
+    }
+
+    /// True when the interiors meet.
+    pub fn overlaps(&self, other: &Rectangle) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    /// True when `other` lies inside or on the border.
+    pub fn contains(&self, other: &Rectangle) -> bool {
+        self.left <= other.left
+            && self.top <= other.top
+            && self.right >= other.right
+            && self.bottom >= other.bottom
+    }
+
+    /// True when the point lies inside or on the border.
+    pub fn contains_point(&self, p: Point) -> bool {
+        p.x >= self.left && p.x <= self.right && p.y >= self.top && p.y <= self.bottom
+    }
+}
+
+/// Dash pattern: series stay distinguishable in a grey print.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dash {
+    /// Unbroken.
+    Solid,
+    /// Dashes.
+    Dashed,
+    /// Dash and dot.
+    DashDot,
+    /// Dots.
+    Dotted,
+    /// Long dashes.
+    LongDash,
+    /// Dash and two dots.
+    DashDotDot,
+    /// Short dashes with short gaps.
+    ShortDash,
+    /// A long and a short dash.
+    LongShort,
+}
+
+impl Dash {
+    /// Lengths of strokes and gaps; empty for a solid line.
+    pub const fn lengths(self) -> &'static [f64] {
+        match self {
+            Dash::Solid => &[],
+            Dash::Dashed => &[6.0, 3.5],
+            Dash::DashDot => &[8.0, 3.0, 1.8, 3.0],
+            Dash::Dotted => &[1.8, 2.6],
+            Dash::LongDash => &[12.0, 4.0],
+            Dash::DashDotDot => &[8.0, 2.6, 1.8, 2.6, 1.8, 2.6],
+            Dash::ShortDash => &[3.2, 3.2],
+            Dash::LongShort => &[13.0, 3.0, 4.5, 3.0],
+        }
+    }
+}
+
+/// How an outline is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stroke {
+    /// Colour by role.
+    pub role: Role,
+    /// Width in view box units.
+    pub width: f64,
+    /// Dash pattern.
+    pub dash: Dash,
+}
+
+impl Stroke {
+    /// Solid line.
+    pub const fn solid(role: Role, width: f64) -> Self {
+        Stroke { role, width, dash: Dash::Solid }
+    }
+
+    /// The same line with another dash pattern.
+    pub const fn dashed(self, dash: Dash) -> Self {
+        Stroke { dash, ..self }
+    }
+}
+
+/// How an interior is filled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fill {
+    /// Colour by role.
+    pub role: Role,
+    /// 1 covers, less lets the background through.
+    pub opacity: f64,
+}
+
+impl Fill {
+    /// Opaque.
+    pub const fn solid(role: Role) -> Self {
+        Fill { role, opacity: 1.0 }
+    }
+
+    /// A tint for areas behind curves and text.
+    pub const fn tint(role: Role) -> Self {
+        Fill { role, opacity: 0.14 }
+    }
+}
+
+/// One step of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PathStep {
+    /// Begin a new run.
+    Move(Point),
+    /// Straight to.
+    Line(Point),
+    /// Cubic Bezier curve with two control points.
+    Curve(Point, Point, Point),
+    /// Straight back to the beginning of the run.
+    Close,
+}
+
+/// The geometry of a primitive.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// Runs of straight and curved pieces.
+    Path(Vec<PathStep>),
+    /// A rectangle, its corners rounded by a radius.
+    Rectangle(Rectangle, f64),
+    /// Centre and radius.
+    Circle(Point, f64),
+}
+
+/// Where a text is held horizontally (before rotation).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// Its beginning.
+    Start,
+    /// Its middle.
+    Middle,
+    /// Its end.
+    End,
+}
+
+/// Where a text is held vertically (before rotation).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Baseline {
+    /// The line the letters stand on.
+    Letters,
+    /// Half the height of a capital.
+    Middle,
+    /// The top of a capital.
+    Top,
+}
+
+/// A line of text; [`typeset`] explains its markup.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Text {
+    /// The point that anchor and baseline refer to.
+    pub position: Point,
+    /// Text with sub- and superscripts, such as `K_H (10^6 N/m)`.
+    pub content: String,
+    /// Font size in view box units.
+    pub size: f64,
+    /// Horizontal hold.
+    pub anchor: Anchor,
+    /// Vertical hold.
+    pub baseline: Baseline,
+    /// Clockwise rotation about the position, degrees.
+    pub rotation_degrees: f64,
+    /// Colour by role.
+    pub role: Role,
+    /// Outlined by the background, to stay legible over lines.
+    pub halo: bool,
+}
+
+impl Text {
+    /// Text in the ordinary colour, held at its start on the line of its letters.
+    pub fn new(position: Point, content: impl Into<String>, size: f64) -> Self {
+        Text {
+            position,
+            content: content.into(),
+            size,
+            anchor: Anchor::Start,
+            baseline: Baseline::Letters,
+            rotation_degrees: 0.0,
+            role: Role::Text,
+            halo: false,
+        }
+    }
+
+    /// With another hold.
+    pub fn held(self, anchor: Anchor, baseline: Baseline) -> Self {
+        Text { anchor, baseline, ..self }
+    }
+
+    /// With another colour.
+    pub fn coloured(self, role: Role) -> Self {
+        Text { role, ..self }
+    }
+
+    /// With an outline of the background.
+    pub fn with_halo(self) -> Self {
+        Text { halo: true, ..self }
+    }
+
+    /// Rotated clockwise about its position.
+    pub fn rotated(self, degrees: f64) -> Self {
+        Text { rotation_degrees: degrees, ..self }
+    }
+
+    /// The smallest upright rectangle that holds the drawn text.
+    pub fn bounds(&self) -> Rectangle {
+        typeset::bounds(self)
+    }
+}
+
+/// A primitive with its paint.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item {
+    /// A shape; `note` is shown by a browser when the pointer rests on it.
+    Drawing {
+        /// Geometry.
+        shape: Shape,
+        /// Outline.
+        stroke: Option<Stroke>,
+        /// Interior.
+        fill: Option<Fill>,
+        /// Text of a tooltip, without markup.
+        note: Option<String>,
+    },
+    /// A text.
+    Text(Text),
+}
+
+/// A picture: the size of its view box and its items from back to front.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Width of the view box.
+    pub width: f64,
+    /// Height of the view box.
+    pub height: f64,
+    /// Back to front.
+    pub items: Vec<Item>,
+}
+
+impl Scene {
+    /// An empty picture.
+    pub fn new(width: f64, height: f64) -> Self {
+        Scene { width, height, items: Vec::new() }
+    }
+
+    /// Adds a shape.
+    pub fn shape(&mut self, shape: Shape, stroke: Option<Stroke>, fill: Option<Fill>) {
+        self.items.push(Item::Drawing { shape, stroke, fill, note: None });
+    }
+
+    /// Adds a straight line.
+    pub fn line(&mut self, from: Point, to: Point, stroke: Stroke) {
+        self.polyline(&[from, to], stroke);
+    }
+
+    /// Adds straight pieces through the points.
+    pub fn polyline(&mut self, points: &[Point], stroke: Stroke) {
+        self.shape(Shape::Path(run(points, false)), Some(stroke), None);
+    }
+
+    /// Adds a closed polygon.
+    pub fn polygon(&mut self, points: &[Point], stroke: Option<Stroke>, fill: Option<Fill>) {
+        self.shape(Shape::Path(run(points, true)), stroke, fill);
+    }
+
+    /// Adds a rectangle.
+    pub fn rectangle(&mut self, rectangle: Rectangle, stroke: Option<Stroke>, fill: Option<Fill>) {
+        self.shape(Shape::Rectangle(rectangle, 0.0), stroke, fill);
+    }
+
+    /// Adds a circle.
+    pub fn circle(&mut self, centre: Point, radius: f64, stroke: Option<Stroke>, fill: Option<Fill>) {
+        self.shape(Shape::Circle(centre, radius), stroke, fill);
+    }
+
+    /// Adds a text.
+    pub fn text(&mut self, text: Text) {
+        if !text.content.is_empty() {
+            self.items.push(Item::Text(text));
+        }
+    }
+
+    /// The texts from back to front.
+    pub fn texts(&self) -> impl Iterator<Item = &Text> {
+        self.items.iter().filter_map(|item| match item {
+            Item::Text(text) => Some(text),
+            Item::Drawing { .. } => None,
+        })
+    }
+}
+
+/// Path steps through the points.
+pub fn run(points: &[Point], closed: bool) -> Vec<PathStep> {
+    let mut steps: Vec<PathStep> = points
+        .iter()
+        .enumerate()
+        .map(|(index, &p)| if index == 0 { PathStep::Move(p) } else { PathStep::Line(p) })
+        .collect();
+    if closed && !steps.is_empty() {
+        steps.push(PathStep::Close);
+    }
+    steps
+}

@@ -1,0 +1,164 @@
+//! Length of the compliant line against stiffness and proportional gain: the two branches of the sizing procedure at once.
+
+use super::axis::Axis;
+use super::colour::{Role, series_stroke};
+use super::legend::LegendEntry;
+use super::plot::{Direction, Mark, Panel, Plot, Side};
+use super::scene::{Dash, Fill, Stroke};
+use super::{Figure, Verdict, Words};
+use phea_quantity::DisplayUnit;
+
+/// Stiffness and gain over the length of one hose or pipe; the vectors have one value for each length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SizingCurve {
+    /// Hose and stiffness model.
+    pub name: String,
+    /// Lengths of one line, m, rising.
+    pub lengths_m: Vec<f64>,
+    /// Smallest hydraulic stiffness over the stroke, N/m.
+    pub stiffness_n_per_m: Vec<f64>,
+    /// Proportional gain that meets the time constant, V/N.
+    pub gain_v_per_n: Vec<f64>,
+}
+
+/// A candidate on the chart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SizingCandidate {
+    /// Short name; empty for none.
+    pub label: String,
+    /// Length, m.
+    pub length_m: f64,
+    /// Stiffness, N/m.
+    pub stiffness_n_per_m: f64,
+    /// Gain, V/N.
+    pub gain_v_per_n: f64,
+    /// What the procedure decided.
+    pub verdict: Verdict,
+}
+
+/// What the chart shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SizingChartInput {
+    /// Curves.
+    pub curves: Vec<SizingCurve>,
+    /// Candidates.
+    pub candidates: Vec<SizingCandidate>,
+    /// Acceptable length of one line, m.
+    pub length_range_m: Option<(f64, f64)>,
+    /// Smallest acceptable proportional gain, V/N.
+    pub minimum_gain_v_per_n: Option<f64>,
+    /// The gain at which the stiffness asked for becomes infinite, V/N.
+    pub pole_gain_v_per_n: Option<f64>,
+}
+
+/// Draws the chart.
+pub fn sizing_chart(words: Words, input: &SizingChartInput) -> Figure {
+    let (stiffness, gain) = (DisplayUnit::MEGANEWTON_PER_METRE, DisplayUnit::MILLIVOLT_PER_NEWTON);
+    let lengths = input.curves.iter().flat_map(|c| c.lengths_m.iter().copied());
+    let x = Axis::fit_logarithmic(
+        "Length of one line (m)",
+        lengths.chain(input.candidates.iter().map(|c| c.length_m)),
+    );
+    let stiffnesses = input.curves.iter().flat_map(|c| c.stiffness_n_per_m.iter());
+    let gains = input.curves.iter().flat_map(|c| c.gain_v_per_n.iter());
+    let floors = input.minimum_gain_v_per_n.iter().chain(&input.pole_gain_v_per_n);
+    let upper = Panel {
+        y: Axis::fit_logarithmic(
+            stiffness.title("K_H"),
+            stiffnesses
+                .copied()
+                .chain(input.candidates.iter().map(|c| c.stiffness_n_per_m))
+                .map(|v| stiffness.of(v)),
+        ),
+        height: 190.0,
+        marks: panel_marks(input, |c| &c.stiffness_n_per_m, |c| c.stiffness_n_per_m, stiffness, true),
+    };
+    let mut lower = Panel {
+        y: Axis::fit_logarithmic(
+            gain.title("K_p"),
+            gains
+                .chain(floors)
+                .copied()
+                .chain(input.candidates.iter().map(|c| c.gain_v_per_n))
+                .map(|v| gain.of(v)),
+        ),
+        height: 190.0,
+        marks: panel_marks(input, |c| &c.gain_v_per_n, |c| c.gain_v_per_n, gain, false),
+    };
+    gain_limits(&mut lower.marks, input);
+    let plot = Plot { x, panels: vec![upper, lower], legend: legend(input), equal_aspect: false };
+    words.with_scene(plot.draw())
+}
+
+fn panel_marks(
+    input: &SizingChartInput,
+    curve_values: impl Fn(&SizingCurve) -> &Vec<f64>,
+    candidate_value: impl Fn(&SizingCandidate) -> f64,
+    unit: DisplayUnit,
+    named: bool,
+) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    if let Some((from, to)) = input.length_range_m {
+        marks.push(Mark::Band {
+            direction: Direction::X,
+            from,
+            to,
+            fill: Fill::tint(Role::Good),
+            hatched: false,
+            label: String::new(),
+        });
+    }
+    for (index, curve) in input.curves.iter().enumerate() {
+        let values = curve_values(curve).iter().map(|v| unit.of(*v));
+        let points = curve.lengths_m.iter().copied().zip(values).collect();
+        marks.push(Mark::Line { points, stroke: series_stroke(index) });
+    }
+    for candidate in &input.candidates {
+        let y = unit.of(candidate_value(candidate));
+        let note = format!("{} ({})", candidate.label, candidate.verdict.label());
+        let points = vec![(candidate.length_m, y, note)];
+        marks.push(Mark::Markers { points, style: candidate.verdict.marker() });
+    }
+    for candidate in input.candidates.iter().filter(|c| named && !c.label.is_empty()) {
+        let at = (candidate.length_m, unit.of(candidate_value(candidate)));
+        let role = candidate.verdict.role();
+        marks.push(Mark::Label { at: vec![at], text: candidate.label.clone(), role, side: Side::Above });
+    }
+    marks
+}
+
+fn gain_limits(marks: &mut Vec<Mark>, input: &SizingChartInput) {
+    let unit = DisplayUnit::MILLIVOLT_PER_NEWTON;
+    if let Some(floor) = input.minimum_gain_v_per_n {
+        marks.push(Mark::Reference {
+            direction: Direction::Y,
+            at: unit.of(floor),
+            stroke: Stroke::solid(Role::Warning, 1.6).dashed(Dash::LongDash),
+            label: "smallest gain".to_string(),
+        });
+    }
+    if let Some(pole) = input.pole_gain_v_per_n {
+        marks.push(Mark::Reference {
+            direction: Direction::Y,
+            at: unit.of(pole),
+            stroke: Stroke::solid(Role::Bad, 1.6).dashed(Dash::DashDot),
+            label: "K_H infinite".to_string(),
+        });
+    }
+}
+
+fn legend(input: &SizingChartInput) -> Vec<LegendEntry> {
+    let mut legend: Vec<LegendEntry> = input
+        .curves
+        .iter()
+        .enumerate()
+        .map(|(index, curve)| LegendEntry::line(&curve.name, series_stroke(index)))
+        .collect();
+    let used = |verdict: &Verdict| input.candidates.iter().any(|c| c.verdict == *verdict);
+    let verdicts = Verdict::ALL.into_iter().filter(used);
+    legend.extend(verdicts.map(|verdict| LegendEntry::marker(verdict.label(), verdict.marker())));
+    if input.length_range_m.is_some() {
+        legend.push(LegendEntry::area("acceptable length", Fill::tint(Role::Good)));
+    }
+    legend
+}

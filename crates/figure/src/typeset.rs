@@ -1,0 +1,236 @@
+//! Text with sub- and superscripts, and its size by the metrics of the embedded font.
+//!
+//! Markup is small so that names given by users pass unchanged:
+//! - `_` after a single letter that begins a word starts a subscript of letters, digits and primes: `K_H`, `x_p`,
+//!   `omega_n` stays as it is, and so does `eaton_synflex_3130_08`;
+//! - `^` starts a superscript of a sign and digits: `10^-3`, `m^3`; a hyphen there is set as a minus sign;
+//! - braces hold anything: `V_{A,0}`, `e^{-sT}`.
+
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+use skrifa::MetadataProvider;
+use skrifa::instance::{LocationRef, Size};
+
+use super::scene::{Anchor, Baseline, Point, Rectangle, Text, point};
+
+/// The embedded font, a subset of DejaVu Sans 2.37; its licence lies beside it.
+pub const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
+
+/// Families a browser tries: the embedded font where the page or the machine has it, then faces about as wide.
+pub const FONT_FAMILY: &str = "'DejaVu Sans',Verdana,Geneva,'Segoe UI',sans-serif";
+
+/// A `@font-face` rule that carries the embedded font (94 kB), for pages that must look the same everywhere.
+///
+/// # Example
+/// ```
+/// let rule = phea_figure::typeset::font_face();
+/// assert!(rule.starts_with("@font-face{font-family:'DejaVu Sans';src:url(data:font/ttf;base64,AAEAAA"));
+/// ```
+pub fn font_face() -> String {
+    format!("@font-face{{font-family:'DejaVu Sans';src:url(data:font/ttf;base64,{})}}\n", base64(FONT))
+}
+
+/// Base 64 of RFC 4648, section 4.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let byte = |index: usize| u32::from(chunk.get(index).copied().unwrap_or(0));
+        let group = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for place in 0..4 {
+            let index = (group >> (18 - 6 * place)) as usize % 64;
+            text.push(if place <= chunk.len() { char::from(LETTERS[index]) } else { '=' });
+        }
+    }
+    text
+}
+
+/// Height of a capital, in font sizes.
+pub const CAPITAL: f64 = 0.729;
+const ASCENDER: f64 = 0.76;
+const DESCENDER: f64 = 0.236;
+/// Size of a sub- or superscript, in font sizes of its line.
+pub const SCRIPT_SIZE: f64 = 0.74;
+const RAISED: f64 = 0.36;
+const LOWERED: f64 = 0.2;
+
+/// Height of a piece of text against its line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// On the line.
+    Line,
+    /// Below.
+    Subscript,
+    /// Above.
+    Superscript,
+}
+
+impl Level {
+    /// Upward shift of the letters, in font sizes of the line.
+    pub const fn rise(self) -> f64 {
+        match self {
+            Level::Line => 0.0,
+            Level::Subscript => -LOWERED,
+            Level::Superscript => RAISED,
+        }
+    }
+
+    /// Size in font sizes of the line.
+    pub const fn scale(self) -> f64 {
+        match self {
+            Level::Line => 1.0,
+            Level::Subscript | Level::Superscript => SCRIPT_SIZE,
+        }
+    }
+}
+
+/// The pieces of a marked-up line.
+///
+/// # Example
+/// ```
+/// use phea_figure::typeset::{pieces, Level::*};
+/// assert_eq!(pieces("K_H"), [("K".to_string(), Line), ("H".to_string(), Subscript)]);
+/// assert_eq!(pieces("10^-3"), [("10".to_string(), Line), ("\u{2212}3".to_string(), Superscript)]);
+/// assert_eq!(pieces("my_rig"), [("my_rig".to_string(), Line)]);
+/// ```
+pub fn pieces(content: &str) -> Vec<(String, Level)> {
+    let letters: Vec<char> = content.chars().filter(|c| !c.is_control()).collect();
+    let mut result: Vec<(String, Level)> = Vec::new();
+    let mut index = 0;
+    while let Some(&letter) = letters.get(index) {
+        if let Some((level, script, next)) = script_at(&letters, index) {
+            result.push((script, level));
+            index = next;
+        } else {
+            match result.last_mut() {
+                Some((text, Level::Line)) => text.push(letter),
+                _ => result.push((letter.to_string(), Level::Line)),
+            }
+            index += 1;
+        }
+    }
+    result
+}
+
+/// A sub- or superscript that starts at `index`: its level, its text and where the line goes on.
+fn script_at(letters: &[char], index: usize) -> Option<(Level, String, usize)> {
+    let level = match letters.get(index)? {
+        '_' => Level::Subscript,
+        '^' => Level::Superscript,
+        _ => return None,
+    };
+    let rest = letters.get(index + 1..)?;
+    if rest.first() == Some(&'{') {
+        let length = rest.iter().position(|&c| c == '}')?;
+        let script: String = rest.get(1..length)?.iter().collect();
+        return (!script.is_empty()).then(|| (level, script.replace('-', "\u{2212}"), index + length + 2));
+    }
+    let length = match level {
+        Level::Subscript if is_symbol_before(letters, index) => {
+            rest.iter().take_while(|c| c.is_alphanumeric() || **c == '\'').count()
+        }
+        Level::Superscript => {
+            let sign = usize::from(matches!(rest.first(), Some('-' | '\u{2212}' | '+')));
+            let digits = rest.iter().skip(sign).take_while(|c| c.is_ascii_digit()).count();
+            if digits == 0 { 0 } else { sign + digits }
+        }
+        _ => 0,
+    };
+    let script: String = rest.get(..length)?.iter().collect();
+    (length > 0).then(|| (level, script.replace('-', "\u{2212}"), index + 1 + length))
+}
+
+/// True when exactly one letter stands between the beginning of a word and `index`.
+fn is_symbol_before(letters: &[char], index: usize) -> bool {
+    let before = |back: usize| index.checked_sub(back).and_then(|i| letters.get(i));
+    before(1).is_some_and(|c| c.is_alphabetic())
+        && before(2).is_none_or(|c| !(c.is_alphanumeric() || matches!(c, '_' | '-')))
+}
+
+/// Width of a marked-up line at a font size.
+pub fn width(content: &str, size: f64) -> f64 {
+    let total: f64 = pieces(content)
+        .iter()
+        .map(|(text, level)| level.scale() * text.chars().map(advance).sum::<f64>())
+        .sum();
+    total * size
+}
+
+/// The line cut to fit `limit`, with an ellipsis where something is missing.
+pub fn fitted(content: &str, size: f64, limit: f64) -> String {
+    if width(content, size) <= limit {
+        return content.to_string();
+    }
+    let mut kept: String = content.to_string();
+    while kept.pop().is_some() {
+        let candidate = format!("{}\u{2026}", kept.trim_end());
+        if width(&candidate, size) <= limit {
+            return candidate;
+        }
+    }
+    String::new()
+}
+
+/// Advance of a letter in font sizes; a letter the font lacks counts as one.
+fn advance(letter: char) -> f64 {
+    static ADVANCES: OnceLock<BTreeMap<char, f64>> = OnceLock::new();
+    let table = ADVANCES.get_or_init(|| {
+        let Ok(font) = skrifa::FontRef::new(FONT) else { return BTreeMap::new() };
+        let metrics = font.glyph_metrics(Size::new(1.0), LocationRef::default());
+        font.charmap()
+            .mappings()
+            .filter_map(|(code, glyph)| {
+                Some((char::from_u32(code)?, f64::from(metrics.advance_width(glyph)?)))
+            })
+            .collect()
+    });
+    table.get(&letter).copied().unwrap_or(1.0)
+}
+
+/// Downward shift from the held point to the line of the letters, in view box units.
+pub fn drop_to_letters(text: &Text) -> f64 {
+    match text.baseline {
+        Baseline::Letters => 0.0,
+        Baseline::Middle => 0.5 * CAPITAL * text.size,
+        Baseline::Top => CAPITAL * text.size,
+    }
+}
+
+/// The smallest upright rectangle that holds the drawn text.
+pub fn bounds(text: &Text) -> Rectangle {
+    let width = width(&text.content, text.size);
+    let left = match text.anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => -0.5 * width,
+        Anchor::End => -width,
+    };
+    let (mut above, mut below) = (0.0_f64, 0.0_f64);
+    for (_, level) in pieces(&text.content) {
+        above = above.max(level.rise() + level.scale() * ASCENDER);
+        below = below.max(level.scale() * DESCENDER - level.rise());
+    }
+    let letters = drop_to_letters(text);
+    let (top, bottom) = (letters - above * text.size, letters + below * text.size);
+    let angle = text.rotation_degrees.to_radians();
+    let (sine, cosine) = (phea_dynamics::portable::sin(angle), phea_dynamics::portable::cos(angle));
+    let turned = |x: f64, y: f64| -> Point {
+        point(text.position.x + x * cosine - y * sine, text.position.y + x * sine + y * cosine)
+    };
+    let corners =
+        [turned(left, top), turned(left + width, top), turned(left, bottom), turned(left + width, bottom)];
+    corners.iter().fold(
+        Rectangle {
+            left: f64::INFINITY,
+            top: f64::INFINITY,
+            right: f64::NEG_INFINITY,
+            bottom: f64::NEG_INFINITY,
+        },
+        |r, p| Rectangle {
+            left: r.left.min(p.x),
+            top: r.top.min(p.y),
+            right: r.right.max(p.x),
+            bottom: r.bottom.max(p.y),
+        },
+    )
+}

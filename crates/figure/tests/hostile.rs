@@ -1,0 +1,399 @@
+//! Figures from numbers and words that make no sense: no panic, and every rule of legibility still holds.
+
+use crate::legibility::check;
+use num_complex::Complex64;
+use phea_dynamics::portable::pow;
+use phea_figure::*;
+use phea_qft::bound::{Bound, GainIntervals};
+use phea_qft::template::{Resolution, Template, TemplatePoint};
+
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
+    }
+
+    /// Over many decades, of either sign, sometimes no number at all.
+    fn number(&mut self) -> f64 {
+        const STRANGE: [f64; 9] =
+            [0.0, -0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e308, 1e-320, 5e-324];
+        match self.below(12) {
+            0 => STRANGE[self.below(STRANGE.len())],
+            1 => -self.unit(),
+            2 => pow(10.0, 60.0 * self.unit() - 30.0),
+            _ => pow(10.0, 9.0 * self.unit() - 4.0),
+        }
+    }
+
+    fn numbers(&mut self) -> Vec<f64> {
+        let count = self.below(9);
+        (0..count).map(|_| self.number()).collect()
+    }
+
+    fn complex(&mut self) -> Vec<Complex64> {
+        let count = self.below(9);
+        (0..count).map(|_| Complex64::new(self.number(), self.number())).collect()
+    }
+
+    fn name(&mut self) -> String {
+        const NAMES: [&str; 9] = [
+            "",
+            "K_H",
+            "<script>alert(1)</script> & \"more\"",
+            "a name that goes on and on and on and on and on and on and on and on and on and on and on",
+            "\u{0}\u{7}control\u{1b}[31m",
+            "油圧シリンダー",
+            "x_{",
+            "ΑΒΓ_^^__{}{}}{",
+            "line\nbreak\ttab",
+        ];
+        NAMES[self.below(NAMES.len())].to_string()
+    }
+
+    fn many<T>(&mut self, most: usize, of: impl Fn(&mut Random) -> T) -> Vec<T> {
+        let count = self.below(most + 1);
+        (0..count).map(|_| of(self)).collect()
+    }
+
+    fn maybe<T>(&mut self, of: impl Fn(&mut Random) -> T) -> Option<T> {
+        (self.unit() < 0.5).then(|| of(self))
+    }
+
+    fn verdict(&mut self) -> Verdict {
+        Verdict::ALL[self.below(3)]
+    }
+
+    fn words(&mut self) -> Words {
+        Words::new(self.name(), self.name(), self.name())
+    }
+
+    fn frequency_series(&mut self) -> FrequencySeries {
+        FrequencySeries { name: self.name(), frequencies_rad_per_s: self.numbers(), response: self.complex() }
+    }
+
+    fn mark(&mut self) -> FrequencyMark {
+        FrequencyMark { label: self.name(), frequency_rad_per_s: self.number() }
+    }
+
+    fn response(&mut self) -> Complex64 {
+        Complex64::new(self.number(), self.number())
+    }
+
+    /// Gains that may be negative, infinite or in the wrong order, at phases that may be anything.
+    fn bound(&mut self) -> Bound {
+        let phases = self.below(9);
+        let phase = |r: &mut Random| if r.unit() < 0.1 { r.number() } else { -7.0 * r.unit() };
+        let mut phases_rad: Vec<f64> = (0..phases).map(|_| phase(self)).collect();
+        if self.unit() < 0.7 {
+            phases_rad.sort_by(f64::total_cmp);
+        }
+        let gain = |r: &mut Random| if r.unit() < 0.2 { r.number() } else { 10.0 * r.unit() };
+        let spans = |r: &mut Random| r.many(4, |r| [gain(r), gain(r)]);
+        let forbidden = (0..self.below(9)).map(|_| GainIntervals::union_of(spans(self))).collect();
+        Bound { frequency_rad_per_s: self.number(), phases_rad, forbidden }
+    }
+
+    fn template(&mut self) -> Template {
+        let point = |r: &mut Random| TemplatePoint {
+            member: r.maybe(|r| r.below(9)),
+            values: r.numbers(),
+            response: r.response(),
+            load_motion: r.response(),
+            sensor: r.response(),
+        };
+        Template {
+            frequency_rad_per_s: self.number(),
+            nominal: self.response(),
+            points: self.many(9, point),
+            outlines: self.many(3, Random::complex),
+            resolution: Resolution::Members,
+        }
+    }
+
+    fn time_series(&mut self) -> TimeSeries {
+        TimeSeries { name: self.name(), times_s: self.numbers(), values: self.numbers() }
+    }
+}
+
+fn repeat(seed: u64, of: impl Fn(&mut Random) -> Figure) {
+    let mut random = Random(seed);
+    for turn in 0..400 {
+        let figure = of(&mut random);
+        check(&figure);
+        if turn % 100 == 0 {
+            assert!(figure.to_png(0.5).is_ok(), "the rasteriser refuses {}", figure.to_svg_standalone());
+        }
+    }
+}
+
+#[test]
+fn bode_diagrams() {
+    repeat(1, |r| {
+        let input = BodeInput {
+            quantity: r.name(),
+            unit: r.name(),
+            series: r.many(10, Random::frequency_series),
+            with_difference: r.unit() < 0.5,
+            marks: r.many(6, Random::mark),
+        };
+        bode(r.words(), &input)
+    });
+}
+
+#[test]
+fn stiffness_curves() {
+    repeat(2, |r| {
+        let curve = |r: &mut Random| StiffnessCurve {
+            name: r.name(),
+            positions_m: r.numbers(),
+            stiffness_n_per_m: r.numbers(),
+            minimum_n_per_m: r.numbers(),
+            maximum_n_per_m: r.numbers(),
+        };
+        let input = StiffnessInput {
+            curves: r.many(9, curve),
+            operating_position_m: r.maybe(Random::number),
+            band_label: r.name(),
+        };
+        stiffness_over_stroke(r.words(), &input)
+    });
+}
+
+#[test]
+fn nomographs() {
+    repeat(3, |r| {
+        let bore =
+            |r: &mut Random| NomographBore { bore_m: r.number(), label: r.name(), verdict: r.verdict() };
+        let input = NomographInput {
+            bores: r.many(12, bore),
+            design_flow_m3_per_s: r.number(),
+            velocity_range_m_per_s: (r.number(), r.number()),
+        };
+        nomograph(r.words(), &input)
+    });
+}
+
+#[test]
+fn pole_maps() {
+    repeat(4, |r| {
+        let series = |r: &mut Random| PoleSeries { name: r.name(), poles: r.complex(), zeros: r.complex() };
+        let input = PoleMapInput {
+            series: r.many(6, series),
+            scale: if r.unit() < 0.5 { PoleMapScale::Linear } else { PoleMapScale::SignedLogarithmic },
+            damping_ratios: r.numbers(),
+            natural_frequencies_rad_per_s: r.numbers(),
+        };
+        pole_map(r.words(), &input)
+    });
+}
+
+#[test]
+fn impedances() {
+    repeat(5, |r| {
+        let asymptote = |r: &mut Random| Asymptote {
+            label: r.name(),
+            coefficient: r.number(),
+            exponent: r.below(5) as i32 - 2,
+            from_rad_per_s: r.number(),
+            to_rad_per_s: r.number(),
+        };
+        let input = ImpedanceInput {
+            series: r.many(4, Random::frequency_series),
+            asymptotes: r.many(6, asymptote),
+            corners: r.many(5, Random::mark),
+            non_passive_bands_rad_per_s: r.many(4, |r| (r.number(), r.number())),
+            with_phase: r.unit() < 0.5,
+        };
+        impedance(r.words(), &input)
+    });
+}
+
+#[test]
+fn step_responses() {
+    repeat(6, |r| {
+        let input = StepResponseInput {
+            quantity: r.name(),
+            unit: DisplayUnit::KILONEWTON,
+            reference: r.maybe(Random::time_series),
+            responses: r.many(9, Random::time_series),
+            settling_band: r.maybe(|r| SettlingBand { level: r.number(), percent: r.number() }),
+            bounds: r.maybe(|r| TimeBounds { upper: r.time_series(), lower: r.time_series() }),
+            events: r.many(5, |r| TimeEvent { time_s: r.number(), label: r.name() }),
+            controls: r.many(3, Random::time_series),
+        };
+        step_response(r.words(), &input)
+    });
+}
+
+#[test]
+fn sizing_charts() {
+    repeat(7, |r| {
+        let curve = |r: &mut Random| SizingCurve {
+            name: r.name(),
+            lengths_m: r.numbers(),
+            stiffness_n_per_m: r.numbers(),
+            gain_v_per_n: r.numbers(),
+        };
+        let candidate = |r: &mut Random| SizingCandidate {
+            label: r.name(),
+            length_m: r.number(),
+            stiffness_n_per_m: r.number(),
+            gain_v_per_n: r.number(),
+            verdict: r.verdict(),
+        };
+        let input = SizingChartInput {
+            curves: r.many(5, curve),
+            candidates: r.many(20, candidate),
+            length_range_m: r.maybe(|r| (r.number(), r.number())),
+            minimum_gain_v_per_n: r.maybe(Random::number),
+            pole_gain_v_per_n: r.maybe(Random::number),
+        };
+        sizing_chart(r.words(), &input)
+    });
+}
+
+#[test]
+fn tornadoes() {
+    repeat(8, |r| {
+        let bar = |r: &mut Random| TornadoBar {
+            parameter: r.name(),
+            low_setting: r.name(),
+            high_setting: r.name(),
+            low_value: r.number(),
+            high_value: r.number(),
+        };
+        let input = TornadoInput {
+            quantity: r.name(),
+            unit: DisplayUnit::MEGANEWTON_PER_METRE,
+            nominal: r.number(),
+            bars: r.many(8, bar),
+        };
+        tornado(r.words(), &input)
+    });
+}
+
+#[test]
+fn circuits() {
+    repeat(9, |r| {
+        let line = |r: &mut Random| LineSymbol {
+            kind: if r.unit() < 0.5 { LineKind::Hose } else { LineKind::Pipe },
+            rows: r.many(5, Random::name),
+        };
+        let controller = |r: &mut Random| ControllerSymbol {
+            has_prefilter: r.unit() < 0.5,
+            rows: r.many(5, Random::name),
+        };
+        let input = SchematicInput {
+            supply: if r.unit() < 0.5 { SupplyKind::Pump } else { SupplyKind::ConstantPressure },
+            supply_rows: r.many(4, Random::name),
+            tank: r.name(),
+            valve_rows: r.many(4, Random::name),
+            line_a: line(r),
+            line_b: line(r),
+            rods: if r.unit() < 0.5 { Rods::Both } else { Rods::TowardsLoad },
+            load_beside_b: r.unit() < 0.5,
+            cylinder: r.name(),
+            mass: r.name(),
+            load_cell: r.maybe(|r| r.many(4, Random::name)),
+            environment: [Environment::PrescribedMotion, Environment::Wall, Environment::SpringMassDamper]
+                [r.below(3)]
+            .clone(),
+            environment_rows: r.many(4, Random::name),
+            controller: r.maybe(controller),
+        };
+        schematic(r.words(), &input)
+    });
+}
+
+#[test]
+fn nichols_charts() {
+    repeat(10, |r| {
+        let bounds = r.many(4, |r| r.many(5, Random::bound));
+        let templates = r.many(4, Random::template);
+        let violation = |r: &mut Random| OpenLoopViolation {
+            frequency_rad_per_s: r.number(),
+            open_loop: r.response(),
+            text: r.name(),
+        };
+        let input = NicholsInput {
+            loops: r.many(3, Random::frequency_series),
+            design_frequencies_rad_per_s: r.numbers(),
+            bounds: bounds.iter().map(|bounds| BoundGroup { name: r.name(), bounds }).collect(),
+            templates: &templates,
+            violations: r.many(3, violation),
+            contours_db: r.numbers(),
+        };
+        nichols(r.words(), &input)
+    });
+}
+
+#[test]
+fn template_charts() {
+    repeat(11, |r| templates(r.words(), &r.many(6, Random::template)));
+}
+
+#[test]
+fn families_over_frequency() {
+    repeat(12, |r| {
+        let curve =
+            |r: &mut Random| MagnitudeCurve { frequencies_rad_per_s: r.numbers(), magnitudes: r.numbers() };
+        let mark = |r: &mut Random| MagnitudeMark {
+            frequency_rad_per_s: r.number(),
+            magnitude: r.number(),
+            text: r.name(),
+            is_violation: r.unit() < 0.5,
+        };
+        let envelope =
+            |r: &mut Random| FamilyEnvelope { name: r.name(), greatest: curve(r), least: r.maybe(curve) };
+        let input = FamilyMagnitudeInput {
+            name: r.name(),
+            others: r.many(2, envelope),
+            quantity: r.name(),
+            unit: r.name(),
+            upper_limit: r.maybe(curve),
+            lower_limit: r.maybe(curve),
+            greatest: curve(r),
+            least: r.maybe(curve),
+            members: r.many(4, curve),
+            design_frequencies_rad_per_s: r.numbers(),
+            tolerance_db: r.number(),
+            marks: r.many(3, mark),
+        };
+        family_magnitude(r.words(), &input)
+    });
+}
+
+#[test]
+fn prefilters_in_their_band() {
+    repeat(14, |r| {
+        let point = |r: &mut Random| PrefilterPoint {
+            frequency_rad_per_s: r.number(),
+            least_db: r.number(),
+            greatest_db: r.number(),
+            prefilter_db: Some(r.number()),
+        };
+        let panel = |r: &mut Random| PrefilterPanel { name: r.name(), points: r.many(6, point) };
+        prefilter_band(r.words(), &r.many(3, panel))
+    });
+}
+
+#[test]
+fn families_over_time() {
+    repeat(13, |r| {
+        let bounds = |r: &mut Random| TimeBounds { upper: r.time_series(), lower: r.time_series() };
+        let input = FamilyStepInput {
+            quantity: r.name(),
+            bounds: r.maybe(bounds),
+            members: r.many(4, Random::time_series),
+            nominal: r.maybe(Random::time_series),
+            named: r.many(2, Random::time_series),
+        };
+        family_step(r.words(), &input)
+    });
+}

@@ -1,0 +1,88 @@
+//! `[campaign]`: what is varied in a Monte Carlo campaign.
+
+use super::key::{Key, key, plain};
+use super::visitor::Visitor;
+use phea_quantity::RATIO;
+
+/// What is varied, and how it is distributed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Campaign {
+    /// What is varied, in file order.
+    pub parameters: Vec<Varied>,
+    /// How it is distributed where a parameter does not say.
+    pub distribution: Distribution,
+    /// Name of the scenario that is driven; absent: the first.
+    pub scenario: Option<String>,
+}
+
+/// One varied number: around its declared value, or between two.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Varied {
+    /// A path of the project, or `start.` and a state.
+    pub path: String,
+    /// Share of the declared value, to either side.
+    pub spread: Option<f64>,
+    /// In SI.
+    pub minimum: Option<f64>,
+    /// In SI.
+    pub maximum: Option<f64>,
+    /// Absent: the campaign's.
+    pub distribution: Option<Distribution>,
+}
+
+/// How a varied number is distributed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Distribution {
+    /// Evenly between its ends.
+    #[default]
+    Uniform,
+    /// Normal; its ends are two standard deviations from the middle.
+    Normal,
+    /// Evenly in the logarithm.
+    LogUniform,
+    /// Triangular, highest in the middle.
+    Triangular,
+}
+
+static DISTRIBUTIONS: [(&str, Distribution); 4] = [
+    ("uniform", Distribution::Uniform),
+    ("normal", Distribution::Normal),
+    ("log_uniform", Distribution::LogUniform),
+    ("triangular", Distribution::Triangular),
+];
+
+static VARIED: [(&str, Option<Distribution>); 4] = [
+    ("uniform", Some(Distribution::Uniform)),
+    ("normal", Some(Distribution::Normal)),
+    ("log_uniform", Some(Distribution::LogUniform)),
+    ("triangular", Some(Distribution::Triangular)),
+];
+
+impl Campaign {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("distribution", "How everything is distributed that does not say otherwise.");
+        v.choice(k, &DISTRIBUTIONS, &mut self.distribution, false);
+        v.text(plain("scenario", "Which scenario is driven; absent, the first."), &mut self.scenario, false);
+        let k = plain("parameters", "What is varied, by its path.");
+        v.dictionary(
+            k,
+            |varied| &varied.path,
+            &mut self.parameters,
+            |varied: &mut Varied, number, v| {
+                varied.path = number.name.to_string();
+                varied.visit(number.key, v);
+            },
+        );
+    }
+}
+
+impl Varied {
+    fn visit<V: Visitor>(&mut self, number: Key, v: &mut V) {
+        let k = key("spread", &RATIO, "Share of the declared value, to either side.").positive();
+        v.optional(k, &mut self.spread);
+        let part = |name, doc| Key { name, doc, default: None, ..number };
+        v.optional(part("minimum", "The least it takes."), &mut self.minimum);
+        v.optional(part("maximum", "The most it takes."), &mut self.maximum);
+        v.choice(plain("distribution", "How it is distributed."), &VARIED, &mut self.distribution, false);
+    }
+}

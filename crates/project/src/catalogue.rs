@@ -1,0 +1,100 @@
+//! Components with the source of every number: one TOML file for each product.
+//!
+//! The built-in files hold only what was found in print. A user adds a file or a folder; a name that is there already
+//! is replaced by the later file.
+//!
+//! # Example
+//! ```
+//! use phea_project::catalogue::{self, Kind};
+//! use phea_project::source::Memory;
+//! let catalogue = catalogue::load(&Memory::default(), &[])?;
+//! let hose = catalogue.find(Kind::Hose, "eaton_synflex_3130_08").expect("built in");
+//! assert_eq!(hose.hose.as_ref().map(|hose| hose.bore), Some(0.0127));
+//! assert_eq!(hose.source_of("bore"), "Ledezma (2019), section 6.4.1 and Table A.1");
+//! # Ok::<(), phea_project::Report>(())
+//! ```
+
+mod built_in;
+mod dash_size;
+mod read;
+
+pub use dash_size::DASH_SIZES;
+pub use read::load;
+
+use std::sync::Arc;
+
+use crate::{HoseProperties, Node};
+
+/// What a catalogue entry describes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// A hose, for `line.hose`.
+    #[default]
+    Hose,
+    /// A servovalve, for `valve.model`.
+    Valve,
+}
+
+impl Kind {
+    /// As it is written in a catalogue file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Hose => "hose",
+            Kind::Valve => "valve",
+        }
+    }
+}
+
+/// Components by name.
+#[derive(Clone, Debug, Default)]
+pub struct Catalogue {
+    entries: Vec<Arc<Entry>>,
+}
+
+/// One product.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// What it is.
+    pub kind: Kind,
+    /// The name projects use.
+    pub name: String,
+    /// The name people use.
+    pub title: String,
+    /// Who makes it.
+    pub manufacturer: String,
+    /// The file it was read from; `built-in:` and a path for those that come with the workbench.
+    pub file: String,
+    /// Of a hose that needs nothing beside it.
+    pub hose: Option<HoseProperties>,
+    /// Source of every number that has none of its own.
+    source: Option<String>,
+    /// Key and source.
+    sources: Vec<(String, String)>,
+    /// The whole file.
+    pub(crate) values: Node,
+}
+
+impl Entry {
+    /// Author, title and table a number comes from.
+    pub fn source_of(&self, key: &str) -> String {
+        let own = self.sources.iter().find(|(name, _)| name == key).map(|(_, source)| source);
+        own.or(self.source.as_ref()).cloned().unwrap_or_default()
+    }
+}
+
+impl Catalogue {
+    /// The entry of that kind and name.
+    pub fn find(&self, kind: Kind, name: &str) -> Option<&Entry> {
+        self.entries(kind).find(|entry| entry.name == name)
+    }
+
+    /// The entries of that kind, built-in ones first, each group by name.
+    pub fn entries(&self, kind: Kind) -> impl Iterator<Item = &Entry> {
+        self.entries.iter().map(Arc::as_ref).filter(move |entry| entry.kind == kind)
+    }
+
+    /// The names of that kind.
+    pub fn names(&self, kind: Kind) -> Vec<&str> {
+        self.entries(kind).map(|entry| entry.name.as_str()).collect()
+    }
+}

@@ -1,0 +1,227 @@
+//! `[controller]` and `[prefilter]`.
+
+mod element;
+mod rational_function;
+
+pub use element::{Element, ElementKind};
+pub use rational_function::RationalFunction;
+
+use super::key::{key, plain};
+use super::reader::Reader;
+use super::text::Findings;
+use super::tree::Node;
+use super::visitor::Visitor;
+use crate::catalogue::Catalogue;
+use phea_quantity::{FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};
+
+/// A transfer function: a ratio of polynomials, or elements in series.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Transfer {
+    /// The ratio; empty where it has elements.
+    pub ratio: RationalFunction,
+    /// Elements in series.
+    pub elements: Vec<Element>,
+}
+
+impl Transfer {
+    /// All of it as elements in series: a ratio is one general element, with every number as it was written.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_project::{ElementKind, RationalFunction, Transfer};
+    /// let ratio = RationalFunction { gain: Some(2.0), poles: vec![[-3.0, 0.0]], ..RationalFunction::default() };
+    /// let transfer = Transfer { ratio: ratio.clone(), ..Transfer::default() };
+    /// let [general] = &transfer.as_elements()[..] else { panic!() };
+    /// assert_eq!(general.kind, ElementKind::General(ratio));
+    /// assert!(Transfer::default().as_elements().is_empty());
+    /// ```
+    pub fn as_elements(&self) -> Vec<Element> {
+        match self.ratio.is_stated() {
+            false => self.elements.clone(),
+            true => vec![Element::new(ElementKind::General(self.ratio.clone()))],
+        }
+    }
+
+    /// What a table says of it, other keys left alone.
+    pub(crate) fn read(table: &Node, findings: &mut Findings) -> Transfer {
+        let catalogue = Catalogue::default();
+        let mut transfer = Transfer::default();
+        transfer.visit(&mut Reader::new(table, table.place.text, &catalogue, findings));
+        transfer
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        self.ratio.visit(v);
+        v.tables(plain("elements", "Elements in series."), &mut self.elements, Element::visit);
+    }
+}
+
+/// The controller as declared.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Controller {
+    /// From force error to command.
+    pub transfer: Transfer,
+    /// V (or the plant's input unit), limit of the command.
+    pub saturation: Option<f64>,
+    /// What happens to the integrator at the limit.
+    pub anti_windup: AntiWindup,
+    /// s; absent: continuous.
+    pub sample_time: Option<f64>,
+    /// s, computation and transport delay of the loop.
+    pub delay: f64,
+    /// How a continuous controller becomes a sampled one.
+    pub discretization: Discretization,
+    /// What its computer rounds; absent: nothing.
+    pub quantization: Option<Quantization>,
+    /// What it adds for a load that moves; absent: nothing.
+    pub load_velocity_feed_forward: Option<FeedForward>,
+}
+
+/// What the controller adds to its command for a measured velocity of the load.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FeedForward {
+    /// V·s/m; absent: the piston area over the flow gain of the linear model, which holds the flow the motion takes.
+    pub gain: Option<f64>,
+}
+
+impl FeedForward {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key(
+            "gain",
+            &VOLTAGE_PER_VELOCITY,
+            "Command per velocity of the load; absent: area over flow gain.",
+        );
+        v.optional(k, &mut self.gain);
+    }
+}
+
+/// What the computer of a sampled controller rounds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Quantization {
+    /// Of the converter of the command; 0: it does not round.
+    pub command_bits: u32,
+    /// V (or the plant's input unit), from and to.
+    pub command_range: Option<[f64; 2]>,
+    /// Of the converter of the measurement; 0: it does not round.
+    pub measurement_bits: u32,
+    /// N (or the plant's output unit), from and to.
+    pub measurement_range: Option<[f64; 2]>,
+    /// How the coefficients are kept.
+    pub coefficients: Coefficients,
+    /// N (or the plant's output unit), rms: what the rounded command may do to the force.
+    pub allowed_force_error: Option<f64>,
+    /// V (or the plant's input unit), rms: what the rounded measurement may do to the command.
+    pub allowed_command_error: Option<f64>,
+}
+
+/// How coefficients are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Coefficients {
+    /// With 53 bits: as they are.
+    #[default]
+    Double,
+    /// With 24 bits.
+    Single,
+}
+
+impl Quantization {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let bits = |name, doc| key(name, &RATIO, doc).not_negative().at_most(32.0).or(0.0);
+        let k = bits("command_bits", "Bits of the command's converter; 0: it does not round.");
+        v.count(k, &mut self.command_bits);
+        v.pair(key("command_range", &VOLTAGE, "From and to."), &mut self.command_range);
+        let k = bits("measurement_bits", "Bits of the measurement's converter; 0: it does not round.");
+        v.count(k, &mut self.measurement_bits);
+        v.pair(key("measurement_range", &FORCE, "From and to."), &mut self.measurement_range);
+        let words = &[("f64", Coefficients::Double), ("f32", Coefficients::Single)];
+        let k = plain("coefficients", "How the coefficients are kept.");
+        v.choice(k, words, &mut self.coefficients, false);
+        let doc = "What the rounded command may do to the force, rms: a specification.";
+        v.optional(key("allowed_force_error", &FORCE, doc).positive(), &mut self.allowed_force_error);
+        let doc = "What the rounded measurement may do to the command, rms: a specification.";
+        v.optional(key("allowed_command_error", &VOLTAGE, doc).positive(), &mut self.allowed_command_error);
+    }
+}
+
+/// What happens to the integrator at the limit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AntiWindup {
+    /// It winds up.
+    #[default]
+    None,
+    /// It is fed back the excess.
+    BackCalculation,
+    /// It stops.
+    Clamping,
+}
+
+/// How a continuous controller becomes a sampled one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Discretization {
+    /// The bilinear rule.
+    #[default]
+    Tustin,
+    /// Exact for piecewise constant input.
+    ZeroOrderHold,
+    /// Poles and zeros mapped by exp(sT).
+    Matched,
+}
+
+impl Controller {
+    /// Whether it says what it does, and not only when: without a law it is to be designed.
+    pub fn has_law(&self) -> bool {
+        !self.transfer.as_elements().is_empty()
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        self.transfer.visit(v);
+        let k = key("saturation", &VOLTAGE, "Limit of the command.").positive();
+        v.optional(k, &mut self.saturation);
+        let words = &[
+            ("none", AntiWindup::None),
+            ("back_calculation", AntiWindup::BackCalculation),
+            ("clamping", AntiWindup::Clamping),
+        ];
+        let k = plain("anti_windup", "What happens to the integrator at the limit.");
+        v.choice(k, words, &mut self.anti_windup, false);
+        let k = key("sample_time", &TIME, "Sample time; absent: continuous.").positive();
+        v.optional(k, &mut self.sample_time);
+        let k = key("delay", &TIME, "Computation and transport delay of the loop, part of every verdict.");
+        v.quantity(k.not_negative().or(0.0), &mut self.delay);
+        let words = &[
+            ("tustin", Discretization::Tustin),
+            ("zero_order_hold", Discretization::ZeroOrderHold),
+            ("matched", Discretization::Matched),
+        ];
+        let k = plain("discretization", "How a continuous controller becomes a sampled one.");
+        v.choice(k, words, &mut self.discretization, false);
+        let k = plain("quantization", "What the computer of a sampled controller rounds.");
+        v.table(k, &mut self.quantization, Quantization::visit);
+        let k = plain("load_velocity_feed_forward", "What is added to the command for a load that moves.");
+        v.table(k, &mut self.load_velocity_feed_forward, FeedForward::visit);
+    }
+}
+
+/// The prefilter as declared.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Prefilter {
+    /// From reference to filtered reference.
+    pub transfer: Transfer,
+    /// s; absent: continuous.
+    pub sample_time: Option<f64>,
+    /// Whether it acts in continuous time although the controller is sampled.
+    pub continuous: bool,
+}
+
+impl Prefilter {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        self.transfer.visit(v);
+        let k = key("sample_time", &TIME, "Sample time; absent: continuous.").positive();
+        v.optional(k, &mut self.sample_time);
+        let k = plain(
+            "continuous",
+            "Whether it acts in continuous time, on the reference before a sampled controller takes it.",
+        );
+        v.flag(k, &mut self.continuous);
+    }
+}

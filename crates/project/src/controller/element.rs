@@ -1,0 +1,286 @@
+//! Elements in series.
+
+use std::collections::BTreeMap;
+
+use super::RationalFunction;
+use crate::catalogue::Catalogue;
+use crate::key::{Key, key, plain};
+use crate::printer::Printer;
+use crate::reader::Reader;
+use crate::text::Findings;
+use crate::tree::{Entry, Node, Value};
+use crate::validate;
+use crate::visitor::{Variants, Visitor};
+use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
+
+/// One element of a controller; every kind but gain, `pi`, `pid` and `general` has unit gain at zero frequency (integrator and
+/// differentiator: at 1 rad/s).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element {
+    /// Which element.
+    pub kind: ElementKind,
+    /// Whether it acts; one that does not is kept in the list all the same.
+    pub enabled: bool,
+}
+
+/// Which element, with its numbers: frequencies ω in rad/s, damping ratios ζ.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ElementKind {
+    /// A factor.
+    Gain {
+        /// The factor.
+        value: f64,
+    },
+    /// 1/s.
+    Integrator,
+    /// s.
+    Differentiator,
+    /// 1 + s/ω.
+    Zero {
+        /// ω.
+        frequency: f64,
+    },
+    /// 1/(1 + s/ω).
+    Pole {
+        /// ω.
+        frequency: f64,
+    },
+    /// 1 + 2ζs/ω + s²/ω².
+    ComplexZeros {
+        /// ω.
+        frequency: f64,
+        /// ζ.
+        damping_ratio: f64,
+    },
+    /// 1/(1 + 2ζs/ω + s²/ω²).
+    ComplexPoles {
+        /// ω.
+        frequency: f64,
+        /// ζ.
+        damping_ratio: f64,
+    },
+    /// (1 + s/ω_z)/(1 + s/ω_p); lags where ω_z > ω_p.
+    Lead {
+        /// ω_z.
+        zero_frequency: f64,
+        /// ω_p.
+        pole_frequency: f64,
+    },
+    /// (1 + s/ω_z)/(1 + s/ω_p), ω_z > ω_p.
+    Lag {
+        /// ω_z.
+        zero_frequency: f64,
+        /// ω_p.
+        pole_frequency: f64,
+    },
+    /// (s² + 2ζ_z ωs + ω²)/(s² + 2ζ_p ωs + ω²).
+    Notch {
+        /// ω.
+        frequency: f64,
+        /// ζ_p.
+        damping_ratio: f64,
+        /// ζ_z.
+        numerator_damping_ratio: f64,
+    },
+    /// 1/(1 + 2ζs/ω + s²/ω²) at high frequency.
+    RollOff {
+        /// ω.
+        frequency: f64,
+        /// ζ; absent: 1/√2.
+        damping_ratio: Option<f64>,
+    },
+    /// K_p + K_i/s.
+    ProportionalIntegral {
+        /// K_p.
+        proportional_gain: f64,
+        /// K_i, 1/s.
+        integral_gain: f64,
+    },
+    /// K_p + K_i/s + K_d s/(T_f s + 1).
+    ProportionalIntegralDerivative {
+        /// K_p.
+        proportional_gain: f64,
+        /// K_i, 1/s.
+        integral_gain: f64,
+        /// K_d, s.
+        derivative_gain: f64,
+        /// T_f, s.
+        filter_time: f64,
+    },
+    /// A ratio of polynomials.
+    General(RationalFunction),
+}
+
+impl Default for Element {
+    fn default() -> Self {
+        Element::new(ElementKind::Gain { value: 0.0 })
+    }
+}
+
+impl ElementKind {
+    /// As it is written in the project file.
+    pub fn name(&self) -> &'static str {
+        self.word()
+    }
+}
+
+impl Variants for ElementKind {
+    const STRICT: bool = true;
+
+    fn all(&self) -> Vec<ElementKind> {
+        let (frequency, damping_ratio) = (0.0, 0.0);
+        let (zero_frequency, pole_frequency) = (0.0, 0.0);
+        let (proportional_gain, integral_gain) = (0.0, 0.0);
+        vec![
+            ElementKind::Gain { value: 0.0 },
+            ElementKind::Integrator,
+            ElementKind::Differentiator,
+            ElementKind::Zero { frequency },
+            ElementKind::Pole { frequency },
+            ElementKind::ComplexZeros { frequency, damping_ratio },
+            ElementKind::ComplexPoles { frequency, damping_ratio },
+            ElementKind::Lead { zero_frequency, pole_frequency },
+            ElementKind::Lag { zero_frequency, pole_frequency },
+            ElementKind::Notch { frequency, damping_ratio, numerator_damping_ratio: 0.0 },
+            ElementKind::RollOff { frequency, damping_ratio: None },
+            ElementKind::ProportionalIntegral { proportional_gain, integral_gain },
+            ElementKind::ProportionalIntegralDerivative {
+                proportional_gain,
+                integral_gain,
+                derivative_gain: 0.0,
+                filter_time: 0.0,
+            },
+            ElementKind::General(RationalFunction::default()),
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            ElementKind::Gain { .. } => "gain",
+            ElementKind::Integrator => "integrator",
+            ElementKind::Differentiator => "differentiator",
+            ElementKind::Zero { .. } => "zero",
+            ElementKind::Pole { .. } => "pole",
+            ElementKind::ComplexZeros { .. } => "complex_zeros",
+            ElementKind::ComplexPoles { .. } => "complex_poles",
+            ElementKind::Lead { .. } => "lead",
+            ElementKind::Lag { .. } => "lag",
+            ElementKind::Notch { .. } => "notch",
+            ElementKind::RollOff { .. } => "roll_off",
+            ElementKind::ProportionalIntegral { .. } => "pi",
+            ElementKind::ProportionalIntegralDerivative { .. } => "pid",
+            ElementKind::General(_) => "general",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let corner = key("frequency", &ANGULAR_FREQUENCY, "Corner or natural frequency.").positive();
+        let doc = "Of a complex pair, a notch's denominator or a roll-off.";
+        let damping = key("damping_ratio", &RATIO, doc).not_negative();
+        match self {
+            ElementKind::Gain { value } => v.quantity(key("value", &RATIO, "Of a gain."), value),
+            ElementKind::Integrator | ElementKind::Differentiator => {}
+            ElementKind::Zero { frequency } | ElementKind::Pole { frequency } => {
+                v.quantity(corner, frequency)
+            }
+            ElementKind::ComplexZeros { frequency, damping_ratio }
+            | ElementKind::ComplexPoles { frequency, damping_ratio } => {
+                v.quantity(corner, frequency);
+                v.quantity(damping, damping_ratio);
+            }
+            ElementKind::Lead { zero_frequency, pole_frequency }
+            | ElementKind::Lag { zero_frequency, pole_frequency } => {
+                let k =
+                    key("zero_frequency", &ANGULAR_FREQUENCY, "Corner of the numerator of a lead or lag.");
+                v.quantity(k.positive(), zero_frequency);
+                let k =
+                    key("pole_frequency", &ANGULAR_FREQUENCY, "Corner of the denominator of a lead or lag.");
+                v.quantity(k.positive(), pole_frequency);
+            }
+            ElementKind::Notch { frequency, damping_ratio, numerator_damping_ratio } => {
+                v.quantity(corner, frequency);
+                v.quantity(damping, damping_ratio);
+                let k = key("numerator_damping_ratio", &RATIO, "Of a notch's numerator.").not_negative();
+                v.quantity(k, numerator_damping_ratio);
+            }
+            ElementKind::RollOff { frequency, damping_ratio } => {
+                v.quantity(corner, frequency);
+                v.optional(damping, damping_ratio);
+            }
+            ElementKind::ProportionalIntegral { proportional_gain, integral_gain } => {
+                v.quantity(PROPORTIONAL, proportional_gain);
+                v.quantity(INTEGRAL, integral_gain);
+            }
+            ElementKind::ProportionalIntegralDerivative {
+                proportional_gain,
+                integral_gain,
+                derivative_gain,
+                filter_time,
+            } => {
+                v.quantity(PROPORTIONAL, proportional_gain);
+                v.quantity(INTEGRAL, integral_gain);
+                v.quantity(key("derivative_gain", &RATIO, "Of a PID, in seconds."), derivative_gain);
+                let k = key("filter_time", &TIME, "Time constant of the derivative of a PID.").positive();
+                v.quantity(k, filter_time);
+            }
+            ElementKind::General(ratio) => ratio.visit(v),
+        }
+    }
+}
+
+const PROPORTIONAL: Key = key("proportional_gain", &RATIO, "Of a PI or PID.");
+const INTEGRAL: Key = key("integral_gain", &RATIO, "Of a PI or PID, for each second.");
+
+impl Element {
+    /// One that acts.
+    pub fn new(kind: ElementKind) -> Element {
+        Element { kind, enabled: true }
+    }
+
+    /// Whether it is written in `z`.
+    pub fn is_sampled(&self) -> bool {
+        matches!(&self.kind, ElementKind::General(ratio) if ratio.is_sampled())
+    }
+
+    /// As an inline table of the project file, which reads back as the same element.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_project::{Element, ElementKind};
+    /// let zero = Element { kind: ElementKind::Zero { frequency: 20.0 }, enabled: false };
+    /// assert_eq!(zero.print(), r#"{ kind = "zero", frequency = "20 rad/s", enabled = false }"#);
+    /// ```
+    pub fn print(&self) -> String {
+        let mut printer = Printer::new(BTreeMap::new());
+        self.clone().visit(&mut printer);
+        printer.finish_inline().unwrap_or_default()
+    }
+
+    /// As the lines of a table of its own.
+    pub(crate) fn print_lines(&self) -> String {
+        let mut printer = Printer::new(BTreeMap::new());
+        self.clone().visit(&mut printer);
+        printer.finish()
+    }
+
+    /// The element that a table describes; what is wrong with it goes to the findings. `sample_time` in s is that of the controller.
+    pub(crate) fn read(node: &Node, sample_time: Option<f64>, findings: &mut Findings) -> Option<Element> {
+        let errors = findings.error_count();
+        let place = node.place;
+        let entry = Entry { key: "elements".to_string(), key_place: place, node: node.clone() };
+        let root = Node { place, value: Value::Table(vec![entry]) };
+        let catalogue = Catalogue::default();
+        let mut reader = Reader::new(&root, place.text, &catalogue, findings);
+        let mut element: Option<Element> = None;
+        reader.table(plain("elements", "An element."), &mut element, Element::visit);
+        if let Some(element) = &element {
+            validate::element(element, "elements", sample_time, &mut reader);
+        }
+        element.filter(|_| findings.error_count() == errors)
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.variant(plain("kind", "Which element."), &mut self.kind, true);
+        v.switch(plain("enabled", "Whether it acts."), &mut self.enabled);
+    }
+}

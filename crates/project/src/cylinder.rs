@@ -1,0 +1,221 @@
+//! `[cylinder]` and `[cylinder.friction]`.
+
+use std::f64::consts::FRAC_PI_4;
+
+use super::key::{key, plain};
+use super::visitor::{Variants, Visitor};
+use phea_quantity::{
+    AREA, DAMPING, FLOW_PRESSURE_COEFFICIENT, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS,
+    VELOCITY, VOLUME,
+};
+
+/// The cylinder; `a` is the end x = 0, and x grows from A to B.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cylinder {
+    /// m; this or `piston_area`.
+    pub piston_diameter: Option<f64>,
+    /// m², on which the pressure acts, the same in both chambers: rods are subtracted already.
+    pub piston_area: Option<f64>,
+    /// m², on which the pressure acts in chamber A and in chamber B.
+    pub piston_areas: Option<[f64; 2]>,
+    /// m, of the rod through both chambers; this or `rod_diameters`.
+    pub rod_diameter: Option<f64>,
+    /// m, of the rod in chamber A and in chamber B; zero where there is none.
+    pub rod_diameters: Option<[f64; 2]>,
+    /// m.
+    pub stroke: f64,
+    /// kg, piston, rod and what moves with them.
+    pub moving_mass: f64,
+    /// m³, in each chamber beside the swept volume and the line; this or `dead_volumes`.
+    pub dead_volume: Option<f64>,
+    /// m³, in chamber A and in chamber B.
+    pub dead_volumes: Option<[f64; 2]>,
+    /// m³/(s·Pa), laminar leakage across the piston.
+    pub internal_leakage: Option<f64>,
+    /// What the piston meets at both ends; absent: the ends are reported, and nothing stops it.
+    pub end_stops: Option<EndStops>,
+    /// Friction of seals and bearings.
+    pub friction: Option<Friction>,
+}
+
+/// What the piston meets at both ends of its stroke.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EndStops {
+    /// N/m.
+    pub stiffness: f64,
+    /// s/m, damping relative to the elastic force.
+    pub relative_damping: f64,
+}
+
+impl EndStops {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.quantity(key("stiffness", &STIFFNESS, "Of each stop.").positive(), &mut self.stiffness);
+        let k = key("relative_damping", &INVERSE_VELOCITY, "Damping relative to the elastic force.");
+        v.quantity(k.not_negative().or(0.0), &mut self.relative_damping);
+    }
+}
+
+impl Cylinder {
+    /// m, of the piston: declared, or from the larger area and the rod on its side.
+    pub fn piston_diameter_m(&self) -> f64 {
+        let faces = self.effective_areas_m2().into_iter().zip(self.rod_diameters_m());
+        let by_area = faces.map(|(area, rod)| (area / FRAC_PI_4 + rod * rod).sqrt()).fold(0.0, f64::max);
+        self.piston_diameter.unwrap_or(by_area)
+    }
+
+    /// m, of the rods in chamber A and B.
+    pub fn rod_diameters_m(&self) -> [f64; 2] {
+        let rod = self.rod_diameter.unwrap_or(0.0);
+        self.rod_diameters.unwrap_or([rod, rod])
+    }
+
+    /// m², on which the pressure acts in chamber A and B: declared, or the piston less the rod.
+    pub fn effective_areas_m2(&self) -> [f64; 2] {
+        let declared = self.piston_areas.or(self.piston_area.map(|area| [area, area]));
+        let piston = self.piston_diameter.unwrap_or(0.0);
+        declared.unwrap_or(self.rod_diameters_m().map(|rod| FRAC_PI_4 * (piston - rod) * (piston + rod)))
+    }
+
+    /// m³, of chamber A and B.
+    pub fn dead_volumes_m3(&self) -> [f64; 2] {
+        let volume = self.dead_volume.unwrap_or(0.0);
+        self.dead_volumes.unwrap_or([volume, volume])
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k =
+            key("piston_diameter", &LENGTH, "Diameter of the piston; or `piston_area` or `piston_areas`.")
+                .positive();
+        v.optional(k, &mut self.piston_diameter);
+        let k =
+            key("piston_area", &AREA, "Area the pressure acts on in each chamber, rods already subtracted.");
+        v.optional(k.positive(), &mut self.piston_area);
+        let k = key("piston_areas", &AREA, "Areas the pressure acts on in chamber A and in chamber B.");
+        v.pair(k.positive(), &mut self.piston_areas);
+        let k = key("rod_diameter", &LENGTH, "Diameter of the rod through both chambers.").not_negative();
+        v.optional(k, &mut self.rod_diameter);
+        let k = key("rod_diameters", &LENGTH, "Diameters of the rods in chamber A and in chamber B.");
+        v.pair(k.not_negative(), &mut self.rod_diameters);
+        let k = key("stroke", &LENGTH, "Stroke; x = 0 is the end of chamber A.").positive();
+        v.quantity(k, &mut self.stroke);
+        let k = key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive();
+        v.quantity(k, &mut self.moving_mass);
+        let k = key("dead_volume", &VOLUME, "Volume of each chamber beside the swept volume and the line.");
+        v.optional(k.not_negative(), &mut self.dead_volume);
+        let k = key("dead_volumes", &VOLUME, "Dead volumes of chamber A and of chamber B.").not_negative();
+        v.pair(k, &mut self.dead_volumes);
+        let k = key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage across the piston.");
+        v.optional(k.positive(), &mut self.internal_leakage);
+        let k = plain("end_stops", "What the piston meets at both ends; absent: nothing stops it there.");
+        v.table(k, &mut self.end_stops, EndStops::visit);
+        let k = plain("friction", "Friction of seals and bearings; absent: none.");
+        v.table(k, &mut self.friction, Friction::visit);
+    }
+}
+
+/// Friction of seals and bearings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Friction {
+    /// What it has beside its viscous part.
+    pub law: FrictionLaw,
+    /// N·s/m, slope at high velocity (σ₂ of LuGre).
+    pub viscous: f64,
+}
+
+/// A friction law, beside its viscous part.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum FrictionLaw {
+    /// Nothing: proportional to velocity.
+    #[default]
+    Viscous,
+    /// Coulomb and breakaway part as a function of velocity.
+    Stribeck {
+        /// The function.
+        curve: StribeckCurve,
+        /// m/s, smooths its jump at standstill, where it is to be simulated.
+        regular_velocity: Option<f64>,
+    },
+    /// Bristles with a state of their own.
+    LuGre {
+        /// Friction at constant velocity.
+        curve: StribeckCurve,
+        /// N/m, σ₀.
+        bristle_stiffness: f64,
+        /// N·s/m, σ₁.
+        bristle_damping: f64,
+    },
+}
+
+/// Friction that falls from breakaway to sliding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StribeckCurve {
+    /// N, sliding friction F_C.
+    pub coulomb: f64,
+    /// N, breakaway friction F_S.
+    pub static_friction: f64,
+    /// m/s.
+    pub stribeck_velocity: f64,
+    /// Exponent.
+    pub stribeck_exponent: f64,
+}
+
+impl StribeckCurve {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("coulomb", &FORCE, "Sliding friction F_C.").positive();
+        v.quantity(k, &mut self.coulomb);
+        v.quantity(key("static", &FORCE, "Breakaway friction F_S.").positive(), &mut self.static_friction);
+        let k = key("stribeck_velocity", &VELOCITY, "Velocity at which friction has fallen from F_S.");
+        v.quantity(k.positive(), &mut self.stribeck_velocity);
+        let k = key("stribeck_exponent", &RATIO, "Exponent of the Stribeck curve.").positive().or(2.0);
+        v.quantity(k.at_most(10.0).above(0.0), &mut self.stribeck_exponent);
+    }
+}
+
+impl Variants for FrictionLaw {
+    fn all(&self) -> Vec<FrictionLaw> {
+        let curve = StribeckCurve::default();
+        vec![
+            FrictionLaw::Viscous,
+            FrictionLaw::Stribeck { curve, regular_velocity: None },
+            FrictionLaw::LuGre { curve, bristle_stiffness: 0.0, bristle_damping: 0.0 },
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            FrictionLaw::Viscous => "viscous",
+            FrictionLaw::Stribeck { .. } => "stribeck",
+            FrictionLaw::LuGre { .. } => "lugre",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        match self {
+            FrictionLaw::Viscous => {}
+            FrictionLaw::Stribeck { curve, regular_velocity } => {
+                curve.visit(v);
+                let k = key(
+                    "regular_velocity",
+                    &VELOCITY,
+                    "Smooths the jump of a Stribeck curve, to simulate it.",
+                );
+                v.optional(k.positive(), regular_velocity);
+            }
+            FrictionLaw::LuGre { curve, bristle_stiffness, bristle_damping } => {
+                curve.visit(v);
+                let k = key("bristle_stiffness", &STIFFNESS, "σ₀ of LuGre.").positive();
+                v.quantity(k, bristle_stiffness);
+                let k = key("bristle_damping", &DAMPING, "σ₁ of LuGre.").not_negative();
+                v.quantity(k, bristle_damping);
+            }
+        }
+    }
+}
+
+impl Friction {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.variant(plain("model", "Which friction law."), &mut self.law, true);
+        let k = key("viscous", &DAMPING, "Slope of friction over velocity, σ₂ of LuGre.").not_negative();
+        v.quantity(k.or(0.0), &mut self.viscous);
+    }
+}

@@ -1,0 +1,166 @@
+//! `[design]`: how a controller is looked for.
+
+use super::controller::Element;
+use super::key::{key, plain};
+use super::visitor::{Variants, Visitor};
+use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
+
+/// What is made best, and among which controllers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// What is made least or greatest.
+    pub objective: DesignObjective,
+    /// Most poles of the controller.
+    pub maximum_order: u32,
+    /// Most poles of the prefilter; 0: none is designed.
+    pub prefilter_maximum_order: u32,
+    /// What the random starting points begin with.
+    pub seed: u32,
+    /// s, which every plant must bear beyond the delay of the loop.
+    pub minimum_delay_margin: f64,
+    /// Least and greatest gain of `structure`; both negative for a controller of negative sign.
+    pub gain: Option<[f64; 2]>,
+    /// The controller's factors; none: structures of growing order are tried.
+    pub structure: Vec<StructurePart>,
+}
+
+/// What is made least or greatest among the controllers that keep to every specification.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DesignObjective {
+    /// The high-frequency gain.
+    #[default]
+    LeastHighFrequencyGain,
+    /// The gain crossover of the nominal loop.
+    LeastBandwidth,
+    /// The least margin of all specifications.
+    BestWorstMargin,
+}
+
+/// The words of `objective`.
+pub static DESIGN_OBJECTIVES: [(&str, DesignObjective); 3] = [
+    ("least_high_frequency_gain", DesignObjective::LeastHighFrequencyGain),
+    ("least_bandwidth", DesignObjective::LeastBandwidth),
+    ("best_worst_margin", DesignObjective::BestWorstMargin),
+];
+
+/// One factor of a structure. Every free number has its least and greatest value, frequencies in rad/s; absent: wide around the design
+/// frequencies.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum StructurePart {
+    /// 1/s.
+    #[default]
+    Integrator,
+    /// s/z + 1.
+    Zero {
+        /// z.
+        frequency: Option<[f64; 2]>,
+    },
+    /// 1/(s/p + 1).
+    Pole {
+        /// p.
+        frequency: Option<[f64; 2]>,
+    },
+    /// s²/ω² + 2ζs/ω + 1.
+    ZeroPair {
+        /// ω.
+        frequency: Option<[f64; 2]>,
+        /// ζ, two real roots from 1 on.
+        damping_ratio: Option<[f64; 2]>,
+    },
+    /// 1/(s²/ω² + 2ζs/ω + 1).
+    PolePair {
+        /// ω.
+        frequency: Option<[f64; 2]>,
+        /// ζ, two real roots from 1 on.
+        damping_ratio: Option<[f64; 2]>,
+    },
+    /// An element without free numbers.
+    Fixed {
+        /// As in a controller.
+        element: Element,
+    },
+}
+
+/// Most poles that are tried.
+const MAXIMUM_ORDER: f64 = 20.0;
+
+impl Default for Design {
+    fn default() -> Design {
+        Design {
+            objective: DesignObjective::default(),
+            maximum_order: 4,
+            prefilter_maximum_order: 3,
+            seed: 1,
+            minimum_delay_margin: 0.0,
+            gain: None,
+            structure: vec![],
+        }
+    }
+}
+
+impl Design {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("objective", "What is made least or greatest.");
+        v.choice(k, &DESIGN_OBJECTIVES, &mut self.objective, false);
+        let k = key("maximum_order", &RATIO, "Most poles of the controller.").not_negative();
+        v.count(k.at_most(MAXIMUM_ORDER).or(4.0), &mut self.maximum_order);
+        let k = key("prefilter_maximum_order", &RATIO, "Most poles of the prefilter; 0: none is designed.");
+        v.count(k.not_negative().at_most(MAXIMUM_ORDER).or(3.0), &mut self.prefilter_maximum_order);
+        let k = key("seed", &RATIO, "What the random starting points begin with.").not_negative();
+        v.count(k.or(1.0), &mut self.seed);
+        let doc = "Delay beyond that of the loop which every plant must bear.";
+        let k = key("minimum_delay_margin", &TIME, doc).not_negative().or(0.0);
+        v.quantity(k, &mut self.minimum_delay_margin);
+        v.pair(key("gain", &RATIO, "Least and greatest gain of `structure`."), &mut self.gain);
+        let k = plain("structure", "Factors of the controller; absent: structures of growing order.");
+        v.tables(k, &mut self.structure, |one, v| v.variant(plain("kind", "Which factor."), one, true));
+    }
+}
+
+impl Variants for StructurePart {
+    const STRICT: bool = true;
+
+    fn all(&self) -> Vec<StructurePart> {
+        let (frequency, damping_ratio) = (None, None);
+        vec![
+            StructurePart::Integrator,
+            StructurePart::Zero { frequency },
+            StructurePart::Pole { frequency },
+            StructurePart::ZeroPair { frequency, damping_ratio },
+            StructurePart::PolePair { frequency, damping_ratio },
+            StructurePart::Fixed { element: Element::default() },
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            StructurePart::Integrator => "integrator",
+            StructurePart::Zero { .. } => "zero",
+            StructurePart::Pole { .. } => "pole",
+            StructurePart::ZeroPair { .. } => "zero_pair",
+            StructurePart::PolePair { .. } => "pole_pair",
+            StructurePart::Fixed { .. } => "fixed",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let corner = key("frequency", &ANGULAR_FREQUENCY, "Least and greatest corner or natural frequency.");
+        match self {
+            StructurePart::Integrator => {}
+            StructurePart::Zero { frequency } | StructurePart::Pole { frequency } => {
+                v.pair(corner.positive(), frequency);
+            }
+            StructurePart::ZeroPair { frequency, damping_ratio }
+            | StructurePart::PolePair { frequency, damping_ratio } => {
+                v.pair(corner.positive(), frequency);
+                let k =
+                    key("damping_ratio", &RATIO, "Least and greatest damping ratio of a pair.").positive();
+                v.pair(k, damping_ratio);
+            }
+            StructurePart::Fixed { element } => {
+                let k = plain("element", "Of a fixed factor: an element as in [controller].");
+                v.needed_table(k, element, Element::visit);
+            }
+        }
+    }
+}

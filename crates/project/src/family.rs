@@ -1,0 +1,119 @@
+//! `[family]`: which plants of the box are looked at, or plants that were measured.
+
+use super::key::{key, plain};
+use super::visitor::Visitor;
+use phea_quantity::{FORCE, LENGTH, RATIO, VELOCITY};
+
+/// The members of the family. Without any of them it is the grid of `[uncertainty]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Family {
+    /// The grid, beside the other members.
+    pub grid: bool,
+    /// All corners of the box.
+    pub vertices: bool,
+    /// Points of the box drawn at random.
+    pub random: Option<Random>,
+    /// Plants by their parameters: name and value, in file order.
+    pub cases: Vec<Case>,
+    /// Groups of parameters that run through their ranges together.
+    pub correlation: Vec<Correlation>,
+    /// The operating points that the rig visits, with what the pump can give.
+    pub operating_region: Option<OperatingRegion>,
+    /// Files with measured frequency responses, the nominal plant first; paths are relative to the project file.
+    pub measured: Vec<String>,
+    /// Open-loop poles of each measured plant in the right half plane.
+    pub unstable_poles: u32,
+}
+
+/// Ranges of the operating point: their plants are correlated through the pressures that follow.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OperatingRegion {
+    /// m, of the piston.
+    pub position: Option<[f64; 2]>,
+    /// N, that the pressures hold.
+    pub load_force: Option<[f64; 2]>,
+    /// m/s; what the pump cannot give is cut off.
+    pub velocity: Option<[f64; 2]>,
+    /// Points of the grid over each.
+    pub points: u32,
+}
+
+/// Points of the box drawn at random.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Random {
+    /// How many.
+    pub count: u32,
+    /// What the draw begins with.
+    pub seed: u32,
+}
+
+/// Parameters that run through their ranges together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Correlation {
+    /// Names of uncertain parameters.
+    pub parameters: Vec<String>,
+    /// Those of them that fall while the others rise.
+    pub opposed: Vec<String>,
+}
+
+/// One plant of an explicit family.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Case {
+    /// Name and value in SI.
+    pub parameters: Vec<(String, f64)>,
+}
+
+impl Family {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.flag(plain("grid", "The grid of [uncertainty], beside other members."), &mut self.grid);
+        v.flag(plain("vertices", "All corners of the box."), &mut self.vertices);
+        v.table(plain("random", "Points of the box drawn at random."), &mut self.random, Random::visit);
+        v.tables(plain("cases", "Plants by their parameters."), &mut self.cases, Case::visit);
+        let k = plain("correlation", "Groups of parameters that run through their ranges together.");
+        v.tables(k, &mut self.correlation, Correlation::visit);
+        let k = plain("operating_region", "The operating points that the rig visits.");
+        v.table(k, &mut self.operating_region, OperatingRegion::visit);
+        let k = plain("measured", "Files with measured frequency responses, the nominal plant first.");
+        v.texts(k, &mut self.measured);
+        let doc = "Open-loop poles of each measured plant in the right half plane.";
+        v.count(
+            key("unstable_poles", &RATIO, doc).not_negative().at_most(1000.0).or(0.0),
+            &mut self.unstable_poles,
+        );
+    }
+}
+
+impl OperatingRegion {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("position", &LENGTH, "Least and greatest position of the piston.").not_negative();
+        v.pair(k, &mut self.position);
+        v.pair(
+            key("load_force", &FORCE, "Least and greatest force that the pressures hold."),
+            &mut self.load_force,
+        );
+        let k = key("velocity", &VELOCITY, "Least and greatest velocity, before `supply.flow` limits them.");
+        v.pair(k, &mut self.velocity);
+        let k = key("points", &RATIO, "Points of the grid over each of them.").at_least(2.0).at_most(1000.0);
+        v.count(k.or(3.0), &mut self.points);
+    }
+}
+
+impl Random {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.count(key("count", &RATIO, "How many points.").at_least(1.0).at_most(1e6), &mut self.count);
+        v.count(key("seed", &RATIO, "What the draw begins with.").not_negative(), &mut self.seed);
+    }
+}
+
+impl Correlation {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.texts(plain("parameters", "Names of uncertain parameters."), &mut self.parameters);
+        v.texts(plain("opposed", "Those of them that fall while the others rise."), &mut self.opposed);
+    }
+}
+
+impl Case {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.numbers(key("parameter", &RATIO, "Value of an uncertain parameter."), &mut self.parameters);
+    }
+}

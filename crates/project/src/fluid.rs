@@ -1,0 +1,162 @@
+//! `[fluid]` and `[supply]`.
+
+use super::key::{key, plain};
+use super::visitor::{Variants, Visitor};
+use phea_quantity::{DENSITY, FLOW, KINEMATIC_VISCOSITY, PRESSURE, RATIO, VOLUME};
+
+/// The oil.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fluid {
+    /// Pa, of the liquid without air.
+    pub bulk_modulus: f64,
+    /// kg/m³.
+    pub density: f64,
+    /// m²/s.
+    pub kinematic_viscosity: Option<f64>,
+    /// Volume of free air over total volume at atmospheric pressure; `None` and zero mean none.
+    pub entrained_air: Option<f64>,
+    /// Polytropic exponent of the entrained air.
+    pub polytropic_exponent: f64,
+    /// Pa, absolute, below which a chamber is reported to cavitate.
+    pub vapour_pressure: f64,
+}
+
+impl Fluid {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("bulk_modulus", &PRESSURE, "Bulk modulus of the liquid without air.").positive();
+        v.quantity(k, &mut self.bulk_modulus);
+        let k = key("density", &DENSITY, "Density of the liquid.").positive();
+        v.quantity(k, &mut self.density);
+        let k = key("kinematic_viscosity", &KINEMATIC_VISCOSITY, "Kinematic viscosity.").positive();
+        v.optional(k, &mut self.kinematic_viscosity);
+        let k = key("entrained_air", &RATIO, "Share of free air in the volume at atmospheric pressure.");
+        v.optional(k.not_negative().below(1.0), &mut self.entrained_air);
+        let k = key("polytropic_exponent", &RATIO, "Of the entrained air: 1 is isothermal, 1.4 adiabatic.");
+        v.quantity(k.at_least(1.0).at_most(1.7).or(1.4), &mut self.polytropic_exponent);
+        let k = key("vapour_pressure", &PRESSURE, "Absolute; below it a chamber is reported to cavitate.");
+        v.quantity(k.not_negative().or(0.0), &mut self.vapour_pressure);
+    }
+}
+
+/// The pressure supply.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Supply {
+    /// How the pressure behaves under load.
+    pub model: SupplyModel,
+    /// Pa, gauge.
+    pub pressure: f64,
+    /// Pa, gauge.
+    pub tank_pressure: f64,
+}
+
+/// A gas-charged accumulator.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Accumulator {
+    /// m³, of the gas at its precharge.
+    pub gas_volume: f64,
+    /// Pa, gauge.
+    pub precharge_pressure: f64,
+    /// Polytropic exponent of the gas.
+    pub polytropic_exponent: f64,
+}
+
+impl Accumulator {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("gas_volume", &VOLUME, "Volume of the gas at its precharge.").positive();
+        v.quantity(k, &mut self.gas_volume);
+        let k = key("precharge_pressure", &PRESSURE, "Pressure of the gas without oil, gauge.").positive();
+        v.quantity(k, &mut self.precharge_pressure);
+        let k = key("polytropic_exponent", &RATIO, "Of the gas: 1 is slow, 1.4 fast.");
+        v.quantity(k.at_least(1.0).at_most(5.0 / 3.0).or(1.4), &mut self.polytropic_exponent);
+    }
+}
+
+/// How the supply pressure behaves under load.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SupplyModel {
+    /// It stays as declared.
+    Constant {
+        /// m³/s, what the pump can give: sizing and the operating region keep to it.
+        flow: Option<f64>,
+    },
+    /// It falls when the demand exceeds the pump's flow.
+    PumpLimited(Pump),
+}
+
+/// A limited pump with the line to the valve.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pump {
+    /// m³/s, what it can give.
+    pub flow: f64,
+    /// Pa, rise over which the relief valve opens for the pump's whole flow.
+    pub relief_override: f64,
+    /// m³, of the supply line.
+    pub volume: f64,
+    /// Pa, of the supply line; absent: the fluid's.
+    pub effective_bulk_modulus: Option<f64>,
+    /// On the supply line.
+    pub accumulator: Option<Accumulator>,
+}
+
+impl Default for SupplyModel {
+    fn default() -> Self {
+        SupplyModel::Constant { flow: None }
+    }
+}
+
+impl Variants for SupplyModel {
+    fn all(&self) -> Vec<SupplyModel> {
+        vec![SupplyModel::default(), SupplyModel::PumpLimited(Pump::default())]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            SupplyModel::Constant { .. } => "constant",
+            SupplyModel::PumpLimited(_) => "pump_limited",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("flow", &FLOW, "Flow the pump can give.").positive();
+        match self {
+            SupplyModel::Constant { flow } => v.optional(k, flow),
+            SupplyModel::PumpLimited(pump) => {
+                v.quantity(k, &mut pump.flow);
+                pump.visit_line(v);
+            }
+        }
+    }
+}
+
+impl Pump {
+    fn visit_line<V: Visitor>(&mut self, v: &mut V) {
+        let k =
+            key("relief_override", &PRESSURE, "Rise over which the relief valve opens for all of `flow`.");
+        v.quantity(k.positive().or(5e5), &mut self.relief_override);
+        let k = key("volume", &VOLUME, "Volume of the line from a limited pump to the valve.").positive();
+        v.quantity(k.or(1e-3), &mut self.volume);
+        let k = key("effective_bulk_modulus", &PRESSURE, "Of that line; absent: the fluid's.").positive();
+        v.optional(k, &mut self.effective_bulk_modulus);
+        let k = plain("accumulator", "A gas-charged accumulator on that line.");
+        v.table(k, &mut self.accumulator, Accumulator::visit);
+    }
+}
+
+impl Supply {
+    /// m³/s, what the pump can give, where it is stated.
+    pub fn flow(&self) -> Option<f64> {
+        match &self.model {
+            SupplyModel::Constant { flow } => *flow,
+            SupplyModel::PumpLimited(pump) => Some(pump.flow),
+        }
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("model", "How the pressure behaves under load; `pump_limited` uses `flow`.");
+        v.variant(k, &mut self.model, false);
+        let k = key("pressure", &PRESSURE, "Supply pressure, gauge.").positive();
+        v.quantity(k, &mut self.pressure);
+        let k = key("tank_pressure", &PRESSURE, "Return pressure, gauge.").above(-101_325.0).or(0.0);
+        v.quantity(k, &mut self.tank_pressure);
+    }
+}

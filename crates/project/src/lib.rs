@@ -1,0 +1,270 @@
+//! The project file: a rig, or any other plant, and what is wanted of it, in one readable text.
+//!
+//! Inside, everything is SI. Keys are a contract: other tools read them.
+
+mod campaign;
+mod controller;
+mod cylinder;
+mod design;
+mod diagnostic;
+mod environment;
+mod family;
+mod fluid;
+mod formula;
+mod interval;
+mod key;
+mod limit;
+mod line;
+mod line_motion;
+mod linear;
+mod listing;
+mod measured;
+mod operating_point;
+mod plant;
+mod printer;
+mod read;
+mod reader;
+mod rewrite;
+mod scenario;
+mod sensor;
+mod setting;
+mod signal;
+mod simulation;
+mod sizing;
+mod specification;
+mod text;
+mod tree;
+mod uncertainty;
+mod validate;
+mod valve;
+mod visitor;
+
+pub use campaign::*;
+pub use controller::*;
+pub use cylinder::*;
+pub use design::*;
+pub use diagnostic::*;
+pub use environment::*;
+pub use family::*;
+pub use fluid::*;
+pub use formula::*;
+pub use interval::*;
+pub use key::{Key, Range};
+pub use limit::*;
+pub use line::*;
+pub use line_motion::*;
+pub use linear::*;
+pub use listing::KeyEntry;
+pub use measured::*;
+pub use operating_point::*;
+pub use plant::*;
+pub(crate) use read::sha256;
+pub use read::{keys, print, read};
+pub use scenario::*;
+pub use sensor::*;
+pub use signal::{Amplitudes, Multisine, Signal};
+pub use simulation::*;
+pub use sizing::*;
+pub use specification::*;
+pub use uncertainty::*;
+pub use valve::*;
+
+pub(crate) use key::{key, plain};
+pub(crate) use reader::Reader;
+pub(crate) use rewrite::{snippet, with_law, with_laws};
+pub(crate) use signal::SignalUnit;
+pub(crate) use text::{Findings, Found, Place};
+pub(crate) use tree::{Entry, Node, Value as TreeValue, read as read_tree, value_or_finding};
+pub(crate) use visitor::Visitor;
+
+use phea_quantity::RATIO;
+
+/// A project as it was declared. Exactly one of `actuator`, `plant` and measured plants in `family` is there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Project {
+    /// What the paths of other files are relative to: the project file's own path up to its name. Not a key.
+    pub folder: String,
+    /// One line for people.
+    pub title: String,
+    /// The hydraulic actuator and what it works against.
+    pub actuator: Option<Actuator>,
+    /// Any other plant, as a transfer function.
+    pub plant: Option<Plant>,
+    /// Which plants are looked at; absent: the grid of `uncertainty`.
+    pub family: Option<Family>,
+    /// What lies between the controlled output and the controller; absent: 1.
+    pub sensor: Option<Sensor>,
+    /// What the compliant component is sized for.
+    pub sizing: Option<Sizing>,
+    /// Where the linear model is taken.
+    pub operating_point: OperatingPoint,
+    /// Parameters of the linear model that are set outright.
+    pub linear: Linear,
+    /// Uncertain numbers, in file order.
+    pub uncertainty: Vec<Uncertain>,
+    /// What the closed loop must meet, in file order.
+    pub specifications: Vec<Specification>,
+    /// Given, to be verified; absent or without a law, to be designed.
+    pub controller: Option<Controller>,
+    /// Given, to be verified; absent, to be designed.
+    pub prefilter: Option<Prefilter>,
+    /// How a controller is looked for; absent: by the defaults.
+    pub design: Option<Design>,
+    /// What is simulated.
+    pub scenarios: Vec<Scenario>,
+    /// How scenarios are simulated.
+    pub simulation: Simulation,
+    /// What a Monte Carlo campaign varies.
+    pub campaign: Option<Campaign>,
+}
+
+/// The hydraulic actuator and what it works against.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Actuator {
+    /// The oil.
+    pub fluid: Fluid,
+    /// The pressure supply.
+    pub supply: Supply,
+    /// The servovalve.
+    pub valve: Valve,
+    /// The cylinder.
+    pub cylinder: Cylinder,
+    /// The lines between valve and cylinder.
+    pub line: Lines,
+    /// The load cell.
+    pub force_sensor: ForceSensor,
+    /// What the force acts on.
+    pub load: Load,
+}
+
+/// A commented project to start from.
+pub const STARTER: &str = include_str!("starter.toml");
+
+/// A project that was read, and what belongs to the reading rather than to the rig.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// What was declared, with settings applied, catalogue values and defaults filled in.
+    pub project: Project,
+    /// What is doubtful without being wrong.
+    pub warnings: Vec<Diagnostic>,
+    /// Name and content of every text a warning points into.
+    pub texts: Vec<(String, String)>,
+    /// Where the file is, as it was given.
+    pub path: String,
+    /// The file's bytes.
+    pub bytes: Vec<u8>,
+    /// Of the file's bytes, in hexadecimal.
+    pub sha256: String,
+    /// The `path=value` texts that were applied, as given.
+    pub settings: Vec<String>,
+    /// The catalogue files a value came from: those of the project's own and `built-in:NAME`.
+    pub catalogue_files: Vec<String>,
+    /// Where every number that is not simply declared in the file came from, in path order.
+    pub provenance: Vec<Provenance>,
+}
+
+/// Where a number came from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Provenance {
+    /// Dotted path, such as `valve.nominal_flow`.
+    pub path: String,
+    /// Who said it.
+    pub origin: Origin,
+}
+
+/// Who said a number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// The project file.
+    Project,
+    /// A `--set`, quoted.
+    Setting(String),
+    /// The catalogue, with the source of the number.
+    Catalogue {
+        /// Name of the entry.
+        name: String,
+        /// Author, title and table.
+        source: String,
+    },
+    /// Nobody: it is the default of the key.
+    Default,
+}
+
+impl Project {
+    /// The tables that make the system: the actuator or the plant.
+    fn visit_system<V: Visitor>(&mut self, v: &mut V) {
+        let mut schema = 1;
+        v.count(key("schema", &RATIO, "Version of this format: 1.").at_least(1.0).at_most(1.0), &mut schema);
+        let mut title = (!self.title.is_empty()).then(|| std::mem::take(&mut self.title));
+        v.text(plain("title", "One line for people."), &mut title, false);
+        self.title = title.unwrap_or_default();
+        v.table(plain("plant", "Any plant but an actuator."), &mut self.plant, Plant::visit);
+        v.part(&mut self.actuator, Actuator::visit);
+    }
+
+    /// What is wanted of the system.
+    fn visit_wishes<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("operating_point", "Where the linear model is taken.");
+        table_or_default(k, &mut self.operating_point, OperatingPoint::visit, v);
+        let k = plain("linear", "Parameters of the linear model, set outright.");
+        table_or_default(k, &mut self.linear, Linear::visit, v);
+        v.table(plain("sizing", "What the compliance is sized for."), &mut self.sizing, Sizing::visit);
+        let k = plain("uncertainty", "Uncertain numbers and their grids.");
+        v.dictionary(
+            k,
+            |u| &u.name,
+            &mut self.uncertainty,
+            |uncertain: &mut Uncertain, number, v| {
+                uncertain.name = number.name.to_string();
+                uncertain.visit(number.key, v);
+            },
+        );
+        v.table(plain("family", "Which plants are looked at."), &mut self.family, Family::visit);
+        v.table(plain("sensor", "Dynamics of the sensor."), &mut self.sensor, Sensor::visit);
+        let k = plain("specification", "What the closed loop must meet.");
+        v.tables(k, &mut self.specifications, Specification::visit);
+        let k = plain("controller", "Given, to be verified; absent, to be designed.");
+        v.table(k, &mut self.controller, Controller::visit);
+        let k = plain("prefilter", "Given, to be verified; absent, to be designed.");
+        v.table(k, &mut self.prefilter, Prefilter::visit);
+        v.table(plain("design", "How a controller is looked for."), &mut self.design, Design::visit);
+        v.tables(plain("scenario", "What is simulated."), &mut self.scenarios, Scenario::visit);
+        let k = plain("simulation", "How exactly scenarios are simulated.");
+        table_or_default(k, &mut self.simulation, Simulation::visit, v);
+        v.table(plain("campaign", "What a campaign varies."), &mut self.campaign, Campaign::visit);
+    }
+}
+
+/// A table whose absence means its default.
+fn table_or_default<T: Default + PartialEq, V: Visitor>(
+    key: Key,
+    field: &mut T,
+    visit: impl Fn(&mut T, &mut V),
+    v: &mut V,
+) {
+    let declared = *field != T::default();
+    let mut table = declared.then(|| std::mem::take(field));
+    v.table(key, &mut table, visit);
+    *field = table.unwrap_or_default();
+}
+
+impl Actuator {
+    /// The tables of an actuator, which must all be there but `[load]`.
+    const REQUIRED: [&'static str; 6] = ["fluid", "supply", "valve", "cylinder", "line", "force_sensor"];
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        required(plain("fluid", "The oil."), &mut self.fluid, Fluid::visit, v);
+        required(plain("supply", "The pressure supply."), &mut self.supply, Supply::visit, v);
+        required(plain("valve", "The servovalve."), &mut self.valve, Valve::visit, v);
+        required(plain("cylinder", "The cylinder."), &mut self.cylinder, Cylinder::visit, v);
+        required(plain("line", "From the valve to each chamber."), &mut self.line, Lines::visit, v);
+        required(plain("force_sensor", "The load cell."), &mut self.force_sensor, ForceSensor::visit, v);
+        table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit, v);
+    }
+}
+
+fn required<T: Default, V: Visitor>(key: Key, field: &mut T, visit: impl Fn(&mut T, &mut V), v: &mut V) {
+    let mut table = Some(std::mem::take(field));
+    v.table(key, &mut table, visit);
+    *field = table.unwrap_or_default();
+}

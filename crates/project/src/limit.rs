@@ -1,0 +1,236 @@
+//! `limit`, `upper` and `lower` of a specification, in each of the forms they may be written.
+
+use super::formula::Formula;
+use super::key::{Key, key, plain};
+use super::plant::Rational;
+use super::visitor::{Form, Shape, Visitor};
+use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, RATIO, TIME};
+
+/// A limit over frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Limit {
+    /// The same at every frequency.
+    Constant(f64),
+    /// The magnitude of a ratio of polynomials in one text.
+    Text(Formula),
+    /// The magnitude of a transfer function.
+    Rational(Rational),
+    /// Numbers at frequencies, between which it is log-log linear.
+    Table(LimitTable),
+    /// What guarantees these margins.
+    Margins(MarginWish),
+    /// What follows from a wish in time, or is checked against one.
+    Response(ResponseWish),
+}
+
+/// A limit at frequencies.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LimitTable {
+    /// rad/s, increasing.
+    pub frequencies: Vec<f64>,
+    /// Ratios, as many.
+    pub values: Vec<f64>,
+}
+
+/// Margins that a limit is to guarantee; of several the strictest decides.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MarginWish {
+    /// Factor by which the gain may grow, above 1.
+    pub gain_margin: Option<f64>,
+    /// Factor to which the gain may fall, below 1.
+    pub gain_reduction: Option<f64>,
+    /// rad.
+    pub phase_margin: Option<f64>,
+    /// Least distance |1 + L|.
+    pub modulus_margin: Option<f64>,
+    /// s.
+    pub delay_margin: Option<f64>,
+}
+
+/// What a step response is to do: the fastest one for `upper`, the slowest for `lower`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ResponseWish {
+    /// Percent of the step; of `upper`.
+    pub overshoot_percent: Option<f64>,
+    /// s.
+    pub settling_time: Option<f64>,
+    /// Percent of the step.
+    pub settling_band_percent: Option<f64>,
+    /// rad/s, the zero added to `upper`.
+    pub zero: Option<f64>,
+    /// rad/s, the pole added to `lower`.
+    pub pole: Option<f64>,
+    /// How the wish becomes a transfer function.
+    pub rule: ResponseRule,
+    /// The limit itself, where it is given and only checked against the wish.
+    pub function: Option<Rational>,
+}
+
+/// How a wish in time becomes a second-order model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ResponseRule {
+    /// Such that the response, extra zero or pole included, does what is wished.
+    #[default]
+    Exact,
+    /// 3 over xi w_n.
+    FivePercent,
+    /// 4 over xi w_n.
+    TwoPercent,
+    /// 4.6 over xi w_n.
+    OnePercent,
+    /// 5 over xi w_n.
+    OnePercentThesis,
+    /// 5.83 over w_n, critically damped.
+    CriticallyDampedTwoPercent,
+}
+
+impl Limit {
+    pub(super) fn visit<V: Visitor>(
+        name: &'static str,
+        doc: &'static str,
+        field: &mut Option<Limit>,
+        v: &mut V,
+    ) {
+        let k = key(name, &GAIN, doc).positive();
+        let form = match field {
+            None | Some(Limit::Constant(_)) => Form::Number,
+            Some(Limit::Text(_)) => Form::Text,
+            Some(_) => Form::Table,
+        };
+        match v.form(k, form) {
+            Form::Number => {
+                let mut number = if let Some(Limit::Constant(value)) = field { Some(*value) } else { None };
+                v.optional(k, &mut number);
+                *field = number.map(Limit::Constant);
+            }
+            Form::Text => {
+                let mut formula = if let Some(Limit::Text(f)) = field.take() { Some(f) } else { None };
+                v.formula(k, Shape::Ratio, &mut formula, false);
+                *field = formula.map(Limit::Text);
+            }
+            Form::Table => v.table(k, field, Limit::visit_table),
+        }
+    }
+
+    /// Every key is asked for, so that a misspelt one finds its neighbour; what is there decides the form.
+    fn visit_table<V: Visitor>(&mut self, v: &mut V) {
+        let mut parts = Parts::of(self);
+        let k = key("frequencies", &ANGULAR_FREQUENCY, "Frequencies of a tabled limit, increasing.");
+        v.quantities(k.positive(), &mut parts.table.frequencies, false);
+        let k = key("values", &GAIN, "The limit at each frequency.").positive();
+        v.quantities(k, &mut parts.table.values, false);
+        let k = plain("numerator", "Polynomial, such as \"2116*(s + 75)/75\".");
+        v.formula(k, Shape::Polynomial, &mut parts.numerator, false);
+        let k = plain("denominator", "Polynomial, such as \"s^2 + 73.6*s + 2116\".");
+        v.formula(k, Shape::Polynomial, &mut parts.denominator, parts.numerator.is_some());
+        parts.margins.visit(v);
+        parts.response.visit(v);
+        *self = parts.limit();
+    }
+}
+
+/// What a limit is made of, whatever its form.
+#[derive(Default)]
+struct Parts {
+    table: LimitTable,
+    numerator: Option<Formula>,
+    denominator: Option<Formula>,
+    margins: MarginWish,
+    response: ResponseWish,
+}
+
+impl Parts {
+    fn of(limit: &mut Limit) -> Parts {
+        let mut parts = Parts::default();
+        let function = match std::mem::take(limit) {
+            Limit::Rational(rational) => Some(rational),
+            Limit::Response(mut response) => {
+                let function = response.function.take();
+                parts.response = response;
+                function
+            }
+            Limit::Table(table) => {
+                parts.table = table;
+                None
+            }
+            Limit::Margins(margins) => {
+                parts.margins = margins;
+                None
+            }
+            Limit::Constant(_) | Limit::Text(_) => None,
+        };
+        if let Some(Rational { numerator, denominator }) = function {
+            (parts.numerator, parts.denominator) = (Some(numerator), Some(denominator));
+        }
+        parts
+    }
+
+    /// The form that the parts make; nothing at all counts as an empty table.
+    fn limit(self) -> Limit {
+        let function = self.numerator.zip(self.denominator);
+        let function = function.map(|(numerator, denominator)| Rational { numerator, denominator });
+        if !self.table.frequencies.is_empty() {
+            Limit::Table(self.table)
+        } else if self.margins != MarginWish::default() {
+            Limit::Margins(self.margins)
+        } else if self.response != ResponseWish::default() {
+            Limit::Response(ResponseWish { function, ..self.response })
+        } else {
+            function.map_or(Limit::Table(self.table), Limit::Rational)
+        }
+    }
+}
+
+impl MarginWish {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let gain = |name, doc| key(name, &GAIN, doc);
+        let k = gain("gain_margin", "Factor by which the gain may grow, such as \"6 dB\".").above(1.0);
+        v.optional(k, &mut self.gain_margin);
+        let k = gain("gain_reduction", "Factor to which the gain may fall, such as \"-6 dB\".");
+        v.optional(k.positive().below(1.0), &mut self.gain_reduction);
+        let k = key("phase_margin", &ANGLE, "Phase margin, such as \"50 deg\".").positive();
+        v.optional(k.at_most(std::f64::consts::PI), &mut self.phase_margin);
+        let k = key("modulus_margin", &RATIO, "Least distance of L from -1.").positive().below(1.0);
+        v.optional(k, &mut self.modulus_margin);
+        let k = key("delay_margin", &TIME, "Delay that the loop tolerates beyond its own.").positive();
+        v.optional(k, &mut self.delay_margin);
+    }
+}
+
+impl ResponseWish {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let percent = |name, doc| -> Key { key(name, &RATIO, doc).below(100.0) };
+        let k = percent("overshoot_percent", "Largest overshoot, in percent of the step; of `upper`.");
+        v.optional(k.not_negative(), &mut self.overshoot_percent);
+        let k = key("settling_time", &TIME, "Settling time, with `settling_band_percent`.").positive();
+        v.optional(k, &mut self.settling_time);
+        let k = percent("settling_band_percent", "Band of the settling time, in percent of the step.");
+        v.optional(k.positive(), &mut self.settling_band_percent);
+        let k = key("zero", &ANGULAR_FREQUENCY, "The zero added to `upper`.").positive();
+        v.optional(k, &mut self.zero);
+        let k = key("pole", &ANGULAR_FREQUENCY, "The pole added to `lower`.").positive();
+        v.optional(k, &mut self.pole);
+        if *self != ResponseWish::default() {
+            let words = &[
+                ("exact", ResponseRule::Exact),
+                ("five_percent", ResponseRule::FivePercent),
+                ("two_percent", ResponseRule::TwoPercent),
+                ("one_percent", ResponseRule::OnePercent),
+                ("one_percent_thesis", ResponseRule::OnePercentThesis),
+                ("critically_damped_two_percent", ResponseRule::CriticallyDampedTwoPercent),
+            ];
+            v.choice(
+                plain("rule", "How the wish becomes a transfer function."),
+                words,
+                &mut self.rule,
+                false,
+            );
+        }
+    }
+}
+
+impl Default for Limit {
+    fn default() -> Self {
+        Limit::Table(LimitTable::default())
+    }
+}

@@ -1,0 +1,189 @@
+//! How a line moves: `model` of `[line]`, and the keys that go with it.
+
+use super::key::{Key, key, plain};
+use super::visitor::{Kinds, Variants, Visitor};
+use phea_quantity::{MASS_PER_LENGTH, RATIO, STRAIN_PER_FORCE, STRAIN_PER_PRESSURE, TIME};
+
+/// How a line moves, with the numbers of its model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum LineMotion {
+    /// One pressure.
+    #[default]
+    Lumped,
+    /// One pressure, and a wall that creeps.
+    Creeping {
+        /// s, in which pressure relaxes while the volume is held.
+        relaxation_time: f64,
+    },
+    /// Capacities and inertances in turn.
+    Segments(LineSegments),
+    /// Fluid waves.
+    TransmissionLine {
+        /// Share of the line's compliance that is a plain volume at each end; absent: `phea_hydraulics::line::END_SHARE`.
+        end_share: Option<f64>,
+    },
+    /// Fluid and wall waves, coupled.
+    TwoWave {
+        /// As of a transmission line.
+        end_share: Option<f64>,
+        /// What is known of a wall that moves along its axis.
+        wall: Option<LineWall>,
+    },
+}
+
+/// A line cut into segments.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LineSegments {
+    /// How many; absent: [`LineSegments::COUNT`].
+    pub count: Option<u32>,
+    /// What resists the flow in them; absent: it depends on frequency.
+    pub friction: Option<LineFriction>,
+    /// s, of a wall that creeps; absent: it is elastic.
+    pub relaxation_time: Option<f64>,
+}
+
+/// How laminar friction in segments is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineFriction {
+    /// As in steady flow.
+    Steady,
+    /// With the boundary layer of changing flow.
+    FrequencyDependent,
+}
+
+/// What is known of a hose's wall that moves along its axis; what is absent is assumed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LineWall {
+    /// kg/m.
+    pub mass_per_length: Option<f64>,
+    /// 1/Pa, area strain per pressure without tension.
+    pub pressure_compliance: Option<f64>,
+    /// 1/N, area strain per tension.
+    pub coupling_compliance: Option<f64>,
+    /// 1/N, axial strain per tension.
+    pub axial_compliance: Option<f64>,
+}
+
+static FRICTIONS: [(&str, Option<LineFriction>); 2] =
+    [("steady", Some(LineFriction::Steady)), ("frequency_dependent", Some(LineFriction::FrequencyDependent))];
+
+const RELAXATION: Key = key(
+    "relaxation_time",
+    &TIME,
+    "Time in which pressure relaxes while the volume is held; none is assumed.",
+)
+.positive();
+
+impl Variants for LineMotion {
+    const STRICT: bool = true;
+
+    fn all(&self) -> Vec<LineMotion> {
+        vec![
+            LineMotion::Lumped,
+            LineMotion::Creeping { relaxation_time: 0.0 },
+            LineMotion::Segments(LineSegments::default()),
+            LineMotion::TransmissionLine { end_share: None },
+            LineMotion::TwoWave { end_share: None, wall: None },
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            LineMotion::Lumped => "lumped",
+            LineMotion::Creeping { .. } => "creeping",
+            LineMotion::Segments(_) => "segments",
+            LineMotion::TransmissionLine { .. } => "transmission_line",
+            LineMotion::TwoWave { .. } => "two_wave",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let share = key("end_share", &RATIO, "Share of the compliance at each end of a line with waves.");
+        let share = share.positive().below(0.5);
+        match self {
+            LineMotion::Lumped => {}
+            LineMotion::Creeping { relaxation_time } => v.quantity(RELAXATION, relaxation_time),
+            LineMotion::Segments(segments) => segments.visit(v),
+            LineMotion::TransmissionLine { end_share } => v.optional(share, end_share),
+            LineMotion::TwoWave { end_share, wall } => {
+                v.optional(share, end_share);
+                let k = plain("wall", "The wall of a hose with two waves; what is absent is assumed.");
+                v.table(k, wall, LineWall::visit);
+            }
+        }
+    }
+}
+
+impl LineMotion {
+    /// Keys that go with one model or another.
+    pub(crate) const KEYS: [&'static str; 5] =
+        ["segments", "friction", "relaxation_time", "end_share", "wall"];
+    /// A side that chooses its model has that model's keys of its own too.
+    pub(crate) const MODELS: Kinds = Kinds { chosen_by: &["model"], keys: &LineMotion::KEYS };
+
+    /// Its model as in a project file.
+    pub fn model(&self) -> &'static str {
+        self.word()
+    }
+
+    /// s, of a wall that creeps.
+    pub fn relaxation_time(&self) -> Option<f64> {
+        match self {
+            LineMotion::Creeping { relaxation_time } => Some(*relaxation_time),
+            LineMotion::Segments(segments) => segments.relaxation_time,
+            LineMotion::Lumped | LineMotion::TransmissionLine { .. } | LineMotion::TwoWave { .. } => None,
+        }
+    }
+
+    /// Whether a path of the project leads to one of these keys.
+    pub(crate) fn owns(path: &str) -> bool {
+        let within = path.strip_prefix("line.").unwrap_or_default();
+        within
+            .split('.')
+            .find(|part| !["a", "b"].contains(part))
+            .is_some_and(|key| LineMotion::KEYS.contains(&key))
+    }
+}
+
+impl LineSegments {
+    /// Segments of a line that does not say how many: the first resonance of a line closed at one end is 0.2 % low.
+    pub const COUNT: u32 = 8;
+    /// States that segments of one line may have, so that both lines and what is around them fit into a simulation.
+    const MOST_STATES: u32 = 112;
+
+    /// How many there are.
+    pub fn count(&self) -> u32 {
+        self.count.unwrap_or(Self::COUNT)
+    }
+
+    /// The most with this friction and this wall.
+    pub(crate) fn most(&self) -> u32 {
+        let lags = if self.friction == Some(LineFriction::Steady) { 0 } else { 5 };
+        let creeping = u32::from(self.relaxation_time.is_some());
+        // a wall creeps at both ends of each segment
+        (Self::MOST_STATES - creeping) / (2 + lags + creeping)
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("segments", &RATIO, "How many segments; absent: 8.")
+            .at_least(1.0)
+            .at_most(f64::from(Self::MOST_STATES / 2));
+        v.optional_count(k, &mut self.count);
+        let k = plain("friction", "Laminar friction in segments; absent: \"frequency_dependent\".");
+        v.choice(k, &FRICTIONS, &mut self.friction, false);
+        v.optional(RELAXATION, &mut self.relaxation_time);
+    }
+}
+
+impl LineWall {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("mass_per_length", &MASS_PER_LENGTH, "Mass of a metre of wall.").positive();
+        v.optional(k, &mut self.mass_per_length);
+        let k = key("pressure_compliance", &STRAIN_PER_PRESSURE, "Area strain per pressure, no tension.");
+        v.optional(k.not_negative(), &mut self.pressure_compliance);
+        let k = key("coupling_compliance", &STRAIN_PER_FORCE, "Area strain per tension; negative: a braid.");
+        v.optional(k, &mut self.coupling_compliance);
+        let k = key("axial_compliance", &STRAIN_PER_FORCE, "Axial strain per tension.").positive();
+        v.optional(k, &mut self.axial_compliance);
+    }
+}

@@ -1,0 +1,157 @@
+//! `[linear]`: the linear model's parameters.
+
+use super::key::{Key, key};
+use super::line_motion::LineMotion;
+use super::visitor::Visitor;
+use phea_quantity::{
+    ANGULAR_FREQUENCY, AREA, DAMPING, FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, MASS, RATIO, STIFFNESS,
+};
+
+/// Parameters of the linear model that are set outright.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Linear {
+    /// N·s/m, f_v.
+    pub viscous_friction: Option<f64>,
+    /// m³/(s·V), K_qU.
+    pub flow_gain: Option<f64>,
+    /// m³/(s·Pa), K_c.
+    pub flow_pressure_coefficient: Option<f64>,
+    /// N/m, K_H.
+    pub hydraulic_stiffness: Option<f64>,
+    /// rad/s.
+    pub valve_natural_frequency: Option<f64>,
+    /// ξ_v.
+    pub valve_damping_ratio: Option<f64>,
+    /// kg, M.
+    pub moving_mass: Option<f64>,
+    /// m², A_u.
+    pub piston_area: Option<f64>,
+    /// N/m, K_S.
+    pub sensor_stiffness: Option<f64>,
+}
+
+/// A parameter of the linear model, and what it is derived from.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearParameter {
+    /// Its key, in `[linear]` and `[uncertainty]`.
+    pub key: Key,
+    /// Paths of the project (or beginnings of paths) it depends on.
+    pub depends_on: &'static [&'static str],
+}
+
+impl LinearParameter {
+    /// Whether it follows from the number at a path; of a line, how it moves does not matter.
+    pub(crate) fn follows_from(&self, path: &str) -> bool {
+        !LineMotion::owns(path)
+            && self.depends_on.iter().any(|table| {
+                path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+            })
+    }
+}
+
+/// Paths the valve coefficients depend on.
+const VALVE: &[&str] = &[
+    "valve.flow_coefficients",
+    "valve.leakage_coefficients",
+    "valve.leakage_shape",
+    "valve.nominal_flow",
+    "valve.nominal_pressure_drop",
+    "valve.nominal_voltage",
+    "valve.null_leakage",
+    "valve.null_leakage_maximum",
+    "valve.null_leakage_pressure",
+    "valve.tare_flow",
+    "valve.transition_pressure",
+    "supply.pressure",
+    "supply.tank_pressure",
+    "operating_point.load_pressure",
+    "operating_point.load_force",
+    "operating_point.velocity",
+    "operating_point.command",
+];
+
+/// Paths the hydraulic stiffness depends on.
+const STIFFNESS_PATHS: &[&str] = &[
+    "fluid.bulk_modulus",
+    "fluid.entrained_air",
+    "fluid.polytropic_exponent",
+    "supply.pressure",
+    "cylinder.piston_diameter",
+    "cylinder.piston_area",
+    "cylinder.rod_diameter",
+    "cylinder.rod_diameters",
+    "cylinder.stroke",
+    "cylinder.dead_volume",
+    "cylinder.dead_volumes",
+    "line",
+    "operating_point.position",
+];
+
+const AREA_PATHS: &[&str] =
+    &["cylinder.piston_diameter", "cylinder.piston_area", "cylinder.rod_diameter", "cylinder.rod_diameters"];
+
+/// The parameters of the linear model, in the order of `[linear]`.
+pub static LINEAR_PARAMETERS: [LinearParameter; 9] = [
+    LinearParameter {
+        key: key("viscous_friction", &DAMPING, "f_v.").not_negative(),
+        depends_on: &["cylinder.friction"],
+    },
+    LinearParameter { key: key("flow_gain", &FLOW_GAIN, "K_qU.").positive(), depends_on: VALVE },
+    LinearParameter {
+        key: key("flow_pressure_coefficient", &FLOW_PRESSURE_COEFFICIENT, "K_c.").not_negative(),
+        depends_on: VALVE,
+    },
+    LinearParameter {
+        key: key("hydraulic_stiffness", &STIFFNESS, "K_H.").positive(),
+        depends_on: STIFFNESS_PATHS,
+    },
+    LinearParameter {
+        key: key("valve_natural_frequency", &ANGULAR_FREQUENCY, "Of the spool's dynamics.").positive(),
+        depends_on: &["valve.natural_frequency"],
+    },
+    LinearParameter {
+        key: key("valve_damping_ratio", &RATIO, "Of the spool's dynamics.").positive(),
+        depends_on: &["valve.damping_ratio"],
+    },
+    LinearParameter {
+        key: key("moving_mass", &MASS, "M.").positive(),
+        depends_on: &["cylinder.moving_mass"],
+    },
+    LinearParameter { key: key("piston_area", &AREA, "A_u.").positive(), depends_on: AREA_PATHS },
+    LinearParameter {
+        key: key("sensor_stiffness", &STIFFNESS, "K_S.").positive(),
+        depends_on: &["force_sensor.stiffness"],
+    },
+];
+
+impl Linear {
+    /// The declared value of a parameter by its name.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        let mut copy = self.clone();
+        copy.fields()
+            .into_iter()
+            .zip(&LINEAR_PARAMETERS)
+            .find(|(_, p)| p.key.name == name)
+            .and_then(|(f, _)| *f)
+    }
+
+    fn fields(&mut self) -> [&mut Option<f64>; 9] {
+        [
+            &mut self.viscous_friction,
+            &mut self.flow_gain,
+            &mut self.flow_pressure_coefficient,
+            &mut self.hydraulic_stiffness,
+            &mut self.valve_natural_frequency,
+            &mut self.valve_damping_ratio,
+            &mut self.moving_mass,
+            &mut self.piston_area,
+            &mut self.sensor_stiffness,
+        ]
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        for (field, parameter) in self.fields().into_iter().zip(&LINEAR_PARAMETERS) {
+            v.optional(parameter.key, field);
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! `[operating_point]`: where the linear model is taken; and its numbers where they are uncertain.
+
+use std::collections::BTreeMap;
+
+use super::key::{Key, key, plain};
+use super::listing::Listing;
+use super::visitor::Visitor;
+use super::{OperatingRegion, Project, Spacing, Uncertain};
+use phea_quantity::{FORCE, LENGTH, PRESSURE, VELOCITY, VOLTAGE};
+
+/// Where the linear model is taken; absent parts are mid stroke and null.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OperatingPoint {
+    /// m, from the end of chamber A.
+    pub position: Option<f64>,
+    /// Pa, p_A - p_B.
+    pub load_pressure: Option<f64>,
+    /// N, A_A p_A - A_B p_B.
+    pub load_force: Option<f64>,
+    /// m/s, towards the end of chamber B.
+    pub velocity: Option<f64>,
+    /// V.
+    pub command: Option<f64>,
+}
+
+/// Beginning of the paths of its numbers.
+const TABLE: &str = "operating_point";
+
+impl OperatingPoint {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("position", &LENGTH, "Position of the piston; absent: mid stroke.").not_negative();
+        v.optional(k, &mut self.position);
+        let k = key(
+            "load_pressure",
+            &PRESSURE,
+            "p_A - p_B; absent: zero with a command, else what the edges settle at.",
+        );
+        v.optional(k, &mut self.load_pressure);
+        let k = key(
+            "load_force",
+            &FORCE,
+            "Force that the pressures hold, A_A p_A - A_B p_B, friction left aside.",
+        );
+        v.optional(k, &mut self.load_force);
+        let k = key("velocity", &VELOCITY, "Steady velocity of the piston and its load; absent: standstill.");
+        v.optional(k, &mut self.velocity);
+        v.optional(
+            key("command", &VOLTAGE, "Command of the valve; absent: null, or what holds the load."),
+            &mut self.command,
+        );
+    }
+
+    /// The numbers that may be uncertain, by their names.
+    pub(super) fn slot(&mut self, name: &str) -> Option<&mut Option<f64>> {
+        match name {
+            "position" => Some(&mut self.position),
+            "load_pressure" => Some(&mut self.load_pressure),
+            "load_force" => Some(&mut self.load_force),
+            "velocity" => Some(&mut self.velocity),
+            _ => None,
+        }
+    }
+
+    /// Its number at a path of the project.
+    pub(super) fn at_path(&mut self, path: &str) -> Option<&mut Option<f64>> {
+        self.slot(path.strip_prefix(TABLE)?.strip_prefix('.')?)
+    }
+}
+
+/// The numbers of the operating point that may be uncertain, stated or not, by their paths.
+pub(super) fn operating_numbers() -> BTreeMap<String, Key> {
+    let mut listing = Listing::default();
+    let number = Some(0.0);
+    let mut all = Some(OperatingPoint {
+        position: number,
+        load_pressure: number,
+        load_force: number,
+        velocity: number,
+        command: None,
+    });
+    listing.table(plain(TABLE, ""), &mut all, OperatingPoint::visit);
+    listing.numbers.into_iter().map(|(path, (key, _))| (path, key)).collect()
+}
+
+impl Project {
+    /// The operating point with what is uncertain of it: where nothing is declared, the nominal value.
+    pub fn resolved_operating_point(&self) -> OperatingPoint {
+        let mut point = self.operating_point.clone();
+        for uncertain in self.uncertain_numbers() {
+            if let Some(number) = point.at_path(&uncertain.name) {
+                *number = number.or(Some(uncertain.nominal));
+            }
+        }
+        point
+    }
+
+    /// The numbers of `[uncertainty]`, then those of `[family.operating_region]`, before the pump limits them.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_project::{STARTER, read};
+    /// use phea_project::source::Memory;
+    /// let text = format!("{STARTER}\n[family.operating_region]\nload_force = [\"-2 kN\", \"5 kN\"]\n");
+    /// let project = read(&Memory::default().with("p.toml", text.as_str()), "p.toml", &[], &[])?.project;
+    /// let force = project.uncertain_numbers().pop().filter(|last| last.name == "operating_point.load_force");
+    /// assert_eq!(force.map(|one| (one.minimum, one.nominal, one.maximum)), Some((-2000.0, 0.0, 5000.0)));
+    /// # Ok::<(), phea_project::Report>(())
+    /// ```
+    pub fn uncertain_numbers(&self) -> Vec<Uncertain> {
+        let region = self.family.as_ref().and_then(|family| family.operating_region.as_ref());
+        let of_region = region.into_iter().flat_map(|region| self.of_region(region));
+        self.uncertainty.iter().cloned().chain(of_region).collect()
+    }
+
+    /// Nominal is what is declared; else mid stroke, no force and standstill, or what of the region is nearest to these.
+    fn of_region(&self, region: &OperatingRegion) -> Vec<Uncertain> {
+        let middle = self.actuator.as_ref().map_or(0.0, |actuator| actuator.cylinder.stroke / 2.0);
+        let point = &self.operating_point;
+        let numbers = [
+            ("position", region.position, point.position, middle),
+            ("load_force", region.load_force, point.load_force, 0.0),
+            ("velocity", region.velocity, point.velocity, 0.0),
+        ];
+        let uncertain = |(name, range, declared, usual): (&str, Option<[f64; 2]>, Option<f64>, f64)| {
+            let [minimum, maximum] = range?;
+            let nearest = usual.max(minimum).min(maximum);
+            Some(Uncertain {
+                name: format!("{TABLE}.{name}"),
+                nominal: declared.unwrap_or(nearest),
+                minimum,
+                maximum,
+                points: region.points,
+                spacing: Spacing::Linear,
+            })
+        };
+        numbers.into_iter().filter_map(uncertain).collect()
+    }
+}

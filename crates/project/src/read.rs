@@ -1,0 +1,292 @@
+//! From the bytes of a file to a project: settings, tables, then what must hold between them.
+
+use std::collections::BTreeMap;
+
+use sha2::{Digest, Sha256};
+
+use super::diagnostic::{Report, Severity};
+use super::key::{Key, key};
+use super::linear::LINEAR_PARAMETERS;
+use super::listing::{KeyEntry, Listing};
+use super::operating_point::operating_numbers;
+use super::printer::Printer;
+use super::reader::Reader;
+use super::text::{Findings, Found, Place};
+use super::tree::{self, Node};
+use super::{Actuator, Loaded, Project, setting, validate};
+use crate::catalogue::Catalogue;
+use crate::source::Source;
+use phea_quantity::{Dimension, RATIO, display};
+
+/// Reads a project file, applies `path=value` settings, and looks names up in the catalogue, to which the given files
+/// and folders are added.
+///
+/// # Errors
+/// [`Report`] with everything that is wrong, each with file, line and column.
+///
+/// # Example
+/// ```
+/// use phea_project::{self, STARTER};
+/// use phea_project::source::Memory;
+/// let source = Memory::default().with("rig.toml", STARTER);
+/// let loaded = project::read(&source, "rig.toml", &["supply.pressure=80 bar".to_string()], &[])?;
+/// assert_eq!(loaded.project.actuator.map(|actuator| actuator.supply.pressure), Some(80e5));
+/// let refused = project::read(&source, "rig.toml", &["supply.pressure=80 mm".to_string()], &[]).unwrap_err();
+/// assert_eq!(refused.diagnostics[0].message, "expected a pressure, found a length");
+/// # Ok::<(), phea_project::Report>(())
+/// ```
+pub fn read(
+    source: &dyn Source,
+    path: &str,
+    settings: &[String],
+    catalogues: &[String],
+) -> Result<Loaded, Report> {
+    let mut findings = Findings::default();
+    let catalogue = Catalogue::gather(source, catalogues, &mut findings);
+    let bytes = match source.read(path) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            findings.unreadable(path, &error.to_string());
+            return Err(findings.report());
+        }
+    };
+    let Some(mut root) = tree::read(path, &bytes, &mut findings) else { return Err(findings.report()) };
+    let project_text = findings.last_text();
+    root.place.text = project_text;
+    for text in settings {
+        setting::apply(&mut root, text, &mut findings);
+    }
+    let mut reader = Reader::new(&root, project_text, &catalogue, &mut findings);
+    let folder = path.rfind(['/', '\\']).map_or(String::new(), |last| path[..=last].to_string());
+    let project = Project { folder, ..project(&mut reader, &root) };
+    let (mut provenance, catalogue_files) = (reader.provenance, reader.catalogue_files);
+    provenance.sort_by(|a, b| a.path.cmp(&b.path));
+    provenance.dedup_by(|a, b| a.path == b.path);
+    let report = findings.report();
+    if report.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
+        return Err(report);
+    }
+    let sha256 = sha256(&bytes);
+    let warnings = report.diagnostics;
+    let (settings, texts) = (settings.to_vec(), report.texts);
+    let path = path.to_string();
+    Ok(Loaded { project, warnings, texts, path, bytes, sha256, settings, catalogue_files, provenance })
+}
+
+/// The hash by which answers name a project.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn project(reader: &mut Reader<'_>, root: &Node) -> Project {
+    let mut project = Project::default();
+    reader.parameters = parameters(root);
+    let is_measured = measured(root).is_some();
+    let is_plant = root.get("plant").is_some() && !is_measured;
+    refuse_mixture(reader, root, is_plant, is_measured);
+    project.visit_system(reader);
+    if is_plant || is_measured {
+        project.actuator = None;
+    }
+    if !is_plant {
+        project.plant = None;
+    }
+    (reader.named, reader.counts) = numbers(&mut project);
+    if is_plant || is_measured {
+        let parameter = key("parameter", &RATIO, "A parameter of the plant.");
+        reader.named = reader.parameters.iter().map(|name| (name.clone(), parameter)).collect();
+    }
+    project.visit_wishes(reader);
+    reader.close();
+    validate::project(&project, reader);
+    project
+}
+
+/// The key that names measured plants.
+fn measured(root: &Node) -> Option<&tree::Entry> {
+    root.get("family")?.node.get("measured")
+}
+
+/// Names that formulas of the plant may contain: what `[uncertainty]` and `[family]` give values to.
+fn parameters(root: &Node) -> Vec<String> {
+    let names = |node: &Node| node.entries().iter().map(|entry| entry.key.clone()).collect::<Vec<_>>();
+    let mut parameters = root.get("uncertainty").map(|entry| names(&entry.node)).unwrap_or_default();
+    let cases = root.get("family").and_then(|entry| entry.node.get("cases"));
+    if let Some(tree::Value::List(cases)) = cases.map(|entry| &entry.node.value) {
+        parameters.extend(cases.iter().take(1).flat_map(names));
+    }
+    parameters.sort();
+    parameters.dedup();
+    parameters
+}
+
+/// Either an actuator, or a plant, or measured ones, and all of it.
+fn refuse_mixture(reader: &mut Reader<'_>, root: &Node, is_plant: bool, is_measured: bool) {
+    let tables = Actuator::REQUIRED.iter().chain(&["load"]).copied();
+    let present: Vec<_> = tables.clone().filter_map(|name| root.get(name)).collect();
+    if is_measured {
+        for entry in
+            present.into_iter().chain(["plant", "uncertainty"].iter().filter_map(|name| root.get(name)))
+        {
+            let message =
+                format!("[{}] describes a plant, but [family] `measured` gives measured ones", entry.key);
+            reader.findings.push(Found::error(entry.key_place, message).help("remove one of the two"));
+        }
+        reader.parts = false;
+        tables.for_each(|name| reader.know(name));
+        return;
+    }
+    if is_plant {
+        for entry in present {
+            let message = format!("[{}] describes an actuator, but [plant] replaces it", entry.key);
+            reader.findings.push(Found::error(entry.key_place, message).help("remove one of the two"));
+        }
+        reader.parts = false;
+        tables.for_each(|name| reader.know(name));
+        return;
+    }
+    if present.is_empty() {
+        reader.parts = false;
+        let message = "nothing is described: neither an actuator nor a plant";
+        let found = Found::error(root.place, message).consequence();
+        let expected = "[fluid], [supply], [valve], [cylinder], [line] and [force_sensor], or [plant], or [family] `measured`";
+        return reader.findings.push(found.expected(expected));
+    }
+    for name in Actuator::REQUIRED.iter().filter(|name| root.get(name).is_none()) {
+        reader.findings.push(Found::error(root.place, format!("missing table [{name}]")).consequence());
+    }
+}
+
+/// Every number of the project that can be named, and the parameters of its linear model; and its whole numbers, which cannot vary.
+fn numbers(project: &mut Project) -> (BTreeMap<String, Key>, Vec<String>) {
+    let mut listing = Listing::default();
+    project.visit_system(&mut listing);
+    let mut named: BTreeMap<String, Key> =
+        listing.numbers.into_iter().map(|(path, (key, _))| (path, key)).collect();
+    named.remove("schema");
+    if project.actuator.is_some() {
+        named.extend(
+            LINEAR_PARAMETERS.iter().map(|parameter| (parameter.key.name.to_string(), parameter.key)),
+        );
+        named.extend(super::scenario::start_numbers());
+        named.extend(operating_numbers());
+    }
+    (named, listing.counts)
+}
+
+/// The project as TOML: [`read`] gives an equal project, if the same catalogue is at hand.
+pub fn print(project: &Project) -> String {
+    let mut project = project.clone();
+    let (mut named, _) = numbers(&mut project);
+    let parameter = key("parameter", &RATIO, "A parameter of the plant.");
+    let missing = project.uncertainty.iter().filter(|uncertain| !named.contains_key(&uncertain.name));
+    let missing: Vec<String> = missing.map(|uncertain| uncertain.name.clone()).collect();
+    named.extend(missing.into_iter().map(|name| (name, parameter)));
+    let mut printer = Printer::new(named);
+    project.visit_system(&mut printer);
+    project.visit_wishes(&mut printer);
+    printer.finish()
+}
+
+/// Every key a project file may have, in the order of the tables.
+pub fn keys() -> Vec<KeyEntry> {
+    let mut listing = Listing::of_everything();
+    let mut project = Project::default();
+    project.visit_system(&mut listing);
+    project.visit_wishes(&mut listing);
+    listing.keys
+}
+
+impl Project {
+    /// The path of a file that the project names, as [`Source`] takes it: relative ones start at the project file.
+    ///
+    /// # Example
+    /// ```
+    /// let project = phea_project::Project { folder: "rigs/".to_string(), ..Default::default() };
+    /// assert_eq!(project.path_of("bench 1.csv"), "rigs/bench 1.csv");
+    /// assert_eq!(project.path_of("/data/bench 1.csv"), "/data/bench 1.csv");
+    /// ```
+    pub fn path_of(&self, name: &str) -> String {
+        let drive = name.chars().nth(1) == Some(':');
+        if drive || name.starts_with(['/', '\\']) {
+            name.to_string()
+        } else {
+            format!("{}{name}", self.folder)
+        }
+    }
+
+    /// The number at a dotted path such as `supply.pressure`, in SI.
+    pub fn number(&self, path: &str) -> Option<f64> {
+        if let Some(number) = self.operating_point.clone().at_path(path) {
+            return *number;
+        }
+        let mut listing = Listing::default();
+        self.clone().visit_system(&mut listing);
+        listing.numbers.get(path).map(|(_, value)| *value)
+    }
+
+    /// What each number measures, by its path or its name in the linear model.
+    pub(crate) fn dimensions(&self) -> BTreeMap<String, &'static Dimension> {
+        let (named, _) = numbers(&mut self.clone());
+        named.into_iter().map(|(path, key)| (path, key.dimension)).collect()
+    }
+
+    /// A value of the number at a path, in a unit of its dimension.
+    pub(crate) fn in_words(&self, path: &str, value: f64) -> String {
+        let (named, _) = numbers(&mut self.clone());
+        named.get(path).map_or_else(|| value.to_string(), |key| display(value, key.dimension, 4))
+    }
+
+    /// The same project with another number at a path; `None` if there is no number. Those of the operating point always are.
+    #[must_use]
+    pub fn with_number(&self, path: &str, value: f64) -> Option<Project> {
+        self.with_numbers(&[(path, value)])
+    }
+
+    /// The same project with other numbers at several paths; `None` if one of them leads to no number.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_project::{STARTER, read};
+    /// use phea_project::source::Memory;
+    /// let project = read(&Memory::default().with("p.toml", STARTER), "p.toml", &[], &[])?.project;
+    /// let other = project.with_numbers(&[("supply.pressure", 6e6), ("cylinder.moving_mass", 20.0)]);
+    /// assert_eq!(other.and_then(|other| other.number("supply.pressure")), Some(6e6));
+    /// assert_eq!(project.with_numbers(&[("supply.pressure", 6e6), ("supply.colour", 1.0)]), None);
+    /// # Ok::<(), phea_project::Report>(())
+    /// ```
+    #[must_use]
+    pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Option<Project> {
+        let mut project = self.clone();
+        let mut assign: BTreeMap<String, f64> = BTreeMap::new();
+        for (path, value) in numbers {
+            match project.operating_point.at_path(path) {
+                Some(number) => *number = Some(*value),
+                None => drop(assign.insert((*path).to_string(), *value)),
+            }
+        }
+        let wanted = assign.len();
+        let mut listing = Listing::assigning(assign);
+        if wanted > 0 {
+            project.visit_system(&mut listing);
+        }
+        (listing.assigned == wanted).then_some(project)
+    }
+
+    /// What is known of every number a campaign may vary, and its value where one is stated; those of the start have none here.
+    pub(crate) fn listed_numbers(&self) -> BTreeMap<String, (Key, Option<f64>)> {
+        let mut listing = Listing::default();
+        self.clone().visit_system(&mut listing);
+        let numbers = listing.numbers.into_iter().map(|(path, (key, value))| (path, (key, Some(value))));
+        let start = super::scenario::start_numbers().into_iter().map(|(path, key)| (path, (key, None)));
+        numbers.chain(start).collect()
+    }
+}
+
+impl Findings {
+    /// A file that could not be read at all.
+    pub(crate) fn unreadable(&mut self, path: &str, reason: &str) {
+        let text = self.add_text(path, "", 0);
+        self.push(Found::error(Place { text, start: 0, end: 0 }, reason.to_string()).syntax());
+    }
+}

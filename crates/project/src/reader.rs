@@ -1,0 +1,284 @@
+//! Fills a project from the tree of a file, and reports everything that is wrong with it.
+
+mod choice;
+mod fields;
+mod values;
+
+use std::collections::BTreeMap;
+
+use super::key::Key;
+use super::text::{Findings, Found, Place};
+use super::tree::{Entry, Node, Value};
+use super::{Origin, Provenance};
+use crate::catalogue::Catalogue;
+use phea_quantity::spelling::nearest;
+
+/// Reads the tables of one file.
+pub(crate) struct Reader<'a> {
+    pub(crate) findings: &'a mut Findings,
+    catalogue: &'a Catalogue,
+    root: &'a Node,
+    frames: Vec<Frame<'a>>,
+    /// Index of the text of the project itself; others are settings.
+    project_text: usize,
+    /// Whether absent keys are no errors, as in the catalogue.
+    partial: bool,
+    /// Whether something was absent that a project needs.
+    pub(crate) incomplete: bool,
+    /// Whether the parts of an actuator are read.
+    pub(crate) parts: bool,
+    /// Numbers of the project that can be named, with what is known of them.
+    pub(crate) named: BTreeMap<String, Key>,
+    /// Its whole numbers, which have no range to vary in.
+    pub(crate) counts: Vec<String>,
+    /// Parameters that formulas may contain.
+    pub(crate) parameters: Vec<String>,
+    /// Where each value is written, by its path.
+    pub(crate) places: BTreeMap<String, Place>,
+    /// Where each table of a list is written, by its path.
+    pub(crate) item_places: BTreeMap<String, Place>,
+    pub(crate) provenance: Vec<Provenance>,
+    pub(crate) catalogue_files: Vec<String>,
+}
+
+/// A table being read.
+struct Frame<'a> {
+    path: String,
+    place: Place,
+    /// The table itself, then what it inherits from.
+    layers: Vec<Layer<'a>>,
+    /// Keys asked for so far.
+    asked: Vec<&'static str>,
+    /// What chose the variant being read, in words.
+    chosen: Option<String>,
+    /// Whether it names an entry that the catalogue does not have, so that what seems to be missing may not be.
+    lost: bool,
+    /// While the keys of another variant are looked at: those that are taken for absent, as they are read already.
+    passed_over: Option<Vec<&'static str>>,
+    /// The values of a table written as an array, in the order of its keys.
+    in_order: Option<std::slice::Iter<'a, Node>>,
+}
+
+/// A table, or what it inherits from.
+#[derive(Clone)]
+struct Layer<'a> {
+    node: &'a Node,
+    /// Keys of it that do not count.
+    hidden: Vec<&'static str>,
+    /// The catalogue's entry it comes from.
+    entry: Option<&'a crate::catalogue::Entry>,
+}
+
+/// A value that was found.
+#[derive(Clone, Copy)]
+struct Hit<'a> {
+    node: &'a Node,
+    entry: Option<&'a crate::catalogue::Entry>,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(
+        root: &'a Node,
+        project_text: usize,
+        catalogue: &'a Catalogue,
+        findings: &'a mut Findings,
+    ) -> Self {
+        let mut reader = Reader {
+            findings,
+            catalogue,
+            root,
+            frames: Vec::new(),
+            project_text,
+            partial: false,
+            incomplete: false,
+            parts: true,
+            named: BTreeMap::new(),
+            counts: Vec::new(),
+            parameters: Vec::new(),
+            places: BTreeMap::new(),
+            item_places: BTreeMap::new(),
+            provenance: Vec::new(),
+            catalogue_files: Vec::new(),
+        };
+        reader.open(String::new(), root.place, vec![Layer { node: root, hidden: Vec::new(), entry: None }]);
+        reader
+    }
+
+    /// Takes absent keys as they are.
+    pub(crate) fn partial(mut self) -> Self {
+        self.partial = true;
+        self
+    }
+
+    fn open(&mut self, path: String, place: Place, layers: Vec<Layer<'a>>) {
+        self.frames.push(Frame {
+            path,
+            place,
+            layers,
+            asked: Vec::new(),
+            chosen: None,
+            lost: false,
+            passed_over: None,
+            in_order: None,
+        });
+    }
+
+    /// Ends a table: what nobody asked for is unknown. Gives the keys that were asked for.
+    pub(crate) fn close(&mut self) -> Vec<&'static str> {
+        let Some(frame) = self.frames.pop() else { return Vec::new() };
+        let Some(own) = frame.layers.first() else { return frame.asked };
+        for entry in own.node.entries() {
+            if !frame.asked.contains(&entry.key.as_str()) {
+                self.findings.push(unknown(entry, &frame));
+            }
+        }
+        if let Some(extra) = frame.in_order.and_then(|mut rest| rest.next()) {
+            let message = format!("too many values: `{}` has {}", frame.path, frame.asked.len());
+            self.findings.push(Found::error(extra.place, message));
+        }
+        frame.asked
+    }
+
+    /// Ends a table whose unknown keys someone else reports. Gives the keys that were asked for.
+    fn leave(&mut self) -> Vec<&'static str> {
+        self.frames.pop().map(|frame| frame.asked).unwrap_or_default()
+    }
+
+    /// Where the file begins.
+    pub(crate) fn root_place(&self) -> Place {
+        Place { text: self.project_text, start: 0, end: 0 }
+    }
+
+    /// A top-level key, whether asked for or not.
+    pub(crate) fn root_entry(&self, key: &str) -> Option<&'a Entry> {
+        self.root.get(key)
+    }
+
+    /// Counts a key of the present table as known.
+    pub(crate) fn know(&mut self, key: &'static str) {
+        if let Some(frame) = self.frames.last_mut() {
+            frame.asked.push(key);
+        }
+    }
+
+    fn path(&self, key: &str) -> String {
+        match self.frames.last() {
+            Some(frame) if !frame.path.is_empty() => format!("{}.{key}", frame.path),
+            _ => key.to_string(),
+        }
+    }
+
+    fn place(&self) -> Place {
+        self.frames.last().map(|frame| frame.place).unwrap_or_default()
+    }
+
+    /// The value of a key of the present table, from itself or what it inherits.
+    fn find(&mut self, key: Key) -> Option<Hit<'a>> {
+        let path = self.path(key.name);
+        let frame = self.frames.last_mut()?;
+        if frame.passed_over.as_ref().is_some_and(|keys| keys.contains(&key.name)) {
+            return None;
+        }
+        if !frame.asked.contains(&key.name) {
+            frame.asked.push(key.name);
+            if let Some(values) = &mut frame.in_order {
+                let node = values.next()?;
+                self.places.insert(path, node.place);
+                return Some(Hit { node, entry: None });
+            }
+        }
+        let hit = frame.layers.iter().find_map(|layer| {
+            let visible = !layer.hidden.contains(&key.name);
+            let entry = layer.node.get(key.name).filter(|_| visible)?;
+            Some(Hit { node: &entry.node, entry: layer.entry })
+        })?;
+        if hit.entry.is_none() {
+            self.places.insert(path, hit.node.place);
+        }
+        Some(hit)
+    }
+
+    /// How to write a name with dots in it, where it was taken for tables in each other.
+    fn quoted(&self, key: Key, entry: &Entry) -> Option<String> {
+        let (mut name, mut node) = (entry.key.clone(), &entry.node);
+        while !self.named.contains_key(&name) {
+            let [inner] = node.entries() else { return None };
+            name = format!("{name}.{}", inner.key);
+            node = &inner.node;
+        }
+        Some(format!(
+            "`{name}` is one name: write it in quotes, {0}.\"{name}\" (on a command line --set '{0}.\"{name}\"=...')",
+            key.name
+        ))
+    }
+
+    fn origin(&self, key: Key, hit: Hit<'a>) -> Origin {
+        match hit.entry {
+            Some(entry) => Origin::Catalogue { name: entry.name.clone(), source: entry.source_of(key.name) },
+            None if hit.node.place.text == self.project_text => Origin::Project,
+            None => Origin::Setting(self.findings.content(hit.node.place.text).to_string()),
+        }
+    }
+
+    fn record_origin(&mut self, key: Key, origin: Origin) {
+        let path = self.path(key.name);
+        self.provenance.push(Provenance { path, origin });
+    }
+
+    /// Whether the present table is only searched for keys of variants that were not chosen.
+    fn looks_elsewhere(&self) -> bool {
+        self.frames.last().is_some_and(|frame| frame.passed_over.is_some())
+    }
+
+    fn missing(&mut self, key: Key) {
+        if self.takes_absent() {
+            return;
+        }
+        let needs = self.frames.last().and_then(|frame| frame.chosen.as_ref());
+        let needs = needs.map_or(String::new(), |chosen| format!(": {chosen} needs it"));
+        let message = format!("missing `{}`{}{needs}", key.name, self.of_table());
+        let mut found = Found::error(self.place(), message).consequence().help(key.doc);
+        if !std::ptr::eq(key.dimension, &phea_quantity::RATIO) {
+            found = found.expected(format!("{}, such as {}", key.dimension.name, key.dimension.examples));
+        }
+        self.findings.push(found);
+    }
+
+    /// Whether what is absent is taken as it is, which is remembered.
+    fn takes_absent(&mut self) -> bool {
+        self.incomplete = true;
+        self.partial || self.looks_elsewhere()
+    }
+
+    /// The present table, as in `missing ... in [line]`.
+    fn of_table(&self) -> String {
+        let path = self.frames.last().map_or("", |frame| frame.path.as_str());
+        if path.is_empty() { String::new() } else { format!(" in [{path}]") }
+    }
+
+    fn wrong_kind(&mut self, key: Key, expected: &str, node: &Node) {
+        let message = format!("`{}` must be {expected}, not {}", key.name, node.kind());
+        self.findings.push(Found::error(node.place, message));
+    }
+
+    /// Opens the table under a hit; whether it is one.
+    fn enter(&mut self, key: Key, hit: Hit<'a>, path: String) -> bool {
+        if !matches!(hit.node.value, Value::Table(_)) {
+            self.wrong_kind(key, "a table", hit.node);
+            return false;
+        }
+        self.open(path, hit.node.place, vec![Layer { node: hit.node, hidden: Vec::new(), entry: hit.entry }]);
+        true
+    }
+}
+
+/// A key nobody asked for.
+fn unknown(entry: &Entry, frame: &Frame<'_>) -> Found {
+    let place = if frame.path.is_empty() { String::new() } else { format!(" in [{}]", frame.path) };
+    let found = Found::error(entry.key_place, format!("unknown key `{}`{place}", entry.key));
+    match nearest(&entry.key, frame.asked.iter().copied()) {
+        Some(name) => found.help(format!("did you mean `{name}`?")),
+        None if frame.asked.len() <= 12 => found.help(format!("known here: {}", frame.asked.join(", "))),
+        None => found,
+    }
+}

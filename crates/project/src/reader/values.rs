@@ -1,0 +1,198 @@
+//! Numbers and formulas, and what is wrong with them.
+
+use super::Reader;
+use crate::formula::{Formula, Ratio};
+use crate::key::Key;
+use crate::text::{Found, Place};
+use crate::tree::{Node, Value};
+use crate::visitor::Shape;
+use phea_quantity as quantity;
+use phea_quantity::spelling::nearest;
+
+impl Reader<'_> {
+    /// The SI value of a number or a quantity in text, within the key's range.
+    pub(super) fn number(&mut self, key: Key, node: &Node) -> Option<f64> {
+        let value = match &node.value {
+            Value::Number(value) => *value,
+            Value::Text(text) => match quantity::parse(text, key.dimension) {
+                Ok(value) => value,
+                Err(error) => {
+                    let place = self.inside(node, text, error.range);
+                    let found = Found::error(place, error.message).maybe_help(error.help);
+                    self.findings.push(found.maybe_expected(error.expected));
+                    return None;
+                }
+            },
+            _ => {
+                let examples = format!("{}, such as {}", key.dimension.name, key.dimension.examples);
+                let message = format!("`{}` must be {}, not {}", key.name, key.dimension.name, node.kind());
+                self.findings.push(Found::error(node.place, message).expected(examples));
+                return None;
+            }
+        };
+        if key.range.contains(value) {
+            return Some(value);
+        }
+        // A number that f64 cannot hold was refused where it was read.
+        if !self.findings.has_error_within(node.place) {
+            self.findings.push(Found::error(node.place, objection(key, value)));
+        }
+        None
+    }
+
+    /// A whole number within the key's range.
+    pub(super) fn whole(&mut self, key: Key, node: &Node) -> Option<u32> {
+        let number = self.number(key, node)?;
+        if number.fract() == 0.0 && number >= 0.0 && number <= f64::from(u32::MAX) {
+            return Some(number as u32);
+        }
+        let message = format!("`{}` must be a whole number", key.name);
+        self.findings.push(Found::error(node.place, message));
+        None
+    }
+
+    /// A number, or a pair of real and imaginary part.
+    pub(super) fn complex(&mut self, key: Key, node: &Node) -> Option<[f64; 2]> {
+        let Value::List(parts) = &node.value else { return Some([self.number(key, node)?, 0.0]) };
+        if let [real, imaginary] = parts.as_slice() {
+            return Some([self.number(key, real)?, self.number(key, imaginary)?]);
+        }
+        let message = format!("a complex number has two parts, not {}", parts.len());
+        self.findings.push(Found::error(node.place, message).help("write [real, imaginary]"));
+        None
+    }
+
+    /// A formula of that shape; a number is one too.
+    pub(super) fn read_formula(&mut self, key: Key, shape: Shape, node: &Node) -> Option<Formula> {
+        let (formula, text) = match &node.value {
+            Value::Text(text) => {
+                let parametric = matches!(shape, Shape::Parametric | Shape::Coefficient);
+                let named = parametric && self.parameters.iter().any(|parameter| parameter == "z");
+                let parse =
+                    if named && !self.is_sampled() { Formula::parse_continuous } else { Formula::parse };
+                (parse(text), text.as_str())
+            }
+            Value::Number(value) if value.is_finite() => (Ok(Formula::number(*value)), ""),
+            _ => {
+                let message = format!("`{}` must be a formula in text, not {}", key.name, node.kind());
+                self.findings.push(Found::error(node.place, message));
+                return None;
+            }
+        };
+        let checked = formula.and_then(|formula| {
+            let ratio = if formula.parameters().is_empty() { Some(formula.numbers()?) } else { None };
+            Ok((formula, ratio))
+        });
+        match checked {
+            Ok((formula, ratio)) => {
+                let known = self.check_parameters(&formula, shape, node, text);
+                let plain = match (shape, formula.variable()) {
+                    (Shape::Coefficient, Some(variable)) => {
+                        let message =
+                            format!("`{}` is a number: `{}` has no meaning here", key.name, variable.name());
+                        self.findings.push(Found::error(node.place, message));
+                        false
+                    }
+                    (Shape::Coefficient, None) => true,
+                    _ => self.check_shape(key, ratio.as_ref(), shape, node),
+                };
+                (known && plain).then_some(formula)
+            }
+            Err(error) => {
+                let place = self.inside(node, text, error.range);
+                self.findings.push(Found::error(place, error.message).maybe_help(error.help));
+                None
+            }
+        }
+    }
+
+    /// Whether the loop has a computer in it, so that `z` has a meaning of its own.
+    fn is_sampled(&self) -> bool {
+        let sampled =
+            |table| self.root_entry(table).is_some_and(|entry| entry.node.get("sample_time").is_some());
+        sampled("controller") || sampled("prefilter")
+    }
+
+    /// Whether a text is meant as a formula rather than as a number with a unit.
+    pub(super) fn reads_as_formula(&self, key: Key, text: &str) -> bool {
+        if quantity::parse(text, key.dimension).is_ok() {
+            return false;
+        }
+        if std::ptr::eq(key.dimension, &quantity::GAIN) {
+            return text.contains(['*', '(', '/', '+', '^', 's', 'z']);
+        }
+        let mut words = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+        let named = words.any(|word| self.parameters.iter().any(|parameter| parameter == word));
+        named || text.contains(['*', '(', '+', '^']) || text.trim_start().starts_with(char::is_alphabetic)
+    }
+
+    fn check_parameters(&mut self, formula: &Formula, shape: Shape, node: &Node, text: &str) -> bool {
+        let mut known = true;
+        let parametric = matches!(shape, Shape::Parametric | Shape::Coefficient);
+        for (name, range) in formula.parameters() {
+            if parametric && self.parameters.iter().any(|parameter| parameter == name) {
+                continue;
+            }
+            known = false;
+            let place = self.inside(node, text, range);
+            let found = Found::error(place, format!("unknown name `{name}`"));
+            let near = nearest(name, self.parameters.iter().map(String::as_str));
+            self.findings.push(match (parametric, near) {
+                (true, Some(near)) => found.help(format!("did you mean `{near}`?")),
+                (true, None) => found.help(format!("give `{name}` its range in [uncertainty]")),
+                (false, _) => found.help("only `s` (or `z`) and numbers have a meaning here"),
+            });
+        }
+        known
+    }
+
+    fn check_shape(&mut self, key: Key, ratio: Option<&Ratio<f64>>, shape: Shape, node: &Node) -> bool {
+        let Some(ratio) = ratio else { return true };
+        let message = if shape != Shape::Ratio && ratio.denominator.len() > 1 {
+            format!("`{}` must be a polynomial: here the variable is divided by", key.name)
+        } else if ratio.numerator.iter().all(|c| *c == 0.0) || ratio.denominator.iter().all(|c| *c == 0.0) {
+            format!("`{}` is zero", key.name)
+        } else {
+            return true;
+        };
+        self.findings.push(Found::error(node.place, message));
+        false
+    }
+
+    /// Where a part of a decoded text stands in the file: exact unless the text has escapes.
+    fn inside(&self, node: &Node, text: &str, range: std::ops::Range<usize>) -> Place {
+        let Place { text: index, start, end } = node.place;
+        let raw = self.findings.content(index).get(start..end).unwrap_or_default();
+        let quotes = raw.len().saturating_sub(text.len()) / 2;
+        if raw.get(quotes..quotes + text.len()) != Some(text) {
+            return node.place;
+        }
+        let last = end.saturating_sub(quotes);
+        let from = (start + quotes + range.start).min(last);
+        Place { text: index, start: from, end: (start + quotes + range.end).clamp(from, last) }
+    }
+}
+
+/// Why a number is outside its key's range.
+fn objection(key: Key, value: f64) -> String {
+    let name = key.name;
+    let show = |number: f64| quantity::display(number, key.dimension, 6);
+    if value.is_nan() {
+        return format!("`{name}` must be a number");
+    }
+    if value.is_infinite() {
+        return format!("`{name}` must be finite");
+    }
+    let range = key.range;
+    if range.minimum == range.maximum {
+        return format!("`{name}` must be {}", show(range.minimum));
+    }
+    let low = if range.above_minimum { value <= range.minimum } else { value < range.minimum };
+    let side = match (low, range.above_minimum, range.below_maximum) {
+        (true, true, _) => format!("above {}", show(range.minimum)),
+        (true, false, _) => format!("at least {}", show(range.minimum)),
+        (false, _, true) => format!("below {}", show(range.maximum)),
+        (false, _, false) => format!("at most {}", show(range.maximum)),
+    };
+    format!("`{name}` must be {side}; it is {}", show(value))
+}

@@ -1,0 +1,277 @@
+//! `[[scenario]]`: what is simulated.
+
+use super::key::{Key, key, plain};
+use super::measured::MeasuredFile;
+use super::signal::{Signal, SignalUnit};
+use super::visitor::{Variants, Visitor};
+use phea_quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PRESSURE, RATIO, TIME, VELOCITY, VOLTAGE};
+
+/// One simulation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scenario {
+    /// Names its results.
+    pub name: String,
+    /// s.
+    pub duration: f64,
+    /// s, between rows of the result.
+    pub output_step: f64,
+    /// The state at the start; absent: the closed loop at rest at the position of the operating point, mid stroke by default.
+    pub start: Option<Start>,
+    /// The reference force, the sum of these.
+    pub reference: Vec<Signal>,
+    /// The open-loop command of the valve, the sum of these; none: the controller commands.
+    pub command: Vec<Signal>,
+    /// What the load does.
+    pub load_motion: Option<LoadMotion>,
+    /// A force on the load from outside, the sum of these; positive in the direction of positive position.
+    pub external_force: Vec<Signal>,
+    /// Percent, of every settling time.
+    pub settling_band_percent: f64,
+    /// What was measured on the rig.
+    pub measured: Vec<MeasuredFile>,
+}
+
+/// The state at the start; states not named are zero.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Start {
+    /// m.
+    pub position: Option<f64>,
+    /// m/s.
+    pub velocity: Option<f64>,
+    /// Pa.
+    pub pressure_a: Option<f64>,
+    /// Pa.
+    pub pressure_b: Option<f64>,
+    /// V, spool position as equivalent command.
+    pub spool: Option<f64>,
+    /// N, deflection of the load cell as a force.
+    pub force: Option<f64>,
+    /// A file with the state at the end of another run, instead of all these.
+    pub file: Option<String>,
+}
+
+/// Published metrics of a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Published {
+    /// Overshoot in percent of the step.
+    pub overshoot_percent: Option<f64>,
+    /// Settling time in s.
+    pub settling_time: Option<f64>,
+    /// Where it is published.
+    pub source: Option<String>,
+    /// What a reader should know of it.
+    pub remark: Option<String>,
+}
+
+/// What the load does.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LoadMotion {
+    /// Its shape in time.
+    pub shape: MotionShape,
+    /// s, when it begins.
+    pub start: f64,
+}
+
+/// Shape of the load motion in time. Distances and amplitudes in m, times in s, frequencies in rad/s.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MotionShape {
+    /// Quintic: velocity and acceleration are zero at both ends.
+    SmoothStep {
+        /// How long it moves.
+        duration: f64,
+        /// How far.
+        distance: f64,
+    },
+    /// 1 - exp(-t/τ).
+    FirstOrder {
+        /// How far.
+        distance: f64,
+        /// τ.
+        time_constant: f64,
+    },
+    /// Sine.
+    Sine {
+        /// Of the sine.
+        amplitude: f64,
+        /// Of the sine.
+        frequency: f64,
+    },
+    /// Sine whose frequency moves evenly.
+    Chirp {
+        /// How long it moves.
+        duration: f64,
+        /// Of the sine.
+        amplitude: f64,
+        /// Where it begins.
+        frequency: f64,
+        /// Where it ends.
+        final_frequency: f64,
+    },
+    /// From a CSV file with time and position.
+    File {
+        /// Its name.
+        file: String,
+    },
+}
+
+impl Default for MotionShape {
+    fn default() -> Self {
+        MotionShape::SmoothStep { duration: 0.0, distance: 0.0 }
+    }
+}
+
+impl Variants for MotionShape {
+    const STRICT: bool = true;
+
+    fn all(&self) -> Vec<MotionShape> {
+        vec![
+            MotionShape::default(),
+            MotionShape::FirstOrder { distance: 0.0, time_constant: 0.0 },
+            MotionShape::Sine { amplitude: 0.0, frequency: 0.0 },
+            MotionShape::Chirp { duration: 0.0, amplitude: 0.0, frequency: 0.0, final_frequency: 0.0 },
+            MotionShape::File { file: String::new() },
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            MotionShape::SmoothStep { .. } => "smooth_step",
+            MotionShape::FirstOrder { .. } => "first_order",
+            MotionShape::Sine { .. } => "sine",
+            MotionShape::Chirp { .. } => "chirp",
+            MotionShape::File { .. } => "file",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let how_long = key("duration", &TIME, "Of a smooth step or a chirp.").positive();
+        let how_far = key("distance", &LENGTH, "Of a smooth or first-order step.");
+        let size = key("amplitude", &LENGTH, "Of a sine or chirp.").positive();
+        let first = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
+        match self {
+            MotionShape::SmoothStep { duration, distance } => {
+                v.quantity(how_long, duration);
+                v.quantity(how_far, distance);
+            }
+            MotionShape::FirstOrder { distance, time_constant } => {
+                v.quantity(how_far, distance);
+                let k = key("time_constant", &TIME, "Of a first-order step.").positive();
+                v.quantity(k, time_constant);
+            }
+            MotionShape::Sine { amplitude, frequency } => {
+                v.quantity(size, amplitude);
+                v.quantity(first, frequency);
+            }
+            MotionShape::Chirp { duration, amplitude, frequency, final_frequency } => {
+                v.quantity(how_long, duration);
+                v.quantity(size, amplitude);
+                v.quantity(first, frequency);
+                let k = key("final_frequency", &ANGULAR_FREQUENCY, "Where a chirp ends.").positive();
+                v.quantity(k, final_frequency);
+            }
+            MotionShape::File { file } => {
+                let mut name = Some(std::mem::take(file));
+                v.text(plain("file", "A CSV file with time and position."), &mut name, true);
+                *file = name.unwrap_or_default();
+            }
+        }
+    }
+}
+
+impl Scenario {
+    /// Whether it runs open loop.
+    pub fn is_open_loop(&self) -> bool {
+        !self.command.is_empty()
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let mut name = Some(std::mem::take(&mut self.name));
+        v.text(plain("name", "Names its results."), &mut name, true);
+        self.name = name.unwrap_or_default();
+        let k = key("duration", &TIME, "How long is simulated.").positive();
+        v.quantity(k, &mut self.duration);
+        let k = key("output_step", &TIME, "Time between rows of the result.").positive().or(1e-3);
+        v.quantity(k, &mut self.output_step);
+        let k =
+            plain("start", "State at the start; states not named are zero. Absent: the closed loop at rest.");
+        v.table(k, &mut self.start, Start::visit);
+        let k =
+            plain("reference", "The reference force: steps, each until the next, and what is added to them.");
+        v.one_or_more(k, &mut self.reference, Signal::visitor(SignalUnit::REFERENCE));
+        let k = plain("command", "The command of the valve, open loop: no controller acts.");
+        v.one_or_more(k, &mut self.command, Signal::visitor(SignalUnit::COMMAND));
+        v.table(plain("load_motion", "What the load does."), &mut self.load_motion, LoadMotion::visit);
+        let k = plain("external_force", "A force on the load from outside, towards positive positions.");
+        v.one_or_more(k, &mut self.external_force, Signal::visitor(SignalUnit::EXTERNAL_FORCE));
+        let k = key("settling_band_percent", &RATIO, "Band of every settling time, in percent.");
+        v.quantity(k.positive().below(100.0).or(1.0), &mut self.settling_band_percent);
+        let k = plain("measured", "What was measured on the rig, laid over the simulation.");
+        v.tables(k, &mut self.measured, MeasuredFile::visit);
+    }
+}
+
+impl Start {
+    /// A number of it by its key.
+    pub(crate) fn number(&self, key: &str) -> Option<f64> {
+        *self.clone().place(key)?
+    }
+
+    /// Another number for a key; nothing for a key it does not have.
+    pub(crate) fn set_number(&mut self, key: &str, value: f64) {
+        if let Some(place) = self.place(key) {
+            *place = Some(value);
+        }
+    }
+
+    fn place(&mut self, key: &str) -> Option<&mut Option<f64>> {
+        match key {
+            "position" => Some(&mut self.position),
+            "velocity" => Some(&mut self.velocity),
+            "pressure_a" => Some(&mut self.pressure_a),
+            "pressure_b" => Some(&mut self.pressure_b),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("position", &LENGTH, "Position of the piston.").not_negative();
+        v.optional(k, &mut self.position);
+        v.optional(key("velocity", &VELOCITY, "Velocity of the piston."), &mut self.velocity);
+        let k = key("pressure_a", &PRESSURE, "Pressure in chamber A, gauge.").above(-101_325.0);
+        v.optional(k, &mut self.pressure_a);
+        let k = key("pressure_b", &PRESSURE, "Pressure in chamber B, gauge.").above(-101_325.0);
+        v.optional(k, &mut self.pressure_b);
+        v.optional(key("spool", &VOLTAGE, "Spool position as equivalent command."), &mut self.spool);
+        v.optional(key("force", &FORCE, "Force in the load cell."), &mut self.force);
+        v.text(plain("file", "A saved state to go on from, instead of all these."), &mut self.file, false);
+    }
+}
+
+impl Published {
+    pub(super) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("overshoot_percent", &RATIO, "Overshoot, in percent of the step.").not_negative();
+        v.optional(k, &mut self.overshoot_percent);
+        let k = key("settling_time", &TIME, "Settling time.").positive();
+        v.optional(k, &mut self.settling_time);
+        v.text(plain("source", "Where it is published."), &mut self.source, true);
+        v.text(plain("remark", "What a reader should know of it."), &mut self.remark, false);
+    }
+}
+
+impl LoadMotion {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.variant(plain("kind", "Its shape in time."), &mut self.shape, true);
+        v.quantity(key("start", &TIME, "When it begins.").not_negative().or(0.0), &mut self.start);
+    }
+}
+
+/// The numbers of the start as a campaign names them: `start.position` and so on.
+pub(crate) fn start_numbers() -> Vec<(String, Key)> {
+    let keys = [
+        key("start.position", &LENGTH, "Position of the piston at the start.").not_negative(),
+        key("start.velocity", &VELOCITY, "Velocity of the piston at the start."),
+        key("start.pressure_a", &PRESSURE, "Pressure in chamber A at the start.").above(-101_325.0),
+        key("start.pressure_b", &PRESSURE, "Pressure in chamber B at the start.").above(-101_325.0),
+    ];
+    keys.into_iter().map(|key| (key.name.to_string(), key)).collect()
+}

@@ -1,0 +1,22 @@
+//! `[sensor]`: what lies between the controlled output and what the controller sees.
+
+use super::key::key;
+use super::plant::Rational;
+use super::visitor::Visitor;
+use phea_quantity::TIME;
+
+/// The dynamics of the sensor, H; absent: 1.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sensor {
+    /// Numerator and denominator in s.
+    pub transfer: Rational,
+    /// s, dead time.
+    pub delay: f64,
+}
+
+impl Sensor {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        self.transfer.visit(v);
+        v.quantity(key("delay", &TIME, "Dead time of the sensor.").not_negative().or(0.0), &mut self.delay);
+    }
+}

@@ -1,0 +1,304 @@
+//! Known functions of time that a scenario asks for: a reference force, an open-loop command, a force from outside.
+
+use super::key::{Key, key, plain};
+use super::scenario::Published;
+use super::visitor::{Variants, Visitor};
+use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, Dimension, FORCE, TIME, VOLTAGE};
+
+/// One part of a function of time; the parts add up, each zero before it begins. Values and amplitudes in the unit of what it is of, times
+/// in s, frequencies in rad/s. Without a start it begins at once; once its duration is over it holds the value it ends with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Signal {
+    /// A value that holds until the next step.
+    Step {
+        /// When it comes.
+        at: f64,
+        /// From then on.
+        value: f64,
+        /// What somebody published of a step of the reference, to stand beside the simulation's own.
+        published: Option<Published>,
+    },
+    /// Several steps.
+    Steps {
+        /// When each comes.
+        times: Vec<f64>,
+        /// Each holds from its time until the next.
+        values: Vec<f64>,
+    },
+    /// At one rate from zero to a value.
+    Ramp {
+        /// How far.
+        value: f64,
+        /// When it begins.
+        start: Option<f64>,
+        /// How long it moves.
+        duration: f64,
+    },
+    /// Sine.
+    Sine {
+        /// When it begins.
+        start: Option<f64>,
+        /// How long it moves; absent: to the end.
+        duration: Option<f64>,
+        /// Of the sine.
+        amplitude: f64,
+        /// Of the sine.
+        frequency: f64,
+    },
+    /// Sine whose frequency moves evenly.
+    Chirp {
+        /// When it begins.
+        start: Option<f64>,
+        /// How long it moves.
+        duration: f64,
+        /// Of the sine.
+        amplitude: f64,
+        /// Where it begins.
+        frequency: f64,
+        /// Where it ends.
+        final_frequency: f64,
+    },
+    /// Several sines at once.
+    Multisine(Multisine),
+    /// From a CSV file with time and value.
+    File {
+        /// When it begins.
+        start: Option<f64>,
+        /// Its name.
+        file: String,
+    },
+}
+
+/// Several sines at once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Multisine {
+    /// s, when it begins; absent: at once.
+    pub start: Option<f64>,
+    /// s, how long it moves; absent: to the end.
+    pub duration: Option<f64>,
+    /// How large the sines are.
+    pub amplitudes: Amplitudes,
+    /// rad/s.
+    pub frequencies: Vec<f64>,
+    /// rad; none: Schroeder's, which keep its peak low.
+    pub phases: Vec<f64>,
+}
+
+/// How large the sines of a multisine are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Amplitudes {
+    /// All of one size.
+    Equal(f64),
+    /// One for each sine.
+    Each(Vec<f64>),
+}
+
+impl Default for Amplitudes {
+    fn default() -> Self {
+        Amplitudes::Each(Vec::new())
+    }
+}
+
+impl Default for Signal {
+    fn default() -> Self {
+        Signal::Step { at: 0.0, value: 0.0, published: None }
+    }
+}
+
+/// What a signal is of, and how its values are called.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SignalUnit {
+    /// Key of one value.
+    pub(crate) value: &'static str,
+    /// Key of several.
+    pub(crate) values: &'static str,
+    pub(crate) dimension: &'static Dimension,
+    /// Whether a step has room for what somebody published of it.
+    published: bool,
+}
+
+impl SignalUnit {
+    /// Of a reference.
+    pub(crate) const REFERENCE: SignalUnit =
+        SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: true };
+    /// Of a force on the load from outside.
+    pub(crate) const EXTERNAL_FORCE: SignalUnit =
+        SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: false };
+    /// Of an open-loop command.
+    pub(crate) const COMMAND: SignalUnit =
+        SignalUnit { value: "voltage", values: "voltages", dimension: &VOLTAGE, published: false };
+}
+
+/// A signal as it is written, which depends on what it is of.
+#[derive(Clone)]
+struct Written {
+    unit: SignalUnit,
+    signal: Signal,
+}
+
+impl Variants for Written {
+    const STRICT: bool = true;
+
+    fn all(&self) -> Vec<Written> {
+        let (start, amplitude, frequency) = (None, 0.0, 0.0);
+        let all = [
+            Signal::default(),
+            Signal::Steps { times: Vec::new(), values: Vec::new() },
+            Signal::Ramp { value: 0.0, start, duration: 0.0 },
+            Signal::Sine { start, duration: None, amplitude, frequency },
+            Signal::Chirp { start, duration: 0.0, amplitude, frequency, final_frequency: 0.0 },
+            Signal::Multisine(Multisine::default()),
+            Signal::File { start, file: String::new() },
+        ];
+        all.map(|signal| Written { unit: self.unit, signal }).into()
+    }
+
+    fn word(&self) -> &'static str {
+        self.signal.kind()
+    }
+
+    fn goes_without_saying(&self) -> bool {
+        matches!(self.signal, Signal::Step { .. })
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let of = self.unit.dimension;
+        let level = key(self.unit.value, of, "Of a step, until the next; how far a ramp goes.");
+        let begins = key("start", &TIME, "When it begins; absent: at once.").not_negative();
+        let how_long =
+            key("duration", &TIME, "How long it moves; it holds the value it ends with.").positive();
+        let size = key("amplitude", of, "Of a sine, a chirp, or each sine of a multisine.").positive();
+        let first = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
+        match &mut self.signal {
+            Signal::Step { at, value, published } => {
+                v.quantity(key("at", &TIME, "When a step comes.").not_negative(), at);
+                v.quantity(level, value);
+                if self.unit.published {
+                    let doc = "Metrics somebody published of this step, for the report to set beside.";
+                    v.table(plain("published", doc), published, Published::visit);
+                }
+            }
+            Signal::Steps { times, values } => {
+                let k = key("times", &TIME, "When each of several steps comes.").not_negative();
+                v.quantities(k, times, true);
+                let k = key(self.unit.values, of, "Of several steps, each until the next.");
+                v.quantities(k, values, true);
+            }
+            Signal::Ramp { value, start, duration } => {
+                v.quantity(level, value);
+                v.optional(begins, start);
+                v.quantity(how_long, duration);
+            }
+            Signal::Sine { start, duration, amplitude, frequency } => {
+                v.optional(begins, start);
+                v.optional(how_long, duration);
+                v.quantity(size, amplitude);
+                v.quantity(first, frequency);
+            }
+            Signal::Chirp { start, duration, amplitude, frequency, final_frequency } => {
+                v.optional(begins, start);
+                v.quantity(how_long, duration);
+                v.quantity(size, amplitude);
+                v.quantity(first, frequency);
+                let k = key("final_frequency", &ANGULAR_FREQUENCY, "Where a chirp ends.").positive();
+                v.quantity(k, final_frequency);
+            }
+            Signal::Multisine(sines) => {
+                v.optional(begins, &mut sines.start);
+                v.optional(how_long, &mut sines.duration);
+                sines.amplitudes.visit(size, v);
+                let k = key("frequencies", &ANGULAR_FREQUENCY, "Of the sines of a multisine.").positive();
+                v.quantities(k, &mut sines.frequencies, true);
+                let k = key("phases", &ANGLE, "Of the sines of a multisine; absent: Schroeder's.");
+                v.quantities(k, &mut sines.phases, false);
+            }
+            Signal::File { start, file } => {
+                v.optional(begins, start);
+                let mut name = Some(std::mem::take(file));
+                v.text(plain("file", "A CSV file with time and value."), &mut name, true);
+                *file = name.unwrap_or_default();
+            }
+        }
+    }
+}
+
+impl Amplitudes {
+    /// One for each of so many sines.
+    pub fn of(&self, count: usize) -> Vec<f64> {
+        match self {
+            Amplitudes::Equal(amplitude) => vec![*amplitude; count],
+            Amplitudes::Each(amplitudes) => amplitudes.clone(),
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, size: Key, v: &mut V) {
+        let (mut equal, mut each) = match std::mem::take(self) {
+            Amplitudes::Equal(amplitude) => (Some(amplitude), Vec::new()),
+            Amplitudes::Each(amplitudes) => (None, amplitudes),
+        };
+        v.optional(size, &mut equal);
+        let k = key("amplitudes", size.dimension, "Of each sine of a multisine.").positive();
+        v.quantities(k, &mut each, false);
+        *self = equal.map_or(Amplitudes::Each(each), Amplitudes::Equal);
+    }
+}
+
+impl Signal {
+    /// Its shape, as it is written in the project file.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Signal::Step { .. } => "step",
+            Signal::Steps { .. } => "steps",
+            Signal::Ramp { .. } => "ramp",
+            Signal::Sine { .. } => "sine",
+            Signal::Chirp { .. } => "chirp",
+            Signal::Multisine(_) => "multisine",
+            Signal::File { .. } => "file",
+        }
+    }
+
+    /// When it begins, s; of several steps, the first.
+    pub fn begins_s(&self) -> f64 {
+        match self {
+            Signal::Step { at, .. } => *at,
+            Signal::Steps { times, .. } => times.first().copied().unwrap_or(0.0),
+            Signal::Ramp { start, .. }
+            | Signal::Sine { start, .. }
+            | Signal::Chirp { start, .. }
+            | Signal::Multisine(Multisine { start, .. })
+            | Signal::File { start, .. } => start.unwrap_or(0.0),
+        }
+    }
+
+    /// How long it moves, s, where that is stated.
+    pub fn duration_s(&self) -> Option<f64> {
+        match self {
+            Signal::Ramp { duration, .. } | Signal::Chirp { duration, .. } => Some(*duration),
+            Signal::Sine { duration, .. } | Signal::Multisine(Multisine { duration, .. }) => *duration,
+            Signal::Step { .. } | Signal::Steps { .. } | Signal::File { .. } => None,
+        }
+    }
+
+    /// The times and values of its steps.
+    pub fn steps(&self) -> Vec<(f64, f64)> {
+        match self {
+            Signal::Step { at, value, .. } => vec![(*at, *value)],
+            Signal::Steps { times, values } => times.iter().copied().zip(values.iter().copied()).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// What somebody published of it, of a step of the reference.
+    pub fn published(&self) -> Option<&Published> {
+        if let Signal::Step { published, .. } = self { published.as_ref() } else { None }
+    }
+
+    /// Reads or prints it as what it is of.
+    pub(crate) fn visitor<V: Visitor>(unit: SignalUnit) -> impl Fn(&mut Signal, &mut V) {
+        move |signal, v| {
+            let mut written = Written { unit, signal: std::mem::take(signal) };
+            v.variant(plain("kind", "Its shape in time; absent: a step."), &mut written, false);
+            *signal = written.signal;
+        }
+    }
+}

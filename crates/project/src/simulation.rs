@@ -1,0 +1,47 @@
+//! `[simulation]`: how exactly scenarios are simulated.
+
+use super::key::{key, plain};
+use super::visitor::Visitor;
+use phea_quantity::RATIO;
+
+/// How steps are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StepMethod {
+    /// Implicit, of order 5, for stiff systems.
+    #[default]
+    Rosenbrock,
+    /// Explicit, of order 5: an independent check.
+    DormandPrince,
+}
+
+/// By which method, how exactly, with which random numbers, and with how much work at most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Simulation {
+    /// How steps are made.
+    pub method: StepMethod,
+    /// Largest error of a step, relative to each state plus its scale.
+    pub tolerance: f64,
+    /// Steps after which a simulation ends.
+    pub maximum_steps: u32,
+    /// Of all random numbers.
+    pub seed: u32,
+}
+
+impl Default for Simulation {
+    fn default() -> Simulation {
+        Simulation { method: StepMethod::default(), tolerance: 1e-6, maximum_steps: 10_000_000, seed: 1 }
+    }
+}
+
+impl Simulation {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let words = &[("rosenbrock", StepMethod::Rosenbrock), ("dormand_prince", StepMethod::DormandPrince)];
+        v.choice(plain("method", "How steps are made."), words, &mut self.method, false);
+        let k = key("tolerance", &RATIO, "Largest error of a step, relative to each state plus its scale.");
+        v.quantity(k.at_least(1e-12).at_most(1e-2).or(1e-6), &mut self.tolerance);
+        let k = key("maximum_steps", &RATIO, "Steps after which a simulation ends.").at_least(1.0);
+        v.count(k.at_most(4e9).or(1e7), &mut self.maximum_steps);
+        let k = key("seed", &RATIO, "Seed of all random numbers.").not_negative().at_most(4e9).or(1.0);
+        v.count(k, &mut self.seed);
+    }
+}

@@ -1,0 +1,96 @@
+//! `[sizing]`.
+
+use super::key::key;
+use super::visitor::Visitor;
+use phea_quantity::{FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, LENGTH, RATIO, TIME, VELOCITY, VOLTAGE_PER_FORCE};
+
+/// What the compliant component is sized for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sizing {
+    /// How fast the closed loop is to be.
+    pub speed: Speed,
+    /// m³/(s·V), K_qU; absent: derived from the valve at null.
+    pub flow_gain: Option<f64>,
+    /// m³/(s·Pa), K_c; absent: derived from the valve at null.
+    pub flow_pressure_coefficient: Option<f64>,
+    /// m/s, range of the oil velocity: above rejects, below warns.
+    pub oil_velocity: Option<[f64; 2]>,
+    /// V/N, floor of the search over the proportional gain.
+    pub minimum_gain: Option<f64>,
+    /// V/N, where the search over the proportional gain starts.
+    pub maximum_gain: Option<f64>,
+    /// m, available for both hoses together.
+    pub stock_length: Option<f64>,
+    /// m, acceptable range for one hose.
+    pub hose_length: Option<[f64; 2]>,
+    /// m, hoses are cut to multiples of this; absent: to any length.
+    pub length_increment: Option<f64>,
+}
+
+/// How fast a closed loop is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Speed {
+    /// s, its time constant.
+    TimeConstant(f64),
+    /// Its settling time.
+    Settling(Settling),
+}
+
+/// A settling time and its band.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Settling {
+    /// s.
+    pub time: f64,
+    /// Percent of the step.
+    pub band_percent: f64,
+}
+
+impl Default for Speed {
+    fn default() -> Self {
+        Speed::Settling(Settling::default())
+    }
+}
+
+impl Speed {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let (mut constant, mut settling) = match *self {
+            Speed::TimeConstant(time) => (Some(time), None),
+            Speed::Settling(settling) => (None, Some(settling)),
+        };
+        let k = key("time_constant", &TIME, "Time constant of the closed loop; or `settling_time`.");
+        v.optional(k.positive(), &mut constant);
+        v.way(&["settling_time"], &mut settling, Settling::visit);
+        *self = constant.map_or(Speed::Settling(settling.unwrap_or_default()), Speed::TimeConstant);
+    }
+}
+
+impl Settling {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("settling_time", &TIME, "Settling time, with `settling_band_percent`.").positive();
+        v.quantity(k, &mut self.time);
+        let k = key("settling_band_percent", &RATIO, "Band of the settling time, in percent of the step.");
+        v.quantity(k.positive().below(100.0), &mut self.band_percent);
+    }
+}
+
+impl Sizing {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        self.speed.visit(v);
+        let k = key("flow_gain", &FLOW_GAIN, "K_qU; absent: derived from the valve at null.").positive();
+        v.optional(k, &mut self.flow_gain);
+        let k = key("flow_pressure_coefficient", &FLOW_PRESSURE_COEFFICIENT, "K_c; absent: derived.");
+        v.optional(k.not_negative(), &mut self.flow_pressure_coefficient);
+        let k = key("oil_velocity", &VELOCITY, "Range of the oil velocity: above rejects, below warns.");
+        v.pair(k.positive(), &mut self.oil_velocity);
+        let k = key("minimum_gain", &VOLTAGE_PER_FORCE, "Floor of the search over the proportional gain.");
+        v.optional(k.positive(), &mut self.minimum_gain);
+        let k = key("maximum_gain", &VOLTAGE_PER_FORCE, "Start of the search over the proportional gain.");
+        v.optional(k.positive(), &mut self.maximum_gain);
+        let k = key("stock_length", &LENGTH, "Hose to be had, for both lines together.").positive();
+        v.optional(k, &mut self.stock_length);
+        let k = key("hose_length", &LENGTH, "Acceptable range of the length of one hose.").positive();
+        v.pair(k, &mut self.hose_length);
+        let k = key("length_increment", &LENGTH, "Hoses are cut to multiples of this.").positive();
+        v.optional(k, &mut self.length_increment);
+    }
+}

@@ -1,0 +1,165 @@
+//! The workbench's only doors to text and bytes: where files come from, and where long ones go. Shells implement them over the
+//! file system.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::{Mutex, PoisonError};
+
+use crate::answer::OutputFile;
+
+/// Where files come from. A path is what the user wrote; only the implementation gives it a meaning.
+pub trait Source {
+    /// The bytes of a file.
+    ///
+    /// # Errors
+    /// [`SourceError`] if there is no such file or it cannot be read.
+    fn read(&self, path: &str) -> Result<Vec<u8>, SourceError>;
+
+    /// The paths of the files in a folder, each such that [`Source::read`] takes it; in any order. A path that is a
+    /// file gives `None`.
+    ///
+    /// # Errors
+    /// [`SourceError`] if there is neither, or it cannot be read.
+    fn list(&self, path: &str) -> Result<Option<Vec<String>>, SourceError>;
+}
+
+/// A file that could not be read, and why.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cannot read {path}: {reason}")]
+pub struct SourceError {
+    /// As the user wrote it.
+    pub path: String,
+    /// In the words of the system.
+    pub reason: String,
+}
+
+/// Files held in memory, for tests and for shells without a file system.
+///
+/// # Example
+/// ```
+/// use phea_project::source::{Memory, Source};
+/// let source = Memory::default().with("hoses/soft.toml", "schema = 1");
+/// assert_eq!(source.read("hoses/soft.toml")?, b"schema = 1");
+/// assert_eq!(source.list("hoses")?, Some(vec!["hoses/soft.toml".to_string()]));
+/// assert!(source.read("missing.toml").is_err());
+/// # Ok::<(), phea_project::source::SourceError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Memory {
+    files: BTreeMap<String, Vec<u8>>,
+}
+
+impl Memory {
+    /// The same files and one more.
+    #[must_use]
+    pub fn with(mut self, path: &str, content: impl Into<Vec<u8>>) -> Self {
+        self.files.insert(path.to_string(), content.into());
+        self
+    }
+}
+
+impl Source for Memory {
+    fn read(&self, path: &str) -> Result<Vec<u8>, SourceError> {
+        let missing = || SourceError { path: path.to_string(), reason: "no such file".to_string() };
+        self.files.get(path).cloned().ok_or_else(missing)
+    }
+
+    fn list(&self, path: &str) -> Result<Option<Vec<String>>, SourceError> {
+        if self.files.contains_key(path) {
+            return Ok(None);
+        }
+        let folder = format!("{}/", path.trim_end_matches('/'));
+        let inside = |file: &&String| file.strip_prefix(&folder).is_some_and(|name| !name.contains('/'));
+        let files: Vec<String> = self.files.keys().filter(inside).cloned().collect();
+        if files.is_empty() {
+            return Err(SourceError { path: path.to_string(), reason: "no such file or folder".to_string() });
+        }
+        Ok(Some(files))
+    }
+}
+
+/// Where files go that are too long to be held: they are written as they come.
+pub trait Destination {
+    /// Begins a file. It has its name only when it is finished, and is nowhere if it never is.
+    ///
+    /// # Errors
+    /// [`WriteError`] if it cannot be begun.
+    fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError>;
+}
+
+/// A file that is being written. What is written may wait in a buffer until it is finished.
+pub trait Unfinished: io::Write + Send {
+    /// Puts it under its name, whole.
+    ///
+    /// # Errors
+    /// What the system says.
+    fn finish(self: Box<Self>) -> io::Result<()>;
+}
+
+/// A file that could not be written, and why.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cannot write {path}: {reason}")]
+pub struct WriteError {
+    /// Where it should go.
+    pub path: String,
+    /// In the words of the system.
+    pub reason: String,
+}
+
+/// Files held in memory, for tests and for shells without a file system.
+///
+/// # Example
+/// ```
+/// use std::io::Write;
+/// use phea_project::source::{Destination, Held};
+/// let held = Held::default();
+/// let mut table = held.begin("table.csv")?;
+/// table.write_all(b"time_s\n")?;
+/// table.finish()?;
+/// let mut torn = held.begin("torn.csv")?;
+/// torn.write_all(b"time")?;
+/// drop(torn);
+/// let files = held.into_files();
+/// assert_eq!((files.len(), files[0].name.as_str(), files[0].bytes.as_slice()), (1, "table.csv", b"time_s\n".as_slice()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct Held(Mutex<Vec<OutputFile>>);
+
+impl Held {
+    /// All that were finished, in that order.
+    pub fn into_files(self) -> Vec<OutputFile> {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Destination for Held {
+    fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError> {
+        let file = OutputFile { name: name.to_string(), bytes: Vec::new() };
+        Ok(Box::new(Growing { file, finished: &self.0 }))
+    }
+}
+
+struct Growing<'a> {
+    file: OutputFile,
+    finished: &'a Mutex<Vec<OutputFile>>,
+}
+
+impl io::Write for Growing<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.bytes.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Unfinished for Growing<'_> {
+    fn finish(self: Box<Self>) -> io::Result<()> {
+        let Growing { file, finished } = *self;
+        finished.lock().unwrap_or_else(PoisonError::into_inner).push(file);
+        Ok(())
+    }
+}

@@ -1,0 +1,71 @@
+//! `[[specification]]`: what the closed loop must meet.
+
+use super::key::{key, plain};
+use super::limit::Limit;
+use super::visitor::Visitor;
+use phea_quantity::ANGULAR_FREQUENCY;
+
+/// One specification.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Specification {
+    /// Which closed loop is limited.
+    pub kind: SpecificationKind,
+    /// Upper limit; of every kind but tracking.
+    pub limit: Option<Limit>,
+    /// Upper limit of tracking.
+    pub upper: Option<Limit>,
+    /// Lower limit of tracking.
+    pub lower: Option<Limit>,
+    /// rad/s, where bounds are drawn.
+    pub frequencies: Vec<f64>,
+    /// rad/s, where it must hold; absent: the span of `frequencies`.
+    pub band: Option<[f64; 2]>,
+}
+
+/// Which closed loop is limited.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SpecificationKind {
+    /// |L/(1+L)|.
+    #[default]
+    RobustStability,
+    /// |1/(1+L)|.
+    Sensitivity,
+    /// |P/(1+L)|.
+    PlantInputDisturbance,
+    /// |G/(1+L)|.
+    ControlEffort,
+    /// |P_d/(1+L)|.
+    LoadMotion,
+    /// lower <= |F L/(1+L)| <= upper.
+    Tracking,
+}
+
+/// The words of `kind`.
+pub static SPECIFICATION_KINDS: [(&str, SpecificationKind); 6] = [
+    ("robust_stability", SpecificationKind::RobustStability),
+    ("sensitivity", SpecificationKind::Sensitivity),
+    ("plant_input_disturbance", SpecificationKind::PlantInputDisturbance),
+    ("control_effort", SpecificationKind::ControlEffort),
+    ("load_motion", SpecificationKind::LoadMotion),
+    ("tracking", SpecificationKind::Tracking),
+];
+
+impl Specification {
+    /// Where it must hold, rad/s: the declared band, or the span of the frequencies.
+    pub fn band_rad_per_s(&self) -> [f64; 2] {
+        let first = self.frequencies.first().copied().unwrap_or(0.0);
+        let last = self.frequencies.last().copied().unwrap_or(0.0);
+        self.band.unwrap_or([first, last])
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.choice(plain("kind", "Which closed loop is limited."), &SPECIFICATION_KINDS, &mut self.kind, true);
+        Limit::visit("limit", "Upper limit, of every kind but tracking.", &mut self.limit, v);
+        Limit::visit("upper", "Upper limit of tracking.", &mut self.upper, v);
+        Limit::visit("lower", "Lower limit of tracking.", &mut self.lower, v);
+        let k = key("frequencies", &ANGULAR_FREQUENCY, "Where bounds are drawn, increasing.").positive();
+        v.quantities(k, &mut self.frequencies, false);
+        let k = key("band", &ANGULAR_FREQUENCY, "Where it must hold; absent: the span of `frequencies`.");
+        v.pair(k.not_negative().or_infinite(), &mut self.band);
+    }
+}

@@ -1,0 +1,46 @@
+//! `[uncertainty]`: which numbers are uncertain, and how they are gridded.
+
+use super::key::{Key, key, plain};
+use super::visitor::Visitor;
+use phea_quantity::RATIO;
+
+/// One uncertain number.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Uncertain {
+    /// A parameter of the linear model, a path of the project, or a parameter of `[plant]`.
+    pub name: String,
+    /// In SI, like the other two.
+    pub nominal: f64,
+    /// The least it may be.
+    pub minimum: f64,
+    /// The most it may be.
+    pub maximum: f64,
+    /// Points of the grid over it.
+    pub points: u32,
+    /// How the points are spread.
+    pub spacing: Spacing,
+}
+
+/// How grid points are spread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spacing {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// By a constant factor.
+    Logarithmic,
+}
+
+impl Uncertain {
+    /// `number` gives name, dimension and range of the number itself.
+    pub(crate) fn visit<V: Visitor>(&mut self, number: Key, v: &mut V) {
+        let part = |name, doc| Key { name, doc, default: None, ..number };
+        v.quantity(part("nominal", "The value of plant 0."), &mut self.nominal);
+        v.quantity(part("minimum", "The least it may be."), &mut self.minimum);
+        v.quantity(part("maximum", "The most it may be."), &mut self.maximum);
+        let k = key("points", &RATIO, "Points of the grid over it.").at_least(1.0).at_most(1000.0).or(3.0);
+        v.count(k, &mut self.points);
+        let words = &[("linear", Spacing::Linear), ("log", Spacing::Logarithmic)];
+        v.choice(plain("spacing", "How the points are spread."), words, &mut self.spacing, false);
+    }
+}

@@ -1,0 +1,211 @@
+//! The actuator: what geometry and physics forbid.
+
+use super::{Check, line_motion};
+use crate::{
+    Actuator, Component, Cylinder, Friction, FrictionLaw, Interval, Line, Lines, NullLeakage, StribeckCurve,
+    Supply, Valve,
+};
+use phea_quantity::{self as quantity, PRESSURE};
+
+pub(super) fn actuator(actuator: &Actuator, check: &mut Check<'_, '_>) {
+    supply(actuator, check);
+    valve(&actuator.valve, &actuator.supply, check);
+    cylinder(&actuator.cylinder, check);
+    lines(actuator, &actuator.line, check);
+}
+
+fn supply(actuator: &Actuator, check: &mut Check<'_, '_>) {
+    let supply = &actuator.supply;
+    if supply.pressure > 0.0 && supply.tank_pressure >= supply.pressure {
+        let at =
+            if check.declared("supply.tank_pressure") { "supply.tank_pressure" } else { "supply.pressure" };
+        check.error(at, "`tank_pressure` must be below `pressure`");
+    }
+}
+
+fn imperfections(valve: &Valve, check: &mut Check<'_, '_>) {
+    if let (Some(width), Some(threshold)) = (valve.hysteresis, valve.threshold)
+        && width <= threshold
+    {
+        check.error("valve.hysteresis", "`hysteresis` includes `threshold`, so it must be above it");
+    }
+    if valve.null_bias.abs() >= valve.nominal_voltage && valve.nominal_voltage > 0.0 {
+        check.error("valve.null_bias", "`null_bias` must be within the `nominal_voltage`");
+    }
+}
+
+fn valve(valve: &Valve, supply: &Supply, check: &mut Check<'_, '_>) {
+    imperfections(valve, check);
+    if valve.flow.edges().is_some_and(|edges| edges.in_order().iter().all(|edge| *edge == 0.0)) {
+        check.error("valve.flow_coefficients", "all flow coefficients are zero: the valve never opens");
+    }
+    let Some(NullLeakage { flow, maximum, pressure }) = valve.leakage.rating() else { return };
+    if *flow < valve.tare_flow * (pressure / valve.tare_drop(supply)).sqrt() {
+        check.error(
+            "valve.null_leakage",
+            "`null_leakage` includes `tare_flow`, so it cannot be below it, each at its own pressure",
+        );
+    }
+    if maximum.is_some_and(|maximum| maximum < *flow) {
+        check.error("valve.null_leakage_maximum", "`null_leakage_maximum` is below `null_leakage`");
+    }
+}
+
+fn cylinder(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
+    piston(cylinder, check);
+    let rods = [cylinder.rod_diameter.is_some(), cylinder.rod_diameters.is_some()];
+    // an area has its rods subtracted already
+    let by_area = cylinder.piston_area.is_some() || cylinder.piston_areas.is_some();
+    if !by_area || rods.contains(&true) {
+        check.one_of("cylinder", ["rod_diameter", "rod_diameters"], rods);
+    }
+    if cylinder.dead_volume.is_some() && cylinder.dead_volumes.is_some() {
+        check.error("cylinder.dead_volumes", "both `dead_volume` and `dead_volumes`: one says it all");
+    }
+    let too_thick = |piston: f64| cylinder.rod_diameters_m().iter().any(|rod| *rod >= piston);
+    if cylinder.piston_diameter.is_some_and(too_thick) {
+        let at =
+            if cylinder.rod_diameters.is_some() { "cylinder.rod_diameters" } else { "cylinder.rod_diameter" };
+        check.error(at, "the rod is as thick as the piston or thicker: no area is left for the oil");
+    }
+    if let Some(law) = &cylinder.friction {
+        friction(law, check);
+    }
+}
+
+/// One of diameter, common area and two areas; one area does for a rod through both chambers only.
+fn piston(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
+    if cylinder.piston_areas.is_some() {
+        for (name, present) in [
+            ("piston_diameter", cylinder.piston_diameter.is_some()),
+            ("piston_area", cylinder.piston_area.is_some()),
+        ] {
+            if present {
+                check.error(
+                    &format!("cylinder.{name}"),
+                    format!("both `piston_areas` and `{name}`: one says it all"),
+                );
+            }
+        }
+        return;
+    }
+    let area = [cylinder.piston_diameter.is_some(), cylinder.piston_area.is_some()];
+    check.one_of("cylinder", ["piston_diameter", "piston_area"], area);
+    let [rod_a, rod_b] = cylinder.rod_diameters_m();
+    if cylinder.piston_area.is_some() && rod_a != rod_b {
+        let message = "with unequal rods `piston_area` is not the same in both chambers: give `piston_diameter`, or `piston_areas`";
+        check.error("cylinder.piston_area", message);
+    }
+}
+
+fn friction(friction: &Friction, check: &mut Check<'_, '_>) {
+    let (FrictionLaw::Stribeck { curve, .. } | FrictionLaw::LuGre { curve, .. }) = &friction.law else {
+        return;
+    };
+    let StribeckCurve { coulomb, static_friction: breakaway, .. } = *curve;
+    if !check.declared("cylinder.friction.static") || !check.declared("cylinder.friction.coulomb") {
+        return;
+    }
+    if breakaway < coulomb {
+        check.error("cylinder.friction.static", "`static` friction is below `coulomb` friction");
+        return;
+    }
+    let FrictionLaw::LuGre { bristle_damping, .. } = friction.law else { return };
+    let least = bristle_damping * (breakaway - coulomb) / coulomb;
+    if friction.viscous < least {
+        let message = format!(
+            "this LuGre friction can give out energy: it is passive for `viscous` of at least {least} N.s/m \
+             (bristle_damping (static - coulomb)/coulomb; Barabanov and Ortega, 2000)"
+        );
+        check.warning("cylinder.friction.viscous", message);
+    }
+}
+
+fn lines(actuator: &Actuator, lines: &Lines, check: &mut Check<'_, '_>) {
+    line_motion::nobody_inherits(check);
+    for (name, side) in [("a", &lines.a), ("b", &lines.b)] {
+        let own = format!("line.{name}");
+        let path = if check.declared(&own) { own } else { "line".to_string() };
+        line(side, &path, check);
+        line_motion::motion(side, &path, check);
+        expansion(side, actuator.supply.pressure, &path, check);
+        let working = side.hose().and_then(|hose| hose.working_pressure);
+        if working.is_some_and(|working| working < actuator.supply.pressure) {
+            let message = "the hose's `working_pressure` is below the supply pressure";
+            let key = if side.hose_name().is_some() { "hose" } else { "working_pressure" };
+            check.warning(&format!("{path}.{key}"), message);
+        }
+    }
+}
+
+/// The expansion of a hose is known up to the pressure it is stated at.
+fn expansion(line: &Line, supply: f64, path: &str, check: &mut Check<'_, '_>) {
+    let Some(stated) = line.expansion_stated_at().filter(|stated| supply > stated * (1.0 + 1e-9)) else {
+        return;
+    };
+    let [stated, supply] = [stated, supply].map(|pressure| quantity::display(pressure, &PRESSURE, 4));
+    let message = format!(
+        "the expansion of the hose is stated at {stated}, and the supply has {supply}: in between it is carried on along its slope"
+    );
+    let key = if line.hose_name().is_some() { "hose" } else { "volumetric_expansion_pressure" };
+    check.warning(&format!("{path}.{key}"), message);
+}
+
+fn line(line: &Line, path: &str, check: &mut Check<'_, '_>) {
+    let written = |names: &[&str]| names.iter().any(|name| check.declared(&format!("{path}.{name}")));
+    let ways = [written(&Component::HOSE), written(&["pipe"]), written(&Component::VOLUME)];
+    match ways {
+        [false, false, false] => {
+            let message = format!("missing `hose`, `pipe` or `volume` in [{path}]");
+            return check.missing(path, "pipe", message);
+        }
+        [true, false, false] | [false, true, false] | [false, false, true] => {}
+        [_, is_pipe, _] => {
+            let at = if is_pipe { "pipe" } else { "volume" };
+            return check
+                .error(&format!("{path}.{at}"), "a line is a hose, a pipe or a volume: only one of them");
+        }
+    }
+    // what one side has no use for may be for the other
+    let [length, stiffening] =
+        ["length", "dynamic_stiffening"].map(|key| path == "line" && check.declared(&format!("line.{key}")));
+    if length && matches!(line.component, Component::Volume(_)) {
+        check.warning("line.length", "`length` has no effect beside `volume`");
+    }
+    if stiffening && line.hose().is_none() {
+        check.warning("line.dynamic_stiffening", "`dynamic_stiffening` has no effect without a hose");
+    }
+    if let Some(hose) = line.hose()
+        && let (Some(working), Some(burst)) = (hose.working_pressure, hose.burst_pressure)
+        && burst < working
+    {
+        check.error(&format!("{path}.burst_pressure"), "`burst_pressure` is below `working_pressure`");
+    }
+    check.interval(&format!("{path}.dynamic_stiffening"), line.dynamic_stiffening);
+}
+
+impl Check<'_, '_> {
+    fn interval(&mut self, path: &str, interval: Option<Interval>) {
+        let Some(Interval { nominal, minimum, maximum }) = interval else { return };
+        self.bounds(path, [minimum, nominal, maximum]);
+    }
+
+    /// Minimum, nominal and maximum in order.
+    pub(super) fn bounds(&mut self, path: &str, [minimum, nominal, maximum]: [f64; 3]) {
+        if ["minimum", "nominal", "maximum"].iter().any(|name| {
+            let part = format!("{path}.{name}");
+            self.refused(&part) || !self.declared(&part)
+        }) {
+            return;
+        }
+        if minimum > maximum {
+            return self.error(&format!("{path}.minimum"), "`minimum` is above `maximum`");
+        }
+        if minimum > nominal {
+            self.error(&format!("{path}.minimum"), "`minimum` is above `nominal`");
+        }
+        if maximum < nominal {
+            self.error(&format!("{path}.maximum"), "`maximum` is below `nominal`");
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! `[[specification]]`.
+
+use super::Check;
+use crate::{
+    Formula, Limit, MarginWish, Project, ResponseRule, ResponseWish, Specification, SpecificationKind,
+    Variable,
+};
+
+pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
+    for (index, specification) in project.specifications.iter().enumerate() {
+        one_specification(specification, &format!("specification[{index}]"), check);
+        let second_path = project.plant.as_ref().is_none_or(|plant| plant.disturbance.is_some());
+        if specification.kind == SpecificationKind::LoadMotion && !second_path {
+            check.error(&format!("specification[{index}].kind"), "\"load_motion\" needs [plant.disturbance]");
+        }
+    }
+}
+
+fn one_specification(specification: &Specification, path: &str, check: &mut Check<'_, '_>) {
+    let limits =
+        [("limit", &specification.limit), ("upper", &specification.upper), ("lower", &specification.lower)];
+    let tracking = specification.kind == SpecificationKind::Tracking;
+    for (name, limit) in limits {
+        let belongs = tracking != (name == "limit");
+        let at = format!("{path}.{name}");
+        if belongs && limit.is_none() {
+            let kind = if tracking { "a tracking specification" } else { "a specification of this kind" };
+            check.missing(path, name, format!("missing `{name}`: {kind} needs it"));
+        }
+        if !belongs && (limit.is_some() || check.declared(&at)) {
+            let right = if tracking { "`upper` and `lower`" } else { "`limit`" };
+            check.error(&at, format!("`{name}` does not belong here: this kind takes {right}"));
+        }
+        if let Some(limit) = limit.as_ref().filter(|_| belongs) {
+            one_limit(limit, specification.kind, name, &at, check);
+        }
+    }
+    if let (Some(Limit::Constant(lower)), Some(Limit::Constant(upper))) =
+        (&specification.lower, &specification.upper)
+        && lower > upper
+    {
+        check.error(&format!("{path}.lower"), "`lower` is above `upper`");
+    }
+    frequencies(specification, path, check);
+}
+
+fn frequencies(specification: &Specification, path: &str, check: &mut Check<'_, '_>) {
+    let at = format!("{path}.frequencies");
+    if specification.frequencies.is_empty() {
+        match check.declared(&at) {
+            true => check.error(&at, "`frequencies` is empty"),
+            false => check.missing(path, "frequencies", "missing `frequencies`: where bounds are drawn"),
+        }
+    }
+    check.increasing(&at, &specification.frequencies);
+    if let Some([low, high]) = specification.band
+        && low >= high
+    {
+        check.error(&format!("{path}.band"), "`band` is empty or reversed: the lower frequency comes first");
+    }
+}
+
+fn one_limit(limit: &Limit, kind: SpecificationKind, name: &str, path: &str, check: &mut Check<'_, '_>) {
+    match limit {
+        Limit::Constant(_) => {}
+        Limit::Text(formula) => continuous(&[formula], path, check),
+        Limit::Rational(rational) => {
+            continuous(&[&rational.numerator, &rational.denominator], path, check);
+            refuse(&["values"], "needs `frequencies`", path, check);
+        }
+        Limit::Table(table) if table.frequencies.is_empty() => nothing(path, check),
+        Limit::Table(table) => {
+            if table.frequencies.len() != table.values.len() {
+                let (points, values) = (table.frequencies.len(), table.values.len());
+                check.error(path, format!("{points} frequencies but {values} values"));
+            }
+            check.increasing(&format!("{path}.frequencies"), &table.frequencies);
+            let because = "does not belong to a limit given by a table";
+            refuse(&[FUNCTION_KEYS, MARGIN_KEYS, RESPONSE_KEYS].concat(), because, path, check);
+        }
+        Limit::Margins(wish) => {
+            let because = "does not belong to a limit given by margins";
+            refuse(&[&["values"], FUNCTION_KEYS, RESPONSE_KEYS].concat(), because, path, check);
+            margins(wish, kind, path, check);
+        }
+        Limit::Response(wish) if kind == SpecificationKind::Tracking => response(wish, name, path, check),
+        Limit::Response(_) => check.error(path, "a wish in time makes `upper` and `lower` of \"tracking\""),
+    }
+}
+
+/// None of the forms of a limit is there; perhaps because something in it was refused.
+fn nothing(path: &str, check: &mut Check<'_, '_>) {
+    let found = ["values", "denominator"].iter().find(|name| check.declared(&format!("{path}.{name}")));
+    let message = match found {
+        Some(&"values") => "`values` need `frequencies`",
+        Some(_) => "`denominator` needs `numerator`",
+        None => "nothing is limited here",
+    };
+    let forms = "`numerator` and `denominator`, `frequencies` and `values`, margins, or a wish in time";
+    check.error_with_help(path, message, format!("a limit takes a number, a text, {forms}"));
+}
+
+const FUNCTION_KEYS: &[&str] = &["numerator", "denominator"];
+const MARGIN_KEYS: &[&str] =
+    &["gain_margin", "gain_reduction", "phase_margin", "modulus_margin", "delay_margin"];
+const RESPONSE_KEYS: &[&str] =
+    &["overshoot_percent", "settling_time", "settling_band_percent", "zero", "pole", "rule"];
+
+/// Keys that are there but should not be.
+fn refuse(names: &[&str], because: &str, path: &str, check: &mut Check<'_, '_>) {
+    for name in names {
+        let at = format!("{path}.{name}");
+        if check.declared(&at) {
+            check.error(&at, format!("`{name}` {because}"));
+        }
+    }
+}
+
+fn continuous(formulas: &[&Formula], path: &str, check: &mut Check<'_, '_>) {
+    if formulas.iter().any(|formula| formula.variable() == Some(Variable::Z)) {
+        check.error(path, "a limit is written in `s`, not in `z`");
+    }
+}
+
+fn margins(wish: &MarginWish, kind: SpecificationKind, path: &str, check: &mut Check<'_, '_>) {
+    let stability = kind == SpecificationKind::RobustStability;
+    if !stability && kind != SpecificationKind::Sensitivity {
+        return check.error(path, "margins are limits of \"robust_stability\" and \"sensitivity\" alone");
+    }
+    let Some(_) = wish.delay_margin else { return };
+    let at = format!("{path}.delay_margin");
+    if !stability {
+        check.error(&at, "`delay_margin` is a limit of \"robust_stability\" alone");
+    }
+    if *wish != (MarginWish { delay_margin: wish.delay_margin, ..MarginWish::default() }) {
+        let message = "`delay_margin` falls with frequency and cannot be joined with other margins";
+        check.error_with_help(&at, message, "write a [[specification]] of its own for it");
+    }
+}
+
+fn response(wish: &ResponseWish, name: &str, path: &str, check: &mut Check<'_, '_>) {
+    let upper = name == "upper";
+    refuse(&["values"], "needs `frequencies`", path, check);
+    let needed = [
+        ("overshoot_percent", wish.overshoot_percent.is_none() && upper),
+        ("settling_time", wish.settling_time.is_none()),
+        ("settling_band_percent", wish.settling_band_percent.is_none()),
+    ];
+    for (name, absent) in needed {
+        if absent {
+            check.missing(path, name, format!("a wish in time needs `{name}`"));
+        }
+    }
+    let foreign: &[&str] = if upper { &["pole"] } else { &["zero", "overshoot_percent"] };
+    let other = if upper { "lower" } else { "upper" };
+    refuse(foreign, &format!("belongs to `{other}`"), path, check);
+    if let Some(function) = &wish.function {
+        continuous(&[&function.numerator, &function.denominator], path, check);
+        let because = "has no meaning beside `numerator`, which is checked as it is";
+        refuse(&["zero", "pole"], because, path, check);
+        if wish.rule != ResponseRule::default() {
+            refuse(&["rule"], because, path, check);
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! `[valve]`.
+
+use super::Supply;
+use super::key::{key, plain};
+use super::visitor::Visitor;
+use crate::catalogue::Kind;
+use phea_quantity::{
+    ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,
+};
+
+/// The servovalve, by coefficients of its four edges or by its data sheet.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Valve {
+    /// Name of the catalogue entry the values came from.
+    pub model: Option<String>,
+    /// V, command of full opening.
+    pub nominal_voltage: f64,
+    /// rad/s.
+    pub natural_frequency: f64,
+    /// Damping ratio of the spool's dynamics.
+    pub damping_ratio: f64,
+    /// λ of sech(λ U/U_n) in the leakage; zero keeps the leakage constant.
+    pub leakage_shape: f64,
+    /// m³/s, pilot stage flow from supply to tank.
+    pub tare_flow: f64,
+    /// Pa, drop from supply to tank at which the tare flow is stated; absent: the supply's.
+    pub tare_pressure: Option<f64>,
+    /// V, spool position at which the valve is at null.
+    pub null_bias: f64,
+    /// V, width of the loop over a slow full cycle, threshold included.
+    pub hysteresis: Option<f64>,
+    /// V, change of command that a reversal takes.
+    pub threshold: Option<f64>,
+    /// V/s, greatest rate of the spool.
+    pub rate_limit: Option<f64>,
+    /// Pa, pressure drop below which the square root is made regular.
+    pub transition_pressure: f64,
+    /// K_v3 to K_v6, or what they follow from.
+    pub flow: ValveCoefficients<RatedFlow>,
+    /// K_vin3 to K_vin6, or what they follow from.
+    pub leakage: ValveCoefficients<NullLeakage>,
+    /// s, step response time of the data sheet; for information.
+    pub response_time: Option<f64>,
+}
+
+/// ValveCoefficients of the edges as they are declared, or what the data sheet says, from which they follow, equal for all edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ValveCoefficients<R> {
+    /// Declared for each edge, m³/(s·√Pa).
+    Edges {
+        /// As declared.
+        edges: EdgeCoefficients,
+        /// What the data sheet says beside.
+        rating: Option<R>,
+    },
+    /// From the data sheet.
+    Rated(R),
+}
+
+/// The rated flow of a data sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RatedFlow {
+    /// m³/s.
+    pub flow: f64,
+    /// Pa, drop over both edges at this flow.
+    pub pressure_drop: f64,
+}
+
+/// The leakage at null of a data sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NullLeakage {
+    /// m³/s, tare flow included; the lowest of a range.
+    pub flow: f64,
+    /// m³/s, the highest, tare flow included, where the data sheet prints a range.
+    pub maximum: Option<f64>,
+    /// Pa, supply pressure it was measured at.
+    pub pressure: f64,
+}
+
+impl<R: Default> Default for ValveCoefficients<R> {
+    fn default() -> Self {
+        ValveCoefficients::Rated(R::default())
+    }
+}
+
+impl<R> ValveCoefficients<R> {
+    /// Of each edge, where they are declared.
+    pub fn edges(&self) -> Option<&EdgeCoefficients> {
+        if let ValveCoefficients::Edges { edges, .. } = self { Some(edges) } else { None }
+    }
+
+    /// What the data sheet says.
+    pub fn rating(&self) -> Option<&R> {
+        match self {
+            ValveCoefficients::Edges { rating, .. } => rating.as_ref(),
+            ValveCoefficients::Rated(rating) => Some(rating),
+        }
+    }
+
+    fn into_parts(self) -> (Option<EdgeCoefficients>, Option<R>) {
+        match self {
+            ValveCoefficients::Edges { edges, rating } => (Some(edges), rating),
+            ValveCoefficients::Rated(rating) => (None, Some(rating)),
+        }
+    }
+
+    fn of_parts(edges: Option<EdgeCoefficients>, rating: Option<R>) -> Option<ValveCoefficients<R>> {
+        match (edges, rating) {
+            (Some(edges), rating) => Some(ValveCoefficients::Edges { edges, rating }),
+            (None, rating) => rating.map(ValveCoefficients::Rated),
+        }
+    }
+}
+
+impl RatedFlow {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.quantity(key("nominal_flow", &FLOW, "Rated flow of the data sheet.").positive(), &mut self.flow);
+        let k = key("nominal_pressure_drop", &PRESSURE, "Drop over both edges together at the rated flow.");
+        v.quantity(k.positive(), &mut self.pressure_drop);
+    }
+}
+
+impl NullLeakage {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("null_leakage", &FLOW, "Leakage at null, tare flow included; the lowest of a range.");
+        v.quantity(k.not_negative(), &mut self.flow);
+        let k =
+            key("null_leakage_maximum", &FLOW, "Highest leakage at null, where the data sheet has a range.");
+        v.optional(k.not_negative(), &mut self.maximum);
+        let k = key("null_leakage_pressure", &PRESSURE, "Supply pressure the null leakage was measured at.");
+        v.quantity(k.positive(), &mut self.pressure);
+    }
+}
+
+/// One number for each edge of a four-way spool.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EdgeCoefficients {
+    /// Edge 3.
+    pub supply_to_a: f64,
+    /// Edge 4.
+    pub a_to_tank: f64,
+    /// Edge 5.
+    pub supply_to_b: f64,
+    /// Edge 6.
+    pub b_to_tank: f64,
+}
+
+impl EdgeCoefficients {
+    /// All four, to be changed.
+    pub(crate) fn each_mut(&mut self) -> [&mut f64; 4] {
+        [&mut self.supply_to_a, &mut self.a_to_tank, &mut self.supply_to_b, &mut self.b_to_tank]
+    }
+
+    /// In the order of edges 3, 4, 5, 6.
+    pub fn in_order(&self) -> [f64; 4] {
+        [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("supply_to_a", &FLOW_COEFFICIENT, "Edge 3, from supply to chamber A.").not_negative();
+        v.quantity(k, &mut self.supply_to_a);
+        let k = key("a_to_tank", &FLOW_COEFFICIENT, "Edge 4, from chamber A to tank.").not_negative();
+        v.quantity(k, &mut self.a_to_tank);
+        let k = key("supply_to_b", &FLOW_COEFFICIENT, "Edge 5, from supply to chamber B.").not_negative();
+        v.quantity(k, &mut self.supply_to_b);
+        let k = key("b_to_tank", &FLOW_COEFFICIENT, "Edge 6, from chamber B to tank.").not_negative();
+        v.quantity(k, &mut self.b_to_tank);
+    }
+}
+
+impl Valve {
+    /// Pa, drop from supply to tank at which the tare flow is stated.
+    pub fn tare_drop(&self, supply: &Supply) -> f64 {
+        self.tare_pressure.unwrap_or(supply.pressure - supply.tank_pressure)
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.catalogue(plain("model", "Name of a valve of the catalogue."), Kind::Valve, &mut self.model);
+        let k = key("nominal_voltage", &VOLTAGE, "Command of full opening.").positive().or(10.0);
+        v.quantity(k, &mut self.nominal_voltage);
+        let k = key("natural_frequency", &ANGULAR_FREQUENCY, "Natural frequency of the spool's dynamics.");
+        v.quantity(k.positive(), &mut self.natural_frequency);
+        let k = key("damping_ratio", &RATIO, "Damping ratio of the spool's dynamics.").positive();
+        v.quantity(k, &mut self.damping_ratio);
+        let k = key("leakage_shape", &RATIO, "λ of sech(λ U/U_n) in the leakage; 0 keeps it constant.");
+        v.quantity(k.not_negative().or(0.0), &mut self.leakage_shape);
+        let k = key("tare_flow", &FLOW, "Pilot stage flow from supply to tank.").not_negative().or(0.0);
+        v.quantity(k, &mut self.tare_flow);
+        let k = key("transition_pressure", &PRESSURE, "Drop below which the square root is made regular.");
+        v.quantity(k.positive().or(1000.0), &mut self.transition_pressure);
+        self.visit_coefficients(v);
+        let k = key("response_time", &TIME, "Step response time of the data sheet; for information.");
+        v.optional(k.positive(), &mut self.response_time);
+    }
+
+    fn visit_coefficients<V: Visitor>(&mut self, v: &mut V) {
+        let (mut edges, mut rating) = std::mem::take(&mut self.flow).into_parts();
+        let (mut leaking_edges, mut leakage) = std::mem::take(&mut self.leakage).into_parts();
+        let flows = plain("flow_coefficients", "K_v3 to K_v6: a table, or an array in this order.");
+        v.record(flows, &mut edges, EdgeCoefficients::visit);
+        let leaks = plain("leakage_coefficients", "K_vin3 to K_vin6: a table, or an array in this order.");
+        v.record(leaks, &mut leaking_edges, EdgeCoefficients::visit);
+        self.visit_imperfections(v);
+        v.way(&["nominal_flow"], &mut rating, RatedFlow::visit);
+        v.way(&["null_leakage"], &mut leakage, NullLeakage::visit);
+        self.flow = ValveCoefficients::of_parts(edges, rating).unwrap_or_else(|| {
+            let what = "`flow_coefficients`, or `nominal_flow` with `nominal_pressure_drop`,";
+            v.lacks(&[flows.name, "nominal_flow"], what);
+            ValveCoefficients::default()
+        });
+        self.leakage = ValveCoefficients::of_parts(leaking_edges, leakage).unwrap_or_else(|| {
+            let what = "`leakage_coefficients`, or `null_leakage` with `null_leakage_pressure`,";
+            v.lacks(&[leaks.name, "null_leakage"], what);
+            ValveCoefficients::default()
+        });
+    }
+
+    fn visit_imperfections<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("tare_pressure", &PRESSURE, "Drop at which `tare_flow` is stated; absent: the supply's.");
+        v.optional(k.positive(), &mut self.tare_pressure);
+        let k = key("null_bias", &VOLTAGE, "Spool position at which the valve is at null.").or(0.0);
+        v.quantity(k, &mut self.null_bias);
+        let k = key("hysteresis", &VOLTAGE, "Width of the loop over a slow full cycle, threshold included.");
+        v.optional(k.positive(), &mut self.hysteresis);
+        let k = key("threshold", &VOLTAGE, "Change of command that a reversal takes.").positive();
+        v.optional(k, &mut self.threshold);
+        let k = key("rate_limit", &VOLTAGE_RATE, "Greatest rate of the spool, as equivalent command.");
+        v.optional(k.positive(), &mut self.rate_limit);
+    }
+}

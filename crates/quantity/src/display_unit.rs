@@ -1,0 +1,80 @@
+//! Units that figures and sentences show; values come in SI.
+
+use super::significant;
+
+/// A unit on an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DisplayUnit {
+    /// Symbol.
+    pub symbol: &'static str,
+    /// How much SI one of it is.
+    pub in_si: f64,
+}
+
+impl DisplayUnit {
+    /// Length.
+    pub const MILLIMETRE: Self = DisplayUnit { symbol: "mm", in_si: 1e-3 };
+    /// Length.
+    pub const METRE: Self = DisplayUnit { symbol: "m", in_si: 1.0 };
+    /// Area.
+    pub const SQUARE_CENTIMETRE: Self = DisplayUnit { symbol: "cm2", in_si: 1e-4 };
+    /// Modulus.
+    pub const GIGAPASCAL: Self = DisplayUnit { symbol: "GPa", in_si: 1e9 };
+    /// Volume to a length.
+    pub const CUBIC_CENTIMETRE_PER_METRE: Self = DisplayUnit { symbol: "cm3/m", in_si: 1e-6 };
+    /// Time.
+    pub const SECOND: Self = DisplayUnit { symbol: "s", in_si: 1.0 };
+    /// Time.
+    pub const MILLISECOND: Self = DisplayUnit { symbol: "ms", in_si: 1e-3 };
+    /// Frequency.
+    pub const HERTZ: Self = DisplayUnit { symbol: "Hz", in_si: 2.0 * std::f64::consts::PI };
+    /// Flow.
+    pub const LITRE_PER_MINUTE: Self = DisplayUnit { symbol: "L/min", in_si: 1e-3 / 60.0 };
+    /// Stiffness.
+    pub const MEGANEWTON_PER_METRE: Self = DisplayUnit { symbol: "MN/m", in_si: 1e6 };
+    /// Velocity.
+    pub const METRE_PER_SECOND: Self = DisplayUnit { symbol: "m/s", in_si: 1.0 };
+    /// Force.
+    pub const NEWTON: Self = DisplayUnit { symbol: "N", in_si: 1.0 };
+    /// Force.
+    pub const KILONEWTON: Self = DisplayUnit { symbol: "kN", in_si: 1e3 };
+    /// Pressure.
+    pub const BAR: Self = DisplayUnit { symbol: "bar", in_si: 1e5 };
+    /// Control signal.
+    pub const VOLT: Self = DisplayUnit { symbol: "V", in_si: 1.0 };
+    /// Voltage for a force.
+    pub const MILLIVOLT_PER_NEWTON: Self = DisplayUnit { symbol: "mV/N", in_si: 1e-3 };
+    /// A ratio.
+    pub const ONE: Self = DisplayUnit { symbol: "1", in_si: 1.0 };
+
+    /// An SI value in this unit.
+    pub fn of(self, value: f64) -> f64 {
+        value / self.in_si
+    }
+
+    /// An SI value in this unit with so many significant digits, without the symbol.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_quantity::DisplayUnit;
+    /// assert_eq!(DisplayUnit::LITRE_PER_MINUTE.number(1.6e-4, 3), "9.60");
+    /// ```
+    pub fn number(self, value: f64, digits: usize) -> String {
+        significant(self.of(value), digits)
+    }
+
+    /// The same with the symbol behind it.
+    pub fn text(self, value: f64, digits: usize) -> String {
+        self.with_symbol(self.number(value, digits))
+    }
+
+    /// Numbers with the symbol behind them; a ratio has none.
+    pub fn with_symbol(self, numbers: String) -> String {
+        if self.symbol == "1" { numbers } else { format!("{numbers} {}", self.symbol) }
+    }
+
+    /// `quantity (symbol)`.
+    pub fn title(self, quantity: &str) -> String {
+        if self.symbol == "1" { quantity.to_string() } else { format!("{quantity} ({})", self.symbol) }
+    }
+}

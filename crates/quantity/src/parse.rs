@@ -1,0 +1,417 @@
+//! Reading a quantity: a decimal number and a product of units.
+//!
+//! ```text
+//! quantity = number [unit]
+//! unit     = factor { ("." | "·" | "*" | " ") factor } { "/" factor }
+//! factor   = (name | "1" | "(" unit ")") [exponent]
+//! exponent = ["^"] a whole or half number | "²" | "³"
+//! ```
+
+use std::f64::consts::{LN_10, TAU};
+use std::ops::Range;
+
+use super::dimension::{DIMENSIONS, Dimension, Exponents, GAIN};
+use super::exact::Whole;
+use super::unit::{self, Unit};
+use crate::spelling::nearest;
+
+/// What is wrong with a quantity, and where in its text.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct QuantityError {
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// Where, in bytes of the text.
+    pub range: Range<usize>,
+    /// What was expected there.
+    pub expected: Option<String>,
+    /// The nearest valid spelling, or what to do.
+    pub help: Option<String>,
+}
+
+impl QuantityError {
+    fn new(message: impl Into<String>, range: Range<usize>) -> Self {
+        QuantityError { message: message.into(), range, expected: None, help: None }
+    }
+
+    fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+/// Longest text read as a quantity, in bytes.
+const MAXIMUM_LENGTH: usize = 120;
+/// Most factors in one unit.
+const MAXIMUM_FACTORS: usize = 12;
+/// Largest exponent of one factor, in halves.
+const MAXIMUM_EXPONENT: i32 = 16;
+
+/// The SI value of a text such as `"9.8 L/min"`.
+///
+/// The decimal number and the factors of its units are multiplied exactly and rounded once (π and square roots are
+/// rounded on their own). `Hz` counts cycles: where an angular frequency is expected, `"175 Hz"` is 2π·175 rad/s.
+/// `inf` is read as infinity; whether a key accepts it is the key's business.
+///
+/// # Errors
+/// [`QuantityError`] for text that is no quantity, an unknown unit, another dimension, a missing unit, or a number
+/// that f64 cannot hold.
+///
+/// # Example
+/// ```
+/// use phea_quantity::{FLOW, PRESSURE, parse};
+/// assert_eq!(parse("70 bar", &PRESSURE), Ok(70e5));
+/// assert_eq!(parse("10 gpm", &FLOW), Ok(6.30901964e-4));
+/// assert_eq!(parse("70 mm", &PRESSURE).unwrap_err().message, "expected a pressure, found a length");
+/// ```
+pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
+    if text.len() > MAXIMUM_LENGTH {
+        return Err(QuantityError::new("too long for a quantity", 0..text.len()));
+    }
+    let expected = || Some(format!("{}, such as {}", dimension.name, dimension.examples));
+    let with_expected = |mut error: QuantityError| {
+        error.expected = error.expected.or_else(expected);
+        error
+    };
+    let number = Number::read(text).map_err(with_expected)?;
+    let unit_start = number.end + text[number.end..].len() - text[number.end..].trim_start().len();
+    let unit_text = text[unit_start..].trim_end();
+    let unit_range = unit_start..unit_start + unit_text.len();
+    if unit_text.is_empty() {
+        return unitless(text, &number, dimension).map_err(with_expected);
+    }
+    if unit_text == "dB" && std::ptr::eq(dimension, &GAIN) {
+        let decibels = number.times(&Product::default(), text).map_err(with_expected)?;
+        return finite(phea_dynamics::scalar::Scalar::exp(decibels * LN_10 / 20.0), text);
+    }
+    let product =
+        Reader { text, at: unit_start, end: unit_range.end, factors: 0 }.unit().map_err(with_expected)?;
+    if !accepts(dimension, product.exponents) {
+        let message = format!("expected {}, found {}", dimension.name, name_of(product.exponents));
+        return Err(with_expected(QuantityError::new(message, unit_range)));
+    }
+    number.times(&product, text).map_err(with_expected)
+}
+
+fn unitless(text: &str, number: &Number, dimension: &Dimension) -> Result<f64, QuantityError> {
+    if number.infinite || dimension.exponents == Exponents::NONE {
+        return number.times(&Product::default(), text);
+    }
+    let bare = text.trim();
+    let message = "this number has no unit";
+    let help = format!("add one, or write {bare} without quotes for {}", dimension.si);
+    Err(QuantityError::new(message, 0..text.len()).help(help))
+}
+
+/// An angular frequency may also be written 1/s.
+fn accepts(dimension: &Dimension, found: Exponents) -> bool {
+    let rotation = Exponents::whole(0, 0, -1, 0, 1);
+    let per_second = Exponents::whole(0, 0, -1, 0, 0);
+    found == dimension.exponents || (dimension.exponents == rotation && found == per_second)
+}
+
+fn name_of(exponents: Exponents) -> String {
+    match DIMENSIONS.iter().find(|dimension| dimension.exponents == exponents) {
+        Some(dimension) => dimension.name.to_string(),
+        None => format!("something in {}", exponents.in_base_units()),
+    }
+}
+
+fn finite(value: f64, text: &str) -> Result<f64, QuantityError> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(QuantityError::new("the number is too large", 0..text.len()))
+    }
+}
+
+/// A decimal number, as written.
+struct Number {
+    negative: bool,
+    infinite: bool,
+    digits: String,
+    ten: i64,
+    end: usize,
+}
+
+impl Number {
+    fn read(text: &str) -> Result<Number, QuantityError> {
+        let start = text.len() - text.trim_start().len();
+        let bytes = text.as_bytes();
+        let mut at = start;
+        let sign = bytes.get(at).copied();
+        if matches!(sign, Some(b'+' | b'-')) {
+            at += 1;
+        }
+        let negative = sign == Some(b'-');
+        if text[at..].trim_end() == "inf" {
+            return Ok(Number { negative, infinite: true, digits: String::new(), ten: 0, end: text.len() });
+        }
+        let take = |from: usize| from + bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
+        let whole_end = take(at);
+        let mut digits = text[at..whole_end].to_string();
+        let mut end = whole_end;
+        if bytes.get(end) == Some(&b'.') && bytes.get(end + 1).is_some_and(u8::is_ascii_digit) {
+            end = take(whole_end + 1);
+            digits.push_str(&text[whole_end + 1..end]);
+        }
+        if digits.is_empty() {
+            return Err(Number::missing(text, start));
+        }
+        let mut ten = -i64::try_from(end - whole_end).unwrap_or(0).saturating_sub(1).max(0);
+        if matches!(bytes.get(end), Some(b'e' | b'E')) {
+            let signed = matches!(bytes.get(end + 1), Some(b'+' | b'-'));
+            let exponent_start = end + 1 + usize::from(signed);
+            let exponent_end =
+                if exponent_start <= bytes.len() { take(exponent_start) } else { exponent_start };
+            if exponent_end > exponent_start {
+                let exponent: i64 = text[end + 1..exponent_end].parse().unwrap_or(i64::MAX);
+                ten = ten.saturating_add(exponent.clamp(-100_000, 100_000));
+                end = exponent_end;
+            }
+        }
+        if text[end..].starts_with(',') {
+            let error = QuantityError::new("a comma inside a number", end..end + 1);
+            return Err(error.help("write the decimal sign as a point and no separators"));
+        }
+        Ok(Number { negative, infinite: false, digits, ten, end })
+    }
+
+    fn missing(text: &str, start: usize) -> QuantityError {
+        let rest = text[start..].chars().next().map_or(0, char::len_utf8);
+        let message = if rest == 0 { "an empty text" } else { "a quantity begins with a number" };
+        QuantityError::new(message, start..start + rest)
+    }
+
+    fn times(&self, product: &Product, text: &str) -> Result<f64, QuantityError> {
+        if self.infinite {
+            return Ok(if self.negative { f64::NEG_INFINITY } else { f64::INFINITY });
+        }
+        let mut whole = Whole::from_digits(&self.digits);
+        for factor in &product.over {
+            whole.multiply(*factor);
+        }
+        let magnitude = whole.to_f64(self.ten + product.ten, &product.under) * product.rounded;
+        let value = finite(if self.negative { -magnitude } else { magnitude }, text)?;
+        let nothing = self.digits.chars().all(|digit| digit == '0');
+        if value == 0.0 && !nothing {
+            return Err(QuantityError::new("the number is too small to be told from zero", 0..text.len()));
+        }
+        Ok(value)
+    }
+}
+
+/// A product of units: `over / under · 10^ten · rounded`.
+#[derive(Clone, Debug)]
+struct Product {
+    exponents: Exponents,
+    over: Vec<u64>,
+    under: Vec<u64>,
+    ten: i64,
+    rounded: f64,
+}
+
+impl Default for Product {
+    fn default() -> Self {
+        Product { exponents: Exponents::NONE, over: Vec::new(), under: Vec::new(), ten: 0, rounded: 1.0 }
+    }
+}
+
+impl Product {
+    fn of(unit: &Unit) -> Product {
+        let rounded = if unit.turns == 1 { TAU } else { 1.0 };
+        let (over, under) = (vec![unit.numerator], vec![unit.denominator]);
+        Product { exponents: unit.exponents, over, under, ten: i64::from(unit.ten), rounded }
+    }
+
+    /// To the power of `halves`/2.
+    fn power(&self, halves: i32) -> Option<Product> {
+        let mut exponents = [0; 5];
+        for (power, exponent) in exponents.iter_mut().zip(self.exponents.0) {
+            let scaled = i32::from(exponent) * halves;
+            *power = if scaled % 2 == 0 { i8::try_from(scaled / 2).ok()? } else { return None };
+        }
+        let mut result = Product::default();
+        let half = halves % 2 != 0;
+        if half {
+            let mut square = Whole::from_digits("1");
+            for factor in &self.over {
+                square.multiply(*factor);
+            }
+            let root = (square.to_f64(self.ten, &self.under) * self.rounded).sqrt();
+            result.rounded = if halves > 0 { root } else { 1.0 / root };
+        }
+        for _ in 0..(halves / 2).unsigned_abs() {
+            let factor = if halves > 0 { self.clone() } else { self.inverse() };
+            result = result.times(&factor)?;
+        }
+        result.exponents = Exponents(exponents);
+        Some(result)
+    }
+
+    fn inverse(&self) -> Product {
+        Product {
+            exponents: Exponents(self.exponents.0.map(|exponent| -exponent)),
+            over: self.under.clone(),
+            under: self.over.clone(),
+            ten: -self.ten,
+            rounded: 1.0 / self.rounded,
+        }
+    }
+
+    fn times(mut self, other: &Product) -> Option<Product> {
+        for (sum, term) in self.exponents.0.iter_mut().zip(other.exponents.0) {
+            *sum = sum.checked_add(term)?;
+        }
+        self.over.extend(&other.over);
+        self.under.extend(&other.under);
+        self.ten += other.ten;
+        self.rounded *= other.rounded;
+        Some(self)
+    }
+}
+
+/// Reads a unit from left to right.
+struct Reader<'a> {
+    text: &'a str,
+    at: usize,
+    end: usize,
+    factors: usize,
+}
+
+impl Reader<'_> {
+    fn unit(&mut self) -> Result<Product, QuantityError> {
+        let product = self.product(true)?;
+        if self.at < self.end {
+            let range = self.at..self.at + self.peek().map_or(0, char::len_utf8);
+            return Err(QuantityError::new("unexpected character in a unit", range));
+        }
+        Ok(product)
+    }
+
+    fn peek(&self) -> Option<char> {
+        self.text[self.at..self.end].chars().next()
+    }
+
+    fn skip_spaces(&mut self) -> bool {
+        let rest = &self.text[self.at..self.end];
+        let spaces = rest.len() - rest.trim_start().len();
+        self.at += spaces;
+        spaces > 0
+    }
+
+    fn product(&mut self, group_allowed: bool) -> Result<Product, QuantityError> {
+        let mut result = self.factor(group_allowed)?;
+        let mut divided = false;
+        loop {
+            let spaced = self.skip_spaces();
+            let operator_at = self.at;
+            let (divide, length) = match self.peek() {
+                Some('/') => (true, 1),
+                Some(c @ ('.' | '*' | '·')) => (false, c.len_utf8()),
+                None | Some(')') => return Ok(result),
+                Some(_) if spaced => (false, 0),
+                Some(_) => return Ok(result),
+            };
+            if divided && !divide {
+                let range = operator_at..operator_at + self.peek().map_or(0, char::len_utf8);
+                let error = QuantityError::new("a product after \"/\" can be read in two ways", range);
+                return Err(error.help("put parentheses around what is divided by, as in m3/(s.Pa)"));
+            }
+            divided |= divide;
+            self.at += length;
+            self.skip_spaces();
+            let factor = self.factor(group_allowed)?;
+            let factor = if divide { factor.inverse() } else { factor };
+            let range = operator_at..self.at;
+            result =
+                result.times(&factor).ok_or_else(|| QuantityError::new("no such unit is in use", range))?;
+        }
+    }
+
+    fn factor(&mut self, group_allowed: bool) -> Result<Product, QuantityError> {
+        self.factors += 1;
+        let start = self.at;
+        if self.factors > MAXIMUM_FACTORS {
+            return Err(QuantityError::new("too many factors in one unit", start..self.end));
+        }
+        let base = match self.peek() {
+            Some('(') if group_allowed => {
+                self.at += 1;
+                self.skip_spaces();
+                let inner = self.product(false)?;
+                if self.peek() != Some(')') {
+                    return Err(QuantityError::new("this parenthesis is not closed", start..start + 1));
+                }
+                self.at += 1;
+                inner
+            }
+            _ => self.named()?,
+        };
+        match self.exponent()? {
+            None => Ok(base),
+            Some(halves) => base
+                .power(halves)
+                .ok_or_else(|| QuantityError::new("no unit of this grammar has that power", start..self.at)),
+        }
+    }
+
+    fn named(&mut self) -> Result<Product, QuantityError> {
+        let start = self.at;
+        let unity = self.text[self.at..self.end].strip_prefix('1').map(str::trim_start);
+        if unity.is_some_and(|rest| rest.starts_with('/')) {
+            self.at += 1;
+            return Ok(Product::default());
+        }
+        let letters = |c: &char| c.is_alphabetic() || matches!(c, '%' | '°');
+        let length: usize =
+            self.text[self.at..self.end].chars().take_while(letters).map(char::len_utf8).sum();
+        if length == 0 {
+            let wide = self.peek().map_or(0, char::len_utf8);
+            return Err(QuantityError::new("expected the name of a unit", start..start + wide));
+        }
+        self.at += length;
+        let name = &self.text[start..self.at];
+        unit::find(name).map(|unit| Product::of(&unit)).ok_or_else(|| unknown(name, start..self.at))
+    }
+
+    /// In halves; `None` where there is none.
+    fn exponent(&mut self) -> Result<Option<i32>, QuantityError> {
+        let start = self.at;
+        match self.peek() {
+            Some(c @ ('²' | '³')) => {
+                self.at += c.len_utf8();
+                return Ok(Some(if c == '²' { 4 } else { 6 }));
+            }
+            Some('^') => self.at += 1,
+            Some(c) if c.is_ascii_digit() => {}
+            _ => return Ok(None),
+        }
+        let rest = &self.text[self.at..self.end];
+        let part = |c: &char| c.is_ascii_digit() || matches!(c, '.' | '-');
+        let written: String = rest.chars().take_while(part).collect();
+        let written = written.trim_end_matches(['.', '-']);
+        self.at += written.len();
+        let halves = written.parse::<f64>().ok().map(|power| 2.0 * power);
+        let in_range =
+            halves.filter(|h| h.fract() == 0.0 && h.abs() <= f64::from(MAXIMUM_EXPONENT) && *h != 0.0);
+        match in_range {
+            Some(halves) => Ok(Some(halves as i32)),
+            None => Err(QuantityError::new(
+                "expected an exponent such as 2, -1 or 0.5",
+                start..self.at.max(start + 1),
+            )),
+        }
+    }
+}
+
+fn unknown(name: &str, range: Range<usize>) -> QuantityError {
+    let error = QuantityError::new(format!("unknown unit `{name}`"), range);
+    if ["bara", "barA", "psia", "PSIA"].contains(&name) {
+        return error.help("pressures are gauge here: subtract the atmospheric pressure");
+    }
+    match nearest(name, unit::names()) {
+        Some(name) => error.help(format!("did you mean `{name}`?")),
+        None => error,
+    }
+}
