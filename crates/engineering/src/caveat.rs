@@ -3,7 +3,7 @@
 //! A simulation is of the whole machine. What the linear plant cannot count is told before the verdict; where a specification depends
 //! on it, the verdict is not proven.
 
-use crate::project::{LineModel, Load, Project, Pump, SupplyModel};
+use crate::project::{LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::DisplayUnit;
 use crate::rig::limits_load_motion;
 use crate::setup::Setup;
@@ -59,14 +59,14 @@ fn lumped(project: &Project) -> Option<String> {
 /// The key that sets lines in motion, and its word.
 fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
     let line = &project.actuator.as_ref()?.line;
-    let [a, b] = [&line.a, &line.b].map(|line| line.motion.model);
-    let (place, model) = match (a, b) {
-        (LineModel::Lumped, LineModel::Lumped) => return None,
-        (a, b) if a == b => ("line.model", a),
-        (LineModel::Lumped, b) => ("line.b.model", b),
+    let [a, b] = [&line.a, &line.b].map(|line| &line.motion);
+    let (place, motion) = match (a, b) {
+        (LineMotion::Lumped, LineMotion::Lumped) => return None,
+        (a, b) if a.model() == b.model() => ("line.model", a),
+        (LineMotion::Lumped, b) => ("line.b.model", b),
         (a, _) => ("line.a.model", a),
     };
-    Some((place, model.word()))
+    Some((place, motion.model()))
 }
 
 /// A supply that yields is counted as small motions see it, which a large step is not; where more is taken than the pump gives there is no

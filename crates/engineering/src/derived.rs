@@ -15,16 +15,14 @@ pub struct Derived {
     pub name: String,
     /// Symbol as in the notation, such as `K_H`.
     pub symbol: &'static str,
-    /// Value, SI.
-    pub value: f64,
+    /// Value, SI, or why it does not exist.
+    pub value: Result<f64, &'static str>,
     /// SI unit.
     pub unit: &'static str,
     /// Equation it follows from.
     pub equation: &'static str,
     /// The value that holds instead, where the project states one.
     pub stated: Option<Stated>,
-    /// Why the value does not exist, where it is not a number.
-    pub reason: Option<String>,
 }
 
 /// A value that the project states for a quantity that also follows from the rest.
@@ -47,10 +45,8 @@ const BEYOND_BOUNDS: f64 = 0.01;
 impl Derived {
     /// How far the stated value is from the derived one, in percent of the latter; zero where both are zero.
     pub fn difference_percent(&self) -> Option<f64> {
-        self.stated.as_ref().map(|stated| match stated.value == self.value {
-            true => 0.0,
-            false => 100.0 * (stated.value - self.value) / self.value,
-        })
+        let (stated, value) = (self.stated.as_ref()?.value, self.value.ok()?);
+        Some(if stated == value { 0.0 } else { 100.0 * (stated - value) / value })
     }
 
     /// Whether the stated value lies outside the bounds that the project states for it.
@@ -69,13 +65,13 @@ impl Derived {
     /// Whether the derived value contradicts what is stated: it lies more than 1 % outside the stated
     /// bounds, or without bounds more than 5 % away.
     pub fn contradicts_derived(&self) -> bool {
-        match self.stated.as_ref() {
-            None => false,
-            Some(Stated { bounds: Some([minimum, maximum]), .. }) => {
-                let slack = BEYOND_BOUNDS * self.value.abs();
-                self.value < *minimum - slack || self.value > *maximum + slack
+        let (Some(stated), Ok(value)) = (&self.stated, self.value) else { return false };
+        match stated.bounds {
+            Some([minimum, maximum]) => {
+                let slack = BEYOND_BOUNDS * value.abs();
+                value < minimum - slack || value > maximum + slack
             }
-            Some(stated) => (stated.value - self.value).abs() > CONTRADICTION * self.value.abs(),
+            None => (stated.value - value).abs() > CONTRADICTION * value.abs(),
         }
     }
 }

@@ -57,7 +57,7 @@ use phea_hydraulics::operating_point::OperatingPointError;
 use crate::control::ControlError;
 use crate::linear_loop::LoopError;
 use crate::number_table::TableFormat;
-use crate::project::{self, Report};
+use crate::project::Report;
 use crate::quantity::{FORCE, VOLTAGE, display};
 use crate::rig::RigError;
 use crate::setup::Setup;

@@ -17,8 +17,8 @@ pub struct PrefilterPoint {
     pub least_db: f64,
     /// upper/max|T|, dB
     pub greatest_db: f64,
-    /// |F|, dB; not a number without one.
-    pub prefilter_db: f64,
+    /// |F|, dB; `None` without one.
+    pub prefilter_db: Option<f64>,
 }
 
 /// A loop with its prefilter.
@@ -37,8 +37,8 @@ const DEPTH_DB: f64 = 60.0;
 pub fn prefilter_band(words: Words, panels: &[PrefilterPanel]) -> Figure {
     let all = || panels.iter().flat_map(|panel| &panel.points);
     let x = Axis::fit_logarithmic("Frequency (rad/s)", all().map(|point| point.frequency_rad_per_s));
-    let values = all().flat_map(|point| [point.least_db, point.greatest_db, point.prefilter_db]);
-    let values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    let values = all().flat_map(|point| [Some(point.least_db), Some(point.greatest_db), point.prefilter_db]);
+    let values: Vec<f64> = values.flatten().filter(|value| value.is_finite()).collect();
     let (_, highest) = extent(values.iter().copied());
     let axis = |name: &str| {
         let seen = values.iter().copied().filter(|value| *value > highest - DEPTH_DB);
@@ -84,7 +84,8 @@ fn marks(panel: &PrefilterPanel, index: usize, foot: f64) -> Vec<Mark> {
         marks.push(Mark::Fringe { points: Vec::clone(&edge), stroke: Stroke::solid(Role::Bad, 0.7) });
         marks.push(Mark::Line { points: edge, stroke: edge_stroke() });
     }
-    let prefilter = panel.points.iter().map(|point| (point.frequency_rad_per_s, point.prefilter_db));
+    let prefilter =
+        panel.points.iter().filter_map(|point| Some((point.frequency_rad_per_s, point.prefilter_db?)));
     marks.push(Mark::Line { points: prefilter.collect(), stroke: prefilter_stroke(index) });
     marks
 }

@@ -376,7 +376,7 @@ fn prefilters_in_their_band() {
             frequency_rad_per_s: r.number(),
             least_db: r.number(),
             greatest_db: r.number(),
-            prefilter_db: r.number(),
+            prefilter_db: Some(r.number()),
         };
         let panel = |r: &mut Random| PrefilterPanel { name: r.name(), points: r.many(6, point) };
         prefilter_band(r.words(), &r.many(3, panel))

@@ -263,7 +263,7 @@ fn the_band_of_a_prefilter_ends_where_its_edges_cross() {
         frequency_rad_per_s: frequency,
         least_db,
         greatest_db: 0.0,
-        prefilter_db: -1.0,
+        prefilter_db: Some(-1.0),
     };
     let panel = PrefilterPanel { name: "loop".to_string(), points: vec![point(0.1, -5.0), point(10.0, 5.0)] };
     let figure = prefilter_band(Words::new("p", "p", "p"), &[panel]);

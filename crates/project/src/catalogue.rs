@@ -9,7 +9,7 @@
 //! use phea_project::source::Memory;
 //! let catalogue = catalogue::load(&Memory::default(), &[])?;
 //! let hose = catalogue.find(Kind::Hose, "eaton_synflex_3130_08").expect("built in");
-//! assert_eq!(hose.hose.as_ref().and_then(|hose| hose.bore), Some(0.0127));
+//! assert_eq!(hose.hose.as_ref().map(|hose| hose.bore), Some(0.0127));
 //! assert_eq!(hose.source_of("bore"), "Ledezma (2019), section 6.4.1 and Table A.1");
 //! # Ok::<(), phea_project::Report>(())
 //! ```
@@ -64,7 +64,7 @@ pub struct Entry {
     pub manufacturer: String,
     /// The file it was read from; `built-in:` and a path for those that come with the workbench.
     pub file: String,
-    /// Of a hose.
+    /// Of a hose that needs nothing beside it.
     pub hose: Option<HoseProperties>,
     /// Source of every number that has none of its own.
     source: Option<String>,

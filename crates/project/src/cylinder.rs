@@ -172,7 +172,7 @@ impl StribeckCurve {
 }
 
 impl Variants for FrictionLaw {
-    fn all() -> Vec<FrictionLaw> {
+    fn all(&self) -> Vec<FrictionLaw> {
         let curve = StribeckCurve::default();
         vec![
             FrictionLaw::Viscous,

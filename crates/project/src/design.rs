@@ -2,7 +2,7 @@
 
 use super::controller::Element;
 use super::key::{key, plain};
-use super::visitor::Visitor;
+use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
 
 /// What is made best, and among which controllers.
@@ -43,46 +43,43 @@ pub static DESIGN_OBJECTIVES: [(&str, DesignObjective); 3] = [
     ("best_worst_margin", DesignObjective::BestWorstMargin),
 ];
 
-/// One factor of a structure; every free number has its least and greatest value.
+/// One factor of a structure. Every free number has its least and greatest value, frequencies in rad/s; absent: wide around the design
+/// frequencies.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct StructurePart {
-    /// Which factor.
-    pub kind: PartKind,
-    /// rad/s, of a corner or a pair; absent: wide around the design frequencies.
-    pub frequency: Option<[f64; 2]>,
-    /// Of a pair, two real roots from 1 on; absent: wide.
-    pub damping_ratio: Option<[f64; 2]>,
-    /// Of a fixed factor.
-    pub element: Option<Element>,
-}
-
-/// Which factor.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PartKind {
+pub enum StructurePart {
     /// 1/s.
     #[default]
     Integrator,
     /// s/z + 1.
-    Zero,
+    Zero {
+        /// z.
+        frequency: Option<[f64; 2]>,
+    },
     /// 1/(s/p + 1).
-    Pole,
+    Pole {
+        /// p.
+        frequency: Option<[f64; 2]>,
+    },
     /// s²/ω² + 2ζs/ω + 1.
-    ZeroPair,
+    ZeroPair {
+        /// ω.
+        frequency: Option<[f64; 2]>,
+        /// ζ, two real roots from 1 on.
+        damping_ratio: Option<[f64; 2]>,
+    },
     /// 1/(s²/ω² + 2ζs/ω + 1).
-    PolePair,
+    PolePair {
+        /// ω.
+        frequency: Option<[f64; 2]>,
+        /// ζ, two real roots from 1 on.
+        damping_ratio: Option<[f64; 2]>,
+    },
     /// An element without free numbers.
-    Fixed,
+    Fixed {
+        /// As in a controller.
+        element: Element,
+    },
 }
-
-/// The words of a part's `kind`.
-pub(crate) static PART_KINDS: [(&str, PartKind); 6] = [
-    ("integrator", PartKind::Integrator),
-    ("zero", PartKind::Zero),
-    ("pole", PartKind::Pole),
-    ("zero_pair", PartKind::ZeroPair),
-    ("pole_pair", PartKind::PolePair),
-    ("fixed", PartKind::Fixed),
-];
 
 /// Most poles that are tried.
 const MAXIMUM_ORDER: f64 = 20.0;
@@ -116,18 +113,54 @@ impl Design {
         v.quantity(k, &mut self.minimum_delay_margin);
         v.pair(key("gain", &RATIO, "Least and greatest gain of `structure`."), &mut self.gain);
         let k = plain("structure", "Factors of the controller; absent: structures of growing order.");
-        v.tables(k, &mut self.structure, StructurePart::visit);
+        v.tables(k, &mut self.structure, |one, v| v.variant(plain("kind", "Which factor."), one, true));
     }
 }
 
-impl StructurePart {
+impl Variants for StructurePart {
+    const STRICT: bool = true;
+
+    fn all(&self) -> Vec<StructurePart> {
+        let (frequency, damping_ratio) = (None, None);
+        vec![
+            StructurePart::Integrator,
+            StructurePart::Zero { frequency },
+            StructurePart::Pole { frequency },
+            StructurePart::ZeroPair { frequency, damping_ratio },
+            StructurePart::PolePair { frequency, damping_ratio },
+            StructurePart::Fixed { element: Element::default() },
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            StructurePart::Integrator => "integrator",
+            StructurePart::Zero { .. } => "zero",
+            StructurePart::Pole { .. } => "pole",
+            StructurePart::ZeroPair { .. } => "zero_pair",
+            StructurePart::PolePair { .. } => "pole_pair",
+            StructurePart::Fixed { .. } => "fixed",
+        }
+    }
+
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.choice(plain("kind", "Which factor."), &PART_KINDS, &mut self.kind, true);
-        let k = key("frequency", &ANGULAR_FREQUENCY, "Least and greatest corner or natural frequency.");
-        v.pair(k.positive(), &mut self.frequency);
-        let k = key("damping_ratio", &RATIO, "Least and greatest damping ratio of a pair.").positive();
-        v.pair(k, &mut self.damping_ratio);
-        let k = plain("element", "Of a fixed factor: an element as in [controller].");
-        v.table(k, &mut self.element, Element::visit);
+        let corner = key("frequency", &ANGULAR_FREQUENCY, "Least and greatest corner or natural frequency.");
+        match self {
+            StructurePart::Integrator => {}
+            StructurePart::Zero { frequency } | StructurePart::Pole { frequency } => {
+                v.pair(corner.positive(), frequency);
+            }
+            StructurePart::ZeroPair { frequency, damping_ratio }
+            | StructurePart::PolePair { frequency, damping_ratio } => {
+                v.pair(corner.positive(), frequency);
+                let k =
+                    key("damping_ratio", &RATIO, "Least and greatest damping ratio of a pair.").positive();
+                v.pair(k, damping_ratio);
+            }
+            StructurePart::Fixed { element } => {
+                let k = plain("element", "Of a fixed factor: an element as in [controller].");
+                v.needed_table(k, element, Element::visit);
+            }
+        }
     }
 }

@@ -64,7 +64,7 @@ impl Load {
 }
 
 impl Variants for Load {
-    fn all() -> Vec<Load> {
+    fn all(&self) -> Vec<Load> {
         let (damping, stiffness) = (0.0, 0.0);
         vec![
             Load::Prescribed,

@@ -105,7 +105,7 @@ impl Default for SupplyModel {
 }
 
 impl Variants for SupplyModel {
-    fn all() -> Vec<SupplyModel> {
+    fn all(&self) -> Vec<SupplyModel> {
         vec![SupplyModel::default(), SupplyModel::PumpLimited(Pump::default())]
     }
 

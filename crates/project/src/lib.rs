@@ -64,7 +64,7 @@ pub use read::sha256;
 pub use read::{keys, print, read};
 pub use scenario::*;
 pub use sensor::*;
-pub use signal::{Signal, SignalKind};
+pub use signal::{Amplitudes, Multisine, Signal};
 pub use simulation::*;
 pub use sizing::*;
 pub use specification::*;

@@ -116,9 +116,9 @@ impl Limit {
     fn visit_table<V: Visitor>(&mut self, v: &mut V) {
         let mut parts = Parts::of(self);
         let k = key("frequencies", &ANGULAR_FREQUENCY, "Frequencies of a tabled limit, increasing.");
-        v.quantities(k.positive(), &mut parts.table.frequencies);
+        v.quantities(k.positive(), &mut parts.table.frequencies, false);
         let k = key("values", &GAIN, "The limit at each frequency.").positive();
-        v.quantities(k, &mut parts.table.values);
+        v.quantities(k, &mut parts.table.values, false);
         let k = plain("numerator", "Polynomial, such as \"2116*(s + 75)/75\".");
         v.formula(k, Shape::Polynomial, &mut parts.numerator, false);
         let k = plain("denominator", "Polynomial, such as \"s^2 + 73.6*s + 2116\".");

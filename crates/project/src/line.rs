@@ -31,42 +31,53 @@ pub enum Compliance {
 /// One line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
-    /// Name of the catalogue's hose; with it, or with `bore` and an expansion, the line is a hose.
-    pub hose: Option<String>,
-    /// What is known of the hose, from the catalogue or written here.
-    pub hose_properties: HoseProperties,
-    /// A pipe instead of a hose.
-    pub pipe: Option<Pipe>,
-    /// m³, a line given outright, with `effective_bulk_modulus`.
-    pub volume: Option<f64>,
-    /// Pa, of the volume given outright.
-    pub effective_bulk_modulus: Option<f64>,
-    /// m, of this one line.
-    pub length: Option<f64>,
+    /// What it is made of.
+    pub component: Component,
     /// r_β, dynamic over static modulus of the hose.
     pub dynamic_stiffening: Option<Interval>,
     /// How it moves.
     pub motion: LineMotion,
 }
 
-impl Line {
-    /// Pa, the pressure up to which the expansion of a hose was measured, where it is stated.
-    pub fn expansion_stated_at(&self) -> Option<f64> {
-        self.hose_properties.volumetric_expansion_pressure
-    }
+/// What a line is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Component {
+    /// A hose with volumetric expansion.
+    Hose {
+        /// Name of the catalogue's hose, if it came from there.
+        name: Option<String>,
+        /// What is known of it, from the catalogue or written here.
+        properties: HoseProperties,
+        /// m, of this one line.
+        length: f64,
+    },
+    /// A pipe.
+    Pipe {
+        /// Its dimensions and wall.
+        pipe: Pipe,
+        /// m, of this one line.
+        length: f64,
+    },
+    /// A volume given outright.
+    Volume(LineVolume),
 }
 
-/// What is known of a hose; what is absent is unknown.
+/// A volume with the modulus it has.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LineVolume {
+    /// m³.
+    pub volume: f64,
+    /// Pa.
+    pub effective_bulk_modulus: f64,
+}
+
+/// What is known of a hose.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HoseProperties {
     /// m, inner diameter of the hose.
-    pub bore: Option<f64>,
-    /// m³/m gained at `volumetric_expansion_pressure`.
-    pub volumetric_expansion: Option<f64>,
-    /// Pa, pressure the volumetric expansion was measured at.
-    pub volumetric_expansion_pressure: Option<f64>,
-    /// m³/(m·Pa), slope of the expansion over pressure; absent: expansion over its pressure.
-    pub volumetric_expansion_slope: Option<f64>,
+    pub bore: f64,
+    /// What it gains under pressure.
+    pub expansion: HoseExpansion,
     /// m.
     pub minimum_bend_radius: Option<f64>,
     /// Pa.
@@ -75,51 +86,57 @@ pub struct HoseProperties {
     pub burst_pressure: Option<f64>,
 }
 
+/// Volumetric expansion of a hose under pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HoseExpansion {
+    /// By its slope.
+    Slope {
+        /// m³/(m·Pa).
+        slope: f64,
+        /// m³/m that were measured, where they are stated.
+        measured: Option<f64>,
+        /// Pa, at which they were.
+        pressure: Option<f64>,
+    },
+    /// By what was measured, on a straight line from zero.
+    Measured {
+        /// m³/m.
+        measured: f64,
+        /// Pa, at which they were.
+        pressure: f64,
+    },
+}
+
 /// A pipe with an elastic wall.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pipe {
     /// m, inner diameter.
     pub bore: f64,
-    /// m; absent: the wall is rigid.
-    pub wall_thickness: Option<f64>,
-    /// Pa, of the wall.
-    pub youngs_modulus: Option<f64>,
+    /// What is known of the wall; absent: it is rigid.
+    pub wall: Option<ElasticWall>,
     /// Of the wall.
     pub poisson_ratio: f64,
 }
 
-/// What a line is made of, as one value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Component<'a> {
-    /// A hose with volumetric expansion.
-    Hose {
-        /// Catalogue name, if it came from there.
-        name: Option<&'a str>,
-        /// m.
-        bore: f64,
-        /// m³/m at `expansion_pressure`, where declared.
-        expansion: Option<f64>,
-        /// Pa, where declared.
-        expansion_pressure: Option<f64>,
-        /// m³/(m·Pa).
-        expansion_slope: f64,
-        /// m.
-        length: f64,
-    },
-    /// A pipe.
-    Pipe {
-        /// Its dimensions and wall.
-        pipe: &'a Pipe,
-        /// m.
-        length: f64,
-    },
-    /// A volume with the modulus it has.
-    Volume {
-        /// m³.
-        volume: f64,
-        /// Pa.
-        effective_bulk_modulus: f64,
-    },
+/// An elastic wall of a pipe.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ElasticWall {
+    /// m.
+    pub thickness: f64,
+    /// Pa.
+    pub youngs_modulus: f64,
+}
+
+impl Default for Component {
+    fn default() -> Self {
+        Component::Volume(LineVolume::default())
+    }
+}
+
+impl Default for HoseExpansion {
+    fn default() -> Self {
+        HoseExpansion::Slope { slope: 0.0, measured: None, pressure: None }
+    }
 }
 
 impl Line {
@@ -143,61 +160,140 @@ impl Line {
     /// What a side may choose for itself.
     const KINDS: &[Kinds] = &[Line::COMPONENTS, LineMotion::MODELS];
 
-    /// What the line is made of; `None` only for a line that was not read from a valid project.
-    pub fn component(&self) -> Option<Component<'_>> {
-        if let (Some(volume), Some(effective_bulk_modulus)) = (self.volume, self.effective_bulk_modulus) {
-            return Some(Component::Volume { volume, effective_bulk_modulus });
+    /// Its hose.
+    pub fn hose(&self) -> Option<&HoseProperties> {
+        if let Component::Hose { properties, .. } = &self.component { Some(properties) } else { None }
+    }
+
+    /// Name of its hose in the catalogue.
+    pub fn hose_name(&self) -> Option<&str> {
+        if let Component::Hose { name, .. } = &self.component { name.as_deref() } else { None }
+    }
+
+    /// m, of a hose or pipe.
+    pub fn length(&self) -> Option<f64> {
+        match self.component {
+            Component::Hose { length, .. } | Component::Pipe { length, .. } => Some(length),
+            Component::Volume(_) => None,
         }
-        let length = self.length?;
-        if let Some(pipe) = &self.pipe {
-            return Some(Component::Pipe { pipe, length });
-        }
-        Some(Component::Hose {
-            name: self.hose.as_deref(),
-            bore: self.hose_properties.bore?,
-            expansion: self.hose_properties.volumetric_expansion,
-            expansion_pressure: self.hose_properties.volumetric_expansion_pressure,
-            expansion_slope: self.hose_properties.expansion_slope()?,
-            length,
-        })
+    }
+
+    /// Pa, the pressure up to which the expansion of a hose was measured, where it is stated.
+    pub fn expansion_stated_at(&self) -> Option<f64> {
+        self.hose().and_then(|hose| hose.expansion.pressure())
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.catalogue(plain("hose", "Name of a hose of the catalogue."), Kind::Hose, &mut self.hose);
-        self.hose_properties.visit(v);
-        v.table(plain("pipe", "A pipe instead of a hose."), &mut self.pipe, Pipe::visit);
-        let k = key("volume", &VOLUME, "Volume of the line, instead of a hose or pipe.").positive();
-        v.optional(k, &mut self.volume);
-        let k = key("effective_bulk_modulus", &PRESSURE, "Effective bulk modulus that goes with `volume`.");
-        v.optional(k.positive(), &mut self.effective_bulk_modulus);
-        let k = key("length", &LENGTH, "Length of the line to one chamber.").positive();
-        v.optional(k, &mut self.length);
+        self.component.visit(v);
         let k = key("dynamic_stiffening", &RATIO, "r_β, the hose's dynamic over its static modulus.");
         Interval::visit(v, k.at_least(1.0), &mut self.dynamic_stiffening);
-        self.motion.visit(v);
+        v.variant(plain("model", "What of the line moves."), &mut self.motion, false);
+    }
+}
+
+impl Component {
+    /// Keys of which each makes it a hose.
+    pub(crate) const HOSE: [&'static str; 4] =
+        ["hose", "bore", "volumetric_expansion", "volumetric_expansion_slope"];
+    /// Keys of which each makes it a volume given outright.
+    pub(crate) const VOLUME: [&'static str; 2] = ["volume", "effective_bulk_modulus"];
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let (mut name, mut hose, mut pipe, mut volume, mut length) = (None, None, None, None, 0.0);
+        match std::mem::take(self) {
+            Component::Hose { name: of, properties, length: m } => {
+                (name, hose, length) = (of, Some(properties), m);
+            }
+            Component::Pipe { pipe: of, length: m } => (pipe, length) = (Some(of), m),
+            Component::Volume(of) => volume = Some(of),
+        }
+        v.catalogue(plain("hose", "Name of a hose of the catalogue."), Kind::Hose, &mut name);
+        v.way(&Component::HOSE, &mut hose, HoseProperties::visit);
+        v.table(plain("pipe", "A pipe instead of a hose."), &mut pipe, Pipe::visit);
+        v.way(&Component::VOLUME, &mut volume, LineVolume::visit);
+        let k = key("length", &LENGTH, "Length of the line to one chamber.").positive();
+        match (hose, pipe, volume) {
+            (Some(properties), _, _) => {
+                v.quantity(k, &mut length);
+                *self = Component::Hose { name, properties, length };
+            }
+            (None, Some(pipe), _) => {
+                v.quantity(k, &mut length);
+                *self = Component::Pipe { pipe, length };
+            }
+            (None, None, volume) => {
+                v.optional(k, &mut None);
+                *self = Component::Volume(volume.unwrap_or_default());
+            }
+        }
+    }
+}
+
+impl LineVolume {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("volume", &VOLUME, "Volume of the line, instead of a hose or pipe.").positive();
+        v.quantity(k, &mut self.volume);
+        let k = key("effective_bulk_modulus", &PRESSURE, "Effective bulk modulus that goes with `volume`.");
+        v.quantity(k.positive(), &mut self.effective_bulk_modulus);
+    }
+}
+
+impl HoseExpansion {
+    /// m³/(m·Pa): the declared slope, or the expansion over the pressure it was measured at.
+    pub fn slope(&self) -> f64 {
+        match *self {
+            HoseExpansion::Slope { slope, .. } => slope,
+            HoseExpansion::Measured { measured, pressure } => measured / pressure,
+        }
+    }
+
+    /// m³/m that were measured, where they are stated.
+    pub fn measured(&self) -> Option<f64> {
+        match *self {
+            HoseExpansion::Slope { measured, .. } => measured,
+            HoseExpansion::Measured { measured, .. } => Some(measured),
+        }
+    }
+
+    /// Pa, at which they were.
+    pub fn pressure(&self) -> Option<f64> {
+        match *self {
+            HoseExpansion::Slope { pressure, .. } => pressure,
+            HoseExpansion::Measured { pressure, .. } => Some(pressure),
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let (mut measured, mut pressure) = (self.measured(), self.pressure());
+        // a slope is positive, but for that of an expansion which is not read yet
+        let mut slope = match *self {
+            HoseExpansion::Slope { slope, .. } if slope > 0.0 => Some(slope),
+            HoseExpansion::Slope { .. } | HoseExpansion::Measured { .. } => None,
+        };
+        let k = key("volumetric_expansion", &VOLUME_PER_LENGTH, "Volume gained by a metre of hose.");
+        v.optional(k.positive(), &mut measured);
+        let k = key("volumetric_expansion_pressure", &PRESSURE, "Pressure the expansion was measured at.");
+        v.optional(k.positive(), &mut pressure);
+        let k = key("volumetric_expansion_slope", &EXPANSION_SLOPE, "Slope of the expansion over pressure.");
+        v.optional(k.positive(), &mut slope);
+        *self = match (slope, measured, pressure) {
+            (Some(slope), ..) => HoseExpansion::Slope { slope, measured, pressure },
+            (None, Some(measured), Some(pressure)) => HoseExpansion::Measured { measured, pressure },
+            _ => {
+                let what = "`volumetric_expansion` with `volumetric_expansion_pressure`, or `volumetric_expansion_slope`,";
+                v.lacks(&["volumetric_expansion_slope"], what);
+                HoseExpansion::default()
+            }
+        };
     }
 }
 
 impl HoseProperties {
-    /// m³/(m·Pa): the declared slope, or the expansion over the pressure it was measured at.
-    pub fn expansion_slope(&self) -> Option<f64> {
-        let secant = match (self.volumetric_expansion, self.volumetric_expansion_pressure) {
-            (Some(expansion), Some(pressure)) => Some(expansion / pressure),
-            _ => None,
-        };
-        self.volumetric_expansion_slope.or(secant)
-    }
-
     /// The keys a catalogue's hose has.
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("bore", &LENGTH, "Inner diameter of the hose.").positive();
-        v.optional(k, &mut self.bore);
-        let k = key("volumetric_expansion", &VOLUME_PER_LENGTH, "Volume gained by a metre of hose.");
-        v.optional(k.positive(), &mut self.volumetric_expansion);
-        let k = key("volumetric_expansion_pressure", &PRESSURE, "Pressure the expansion was measured at.");
-        v.optional(k.positive(), &mut self.volumetric_expansion_pressure);
-        let k = key("volumetric_expansion_slope", &EXPANSION_SLOPE, "Slope of the expansion over pressure.");
-        v.optional(k.positive(), &mut self.volumetric_expansion_slope);
+        v.quantity(k, &mut self.bore);
+        self.expansion.visit(v);
         let k = key("minimum_bend_radius", &LENGTH, "Smallest permitted bend radius.").positive();
         v.optional(k, &mut self.minimum_bend_radius);
         let k = key("working_pressure", &PRESSURE, "Highest permitted working pressure.").positive();
@@ -210,13 +306,19 @@ impl HoseProperties {
 impl Pipe {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.quantity(key("bore", &LENGTH, "Inner diameter of the pipe.").positive(), &mut self.bore);
-        let k = key("wall_thickness", &LENGTH, "Thickness of the wall; absent: the wall is rigid.");
-        v.optional(k.positive(), &mut self.wall_thickness);
-        let k = key("youngs_modulus", &PRESSURE, "Young's modulus of the wall.").positive();
-        v.optional(k, &mut self.youngs_modulus);
+        v.way(&["wall_thickness", "youngs_modulus"], &mut self.wall, ElasticWall::visit);
         let k =
             key("poisson_ratio", &RATIO, "Poisson's ratio of the wall.").not_negative().below(0.5).or(0.3);
         v.quantity(k, &mut self.poisson_ratio);
+    }
+}
+
+impl ElasticWall {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("wall_thickness", &LENGTH, "Thickness of the wall; absent: the wall is rigid.");
+        v.quantity(k.positive(), &mut self.thickness);
+        let k = key("youngs_modulus", &PRESSURE, "Young's modulus of the wall.").positive();
+        v.quantity(k, &mut self.youngs_modulus);
     }
 }
 

@@ -1,40 +1,45 @@
 //! How a line moves: `model` of `[line]`, and the keys that go with it.
 
-use super::key::{key, plain};
-use super::visitor::{Kinds, Visitor};
+use super::key::{Key, key, plain};
+use super::visitor::{Kinds, Variants, Visitor};
 use phea_quantity::{MASS_PER_LENGTH, RATIO, STRAIN_PER_FORCE, STRAIN_PER_PRESSURE, TIME};
 
-/// How a line moves. Which of its numbers are used depends on the model; the others are absent.
+/// How a line moves, with the numbers of its model.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct LineMotion {
-    /// Which model.
-    pub model: LineModel,
-    /// How many segments; absent: [`LineMotion::SEGMENTS`].
-    pub segments: Option<u32>,
-    /// What resists the flow in segments; absent: it depends on frequency.
-    pub friction: Option<LineFriction>,
-    /// s, of a wall that creeps.
-    pub relaxation_time: Option<f64>,
-    /// Share of the line's compliance that is a plain volume at each end; absent: `phea_hydraulics::line::END_SHARE`.
-    pub end_share: Option<f64>,
-    /// What is known of a wall that moves along its axis.
-    pub wall: Option<LineWall>,
-}
-
-/// What of a line moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LineModel {
+pub enum LineMotion {
     /// One pressure.
     #[default]
     Lumped,
     /// One pressure, and a wall that creeps.
-    Creeping,
+    Creeping {
+        /// s, in which pressure relaxes while the volume is held.
+        relaxation_time: f64,
+    },
     /// Capacities and inertances in turn.
-    Segments,
+    Segments(LineSegments),
     /// Fluid waves.
-    TransmissionLine,
+    TransmissionLine {
+        /// Share of the line's compliance that is a plain volume at each end; absent: `phea_hydraulics::line::END_SHARE`.
+        end_share: Option<f64>,
+    },
     /// Fluid and wall waves, coupled.
-    TwoWave,
+    TwoWave {
+        /// As of a transmission line.
+        end_share: Option<f64>,
+        /// What is known of a wall that moves along its axis.
+        wall: Option<LineWall>,
+    },
+}
+
+/// A line cut into segments.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LineSegments {
+    /// How many; absent: [`LineSegments::COUNT`].
+    pub count: Option<u32>,
+    /// What resists the flow in them; absent: it depends on frequency.
+    pub friction: Option<LineFriction>,
+    /// s, of a wall that creeps; absent: it is elastic.
+    pub relaxation_time: Option<f64>,
 }
 
 /// How laminar friction in segments is taken.
@@ -62,55 +67,72 @@ pub struct LineWall {
 static FRICTIONS: [(&str, Option<LineFriction>); 2] =
     [("steady", Some(LineFriction::Steady)), ("frequency_dependent", Some(LineFriction::FrequencyDependent))];
 
-impl LineModel {
-    const WORDS: [(&'static str, LineModel); 5] = [
-        ("lumped", LineModel::Lumped),
-        ("creeping", LineModel::Creeping),
-        ("segments", LineModel::Segments),
-        ("transmission_line", LineModel::TransmissionLine),
-        ("two_wave", LineModel::TwoWave),
-    ];
+const RELAXATION: Key = key(
+    "relaxation_time",
+    &TIME,
+    "Time in which pressure relaxes while the volume is held; none is assumed.",
+)
+.positive();
 
-    /// As in a project file.
-    pub fn word(self) -> &'static str {
-        LineModel::WORDS.iter().find(|(_, model)| *model == self).map_or("", |(word, _)| word)
+impl Variants for LineMotion {
+    const STRICT: bool = true;
+
+    fn all(&self) -> Vec<LineMotion> {
+        vec![
+            LineMotion::Lumped,
+            LineMotion::Creeping { relaxation_time: 0.0 },
+            LineMotion::Segments(LineSegments::default()),
+            LineMotion::TransmissionLine { end_share: None },
+            LineMotion::TwoWave { end_share: None, wall: None },
+        ]
     }
 
-    /// The models that use a key, as in a project file.
-    pub(crate) fn using(key: &str) -> Vec<&'static str> {
-        LineModel::WORDS.iter().filter(|(_, model)| model.uses(key)).map(|(word, _)| *word).collect()
+    fn word(&self) -> &'static str {
+        match self {
+            LineMotion::Lumped => "lumped",
+            LineMotion::Creeping { .. } => "creeping",
+            LineMotion::Segments(_) => "segments",
+            LineMotion::TransmissionLine { .. } => "transmission_line",
+            LineMotion::TwoWave { .. } => "two_wave",
+        }
     }
 
-    /// Whether a key beside `model` has a meaning.
-    pub(crate) fn uses(self, key: &str) -> bool {
-        let keys: &[&str] = match self {
-            LineModel::Lumped => &[],
-            LineModel::Creeping => &["relaxation_time"],
-            LineModel::Segments => &["segments", "friction", "relaxation_time"],
-            LineModel::TransmissionLine => &["end_share"],
-            LineModel::TwoWave => &["end_share", "wall"],
-        };
-        keys.contains(&key)
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let share = key("end_share", &RATIO, "Share of the compliance at each end of a line with waves.");
+        let share = share.positive().below(0.5);
+        match self {
+            LineMotion::Lumped => {}
+            LineMotion::Creeping { relaxation_time } => v.quantity(RELAXATION, relaxation_time),
+            LineMotion::Segments(segments) => segments.visit(v),
+            LineMotion::TransmissionLine { end_share } => v.optional(share, end_share),
+            LineMotion::TwoWave { end_share, wall } => {
+                v.optional(share, end_share);
+                let k = plain("wall", "The wall of a hose with two waves; what is absent is assumed.");
+                v.table(k, wall, LineWall::visit);
+            }
+        }
     }
 }
 
 impl LineMotion {
-    /// Segments of a line that does not say how many: the first resonance of a line closed at one end is 0.2 % low.
-    pub const SEGMENTS: u32 = 8;
-    /// States that segments of one line may have, so that both lines and what is around them fit into a simulation.
-    const MOST_STATES: u32 = 112;
     /// Keys that go with one model or another.
     pub(crate) const KEYS: [&'static str; 5] =
         ["segments", "friction", "relaxation_time", "end_share", "wall"];
     /// A side that chooses its model has that model's keys of its own too.
     pub(crate) const MODELS: Kinds = Kinds { chosen_by: &["model"], keys: &LineMotion::KEYS };
 
-    /// The most segments with this friction and this wall.
-    pub(crate) fn most_segments(&self) -> u32 {
-        let lags = if self.friction == Some(LineFriction::Steady) { 0 } else { 5 };
-        let creeping = u32::from(self.relaxation_time.is_some());
-        // a wall creeps at both ends of each segment
-        (Self::MOST_STATES - creeping) / (2 + lags + creeping)
+    /// Its model as in a project file.
+    pub fn model(&self) -> &'static str {
+        self.word()
+    }
+
+    /// s, of a wall that creeps.
+    pub fn relaxation_time(&self) -> Option<f64> {
+        match self {
+            LineMotion::Creeping { relaxation_time } => Some(*relaxation_time),
+            LineMotion::Segments(segments) => segments.relaxation_time,
+            LineMotion::Lumped | LineMotion::TransmissionLine { .. } | LineMotion::TwoWave { .. } => None,
+        }
     }
 
     /// Whether a path of the project leads to one of these keys.
@@ -121,22 +143,35 @@ impl LineMotion {
             .find(|part| !["a", "b"].contains(part))
             .is_some_and(|key| LineMotion::KEYS.contains(&key))
     }
+}
 
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = plain("model", "What of the line moves.");
-        v.choice(k, &LineModel::WORDS, &mut self.model, false);
+impl LineSegments {
+    /// Segments of a line that does not say how many: the first resonance of a line closed at one end is 0.2 % low.
+    pub const COUNT: u32 = 8;
+    /// States that segments of one line may have, so that both lines and what is around them fit into a simulation.
+    const MOST_STATES: u32 = 112;
+
+    /// How many there are.
+    pub fn count(&self) -> u32 {
+        self.count.unwrap_or(Self::COUNT)
+    }
+
+    /// The most with this friction and this wall.
+    pub(crate) fn most(&self) -> u32 {
+        let lags = if self.friction == Some(LineFriction::Steady) { 0 } else { 5 };
+        let creeping = u32::from(self.relaxation_time.is_some());
+        // a wall creeps at both ends of each segment
+        (Self::MOST_STATES - creeping) / (2 + lags + creeping)
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("segments", &RATIO, "How many segments; absent: 8.")
             .at_least(1.0)
             .at_most(f64::from(Self::MOST_STATES / 2));
-        v.optional_count(k, &mut self.segments);
+        v.optional_count(k, &mut self.count);
         let k = plain("friction", "Laminar friction in segments; absent: \"frequency_dependent\".");
         v.choice(k, &FRICTIONS, &mut self.friction, false);
-        let k = key("relaxation_time", &TIME, "Time in which pressure relaxes while the volume is held.");
-        v.optional(k.positive(), &mut self.relaxation_time);
-        let k = key("end_share", &RATIO, "Share of the compliance at each end of a line with waves.");
-        v.optional(k.positive().below(0.5), &mut self.end_share);
-        let k = plain("wall", "The wall of a hose with two waves; what is absent is assumed.");
-        v.table(k, &mut self.wall, LineWall::visit);
+        v.optional(RELAXATION, &mut self.relaxation_time);
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) struct Listing {
     pub(crate) keys: Vec<KeyEntry>,
     /// The keys of the outermost table.
     pub(crate) outermost: Vec<&'static str>,
-    /// Whether keys belong to a variant, which needs them where it is chosen.
+    /// Whether keys belong to a variant or a way, which needs them where it is chosen.
     of_variant: bool,
     /// Every number that exists, by its path.
     pub(crate) numbers: BTreeMap<String, (Key, f64)>,
@@ -110,8 +110,8 @@ impl Visitor for Listing {
         self.list(key, format!("two of {}", key.dimension.name), false);
     }
 
-    fn quantities(&mut self, key: Key, _field: &mut Vec<f64>) {
-        self.list(key, format!("a list of {}", key.dimension.name), false);
+    fn quantities(&mut self, key: Key, _field: &mut Vec<f64>, required: bool) {
+        self.list(key, format!("a list of {}", key.dimension.name), required);
     }
 
     fn complexes(&mut self, key: Key, _field: &mut Vec<[f64; 2]>) {
@@ -159,7 +159,7 @@ impl Visitor for Listing {
         if !self.everything {
             return field.visit(self);
         }
-        let all = T::all();
+        let all = field.all();
         let words: Vec<String> = all.iter().map(|one| format!("\"{}\"", one.word())).collect();
         self.list(key, format!("one of {}", words.join(", ")), required);
         let outside = std::mem::replace(&mut self.of_variant, true);
@@ -196,6 +196,17 @@ impl Visitor for Listing {
         if let Some(value) = field.as_mut().or(absent.as_mut()) {
             visit(value, self);
         }
+    }
+
+    fn way<T: Default>(
+        &mut self,
+        _chosen_by: &'static [&'static str],
+        field: &mut Option<T>,
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        let outside = std::mem::replace(&mut self.of_variant, true);
+        self.part(field, visit);
+        self.of_variant = outside;
     }
 
     fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {

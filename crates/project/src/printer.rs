@@ -157,7 +157,7 @@ impl Visitor for Printer {
         }
     }
 
-    fn quantities(&mut self, key: Key, field: &mut Vec<f64>) {
+    fn quantities(&mut self, key: Key, field: &mut Vec<f64>, _required: bool) {
         if !field.is_empty() {
             self.line(key.name, list(field.iter().map(|value| quantity::print_bare(*value))));
         }
@@ -220,7 +220,9 @@ impl Visitor for Printer {
     }
 
     fn variant<T: Variants>(&mut self, key: Key, field: &mut T, _required: bool) {
-        self.line(key.name, quoted(field.word()));
+        if !field.goes_without_saying() {
+            self.line(key.name, quoted(field.word()));
+        }
         field.visit(self);
     }
 
@@ -245,6 +247,15 @@ impl Visitor for Printer {
         if let Some(value) = field {
             visit(value, self);
         }
+    }
+
+    fn way<T: Default>(
+        &mut self,
+        _chosen_by: &'static [&'static str],
+        field: &mut Option<T>,
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        self.part(field, visit);
     }
 
     fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {

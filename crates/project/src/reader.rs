@@ -1,5 +1,6 @@
 //! Fills a project from the tree of a file, and reports everything that is wrong with it.
 
+mod choice;
 mod fields;
 mod values;
 
@@ -22,6 +23,8 @@ pub(crate) struct Reader<'a> {
     project_text: usize,
     /// Whether absent keys are no errors, as in the catalogue.
     partial: bool,
+    /// Whether something was absent that a project needs.
+    pub(crate) incomplete: bool,
     /// Whether the parts of an actuator are read.
     pub(crate) parts: bool,
     /// Numbers of the project that can be named, with what is known of them.
@@ -46,8 +49,10 @@ struct Frame<'a> {
     layers: Vec<Layer<'a>>,
     /// Keys asked for so far.
     asked: Vec<&'static str>,
-    /// The key and the word that chose the variant being read.
-    chosen: Option<(&'static str, &'static str)>,
+    /// What chose the variant being read, in words.
+    chosen: Option<String>,
+    /// Whether it names an entry that the catalogue does not have, so that what seems to be missing may not be.
+    lost: bool,
     /// While the keys of another variant are looked at: those that are taken for absent, as they are read already.
     passed_over: Option<Vec<&'static str>>,
     /// The values of a table written as an array, in the order of its keys.
@@ -85,6 +90,7 @@ impl<'a> Reader<'a> {
             frames: Vec::new(),
             project_text,
             partial: false,
+            incomplete: false,
             parts: true,
             named: BTreeMap::new(),
             counts: Vec::new(),
@@ -111,6 +117,7 @@ impl<'a> Reader<'a> {
             layers,
             asked: Vec::new(),
             chosen: None,
+            lost: false,
             passed_over: None,
             in_order: None,
         });
@@ -224,20 +231,29 @@ impl<'a> Reader<'a> {
     }
 
     fn missing(&mut self, key: Key) {
-        if self.partial || self.looks_elsewhere() {
+        if self.takes_absent() {
             return;
         }
-        let place = self.place();
-        let frame_path = self.frames.last().map(|frame| frame.path.clone()).unwrap_or_default();
-        let of = if frame_path.is_empty() { String::new() } else { format!(" in [{frame_path}]") };
-        let chosen = self.frames.last().and_then(|frame| frame.chosen);
-        let needs = chosen.map_or(String::new(), |(name, word)| format!(": {name} \"{word}\" needs it"));
-        let message = format!("missing `{}`{of}{needs}", key.name);
-        let mut found = Found::error(place, message).consequence().help(key.doc);
+        let needs = self.frames.last().and_then(|frame| frame.chosen.as_ref());
+        let needs = needs.map_or(String::new(), |chosen| format!(": {chosen} needs it"));
+        let message = format!("missing `{}`{}{needs}", key.name, self.of_table());
+        let mut found = Found::error(self.place(), message).consequence().help(key.doc);
         if !std::ptr::eq(key.dimension, &phea_quantity::RATIO) {
             found = found.expected(format!("{}, such as {}", key.dimension.name, key.dimension.examples));
         }
         self.findings.push(found);
+    }
+
+    /// Whether what is absent is taken as it is, which is remembered.
+    fn takes_absent(&mut self) -> bool {
+        self.incomplete = true;
+        self.partial || self.looks_elsewhere()
+    }
+
+    /// The present table, as in `missing ... in [line]`.
+    fn of_table(&self) -> String {
+        let path = self.frames.last().map_or("", |frame| frame.path.as_str());
+        if path.is_empty() { String::new() } else { format!(" in [{path}]") }
     }
 
     fn wrong_kind(&mut self, key: Key, expected: &str, node: &Node) {

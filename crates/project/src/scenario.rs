@@ -123,7 +123,7 @@ impl Default for MotionShape {
 impl Variants for MotionShape {
     const STRICT: bool = true;
 
-    fn all() -> Vec<MotionShape> {
+    fn all(&self) -> Vec<MotionShape> {
         vec![
             MotionShape::default(),
             MotionShape::FirstOrder { distance: 0.0, time_constant: 0.0 },

@@ -1,80 +1,107 @@
 //! Known functions of time that a scenario asks for: a reference force, an open-loop command, a force from outside.
 
-use super::key::{key, plain};
+use super::key::{Key, key, plain};
 use super::scenario::Published;
-use super::visitor::Visitor;
+use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, Dimension, FORCE, TIME, VOLTAGE};
 
-/// One part of a function of time; the parts add up, each zero before it begins.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Signal {
-    /// Its shape in time.
-    pub kind: SignalKind,
-    /// s, of a step.
-    pub at: Option<f64>,
-    /// Of a step, which holds until the next; how far a ramp goes.
-    pub value: Option<f64>,
-    /// s, of several steps.
-    pub times: Vec<f64>,
-    /// Of several steps: each holds from its time until the next.
-    pub values: Vec<f64>,
-    /// s, when anything but a step begins; absent: at once.
-    pub start: Option<f64>,
-    /// s; a part that is over holds the value it ends with.
-    pub duration: Option<f64>,
-    /// Of a sine, a chirp, or each sine of a multisine.
-    pub amplitude: Option<f64>,
-    /// Of each sine of a multisine.
-    pub amplitudes: Vec<f64>,
-    /// rad/s, of a sine, or where a chirp begins.
-    pub frequency: Option<f64>,
-    /// rad/s, where a chirp ends.
-    pub final_frequency: Option<f64>,
-    /// rad/s, of a multisine.
-    pub frequencies: Vec<f64>,
-    /// rad, of a multisine; absent: Schroeder's, which keep its peak low.
-    pub phases: Vec<f64>,
-    /// A CSV file with time and value.
-    pub file: Option<String>,
-    /// What somebody published of a step of the reference, to stand beside the simulation's own.
-    pub published: Option<Published>,
-}
-
-/// Shape of a signal in time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SignalKind {
+/// One part of a function of time; the parts add up, each zero before it begins. Values and amplitudes in the unit of what it is of, times
+/// in s, frequencies in rad/s. Without a start it begins at once; once its duration is over it holds the value it ends with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Signal {
     /// A value that holds until the next step.
-    #[default]
-    Step,
+    Step {
+        /// When it comes.
+        at: f64,
+        /// From then on.
+        value: f64,
+        /// What somebody published of a step of the reference, to stand beside the simulation's own.
+        published: Option<Published>,
+    },
     /// Several steps.
-    Steps,
+    Steps {
+        /// When each comes.
+        times: Vec<f64>,
+        /// Each holds from its time until the next.
+        values: Vec<f64>,
+    },
     /// At one rate from zero to a value.
-    Ramp,
+    Ramp {
+        /// How far.
+        value: f64,
+        /// When it begins.
+        start: Option<f64>,
+        /// How long it moves.
+        duration: f64,
+    },
     /// Sine.
-    Sine,
+    Sine {
+        /// When it begins.
+        start: Option<f64>,
+        /// How long it moves; absent: to the end.
+        duration: Option<f64>,
+        /// Of the sine.
+        amplitude: f64,
+        /// Of the sine.
+        frequency: f64,
+    },
     /// Sine whose frequency moves evenly.
-    Chirp,
+    Chirp {
+        /// When it begins.
+        start: Option<f64>,
+        /// How long it moves.
+        duration: f64,
+        /// Of the sine.
+        amplitude: f64,
+        /// Where it begins.
+        frequency: f64,
+        /// Where it ends.
+        final_frequency: f64,
+    },
     /// Several sines at once.
-    Multisine,
-    /// From a file.
-    File,
+    Multisine(Multisine),
+    /// From a CSV file with time and value.
+    File {
+        /// When it begins.
+        start: Option<f64>,
+        /// Its name.
+        file: String,
+    },
 }
 
-/// As they are written.
-const KINDS: &[(&str, Option<SignalKind>)] = &[
-    ("step", Some(SignalKind::Step)),
-    ("steps", Some(SignalKind::Steps)),
-    ("ramp", Some(SignalKind::Ramp)),
-    ("sine", Some(SignalKind::Sine)),
-    ("chirp", Some(SignalKind::Chirp)),
-    ("multisine", Some(SignalKind::Multisine)),
-    ("file", Some(SignalKind::File)),
-];
+/// Several sines at once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Multisine {
+    /// s, when it begins; absent: at once.
+    pub start: Option<f64>,
+    /// s, how long it moves; absent: to the end.
+    pub duration: Option<f64>,
+    /// How large the sines are.
+    pub amplitudes: Amplitudes,
+    /// rad/s.
+    pub frequencies: Vec<f64>,
+    /// rad; none: Schroeder's, which keep its peak low.
+    pub phases: Vec<f64>,
+}
 
-impl SignalKind {
-    /// As it is written in the project file.
-    pub fn name(self) -> &'static str {
-        KINDS.iter().find(|(_, kind)| *kind == Some(self)).map_or("", |(name, _)| name)
+/// How large the sines of a multisine are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Amplitudes {
+    /// All of one size.
+    Equal(f64),
+    /// One for each sine.
+    Each(Vec<f64>),
+}
+
+impl Default for Amplitudes {
+    fn default() -> Self {
+        Amplitudes::Each(Vec::new())
+    }
+}
+
+impl Default for Signal {
+    fn default() -> Self {
+        Signal::Step { at: 0.0, value: 0.0, published: None }
     }
 }
 
@@ -102,100 +129,176 @@ impl SignalUnit {
         SignalUnit { value: "voltage", values: "voltages", dimension: &VOLTAGE, published: false };
 }
 
+/// A signal as it is written, which depends on what it is of.
+#[derive(Clone)]
+struct Written {
+    unit: SignalUnit,
+    signal: Signal,
+}
+
+impl Variants for Written {
+    const STRICT: bool = true;
+
+    fn all(&self) -> Vec<Written> {
+        let (start, amplitude, frequency) = (None, 0.0, 0.0);
+        let all = [
+            Signal::default(),
+            Signal::Steps { times: Vec::new(), values: Vec::new() },
+            Signal::Ramp { value: 0.0, start, duration: 0.0 },
+            Signal::Sine { start, duration: None, amplitude, frequency },
+            Signal::Chirp { start, duration: 0.0, amplitude, frequency, final_frequency: 0.0 },
+            Signal::Multisine(Multisine::default()),
+            Signal::File { start, file: String::new() },
+        ];
+        all.map(|signal| Written { unit: self.unit, signal }).into()
+    }
+
+    fn word(&self) -> &'static str {
+        self.signal.kind()
+    }
+
+    fn goes_without_saying(&self) -> bool {
+        matches!(self.signal, Signal::Step { .. })
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let of = self.unit.dimension;
+        let level = key(self.unit.value, of, "Of a step, until the next; how far a ramp goes.");
+        let begins = key("start", &TIME, "When it begins; absent: at once.").not_negative();
+        let how_long =
+            key("duration", &TIME, "How long it moves; it holds the value it ends with.").positive();
+        let size = key("amplitude", of, "Of a sine, a chirp, or each sine of a multisine.").positive();
+        let first = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
+        match &mut self.signal {
+            Signal::Step { at, value, published } => {
+                v.quantity(key("at", &TIME, "When a step comes.").not_negative(), at);
+                v.quantity(level, value);
+                if self.unit.published {
+                    let doc = "Metrics somebody published of this step, for the report to set beside.";
+                    v.table(plain("published", doc), published, Published::visit);
+                }
+            }
+            Signal::Steps { times, values } => {
+                let k = key("times", &TIME, "When each of several steps comes.").not_negative();
+                v.quantities(k, times, true);
+                let k = key(self.unit.values, of, "Of several steps, each until the next.");
+                v.quantities(k, values, true);
+            }
+            Signal::Ramp { value, start, duration } => {
+                v.quantity(level, value);
+                v.optional(begins, start);
+                v.quantity(how_long, duration);
+            }
+            Signal::Sine { start, duration, amplitude, frequency } => {
+                v.optional(begins, start);
+                v.optional(how_long, duration);
+                v.quantity(size, amplitude);
+                v.quantity(first, frequency);
+            }
+            Signal::Chirp { start, duration, amplitude, frequency, final_frequency } => {
+                v.optional(begins, start);
+                v.quantity(how_long, duration);
+                v.quantity(size, amplitude);
+                v.quantity(first, frequency);
+                let k = key("final_frequency", &ANGULAR_FREQUENCY, "Where a chirp ends.").positive();
+                v.quantity(k, final_frequency);
+            }
+            Signal::Multisine(sines) => {
+                v.optional(begins, &mut sines.start);
+                v.optional(how_long, &mut sines.duration);
+                sines.amplitudes.visit(size, v);
+                let k = key("frequencies", &ANGULAR_FREQUENCY, "Of the sines of a multisine.").positive();
+                v.quantities(k, &mut sines.frequencies, true);
+                let k = key("phases", &ANGLE, "Of the sines of a multisine; absent: Schroeder's.");
+                v.quantities(k, &mut sines.phases, false);
+            }
+            Signal::File { start, file } => {
+                v.optional(begins, start);
+                let mut name = Some(std::mem::take(file));
+                v.text(plain("file", "A CSV file with time and value."), &mut name, true);
+                *file = name.unwrap_or_default();
+            }
+        }
+    }
+}
+
+impl Amplitudes {
+    /// One for each of so many sines.
+    pub fn of(&self, count: usize) -> Vec<f64> {
+        match self {
+            Amplitudes::Equal(amplitude) => vec![*amplitude; count],
+            Amplitudes::Each(amplitudes) => amplitudes.clone(),
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, size: Key, v: &mut V) {
+        let (mut equal, mut each) = match std::mem::take(self) {
+            Amplitudes::Equal(amplitude) => (Some(amplitude), Vec::new()),
+            Amplitudes::Each(amplitudes) => (None, amplitudes),
+        };
+        v.optional(size, &mut equal);
+        let k = key("amplitudes", size.dimension, "Of each sine of a multisine.").positive();
+        v.quantities(k, &mut each, false);
+        *self = equal.map_or(Amplitudes::Each(each), Amplitudes::Equal);
+    }
+}
+
 impl Signal {
+    /// Its shape, as it is written in the project file.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Signal::Step { .. } => "step",
+            Signal::Steps { .. } => "steps",
+            Signal::Ramp { .. } => "ramp",
+            Signal::Sine { .. } => "sine",
+            Signal::Chirp { .. } => "chirp",
+            Signal::Multisine(_) => "multisine",
+            Signal::File { .. } => "file",
+        }
+    }
+
     /// When it begins, s; of several steps, the first.
     pub fn begins_s(&self) -> f64 {
-        match self.kind {
-            SignalKind::Step => self.at.unwrap_or(0.0),
-            SignalKind::Steps => self.times.first().copied().unwrap_or(0.0),
-            _ => self.start.unwrap_or(0.0),
+        match self {
+            Signal::Step { at, .. } => *at,
+            Signal::Steps { times, .. } => times.first().copied().unwrap_or(0.0),
+            Signal::Ramp { start, .. }
+            | Signal::Sine { start, .. }
+            | Signal::Chirp { start, .. }
+            | Signal::Multisine(Multisine { start, .. })
+            | Signal::File { start, .. } => start.unwrap_or(0.0),
+        }
+    }
+
+    /// How long it moves, s, where that is stated.
+    pub fn duration_s(&self) -> Option<f64> {
+        match self {
+            Signal::Ramp { duration, .. } | Signal::Chirp { duration, .. } => Some(*duration),
+            Signal::Sine { duration, .. } | Signal::Multisine(Multisine { duration, .. }) => *duration,
+            Signal::Step { .. } | Signal::Steps { .. } | Signal::File { .. } => None,
         }
     }
 
     /// The times and values of its steps.
     pub fn steps(&self) -> Vec<(f64, f64)> {
-        match self.kind {
-            SignalKind::Step => self.at.zip(self.value).into_iter().collect(),
-            SignalKind::Steps => self.times.iter().copied().zip(self.values.iter().copied()).collect(),
+        match self {
+            Signal::Step { at, value, .. } => vec![(*at, *value)],
+            Signal::Steps { times, values } => times.iter().copied().zip(values.iter().copied()).collect(),
             _ => Vec::new(),
         }
     }
 
-    /// Keys that its kind needs and those it may have besides; `amplitude` stands for `amplitudes` too.
-    pub(crate) fn keys(&self, unit: SignalUnit) -> [Vec<&'static str>; 2] {
-        let [needed, allowed]: [&[&'static str]; 2] = match self.kind {
-            SignalKind::Step => [&["at", unit.value], &["published"]],
-            SignalKind::Steps => [&["times", unit.values], &[]],
-            SignalKind::Ramp => [&["duration", unit.value], &["start"]],
-            SignalKind::Sine => [&["amplitude", "frequency"], &["start", "duration"]],
-            SignalKind::Chirp => [&["amplitude", "frequency", "final_frequency", "duration"], &["start"]],
-            SignalKind::Multisine => {
-                [&["frequencies"], &["amplitude", "amplitudes", "phases", "start", "duration"]]
-            }
-            SignalKind::File => [&["file"], &["start"]],
-        };
-        [needed.to_vec(), allowed.to_vec()]
-    }
-
-    /// Every key that one kind or another has, and whether it is there.
-    pub(crate) fn present(&self, unit: SignalUnit) -> [(&'static str, bool); 14] {
-        [
-            ("at", self.at.is_some()),
-            (unit.value, self.value.is_some()),
-            ("times", !self.times.is_empty()),
-            (unit.values, !self.values.is_empty()),
-            ("start", self.start.is_some()),
-            ("duration", self.duration.is_some()),
-            ("amplitude", self.amplitude.is_some()),
-            ("amplitudes", !self.amplitudes.is_empty()),
-            ("frequency", self.frequency.is_some()),
-            ("final_frequency", self.final_frequency.is_some()),
-            ("frequencies", !self.frequencies.is_empty()),
-            ("phases", !self.phases.is_empty()),
-            ("file", self.file.is_some()),
-            ("published", self.published.is_some()),
-        ]
+    /// What somebody published of it, of a step of the reference.
+    pub fn published(&self) -> Option<&Published> {
+        if let Signal::Step { published, .. } = self { published.as_ref() } else { None }
     }
 
     /// Reads or prints it as what it is of.
     pub(crate) fn visitor<V: Visitor>(unit: SignalUnit) -> impl Fn(&mut Signal, &mut V) {
-        move |signal, v| signal.visit(unit, v)
-    }
-
-    fn visit<V: Visitor>(&mut self, unit: SignalUnit, v: &mut V) {
-        let of = unit.dimension;
-        // a step is written without its kind
-        let mut kind = Some(self.kind).filter(|kind| *kind != SignalKind::Step);
-        v.choice(plain("kind", "Its shape in time; absent: a step."), KINDS, &mut kind, false);
-        self.kind = kind.unwrap_or_default();
-        v.optional(key("at", &TIME, "When a step comes.").not_negative(), &mut self.at);
-        v.optional(key(unit.value, of, "Of a step, until the next; how far a ramp goes."), &mut self.value);
-        v.quantities(
-            key("times", &TIME, "When each of several steps comes.").not_negative(),
-            &mut self.times,
-        );
-        v.quantities(key(unit.values, of, "Of several steps, each until the next."), &mut self.values);
-        let k = key("start", &TIME, "When it begins; absent: at once.").not_negative();
-        v.optional(k, &mut self.start);
-        let k = key("duration", &TIME, "How long it moves; it holds the value it ends with.").positive();
-        v.optional(k, &mut self.duration);
-        let k = key("amplitude", of, "Of a sine, a chirp, or each sine of a multisine.").positive();
-        v.optional(k, &mut self.amplitude);
-        let k = key("amplitudes", of, "Of each sine of a multisine.").positive();
-        v.quantities(k, &mut self.amplitudes);
-        let k = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
-        v.optional(k, &mut self.frequency);
-        let k = key("final_frequency", &ANGULAR_FREQUENCY, "Where a chirp ends.").positive();
-        v.optional(k, &mut self.final_frequency);
-        let k = key("frequencies", &ANGULAR_FREQUENCY, "Of the sines of a multisine.").positive();
-        v.quantities(k, &mut self.frequencies);
-        let k = key("phases", &ANGLE, "Of the sines of a multisine; absent: Schroeder's.");
-        v.quantities(k, &mut self.phases);
-        v.text(plain("file", "A CSV file with time and value."), &mut self.file, false);
-        if unit.published {
-            let k =
-                plain("published", "Metrics somebody published of this step, for the report to set beside.");
-            v.table(k, &mut self.published, Published::visit);
+        move |signal, v| {
+            let mut written = Written { unit, signal: std::mem::take(signal) };
+            v.variant(plain("kind", "Its shape in time; absent: a step."), &mut written, false);
+            *signal = written.signal;
         }
     }
 }

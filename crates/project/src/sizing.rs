@@ -7,12 +7,8 @@ use phea_quantity::{FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, LENGTH, RATIO, TIME, V
 /// What the compliant component is sized for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sizing {
-    /// s, of the closed loop; this or `settling_time`.
-    pub time_constant: Option<f64>,
-    /// s.
-    pub settling_time: Option<f64>,
-    /// Percent, of the settling time.
-    pub settling_band_percent: Option<f64>,
+    /// How fast the closed loop is to be.
+    pub speed: Speed,
     /// m³/(s·V), K_qU; absent: derived from the valve at null.
     pub flow_gain: Option<f64>,
     /// m³/(s·Pa), K_c; absent: derived from the valve at null.
@@ -31,14 +27,55 @@ pub struct Sizing {
     pub length_increment: Option<f64>,
 }
 
+/// How fast a closed loop is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Speed {
+    /// s, its time constant.
+    TimeConstant(f64),
+    /// Its settling time.
+    Settling(Settling),
+}
+
+/// A settling time and its band.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Settling {
+    /// s.
+    pub time: f64,
+    /// Percent of the step.
+    pub band_percent: f64,
+}
+
+impl Default for Speed {
+    fn default() -> Self {
+        Speed::Settling(Settling::default())
+    }
+}
+
+impl Speed {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let (mut constant, mut settling) = match *self {
+            Speed::TimeConstant(time) => (Some(time), None),
+            Speed::Settling(settling) => (None, Some(settling)),
+        };
+        let k = key("time_constant", &TIME, "Time constant of the closed loop; or `settling_time`.");
+        v.optional(k.positive(), &mut constant);
+        v.way(&["settling_time"], &mut settling, Settling::visit);
+        *self = constant.map_or(Speed::Settling(settling.unwrap_or_default()), Speed::TimeConstant);
+    }
+}
+
+impl Settling {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("settling_time", &TIME, "Settling time, with `settling_band_percent`.").positive();
+        v.quantity(k, &mut self.time);
+        let k = key("settling_band_percent", &RATIO, "Band of the settling time, in percent of the step.");
+        v.quantity(k.positive().below(100.0), &mut self.band_percent);
+    }
+}
+
 impl Sizing {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("time_constant", &TIME, "Time constant of the closed loop; or `settling_time`.");
-        v.optional(k.positive(), &mut self.time_constant);
-        let k = key("settling_time", &TIME, "Settling time, with `settling_band_percent`.").positive();
-        v.optional(k, &mut self.settling_time);
-        let k = key("settling_band_percent", &RATIO, "Band of the settling time, in percent of the step.");
-        v.optional(k.positive().below(100.0), &mut self.settling_band_percent);
+        self.speed.visit(v);
         let k = key("flow_gain", &FLOW_GAIN, "K_qU; absent: derived from the valve at null.").positive();
         v.optional(k, &mut self.flow_gain);
         let k = key("flow_pressure_coefficient", &FLOW_PRESSURE_COEFFICIENT, "K_c; absent: derived.");

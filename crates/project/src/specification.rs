@@ -64,7 +64,7 @@ impl Specification {
         Limit::visit("upper", "Upper limit of tracking.", &mut self.upper, v);
         Limit::visit("lower", "Lower limit of tracking.", &mut self.lower, v);
         let k = key("frequencies", &ANGULAR_FREQUENCY, "Where bounds are drawn, increasing.").positive();
-        v.quantities(k, &mut self.frequencies);
+        v.quantities(k, &mut self.frequencies, false);
         let k = key("band", &ANGULAR_FREQUENCY, "Where it must hold; absent: the span of `frequencies`.");
         v.pair(k.not_negative().or_infinite(), &mut self.band);
     }

@@ -35,22 +35,101 @@ pub struct Valve {
     pub rate_limit: Option<f64>,
     /// Pa, pressure drop below which the square root is made regular.
     pub transition_pressure: f64,
-    /// K_v3 to K_v6, m³/(s·√Pa).
-    pub flow_coefficients: Option<EdgeCoefficients>,
-    /// K_vin3 to K_vin6, m³/(s·√Pa).
-    pub leakage_coefficients: Option<EdgeCoefficients>,
-    /// m³/s, rated flow of the data sheet.
-    pub nominal_flow: Option<f64>,
-    /// Pa, drop over both edges at the rated flow.
-    pub nominal_pressure_drop: Option<f64>,
-    /// m³/s, leakage at null of the data sheet, tare flow included.
-    pub null_leakage: Option<f64>,
-    /// m³/s, highest leakage at null of the data sheet, tare flow included, where it prints a range.
-    pub null_leakage_maximum: Option<f64>,
-    /// Pa, supply pressure the null leakage was measured at.
-    pub null_leakage_pressure: Option<f64>,
+    /// K_v3 to K_v6, or what they follow from.
+    pub flow: ValveCoefficients<RatedFlow>,
+    /// K_vin3 to K_vin6, or what they follow from.
+    pub leakage: ValveCoefficients<NullLeakage>,
     /// s, step response time of the data sheet; for information.
     pub response_time: Option<f64>,
+}
+
+/// ValveCoefficients of the edges as they are declared, or what the data sheet says, from which they follow, equal for all edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ValveCoefficients<R> {
+    /// Declared for each edge, m³/(s·√Pa).
+    Edges {
+        /// As declared.
+        edges: EdgeCoefficients,
+        /// What the data sheet says beside.
+        rating: Option<R>,
+    },
+    /// From the data sheet.
+    Rated(R),
+}
+
+/// The rated flow of a data sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RatedFlow {
+    /// m³/s.
+    pub flow: f64,
+    /// Pa, drop over both edges at this flow.
+    pub pressure_drop: f64,
+}
+
+/// The leakage at null of a data sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NullLeakage {
+    /// m³/s, tare flow included; the lowest of a range.
+    pub flow: f64,
+    /// m³/s, the highest, tare flow included, where the data sheet prints a range.
+    pub maximum: Option<f64>,
+    /// Pa, supply pressure it was measured at.
+    pub pressure: f64,
+}
+
+impl<R: Default> Default for ValveCoefficients<R> {
+    fn default() -> Self {
+        ValveCoefficients::Rated(R::default())
+    }
+}
+
+impl<R> ValveCoefficients<R> {
+    /// Of each edge, where they are declared.
+    pub fn edges(&self) -> Option<&EdgeCoefficients> {
+        if let ValveCoefficients::Edges { edges, .. } = self { Some(edges) } else { None }
+    }
+
+    /// What the data sheet says.
+    pub fn rating(&self) -> Option<&R> {
+        match self {
+            ValveCoefficients::Edges { rating, .. } => rating.as_ref(),
+            ValveCoefficients::Rated(rating) => Some(rating),
+        }
+    }
+
+    fn into_parts(self) -> (Option<EdgeCoefficients>, Option<R>) {
+        match self {
+            ValveCoefficients::Edges { edges, rating } => (Some(edges), rating),
+            ValveCoefficients::Rated(rating) => (None, Some(rating)),
+        }
+    }
+
+    fn of_parts(edges: Option<EdgeCoefficients>, rating: Option<R>) -> Option<ValveCoefficients<R>> {
+        match (edges, rating) {
+            (Some(edges), rating) => Some(ValveCoefficients::Edges { edges, rating }),
+            (None, rating) => rating.map(ValveCoefficients::Rated),
+        }
+    }
+}
+
+impl RatedFlow {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.quantity(key("nominal_flow", &FLOW, "Rated flow of the data sheet.").positive(), &mut self.flow);
+        let k = key("nominal_pressure_drop", &PRESSURE, "Drop over both edges together at the rated flow.");
+        v.quantity(k.positive(), &mut self.pressure_drop);
+    }
+}
+
+impl NullLeakage {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("null_leakage", &FLOW, "Leakage at null, tare flow included; the lowest of a range.");
+        v.quantity(k.not_negative(), &mut self.flow);
+        let k =
+            key("null_leakage_maximum", &FLOW, "Highest leakage at null, where the data sheet has a range.");
+        v.optional(k.not_negative(), &mut self.maximum);
+        let k = key("null_leakage_pressure", &PRESSURE, "Supply pressure the null leakage was measured at.");
+        v.quantity(k.positive(), &mut self.pressure);
+    }
 }
 
 /// One number for each edge of a four-way spool.
@@ -109,12 +188,31 @@ impl Valve {
         v.quantity(k, &mut self.tare_flow);
         let k = key("transition_pressure", &PRESSURE, "Drop below which the square root is made regular.");
         v.quantity(k.positive().or(1000.0), &mut self.transition_pressure);
-        let k = plain("flow_coefficients", "K_v3 to K_v6: a table, or an array in this order.");
-        v.record(k, &mut self.flow_coefficients, EdgeCoefficients::visit);
-        let k = plain("leakage_coefficients", "K_vin3 to K_vin6: a table, or an array in this order.");
-        v.record(k, &mut self.leakage_coefficients, EdgeCoefficients::visit);
+        self.visit_coefficients(v);
+        let k = key("response_time", &TIME, "Step response time of the data sheet; for information.");
+        v.optional(k.positive(), &mut self.response_time);
+    }
+
+    fn visit_coefficients<V: Visitor>(&mut self, v: &mut V) {
+        let (mut edges, mut rating) = std::mem::take(&mut self.flow).into_parts();
+        let (mut leaking_edges, mut leakage) = std::mem::take(&mut self.leakage).into_parts();
+        let flows = plain("flow_coefficients", "K_v3 to K_v6: a table, or an array in this order.");
+        v.record(flows, &mut edges, EdgeCoefficients::visit);
+        let leaks = plain("leakage_coefficients", "K_vin3 to K_vin6: a table, or an array in this order.");
+        v.record(leaks, &mut leaking_edges, EdgeCoefficients::visit);
         self.visit_imperfections(v);
-        self.visit_data_sheet(v);
+        v.way(&["nominal_flow"], &mut rating, RatedFlow::visit);
+        v.way(&["null_leakage"], &mut leakage, NullLeakage::visit);
+        self.flow = ValveCoefficients::of_parts(edges, rating).unwrap_or_else(|| {
+            let what = "`flow_coefficients`, or `nominal_flow` with `nominal_pressure_drop`,";
+            v.lacks(&[flows.name, "nominal_flow"], what);
+            ValveCoefficients::default()
+        });
+        self.leakage = ValveCoefficients::of_parts(leaking_edges, leakage).unwrap_or_else(|| {
+            let what = "`leakage_coefficients`, or `null_leakage` with `null_leakage_pressure`,";
+            v.lacks(&[leaks.name, "null_leakage"], what);
+            ValveCoefficients::default()
+        });
     }
 
     fn visit_imperfections<V: Visitor>(&mut self, v: &mut V) {
@@ -128,21 +226,5 @@ impl Valve {
         v.optional(k, &mut self.threshold);
         let k = key("rate_limit", &VOLTAGE_RATE, "Greatest rate of the spool, as equivalent command.");
         v.optional(k.positive(), &mut self.rate_limit);
-    }
-
-    fn visit_data_sheet<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("nominal_flow", &FLOW, "Rated flow of the data sheet.").positive();
-        v.optional(k, &mut self.nominal_flow);
-        let k = key("nominal_pressure_drop", &PRESSURE, "Drop over both edges together at the rated flow.");
-        v.optional(k.positive(), &mut self.nominal_pressure_drop);
-        let k = key("null_leakage", &FLOW, "Leakage at null, tare flow included; the lowest of a range.");
-        v.optional(k.not_negative(), &mut self.null_leakage);
-        let k =
-            key("null_leakage_maximum", &FLOW, "Highest leakage at null, where the data sheet has a range.");
-        v.optional(k.not_negative(), &mut self.null_leakage_maximum);
-        let k = key("null_leakage_pressure", &PRESSURE, "Supply pressure the null leakage was measured at.");
-        v.optional(k.positive(), &mut self.null_leakage_pressure);
-        let k = key("response_time", &TIME, "Step response time of the data sheet; for information.");
-        v.optional(k.positive(), &mut self.response_time);
     }
 }

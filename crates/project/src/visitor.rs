@@ -12,9 +12,13 @@ pub(crate) trait Variants: Clone {
     /// Whether a key of another variant is an error, and not a warning.
     const STRICT: bool = false;
     /// Every variant, before it is read.
-    fn all() -> Vec<Self>;
+    fn all(&self) -> Vec<Self>;
     /// As it is written.
     fn word(&self) -> &'static str;
+    /// Whether it is written without its word.
+    fn goes_without_saying(&self) -> bool {
+        false
+    }
     /// The keys of this variant.
     fn visit<V: Visitor>(&mut self, v: &mut V);
 }
@@ -27,8 +31,8 @@ pub(crate) trait Visitor: Sized {
     fn optional(&mut self, key: Key, field: &mut Option<f64>);
     /// Two numbers in order, or absent.
     fn pair(&mut self, key: Key, field: &mut Option<[f64; 2]>);
-    /// A list of numbers.
-    fn quantities(&mut self, key: Key, field: &mut Vec<f64>);
+    /// A list of numbers; required if `required`.
+    fn quantities(&mut self, key: Key, field: &mut Vec<f64>, required: bool);
     /// A list of complex numbers: a number, or a pair of real and imaginary part.
     fn complexes(&mut self, key: Key, field: &mut Vec<[f64; 2]>);
     /// A whole number; required unless the key has a default.
@@ -60,8 +64,24 @@ pub(crate) trait Visitor: Sized {
     fn catalogue(&mut self, key: Key, kind: Kind, field: &mut Option<String>);
     /// A table that may be absent.
     fn table<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
+    /// A table that must be there.
+    fn needed_table<T: Default>(&mut self, key: Key, field: &mut T, visit: impl Fn(&mut T, &mut Self)) {
+        let mut value = Some(std::mem::take(field));
+        self.table(key, &mut value, visit);
+        *field = value.unwrap_or_default();
+    }
     /// Keys of the present table that belong to a part which may be absent as a whole.
     fn part<T: Default>(&mut self, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
+    /// Keys of the present table that describe one thing in one way: it is described so if one of `chosen_by` is there, and the others have
+    /// no effect without.
+    fn way<T: Default>(
+        &mut self,
+        chosen_by: &'static [&'static str],
+        field: &mut Option<T>,
+        visit: impl Fn(&mut T, &mut Self),
+    );
+    /// Nothing that is needed is there: a reader says what, unless one of these keys is written, and was refused.
+    fn lacks(&mut self, _keys: &[&str], _what: &str) {}
     /// A table or, shorter, an array of its values in the order of its keys.
     fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
     /// An array of tables.

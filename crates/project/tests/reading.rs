@@ -9,7 +9,9 @@
 
 use phea_project::catalogue::{self, Kind};
 use phea_project::source::Memory;
-use phea_project::{self as project, Cylinder, Loaded, Origin, Project, Report, STARTER};
+use phea_project::{
+    self as project, Component, Cylinder, HoseExpansion, Line, Loaded, Origin, Project, Report, STARTER,
+};
 
 fn read(text: &str) -> Result<Loaded, Report> {
     project::read(&Memory::default().with("rig.toml", text), "rig.toml", &[], &[])
@@ -119,7 +121,7 @@ fn settings_come_before_everything_else() {
     ])
     .unwrap_or_else(|report| panic!("{report}"));
     let actuator = loaded.project.actuator.as_ref().expect("a rig");
-    assert_eq!((actuator.line.a.length, actuator.line.b.length), (Some(2.0), Some(1.0)));
+    assert_eq!((actuator.line.a.length(), actuator.line.b.length()), (Some(2.0), Some(1.0)));
     assert_eq!(loaded.project.title, "Rig of the second floor");
     assert_eq!(loaded.settings.len(), 4);
     let origin = |path: &str| loaded.provenance.iter().find(|p| p.path == path).map(|p| p.origin.clone());
@@ -155,7 +157,7 @@ fn numbers_are_found_and_replaced_by_their_path() {
     assert_eq!(project.number("supply.temperature"), None);
     let longer = project.with_number("line.length", 2.0).expect("a path");
     let line = &longer.actuator.as_ref().expect("a rig").line;
-    assert_eq!((line.a.length, line.b.length), (Some(2.0), Some(2.0)));
+    assert_eq!((line.a.length(), line.b.length()), (Some(2.0), Some(2.0)));
     assert!(longer.with_number("line.length", 1.5) == Some(project));
 }
 
@@ -274,8 +276,8 @@ fn the_measured_valve_adds_its_null_to_that_of_the_examples() {
     assert!((measured.null_bias + half - 0.078).abs() < 1e-12);
     assert!((measured.null_bias - half + 0.05).abs() < 1e-12);
     assert_eq!(measured.threshold, None);
-    assert_eq!(measured.flow_coefficients, plain.flow_coefficients);
-    assert_eq!(measured.leakage_coefficients, plain.leakage_coefficients);
+    assert_eq!(measured.flow, plain.flow);
+    assert_eq!(measured.leakage.edges(), plain.leakage.edges());
     assert_eq!((measured.tare_flow, measured.tare_pressure), (plain.tare_flow, Some(70e5)));
 }
 
@@ -289,19 +291,22 @@ fn a_side_inherits_what_it_does_not_say() {
         });
     let lines = |project: &Project| project.actuator.clone().expect("a rig").line;
     let (piped, narrowed) = (lines(&pipe), lines(&own));
-    assert_eq!(piped.a.hose_properties.bore, Some(0.013));
-    assert_eq!(
-        (piped.b.hose.as_deref(), piped.b.hose_properties.bore, piped.b.length),
-        (None, None, Some(1.5))
+    let bore = |line: &Line| line.hose().map(|hose| hose.bore);
+    assert_eq!(bore(&piped.a), Some(0.013));
+    assert!(
+        matches!(&piped.b.component, Component::Pipe { pipe, length } if pipe.bore == 0.01 && *length == 1.5)
     );
-    assert_eq!(narrowed.b.hose.as_deref(), Some("eaton_synflex_3130_08"));
-    assert_eq!(
-        (narrowed.a.hose_properties.bore, narrowed.b.hose_properties.bore),
-        (Some(0.013), Some(0.009))
-    );
-    assert_eq!(narrowed.b.hose_properties.volumetric_expansion_slope, Some(2.236e-12));
+    assert_eq!(narrowed.b.hose_name(), Some("eaton_synflex_3130_08"));
+    assert_eq!((bore(&narrowed.a), bore(&narrowed.b)), (Some(0.013), Some(0.009)));
+    assert_eq!(narrowed.b.hose().map(|hose| hose.expansion.slope()), Some(2.236e-12));
     round_trip(&pipe);
     round_trip(&own);
+    // what was measured alone gives the slope from zero
+    let measured = HOSE.replace("hose = \"eaton_synflex_3130_08\"", "bore = \"9.5 mm\"\nvolumetric_expansion = \"2.4 cc/ft\"\nvolumetric_expansion_pressure = \"1000 psi\"");
+    let project = accept(&measured).project;
+    let expansion = lines(&project).a.hose().map(|hose| hose.expansion);
+    assert!(matches!(expansion, Some(HoseExpansion::Measured { .. })), "{expansion:?}");
+    round_trip(&project);
 }
 
 #[test]

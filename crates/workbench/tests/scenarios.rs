@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use phea_dynamics::portable;
 use phea_workbench::campaign::Plan;
 use phea_workbench::command::{self, Request};
-use phea_workbench::project::{self, Loaded, SignalKind};
+use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Cause, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
@@ -83,9 +83,9 @@ fn a_reference_is_the_sum_of_its_parts() {
         causes,
         [
             Cause::ReferenceStep { from_n: 0.0, to_n: 1e3 },
-            Cause::ReferenceMotion { kind: SignalKind::Ramp },
+            Cause::ReferenceMotion { kind: "ramp" },
             Cause::ReferenceStep { from_n: 1.5e3, to_n: 2.5e3 },
-            Cause::ReferenceMotion { kind: SignalKind::Sine },
+            Cause::ReferenceMotion { kind: "sine" },
         ]
     );
     // a sine has no overshoot; what follows it has an error, and the largest is that of its rows
@@ -170,7 +170,7 @@ fn a_command_played_back_gives_the_force_it_was_recorded_with() {
         assert!((one - other).abs() < 2.0, "{time_s}: {one} {other}");
     }
     let (window, metrics) = &open.windows[0];
-    assert_eq!(window.cause, Cause::CommandMotion { kind: SignalKind::File });
+    assert_eq!(window.cause, Cause::CommandMotion { kind: "file" });
     assert!(open.record.reference_n.is_empty() && open.record.filtered_reference_n.is_empty());
     assert_eq!(metrics.overshoot_percent, Err("open loop: no force is asked for"));
     let largest = open.record.signal("force_n").into_iter().map(f64::abs).fold(0.0, f64::max);
@@ -248,7 +248,7 @@ fn a_campaign_takes_an_open_loop_and_other_references() {
     let open = plan("command = { at = 0.1, voltage = 1 }").unwrap();
     assert_eq!(open.windows()[0].cause, Cause::CommandStep { from_v: 0.0, to_v: 1.0 });
     let sine = "reference = { kind = \"sine\", amplitude = \"1 kN\", frequency = \"5 Hz\" }";
-    assert_eq!(plan(sine).unwrap().windows()[0].cause, Cause::ReferenceMotion { kind: SignalKind::Sine });
+    assert_eq!(plan(sine).unwrap().windows()[0].cause, Cause::ReferenceMotion { kind: "sine" });
 }
 
 /// Goes on from the end of another run: with its state file in the source.

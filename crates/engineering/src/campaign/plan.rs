@@ -10,7 +10,7 @@ use super::CampaignError;
 use super::range::VariedRange;
 use super::row::Columns;
 use super::varied::ranges;
-use crate::project::{Loaded, MotionShape, Project, Scenario, print};
+use crate::project::{Loaded, MotionShape, Project, Scenario, Signal, print};
 use crate::setup::Setup;
 use crate::simulate::{Bench, Driven, SimulateError, Window, driven};
 use crate::source::Source;
@@ -281,7 +281,10 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
         _ => None,
     });
     let signals = scenario.reference.iter().chain(&scenario.command).chain(&scenario.external_force);
-    let signals = signals.filter_map(|signal| signal.file.as_ref());
+    let signals = signals.filter_map(|signal| match signal {
+        Signal::File { file, .. } => Some(file),
+        _ => None,
+    });
     let signals = signals.chain(scenario.start.iter().filter_map(|start| start.file.as_ref()));
     for bytes in motion.chain(signals).filter_map(|name| source.read(&project.path_of(name)).ok()) {
         hash.update(bytes);

@@ -36,18 +36,18 @@ pub(super) fn spread(numbers: impl Iterator<Item = (u64, Option<f64>)>) -> Optio
     }
     values.sort_by(f64::total_cmp);
     let extremes = [*values.first()?, *values.last()?];
-    Some(Spread { count: values.len(), missing, quantiles: quantiles(&values), extremes, worst: worst? })
+    Some(Spread { count: values.len(), missing, quantiles: quantiles(&values)?, extremes, worst: worst? })
 }
 
-/// Of sorted values, at least one: at (n - 1) q, between two on a straight line.
-pub(super) fn quantiles(sorted: &[f64]) -> [f64; 5] {
-    let last = sorted.len().saturating_sub(1);
-    QUANTILES.map(|percent| {
+/// Of sorted values: at (n - 1) q, between two on a straight line; `None` of none.
+pub(super) fn quantiles(sorted: &[f64]) -> Option<[f64; 5]> {
+    let (greatest, last) = (sorted.last()?, sorted.len() - 1);
+    Some(QUANTILES.map(|percent| {
         let place = last as f64 * f64::from(percent) / 100.0;
         let below = (place as usize).min(last);
-        let value = |index: usize| sorted.get(index.min(last)).copied().unwrap_or(f64::NAN);
+        let value = |index: usize| *sorted.get(index).unwrap_or(greatest);
         value(below) + (place - below as f64) * (value(below + 1) - value(below))
-    })
+    }))
 }
 
 #[cfg(test)]
@@ -57,9 +57,10 @@ mod tests {
     #[test]
     fn quantiles_of_whole_numbers_are_where_they_should_be() {
         let values: Vec<f64> = (0..=100).map(f64::from).collect();
-        assert_eq!(quantiles(&values), [5.0, 25.0, 50.0, 75.0, 95.0]);
-        assert_eq!(quantiles(&[7.0]), [7.0; 5]);
-        assert_eq!(quantiles(&[0.0, 1.0])[1], 0.25);
+        assert_eq!(quantiles(&values), Some([5.0, 25.0, 50.0, 75.0, 95.0]));
+        assert_eq!(quantiles(&[7.0]), Some([7.0; 5]));
+        assert_eq!(quantiles(&[0.0, 1.0]).map(|five| five[1]), Some(0.25));
+        assert_eq!(quantiles(&[]), None);
     }
 
     #[test]

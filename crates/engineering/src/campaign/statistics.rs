@@ -110,12 +110,10 @@ fn bands(times_s: &[f64], driven: &[(u64, &Ran)]) -> Bands {
     for (index, time_s) in times_s.iter().enumerate() {
         let forces = driven.iter().filter_map(|(_, ran)| ran.force_n.get(index));
         let mut forces: Vec<f64> = forces.map(|force| f64::from(*force)).collect();
-        if forces.is_empty() {
-            break;
-        }
         forces.sort_by(f64::total_cmp);
+        let Some(five) = quantiles(&forces) else { break };
         bands.times_s.push(*time_s);
-        bands.force_n.push(quantiles(&forces));
+        bands.force_n.push(five);
     }
     bands
 }

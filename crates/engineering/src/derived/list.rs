@@ -23,10 +23,18 @@ impl List {
         unit: &'static str,
         equation: &'static str,
     ) {
-        let name = name.into();
-        let entry =
-            Derived { group: self.group, name, symbol, value, unit, equation, stated: None, reason: None };
-        self.entries.push(entry);
+        self.push(name.into(), symbol, Ok(value), unit, equation);
+    }
+
+    fn push(
+        &mut self,
+        name: String,
+        symbol: &'static str,
+        value: Result<f64, &'static str>,
+        unit: &'static str,
+        equation: &'static str,
+    ) {
+        self.entries.push(Derived { group: self.group, name, symbol, value, unit, equation, stated: None });
     }
 
     /// States beside the last quantity what the project says of it.
@@ -43,12 +51,9 @@ impl List {
         symbol: &'static str,
         unit: &'static str,
         equation: &'static str,
-        reason: &str,
+        reason: &'static str,
     ) {
-        self.add(name, symbol, f64::NAN, unit, equation);
-        if let Some(last) = self.entries.last_mut() {
-            last.reason = Some(reason.to_string());
-        }
+        self.push(name.into(), symbol, Err(reason), unit, equation);
     }
 
     pub(super) fn into_entries(self) -> Vec<Derived> {

@@ -6,7 +6,7 @@ use phea_hydraulics::servovalve::{
 use phea_hydraulics::two_pressure::{reduce, two_pressure_linear_parameters};
 
 use super::list::List;
-use crate::project::{self, Project};
+use crate::project::{self, NullLeakage, Project, RatedFlow, ValveCoefficients};
 use crate::rig::Rig;
 
 /// Unit of the coefficients of the edges.
@@ -109,8 +109,8 @@ fn chamber_slopes(rig: &Rig, list: &mut List) {
 fn edges(declared: &project::Valve, supply: &project::Supply, rig: &Rig, list: &mut List) {
     let valve = &rig.actuator.components().valve;
     let origin = |is_declared, equation| if is_declared { "declared" } else { equation };
-    let flow_origin = origin(declared.flow_coefficients.is_some(), FROM_RATING);
-    let leakage_origin = origin(declared.leakage_coefficients.is_some(), FROM_LEAKAGE);
+    let flow_origin = origin(declared.flow.edges().is_some(), FROM_RATING);
+    let leakage_origin = origin(declared.leakage.edges().is_some(), FROM_LEAKAGE);
     for ((name, symbol, _), value) in EDGES.into_iter().zip(valve.flow_coefficients.to_array()) {
         list.add(format!("valve.flow_coefficient_{name}"), symbol, value, COEFFICIENT, flow_origin);
     }
@@ -118,22 +118,17 @@ fn edges(declared: &project::Valve, supply: &project::Supply, rig: &Rig, list: &
         list.add(format!("valve.leakage_coefficient_{name}"), symbol, value, COEFFICIENT, leakage_origin);
     }
     let mean = |edges: [f64; 4]| edges.iter().sum::<f64>() / 4.0;
-    if let (Some(edges), Some(flow), Some(drop)) =
-        (declared.flow_coefficients, declared.nominal_flow, declared.nominal_pressure_drop)
+    if let ValveCoefficients::Edges { edges, rating: Some(RatedFlow { flow, pressure_drop }) } = declared.flow
     {
-        let rated = flow_coefficient_from_rating(flow, drop);
+        let rated = flow_coefficient_from_rating(flow, pressure_drop);
         list.add("valve.flow_coefficient_rated", "K_vp", rated, COEFFICIENT, FROM_RATING);
         list.stated(mean(edges.in_order()), "[valve.flow_coefficients], the mean of its edges", None);
     }
-    if let (Some(edges), Some(leakage), Some(pressure)) =
-        (declared.leakage_coefficients, declared.null_leakage, declared.null_leakage_pressure)
+    if let ValveCoefficients::Edges { edges, rating: Some(NullLeakage { flow, pressure, .. }) } =
+        declared.leakage
     {
-        let rated = leakage_coefficient_from_rating(
-            leakage,
-            declared.tare_flow,
-            declared.tare_drop(supply),
-            pressure,
-        );
+        let tare = declared.tare_drop(supply);
+        let rated = leakage_coefficient_from_rating(flow, declared.tare_flow, tare, pressure);
         list.add("valve.leakage_coefficient_rated", "K_vinp", rated, COEFFICIENT, FROM_LEAKAGE);
         list.stated(mean(edges.in_order()), "[valve.leakage_coefficients], the mean of its edges", None);
     }

@@ -10,7 +10,7 @@ use phea_qft::verification::TOLERANCE_DB;
 
 use crate::control::{ControlError, element};
 use crate::error::ProcedureError;
-use crate::project::{DesignObjective, PartKind, StructurePart};
+use crate::project::{DesignObjective, StructurePart};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
@@ -102,20 +102,24 @@ fn structure(
     Ok(Structure { sign, gain, parts })
 }
 
-/// A part that the project declares; validated, so that a fixed one has its element.
+/// A part that the project declares, its free numbers wide where it states none.
 fn part(declared: &StructurePart, wide: [f64; 2]) -> Result<Part, ControlError> {
-    let frequency = declared.frequency.unwrap_or(wide);
-    let damping_ratio = declared.damping_ratio.unwrap_or(DAMPING_RATIOS);
-    Ok(match declared.kind {
-        PartKind::Integrator => Part::Fixed(Element::Integrator),
-        PartKind::Zero => Part::RealZero { frequency },
-        PartKind::Pole => Part::RealPole { frequency },
-        PartKind::ZeroPair => Part::ZeroPair { natural_frequency: frequency, damping_ratio },
-        PartKind::PolePair => Part::PolePair { natural_frequency: frequency, damping_ratio },
-        PartKind::Fixed => Part::Fixed(match &declared.element {
-            // in s, as every factor is
-            Some(fixed) => element("[design]", fixed, None)?,
-            None => Element::Gain(1.0),
-        }),
+    let pair = |frequency: &Option<[f64; 2]>, damping_ratio: &Option<[f64; 2]>| {
+        (frequency.unwrap_or(wide), damping_ratio.unwrap_or(DAMPING_RATIOS))
+    };
+    Ok(match declared {
+        StructurePart::Integrator => Part::Fixed(Element::Integrator),
+        StructurePart::Zero { frequency } => Part::RealZero { frequency: frequency.unwrap_or(wide) },
+        StructurePart::Pole { frequency } => Part::RealPole { frequency: frequency.unwrap_or(wide) },
+        StructurePart::ZeroPair { frequency, damping_ratio } => {
+            let (natural_frequency, damping_ratio) = pair(frequency, damping_ratio);
+            Part::ZeroPair { natural_frequency, damping_ratio }
+        }
+        StructurePart::PolePair { frequency, damping_ratio } => {
+            let (natural_frequency, damping_ratio) = pair(frequency, damping_ratio);
+            Part::PolePair { natural_frequency, damping_ratio }
+        }
+        // in s, as every factor is
+        StructurePart::Fixed { element: fixed } => Part::Fixed(element("[design]", fixed, None)?),
     })
 }

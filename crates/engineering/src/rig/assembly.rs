@@ -12,7 +12,10 @@ use phea_hydraulics::servovalve::{
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::numbers::Numbers;
-use crate::project::{self, Compliance, Component, EdgeCoefficients, FrictionLaw, Interval, StribeckCurve};
+use crate::project::{
+    self, Compliance, Component, EdgeCoefficients, FrictionLaw, HoseExpansion, Interval, LineVolume,
+    NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
+};
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: taken where a project states none.
 pub(super) const KINEMATIC_VISCOSITY: f64 = 46e-6;
@@ -71,11 +74,10 @@ fn fluid<S: Scalar>(declared: &project::Fluid, numbers: &Numbers<'_, S>) -> Flui
     }
 }
 
-/// Coefficients as declared; without them, those of the data sheet, equal for all edges.
+/// ValveCoefficients as declared; without them, those of the data sheet, equal for all edges.
 fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_drop: S) -> Servovalve<S> {
     let numbers = numbers.within("valve");
     let at = |key: &str, value: f64| numbers.at(key, value);
-    let stated = |key: &str, value: Option<f64>| at(key, value.unwrap_or(f64::NAN));
     let edges = |table: &'static str, edges: EdgeCoefficients| {
         let [supply_to_a, a_to_tank, supply_to_b, b_to_tank] = edges.in_order();
         let numbers = numbers.within(table);
@@ -89,21 +91,21 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
     };
     let tare_flow = at("tare_flow", declared.tare_flow);
     let tare_drop = declared.tare_pressure.map_or(supply_drop, |drop| at("tare_pressure", drop));
-    let from_rating = || {
-        let rated_flow = stated("nominal_flow", declared.nominal_flow);
-        let rated_drop = stated("nominal_pressure_drop", declared.nominal_pressure_drop);
-        Edges::equal(flow_coefficient_from_rating(rated_flow, rated_drop))
-    };
-    let from_leakage = || {
-        let leakage = stated("null_leakage", declared.null_leakage);
-        let pressure = stated("null_leakage_pressure", declared.null_leakage_pressure);
-        Edges::equal(leakage_coefficient_from_rating(leakage, tare_flow, tare_drop, pressure))
-    };
-    let (flow, leakage) = (declared.flow_coefficients, declared.leakage_coefficients);
     Servovalve {
-        flow_coefficients: flow.map_or_else(from_rating, |flow| edges("flow_coefficients", flow)),
-        leakage_coefficients: leakage
-            .map_or_else(from_leakage, |leakage| edges("leakage_coefficients", leakage)),
+        flow_coefficients: match declared.flow {
+            ValveCoefficients::Edges { edges: flow, .. } => edges("flow_coefficients", flow),
+            ValveCoefficients::Rated(RatedFlow { flow, pressure_drop }) => {
+                let drop = at("nominal_pressure_drop", pressure_drop);
+                Edges::equal(flow_coefficient_from_rating(at("nominal_flow", flow), drop))
+            }
+        },
+        leakage_coefficients: match declared.leakage {
+            ValveCoefficients::Edges { edges: leakage, .. } => edges("leakage_coefficients", leakage),
+            ValveCoefficients::Rated(NullLeakage { flow, pressure, .. }) => {
+                let (leakage, pressure) = (at("null_leakage", flow), at("null_leakage_pressure", pressure));
+                Edges::equal(leakage_coefficient_from_rating(leakage, tare_flow, tare_drop, pressure))
+            }
+        },
         leakage_shape: at("leakage_shape", declared.leakage_shape),
         tare_flow,
         nominal_voltage: at("nominal_voltage", declared.nominal_voltage),
@@ -120,30 +122,22 @@ fn line<S: Scalar>(
     pressures: ExpansionPressures<S>,
 ) -> Line<S> {
     let at = |key: &str, value: f64| numbers.at(key, value);
-    match declared.component() {
-        Some(Component::Volume { volume, effective_bulk_modulus }) => Line::Volume {
-            volume: at("volume", volume),
-            effective_bulk_modulus: at("effective_bulk_modulus", effective_bulk_modulus),
+    match &declared.component {
+        Component::Volume(LineVolume { volume, effective_bulk_modulus }) => Line::Volume {
+            volume: at("volume", *volume),
+            effective_bulk_modulus: at("effective_bulk_modulus", *effective_bulk_modulus),
         },
-        Some(Component::Pipe { pipe, length }) => {
-            Line::Pipe { pipe: self::pipe(pipe, numbers), length: at("length", length) }
+        Component::Pipe { pipe, length } => {
+            Line::Pipe { pipe: self::pipe(pipe, numbers), length: at("length", *length) }
         }
-        Some(Component::Hose { bore, expansion, expansion_pressure, expansion_slope, length, .. }) => {
-            let measured = expansion.map(|value| at("volumetric_expansion", value));
-            let pressure = expansion_pressure.map(|value| at("volumetric_expansion_pressure", value));
-            let slope = match (declared.hose_properties.volumetric_expansion_slope, measured, pressure) {
-                (None, Some(expansion), Some(pressure)) => expansion / pressure,
-                _ => at("volumetric_expansion_slope", expansion_slope),
-            };
-            let expansion = Expansion { measured, at: pressure, slope };
+        Component::Hose { properties, length, .. } => {
+            let expansion = Expansion::of(&properties.expansion, numbers);
             let stiffening = stiffening(declared.dynamic_stiffening, numbers);
             Line::Hose {
-                hose: hose(at("bore", bore), expansion, pressures, stiffening),
-                length: at("length", length),
+                hose: hose(at("bore", properties.bore), expansion, pressures, stiffening),
+                length: at("length", *length),
             }
         }
-        // A project that was read without error has a component; refused as physics otherwise.
-        None => Line::Volume { volume: S::from(f64::NAN), effective_bulk_modulus: S::from(f64::NAN) },
     }
 }
 
@@ -172,6 +166,17 @@ pub(super) struct Expansion<S = f64> {
 }
 
 impl<S: Scalar> Expansion<S> {
+    /// As it is declared.
+    pub(super) fn of(declared: &HoseExpansion, numbers: &Numbers<'_, S>) -> Expansion<S> {
+        let measured = declared.measured().map(|value| numbers.at("volumetric_expansion", value));
+        let pressure = declared.pressure().map(|value| numbers.at("volumetric_expansion_pressure", value));
+        let slope = match (declared, measured, pressure) {
+            (HoseExpansion::Measured { .. }, Some(measured), Some(pressure)) => measured / pressure,
+            _ => numbers.at("volumetric_expansion_slope", declared.slope()),
+        };
+        Expansion { measured, at: pressure, slope }
+    }
+
     /// The declared point and the slope from there, or the slope from zero, m3/m; a point without a pressure is taken as that of
     /// the working pressure.
     fn at(self, pressure: S, working_pressure: S) -> S {
@@ -215,16 +220,13 @@ pub(super) fn stiffening<S: Scalar>(declared: Option<Interval>, numbers: &Number
 fn pipe<S: Scalar>(declared: &project::Pipe, numbers: &Numbers<'_, S>) -> Pipe<S> {
     let numbers = numbers.within("pipe");
     let at = |key: &str, value: f64| numbers.at(key, value);
-    let wall = match (declared.wall_thickness, declared.youngs_modulus) {
-        (Some(thickness), Some(youngs_modulus)) => PipeWall::Elastic {
-            thickness: at("wall_thickness", thickness),
-            youngs_modulus: at("youngs_modulus", youngs_modulus),
-            poisson_ratio: at("poisson_ratio", declared.poisson_ratio),
-            anchoring: Anchoring::Throughout,
-            thick: true,
-        },
-        _ => PipeWall::Rigid,
-    };
+    let wall = declared.wall.map_or(PipeWall::Rigid, |wall| PipeWall::Elastic {
+        thickness: at("wall_thickness", wall.thickness),
+        youngs_modulus: at("youngs_modulus", wall.youngs_modulus),
+        poisson_ratio: at("poisson_ratio", declared.poisson_ratio),
+        anchoring: Anchoring::Throughout,
+        thick: true,
+    });
     Pipe { bore: at("bore", declared.bore), wall }
 }
 

@@ -12,7 +12,7 @@ use phea_hydraulics::servovalve::Supply;
 use phea_hydraulics::stiffness::compliance_at;
 use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
-use crate::project::{self, LineFriction, LineMotion, LineWall};
+use crate::project::{self, LineFriction, LineMotion, LineSegments, LineWall};
 
 /// The plant with lines as they move, in place of its lumped ones; `None` where both are lumped.
 ///
@@ -71,7 +71,7 @@ pub fn lines(
     pressure: f64,
 ) -> Result<Option<[DynamicLine; 2]>, LineError> {
     let [a, b] = [&declared.a.motion, &declared.b.motion];
-    if [a.model, b.model] == [project::LineModel::Lumped; 2] {
+    if *a == LineMotion::Lumped && *b == LineMotion::Lumped {
         return Ok(None);
     }
     let of = |line: &Line, motion: &LineMotion| {
@@ -82,27 +82,30 @@ pub fn lines(
 }
 
 fn line_model(motion: &LineMotion, line: &Line) -> LineModel {
-    let end_share = motion.end_share.unwrap_or(END_SHARE);
-    match motion.model {
-        project::LineModel::Lumped => LineModel::Lumped,
-        // a validated project states the relaxation time of a wall that creeps
-        project::LineModel::Creeping => {
-            LineModel::Creeping { relaxation_time: motion.relaxation_time.unwrap_or(f64::NAN) }
+    let share = |stated: &Option<f64>| stated.unwrap_or(END_SHARE);
+    match motion {
+        LineMotion::Lumped => LineModel::Lumped,
+        LineMotion::Creeping { relaxation_time } => LineModel::Creeping { relaxation_time: *relaxation_time },
+        LineMotion::Segments(segments) => segmented(segments),
+        LineMotion::TransmissionLine { end_share } => {
+            LineModel::TransmissionLine { end_share: share(end_share) }
         }
-        project::LineModel::Segments => LineModel::Segments {
-            count: motion.segments.unwrap_or(LineMotion::SEGMENTS) as usize,
-            friction: match motion.friction {
-                Some(LineFriction::Steady) => LaminarFriction::Steady,
-                Some(LineFriction::FrequencyDependent) | None => LaminarFriction::FrequencyDependent,
-            },
-            relaxation_time: motion.relaxation_time,
-        },
-        project::LineModel::TransmissionLine => LineModel::TransmissionLine { end_share },
-        project::LineModel::TwoWave => {
+        LineMotion::TwoWave { end_share, wall } => {
             let hose = if let Line::Hose { hose, .. } = line { Some(hose) } else { None };
-            let wall = motion.wall.as_ref().zip(hose).map(|(wall, hose)| braided_wall(wall, hose));
-            LineModel::TwoWave { end_share, wall }
+            let wall = wall.as_ref().zip(hose).map(|(wall, hose)| braided_wall(wall, hose));
+            LineModel::TwoWave { end_share: share(end_share), wall }
         }
+    }
+}
+
+fn segmented(declared: &LineSegments) -> LineModel {
+    LineModel::Segments {
+        count: declared.count() as usize,
+        friction: match declared.friction {
+            Some(LineFriction::Steady) => LaminarFriction::Steady,
+            Some(LineFriction::FrequencyDependent) | None => LaminarFriction::FrequencyDependent,
+        },
+        relaxation_time: declared.relaxation_time,
     }
 }
 

@@ -4,7 +4,7 @@ use phea_hydraulics::linear::LinearParameters;
 use super::assembly::{Expansion, ExpansionPressures, hose, stiffening};
 use super::numbers::Numbers;
 use crate::catalogue::{Catalogue, DASH_SIZES, Kind};
-use crate::project::{self, HoseProperties};
+use crate::project::{self, HoseProperties, Settling, Speed};
 use crate::quantity::significant;
 use crate::setup::Setup;
 use crate::sizing::{HoseOption, SizingProblem};
@@ -29,9 +29,6 @@ pub enum SizingError {
         "the project has no [sizing]: add one with `time_constant`, or `settling_time` and `settling_band_percent`"
     )]
     Absent,
-    /// No time constant can be had.
-    #[error("[sizing] needs `time_constant`, or `settling_time` with `settling_band_percent`")]
-    TimeConstant,
     /// No flow limits the bore.
     #[error("sizing needs the largest flow: `flow` in [supply], or `nominal_flow` in [valve]")]
     Flow,
@@ -49,7 +46,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     let wish = project.sizing.as_ref().ok_or(SizingError::Absent)?;
     let actuator = project.actuator.as_ref().ok_or(SizingError::NoHose)?;
     let components = rig.actuator.components();
-    let (time_constant, time_constant_origin) = time_constant(wish)?;
+    let (time_constant, time_constant_origin) = time_constant(wish.speed);
     let (maximum_flow, maximum_flow_origin) = maximum_flow(actuator)?;
     let hoses = hoses(actuator, catalogue);
     if hoses.is_empty() {
@@ -91,25 +88,24 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     })
 }
 
-/// A first-order response enters a band of b percent after ln(100/b) time constants.
-fn time_constant(wish: &project::Sizing) -> Result<(f64, String), SizingError> {
-    match (wish.time_constant, wish.settling_time, wish.settling_band_percent) {
-        (Some(time_constant), _, _) => Ok((time_constant, "stated".to_string())),
-        (None, Some(settling_time), Some(band)) => {
-            let constants = ln(100.0 / band);
+/// s, and where it comes from: a first-order response enters a band of b percent after ln(100/b) time constants.
+fn time_constant(speed: Speed) -> (f64, String) {
+    match speed {
+        Speed::TimeConstant(time) => (time, "stated".to_string()),
+        Speed::Settling(Settling { time, band_percent }) => {
+            let constants = ln(100.0 / band_percent);
             let origin = format!(
-                "{} s to {band} % is {} time constants of a first-order response (the thesis takes four whatever the band: for its numbers state `time_constant`)",
-                significant(settling_time, 4),
+                "{} s to {band_percent} % is {} time constants of a first-order response (the thesis takes four whatever the band: for its numbers state `time_constant`)",
+                significant(time, 4),
                 significant(constants, 3)
             );
-            Ok((settling_time / constants, origin))
+            (time / constants, origin)
         }
-        _ => Err(SizingError::TimeConstant),
     }
 }
 
 fn maximum_flow(actuator: &project::Actuator) -> Result<(f64, String), SizingError> {
-    match (actuator.supply.flow(), actuator.valve.nominal_flow) {
+    match (actuator.supply.flow(), actuator.valve.flow.rating().map(|rated| rated.flow)) {
         (Some(pump), Some(valve)) if pump <= valve => {
             Ok((pump, "the pump's, less than the valve's rated flow".to_string()))
         }
@@ -125,31 +121,24 @@ fn hoses(actuator: &project::Actuator, catalogue: &Catalogue) -> Vec<HoseOption>
     let line = &actuator.line.a;
     let pressures = ExpansionPressures::of(actuator.supply.pressure, actuator.supply.tank_pressure);
     let option = |name: &str, properties: &HoseProperties| {
-        let slope = properties.expansion_slope()?;
-        let (measured, at) = (properties.volumetric_expansion, properties.volumetric_expansion_pressure);
-        let expansion = Expansion { measured, at, slope };
-        Some(HoseOption {
+        let expansion = Expansion::of(&properties.expansion, &Numbers::declared());
+        let stiffening = stiffening(line.dynamic_stiffening, &Numbers::declared());
+        HoseOption {
             name: name.to_string(),
-            hose: hose(
-                properties.bore?,
-                expansion,
-                pressures,
-                stiffening(line.dynamic_stiffening, &Numbers::declared()),
-            ),
+            hose: hose(properties.bore, expansion, pressures, stiffening),
             working_pressure: properties.working_pressure,
             minimum_bend_radius: properties.minimum_bend_radius,
-        })
+        }
     };
+    let own = line.hose();
     let mut hoses: Vec<HoseOption> = catalogue
         .entries(Kind::Hose)
         .filter_map(|entry| {
-            let own = line.hose.as_deref() == Some(entry.name.as_str());
-            let properties = if own { Some(&line.hose_properties) } else { entry.hose.as_ref() };
-            option(&entry.name, properties?)
+            let own = own.filter(|_| line.hose_name() == Some(entry.name.as_str()));
+            Some(option(&entry.name, own.or(entry.hose.as_ref())?))
         })
         .collect();
-    if line.hose.is_none() {
-        hoses.extend(option("the project's hose", &line.hose_properties));
-    }
+    let unnamed = own.filter(|_| line.hose_name().is_none());
+    hoses.extend(unnamed.map(|own| option("the project's hose", own)));
     hoses
 }

@@ -131,8 +131,7 @@ mod tests {
     fn every_column_can_be_measured() {
         let mut columns = Columns::new(true).names();
         columns.remove(0);
-        let mut measurable: Vec<&str> =
-            super::super::project::MEASURABLE.iter().map(|(name, _)| *name).collect();
+        let mut measurable: Vec<&str> = phea_project::MEASURABLE.iter().map(|(name, _)| *name).collect();
         columns.sort_unstable();
         measurable.sort_unstable();
         assert_eq!(columns, measurable);

@@ -92,8 +92,9 @@ pub fn driven(
 /// The scenario for the machine of a bench.
 pub fn course_of(driven: &Driven, bench: &Bench, scenario: &Scenario) -> Result<Course, SimulateError> {
     if let Some(saved) = &driven.saved {
-        let waking = saved.memory(bench).map_or(Waking::AtRest, Waking::Resumed);
-        return Ok(driven.course(bench, saved.ground_m(), saved.states(bench), waking));
+        let waking = saved.memory.clone().map_or(Waking::AtRest, Waking::Resumed);
+        let states = saved.states.iter().map(|(_, value)| *value).collect();
+        return Ok(driven.course(bench, saved.ground_m, states, waking));
     }
     if let Some(stated) = &scenario.start {
         let named = |error| SimulateError::Start { name: scenario.name.clone(), error };

@@ -1,7 +1,5 @@
 //! What is measured of a run: one window for each step of the reference and for the motion of the load.
 
-use super::project::SignalKind;
-
 /// Part of a run that is looked at by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
@@ -25,8 +23,8 @@ pub enum Cause {
     },
     /// A part of the reference begins to move.
     ReferenceMotion {
-        /// What kind of part.
-        kind: SignalKind,
+        /// What kind of part, as it is written.
+        kind: &'static str,
     },
     /// The open-loop command changes.
     CommandStep {
@@ -37,8 +35,8 @@ pub enum Cause {
     },
     /// A part of the open-loop command begins to move.
     CommandMotion {
-        /// What kind of part.
-        kind: SignalKind,
+        /// What kind of part, as it is written.
+        kind: &'static str,
     },
     /// The load begins to move.
     LoadMotion,
@@ -63,7 +61,7 @@ impl Cause {
     pub fn label(&self) -> &'static str {
         match self {
             Cause::ReferenceStep { .. } | Cause::CommandStep { .. } => "step",
-            Cause::ReferenceMotion { kind } | Cause::CommandMotion { kind } => kind.name(),
+            Cause::ReferenceMotion { kind } | Cause::CommandMotion { kind } => kind,
             Cause::LoadMotion => "load moves",
             Cause::ExternalForce => "force from outside",
         }

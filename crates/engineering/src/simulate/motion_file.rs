@@ -11,7 +11,7 @@
 use phea_dynamics::simulation::{Profile, ProfileError};
 
 use crate::family::measured::table::{self, Cell};
-use crate::project::{Findings, Found, Project, Report, Signal};
+use crate::project::{Findings, Found, Project, Report};
 use crate::quantity::{self, Dimension, FORCE, LENGTH, TIME, VOLTAGE};
 use crate::source::Source;
 use crate::spelling::nearest;
@@ -45,7 +45,7 @@ pub(super) fn motion(
     file: &str,
     start_s: f64,
 ) -> Result<Result<Profile, ProfileError>, Box<Report>> {
-    let rows = read(source, project, Some(file), Column::POSITION)?;
+    let rows = read(source, project, file, Column::POSITION)?;
     let (first_s, first_m) = rows.first().copied().unwrap_or_default();
     let times: Vec<f64> = rows.iter().map(|row| start_s + row.0 - first_s).collect();
     let positions: Vec<f64> = rows.iter().map(|row| row.1 - first_m).collect();
@@ -56,11 +56,12 @@ pub(super) fn motion(
 pub(super) fn signal(
     source: &dyn Source,
     project: &Project,
-    declared: &Signal,
+    file: &str,
+    start_s: f64,
     column: Column,
 ) -> Result<Result<Profile, ProfileError>, Box<Report>> {
-    let rows = read(source, project, declared.file.as_deref(), column)?;
-    let (start_s, first_s) = (declared.begins_s(), rows.first().copied().unwrap_or_default().0);
+    let rows = read(source, project, file, column)?;
+    let (first_s, _) = rows.first().copied().unwrap_or_default();
     let times: Vec<f64> = rows.iter().map(|row| start_s + row.0 - first_s).collect();
     let values: Vec<f64> = rows.iter().map(|row| row.1).collect();
     Ok(Profile::table(&times, &values).map(|profile| profile.begun_at(start_s)))
@@ -69,11 +70,11 @@ pub(super) fn signal(
 fn read(
     source: &dyn Source,
     project: &Project,
-    file: Option<&str>,
+    file: &str,
     column: Column,
 ) -> Result<Vec<(f64, f64)>, Box<Report>> {
     let mut findings = Findings::default();
-    let path = project.path_of(file.unwrap_or_default());
+    let path = project.path_of(file);
     let rows = match source.read(&path) {
         Ok(bytes) => rows(&path, &bytes, column, &mut findings),
         Err(error) => {

@@ -33,10 +33,12 @@ const AT_A_SAMPLE: f64 = 1e-9;
 pub struct SavedState {
     /// When, in s of its run.
     pub time_s: f64,
-    /// Every number by its name, in order.
-    pub values: Vec<(String, f64)>,
-    /// Where the random numbers of a sampled controller are.
-    pub random: Option<u64>,
+    /// Every continuous state by its name, in order.
+    pub states: Vec<(String, f64)>,
+    /// m, where the load's ground stands.
+    pub ground_m: f64,
+    /// What a sampled controller remembers.
+    pub(crate) memory: Option<Memory>,
 }
 
 /// Names of the continuous states, in the order of the vector.
@@ -60,16 +62,9 @@ const GROUND: &str = "ground_position_m";
 /// What a sampled controller holds.
 const HELD: &str = "held_command_v";
 
-/// Names of all numbers of a saved state.
-fn names(bench: &Bench) -> Vec<String> {
-    let mut names = state_names(bench);
-    names.push(GROUND.to_string());
-    if let Control::Sampled(sampled) = &bench.control {
-        names.push(HELD.to_string());
-        let count = sampled.controller.at_rest().memories().len();
-        names.extend((1..=count).map(|number| format!("controller_memory_{number}")));
-    }
-    names
+/// What a sampled controller remembers, each number from 1 on.
+fn remembered(number: usize) -> String {
+    format!("controller_memory_{number}")
 }
 
 /// The end of a run, or why it is not saved.
@@ -85,9 +80,7 @@ pub(super) fn of_end(
     if !bench.control.delays().is_empty() {
         return Err("what is under way in a delay or along a line is no state");
     }
-    let mut values = end.to_vec();
-    values.push(course.ground.value(end_s));
-    if let (Control::Sampled(sampled), Some(memory)) = (&bench.control, memory) {
+    if let (Control::Sampled(sampled), Some(_)) = (&bench.control, memory) {
         let sample_time_s = sampled.controller.sample_time_s();
         let samples = end_s / sample_time_s;
         if (samples - samples.round()).abs() > AT_A_SAMPLE {
@@ -96,13 +89,12 @@ pub(super) fn of_end(
         if sampled.delay_s > sample_time_s * (1.0 - AT_A_SAMPLE) {
             return Err("a command is under way in the delay of the controller");
         }
-        values.push(memory.command_v);
-        values.extend_from_slice(&memory.memories);
     }
     Ok(SavedState {
         time_s: end_s,
-        values: names(bench).into_iter().zip(values).collect(),
-        random: memory.map(|memory| memory.random),
+        states: state_names(bench).into_iter().zip(end.iter().copied()).collect(),
+        ground_m: course.ground.value(end_s),
+        memory: memory.cloned(),
     })
 }
 
@@ -117,41 +109,24 @@ impl SavedState {
         text.push_str("time_s = ");
         number(&mut text, self.time_s);
         text.push('\n');
-        if let Some(random) = self.random {
-            let _ = writeln!(text, "random = \"{random:016x}\"");
+        if let Some(memory) = &self.memory {
+            let _ = writeln!(text, "random = \"{:016x}\"", memory.random);
         }
         text.push_str("\n[state]\n");
-        for (name, value) in &self.values {
+        let mut line = |name: &str, value: f64| {
             let _ = write!(text, "{name} = ");
-            number(&mut text, *value);
+            number(&mut text, value);
             text.push('\n');
+        };
+        self.states.iter().for_each(|(name, value)| line(name, *value));
+        line(GROUND, self.ground_m);
+        if let Some(memory) = &self.memory {
+            line(HELD, memory.command_v);
+            for (index, value) in memory.memories.iter().enumerate() {
+                line(&remembered(index + 1), *value);
+            }
         }
         text
-    }
-
-    fn value(&self, name: &str) -> Option<f64> {
-        self.values.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
-    }
-
-    /// States of the machine, its sensor and all that is continuous in its controller.
-    pub(super) fn states(&self, bench: &Bench) -> Vec<f64> {
-        self.values.iter().take(state_names(bench).len()).map(|(_, value)| *value).collect()
-    }
-
-    /// Where the load's ground stands, m.
-    pub(super) fn ground_m(&self) -> f64 {
-        self.value(GROUND).unwrap_or(f64::NAN)
-    }
-
-    /// What a sampled controller remembers.
-    pub(super) fn memory(&self, bench: &Bench) -> Option<Memory> {
-        let Control::Sampled(_) = &bench.control else { return None };
-        let behind = self.values.iter().skip_while(|(name, _)| name != HELD).skip(1);
-        Some(Memory {
-            command_v: self.value(HELD)?,
-            memories: behind.map(|(_, value)| *value).collect(),
-            random: self.random?,
-        })
     }
 }
 
@@ -192,29 +167,46 @@ fn taken(root: &Node, bench: &Bench, findings: &mut Findings) -> SavedState {
         Some(TreeValue::Text(text)) => u64::from_str_radix(text, 16).ok(),
         _ => None,
     };
-    if matches!(bench.control, Control::Sampled(_)) && random.is_none() {
+    let memories = match &bench.control {
+        Control::Sampled(sampled) => Some(sampled.controller.at_rest().memories().len()),
+        Control::Continuous(_) | Control::Open(_) => None,
+    };
+    if memories.is_some() && random.is_none() {
         findings.push(Found::error(root.place, "`random` is missing: 16 hexadecimal digits"));
     }
     let state = root.get("state").map(|entry| &entry.node);
     let place = state.map_or(root.place, |node| node.place);
-    let names = names(bench);
+    let mut known: Vec<String> = Vec::new();
+    let mut number = |name: String| {
+        let value = match state.and_then(|node| node.get(&name)).map(|entry| &entry.node) {
+            Some(Node { value: TreeValue::Number(value), .. }) if value.is_finite() => Some(*value),
+            Some(node) => {
+                findings.push(Found::error(node.place, format!("`{name}` must be a finite number")));
+                None
+            }
+            None => {
+                findings.push(Found::error(place, format!("the state `{name}` is missing")));
+                None
+            }
+        };
+        known.push(name.clone());
+        (name, value.unwrap_or_default())
+    };
+    let taken = SavedState {
+        time_s: 0.0,
+        states: state_names(bench).into_iter().map(&mut number).collect(),
+        ground_m: number(GROUND.to_string()).1,
+        memory: memories.map(|count| Memory {
+            command_v: number(HELD.to_string()).1,
+            memories: (1..=count).map(|index| number(remembered(index)).1).collect(),
+            random: random.unwrap_or_default(),
+        }),
+    };
     for entry in state.map(Node::entries).unwrap_or_default() {
-        if !names.contains(&entry.key) {
+        if !known.contains(&entry.key) {
             let message = format!("this machine and its controller have no state `{}`", entry.key);
             findings.push(Found::error(entry.key_place, message));
         }
     }
-    let mut values = Vec::new();
-    for name in names {
-        match state.and_then(|node| node.get(&name)).map(|entry| &entry.node) {
-            Some(Node { value: TreeValue::Number(value), .. }) if value.is_finite() => {
-                values.push((name, *value))
-            }
-            Some(node) => {
-                findings.push(Found::error(node.place, format!("`{name}` must be a finite number")))
-            }
-            None => findings.push(Found::error(place, format!("the state `{name}` is missing"))),
-        }
-    }
-    SavedState { time_s: 0.0, values, random }
+    taken
 }

@@ -4,7 +4,7 @@ use phea_dynamics::simulation::{Harmonic, Profile, ProfileError, schroeder_phase
 
 use super::SimulateError;
 use super::motion_file::{self, Column};
-use crate::project::{Project, Signal, SignalKind};
+use crate::project::{Multisine, Project, Signal};
 use crate::source::Source;
 
 /// What begins in a signal.
@@ -23,8 +23,8 @@ pub(super) enum Beginning {
     Motion {
         /// s.
         time_s: f64,
-        /// What kind of part.
-        kind: SignalKind,
+        /// What kind of part, as it is written.
+        kind: &'static str,
     },
 }
 
@@ -38,54 +38,47 @@ pub(super) fn profile(
 ) -> Result<Profile, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.to_string(), error };
     let (single, others): (Vec<&Signal>, Vec<&Signal>) =
-        signals.iter().partition(|signal| signal.kind == SignalKind::Step);
+        signals.iter().partition(|signal| matches!(signal, Signal::Step { .. }));
     let steps: Vec<(f64, f64)> = single.into_iter().flat_map(Signal::steps).collect();
     let mut parts = vec![Profile::steps(0.0, &steps).map_err(named)?];
     for signal in others {
-        parts.push(
-            match signal.kind {
-                SignalKind::File => {
-                    motion_file::signal(source, project, signal, column).map_err(SimulateError::Motion)?
-                }
-                _ => shape(signal),
-            }
-            .map_err(named)?,
-        );
+        parts.push(shape(source, project, signal, column)?.map_err(named)?);
     }
     Ok(Profile::sum(&parts))
 }
 
-/// A validated signal has every number its kind needs; a missing one is refused as not finite.
-fn shape(signal: &Signal) -> Result<Profile, ProfileError> {
-    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-    let (start_s, duration_s) = (signal.begins_s(), number(signal.duration));
-    let (amplitude, frequency) = (number(signal.amplitude), number(signal.frequency));
-    let ended = |profile: Profile| match signal.duration {
+fn shape(
+    source: &dyn Source,
+    project: &Project,
+    signal: &Signal,
+    column: Column,
+) -> Result<Result<Profile, ProfileError>, SimulateError> {
+    let start_s = signal.begins_s();
+    let ended = |profile: Profile| match signal.duration_s() {
         Some(duration_s) => profile.held_from(start_s + duration_s),
         None => profile,
     };
-    match signal.kind {
-        SignalKind::Step | SignalKind::Steps => Profile::steps(0.0, &signal.steps()),
-        SignalKind::Ramp => Profile::ramp(start_s, duration_s, number(signal.value)),
-        SignalKind::Sine => Profile::sine(start_s, amplitude, frequency).map(ended),
-        SignalKind::Chirp => {
-            Profile::chirp(start_s, duration_s, amplitude, [frequency, number(signal.final_frequency)])
+    Ok(match signal {
+        Signal::Step { .. } | Signal::Steps { .. } => Profile::steps(0.0, &signal.steps()),
+        Signal::Ramp { value, duration, .. } => Profile::ramp(start_s, *duration, *value),
+        Signal::Sine { amplitude, frequency, .. } => {
+            Profile::sine(start_s, *amplitude, *frequency).map(ended)
         }
-        SignalKind::Multisine => Profile::multisine(start_s, &harmonics(signal)).map(ended),
-        // a file has been read elsewhere
-        SignalKind::File => Ok(Profile::constant(0.0)),
-    }
+        Signal::Chirp { duration, amplitude, frequency, final_frequency, .. } => {
+            Profile::chirp(start_s, *duration, *amplitude, [*frequency, *final_frequency])
+        }
+        Signal::Multisine(sines) => Profile::multisine(start_s, &harmonics(sines)).map(ended),
+        Signal::File { file, .. } => {
+            motion_file::signal(source, project, file, start_s, column).map_err(SimulateError::Motion)?
+        }
+    })
 }
 
-/// Equal amplitudes and Schroeder's phases where none are stated.
-fn harmonics(signal: &Signal) -> Vec<Harmonic> {
-    let count = signal.frequencies.len();
-    let amplitudes = match signal.amplitude {
-        Some(amplitude) => vec![amplitude; count],
-        None => signal.amplitudes.clone(),
-    };
-    let phases = if signal.phases.is_empty() { schroeder_phases(&amplitudes) } else { signal.phases.clone() };
-    let each = signal.frequencies.iter().zip(amplitudes).zip(phases);
+/// Schroeder's phases where none are stated.
+fn harmonics(sines: &Multisine) -> Vec<Harmonic> {
+    let amplitudes = sines.amplitudes.of(sines.frequencies.len());
+    let phases = if sines.phases.is_empty() { schroeder_phases(&amplitudes) } else { sines.phases.clone() };
+    let each = sines.frequencies.iter().zip(amplitudes).zip(phases);
     each.map(|((&frequency_rad_per_s, amplitude), phase_rad)| Harmonic {
         amplitude,
         frequency_rad_per_s,
@@ -102,7 +95,7 @@ pub(super) fn beginnings(signals: &[Signal], profile: &Profile, end_s: f64) -> V
         (from != to).then_some(Beginning::Step { time_s, from, to })
     };
     let moving = signals.iter().filter(|signal| signal.steps().is_empty());
-    let motion = |signal: &Signal| Beginning::Motion { time_s: signal.begins_s(), kind: signal.kind };
+    let motion = |signal: &Signal| Beginning::Motion { time_s: signal.begins_s(), kind: signal.kind() };
     let all = steps.filter_map(step).chain(moving.map(motion));
     all.filter(|beginning| beginning.time_s() < end_s).collect()
 }

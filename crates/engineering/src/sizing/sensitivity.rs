@@ -20,11 +20,6 @@ pub struct Influence {
 }
 
 impl Influence {
-    /// A value with its unit.
-    pub fn shown(&self, which: usize, digits: usize) -> String {
-        self.unit.text(self.values.get(which).copied().unwrap_or(f64::NAN), digits)
-    }
-
     /// Low, nominal and high, with their unit.
     pub fn setting_words(&self) -> String {
         self.unit.with_symbol(self.values.map(|value| self.unit.number(value, 4)).join(" · "))

@@ -10,7 +10,7 @@ use phea_qft::verification::PlantPoint;
 
 use crate::audit::{NamedPlant, ProjectAudit};
 use crate::project::{
-    Actuator, Component, EdgeCoefficients, LINEAR_PARAMETERS, Line, LineModel, Linear, Project,
+    Actuator, Component, LINEAR_PARAMETERS, Line, LineMotion, Linear, Project, ValveCoefficients,
 };
 use crate::rig::{Rig, feed_forward};
 use crate::robust::RobustProblem;
@@ -93,9 +93,8 @@ pub fn with_waves(project: &Project) -> Option<Project> {
     let line = &mut other.actuator.as_mut()?.line;
     let mut moved = false;
     for side in [&mut line.a, &mut line.b] {
-        let long = matches!(side.component(), Some(Component::Hose { .. } | Component::Pipe { .. }));
-        if long && side.motion.model == LineModel::Lumped {
-            side.motion.model = LineModel::TransmissionLine;
+        if side.length().is_some() && side.motion == LineMotion::Lumped {
+            side.motion = LineMotion::TransmissionLine { end_share: None };
             moved = true;
         }
     }
@@ -202,14 +201,14 @@ fn behind<'a>(actuator: &'a mut Actuator, name: &str) -> Vec<&'a mut f64> {
         "viscous_friction" => {
             actuator.cylinder.friction.iter_mut().map(|friction| &mut friction.viscous).collect()
         }
-        "flow_gain" => match &mut actuator.valve.flow_coefficients {
-            Some(edges) => edges.each_mut().into(),
-            None => actuator.valve.nominal_flow.iter_mut().collect(),
+        "flow_gain" => match &mut actuator.valve.flow {
+            ValveCoefficients::Edges { edges, .. } => edges.each_mut().into(),
+            ValveCoefficients::Rated(rated) => vec![&mut rated.flow],
         },
-        "flow_pressure_coefficient" => {
-            let edges = actuator.valve.leakage_coefficients.iter_mut();
-            edges.flat_map(EdgeCoefficients::each_mut).collect()
-        }
+        "flow_pressure_coefficient" => match &mut actuator.valve.leakage {
+            ValveCoefficients::Edges { edges, .. } => edges.each_mut().into(),
+            ValveCoefficients::Rated(_) => Vec::new(),
+        },
         "hydraulic_stiffness" => {
             let line = &mut actuator.line;
             let walls: Vec<&mut f64> = [&mut line.a, &mut line.b].into_iter().flat_map(walls).collect();
@@ -227,5 +226,9 @@ fn behind<'a>(actuator: &'a mut Actuator, name: &str) -> Vec<&'a mut f64> {
 fn walls(line: &mut Line) -> Vec<&mut f64> {
     let stiffening = line.dynamic_stiffening.iter_mut();
     let of_wall = stiffening.flat_map(|one| [&mut one.nominal, &mut one.minimum, &mut one.maximum]);
-    line.effective_bulk_modulus.iter_mut().chain(of_wall).collect()
+    let outright = match &mut line.component {
+        Component::Volume(given) => Some(&mut given.effective_bulk_modulus),
+        Component::Hose { .. } | Component::Pipe { .. } => None,
+    };
+    outright.into_iter().chain(of_wall).collect()
 }

@@ -10,7 +10,7 @@ use super::prediction::{Prediction, predicted};
 use super::rigs::Tried;
 use crate::audit::{NamedPlant, ProjectAudit};
 use crate::error::ProcedureError;
-use crate::project::{Component, LineModel, Project, Scenario, Signal};
+use crate::project::{LineMotion, Project, Scenario, Signal};
 use crate::quantity::significant;
 use crate::quantity::{DisplayUnit, FORCE};
 use crate::robust::RobustProblem;
@@ -168,7 +168,7 @@ fn reference(project: &Project) -> Result<[f64; 2], ProcedureError> {
 
 /// The project with one scenario: at rest under the first reference, then the second.
 fn stepped(project: &Project, [from, to]: [f64; 2], duration: f64) -> Project {
-    let at = |at, value| Signal { at: Some(at), value: Some(value), ..Signal::default() };
+    let at = |at, value| Signal::Step { at, value, published: None };
     let scenario = Scenario {
         name: "step".to_string(),
         duration,
@@ -302,12 +302,12 @@ fn damping_wall(project: &Project) -> &'static str {
     let Some(line) = project.actuator.as_ref().map(|actuator| &actuator.line) else { return "" };
     let mut models = [&line.a, &line.b]
         .into_iter()
-        .filter(|side| matches!(side.component(), Some(Component::Hose { .. })))
-        .map(|side| side.motion.model)
+        .filter(|side| side.hose().is_some())
+        .map(|side| &side.motion)
         .peekable();
     if models.peek().is_none() {
         ""
-    } else if models.all(|model| matches!(model, LineModel::Segments | LineModel::Creeping)) {
+    } else if models.all(|model| matches!(model, LineMotion::Segments(_) | LineMotion::Creeping { .. })) {
         " a wall that damps (line.relaxation_time)"
     } else {
         " a wall that damps (line.model = \"segments\" with line.relaxation_time)"

@@ -108,7 +108,7 @@ fn entry(file: &str, root: Node, findings: &mut Findings) -> Option<Entry> {
         Kind::Hose => {
             let mut properties = HoseProperties::default();
             properties.visit(&mut reader);
-            hose = Some(properties);
+            hose = Some(properties).filter(|_| !reader.incomplete);
         }
         Kind::Valve => Valve::default().visit(&mut reader),
     }

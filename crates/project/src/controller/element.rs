@@ -127,7 +127,7 @@ impl ElementKind {
 impl Variants for ElementKind {
     const STRICT: bool = true;
 
-    fn all() -> Vec<ElementKind> {
+    fn all(&self) -> Vec<ElementKind> {
         let (frequency, damping_ratio) = (0.0, 0.0);
         let (zero_frequency, pole_frequency) = (0.0, 0.0);
         let (proportional_gain, integral_gain) = (0.0, 0.0);

@@ -1,11 +1,11 @@
 //! What each description of a table does when it is read.
 
+use super::choice::keys_of;
 use super::{Hit, Layer, Reader};
 use crate::Origin;
 use crate::catalogue::Kind;
 use crate::formula::Formula;
 use crate::key::Key;
-use crate::listing::Listing;
 use crate::text::Found;
 use crate::tree::{Node, Value};
 use crate::visitor::{Form, Kinds, Named, Shape, Variants, Visitor};
@@ -50,8 +50,13 @@ impl Visitor for Reader<'_> {
         }
     }
 
-    fn quantities(&mut self, key: Key, field: &mut Vec<f64>) {
-        let Some(hit) = self.find(key) else { return };
+    fn quantities(&mut self, key: Key, field: &mut Vec<f64>, required: bool) {
+        let Some(hit) = self.find(key) else {
+            if required {
+                self.missing(key);
+            }
+            return;
+        };
         let Value::List(items) = &hit.node.value else { return self.wrong_kind(key, "a list", hit.node) };
         *field = items.iter().filter_map(|item| self.number(key, item)).collect();
     }
@@ -137,7 +142,7 @@ impl Visitor for Reader<'_> {
     }
 
     fn variant<T: Variants>(&mut self, key: Key, field: &mut T, required: bool) {
-        let all = T::all();
+        let all = field.all();
         let words: Vec<&str> = all.iter().map(T::word).collect();
         let chosen = match self.find(key) {
             Some(hit) => self.word(key, hit.node, &words),
@@ -150,7 +155,7 @@ impl Visitor for Reader<'_> {
         match chosen.and_then(|index| all.get(index)) {
             Some(chosen) => {
                 *field = chosen.clone();
-                self.choose(Some((key.name, chosen.word())));
+                self.choose(Some(format!("{} \"{}\"", key.name, chosen.word())));
                 field.visit(self);
                 self.choose(None);
                 self.without_effect(key, field, &all);
@@ -187,6 +192,9 @@ impl Visitor for Reader<'_> {
             }
             return;
         }
+        if let Some(frame) = self.frames.last_mut() {
+            frame.lost = true;
+        }
         let names: Vec<&str> = catalogue.names(kind);
         let help = match nearest(&name, names.iter().copied()) {
             Some(near) => format!("did you mean \"{near}\"?"),
@@ -208,11 +216,49 @@ impl Visitor for Reader<'_> {
         }
     }
 
+    fn needed_table<T: Default>(&mut self, key: Key, field: &mut T, visit: impl Fn(&mut T, &mut Self)) {
+        if self.find(key).is_none() {
+            return self.missing(key);
+        }
+        let mut value = None;
+        self.table(key, &mut value, visit);
+        *field = value.unwrap_or_default();
+    }
+
     fn part<T: Default>(&mut self, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
         let mut value = T::default();
         if self.parts {
             visit(&mut value, self);
             *field = Some(value);
+        }
+    }
+
+    fn way<T: Default>(
+        &mut self,
+        chosen_by: &'static [&'static str],
+        field: &mut Option<T>,
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        let chosen = chosen_by.iter().find(|name| self.is_there(name));
+        let known = self.frames.last().map_or(0, |frame| frame.asked.len());
+        let mut value = T::default();
+        if chosen.is_none() || self.is_lost() {
+            self.pass_over(Some(Vec::new()));
+        }
+        self.choose(chosen.map(|name| format!("`{name}`")));
+        visit(&mut value, self);
+        self.choose(None);
+        self.pass_over(None);
+        *field = chosen.map(|_| value);
+        if field.is_none() {
+            self.without_choice(chosen_by, known);
+        }
+    }
+
+    fn lacks(&mut self, keys: &[&str], what: &str) {
+        if !self.takes_absent() && !self.is_lost() && !keys.iter().any(|name| self.is_there(name)) {
+            let message = format!("missing {what}{}", self.of_table());
+            self.findings.push(Found::error(self.place(), message).consequence());
         }
     }
 
@@ -365,64 +411,7 @@ impl Visitor for Reader<'_> {
     }
 }
 
-/// The keys of a variant.
-fn keys_of<T: Variants>(variant: &T) -> Vec<&'static str> {
-    let mut listing = Listing::of_everything();
-    variant.clone().visit(&mut listing);
-    listing.outermost
-}
-
 impl<'a> Reader<'a> {
-    /// The place of a text among words of which it must be one.
-    fn word(&mut self, key: Key, node: &Node, words: &[&'static str]) -> Option<usize> {
-        let all = words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
-        let Value::Text(text) = &node.value else {
-            self.wrong_kind(key, &format!("one of {all}"), node);
-            return None;
-        };
-        let found = words.iter().position(|word| word == text);
-        if found.is_none() {
-            let message = format!("`{}` cannot be \"{text}\"", key.name);
-            let near = nearest(text, words.iter().copied());
-            let help = near.map(|word| format!("did you mean \"{word}\"?"));
-            let expected = format!("one of {all}");
-            self.findings.push(Found::error(node.place, message).expected(expected).maybe_help(help));
-        }
-        found
-    }
-
-    fn choose(&mut self, chosen: Option<(&'static str, &'static str)>) {
-        if let Some(frame) = self.frames.last_mut() {
-            frame.chosen = chosen;
-        }
-    }
-
-    fn pass_over(&mut self, keys: Option<Vec<&'static str>>) {
-        if let Some(frame) = self.frames.last_mut() {
-            frame.passed_over = keys;
-        }
-    }
-
-    /// Warns of the keys of other variants that are written all the same; their values must be right.
-    fn without_effect<T: Variants>(&mut self, key: Key, chosen: &T, all: &[T]) {
-        let mut read = keys_of(chosen);
-        for other in all {
-            let keys = keys_of(other);
-            self.pass_over(Some(read.clone()));
-            other.clone().visit(self);
-            self.pass_over(None);
-            for name in keys.iter().filter(|name| !read.contains(name)) {
-                let written = self.frames.last().and_then(|frame| frame.layers.first()?.node.get(name));
-                if let Some(entry) = written {
-                    let message = format!("`{name}` has no effect with {} \"{}\"", key.name, chosen.word());
-                    let found = if T::STRICT { Found::error } else { Found::warning };
-                    self.findings.push(found(entry.node.place, message));
-                }
-            }
-            read.extend(keys);
-        }
-    }
-
     /// Reads the tables of a list.
     fn each_table<T: Default>(
         &mut self,

@@ -2,7 +2,7 @@
 
 use super::Check;
 use super::linear_loop::{element_excess, one_element};
-use crate::{Element, PartKind, Project, StructurePart};
+use crate::{Element, Project, StructurePart};
 
 /// Most factors of a structure.
 const MAXIMUM_PARTS: usize = 40;
@@ -46,28 +46,22 @@ pub(super) fn design(project: &Project, check: &mut Check<'_, '_>) {
 }
 
 fn part(part: &StructurePart, path: &str, check: &mut Check<'_, '_>) {
-    let takes: &[&str] = match part.kind {
-        PartKind::Integrator => &[],
-        PartKind::Zero | PartKind::Pole => &["frequency"],
-        PartKind::ZeroPair | PartKind::PolePair => &["frequency", "damping_ratio"],
-        PartKind::Fixed => &["element"],
-    };
-    let given = [
-        ("frequency", part.frequency.is_some()),
-        ("damping_ratio", part.damping_ratio.is_some()),
-        ("element", part.element.is_some()),
-    ];
-    for (name, _) in given.iter().filter(|(name, is_given)| *is_given && !takes.contains(name)) {
-        check.error(&format!("{path}.{name}"), format!("`{name}` has no meaning for this factor"));
-    }
-    check.ascending(&format!("{path}.frequency"), part.frequency);
-    check.ascending(&format!("{path}.damping_ratio"), part.damping_ratio);
-    match &part.element {
-        Some(element) => fixed(element, &format!("{path}.element"), check),
-        None if part.kind == PartKind::Fixed => {
-            check.error(&format!("{path}.kind"), "a fixed factor needs `element`");
+    match part {
+        StructurePart::Integrator => {}
+        StructurePart::Zero { frequency } | StructurePart::Pole { frequency } => {
+            check.ascending(&format!("{path}.frequency"), *frequency);
         }
-        None => {}
+        StructurePart::ZeroPair { frequency, damping_ratio }
+        | StructurePart::PolePair { frequency, damping_ratio } => {
+            check.ascending(&format!("{path}.frequency"), *frequency);
+            check.ascending(&format!("{path}.damping_ratio"), *damping_ratio);
+        }
+        StructurePart::Fixed { element } => {
+            let path = format!("{path}.element");
+            if check.declared(&path) {
+                fixed(element, &path, check);
+            }
+        }
     }
 }
 
@@ -85,11 +79,11 @@ fn fixed(element: &Element, path: &str, check: &mut Check<'_, '_>) {
 
 /// Zeros less poles of a factor, where they can be told.
 fn excess(part: &StructurePart) -> i64 {
-    match part.kind {
-        PartKind::Integrator | PartKind::Pole => -1,
-        PartKind::Zero => 1,
-        PartKind::ZeroPair => 2,
-        PartKind::PolePair => -2,
-        PartKind::Fixed => part.element.as_ref().and_then(element_excess).unwrap_or(0),
+    match part {
+        StructurePart::Integrator | StructurePart::Pole { .. } => -1,
+        StructurePart::Zero { .. } => 1,
+        StructurePart::ZeroPair { .. } => 2,
+        StructurePart::PolePair { .. } => -2,
+        StructurePart::Fixed { element } => element_excess(element).unwrap_or(0),
     }
 }

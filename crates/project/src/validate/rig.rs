@@ -1,7 +1,10 @@
 //! The actuator: what geometry and physics forbid.
 
 use super::{Check, line_motion};
-use crate::{Actuator, Cylinder, Friction, FrictionLaw, Interval, Line, Lines, StribeckCurve, Supply, Valve};
+use crate::{
+    Actuator, Component, Cylinder, Friction, FrictionLaw, Interval, Line, Lines, NullLeakage, StribeckCurve,
+    Supply, Valve,
+};
 use phea_quantity::{self as quantity, PRESSURE};
 
 pub(super) fn actuator(actuator: &Actuator, check: &mut Check<'_, '_>) {
@@ -33,32 +36,17 @@ fn imperfections(valve: &Valve, check: &mut Check<'_, '_>) {
 
 fn valve(valve: &Valve, supply: &Supply, check: &mut Check<'_, '_>) {
     imperfections(valve, check);
-    if valve.flow_coefficients.is_none()
-        && valve.nominal_flow.is_none()
-        && !check.declared("valve.nominal_flow")
-    {
-        let message =
-            "missing `flow_coefficients`, or `nominal_flow` with `nominal_pressure_drop`, in [valve]";
-        check.missing("valve", "flow_coefficients", message);
-    }
-    if valve.nominal_flow.is_some() && valve.nominal_pressure_drop.is_none() {
-        check.missing("valve", "nominal_pressure_drop", "`nominal_flow` needs its `nominal_pressure_drop`");
-    }
-    if valve.flow_coefficients.is_some_and(|edges| edges.in_order().iter().all(|edge| *edge == 0.0)) {
+    if valve.flow.edges().is_some_and(|edges| edges.in_order().iter().all(|edge| *edge == 0.0)) {
         check.error("valve.flow_coefficients", "all flow coefficients are zero: the valve never opens");
     }
-    let Some(leakage) = valve.null_leakage else { return };
-    if valve.null_leakage_pressure.is_none() {
-        check.missing("valve", "null_leakage_pressure", "`null_leakage` needs its `null_leakage_pressure`");
-    }
-    let pressure = valve.null_leakage_pressure.unwrap_or(f64::NAN);
-    if leakage < valve.tare_flow * (pressure / valve.tare_drop(supply)).sqrt() {
+    let Some(NullLeakage { flow, maximum, pressure }) = valve.leakage.rating() else { return };
+    if *flow < valve.tare_flow * (pressure / valve.tare_drop(supply)).sqrt() {
         check.error(
             "valve.null_leakage",
             "`null_leakage` includes `tare_flow`, so it cannot be below it, each at its own pressure",
         );
     }
-    if valve.null_leakage_maximum.is_some_and(|maximum| maximum < leakage) {
+    if maximum.is_some_and(|maximum| maximum < *flow) {
         check.error("valve.null_leakage_maximum", "`null_leakage_maximum` is below `null_leakage`");
     }
 }
@@ -141,13 +129,11 @@ fn lines(actuator: &Actuator, lines: &Lines, check: &mut Check<'_, '_>) {
         line(side, &path, check);
         line_motion::motion(side, &path, check);
         expansion(side, actuator.supply.pressure, &path, check);
-        let working = side.hose_properties.working_pressure;
+        let working = side.hose().and_then(|hose| hose.working_pressure);
         if working.is_some_and(|working| working < actuator.supply.pressure) {
             let message = "the hose's `working_pressure` is below the supply pressure";
-            check.warning(
-                &format!("{path}.{}", if side.hose.is_some() { "hose" } else { "working_pressure" }),
-                message,
-            );
+            let key = if side.hose_name().is_some() { "hose" } else { "working_pressure" };
+            check.warning(&format!("{path}.{key}"), message);
         }
     }
 }
@@ -161,85 +147,41 @@ fn expansion(line: &Line, supply: f64, path: &str, check: &mut Check<'_, '_>) {
     let message = format!(
         "the expansion of the hose is stated at {stated}, and the supply has {supply}: in between it is carried on along its slope"
     );
-    let key = if line.hose.is_some() { "hose" } else { "volumetric_expansion_pressure" };
+    let key = if line.hose_name().is_some() { "hose" } else { "volumetric_expansion_pressure" };
     check.warning(&format!("{path}.{key}"), message);
 }
 
 fn line(line: &Line, path: &str, check: &mut Check<'_, '_>) {
-    let known = &line.hose_properties;
-    let hose = line.hose.is_some() || known.bore.is_some() || known.expansion_slope().is_some();
-    let outright = line.volume.is_some() || line.effective_bulk_modulus.is_some();
-    match [hose, line.pipe.is_some(), outright].iter().filter(|is| **is).count() {
-        0 => {
+    let written = |names: &[&str]| names.iter().any(|name| check.declared(&format!("{path}.{name}")));
+    let ways = [written(&Component::HOSE), written(&["pipe"]), written(&Component::VOLUME)];
+    match ways {
+        [false, false, false] => {
             let message = format!("missing `hose`, `pipe` or `volume` in [{path}]");
             return check.missing(path, "pipe", message);
         }
-        1 => {}
-        _ => {
-            let at = if line.pipe.is_some() { "pipe" } else { "volume" };
+        [true, false, false] | [false, true, false] | [false, false, true] => {}
+        [_, is_pipe, _] => {
+            let at = if is_pipe { "pipe" } else { "volume" };
             return check
                 .error(&format!("{path}.{at}"), "a line is a hose, a pipe or a volume: only one of them");
         }
     }
-    if outright {
-        check_volume(line, path, check);
-    } else if line.length.is_none() {
-        check.missing(path, "length", format!("missing `length` in [{path}]"));
+    // what one side has no use for may be for the other
+    let [length, stiffening] =
+        ["length", "dynamic_stiffening"].map(|key| path == "line" && check.declared(&format!("line.{key}")));
+    if length && matches!(line.component, Component::Volume(_)) {
+        check.warning("line.length", "`length` has no effect beside `volume`");
     }
-    if hose {
-        check_hose(line, path, check);
+    if stiffening && line.hose().is_none() {
+        check.warning("line.dynamic_stiffening", "`dynamic_stiffening` has no effect without a hose");
     }
-    if let Some(pipe) = &line.pipe {
-        let pipe_path = format!("{path}.pipe");
-        let parts = [pipe.wall_thickness.is_some(), pipe.youngs_modulus.is_some()];
-        match parts {
-            [true, false] => {
-                check.missing(&pipe_path, "youngs_modulus", "`wall_thickness` needs `youngs_modulus`")
-            }
-            [false, true] => {
-                check.missing(&pipe_path, "wall_thickness", "`youngs_modulus` needs `wall_thickness`")
-            }
-            _ => {}
-        }
-    }
-    if !hose && line.dynamic_stiffening.is_some() && path == "line" {
-        check.warning(
-            &format!("{path}.dynamic_stiffening"),
-            "`dynamic_stiffening` has no effect without a hose",
-        );
-    }
-    check.interval(&format!("{path}.dynamic_stiffening"), line.dynamic_stiffening);
-}
-
-fn check_volume(line: &Line, path: &str, check: &mut Check<'_, '_>) {
-    if line.volume.is_none() {
-        check.missing(path, "volume", "`effective_bulk_modulus` needs `volume`");
-    }
-    if line.effective_bulk_modulus.is_none() {
-        check.missing(path, "effective_bulk_modulus", "`volume` needs `effective_bulk_modulus`");
-    }
-    if line.length.is_some() && path == "line" {
-        check.warning(&format!("{path}.length"), "`length` has no effect beside `volume`");
-    }
-}
-
-fn check_hose(line: &Line, path: &str, check: &mut Check<'_, '_>) {
-    let known = &line.hose_properties;
-    // A name the catalogue does not have was refused already.
-    let looked_up = line.hose.is_none() || known.bore.is_some();
-    if looked_up && known.bore.is_none() {
-        check.missing(path, "bore", format!("missing `bore` in [{path}]"));
-    }
-    if looked_up && known.expansion_slope().is_none() {
-        let message =
-            "a hose needs `volumetric_expansion` with its pressure, or `volumetric_expansion_slope`";
-        check.missing(path, "volumetric_expansion_slope", message);
-    }
-    if let (Some(working), Some(burst)) = (known.working_pressure, known.burst_pressure)
+    if let Some(hose) = line.hose()
+        && let (Some(working), Some(burst)) = (hose.working_pressure, hose.burst_pressure)
         && burst < working
     {
         check.error(&format!("{path}.burst_pressure"), "`burst_pressure` is below `working_pressure`");
     }
+    check.interval(&format!("{path}.dynamic_stiffening"), line.dynamic_stiffening);
 }
 
 impl Check<'_, '_> {

@@ -1,7 +1,7 @@
 //! Functions of time that a scenario asks for.
 
 use super::Check;
-use crate::{Signal, SignalKind, SignalUnit};
+use crate::{Amplitudes, Multisine, Signal, SignalUnit};
 
 /// Most sines of a multisine.
 const MOST_SINES: usize = 1000;
@@ -15,58 +15,53 @@ pub(super) fn signals(
     check: &mut Check<'_, '_>,
 ) {
     let path = format!("{scenario}.{name}");
-    let single = signals.iter().filter(|signal| signal.kind == SignalKind::Step);
-    let times: Vec<f64> = single.filter_map(|step| step.at).collect();
+    let mut times: Vec<f64> = Vec::new();
+    for (index, signal) in signals.iter().enumerate() {
+        let path = format!("{path}[{index}]");
+        one_signal(signal, unit, &path, check);
+        match signal {
+            Signal::Step { at, .. } => {
+                let stated = format!("{path}.at");
+                times.extend(Some(at).filter(|_| check.declared(&stated) && !check.refused(&stated)));
+            }
+            _ if duration > 0.0 && signal.begins_s() > duration => {
+                check.warning(&path, format!("this {} begins after the end", signal.kind()));
+            }
+            _ => {}
+        }
+    }
     check.increasing(&path, &times);
     if duration > 0.0 && times.last().is_some_and(|last| *last > duration) {
         check.warning(&path, format!("the last {name} step is after the end"));
     }
-    for (index, signal) in signals.iter().enumerate() {
-        let path = format!("{path}[{index}]");
-        one_signal(signal, unit, &path, check);
-        let single = signal.kind == SignalKind::Step;
-        if !single && duration > 0.0 && signal.begins_s() > duration {
-            check.warning(&path, format!("this {} begins after the end", signal.kind.name()));
-        }
-    }
 }
 
 fn one_signal(signal: &Signal, unit: SignalUnit, path: &str, check: &mut Check<'_, '_>) {
-    if check.refused(&format!("{path}.kind")) {
-        return;
-    }
-    let [needed, allowed] = signal.keys(unit);
-    let kind = signal.kind.name();
-    for (name, present) in signal.present(unit) {
-        if needed.contains(&name) && !present {
-            check.missing(path, name, format!("a {kind} needs `{name}`"));
+    match signal {
+        Signal::Steps { times, values } => {
+            check.increasing(&format!("{path}.times"), times);
+            let both = !times.is_empty() && !values.is_empty();
+            if both && times.len() != values.len() {
+                let (times, values) = (times.len(), values.len());
+                let message = format!("{times} `times` need as many `{}`, not {values}", unit.values);
+                check.error(&format!("{path}.{}", unit.values), message);
+            }
         }
-        if present && !needed.contains(&name) && !allowed.contains(&name) {
-            check.error(&format!("{path}.{name}"), format!("`{name}` has no meaning for a {kind}"));
-        }
-    }
-    check.increasing(&format!("{path}.times"), &signal.times);
-    let both = !signal.times.is_empty() && !signal.values.is_empty();
-    if both && signal.times.len() != signal.values.len() {
-        let (times, values) = (signal.times.len(), signal.values.len());
-        let message = format!("{times} `times` need as many `{}`, not {values}", unit.values);
-        check.error(&format!("{path}.{}", unit.values), message);
-    }
-    if signal.kind == SignalKind::Multisine && !signal.frequencies.is_empty() {
-        multisine(signal, path, check);
+        Signal::Multisine(sines) if !sines.frequencies.is_empty() => multisine(sines, path, check),
+        _ => {}
     }
 }
 
-fn multisine(signal: &Signal, path: &str, check: &mut Check<'_, '_>) {
-    let stated = [signal.amplitude.is_some(), !signal.amplitudes.is_empty()];
-    check.one_of(path, ["amplitude", "amplitudes"], stated);
-    check.increasing(&format!("{path}.frequencies"), &signal.frequencies);
-    let count = signal.frequencies.len();
+fn multisine(sines: &Multisine, path: &str, check: &mut Check<'_, '_>) {
+    check.one_of(path, ["amplitude", "amplitudes"], [false; 2]);
+    check.increasing(&format!("{path}.frequencies"), &sines.frequencies);
+    let count = sines.frequencies.len();
     if count > MOST_SINES {
         let message = format!("{count} sines at once; {MOST_SINES} are held");
         check.error(&format!("{path}.frequencies"), message);
     }
-    for (name, values) in [("amplitudes", &signal.amplitudes), ("phases", &signal.phases)] {
+    let amplitudes = if let Amplitudes::Each(each) = &sines.amplitudes { each.as_slice() } else { &[] };
+    for (name, values) in [("amplitudes", amplitudes), ("phases", sines.phases.as_slice())] {
         if !values.is_empty() && values.len() != count {
             let message = format!("{count} `frequencies` need as many `{name}`, not {}", values.len());
             check.error(&format!("{path}.{name}"), message);

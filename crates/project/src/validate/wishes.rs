@@ -39,11 +39,7 @@ pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut 
 }
 
 fn sizing(sizing: &Sizing, check: &mut Check<'_, '_>) {
-    let times = [sizing.time_constant.is_some(), sizing.settling_time.is_some()];
-    check.one_of("sizing", ["time_constant", "settling_time"], times);
-    if sizing.settling_time.is_some() && sizing.settling_band_percent.is_none() {
-        check.missing("sizing", "settling_band_percent", "`settling_time` needs `settling_band_percent`");
-    }
+    check.one_of("sizing", ["time_constant", "settling_time"], [false; 2]);
     check.ascending("sizing.oil_velocity", sizing.oil_velocity);
     check.ascending("sizing.hose_length", sizing.hose_length);
     if let (Some(minimum), Some(maximum)) = (sizing.minimum_gain, sizing.maximum_gain)

@@ -82,7 +82,7 @@ pub fn json(
         name: &quantity.name,
         group: quantity.group,
         symbol: quantity.symbol,
-        value: Number(quantity.value),
+        value: Number(quantity.value.unwrap_or(f64::NAN)),
         unit: quantity.unit,
         equation: quantity.equation,
         declared: quantity.stated.as_ref().map(|stated| DeclaredRow {
@@ -92,7 +92,7 @@ pub fn json(
             difference_percent: Number(quantity.difference_percent().unwrap_or(f64::NAN)),
             contradicts: quantity.contradicts(),
         }),
-        reason: quantity.reason.as_deref(),
+        reason: quantity.value.err(),
     });
     let warnings = loaded.warnings.iter().map(|warning| warning.message.clone());
     let wishes = wishes.iter().map(WishRow::of);
@@ -118,7 +118,7 @@ pub fn text(derived: &[Derived]) -> String {
             }
             group = quantity.group;
         }
-        let value = significant(quantity.value, 5);
+        let value = shown(quantity.value, 5);
         rows.add_row([&quantity.name, &value, quantity.unit, &plain(quantity.equation)]);
     }
     out.push_str(&format!("{group}\n{}\n", rows.trim_fmt()));
@@ -195,8 +195,12 @@ pub(crate) fn sentence(quantity: &Derived) -> String {
         quantity.symbol,
         with_unit,
         stated.place,
-        significant(quantity.value, 4)
+        shown(quantity.value, 4)
     )
+}
+
+fn shown(value: Result<f64, &str>, digits: usize) -> String {
+    value.map_or("-".to_string(), |value| significant(value, digits))
 }
 
 /// An equation without the braces that only typesetting needs.
@@ -212,7 +216,7 @@ pub fn files(derived: &[Derived]) -> Vec<OutputFile> {
         csv.push_str(&format!(
             "{},{},{},\"{}\",{stated}\n",
             quantity.name,
-            quantity.value,
+            quantity.value.map_or("NaN".to_string(), |value| value.to_string()),
             quantity.unit,
             plain(quantity.equation)
         ));

@@ -31,11 +31,11 @@ fn rows<'a>(quantities: impl Iterator<Item = &'a Derived>) -> Markup {
             vec![
                 typeset(quantity.symbol),
                 cell(words(&quantity.name)),
-                match &quantity.reason {
-                    Some(reason) => cell(reason),
-                    None => typeset(quantity.equation),
+                match quantity.value {
+                    Err(reason) => cell(reason),
+                    Ok(_) => typeset(quantity.equation),
                 },
-                figures(quantity.value, 5),
+                quantity.value.map_or_else(|_| cell("-"), |value| figures(value, 5)),
                 html! { span.unit { (unit(quantity.unit)) } },
             ]
         })

@@ -1,6 +1,6 @@
 //! What drives a scenario, in sentences.
 
-use crate::project::{Scenario, Signal, SignalKind};
+use crate::project::{Amplitudes, Multisine, Scenario, Signal};
 use crate::quantity::{Dimension, DisplayUnit, FORCE, TIME, VOLTAGE, display};
 
 /// Digits of a number in a sentence.
@@ -47,41 +47,41 @@ fn parts(signals: &[Signal], dimension: &'static Dimension) -> String {
 }
 
 fn part(signal: &Signal, dimension: &'static Dimension) -> String {
-    let number = |value: Option<f64>| display(value.unwrap_or(f64::NAN), dimension, DIGITS);
+    let number = |value: &f64| display(*value, dimension, DIGITS);
     let time = |value: f64| display(value, &TIME, DIGITS);
-    let hertz = |value: Option<f64>| DisplayUnit::HERTZ.text(value.unwrap_or(f64::NAN), DIGITS);
-    let what = match signal.kind {
-        SignalKind::Step | SignalKind::Steps => String::new(),
-        SignalKind::Ramp => format!("a ramp by {}", number(signal.value)),
-        SignalKind::Sine => format!("a sine of {} at {}", number(signal.amplitude), hertz(signal.frequency)),
-        SignalKind::Chirp => format!(
-            "a chirp of {} from {} to {}",
-            number(signal.amplitude),
-            hertz(signal.frequency),
-            hertz(signal.final_frequency)
-        ),
-        SignalKind::Multisine => multisine(signal, dimension),
-        SignalKind::File => format!("the file {}", signal.file.as_deref().unwrap_or_default()),
+    let what = match signal {
+        Signal::Step { .. } | Signal::Steps { .. } => String::new(),
+        Signal::Ramp { value, .. } => format!("a ramp by {}", number(value)),
+        Signal::Sine { amplitude, frequency, .. } => {
+            format!("a sine of {} at {}", number(amplitude), hertz(frequency))
+        }
+        Signal::Chirp { amplitude, frequency, final_frequency, .. } => {
+            let band = [frequency, final_frequency].map(hertz).join(" to ");
+            format!("a chirp of {} from {band}", number(amplitude))
+        }
+        Signal::Multisine(sines) => multisine(sines, dimension),
+        Signal::File { file, .. } => format!("the file {file}"),
     };
     let start = time(signal.begins_s());
-    match signal.duration {
+    match signal.duration_s() {
         Some(duration) => format!("{what} from {start} for {}", time(duration)),
         None => format!("{what} from {start}"),
     }
 }
 
-fn multisine(signal: &Signal, dimension: &'static Dimension) -> String {
-    let hertz = |value: &f64| DisplayUnit::HERTZ.text(*value, DIGITS);
-    let frequencies = match signal.frequencies.as_slice() {
-        [first, .., last] if signal.frequencies.len() > TOLD => {
-            format!("{} to {}", hertz(first), hertz(last))
-        }
+fn hertz(value: &f64) -> String {
+    DisplayUnit::HERTZ.text(*value, DIGITS)
+}
+
+fn multisine(sines: &Multisine, dimension: &'static Dimension) -> String {
+    let frequencies = match sines.frequencies.as_slice() {
+        [first, .., last] if sines.frequencies.len() > TOLD => [first, last].map(hertz).join(" to "),
         few => few.iter().map(hertz).collect::<Vec<_>>().join(", "),
     };
-    let amplitudes = match signal.amplitude {
-        Some(amplitude) => format!(" of {} each", display(amplitude, dimension, DIGITS)),
-        None => String::new(),
+    let amplitudes = match &sines.amplitudes {
+        Amplitudes::Equal(amplitude) => format!(" of {} each", display(*amplitude, dimension, DIGITS)),
+        Amplitudes::Each(_) => String::new(),
     };
-    let phases = if signal.phases.is_empty() { "Schroeder's phases" } else { "stated phases" };
-    format!("a multisine of {} sines{amplitudes} at {frequencies} with {phases}", signal.frequencies.len())
+    let phases = if sines.phases.is_empty() { "Schroeder's phases" } else { "stated phases" };
+    format!("a multisine of {} sines{amplitudes} at {frequencies} with {phases}", sines.frequencies.len())
 }

@@ -7,7 +7,7 @@ use crate::figure::{
     ControllerSymbol, Environment, Figure, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, Words,
     schematic,
 };
-use crate::project::{self, Component, Load, Project, SupplyModel};
+use crate::project::{self, Component, LineVolume, Load, Project, RatedFlow, SupplyModel};
 use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE};
 use crate::rig::Rig;
 
@@ -89,20 +89,19 @@ fn cylinder_words(cylinder: &project::Cylinder) -> String {
 }
 
 fn line(declared: &project::Line) -> LineSymbol {
-    match declared.component() {
-        Some(Component::Pipe { pipe, length }) => LineSymbol {
+    match &declared.component {
+        Component::Pipe { pipe, length } => LineSymbol {
             kind: LineKind::Pipe,
-            rows: vec![format!("pipe {}", shown(pipe.bore, &LENGTH)), shown(length, &LENGTH)],
+            rows: vec![format!("pipe {}", shown(pipe.bore, &LENGTH)), shown(*length, &LENGTH)],
         },
-        Some(Component::Hose { bore, length, .. }) => LineSymbol {
+        Component::Hose { properties, length, .. } => LineSymbol {
             kind: LineKind::Hose,
-            rows: vec![format!("hose {}", shown(bore, &LENGTH)), shown(length, &LENGTH)],
+            rows: vec![format!("hose {}", shown(properties.bore, &LENGTH)), shown(*length, &LENGTH)],
         },
-        Some(Component::Volume { volume, effective_bulk_modulus }) => LineSymbol {
+        Component::Volume(LineVolume { volume, effective_bulk_modulus }) => LineSymbol {
             kind: LineKind::Pipe,
-            rows: vec![shown(volume, &quantity::VOLUME), shown(effective_bulk_modulus, &PRESSURE)],
+            rows: vec![shown(*volume, &quantity::VOLUME), shown(*effective_bulk_modulus, &PRESSURE)],
         },
-        None => LineSymbol { kind: LineKind::Pipe, rows: vec![] },
     }
 }
 
@@ -134,7 +133,7 @@ pub(super) fn load_words(actuator: &project::Actuator) -> String {
 /// The declared lines in a few words.
 pub(super) fn lines_words(actuator: &project::Actuator) -> String {
     let words = |line: &project::Line| {
-        let name = line.hose.clone().map(|name| format!("{name}, "));
+        let name = line.hose_name().map(|name| format!("{name}, "));
         format!("{}{}", name.unwrap_or_default(), self::line(line).rows.join(", "))
     };
     let (a, b) = (words(&actuator.line.a), words(&actuator.line.b));
@@ -201,10 +200,10 @@ fn facts(actuator: &project::Actuator, rig: &Rig) -> Markup {
 
 fn valve_words(actuator: &project::Actuator) -> String {
     let valve = &actuator.valve;
-    let name = match (&valve.model, valve.nominal_flow, valve.nominal_pressure_drop) {
-        (Some(model), _, _) => model.clone(),
-        (None, Some(flow), Some(drop)) => {
-            format!("{} at a drop of {}", shown(flow, &FLOW), shown(drop, &PRESSURE))
+    let name = match (&valve.model, valve.flow.rating()) {
+        (Some(model), _) => model.clone(),
+        (None, Some(RatedFlow { flow, pressure_drop })) => {
+            format!("{} at a drop of {}", shown(*flow, &FLOW), shown(*pressure_drop, &PRESSURE))
         }
         _ => "by coefficients".to_string(),
     };

@@ -9,7 +9,7 @@ use super::driven::Driven;
 use super::driving;
 use crate::answer::significant;
 use crate::figure::Figure;
-use crate::project::{Project, Scenario};
+use crate::project::{Project, Scenario, Signal};
 use crate::simulate::{
     ABSENT, Cause, Held, MEASURED, METRICS, Metrics, Named, ScenarioRun, SimulateError, Window, Wish,
     cause_words, cells_of, close_ups, coarse_sentence, headline, measured_cells, measured_together,
@@ -81,7 +81,7 @@ fn not_simulated(name: &str, error: &SimulateError, sides: usize) -> Markup {
 }
 
 fn scenario(runs: &[Named<'_>], declared: &Scenario, wish: Option<&Wish>, figures: &[Figure]) -> Markup {
-    let remarks = declared.reference.iter().filter_map(|step| step.published.as_ref()?.remark.as_ref());
+    let remarks = declared.reference.iter().filter_map(|step| step.published()?.remark.as_ref());
     let name = runs.first().map(|named| named.run.name.as_str()).unwrap_or_default();
     html! {
         h3 { (name) }
@@ -210,9 +210,9 @@ fn measured(runs: &[Named<'_>]) -> Markup {
 
 /// What was published of the step that begins this window, and where; `None` where that are no numbers.
 fn published<'a>(declared: &'a Scenario, window: &Window) -> Option<(&'a str, [String; METRICS.len()])> {
-    let step = declared.reference.iter().find(|step| step.at == Some(window.start_s))?;
-    let published =
-        step.published.as_ref().filter(|_| matches!(window.cause, Cause::ReferenceStep { .. }))?;
+    let begins = |step: &&Signal| matches!(step, Signal::Step { at, .. } if *at == window.start_s);
+    let step = declared.reference.iter().find(begins)?;
+    let published = step.published().filter(|_| matches!(window.cause, Cause::ReferenceStep { .. }))?;
     let overshoot = published.overshoot_percent.map(|percent| format!("{} %", significant(percent, 3)));
     let settling = published.settling_time.map(|time| format!("{} s", significant(time, 3)));
     if overshoot.is_none() && settling.is_none() {

@@ -166,8 +166,8 @@ fn uncertain(sizing: &Sizing) -> Option<Figure> {
     let nominal = sizing.influences.first()?.stiffness_n_per_m[1];
     let bars = sizing.influences.iter().map(|influence| TornadoBar {
         parameter: influence.quantity.to_string(),
-        low_setting: influence.shown(0, 3),
-        high_setting: influence.shown(2, 3),
+        low_setting: influence.unit.text(influence.values[0], 3),
+        high_setting: influence.unit.text(influence.values[2], 3),
         low_value: influence.stiffness_n_per_m[0],
         high_value: influence.stiffness_n_per_m[2],
     });

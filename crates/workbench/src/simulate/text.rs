@@ -126,9 +126,9 @@ pub(crate) fn cause_words(window: &Window) -> String {
     let at = display(window.start_s, &TIME, 4);
     match window.cause {
         Cause::ReferenceStep { to_n, .. } => format!("step to {} at {at}", display(to_n, &FORCE, 4)),
-        Cause::ReferenceMotion { kind } => format!("{} at {at}", kind.name()),
+        Cause::ReferenceMotion { kind } => format!("{kind} at {at}"),
         Cause::CommandStep { to_v, .. } => format!("command to {} at {at}", display(to_v, &VOLTAGE, 4)),
-        Cause::CommandMotion { kind } => format!("{} of the command at {at}", kind.name()),
+        Cause::CommandMotion { kind } => format!("{kind} of the command at {at}"),
         Cause::LoadMotion => format!("load motion at {at}"),
         Cause::ExternalForce => format!("force from outside at {at}"),
     }

@@ -6,7 +6,7 @@ use phea_qft::verification::Verdict;
 use super::{Repair, RepairStatus};
 use crate::audit::{ProjectAudit, frequency_words, margin_words, stability_sentence};
 use crate::design::{NEAREST_PROJECT, ProjectDesign};
-use crate::project::{Component, Line, Project};
+use crate::project::{Line, Project};
 use crate::quantity::significant;
 use crate::quantity::{DisplayUnit, FORCE, display};
 use crate::trial::{Agreement, Run, agreement_word};
@@ -131,7 +131,7 @@ fn frequency(rad_per_s: f64) -> String {
 fn help(project: &Project, repair: &Repair, told: &ProjectDesign) -> String {
     let mut ways = Vec::new();
     let lines = project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
-    let longest = lines.iter().flatten().filter_map(|line| line.length).fold(0.0, f64::max);
+    let longest = lines.iter().flatten().filter_map(|line| Line::length(line)).fold(0.0, f64::max);
     if let (Some(own), Some(quarter)) = (crossover_of(told), repair.quarter_wave_rad_per_s)
         && own > quarter
         && longest > 0.0
@@ -139,8 +139,7 @@ fn help(project: &Project, repair: &Repair, told: &ProjectDesign) -> String {
         let length = DisplayUnit::METRE.text(longest * quarter / own, 2);
         ways.push(format!("a line shorter than {length}, whose quarter wave lies beyond that crossover"));
     }
-    let is_hose = |line: &&Line| matches!(line.component(), Some(Component::Hose { .. }));
-    if lines.iter().flatten().any(is_hose) {
+    if lines.iter().flatten().any(|line| line.hose().is_some()) {
         ways.push(
             "what is known of the wall that damps its waves (`line.model = \"segments\"` with `line.relaxation_time`)"
                 .to_string(),

@@ -77,16 +77,14 @@ fn panel(
     let band = PrefilterBand::of_family(&problem.compensation, &members, &drawn, specification);
     // a measurement that does not reach, or a band that no frequency is in, leaves nothing to draw
     let Ok(band) = band else { return Ok(None) };
-    let size = |frequency: f64| match problem.has_prefilter {
-        true => decibels(portable::magnitude(problem.compensation.response(frequency).prefilter)),
-        false => f64::NAN,
-    };
+    let size =
+        |frequency: f64| decibels(portable::magnitude(problem.compensation.response(frequency).prefilter));
     let shown = shown(&band, &drawn);
     let points = shown.iter().map(|point| PrefilterPoint {
         frequency_rad_per_s: point.frequency_rad_per_s,
         least_db: point.least_db,
         greatest_db: point.greatest_db,
-        prefilter_db: size(point.frequency_rad_per_s),
+        prefilter_db: problem.has_prefilter.then(|| size(point.frequency_rad_per_s)),
     });
     let sentence = sentence(name, &band, &shown);
     Ok(Some((PrefilterPanel { name: name.to_string(), points: points.collect() }, sentence)))

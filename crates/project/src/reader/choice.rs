@@ -1,0 +1,108 @@
+//! Variants and ways: what chooses them, and the keys of those that were not chosen.
+
+use super::{Layer, Reader};
+use crate::key::Key;
+use crate::listing::Listing;
+use crate::text::{Found, Place};
+use crate::tree::{Node, Value};
+use crate::visitor::Variants;
+use phea_quantity::spelling::nearest;
+
+/// The keys of a variant.
+pub(super) fn keys_of<T: Variants>(variant: &T) -> Vec<&'static str> {
+    let mut listing = Listing::of_everything();
+    variant.clone().visit(&mut listing);
+    listing.outermost
+}
+
+/// Which variants have a key, as in `it belongs to model "creeping" or "segments"`.
+fn belongs_to<T: Variants>(key: Key, name: &str, all: &[T]) -> String {
+    let having = all.iter().filter(|one| keys_of(*one).contains(&name));
+    let words: Vec<String> = having.map(|one| format!("\"{}\"", one.word())).collect();
+    let words = match words.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => words.concat(),
+    };
+    format!("it belongs to {} {words}", key.name)
+}
+
+impl<'a> Reader<'a> {
+    /// The place of a text among words of which it must be one.
+    pub(super) fn word(&mut self, key: Key, node: &Node, words: &[&'static str]) -> Option<usize> {
+        let all = words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
+        let Value::Text(text) = &node.value else {
+            self.wrong_kind(key, &format!("one of {all}"), node);
+            return None;
+        };
+        let found = words.iter().position(|word| word == text);
+        if found.is_none() {
+            let message = format!("`{}` cannot be \"{text}\"", key.name);
+            let near = nearest(text, words.iter().copied());
+            let help = near.map(|word| format!("did you mean \"{word}\"?"));
+            let expected = format!("one of {all}");
+            self.findings.push(Found::error(node.place, message).expected(expected).maybe_help(help));
+        }
+        found
+    }
+
+    pub(super) fn choose(&mut self, chosen: Option<String>) {
+        if let Some(frame) = self.frames.last_mut() {
+            frame.chosen = chosen;
+        }
+    }
+
+    pub(super) fn pass_over(&mut self, keys: Option<Vec<&'static str>>) {
+        if let Some(frame) = self.frames.last_mut() {
+            frame.passed_over = keys;
+        }
+    }
+
+    /// Tells the keys of other variants that are written all the same; their values must be right.
+    pub(super) fn without_effect<T: Variants>(&mut self, key: Key, chosen: &T, all: &[T]) {
+        let mut read = keys_of(chosen);
+        for other in all {
+            let keys = keys_of(other);
+            self.pass_over(Some(read.clone()));
+            other.clone().visit(self);
+            self.pass_over(None);
+            for name in keys.iter().filter(|name| !read.contains(name)) {
+                if let Some(place) = self.written(name) {
+                    let message = format!("`{name}` has no effect with {} \"{}\"", key.name, chosen.word());
+                    let found = if T::STRICT { Found::error } else { Found::warning };
+                    self.findings.push(found(place, message).help(belongs_to(key, name, all)));
+                }
+            }
+            read.extend(keys);
+        }
+    }
+
+    /// Warns of keys that were asked for since so many were known, where nothing chose what they belong to.
+    pub(super) fn without_choice(&mut self, chosen_by: &[&'static str], known: usize) {
+        let asked =
+            self.frames.last().and_then(|frame| frame.asked.get(known..)).unwrap_or_default().to_vec();
+        let Some(chooses) = chosen_by.first().filter(|_| !self.partial) else { return };
+        for name in asked {
+            if let Some(place) = self.written(name) {
+                let message = format!("`{name}` has no effect without `{chooses}`");
+                self.findings.push(Found::warning(place, message));
+            }
+        }
+    }
+
+    /// Whether a key of the present table has a value, from itself or what it inherits.
+    pub(super) fn is_there(&self, name: &str) -> bool {
+        let layers = self.frames.last().map(|frame| frame.layers.as_slice()).unwrap_or_default();
+        layers.iter().any(|layer| !layer.hidden.contains(&name) && layer.node.get(name).is_some())
+    }
+
+    pub(super) fn is_lost(&self) -> bool {
+        self.frames.last().is_some_and(|frame| frame.lost)
+    }
+
+    /// Where a key of the present table is written, here or in what it inherits; what the catalogue says is not.
+    pub(super) fn written(&self, name: &str) -> Option<Place> {
+        let seen = |layer: &&Layer<'_>| layer.entry.is_none() && !layer.hidden.contains(&name);
+        let mut layers = self.frames.last()?.layers.iter().filter(seen);
+        layers.find_map(|layer| Some(layer.node.get(name)?.node.place))
+    }
+}
