@@ -8,8 +8,11 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::simulation::{Course, HeldPlant, Input, Profile, Settings, Status, simulate};
+use phea_dynamics::simulation::{
+    Course, HeldPlant, Input, Observer, Profile, Sensed, Settings, Status, Task,
+};
 use phea_hydraulics::machine::{Machine, MachineOptions};
+use phea_machine::{Control, Watcher};
 use phea_workbench::linearize::linearize;
 use phea_workbench::project::{self, Project};
 use phea_workbench::rig::Rig;
@@ -35,6 +38,20 @@ fn run(settings: &[&str]) -> ScenarioRun {
     run
 }
 
+/// Time in s and state of the force, the stretch of the sensor, at every row.
+#[derive(Default)]
+struct Forces(Vec<(f64, f64)>);
+
+impl Observer for Forces {
+    fn wanted(&self) -> &[usize] {
+        &[4]
+    }
+
+    fn observe(&mut self, time_s: f64, states: &[f64], _: &[f64]) {
+        self.0.push((time_s, states[0]));
+    }
+}
+
 /// What moves the machine about its rest.
 enum Shaken {
     /// Its command in V.
@@ -49,7 +66,8 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
     const ROWS_PER_PERIOD: f64 = 32.0;
     let machine = Machine::new(&rig.actuator, &MachineOptions::default()).unwrap();
     let rest = machine.rest(&rig.point).unwrap();
-    let held = HeldPlant::new(machine, &TransferFunction::gain_only(1.0)).unwrap();
+    let through = TransferFunction::gain_only(1.0);
+    let held = HeldPlant::new(Sensed::new(machine, &through).unwrap(), &through).unwrap();
     let sine = Profile::sine(0.0, amplitude, frequency).unwrap();
     let still = [Profile::constant(rest.command), Profile::constant(rest.inputs[0])];
     let [command, ground] = match shaken {
@@ -64,17 +82,25 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
     let course =
         Course { duration_s: (settled + 2.5) * period, output_step_s: period / ROWS_PER_PERIOD, inputs };
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
-    let simulated = simulate(&held, &rest.state, &course, None, &settings, &mut |_| true).unwrap();
-    assert_eq!(simulated.outcome.status, Status::Completed);
+    let mut forces = Forces::default();
+    let task = Task {
+        start: rest.state,
+        course: &course,
+        sampler: None,
+        observer: Box::new(&mut forces) as Watcher,
+    };
+    let outcome = Control::Open(Box::new(held)).drive(task, &settings, &mut |_| true).unwrap();
+    assert_eq!(outcome.status, Status::Completed);
     let stiffness = rig.actuator.components().force_sensor.stiffness;
     let from = (settled * ROWS_PER_PERIOD) as usize;
     let rows = from..from + 2 * ROWS_PER_PERIOD as usize;
     let sum: Complex64 = rows
         .clone()
         .map(|row| {
-            let phase = frequency * simulated.trajectory.times_s[row];
+            let (time_s, extension) = forces.0[row];
+            let phase = frequency * time_s;
             // sin is the imaginary part: F e^{-j w t} averages to A/(2 j)
-            Complex64::new(phase.cos(), -phase.sin()) * stiffness * simulated.trajectory.states[row][4]
+            Complex64::new(phase.cos(), -phase.sin()) * stiffness * extension
         })
         .sum();
     sum / rows.len() as f64 * Complex64::new(0.0, 2.0) / amplitude
