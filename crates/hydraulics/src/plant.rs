@@ -14,7 +14,7 @@
 mod in_motion;
 mod supply;
 
-pub use in_motion::{BehindLines, Lateness, PlantInMotion};
+pub use in_motion::{BehindLines, PlantInMotion};
 pub use supply::YieldingSupply;
 
 use phea_dynamics::scalar::Scalar;

@@ -23,6 +23,12 @@ use images::Images;
 /// sampled:     L = Z{(1 - e^(-sT))/s P H e^(-s T_d)} G(z), at z = e^(jwT), up to pi/T
 /// ```
 ///
+/// ```text
+/// Pd + K s P        the path of a disturbance whose rate is fed forward, P with its hold and delay
+/// ```
+///
+/// The samples of the output follow this exactly for a sine of the disturbance: P is that of the samples.
+///
 /// The prefilter of a sampled loop is F(z), or F(s) where it acts on the reference before this is sampled. Of a sine of the reference
 /// below pi/T the samples behind F(s) are those of F(jw) times the sine: F T is taken with F(jw), and holds for references without parts
 /// beyond pi/T.
@@ -33,6 +39,7 @@ pub struct Compensation {
     sensor: TransferFunction,
     sample_time_s: Option<f64>,
     delay_s: f64,
+    rate_feed_forward: f64,
 }
 
 /// G, F at one frequency.
@@ -53,6 +60,8 @@ pub enum Member {
         plant: PlantCoefficients<f64>,
         /// H
         sensor: TransferFunction,
+        /// K
+        rate_feed_forward: f64,
     },
     /// A plant held by a zero-order hold and sampled.
     Sampled {
@@ -62,6 +71,8 @@ pub enum Member {
         with_sensor: TransferFunction,
         /// Pd, continuous: the motion acts on the plant itself.
         disturbance: Option<RationalCoefficients<f64>>,
+        /// K
+        rate_feed_forward: f64,
     },
     /// A plant without polynomials, with the delay of the loop; sampling adds the lag of its hold.
     Responding {
@@ -73,6 +84,8 @@ pub enum Member {
         delay_s: f64,
         /// For the magnitude of the hold.
         sample_time_s: Option<f64>,
+        /// K
+        rate_feed_forward: f64,
     },
     /// A measured plant, with the delay of the loop; sampling adds the lag of its hold.
     Measured {
@@ -92,7 +105,7 @@ pub enum Member {
 pub struct MemberResponse {
     /// P
     pub plant: Complex64,
-    /// Pd; zero where the plant has no such path.
+    /// Pd with what is fed forward of the disturbance's rate; zero where the plant has no such path.
     pub load_motion: Complex64,
     /// H
     pub sensor: Complex64,
@@ -140,6 +153,7 @@ impl Compensation {
             sensor,
             sample_time_s: timing.sample_time_s,
             delay_s: timing.delay_s,
+            rate_feed_forward: timing.rate_feed_forward,
         })
     }
 
@@ -197,6 +211,11 @@ impl Compensation {
         self.delay_s
     }
 
+    /// K, what the rate of a disturbance adds to the command.
+    pub fn rate_feed_forward(&self) -> f64 {
+        self.rate_feed_forward
+    }
+
     /// The same loop with another delay.
     pub fn with_delay(&self, delay_s: f64) -> Compensation {
         Compensation { delay_s, ..self.clone() }
@@ -236,7 +255,8 @@ impl Compensation {
         check_dead_time(plant.dead_time_s)?;
         plant.dead_time_s += self.delay_s;
         let Some(sample_time_s) = self.sample_time_s else {
-            return Ok(Member::Continuous { plant, sensor: self.sensor.clone() });
+            let (sensor, rate_feed_forward) = (self.sensor.clone(), self.rate_feed_forward);
+            return Ok(Member::Continuous { plant, sensor, rate_feed_forward });
         };
         let rational = TransferFunction::from_polynomials(
             &Polynomial::new(plant.command.numerator),
@@ -253,7 +273,8 @@ impl Compensation {
         } else {
             held(rational.series(&self.sensor)?)?
         };
-        Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance })
+        let (disturbance, rate_feed_forward) = (plant.disturbance, self.rate_feed_forward);
+        Ok(Member::Sampled { command, with_sensor, disturbance, rate_feed_forward })
     }
 
     /// The plant of a family with these parameter values within this loop.
@@ -292,6 +313,7 @@ impl Compensation {
             sensor: self.sensor.clone(),
             delay_s: self.delay_s + self.sample_time_s.unwrap_or(0.0) / 2.0,
             sample_time_s: self.sample_time_s,
+            rate_feed_forward: self.rate_feed_forward,
         }
     }
 
@@ -327,7 +349,8 @@ impl Compensation {
         check_dead_time(plant.dead_time_s)?;
         let dead_time_s = plant.dead_time_s + self.delay_s;
         let Some(sample_time_s) = self.sample_time_s else {
-            return Ok(continuous(&plant, dead_time_s, &self.sensor, frequency_rad_per_s));
+            let own = continuous(&plant, dead_time_s, &self.sensor, frequency_rad_per_s);
+            return Ok(own.fed(self.rate_feed_forward, frequency_rad_per_s));
         };
         let load_motion = load_motion(plant.disturbance.as_ref(), frequency_rad_per_s);
         let rational = TransferFunction::from_polynomials(
@@ -348,7 +371,8 @@ impl Compensation {
         let with_sensor = if is_gain { None } else { Some(held(rational.series(&self.sensor)?)?) };
         let plant = held(rational)?;
         let sensor = with_sensor.map_or(Complex64::new(self.sensor.gain(), 0.0), |response| response / plant);
-        Ok(MemberResponse { plant, load_motion, sensor })
+        let own = MemberResponse { plant, load_motion, sensor };
+        Ok(own.fed(self.rate_feed_forward, frequency_rad_per_s))
     }
 
     /// A measured plant within this loop.
@@ -362,6 +386,14 @@ impl Compensation {
     }
 }
 
+impl MemberResponse {
+    /// The same with the rate of the disturbance fed forward: Pd + K s P.
+    fn fed(self, rate_feed_forward: f64, frequency_rad_per_s: f64) -> MemberResponse {
+        let rate = Complex64::new(0.0, frequency_rad_per_s * rate_feed_forward);
+        MemberResponse { load_motion: self.load_motion + rate * self.plant, ..self }
+    }
+}
+
 impl Member {
     /// P, Pd and H at a frequency; `None` where a measurement does not reach.
     ///
@@ -370,20 +402,23 @@ impl Member {
     /// response is not known.
     pub fn response(&self, frequency_rad_per_s: f64) -> Option<MemberResponse> {
         match self {
-            Member::Continuous { plant, sensor } => {
-                Some(continuous(plant, plant.dead_time_s, sensor, frequency_rad_per_s))
+            Member::Continuous { plant, sensor, rate_feed_forward } => {
+                let own = continuous(plant, plant.dead_time_s, sensor, frequency_rad_per_s);
+                Some(own.fed(*rate_feed_forward, frequency_rad_per_s))
             }
-            Member::Sampled { command, with_sensor, disturbance } => {
+            Member::Sampled { command, with_sensor, disturbance, rate_feed_forward } => {
                 let plant = command.at_frequency(frequency_rad_per_s);
-                Some(MemberResponse {
+                let own = MemberResponse {
                     plant,
                     load_motion: load_motion(disturbance.as_ref(), frequency_rad_per_s),
                     sensor: with_sensor.at_frequency(frequency_rad_per_s) / plant,
-                })
+                };
+                Some(own.fed(*rate_feed_forward, frequency_rad_per_s))
             }
-            Member::Responding { plant, sensor, delay_s, sample_time_s } => {
+            Member::Responding { plant, sensor, delay_s, sample_time_s, rate_feed_forward } => {
                 let images = Images { sensor, delay_s: *delay_s, sample_time_s: *sample_time_s };
-                images.of_model(plant.as_ref(), frequency_rad_per_s)
+                let own = images.of_model(plant.as_ref(), frequency_rad_per_s)?;
+                Some(own.fed(*rate_feed_forward, frequency_rad_per_s))
             }
             Member::Measured { plant, sensor, delay_s, sample_time_s } => {
                 let images = Images { sensor, delay_s: *delay_s, sample_time_s: *sample_time_s };

@@ -121,7 +121,7 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
     let why = match (actuator, controller.sample_time) {
         (None, _) => "no load is known of a [plant]",
         _ if is_measured(project) => "the plants of the family were measured without it",
-        (Some(_), Some(_)) if yields || moving(project).is_none() => "the controller samples it",
+        (Some(_), Some(_)) if yields => "the controller samples it and the load yields",
         _ => return None,
     };
     let what = match yields || actuator.is_none() {

@@ -47,16 +47,8 @@ pub struct PlantInMotion {
     sides: [Side; 2],
     /// Whether both lines are the same.
     alike: bool,
-    lateness: Lateness,
-}
-
-/// How late the velocity of the load that is fed forward acts. Units: s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Lateness {
-    /// Delay tau of the command.
-    pub delay: f64,
-    /// Time T for which a sample is held; zero where nothing is sampled.
-    pub hold: f64,
+    /// Delay of the load's velocity that is fed forward, s.
+    lateness: f64,
 }
 
 /// What the chambers of a plant consist of. Units: m3/Pa.
@@ -106,14 +98,9 @@ impl PlantInMotion {
         PlantInMotion { plant: Plant { load_velocity_feed_forward, ..self.plant }, ..self }
     }
 
-    /// The same with what is fed forward so late: exact behind a delay. Of what is sampled it is the part at the frequency of the motion
-    /// itself, which is for a prescribed load; a load that yields would feed its images back as well.
-    ///
-    /// ```text
-    /// K_x(s) = K_x e^(-s tau) (1 - e^(-s T))/(s T)
-    /// ```
+    /// The same with what is fed forward late by a delay in s: K_x e^(-s tau) for K_x.
     #[must_use]
-    pub fn late(self, lateness: Lateness) -> PlantInMotion {
+    pub fn late(self, lateness: f64) -> PlantInMotion {
         PlantInMotion { lateness, ..self }
     }
 
@@ -139,7 +126,7 @@ impl PlantInMotion {
         };
         let sides = [side(0), side(1)];
         let alike = sides[0].line == sides[1].line;
-        PlantInMotion { plant: *plant, sides, alike, lateness: Lateness::default() }
+        PlantInMotion { plant: *plant, sides, alike, lateness: 0.0 }
     }
 
     /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of [`Plant::coefficients`].
@@ -160,7 +147,10 @@ impl PlantInMotion {
         let spool = A::from(square) / (s * s + turned + A::from(square));
         let driven = (spool * driven).scaled(sensor);
         let fed = match self.plant.load_velocity_feed_forward {
-            Some(gain) => self.lateness.at(s) * s.scaled(gain) * driven,
+            Some(gain) if self.lateness > 0.0 => {
+                s.scaled(-self.lateness).exponential() * s.scaled(gain) * driven
+            }
+            Some(gain) => s.scaled(gain) * driven,
             None => A::from(0.0),
         };
         match self.plant.load {
@@ -258,13 +248,6 @@ impl PlantInMotion {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
         let longest = delays.fold(0.0, f64::max);
         (longest > 0.0).then(|| std::f64::consts::FRAC_PI_2 / longest)
-    }
-}
-
-impl Lateness {
-    fn at<A: Analytic>(&self, s: A) -> A {
-        let held = if self.hold > 0.0 { s.scaled(self.hold).mean_of_decay() } else { A::from(1.0) };
-        if self.delay > 0.0 { s.scaled(-self.delay).exponential() * held } else { held }
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) enum Count {
 }
 
 pub(super) fn stability(member: &Member, compensation: &Compensation, count: Count) -> MemberStability {
-    let Member::Responding { plant, sensor, delay_s, sample_time_s } = member else {
+    let Member::Responding { plant, sensor, delay_s, sample_time_s, .. } = member else {
         return MemberStability::not_resolved(Irresolution::Points);
     };
     let points = || {

@@ -41,6 +41,29 @@ impl Asymptote {
         Asymptote { coefficient: self.coefficient / other.coefficient, power: self.power - other.power }
     }
 
+    /// What is the greater at the end; of two like powers the sum, or its largest magnitude where one is turned without end. What is left
+    /// of two that cancel is less than either.
+    fn plus(self, other: Asymptote, spun: bool, end: End) -> Asymptote {
+        if other.coefficient == 0.0 {
+            return self;
+        }
+        let by_power = match end {
+            End::Zero => other.power.cmp(&self.power),
+            End::Infinity => self.power.cmp(&other.power),
+        };
+        match by_power {
+            _ if self.coefficient == 0.0 => other,
+            std::cmp::Ordering::Greater => self,
+            std::cmp::Ordering::Less => other,
+            std::cmp::Ordering::Equal if spun => {
+                Asymptote { coefficient: self.coefficient.abs() + other.coefficient.abs(), ..self }
+            }
+            std::cmp::Ordering::Equal => {
+                Asymptote { coefficient: self.coefficient + other.coefficient, ..self }
+            }
+        }
+    }
+
     /// Of a polynomial, highest power first; zero if it is zero.
     fn of_polynomial(coefficients: &[f64], end: End) -> Asymptote {
         let degree = coefficients.len() as i32 - 1;
@@ -217,11 +240,11 @@ fn parts(
         path.as_ref().map_or(zero, |path| rational(&path.numerator, &path.denominator))
     };
     let (plant, load_motion, with_sensor, turns) = match member {
-        Member::Continuous { plant, sensor } => {
+        Member::Continuous { plant, sensor, .. } => {
             let command = rational(&plant.command.numerator, &plant.command.denominator);
             (command, path(&plant.disturbance), command.times(of(sensor)?), plant.dead_time_s > 0.0)
         }
-        Member::Sampled { command, with_sensor, disturbance } => {
+        Member::Sampled { command, with_sensor, disturbance, .. } => {
             (of(command)?, path(disturbance), of(with_sensor)?, false)
         }
         Member::Responding { plant, sensor, .. } => {
@@ -235,6 +258,8 @@ fn parts(
         }
         Member::Measured { .. } => return None,
     };
+    let rate = Asymptote { coefficient: compensation.rate_feed_forward(), power: 1 };
+    let load_motion = load_motion.plus(plant.times(rate), turns && end == End::Infinity, end);
     let feedback = of(compensation.feedback())?;
     Some(LoopAsymptotes {
         plant,

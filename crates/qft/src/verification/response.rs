@@ -30,6 +30,8 @@ pub(super) struct LoopAt {
     /// The square of the limit of each criterion; `None` where nothing is demanded.
     limits_squared: Vec<Option<f64>>,
     load_motion: bool,
+    /// K s
+    rate_feed_forward: Complex64,
 }
 
 /// The closed loop around one plant at one frequency.
@@ -119,6 +121,7 @@ impl LoopAt {
             sensor: compensation.sensor().at_frequency(frequency),
             limits_squared: criteria.iter().map(limit).collect(),
             load_motion: criteria.iter().any(|criterion| criterion.quantity == Quantity::LoadMotion),
+            rate_feed_forward: Complex64::new(0.0, frequency * compensation.rate_feed_forward()),
         }
     }
 
@@ -140,10 +143,10 @@ impl LoopAt {
                 (
                     numerator,
                     Fraction { numerator: numerator * self.sensor, denominator },
-                    load(&plant.disturbance),
+                    self.fed(load(&plant.disturbance), Fraction { numerator, denominator }),
                 )
             }
-            Member::Sampled { command, with_sensor, disturbance } => {
+            Member::Sampled { command, with_sensor, disturbance, .. } => {
                 let around = Fraction::of_transfer_function(with_sensor, frequency);
                 let plant = Fraction::of_transfer_function(command, frequency);
                 let same = command.poles() == with_sensor.poles();
@@ -152,7 +155,7 @@ impl LoopAt {
                 } else {
                     plant.numerator * around.denominator / plant.denominator
                 };
-                (numerator, around, load(disturbance))
+                (numerator, around, self.fed(load(disturbance), plant))
             }
             Member::Responding { .. } | Member::Measured { .. } => {
                 let response = member.response(frequency)?;
@@ -164,6 +167,20 @@ impl LoopAt {
         let b = around.numerator * self.feedback.numerator;
         let loop_denominator = around.denominator;
         Some(ClosedLoop { characteristic: a + b, a, b, plant_numerator, loop_denominator, load_motion })
+    }
+
+    /// Pd + K s P over the denominator of Pd.
+    fn fed(&self, load_motion: Fraction, plant: Fraction) -> Fraction {
+        if !self.load_motion || self.rate_feed_forward == Complex64::new(0.0, 0.0) {
+            return load_motion;
+        }
+        let numerator = self.rate_feed_forward * plant.numerator;
+        let shared = if load_motion.denominator == plant.denominator {
+            numerator
+        } else {
+            numerator / plant.denominator * load_motion.denominator
+        };
+        Fraction { numerator: load_motion.numerator + shared, ..load_motion }
     }
 
     /// The square of how far a criterion is exceeded: (quantity/limit)^2 for an upper limit, its inverse for a lower one. `None`
