@@ -9,6 +9,7 @@ use phea_dynamics::portable::{exp_complex, pow};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::simulation::small_signal;
+use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
@@ -196,6 +197,53 @@ fn it_is_the_machine_for_small_motions() {
             }
         }
     }
+}
+
+/// The velocity of the load is that of the machine, by the command and by the ground; with lumped lines it is the quotient over the
+/// plant's denominator, and fed forward at once it is fed back too.
+#[test]
+fn the_velocity_of_the_load_is_that_of_the_machine() {
+    let mut yielding = 0;
+    for number in 0..108 {
+        let rig = drawn(number);
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind);
+        let gain = 12.0;
+        let fed = Plant { load_velocity_feed_forward: Some(gain), ..rig.plant };
+        let [own, closed] =
+            [rig.plant, fed].map(|plant| (plant.coefficients(), PlantInMotion::lumped(&plant)));
+        for step in 0..14 {
+            let frequency = 0.01 * pow(1e6, f64::from(step) / 13.0);
+            let s = Complex64::new(0.0, frequency);
+            let apart = |one: Complex64, other: Complex64| (one / other - 1.0).norm_sqr().sqrt();
+            let [[_, command], [_, ground]] = rig.force_and_velocity(frequency);
+            let told = moving.load_velocity(s);
+            if rig.plant.load == LinearLoad::Prescribed {
+                assert_eq!((told, own.0.rate.clone()), ([Complex64::ZERO, s], None));
+                continue;
+            }
+            yielding += 1;
+            for (told, own) in told.into_iter().zip([command, ground]) {
+                assert!(apart(told, own) < 1e-7, "rig {number} at {frequency} rad/s: {told} {own}");
+            }
+            let [alone, back] = [&own, &closed].map(|(coefficients, lumped)| {
+                let rate = coefficients.rate.as_ref().unwrap();
+                let found = lumped.load_velocity(s);
+                for (numerator, found) in [&rate.command, &rate.disturbance].into_iter().zip(found) {
+                    let denominator = coefficients.command.denominator.clone();
+                    let path = RationalCoefficients { numerator: numerator.clone(), denominator };
+                    assert!(apart(path.at_frequency(frequency), found) < 1e-9, "rig {number} at {frequency}");
+                }
+                found
+            });
+            for (back, alone_of_path) in back.into_iter().zip(alone) {
+                assert!(
+                    apart(back, alone_of_path / (1.0 - gain * alone[0])) < 1e-7,
+                    "rig {number} at {frequency}"
+                );
+            }
+        }
+    }
+    assert!(yielding > 500, "{yielding}");
 }
 
 /// The machine's own derivatives, its load's velocity on the command by algebra: K_x e^(-s tau).

@@ -51,7 +51,7 @@ impl<'a> Setup<'a> {
     /// ```
     pub fn new(project: &'a Project) -> Result<Setup<'a>, ControlError> {
         let rig = Setup::rig_of(project);
-        let fed = rig.as_ref().ok().and_then(|rig| rig.fed?.on_its_path());
+        let fed = rig.as_ref().ok().and_then(|rig| rig.fed?.in_loop());
         let timing = Timing { rate_feed_forward: fed.unwrap_or(0.0), ..control::timing(project) };
         let controller = control::controller(project)?;
         Ok(Setup {

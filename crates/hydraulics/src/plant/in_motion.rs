@@ -1,5 +1,6 @@
 mod responding;
 
+use num_complex::Complex64;
 use phea_dynamics::analytic::Analytic;
 
 use super::supply::{Coupled, Over};
@@ -89,6 +90,8 @@ struct Paths<A> {
     ground: A,
     sensed: A,
     fed: A,
+    driven: A,
+    held: A,
 }
 
 impl PlantInMotion {
@@ -131,9 +134,18 @@ impl PlantInMotion {
 
     /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of [`Plant::coefficients`].
     pub fn response<A: Analytic>(&self, s: A) -> [A; 2] {
-        let Paths { command, ground, sensed, fed } = self.paths(s);
+        let Paths { command, ground, sensed, fed, .. } = self.paths(s);
         let divisor = sensed - fed;
         [command / divisor, ground / divisor]
+    }
+
+    /// v_L/U_C in m/(s V) and v_L/X_0 in 1/s, the velocity of the load, at s in rad/s.
+    pub fn load_velocity(&self, s: Complex64) -> [Complex64; 2] {
+        let LinearLoad::Yielding { damping, stiffness, .. } = self.plant.load else {
+            return [Complex64::ZERO, s];
+        };
+        let Paths { driven, held, sensed, fed, .. } = self.paths(s);
+        [driven, (s * damping + stiffness) * held].map(|path| s * path / (sensed - fed))
     }
 
     fn paths<A: Analytic>(&self, s: A) -> Paths<A> {
@@ -153,17 +165,18 @@ impl PlantInMotion {
             Some(gain) => s.scaled(gain) * driven,
             None => A::from(0.0),
         };
+        let held = moved + own.scaled(sensor);
         match self.plant.load {
             LinearLoad::Prescribed => {
-                let sensed = moved + own.scaled(sensor);
-                Paths { command: driven, ground: fed - moved.scaled(sensor), sensed, fed: A::from(0.0) }
+                let (ground, fed) = (fed - moved.scaled(sensor), A::from(0.0));
+                Paths { command: driven, ground, sensed: held, fed, driven, held }
             }
             LinearLoad::Yielding { mass, damping, stiffness } => {
                 let tied = s.scaled(damping) + A::from(stiffness);
                 let load = (s * s).scaled(mass) + tied;
                 let sensed = moved * (load + A::from(sensor)) + (load * own).scaled(sensor);
                 let ground = tied * (fed - moved.scaled(sensor));
-                Paths { command: load * driven, ground, sensed, fed }
+                Paths { command: load * driven, ground, sensed, fed, driven, held }
             }
         }
     }

@@ -8,7 +8,7 @@ use phea_dynamics::uncertain_plant::RationalCoefficients;
 use num_complex::Complex64;
 
 use super::criterion::{Criterion, Quantity, Side};
-use crate::closed_loop::{Compensation, Member};
+use crate::closed_loop::{Compensation, FedForward, Member, closed};
 use crate::specification::Limit;
 
 /// Which end of the frequency axis.
@@ -239,27 +239,33 @@ fn parts(
     let path = |path: &Option<RationalCoefficients<f64>>| {
         path.as_ref().map_or(zero, |path| rational(&path.numerator, &path.denominator))
     };
-    let (plant, load_motion, with_sensor, turns) = match member {
-        Member::Continuous { plant, sensor, .. } => {
+    let forward = |fed: &FedForward| {
+        let gain = Asymptote { coefficient: fed.gain, power: 0 };
+        let path = fed.path.as_ref().map(|path| rational(&path.numerator, &path.denominator));
+        gain.times(path.unwrap_or(Asymptote { coefficient: 1.0, power: 1 }))
+    };
+    let (plant, load_motion, with_sensor, forward, turns) = match member {
+        Member::Continuous { plant, sensor, fed_forward } => {
             let command = rational(&plant.command.numerator, &plant.command.denominator);
-            (command, path(&plant.disturbance), command.times(of(sensor)?), plant.dead_time_s > 0.0)
+            let with_sensor = command.times(of(sensor)?);
+            (command, path(&plant.disturbance), with_sensor, forward(fed_forward), plant.dead_time_s > 0.0)
         }
-        Member::Sampled { command, with_sensor, disturbance, .. } => {
-            (of(command)?, path(disturbance), of(with_sensor)?, false)
+        Member::Sampled { command, with_sensor, disturbance, fed_forward } => {
+            (of(command)?, path(disturbance), of(with_sensor)?, forward(fed_forward), false)
         }
-        Member::Responding { plant, sensor, .. } => {
+        Member::Responding { plant, sensor, rate_feed_forward, .. } => {
             // its load-motion path has the ends of the slow plant
-            let slow = plant.slow();
+            let slow = closed(*rate_feed_forward, plant.slow()).ok()?;
+            let fed = FedForward::of(*rate_feed_forward, &plant.slow());
             let command = match end {
                 End::Zero => rational(&slow.command.numerator, &slow.command.denominator),
                 End::Infinity => rolled_off(plant.as_ref())?,
             };
-            (command, path(&slow.disturbance), command.times(of(sensor)?), true)
+            (command, path(&slow.disturbance), command.times(of(sensor)?), forward(&fed), true)
         }
         Member::Measured { .. } => return None,
     };
-    let rate = Asymptote { coefficient: compensation.rate_feed_forward(), power: 1 };
-    let load_motion = load_motion.plus(plant.times(rate), turns && end == End::Infinity, end);
+    let load_motion = load_motion.plus(plant.times(forward), turns && end == End::Infinity, end);
     let feedback = of(compensation.feedback())?;
     Some(LoopAsymptotes {
         plant,

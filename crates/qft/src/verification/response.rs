@@ -30,8 +30,6 @@ pub(super) struct LoopAt {
     /// The square of the limit of each criterion; `None` where nothing is demanded.
     limits_squared: Vec<Option<f64>>,
     load_motion: bool,
-    /// K s
-    rate_feed_forward: Complex64,
 }
 
 /// The closed loop around one plant at one frequency.
@@ -121,7 +119,6 @@ impl LoopAt {
             sensor: compensation.sensor().at_frequency(frequency),
             limits_squared: criteria.iter().map(limit).collect(),
             load_motion: criteria.iter().any(|criterion| criterion.quantity == Quantity::LoadMotion),
-            rate_feed_forward: Complex64::new(0.0, frequency * compensation.rate_feed_forward()),
         }
     }
 
@@ -134,7 +131,7 @@ impl LoopAt {
             _ => none,
         };
         let (plant_numerator, around, load_motion) = match member {
-            Member::Continuous { plant, .. } => {
+            Member::Continuous { plant, fed_forward, .. } => {
                 let Fraction { mut numerator, denominator } =
                     Fraction::of_coefficients(&plant.command, frequency);
                 if plant.dead_time_s != 0.0 {
@@ -143,10 +140,14 @@ impl LoopAt {
                 (
                     numerator,
                     Fraction { numerator: numerator * self.sensor, denominator },
-                    self.fed(load(&plant.disturbance), Fraction { numerator, denominator }),
+                    self.fed(
+                        load(&plant.disturbance),
+                        Fraction { numerator, denominator },
+                        fed_forward.at(frequency),
+                    ),
                 )
             }
-            Member::Sampled { command, with_sensor, disturbance, .. } => {
+            Member::Sampled { command, with_sensor, disturbance, fed_forward } => {
                 let around = Fraction::of_transfer_function(with_sensor, frequency);
                 let plant = Fraction::of_transfer_function(command, frequency);
                 let same = command.poles() == with_sensor.poles();
@@ -155,7 +156,7 @@ impl LoopAt {
                 } else {
                     plant.numerator * around.denominator / plant.denominator
                 };
-                (numerator, around, self.fed(load(disturbance), plant))
+                (numerator, around, self.fed(load(disturbance), plant, fed_forward.at(frequency)))
             }
             Member::Responding { .. } | Member::Measured { .. } => {
                 let response = member.response(frequency)?;
@@ -169,12 +170,12 @@ impl LoopAt {
         Some(ClosedLoop { characteristic: a + b, a, b, plant_numerator, loop_denominator, load_motion })
     }
 
-    /// Pd + K s P over the denominator of Pd.
-    fn fed(&self, load_motion: Fraction, plant: Fraction) -> Fraction {
-        if !self.load_motion || self.rate_feed_forward == Complex64::new(0.0, 0.0) {
+    /// Pd + K V_d P over the denominator of Pd.
+    fn fed(&self, load_motion: Fraction, plant: Fraction, forward: Complex64) -> Fraction {
+        if !self.load_motion || forward == Complex64::ZERO {
             return load_motion;
         }
-        let numerator = self.rate_feed_forward * plant.numerator;
+        let numerator = forward * plant.numerator;
         let shared = if load_motion.denominator == plant.denominator {
             numerator
         } else {

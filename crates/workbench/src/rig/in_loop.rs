@@ -8,8 +8,8 @@ use crate::project::{Load, Project, SpecificationKind};
 
 impl Rig {
     /// The same rig, with the velocity of its load fed forward. Where the command follows at once it is in `plant` and `in_motion`; where it
-    /// is late and the load yields there are no polynomials of it, and it is in `in_motion` alone, which lumped lines have then too. On the
-    /// path of a prescribed motion it is no part of the plant where it is late or sampled.
+    /// is late and the load yields there are no polynomials of it, and it is in `in_motion` alone, which lumped lines have then too. What is
+    /// sampled is no part of the plant, nor what is late on the path of a prescribed motion: the loop has it.
     ///
     /// # Example
     /// Beside a prescribed load only the path of its motion changes.
@@ -48,27 +48,25 @@ pub enum FedForward {
         /// s
         delay: f64,
     },
-    /// On the path of a prescribed load's motion, with the samples and the delay of the command: the loop has it, see
+    /// In the loop around the plant, with the samples and the delay of the command: see
     /// [`rate_feed_forward`](phea_qft::closed_loop::Compensation::rate_feed_forward).
-    OnItsPath {
+    InLoop {
         /// V s/m
         gain: f64,
     },
 }
 
 impl FedForward {
-    /// What the loop of a project counts; `None` where nothing is fed forward, or where a load that yields is sampled: its velocity
-    /// reaches the samples by another path than the force.
+    /// What the loop of a project counts; `None` where nothing is fed forward.
     pub(super) fn of(project: &Project, linear: &LinearParameters) -> Option<FedForward> {
         let controller = project.controller.as_ref()?;
         let yields = project.actuator.as_ref()?.load != Load::Prescribed;
         let (gain, delay) = (feed_forward(project, linear), controller.delay);
         match (yields, controller.sample_time) {
             _ if gain == 0.0 => None,
-            (true, Some(_)) => None,
-            (false, None) if delay == 0.0 => Some(FedForward::InPlant { gain, delay }),
             (true, None) => Some(FedForward::InPlant { gain, delay }),
-            (false, _) => Some(FedForward::OnItsPath { gain }),
+            (false, None) if delay == 0.0 => Some(FedForward::InPlant { gain, delay }),
+            (true, Some(_)) | (false, _) => Some(FedForward::InLoop { gain }),
         }
     }
 
@@ -76,14 +74,14 @@ impl FedForward {
     pub fn at_once(&self) -> Option<f64> {
         match *self {
             FedForward::InPlant { gain, delay: 0.0 } => Some(gain),
-            FedForward::InPlant { .. } | FedForward::OnItsPath { .. } => None,
+            FedForward::InPlant { .. } | FedForward::InLoop { .. } => None,
         }
     }
 
-    /// The gain where it is on the path of the motion alone.
-    pub(crate) fn on_its_path(&self) -> Option<f64> {
+    /// The gain where the loop around the plant has it.
+    pub(crate) fn in_loop(&self) -> Option<f64> {
         match *self {
-            FedForward::OnItsPath { gain } => Some(gain),
+            FedForward::InLoop { gain } => Some(gain),
             FedForward::InPlant { .. } => None,
         }
     }

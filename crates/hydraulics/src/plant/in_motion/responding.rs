@@ -28,6 +28,10 @@ impl RespondingPlant for PlantInMotion {
         self.response(Complex64::new(0.0, frequency_rad_per_s))
     }
 
+    fn rate(&self, frequency_rad_per_s: f64) -> [Complex64; 2] {
+        self.load_velocity(Complex64::new(0.0, frequency_rad_per_s))
+    }
+
     fn enclosure(&self, frequencies_rad_per_s: [f64; 2]) -> Disc {
         Jet::enclosed(Disc::of_frequencies(frequencies_rad_per_s), |s| {
             let [command, _] = self.response(s);
