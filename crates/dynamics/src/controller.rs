@@ -29,6 +29,9 @@ pub struct Timing {
     pub discretization: Discretization,
     /// Whether the prefilter acts on the reference before it is sampled, in continuous time.
     pub continuous_prefilter: bool,
+    /// What a disturbance's rate adds to the command, with its samples and its delay, per unit of that rate: K in U = G (F R - Y) + K s D.
+    /// Zero where it is not measured.
+    pub rate_feed_forward: f64,
 }
 
 impl Timing {

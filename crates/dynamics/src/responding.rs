@@ -13,6 +13,12 @@ pub trait RespondingPlant: Debug + Send + Sync {
     /// P(jw), and Pd(jw) from the disturbance, at a positive frequency in rad/s.
     fn response(&self, frequency_rad_per_s: f64) -> [Complex64; 2];
 
+    /// The rate that a controller may feed forward, at a positive frequency in rad/s: from the command, and from the disturbance, whose own
+    /// rate s it is where the command does not move it.
+    fn rate(&self, frequency_rad_per_s: f64) -> [Complex64; 2] {
+        [Complex64::new(0.0, 0.0), Complex64::new(0.0, frequency_rad_per_s)]
+    }
+
     /// A disc that holds P(jw) at every frequency between two in rad/s, the first of which may be zero; the whole plane where nothing
     /// is known. It shrinks to the response as the two come together.
     fn enclosure(&self, frequencies_rad_per_s: [f64; 2]) -> Disc;

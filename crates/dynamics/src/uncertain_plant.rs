@@ -45,6 +45,18 @@ pub struct PlantCoefficients<S> {
     pub disturbance: Option<RationalCoefficients<S>>,
     /// Dead time in the command path, s.
     pub dead_time_s: S,
+    /// The rate that a controller may feed forward, where the command moves it too (for an actuator: velocity of a load that yields);
+    /// `None` where it is that of the disturbance, s.
+    pub rate: Option<RateNumerators<S>>,
+}
+
+/// Numerators of the paths to a rate, highest power first, over the denominator of the command's path to the output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RateNumerators<S> {
+    /// From the command, before its dead time.
+    pub command: Vec<S>,
+    /// From the disturbance.
+    pub disturbance: Vec<S>,
 }
 
 /// Why an uncertain plant cannot be built.
@@ -94,7 +106,7 @@ pub enum PlantMember {
 /// let plant = UncertainPlant::record(vec![parameter("k"), parameter("a")], |p| PlantCoefficients {
 ///     command: RationalCoefficients { numerator: vec![p[0] * p[1]], denominator: vec![1.0.into(), p[1], 0.0.into()] },
 ///     disturbance: None,
-///     dead_time_s: 0.0.into(),
+///     dead_time_s: 0.0.into(), rate: None,
 /// })?;
 /// let member = plant.coefficients(&[2.0, 5.0]).ok_or("a rational plant")?;
 /// assert_eq!(member.command.denominator, vec![1.0, 5.0, 0.0]);
@@ -116,12 +128,13 @@ enum Equations {
     Responding(Arc<dyn RespondingPlants>),
 }
 
-/// Recorded coefficients: command numerator, command denominator, the same of the disturbance path, dead time.
+/// Recorded coefficients: command numerator, command denominator, the same of the disturbance path, dead time, numerators of the rate.
 #[derive(Clone, Debug, PartialEq)]
 struct RecordedPlant {
     coefficients: Expression,
     command: (usize, usize),
     disturbance: Option<(usize, usize)>,
+    rate: Option<(usize, usize)>,
 }
 
 impl PartialEq for UncertainPlant {
@@ -151,16 +164,17 @@ impl UncertainPlant {
         check_parameters(&parameters)?;
         let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
         let mut command = (0, 0);
-        let mut disturbance = None;
+        let (mut disturbance, mut rate) = (None, None);
         let coefficients = Expression::record(&names, |recorded| {
             let plant = equations(recorded);
             command = lengths(&plant.command);
             disturbance = plant.disturbance.as_ref().map(lengths);
+            rate = plant.rate.as_ref().map(|rate| (rate.command.len(), rate.disturbance.len()));
             flatten(plant)
         });
         check_lengths(command)?;
         disturbance.map_or(Ok(()), check_lengths)?;
-        let recorded = RecordedPlant { coefficients, command, disturbance };
+        let recorded = RecordedPlant { coefficients, command, disturbance, rate };
         Ok(UncertainPlant { parameters, equations: Equations::Rational(recorded) })
     }
 
@@ -193,8 +207,8 @@ impl UncertainPlant {
         }
     }
 
-    /// The recorded coefficients: command numerator, command denominator, the same of the disturbance path, dead time. `None` of a plant
-    /// without polynomials.
+    /// The recorded coefficients: command numerator, command denominator, the same of the disturbance path, dead time, numerators of the
+    /// rate. `None` of a plant without polynomials.
     pub fn expression(&self) -> Option<&Expression> {
         self.recorded().map(|recorded| &recorded.coefficients)
     }
@@ -228,7 +242,7 @@ impl UncertainPlant {
     /// let plant = UncertainPlant::record(vec![mass], |p| PlantCoefficients {
     ///     command: RationalCoefficients { numerator: vec![1.0.into()], denominator: vec![p[0] - 0.5.into(), 1.0.into()] },
     ///     disturbance: None,
-    ///     dead_time_s: 0.0.into(),
+    ///     dead_time_s: 0.0.into(), rate: None,
     /// })?;
     /// let enclosed = plant.enclosures(&[Interval::new(0.0, 2.0)]).ok_or("a rational plant")?;
     /// assert!(enclosed.command.denominator[0].has_both_signs()); // in between, a pole passes through infinity
@@ -264,7 +278,12 @@ impl RecordedPlant {
         };
         let command = rational(self.command);
         let disturbance = self.disturbance.map(&mut rational);
-        PlantCoefficients { command, disturbance, dead_time_s: flat.next().unwrap_or(S::from(0.0)) }
+        let dead_time_s = flat.next().unwrap_or(S::from(0.0));
+        let rate = self.rate.map(|(command, disturbance)| RateNumerators {
+            command: flat.by_ref().take(command).collect(),
+            disturbance: flat.by_ref().take(disturbance).collect(),
+        });
+        PlantCoefficients { command, disturbance, dead_time_s, rate }
     }
 }
 
@@ -327,6 +346,10 @@ fn flatten<S>(plant: PlantCoefficients<S>) -> Vec<S> {
         flat.extend(disturbance.denominator);
     }
     flat.push(plant.dead_time_s);
+    if let Some(rate) = plant.rate {
+        flat.extend(rate.command);
+        flat.extend(rate.disturbance);
+    }
     flat
 }
 
@@ -346,6 +369,7 @@ mod tests {
             },
             disturbance: Some(RationalCoefficients { numerator: vec![-p[0]], denominator: vec![2.0.into()] }),
             dead_time_s: 0.5.into(),
+            rate: None,
         }
     }
 

@@ -111,18 +111,16 @@ fn is_measured(project: &Project) -> bool {
     project.family.as_ref().is_some_and(|family| !family.measured.is_empty())
 }
 
-/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion. A loop in continuous time
-/// counts it, late or not; one that samples counts the path where lines move.
+/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion. Of a rig the loop counts both.
 fn feed_forward(project: &Project) -> Option<Caveat> {
     let controller = project.controller.as_ref()?;
     let declared = controller.load_velocity_feed_forward?;
     let actuator = project.actuator.as_ref();
     let yields = actuator.is_some_and(|actuator| actuator.load != Load::Prescribed);
-    let why = match (actuator, controller.sample_time) {
-        (None, _) => "no load is known of a [plant]",
-        _ if is_measured(project) => "the plants of the family were measured without it",
-        (Some(_), Some(_)) if yields || moving(project).is_none() => "the controller samples it",
-        _ => return None,
+    let why = match actuator {
+        None => "no load is known of a [plant]",
+        Some(_) if is_measured(project) => "the plants of the family were measured without it",
+        Some(_) => return None,
     };
     let what = match yields || actuator.is_none() {
         true => "this is the loop without it, and only a simulation is of the loop with it",

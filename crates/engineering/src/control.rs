@@ -88,6 +88,7 @@ pub fn timing(project: &Project) -> Timing {
             project::Discretization::Matched => Discretization::Matched,
         },
         continuous_prefilter: project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous),
+        rate_feed_forward: 0.0,
     }
 }
 

@@ -263,7 +263,8 @@ fn continuous_as_sampled(
     if timing.sample_time_s.is_none() {
         return Ok(None);
     }
-    let problem = DesignProblem { timing: Timing::default(), ..sampled.problem().clone() };
+    let at_once = Timing { rate_feed_forward: timing.rate_feed_forward, ..Timing::default() };
+    let problem = DesignProblem { timing: at_once, ..sampled.problem().clone() };
     let mut run = DesignRun::new(problem, sampled.options().clone());
     while run.step().map_err(DesignError::from)? {
         if !watch(Progress { stage: "designing without samples", share: run.progress() }) {

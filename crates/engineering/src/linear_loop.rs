@@ -8,6 +8,9 @@ use phea_dynamics::linear::{Discretization, LinearError, TimeDomain, TransferFun
 use phea_dynamics::time_response::{
     Settling, StepBaseline, StepMetrics, TimeResponseError, step_metrics, step_response, uniform_times,
 };
+use phea_dynamics::uncertain_plant::PlantCoefficients;
+use phea_hydraulics::linear::transfer_functions;
+use phea_qft::closed_loop::{Compensation, Member};
 
 /// The loop, closed, and what is read off it.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +69,28 @@ pub enum LoopError {
 /// Number of samples of a step response.
 const SAMPLES: usize = 2000;
 
+/// The loop of a plant as [`linear_loop`] closes it, with the rate that its controller feeds forward in samples.
+///
+/// # Errors
+/// Those of [`linear_loop`].
+pub fn linear_loop_of(
+    plant: &PlantCoefficients<f64>,
+    controller: &Controller,
+    sensor: &TransferFunction,
+    band_percent: f64,
+) -> Result<LinearLoop, LoopError> {
+    let timing = controller.timing;
+    if timing.sample_time_s.is_none() || timing.rate_feed_forward == 0.0 || plant.rate.is_none() {
+        return linear_loop(&transfer_functions(plant)?.command, controller, sensor, band_percent);
+    }
+    let around = Compensation::new(controller, sensor.clone())?;
+    let Member::Sampled { command, with_sensor, .. } = around.member(plant.clone())? else {
+        return Err(LinearError::DomainMismatch.into());
+    };
+    let prefilters = [around.prefilter().clone(), around.prefilter_of_step()?];
+    closed(&command, &with_sensor, around.feedback().clone(), prefilters, band_percent)
+}
+
 /// Closes the loop of plant P with a controller that sees the output through the sensor H.
 ///
 /// A continuous controller in a continuous loop; a sampled one with the plant held by a zero-order hold, the delay of the
@@ -107,6 +132,17 @@ pub fn linear_loop(
             (held(late)?, with_sensor, sampled(feedback)?, acts, of_step)
         }
     };
+    closed(&plant, &with_sensor, feedback, [prefilter, of_step], band_percent)
+}
+
+/// The loop of P and P H with G, and with F as it is and as a step meets it.
+fn closed(
+    plant: &TransferFunction,
+    with_sensor: &TransferFunction,
+    feedback: TransferFunction,
+    [prefilter, of_step]: [TransferFunction; 2],
+    band_percent: f64,
+) -> Result<LinearLoop, LoopError> {
     let open_loop = with_sensor.series(&feedback)?;
     let stability = stability(&open_loop)?;
     let step = match () {
@@ -114,7 +150,7 @@ pub fn linear_loop(
             Err("the closed loop is unstable, its response grows without bound".to_string())
         }
         () if !prefilter.is_stable() => Err("the prefilter is unstable".to_string()),
-        () => step_view(&plant, &with_sensor, &feedback, &of_step, band_percent)
+        () => step_view(plant, with_sensor, &feedback, &of_step, band_percent)
             .map_err(|error| error.to_string()),
     };
     Ok(LinearLoop {

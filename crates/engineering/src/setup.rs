@@ -50,14 +50,18 @@ impl<'a> Setup<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn new(project: &'a Project) -> Result<Setup<'a>, ControlError> {
+        let rig = Setup::rig_of(project);
+        let fed = rig.as_ref().ok().and_then(|rig| rig.fed?.in_loop());
+        let timing = Timing { rate_feed_forward: fed.unwrap_or(0.0), ..control::timing(project) };
+        let controller = control::controller(project)?;
         Ok(Setup {
             project,
-            controller: control::controller(project)?,
+            controller: controller.map(|given| Controller { timing, ..given }),
             prefilter: control::prefilter(project)?,
             sensor: control::sensor(project)?,
-            timing: control::timing(project),
+            timing,
             quantisation: control::quantisation(project)?,
-            rig: Setup::rig_of(project),
+            rig,
         })
     }
 

@@ -172,6 +172,7 @@ pub fn linear_model_coefficients<S: Scalar>(parameters: &LinearParameters<S>) ->
         command: RationalCoefficients { numerator: vec![c0], denominator: denominator.clone() },
         disturbance: Some(RationalCoefficients { numerator: load, denominator }),
         dead_time_s: S::from(0.0),
+        rate: None,
     }
 }
 

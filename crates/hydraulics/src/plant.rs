@@ -14,11 +14,11 @@
 mod in_motion;
 mod supply;
 
-pub use in_motion::{BehindLines, Lateness, PlantInMotion};
+pub use in_motion::{BehindLines, PlantInMotion};
 pub use supply::YieldingSupply;
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, RationalCoefficients};
 
 use supply::Coupled;
 
@@ -248,6 +248,7 @@ impl<S: Scalar> Plant<S> {
     /// Q = (M s^2 + f_v s) D + N_v s,     Z = m s^2 + c s + k,     V = s^2 + 2 xi w s + w^2
     /// prescribed    F_e = K_S (w^2 N_u U_C - V Q X_0)/(V (Q + K_S D))
     /// yielding      F_e = K_S (Z w^2 N_u U_C - (c s + k) V Q X_0)/(V (Q (Z + K_S) + K_S Z D))
+    ///               v_L = s (K_S w^2 N_u U_C + (c s + k) V (Q + K_S D) X_0)/(V (Q (Z + K_S) + K_S Z D))
     /// ```
     ///
     /// The velocity of the load that is fed forward is a second path of a prescribed motion, and a second loop of a load that yields:
@@ -285,15 +286,21 @@ impl<S: Scalar> Plant<S> {
         let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], &own), &displaced));
         let by_load = scaled(-sensor, &product(&spool, &moved));
         let by_load = fed.as_ref().map_or(by_load.clone(), |fed| sum(&by_load, fed));
-        let (driven, disturbance, denominator) = match self.load {
-            LinearLoad::Prescribed => (driven, by_load, product(&spool, &sum(&moved, &scaled(sensor, &own)))),
+        let held = product(&spool, &sum(&moved, &scaled(sensor, &own)));
+        let (driven, disturbance, denominator, rate) = match self.load {
+            LinearLoad::Prescribed => (driven, by_load, held, None),
             LinearLoad::Yielding { mass, damping, stiffness } => {
                 let load = [mass, damping, stiffness];
                 let before_sensor = product(&moved, &[mass, damping, stiffness + sensor]);
                 let sensed = sum(&before_sensor, &scaled(sensor, &product(&load, &own)));
                 let alone = product(&spool, &sensed);
                 let denominator = fed.map_or(alone.clone(), |fed| sum(&alone, &scaled(S::from(-1.0), &fed)));
-                (product(&load, &driven), product(&by_load, &[damping, stiffness]), denominator)
+                let rate = RateNumerators {
+                    command: shifted(&scaled(sensor * square, &driven)),
+                    disturbance: shifted(&product(&held, &[damping, stiffness])),
+                };
+                let disturbance = product(&by_load, &[damping, stiffness]);
+                (product(&load, &driven), disturbance, denominator, Some(rate))
             }
         };
         let command = scaled(sensor * square, &driven);
@@ -301,6 +308,7 @@ impl<S: Scalar> Plant<S> {
             command: RationalCoefficients { numerator: command, denominator: denominator.clone() },
             disturbance: Some(RationalCoefficients { numerator: disturbance, denominator }),
             dead_time_s: S::from(0.0),
+            rate,
         }
     }
 }

@@ -9,6 +9,7 @@ use phea_dynamics::portable::{exp_complex, pow};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::simulation::small_signal;
+use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
@@ -17,7 +18,7 @@ use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, Member, Segments};
 use phea_hydraulics::machine::{Chambers, LoadModel, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
-use phea_hydraulics::plant::{BehindLines, Lateness, LinearLoad, Plant, PlantInMotion};
+use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
 use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -198,22 +199,65 @@ fn it_is_the_machine_for_small_motions() {
     }
 }
 
-/// The machine's own derivatives, its load's velocity on the command by algebra: K_x e^(-s tau), and behind a hold.
+/// The velocity of the load is that of the machine, by the command and by the ground; with lumped lines it is the quotient over the
+/// plant's denominator, and fed forward at once it is fed back too.
 #[test]
-fn a_late_feed_forward_is_the_machine_with_a_late_command() {
-    let mut prescribed = 0;
-    for number in 0..36 {
+fn the_velocity_of_the_load_is_that_of_the_machine() {
+    let mut yielding = 0;
+    for number in 0..108 {
         let rig = drawn(number);
-        let hold = if rig.plant.load == LinearLoad::Prescribed { 2e-3 } else { 0.0 };
-        prescribed += usize::from(hold > 0.0);
-        let (gain, delay) = (25.0, 1e-4 * pow(100.0, number as f64 / 35.0));
-        let moving = PlantInMotion::new(&rig.plant, &rig.behind).fed_forward(Some(gain));
-        let moving = moving.late(Lateness { delay, hold });
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind);
+        let gain = 12.0;
+        let fed = Plant { load_velocity_feed_forward: Some(gain), ..rig.plant };
+        let [own, closed] =
+            [rig.plant, fed].map(|plant| (plant.coefficients(), PlantInMotion::lumped(&plant)));
         for step in 0..14 {
             let frequency = 0.01 * pow(1e6, f64::from(step) / 13.0);
             let s = Complex64::new(0.0, frequency);
-            let held = if hold > 0.0 { (1.0 - exp_complex(-s * hold)) / (s * hold) } else { Complex64::ONE };
-            let gain = gain * exp_complex(-s * delay) * held;
+            let apart = |one: Complex64, other: Complex64| (one / other - 1.0).norm_sqr().sqrt();
+            let [[_, command], [_, ground]] = rig.force_and_velocity(frequency);
+            let told = moving.load_velocity(s);
+            if rig.plant.load == LinearLoad::Prescribed {
+                assert_eq!((told, own.0.rate.clone()), ([Complex64::ZERO, s], None));
+                continue;
+            }
+            yielding += 1;
+            for (told, own) in told.into_iter().zip([command, ground]) {
+                assert!(apart(told, own) < 1e-7, "rig {number} at {frequency} rad/s: {told} {own}");
+            }
+            let [alone, back] = [&own, &closed].map(|(coefficients, lumped)| {
+                let rate = coefficients.rate.as_ref().unwrap();
+                let found = lumped.load_velocity(s);
+                for (numerator, found) in [&rate.command, &rate.disturbance].into_iter().zip(found) {
+                    let denominator = coefficients.command.denominator.clone();
+                    let path = RationalCoefficients { numerator: numerator.clone(), denominator };
+                    assert!(apart(path.at_frequency(frequency), found) < 1e-9, "rig {number} at {frequency}");
+                }
+                found
+            });
+            for (back, alone_of_path) in back.into_iter().zip(alone) {
+                assert!(
+                    apart(back, alone_of_path / (1.0 - gain * alone[0])) < 1e-7,
+                    "rig {number} at {frequency}"
+                );
+            }
+        }
+    }
+    assert!(yielding > 500, "{yielding}");
+}
+
+/// The machine's own derivatives, its load's velocity on the command by algebra: K_x e^(-s tau).
+#[test]
+fn a_late_feed_forward_is_the_machine_with_a_late_command() {
+    for number in 0..36 {
+        let rig = drawn(number);
+        let (gain, delay) = (25.0, 1e-4 * pow(100.0, number as f64 / 35.0));
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind).fed_forward(Some(gain));
+        let moving = moving.late(delay);
+        for step in 0..14 {
+            let frequency = 0.01 * pow(1e6, f64::from(step) / 13.0);
+            let s = Complex64::new(0.0, frequency);
+            let gain = gain * exp_complex(-s * delay);
             let [[force, velocity], [ground_force, ground_velocity]] = rig.force_and_velocity(frequency);
             let back = gain * force / (1.0 - gain * velocity);
             let expected = [back / gain, ground_force + back * ground_velocity];
@@ -224,7 +268,6 @@ fn a_late_feed_forward_is_the_machine_with_a_late_command() {
             }
         }
     }
-    assert_eq!(prescribed, 12);
 }
 
 /// Discs hold the response of a late plant between two frequencies, and shrink.
@@ -233,7 +276,7 @@ fn a_late_feed_forward_is_enclosed() {
     for number in [1, 4, 8, 14] {
         let rig = drawn(number);
         let plant = PlantInMotion::lumped(&rig.plant).fed_forward(Some(10.0));
-        let late = plant.late(Lateness { delay: 1e-3, hold: 0.0 });
+        let late = plant.late(1e-3);
         for (start, width) in [(3.0, 1e-3), (80.0, 1e-4), (2000.0, 1e-5)] {
             let ends = [start, start * (1.0 + width)];
             let held: Disc = late.enclosure(ends);
@@ -268,7 +311,7 @@ fn poles_of_a_late_plant_are_counted() {
             let characteristic = alone.product(&quotient(1.0)).sum(&back.product(&quotient(-1.0)));
             let growing = characteristic.roots().unwrap().iter().filter(|root| root.re > 0.0).count();
             let late = PlantInMotion::lumped(&plant).fed_forward(Some(gain));
-            let late = late.late(Lateness { delay, hold: 0.0 });
+            let late = late.late(delay);
             assert_eq!(late.unstable_poles(), Some(growing), "{gain} V s/m, {delay} s");
             seen[(growing / 2).min(2)] += 1;
         }

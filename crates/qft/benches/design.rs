@@ -153,6 +153,7 @@ fn servo() -> Result<DesignProblem, Failure> {
         },
         disturbance: None,
         dead_time_s: 0.0.into(),
+        rate: None,
     })?;
     let along = |parameter| Coordinate {
         parameters: vec![parameter],

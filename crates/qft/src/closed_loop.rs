@@ -1,6 +1,8 @@
 //! The loop around a plant: controller, prefilter, sensor, delay and sampling, and what they make of one member.
 
+mod fed_forward;
 mod images;
+mod member;
 
 use std::sync::Arc;
 
@@ -14,7 +16,10 @@ use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients, UncertainPlant};
 
 use crate::family::MeasuredPlant;
-use images::Images;
+pub use fed_forward::FedForward;
+pub(crate) use fed_forward::closed;
+use fed_forward::{FedBack, rate_path};
+use member::{continuous, load_motion};
 
 /// What is the same for every plant: G, F, H, the delay of the loop, and when it samples.
 ///
@@ -22,6 +27,13 @@ use images::Images;
 /// continuous:  L = P G H e^(-s T_d),  T = P G e^(-s T_d)/(1 + L)                                   thesis 3.1, 3.2
 /// sampled:     L = Z{(1 - e^(-sT))/s P H e^(-s T_d)} G(z), at z = e^(jwT), up to pi/T
 /// ```
+///
+/// ```text
+/// P/(1 - K P_v)        the plant that the loop sees where a rate v = P_v u + V_d d is fed forward that the command moves too
+/// Pd + K V_d P         the path of its disturbance, P with its hold and delay; V_d = s where v is the rate of d itself
+/// ```
+///
+/// The samples of the output follow this exactly for a sine of the disturbance: P and P_v are those of the samples.
 ///
 /// The prefilter of a sampled loop is F(z), or F(s) where it acts on the reference before this is sampled. Of a sine of the reference
 /// below pi/T the samples behind F(s) are those of F(jw) times the sine: F T is taken with F(jw), and holds for references without parts
@@ -33,6 +45,7 @@ pub struct Compensation {
     sensor: TransferFunction,
     sample_time_s: Option<f64>,
     delay_s: f64,
+    rate_feed_forward: f64,
 }
 
 /// G, F at one frequency.
@@ -53,6 +66,8 @@ pub enum Member {
         plant: PlantCoefficients<f64>,
         /// H
         sensor: TransferFunction,
+        /// K V_d
+        fed_forward: FedForward,
     },
     /// A plant held by a zero-order hold and sampled.
     Sampled {
@@ -62,6 +77,8 @@ pub enum Member {
         with_sensor: TransferFunction,
         /// Pd, continuous: the motion acts on the plant itself.
         disturbance: Option<RationalCoefficients<f64>>,
+        /// K V_d; what it feeds back is within P.
+        fed_forward: FedForward,
     },
     /// A plant without polynomials, with the delay of the loop; sampling adds the lag of its hold.
     Responding {
@@ -73,6 +90,8 @@ pub enum Member {
         delay_s: f64,
         /// For the magnitude of the hold.
         sample_time_s: Option<f64>,
+        /// K
+        rate_feed_forward: f64,
     },
     /// A measured plant, with the delay of the loop; sampling adds the lag of its hold.
     Measured {
@@ -92,7 +111,7 @@ pub enum Member {
 pub struct MemberResponse {
     /// P
     pub plant: Complex64,
-    /// Pd; zero where the plant has no such path.
+    /// Pd with what is fed forward of the disturbance's rate; zero where the plant has no such path.
     pub load_motion: Complex64,
     /// H
     pub sensor: Complex64,
@@ -120,7 +139,7 @@ impl Compensation {
     /// let controller = Controller { feedback, timing, ..Controller::default() };
     /// let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0))?;
     /// let command = RationalCoefficients { numerator: vec![1e5], denominator: vec![1.0, 0.0] }; // 1e5/s
-    /// let member = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 })?;
+    /// let member = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None })?;
     /// let plant = member.response(100.0).unwrap().plant;
     /// let expected = Complex64::new(-0.1_f64.sin(), -0.1_f64.cos()) * 1000.0; // -90 degrees and 0.1 rad
     /// assert!((plant - expected).norm_sqr() < 1e-20);
@@ -140,6 +159,7 @@ impl Compensation {
             sensor,
             sample_time_s: timing.sample_time_s,
             delay_s: timing.delay_s,
+            rate_feed_forward: timing.rate_feed_forward,
         })
     }
 
@@ -197,6 +217,17 @@ impl Compensation {
         self.delay_s
     }
 
+    /// K, what the rate of a disturbance adds to the command.
+    pub fn rate_feed_forward(&self) -> f64 {
+        self.rate_feed_forward
+    }
+
+    /// The same loop with no rate fed forward.
+    #[must_use]
+    pub fn without_feed_forward(&self) -> Compensation {
+        Compensation { rate_feed_forward: 0.0, ..self.clone() }
+    }
+
     /// The same loop with another delay.
     pub fn with_delay(&self, delay_s: f64) -> Compensation {
         Compensation { delay_s, ..self.clone() }
@@ -235,9 +266,13 @@ impl Compensation {
     pub fn member(&self, mut plant: PlantCoefficients<f64>) -> Result<Member, LinearError> {
         check_dead_time(plant.dead_time_s)?;
         plant.dead_time_s += self.delay_s;
+        let gain = self.rate_feed_forward;
+        let fed_forward = FedForward::of(gain, &plant);
         let Some(sample_time_s) = self.sample_time_s else {
-            return Ok(Member::Continuous { plant, sensor: self.sensor.clone() });
+            let plant = closed(gain, plant)?;
+            return Ok(Member::Continuous { plant, sensor: self.sensor.clone(), fed_forward });
         };
+        let rate = rate_path(gain, &plant)?;
         let rational = TransferFunction::from_polynomials(
             &Polynomial::new(plant.command.numerator),
             &Polynomial::new(plant.command.denominator),
@@ -247,13 +282,18 @@ impl Compensation {
             let dead_time_s = function.dead_time_s() + plant.dead_time_s;
             function.with_dead_time(dead_time_s)?.discretized(sample_time_s, Discretization::ZeroOrderHold)
         };
-        let command = held(rational.clone())?;
+        let back = rate.map(|rate| FedBack::new(gain, &held(rate)?)).transpose()?;
+        let within = |function| match &back {
+            Some(back) => back.around(&held(function)?),
+            None => held(function),
+        };
+        let command = within(rational.clone())?;
         let with_sensor = if self.sensor == TransferFunction::gain_only(1.0) {
             command.clone()
         } else {
-            held(rational.series(&self.sensor)?)?
+            within(rational.series(&self.sensor)?)?
         };
-        Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance })
+        Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance, fed_forward })
     }
 
     /// The plant of a family with these parameter values within this loop.
@@ -292,6 +332,7 @@ impl Compensation {
             sensor: self.sensor.clone(),
             delay_s: self.delay_s + self.sample_time_s.unwrap_or(0.0) / 2.0,
             sample_time_s: self.sample_time_s,
+            rate_feed_forward: self.rate_feed_forward,
         }
     }
 
@@ -312,7 +353,7 @@ impl Compensation {
     /// let controller = Controller { timing, ..Controller::default() };
     /// let compensation = Compensation::new(&controller, TransferFunction::gain_only(2.0))?;
     /// let command = RationalCoefficients { numerator: vec![3.0], denominator: vec![1.0, 0.4, 9.0] };
-    /// let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.02 };
+    /// let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.02, rate: None };
     /// let response = compensation.plant_response(plant.clone(), 2.0)?;
     /// let member = compensation.member(plant)?.response(2.0).unwrap();
     /// assert!((response.plant - member.plant).norm_sqr() < 1e-24 && response.sensor.re == 2.0);
@@ -321,14 +362,18 @@ impl Compensation {
     /// ```
     pub fn plant_response(
         &self,
-        plant: PlantCoefficients<f64>,
+        mut plant: PlantCoefficients<f64>,
         frequency_rad_per_s: f64,
     ) -> Result<MemberResponse, LinearError> {
         check_dead_time(plant.dead_time_s)?;
-        let dead_time_s = plant.dead_time_s + self.delay_s;
+        plant.dead_time_s += self.delay_s;
+        let (gain, dead_time_s) = (self.rate_feed_forward, plant.dead_time_s);
+        let fed = FedForward::of(gain, &plant).at(frequency_rad_per_s);
         let Some(sample_time_s) = self.sample_time_s else {
-            return Ok(continuous(&plant, dead_time_s, &self.sensor, frequency_rad_per_s));
+            let plant = closed(gain, plant)?;
+            return Ok(continuous(&plant, &self.sensor, frequency_rad_per_s).fed(fed));
         };
+        let rate = rate_path(gain, &plant)?;
         let load_motion = load_motion(plant.disturbance.as_ref(), frequency_rad_per_s);
         let rational = TransferFunction::from_polynomials(
             &Polynomial::new(plant.command.numerator),
@@ -348,7 +393,8 @@ impl Compensation {
         let with_sensor = if is_gain { None } else { Some(held(rational.series(&self.sensor)?)?) };
         let plant = held(rational)?;
         let sensor = with_sensor.map_or(Complex64::new(self.sensor.gain(), 0.0), |response| response / plant);
-        Ok(MemberResponse { plant, load_motion, sensor })
+        let back = rate.map(held).transpose()?.map_or(Complex64::ZERO, |rate| gain * rate);
+        Ok(MemberResponse { plant: plant / (1.0 - back), load_motion, sensor }.fed(fed))
     }
 
     /// A measured plant within this loop.
@@ -358,37 +404,6 @@ impl Compensation {
             sensor: self.sensor.clone(),
             delay_s: self.delay_s + self.sample_time_s.unwrap_or(0.0) / 2.0,
             sample_time_s: self.sample_time_s,
-        }
-    }
-}
-
-impl Member {
-    /// P, Pd and H at a frequency; `None` where a measurement does not reach.
-    ///
-    /// Sampling folds the response of a measured plant beyond pi/T back: its images at w + 2 pi k/T are summed as far as the measurement
-    /// reaches. Where what lies beyond it could still count for a hundredth (were it as large as at the end of the measurement), the
-    /// response is not known.
-    pub fn response(&self, frequency_rad_per_s: f64) -> Option<MemberResponse> {
-        match self {
-            Member::Continuous { plant, sensor } => {
-                Some(continuous(plant, plant.dead_time_s, sensor, frequency_rad_per_s))
-            }
-            Member::Sampled { command, with_sensor, disturbance } => {
-                let plant = command.at_frequency(frequency_rad_per_s);
-                Some(MemberResponse {
-                    plant,
-                    load_motion: load_motion(disturbance.as_ref(), frequency_rad_per_s),
-                    sensor: with_sensor.at_frequency(frequency_rad_per_s) / plant,
-                })
-            }
-            Member::Responding { plant, sensor, delay_s, sample_time_s } => {
-                let images = Images { sensor, delay_s: *delay_s, sample_time_s: *sample_time_s };
-                images.of_model(plant.as_ref(), frequency_rad_per_s)
-            }
-            Member::Measured { plant, sensor, delay_s, sample_time_s } => {
-                let images = Images { sensor, delay_s: *delay_s, sample_time_s: *sample_time_s };
-                images.of_measurement(plant, frequency_rad_per_s)
-            }
         }
     }
 }
@@ -404,23 +419,6 @@ fn deployed(function: TransferFunction, timing: &Timing) -> Result<TransferFunct
         (Some(sample_time_s), domain) if domain == TimeDomain::Discrete { sample_time_s } => Ok(function),
         (Some(_), TimeDomain::Discrete { .. }) => Err(LinearError::DomainMismatch),
     }
-}
-
-fn continuous(
-    plant: &PlantCoefficients<f64>,
-    dead_time_s: f64,
-    sensor: &TransferFunction,
-    frequency_rad_per_s: f64,
-) -> MemberResponse {
-    MemberResponse {
-        plant: plant.command.at_frequency(frequency_rad_per_s) * turned(frequency_rad_per_s, dead_time_s),
-        load_motion: load_motion(plant.disturbance.as_ref(), frequency_rad_per_s),
-        sensor: sensor.at_frequency(frequency_rad_per_s),
-    }
-}
-
-fn load_motion(path: Option<&RationalCoefficients<f64>>, frequency_rad_per_s: f64) -> Complex64 {
-    path.map_or(Complex64::new(0.0, 0.0), |path| path.at_frequency(frequency_rad_per_s))
 }
 
 /// A plant that answers before it is asked is none.

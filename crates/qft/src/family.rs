@@ -11,7 +11,7 @@ mod tabulated;
 pub use coordinate::{Coordinate, Spacing};
 pub use measured::{MeasuredFamily, MeasuredPlant, MeasurementError};
 pub use member::{grid, random, vertices};
-pub(crate) use tabulated::COARSE;
+pub(crate) use tabulated::{COARSE, points, table};
 pub use tabulated::{FINE, tabulated};
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
@@ -86,7 +86,7 @@ pub const MEMBERS_MAXIMUM: usize = 2_000_000;
 /// let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
 ///     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
 ///     disturbance: None,
-///     dead_time_s: 0.0.into(),
+///     dead_time_s: 0.0.into(), rate: None,
 /// })?;
 /// let coordinate = Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Logarithmic], points: 3 };
 /// let members = grid(&plant, &[coordinate.clone()])?;

@@ -39,6 +39,7 @@ use crate::verification::rounded;
 use characteristic::Characteristic;
 pub(crate) use characteristic::FeedbackPath;
 use responding::Count;
+pub(crate) use responding::own_poles;
 
 /// Stability of one loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -196,7 +197,7 @@ pub struct MemberStability {
 /// A rational loop must be stable by its poles and by the turns of its characteristic function alike, or it is not
 /// resolved. In a sampled loop the critical delay is phase over frequency at the crossovers of the sampled L: exact where it is a whole
 /// number of samples; between, a delay also changes what hold and sampler make of the plant. [`StabilityAudit`] samples the worst
-/// plants anew.
+/// plants anew, but where a rate is fed back within the plant: of such a plant it is the delay of the controller's own path.
 ///
 /// # Example
 /// k e^(-s)/s is stable for 0 < k < pi/2, and bears pi/(2 k) of dead time:
@@ -210,7 +211,7 @@ pub struct MemberStability {
 /// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
 /// let found = |gain: f64| {
 ///     let command = RationalCoefficients { numerator: vec![gain], denominator: vec![1.0, 0.0] };
-///     let member = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 1.0 })?;
+///     let member = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 1.0, rate: None })?;
 ///     Ok::<_, phea_dynamics::linear::LinearError>(member_stability(&member, &compensation))
 /// };
 /// let stable = found(1.0)?;

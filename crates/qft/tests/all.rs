@@ -8,6 +8,7 @@ mod closed_loop;
 mod design;
 mod design_diagnosis;
 mod family;
+mod fed_back;
 mod kernels;
 mod manual_shaping;
 mod prefilter;

@@ -22,6 +22,7 @@ fn family(extent: Extent) -> Family {
         },
         disturbance: None,
         dead_time_s: 0.0.into(),
+        rate: None,
     });
     let plant = plant.unwrap();
     let along =

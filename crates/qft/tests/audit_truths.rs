@@ -43,7 +43,7 @@ fn rational<'t>(
     dead_time_s: f64,
 ) -> PlantCoefficients<Recorded<'t>> {
     let command = RationalCoefficients { numerator, denominator };
-    PlantCoefficients { command, disturbance: None, dead_time_s: dead_time_s.into() }
+    PlantCoefficients { command, disturbance: None, dead_time_s: dead_time_s.into(), rate: None }
 }
 
 /// A plant of numbers alone.

@@ -21,7 +21,7 @@ fn rational(numerator: &[f64], denominator: &[f64]) -> TransferFunction {
 
 fn plant(numerator: &[f64], denominator: &[f64], dead_time_s: f64) -> PlantCoefficients<f64> {
     let command = RationalCoefficients { numerator: numerator.to_vec(), denominator: denominator.to_vec() };
-    PlantCoefficients { command, disturbance: None, dead_time_s }
+    PlantCoefficients { command, disturbance: None, dead_time_s, rate: None }
 }
 
 fn timing(sample_time_s: Option<f64>, delay_s: f64) -> Timing {
@@ -146,6 +146,38 @@ fn a_continuous_loop_carries_delay_and_sensor() {
         close(found.plant, 30.0 / (s + 30.0) * portable::exp_complex(-s * 0.004));
         close(found.sensor, 80.0 / (s + 80.0) * portable::exp_complex(-s * 0.004));
         close(found.load_motion, -3.0 * s / (s + 30.0));
+    }
+}
+
+/// K in U = G (F R - Y) + K s D is a path beside Pd: Pd + K jw P, with P late in a continuous loop, and that of the samples in a sampled
+/// one, a/(s + a) being (1 - r + (r - e)/z)/(z (z - e)) behind a sample and a share of one. The loop itself stays.
+#[test]
+fn a_rate_that_is_fed_forward_is_a_path_of_the_disturbance() {
+    let (a, gain, share) = (30.0, 0.7, 0.0037);
+    let disturbance = Some(RationalCoefficients { numerator: vec![-3.0, 0.0], denominator: vec![1.0, 5.0] });
+    let plant = PlantCoefficients { disturbance, ..plant(&[a], &[1.0, a], 0.0) };
+    let sensor = rational(&[80.0], &[1.0, 80.0]);
+    let (e, r) = (portable::exp(-a * SAMPLE_TIME), portable::exp(-a * (SAMPLE_TIME - share)));
+    for sample_time_s in [None, Some(SAMPLE_TIME)] {
+        let own = timing(sample_time_s, SAMPLE_TIME + share);
+        let [fed, own] = [Timing { rate_feed_forward: gain, ..own }, own]
+            .map(|timing| compensation(timing, sensor.clone()));
+        let member = fed.member(plant.clone()).unwrap();
+        for frequency in FREQUENCIES {
+            let (s, z) = (Complex64::new(0.0, frequency), z(frequency));
+            let late = match sample_time_s {
+                None => a / (s + a) * portable::exp_complex(-s * (SAMPLE_TIME + share)),
+                Some(_) => (1.0 - r + (r - e) / z) / (z - e) / z,
+            };
+            let without = own.plant_response(plant.clone(), frequency).unwrap();
+            for found in
+                [member.response(frequency).unwrap(), fed.plant_response(plant.clone(), frequency).unwrap()]
+            {
+                close(found.load_motion, -3.0 * s / (s + 5.0) + gain * s * late);
+                close(found.plant, without.plant);
+                close(found.sensor, without.sensor);
+            }
+        }
     }
 }
 

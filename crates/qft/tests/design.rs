@@ -5,6 +5,7 @@
 
 mod beside;
 mod contract;
+mod fed_forward;
 mod problems;
 mod published;
 mod relaxed;

@@ -33,6 +33,7 @@ fn plant() -> UncertainPlant {
         },
         disturbance: None,
         dead_time_s: 0.0.into(),
+        rate: None,
     })
     .unwrap()
 }

@@ -219,6 +219,7 @@ fn box_family() -> Family {
         command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), p[1]] },
         disturbance: None,
         dead_time_s: 0.0.into(),
+        rate: None,
     })
     .unwrap();
     let along = |index| Coordinate {

@@ -24,7 +24,9 @@ fn around(controller: &Controller) -> Compensation {
 
 fn member(compensation: &Compensation, numerator: &[f64], denominator: &[f64]) -> Member {
     let command = RationalCoefficients { numerator: numerator.to_vec(), denominator: denominator.to_vec() };
-    compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 }).unwrap()
+    compensation
+        .member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None })
+        .unwrap()
 }
 
 fn converters(command: f64, measurement: f64) -> Quantisation {

@@ -37,7 +37,7 @@ impl Hidden {
         let denominator = vec![1.0, middle + slow, square + middle * slow, square * slow];
         let command = RationalCoefficients { numerator: vec![gain], denominator: denominator.clone() };
         let disturbance = Some(RationalCoefficients { numerator: vec![-2.0, 0.0], denominator });
-        PlantCoefficients { command, disturbance, dead_time_s }
+        PlantCoefficients { command, disturbance, dead_time_s, rate: None }
     }
 
     fn at<A: Analytic>(&self, s: A) -> [A; 2] {
@@ -205,6 +205,7 @@ fn a_box_is_searched_as_that_of_the_polynomials() {
                 denominator,
             }),
             dead_time_s: 0.01.into(),
+            rate: None,
         }
     });
     let without = UncertainPlant::responding(parameters, Arc::new(HiddenBox));

@@ -24,7 +24,7 @@ fn around(feedback: TransferFunction, sample_time_s: Option<f64>, delay_s: f64) 
 
 fn plant(numerator: &[f64], denominator: &[f64], dead_time_s: f64) -> PlantCoefficients<f64> {
     let command = RationalCoefficients { numerator: numerator.to_vec(), denominator: denominator.to_vec() };
-    PlantCoefficients { command, disturbance: None, dead_time_s }
+    PlantCoefficients { command, disturbance: None, dead_time_s, rate: None }
 }
 
 /// A gain around one plant, continuous or sampled.

@@ -28,7 +28,7 @@ fn found_in(
     delay: f64,
 ) -> MemberStability {
     let command = RationalCoefficients { numerator: numerator.to_vec(), denominator: denominator.to_vec() };
-    let plant = PlantCoefficients { command, disturbance: None, dead_time_s: delay };
+    let plant = PlantCoefficients { command, disturbance: None, dead_time_s: delay, rate: None };
     member_stability(&compensation.member(plant).unwrap(), compensation)
 }
 
@@ -151,7 +151,8 @@ fn a_dead_time_that_cannot_be_is_refused() {
     let around = loop_of(function(&[1.0], &[1.0]), function(&[1.0], &[1.0]));
     for dead_time_s in [-1.0, f64::NAN, f64::INFINITY] {
         let command = RationalCoefficients { numerator: vec![1.0], denominator: vec![1.0, 1.0] };
-        let refused = around.member(PlantCoefficients { command, disturbance: None, dead_time_s });
+        let refused =
+            around.member(PlantCoefficients { command, disturbance: None, dead_time_s, rate: None });
         assert!(matches!(refused, Err(LinearError::DeadTime { .. })), "{refused:?}");
     }
 }

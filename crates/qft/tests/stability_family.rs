@@ -25,6 +25,7 @@ fn dip(least: f64, extent: Extent) -> Family {
             },
             disturbance: None,
             dead_time_s: 0.0.into(),
+            rate: None,
         }
     });
     let coordinate =
@@ -113,6 +114,7 @@ fn an_uncertain_dead_time_counts() {
         command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
         disturbance: None,
         dead_time_s: p[1],
+        rate: None,
     });
     let coordinate = |index| Coordinate {
         parameters: vec![index],

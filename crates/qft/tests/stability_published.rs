@@ -50,6 +50,7 @@ fn without_load<S>(numerator: Vec<S>, denominator: Vec<S>, dead_time_s: S) -> Pl
         command: RationalCoefficients { numerator, denominator },
         disturbance: None,
         dead_time_s,
+        rate: None,
     }
 }
 

@@ -24,7 +24,7 @@ fn found(elements: Vec<Element>, plant: (&[f64], &[f64]), delay_s: f64) -> Membe
     let controller = Controller { feedback, timing, ..Controller::default() };
     let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
     let command = RationalCoefficients { numerator: plant.0.to_vec(), denominator: plant.1.to_vec() };
-    let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 };
+    let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None };
     member_stability(&compensation.member(plant).unwrap(), &compensation)
 }
 
@@ -78,6 +78,7 @@ fn a_fraction_of_a_sample_is_borne_exactly() {
         command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
         disturbance: None,
         dead_time_s: 0.0.into(),
+        rate: None,
     });
     let plant = plant.unwrap();
     let coordinate =
@@ -135,7 +136,7 @@ fn slow_poles_keep_their_digits() {
 fn a_plant_of_another_time_is_not_resolved() {
     let continuous = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap();
     let command = RationalCoefficients { numerator: vec![1.0], denominator: vec![1.0, 1.0] };
-    let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 };
+    let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None };
     let timing = Timing { sample_time_s: Some(SAMPLE), ..Timing::default() };
     let controller = Controller { timing, ..Controller::default() };
     let sampled = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();

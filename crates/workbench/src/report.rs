@@ -35,7 +35,6 @@ pub use chapter::Chapter;
 pub use opening::{Decided, Decision};
 pub use typeset::{prose, typeset};
 
-use phea_hydraulics::linear::transfer_functions;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use crate::answer::{OutputFile, significant};
@@ -43,7 +42,7 @@ use crate::audit::{ProjectAudit, verdict_words};
 use crate::command::{CommandError, Watch};
 use crate::derived::derive;
 use crate::figure::{Figure, FigureError};
-use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop, settling_words};
+use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
 use crate::linearize::{Linearization, linearize};
 use crate::project::{Actuator, Loaded, Project, Signal};
 use crate::quantity::DisplayUnit;
@@ -223,8 +222,9 @@ fn rig_part(
     let derived = derive(project, rig);
     let sizing = problem.map(|problem| size(problem, Question::Both));
     let band = project.scenarios.first().map_or(SETTLING_BAND, |scenario| scenario.settling_band_percent);
-    let seen = transfer_functions(&rig.in_loop().plant.coefficients())?.command;
-    let given = setup.controller.as_ref().map(|given| linear_loop(&seen, given, sensor, band)).transpose()?;
+    let seen = rig.in_loop().plant.coefficients();
+    let given =
+        setup.controller.as_ref().map(|given| linear_loop_of(&seen, given, sensor, band)).transpose()?;
 
     let mut chapters = vec![rig::chapter(project, actuator, rig)];
     if let (Some(problem), Some(sizing)) = (problem, &sizing) {

@@ -31,6 +31,7 @@ mod report_typeset;
 mod rest;
 mod scenarios;
 mod sensor;
+mod shaken_feed_forward;
 mod shaping;
 mod simulate;
 mod simulation_check;

@@ -125,6 +125,23 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_linear_loop() {
     }
 }
 
+/// The same in samples: the fundamental of the force between them is that of the command with what is fed back within it.
+#[test]
+fn a_load_velocity_that_is_sampled_is_in_the_linear_loop() {
+    let sprung = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"500 N.s/m\" }";
+    let waves =
+        "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
+    let gain = "controller.numerator=0.0001*s + 0.0008";
+    let [sampled, fed] = ["controller.sample_time=2 ms", "controller.load_velocity_feed_forward.gain=20"];
+    for lines in [&[][..], &["controller.delay=1.5 ms"], &[waves, gain]] {
+        let settings = [&[sprung, sampled, fed][..], lines].concat();
+        let closed = shaken(&smooth(&settings), &[5.0, 40.0, 150.0], [1e-3, 1.0]).closed_loop.unwrap();
+        for point in &closed.points {
+            assert!(apart(point.machine, point.linear_plant) < 5e-3, "{settings:?} {point:?}");
+        }
+    }
+}
+
 /// A pump that gives little more than what leaks, an override of 40 bar and a load that the piston presses: the force sees the supply's
 /// pressure move, and the linear plant has it.
 #[test]

@@ -116,7 +116,7 @@ fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalMargins>, Li
 /// P H of the nominal plant with the delay of the loop, in z where it samples; `None` for one without polynomials.
 fn nominal_plant(problem: &RobustProblem) -> Result<Option<TransferFunction>, LinearError> {
     Ok(match problem.nominal()? {
-        Some(Member::Continuous { plant, sensor }) => {
+        Some(Member::Continuous { plant, sensor, .. }) => {
             let command = TransferFunction::from_polynomials(
                 &Polynomial::new(plant.command.numerator),
                 &Polynomial::new(plant.command.denominator),

@@ -22,6 +22,7 @@ pub(super) fn uncertain_plant(
             command: RationalCoefficients { numerator: vec![], denominator: vec![] },
             disturbance: None,
             dead_time_s: 0.0.into(),
+            rate: None,
         })
     })?)
 }
@@ -50,6 +51,7 @@ fn coefficients<S: Scalar>(
                 formula.ratio(&value)?.numerator.first().copied().unwrap_or(S::from(0.0))
             }
         },
+        rate: None,
     })
 }
 

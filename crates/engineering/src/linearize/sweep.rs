@@ -8,12 +8,12 @@ use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
-use phea_hydraulics::linear::transfer_functions;
+use phea_dynamics::uncertain_plant::PlantCoefficients;
 
 use super::{Linearization, linearize, resonance};
 use crate::caveat::{Caveat, caveats};
 use crate::error::ProcedureError;
-use crate::linear_loop::{LinearLoop, LoopStability, linear_loop};
+use crate::linear_loop::{LinearLoop, LoopStability, linear_loop, linear_loop_of};
 use crate::project::{self, Key, KeyEntry, Loaded};
 use crate::quantity::{self, DisplayUnit, display};
 use crate::setup::Setup;
@@ -224,7 +224,7 @@ fn values([from, to]: [f64; 2], count: usize, by_ratio: bool) -> Vec<f64> {
 struct Models {
     linearization: Linearization,
     /// From command to force, as the loop sees it.
-    seen: TransferFunction,
+    seen: PlantCoefficients<f64>,
     given: Option<Controller>,
     sensor: TransferFunction,
 }
@@ -232,7 +232,7 @@ struct Models {
 fn linearized(loaded: &Loaded) -> Result<Models, String> {
     let found = || -> Result<Models, ProcedureError> {
         let setup = Setup::new(&loaded.project)?;
-        let seen = transfer_functions(&setup.rig()?.in_loop().plant.coefficients())?.command;
+        let seen = setup.rig()?.in_loop().plant.coefficients();
         let linearization = linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?;
         Ok(Models { linearization, seen, given: setup.controller, sensor: setup.sensor })
     };
@@ -254,11 +254,12 @@ fn moves(found: &[(f64, Result<Models, String>)]) -> bool {
 
 fn swept(models: Models, plant_follows: bool) -> Swept {
     let Models { linearization, seen, given, sensor } = models;
-    let [function, seen] = match plant_follows {
-        true => [linearization.plant.command.clone(), seen],
-        false => [linearization.derived_full.command.clone(), linearization.derived_full.command.clone()],
-    };
-    let closed = given.map(|given| linear_loop(&seen, &given, &sensor, BAND_PERCENT));
+    let derived = &linearization.derived_full.command;
+    let function = if plant_follows { &linearization.plant.command } else { derived };
+    let closed = given.map(|given| match plant_follows {
+        true => linear_loop_of(&seen, &given, &sensor, BAND_PERCENT),
+        false => linear_loop(derived, &given, &sensor, BAND_PERCENT),
+    });
     let bandwidth_rad_per_s = match closed {
         None => Err("the project gives no controller"),
         Some(Err(_)) => Err("the loop cannot be closed"),
@@ -266,7 +267,7 @@ fn swept(models: Models, plant_follows: bool) -> Swept {
     };
     Swept {
         poles: function.poles().to_vec(),
-        resonance: resonance(&function),
+        resonance: resonance(function),
         bandwidth_rad_per_s,
         linearization,
     }

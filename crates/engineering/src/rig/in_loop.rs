@@ -1,14 +1,15 @@
 //! The plant as the loop around it sees it: with the velocity of the load that is fed forward.
 
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::plant::{Lateness, Plant, PlantInMotion};
+use phea_hydraulics::plant::{Plant, PlantInMotion};
 
 use super::Rig;
 use crate::project::{Load, Project, SpecificationKind};
 
 impl Rig {
     /// The same rig, with the velocity of its load fed forward. Where the command follows at once it is in `plant` and `in_motion`; where it
-    /// is late there are no polynomials of it, and it is in `in_motion` alone, which lumped lines have then too.
+    /// is late and the load yields there are no polynomials of it, and it is in `in_motion` alone, which lumped lines have then too. What is
+    /// sampled is no part of the plant, nor what is late on the path of a prescribed motion: the loop has it.
     ///
     /// # Example
     /// Beside a prescribed load only the path of its motion changes.
@@ -37,48 +38,65 @@ impl Rig {
     }
 }
 
-/// The load's velocity on the command, as the linear loop counts it.
+/// The load's velocity on the command, as the linear loop counts it: a gain in V s/m, and where it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FedForward {
-    /// Gain in V s/m.
-    pub gain: f64,
-    /// How late it acts.
-    pub lateness: Lateness,
-    /// Whether something that is asked of the loop depends on it: a load that yields closes a loop, beside a prescribed one only a limit
-    /// on its motion does.
-    pub decides: bool,
+pub enum FedForward {
+    /// In the plant: at once, or late by a delay in s where the load yields.
+    InPlant {
+        /// V s/m
+        gain: f64,
+        /// s
+        delay: f64,
+    },
+    /// In the loop around the plant, with the samples and the delay of the command: see
+    /// [`rate_feed_forward`](phea_qft::closed_loop::Compensation::rate_feed_forward).
+    InLoop {
+        /// V s/m
+        gain: f64,
+    },
 }
 
 impl FedForward {
-    /// What the loop of a project counts; `None` where nothing is fed forward, or where a load that yields is sampled: its velocity
-    /// reaches the samples by another path than the force.
+    /// What the loop of a project counts; `None` where nothing is fed forward.
     pub(super) fn of(project: &Project, linear: &LinearParameters) -> Option<FedForward> {
         let controller = project.controller.as_ref()?;
         let yields = project.actuator.as_ref()?.load != Load::Prescribed;
-        let lateness = Lateness { delay: controller.delay, hold: controller.sample_time.unwrap_or(0.0) };
-        let gain = feed_forward(project, linear);
-        let counted = gain != 0.0 && !(yields && lateness.hold > 0.0);
-        let decides = yields || limits_load_motion(project);
-        counted.then_some(FedForward { gain, lateness, decides })
+        let (gain, delay) = (feed_forward(project, linear), controller.delay);
+        match (yields, controller.sample_time) {
+            _ if gain == 0.0 => None,
+            (true, None) => Some(FedForward::InPlant { gain, delay }),
+            (false, None) if delay == 0.0 => Some(FedForward::InPlant { gain, delay }),
+            (true, Some(_)) | (false, _) => Some(FedForward::InLoop { gain }),
+        }
     }
 
-    /// The gain where it acts at once.
+    /// The gain where it is in the plant and acts at once.
     pub fn at_once(&self) -> Option<f64> {
-        (self.lateness == Lateness::default()).then_some(self.gain)
+        match *self {
+            FedForward::InPlant { gain, delay: 0.0 } => Some(gain),
+            FedForward::InPlant { .. } | FedForward::InLoop { .. } => None,
+        }
+    }
+
+    /// The gain where the loop around the plant has it.
+    pub(crate) fn in_loop(&self) -> Option<f64> {
+        match *self {
+            FedForward::InLoop { gain } => Some(gain),
+            FedForward::InPlant { .. } => None,
+        }
     }
 }
 
-/// The plant without polynomials that the loop sees: with these lines in motion, or with its lumped ones where what is fed forward late
-/// decides; `None` where there are polynomials. Samples of lumped lines stay with them, as their loop is proven by them alone.
+/// The plant without polynomials that the loop sees: with these lines in motion, or with its lumped ones where a load that yields is fed
+/// forward late; `None` where there are polynomials.
 pub fn as_response(
     fed: Option<FedForward>,
     moving: Option<PlantInMotion>,
     lumped: &Plant,
 ) -> Option<PlantInMotion> {
-    let late = fed.filter(|fed| fed.lateness.delay > 0.0 && fed.lateness.hold == 0.0 && fed.decides);
-    let plant = moving.or_else(|| late.map(|_| PlantInMotion::lumped(lumped)))?;
-    let lateness = fed.map_or(Lateness::default(), |fed| fed.lateness);
-    Some(plant.fed_forward(fed.map(|fed| fed.gain)).late(lateness))
+    let Some(FedForward::InPlant { gain, delay }) = fed else { return moving };
+    let plant = moving.or_else(|| (delay > 0.0).then(|| PlantInMotion::lumped(lumped)))?;
+    Some(plant.fed_forward(Some(gain)).late(delay))
 }
 
 /// Whether a specification limits the path that a prescribed load has into the loop.

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::time_response::{StepBaseline, StepMetrics, step_metrics, step_of_frequency_response};
 use phea_dynamics::uncertain_plant::PlantMember;
-use phea_hydraulics::linear::transfer_functions;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::stability::{StabilityStatus, member_stability};
 
@@ -13,7 +12,7 @@ use super::rigs::Tried;
 use super::run::{BAND_PERCENT, Response};
 use crate::error::ProcedureError;
 use crate::linear_loop::of_responses::real_parts;
-use crate::linear_loop::{LinearLoop, LoopStability, linear_loop};
+use crate::linear_loop::{LinearLoop, LoopStability, linear_loop_of};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
@@ -42,8 +41,7 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
             let setup = Setup::new(&tried.project)?;
             let Some(given) = &setup.controller else { return Ok(Prediction::Unknown) };
             let given = setup.deployed(given)?;
-            let plant = transfer_functions(plant)?.command;
-            let closed = linear_loop(&plant, &given, &setup.sensor, BAND_PERCENT);
+            let closed = linear_loop_of(plant, &given, &setup.sensor, BAND_PERCENT);
             Ok(match closed {
                 Ok(LinearLoop { step: Ok(step), .. }) => {
                     Prediction::Step(step.metrics, Response { times_s: step.times_s, values: step.response })

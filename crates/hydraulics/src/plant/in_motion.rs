@@ -1,5 +1,6 @@
 mod responding;
 
+use num_complex::Complex64;
 use phea_dynamics::analytic::Analytic;
 
 use super::supply::{Coupled, Over};
@@ -47,16 +48,8 @@ pub struct PlantInMotion {
     sides: [Side; 2],
     /// Whether both lines are the same.
     alike: bool,
-    lateness: Lateness,
-}
-
-/// How late the velocity of the load that is fed forward acts. Units: s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Lateness {
-    /// Delay tau of the command.
-    pub delay: f64,
-    /// Time T for which a sample is held; zero where nothing is sampled.
-    pub hold: f64,
+    /// Delay of the load's velocity that is fed forward, s.
+    lateness: f64,
 }
 
 /// What the chambers of a plant consist of. Units: m3/Pa.
@@ -97,6 +90,8 @@ struct Paths<A> {
     ground: A,
     sensed: A,
     fed: A,
+    driven: A,
+    held: A,
 }
 
 impl PlantInMotion {
@@ -106,14 +101,9 @@ impl PlantInMotion {
         PlantInMotion { plant: Plant { load_velocity_feed_forward, ..self.plant }, ..self }
     }
 
-    /// The same with what is fed forward so late: exact behind a delay. Of what is sampled it is the part at the frequency of the motion
-    /// itself, which is for a prescribed load; a load that yields would feed its images back as well.
-    ///
-    /// ```text
-    /// K_x(s) = K_x e^(-s tau) (1 - e^(-s T))/(s T)
-    /// ```
+    /// The same with what is fed forward late by a delay in s: K_x e^(-s tau) for K_x.
     #[must_use]
-    pub fn late(self, lateness: Lateness) -> PlantInMotion {
+    pub fn late(self, lateness: f64) -> PlantInMotion {
         PlantInMotion { lateness, ..self }
     }
 
@@ -139,14 +129,23 @@ impl PlantInMotion {
         };
         let sides = [side(0), side(1)];
         let alike = sides[0].line == sides[1].line;
-        PlantInMotion { plant: *plant, sides, alike, lateness: Lateness::default() }
+        PlantInMotion { plant: *plant, sides, alike, lateness: 0.0 }
     }
 
     /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of [`Plant::coefficients`].
     pub fn response<A: Analytic>(&self, s: A) -> [A; 2] {
-        let Paths { command, ground, sensed, fed } = self.paths(s);
+        let Paths { command, ground, sensed, fed, .. } = self.paths(s);
         let divisor = sensed - fed;
         [command / divisor, ground / divisor]
+    }
+
+    /// v_L/U_C in m/(s V) and v_L/X_0 in 1/s, the velocity of the load, at s in rad/s.
+    pub fn load_velocity(&self, s: Complex64) -> [Complex64; 2] {
+        let LinearLoad::Yielding { damping, stiffness, .. } = self.plant.load else {
+            return [Complex64::ZERO, s];
+        };
+        let Paths { driven, held, sensed, fed, .. } = self.paths(s);
+        [driven, (s * damping + stiffness) * held].map(|path| s * path / (sensed - fed))
     }
 
     fn paths<A: Analytic>(&self, s: A) -> Paths<A> {
@@ -160,20 +159,24 @@ impl PlantInMotion {
         let spool = A::from(square) / (s * s + turned + A::from(square));
         let driven = (spool * driven).scaled(sensor);
         let fed = match self.plant.load_velocity_feed_forward {
-            Some(gain) => self.lateness.at(s) * s.scaled(gain) * driven,
+            Some(gain) if self.lateness > 0.0 => {
+                s.scaled(-self.lateness).exponential() * s.scaled(gain) * driven
+            }
+            Some(gain) => s.scaled(gain) * driven,
             None => A::from(0.0),
         };
+        let held = moved + own.scaled(sensor);
         match self.plant.load {
             LinearLoad::Prescribed => {
-                let sensed = moved + own.scaled(sensor);
-                Paths { command: driven, ground: fed - moved.scaled(sensor), sensed, fed: A::from(0.0) }
+                let (ground, fed) = (fed - moved.scaled(sensor), A::from(0.0));
+                Paths { command: driven, ground, sensed: held, fed, driven, held }
             }
             LinearLoad::Yielding { mass, damping, stiffness } => {
                 let tied = s.scaled(damping) + A::from(stiffness);
                 let load = (s * s).scaled(mass) + tied;
                 let sensed = moved * (load + A::from(sensor)) + (load * own).scaled(sensor);
                 let ground = tied * (fed - moved.scaled(sensor));
-                Paths { command: load * driven, ground, sensed, fed }
+                Paths { command: load * driven, ground, sensed, fed, driven, held }
             }
         }
     }
@@ -258,13 +261,6 @@ impl PlantInMotion {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
         let longest = delays.fold(0.0, f64::max);
         (longest > 0.0).then(|| std::f64::consts::FRAC_PI_2 / longest)
-    }
-}
-
-impl Lateness {
-    fn at<A: Analytic>(&self, s: A) -> A {
-        let held = if self.hold > 0.0 { s.scaled(self.hold).mean_of_decay() } else { A::from(1.0) };
-        if self.delay > 0.0 { s.scaled(-self.delay).exponential() * held } else { held }
     }
 }
 

@@ -145,5 +145,6 @@ pub fn two_pressure_coefficients<S: Scalar>(
         },
         disturbance: Some(RationalCoefficients { numerator: disturbance, denominator }),
         dead_time_s: zero,
+        rate: None,
     }
 }

@@ -25,6 +25,8 @@ pub(super) struct Images<'a> {
     /// T_d, or T_d + T/2 in a sampled loop.
     pub(super) delay_s: f64,
     pub(super) sample_time_s: Option<f64>,
+    /// K
+    pub(super) rate_feed_forward: f64,
 }
 
 impl Images<'_> {
@@ -34,29 +36,75 @@ impl Images<'_> {
         plant: &dyn RespondingPlant,
         frequency_rad_per_s: f64,
     ) -> Option<MemberResponse> {
-        let [here, load_motion] = plant.response(frequency_rad_per_s);
+        let [_, load_motion] = plant.response(frequency_rad_per_s);
+        let [own, with_sensor, rate] = self.sums(plant, frequency_rad_per_s)?;
+        let [_, from_disturbance] = self.rate(plant, frequency_rad_per_s);
+        let found = sampled([own, with_sensor], load_motion);
+        let back = 1.0 - self.rate_feed_forward * rate;
+        let closed = MemberResponse { plant: found.plant / back, ..found };
+        Some(closed.fed(self.rate_feed_forward * from_disturbance))
+    }
+
+    /// K P_v
+    pub(super) fn fed_back(
+        &self,
+        plant: &dyn RespondingPlant,
+        frequency_rad_per_s: f64,
+    ) -> Option<Complex64> {
+        let [_, _, rate] = self.sums(plant, frequency_rad_per_s)?;
+        Some(self.rate_feed_forward * rate)
+    }
+
+    /// P, P H and P_v with the delay, folded where the loop samples.
+    fn sums(&self, plant: &dyn RespondingPlant, frequency: f64) -> Option<[Complex64; 3]> {
+        let at = |v: f64| {
+            let ([response, _], [rate, _]) = (plant.response(v.abs()), self.rate(plant, v.abs()));
+            (response, rate)
+        };
         let Some(sample_time_s) = self.sample_time_s else {
-            return Some(self.unsampled(here, load_motion, frequency_rad_per_s));
+            let turned = turned(frequency, self.delay_s);
+            let (response, rate) = at(frequency);
+            let own = response * turned;
+            return Some([own, own * self.sensor.at_frequency(frequency), rate * turned]);
         };
         let spacing = 2.0 * std::f64::consts::PI / sample_time_s;
-        let mut sum = self.image(here, frequency_rad_per_s, sample_time_s);
+        let image = |(response, rate): (Complex64, Complex64), v: f64| {
+            let [own, with_sensor] = self.image(response, v, sample_time_s);
+            [own, with_sensor, self.held(rate, v, sample_time_s)]
+        };
+        let mut sum = image(at(frequency), frequency);
         for order in 1..IMAGES_MAXIMUM {
             let away = spacing * order as f64;
-            let mut largest = 0.0_f64;
-            for v in [frequency_rad_per_s + away, frequency_rad_per_s - away] {
-                let [response, _] = plant.response(v.abs());
-                let image = self.image(response, v, sample_time_s);
-                sum = [sum[0] + image[0], sum[1] + image[1]];
-                largest = largest.max(portable::magnitude(response) * 2.0 / (v.abs() * sample_time_s));
+            let mut largest = [0.0_f64; 2];
+            for v in [frequency + away, frequency - away] {
+                let here = at(v);
+                for (sum, image) in sum.iter_mut().zip(image(here, v)) {
+                    *sum += image;
+                }
+                let held = 2.0 / (v.abs() * sample_time_s);
+                for (largest, response) in largest.iter_mut().zip([here.0, here.1]) {
+                    *largest = largest.max(portable::magnitude(response) * held);
+                }
             }
             // later images fall by the cube of their frequency at least, but for resonances
             let beyond = away > plant.range_rad_per_s()[1].min(spacing * IMAGES_MAXIMUM as f64 / 4.0);
-            let left = largest * order as f64;
-            if (beyond || order > 2) && left <= LEFT_SHARE * portable::magnitude(sum[0]) {
-                return Some(sampled(sum, load_motion));
+            let left = largest.map(|largest| largest * order as f64);
+            let back = portable::magnitude(1.0 - self.rate_feed_forward * sum[2]);
+            let small = left[0] <= LEFT_SHARE * portable::magnitude(sum[0])
+                && left[1] * self.rate_feed_forward.abs() <= LEFT_SHARE * back;
+            if (beyond || order > 2) && small {
+                return Some(sum);
             }
         }
         None
+    }
+
+    /// P_v and V_d where something is fed forward.
+    fn rate(&self, plant: &dyn RespondingPlant, frequency: f64) -> [Complex64; 2] {
+        match self.rate_feed_forward == 0.0 {
+            true => [Complex64::ZERO; 2],
+            false => plant.rate(frequency),
+        }
     }
 
     /// As far as the measurement reaches; `None` where what lies beyond it could count, were it as large as at its end.
@@ -98,9 +146,13 @@ impl Images<'_> {
     /// The terms of one k, of P and of P H; a response at a negative frequency is the conjugate of that at the positive one.
     fn image(&self, response: Complex64, v: f64, sample_time_s: f64) -> [Complex64; 2] {
         let sensor = self.sensor.at_frequency(v.abs());
-        let signed = |value: Complex64| if v < 0.0 { value.conj() } else { value };
-        let held = signed(response) * turned(v, self.delay_s) * hold(v, sample_time_s);
-        [held, held * signed(sensor)]
+        let held = self.held(response, v, sample_time_s);
+        [held, held * if v < 0.0 { sensor.conj() } else { sensor }]
+    }
+
+    fn held(&self, response: Complex64, v: f64, sample_time_s: f64) -> Complex64 {
+        let signed = if v < 0.0 { response.conj() } else { response };
+        signed * turned(v, self.delay_s) * hold(v, sample_time_s)
     }
 }
 

@@ -17,28 +17,18 @@ pub(crate) const COARSE: f64 = 3e-2;
 const CLOSEST: f64 = 1e-6;
 
 /// Frequency in rad/s, and both paths there.
-type Point = (f64, [Complex64; 2]);
+pub(crate) type Point = (f64, [Complex64; 2]);
 
 /// The response between two frequencies in rad/s, at points so dense that what [`MeasuredPlant::response`] interpolates is that of the
 /// plant to this part of itself halfway between any two of them ([`FINE`] is 0.2 %): what a search looks at thousands of times.
-pub fn tabulated(plant: &dyn RespondingPlant, [from, to]: [f64; 2], tolerance: f64) -> MeasuredPlant {
-    let at = |frequency: f64| (frequency, plant.response(frequency));
-    let decades = portable::ln(to / from) / std::f64::consts::LN_10;
-    let grid = logarithmic_grid(from, to, (POINTS_PER_DECADE * decades).ceil() as usize).unwrap_or_default();
-    let mut left: Vec<Point> = grid.iter().rev().map(|frequency| at(*frequency)).collect();
-    let mut found: Vec<Point> = Vec::with_capacity(2 * left.len());
-    found.extend(left.pop());
-    while let (Some(&next), Some(&previous)) = (left.last(), found.last()) {
-        let middle = at((previous.0 * next.0).sqrt());
-        let close = next.0 - previous.0 <= CLOSEST * next.0;
-        if close || (0..2).all(|path| apart(previous.1[path], middle.1[path], next.1[path]) <= tolerance) {
-            found.push(next);
-            left.pop();
-        } else {
-            left.push(middle);
-        }
-    }
+pub fn tabulated(plant: &dyn RespondingPlant, range: [f64; 2], tolerance: f64) -> MeasuredPlant {
+    let points = points(|frequency| Some(plant.response(frequency)), range, tolerance);
     let unstable_poles = plant.unstable_poles();
+    table(points, unstable_poles)
+}
+
+/// The table of these points, of a plant with so many poles of its own in the unstable region, where they are known.
+pub(crate) fn table(found: Vec<Point>, unstable_poles: Option<usize>) -> MeasuredPlant {
     MeasuredPlant {
         name: String::new(),
         frequencies_rad_per_s: found.iter().map(|point| point.0).collect(),
@@ -47,6 +37,35 @@ pub fn tabulated(plant: &dyn RespondingPlant, [from, to]: [f64; 2], tolerance: f
         is_resolved: unstable_poles.is_some(),
         unstable_poles: unstable_poles.unwrap_or(0),
     }
+}
+
+/// Both paths between two frequencies in rad/s, as dense as a table of this tolerance needs them; where there is no response there is no
+/// point.
+pub(crate) fn points(
+    response: impl Fn(f64) -> Option<[Complex64; 2]>,
+    [from, to]: [f64; 2],
+    tolerance: f64,
+) -> Vec<Point> {
+    let at = |frequency: f64| Some((frequency, response(frequency)?));
+    let decades = portable::ln(to / from) / std::f64::consts::LN_10;
+    let grid = logarithmic_grid(from, to, (POINTS_PER_DECADE * decades).ceil() as usize).unwrap_or_default();
+    let mut left: Vec<Point> = grid.iter().rev().filter_map(|frequency| at(*frequency)).collect();
+    let mut found: Vec<Point> = Vec::with_capacity(2 * left.len());
+    found.extend(left.pop());
+    while let (Some(&next), Some(&previous)) = (left.last(), found.last()) {
+        let close = next.0 - previous.0 <= CLOSEST * next.0;
+        let is_bent = |middle: &Point| {
+            !close && (0..2).any(|path| apart(previous.1[path], middle.1[path], next.1[path]) > tolerance)
+        };
+        match at((previous.0 * next.0).sqrt()).filter(is_bent) {
+            Some(middle) => left.push(middle),
+            None => {
+                found.push(next);
+                left.pop();
+            }
+        }
+    }
+    found
 }
 
 /// The part of itself by which the middle between two points is off their geometric mean.

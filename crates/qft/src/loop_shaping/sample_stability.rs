@@ -18,8 +18,10 @@ use phea_dynamics::portable;
 use phea_dynamics::responding::RespondingPlant;
 
 use crate::closed_loop::{Compensation, Member};
-use crate::family::{COARSE, MeasuredPlant, tabulated};
-use crate::stability::{FeedbackPath, Irresolution, StabilityStatus, member_stability, poles_lie_below};
+use crate::family::{COARSE, MeasuredPlant, points, table, tabulated};
+use crate::stability::{
+    FeedbackPath, Irresolution, StabilityStatus, member_stability, own_poles, poles_lie_below,
+};
 use quotient::Quotient;
 use rounded_polynomial::{Hurwitz, RoundedPolynomial};
 
@@ -48,7 +50,7 @@ const ABOVE_NYQUIST: f64 = 20.0;
 /// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
 /// let plant = |k| {
 ///     let command = RationalCoefficients { numerator: vec![k], denominator: vec![1.0, 3.0, 2.0, 0.0] };
-///     compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 })
+///     compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None })
 /// };
 /// let mut plants = SampleStability::new(&compensation, vec![plant(1.0)?, plant(4.0)?]);
 /// assert!(plants.is_stable(&TransferFunction::gain_only(1.4))?);
@@ -108,7 +110,10 @@ impl SampleStability {
     pub fn add(&mut self, member: Member) {
         let member = match member {
             // a search asks too often for the plant itself
-            Member::Responding { plant, .. } => self.compensation.measured(&self.tabulated(plant.as_ref())),
+            Member::Responding { ref plant, .. } => match own_poles(&member, &self.compensation) {
+                Some(own) => self.folded(&member, plant.as_ref(), own.ok()),
+                None => self.compensation.measured(&self.tabulated(plant.as_ref())),
+            },
             other => other,
         };
         let quotient = Quotient::of_member(&member);
@@ -122,6 +127,22 @@ impl SampleStability {
         let [from, to] = plant.range_rad_per_s();
         let highest = self.compensation.sample_time_s().map_or(0.0, |sample| std::f64::consts::PI / sample);
         tabulated(plant, [from, to.max(ABOVE_NYQUIST * highest)], COARSE)
+    }
+
+    /// P H as the controller sees them where a rate is fed back, a table of what is sampled already.
+    fn folded(&self, member: &Member, plant: &dyn RespondingPlant, own: Option<usize>) -> Member {
+        let [from, to] = plant.range_rad_per_s();
+        let response = |frequency: f64| {
+            let found = member.response(frequency)?;
+            Some([found.plant * found.sensor; 2])
+        };
+        let range = [from, to.min(self.compensation.highest_frequency_rad_per_s())];
+        Member::Measured {
+            plant: table(points(response, range, COARSE), own),
+            sensor: TransferFunction::gain_only(1.0),
+            delay_s: 0.0,
+            sample_time_s: None,
+        }
     }
 
     /// Whether no plant has dead time or is known by measurements only: then a question costs little.
@@ -186,7 +207,7 @@ impl SampleStability {
     /// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
     /// let command = RationalCoefficients { numerator: vec![1.0], denominator: vec![1.0, -2.0] };
     /// let dead_time_s = -(0.9_f64).ln() / 1.1;
-    /// let member = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s })?;
+    /// let member = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s, rate: None })?;
     /// let plants = SampleStability::new(&compensation, vec![member]);
     /// let rightmost = plants.approximate_real_part(&TransferFunction::gain_only(1.0))?.ok_or("none")?;
     /// assert!((rightmost - 1.1).abs() < 0.011 + 1e-6);

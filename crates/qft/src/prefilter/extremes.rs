@@ -48,7 +48,7 @@ pub struct TrackingExtremes {
 /// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
 /// let member = |k: f64| {
 ///     let command = RationalCoefficients { numerator: vec![k], denominator: vec![1.0, 0.0] };
-///     compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 })
+///     compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None })
 /// };
 /// let found = tracking_extremes(&compensation, &[member(1.0)?, member(4.0)?], &[3.0])?[0];
 /// assert_eq!((found.greatest_member, found.least_member), (1, 0));

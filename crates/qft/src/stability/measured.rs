@@ -31,14 +31,25 @@ const SLOPE_TOLERANCE: f64 = 0.3;
 pub(super) struct OpenLoop<'a> {
     member: &'a Member,
     compensation: &'a Compensation,
+    around: Around,
     points: Vec<(f64, Complex64)>,
+}
+
+/// Which loop L is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Around {
+    /// G P H, that of the controller.
+    Output,
+    /// -K P_v, that of a rate which is fed forward and moved by the command: its poles are those of the plant that the controller sees.
+    Rate,
 }
 
 pub(super) fn stability(member: &Member, compensation: &Compensation) -> MemberStability {
     let Member::Measured { plant, sensor, .. } = member else {
         return MemberStability::not_resolved(Irresolution::Points);
     };
-    let open_loop = OpenLoop::new(member, compensation, &plant.frequencies_rad_per_s, plant.is_resolved);
+    let frequencies = &plant.frequencies_rad_per_s;
+    let open_loop = OpenLoop::new(member, compensation, Around::Output, frequencies, plant.is_resolved);
     match open_loop.unstable_closed_loop_poles(plant.unstable_poles, sensor) {
         Ok(unstable) => open_loop.stability(unstable),
         Err(reason) => MemberStability::not_resolved(reason),
@@ -51,10 +62,11 @@ impl<'a> OpenLoop<'a> {
     pub(super) fn new(
         member: &'a Member,
         compensation: &'a Compensation,
+        around: Around,
         frequencies_rad_per_s: &[f64],
         is_known_between: bool,
     ) -> OpenLoop<'a> {
-        let mut open_loop = OpenLoop { member, compensation, points: Vec::new() };
+        let mut open_loop = OpenLoop { member, compensation, around, points: Vec::new() };
         let highest = compensation.highest_frequency_rad_per_s();
         for &frequency in frequencies_rad_per_s.iter().take_while(|&&frequency| frequency <= highest) {
             let Some(value) = open_loop.at(frequency) else { continue };
@@ -100,6 +112,9 @@ impl<'a> OpenLoop<'a> {
     }
 
     fn at(&self, frequency: f64) -> Option<Complex64> {
+        if self.around == Around::Rate {
+            return self.member.fed_back(frequency).map(|back| -back);
+        }
         let response = self.member.response(frequency)?;
         Some(response.plant * response.sensor * self.compensation.feedback().at_frequency(frequency))
     }
@@ -113,6 +128,11 @@ impl<'a> OpenLoop<'a> {
         let own = outside_of_stable_region(self.compensation.feedback())?
             + outside_of_stable_region(sensor)?
             + of_plant;
+        self.unstable_poles(own)
+    }
+
+    /// Zeros of 1 + L outside of the stable region, of an L with so many poles there.
+    pub(super) fn unstable_poles(&self, own: usize) -> Result<usize, Irresolution> {
         let &[first, second, ..] = self.points.as_slice() else { return Err(Irresolution::Points) };
         let mut turned = turn_below(first, second)?;
         for pair in self.points.windows(2) {

@@ -3,6 +3,9 @@
 //! Phase over frequency at the crossovers of the sampled L is that delay where it is a whole number of samples. Between, a delay also
 //! changes |L|: for k/s with k T = 1.25 it says 0.66 samples where the truth is 0.8. Each time the loop is sampled anew nearer to
 //! its limit the estimate of what remains errs by less.
+//!
+//! Where a rate is fed back within the plant, the delay that remains is that of the controller's own path, and a plant sampled anew would
+//! have the rate later too: there the phase over the frequency is kept.
 
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
@@ -15,12 +18,15 @@ const TOLERANCE: f64 = 1e-9;
 /// Steps of the search, and then of halving.
 const STEPS_MAXIMUM: usize = 60;
 
-/// `None` for a loop that is not stable to begin with.
+/// `None` for a loop that is not stable to begin with, and where a rate is fed back within the plant.
 pub(super) fn critical_delay(
     plant: &PlantCoefficients<f64>,
     compensation: &Compensation,
     path: &FeedbackPath,
 ) -> Option<CriticalDelay> {
+    if compensation.rate_feed_forward() != 0.0 && plant.rate.is_some() {
+        return None;
+    }
     let remaining = |delay_s: f64| {
         let delayed = compensation.with_delay(compensation.delay_s() + delay_s);
         let found = of_member(&delayed.member(plant.clone()).ok()?, &delayed, path);

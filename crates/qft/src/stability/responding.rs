@@ -1,11 +1,12 @@
 //! Stability of a plant without polynomials within its loop.
 
+use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::portable::{log10, magnitude};
 use phea_dynamics::responding::RespondingPlant;
 
 use super::enclosed::Enclosed;
-use super::measured::OpenLoop;
+use super::measured::{Around, OpenLoop};
 use super::{Irresolution, MemberStability, StabilityStatus};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{COARSE, tabulated};
@@ -26,21 +27,18 @@ pub(super) enum Count {
 }
 
 pub(super) fn stability(member: &Member, compensation: &Compensation, count: Count) -> MemberStability {
-    let Member::Responding { plant, sensor, delay_s, sample_time_s } = member else {
+    let Member::Responding { plant, sensor, delay_s, sample_time_s, .. } = member else {
         return MemberStability::not_resolved(Irresolution::Points);
     };
-    let points = || {
-        let range = range(member, plant.as_ref(), compensation);
-        let table = tabulated(plant.as_ref(), range, COARSE);
-        OpenLoop::new(member, compensation, &table.frequencies_rad_per_s, true)
-    };
+    let points = || on_points(member, plant.as_ref(), compensation, Around::Output);
+    let fed_back = own_poles(member, compensation);
     let counted = match (sample_time_s, count) {
-        (None, Count::Enclosed) => {
+        (None, Count::Enclosed) if fed_back.is_none() => {
             let enclosed = Enclosed { plant: plant.as_ref(), sensor, delay_s: *delay_s, compensation };
             enclosed.unstable_poles()
         }
         _ => {
-            let own = plant.unstable_poles().ok_or(Irresolution::OpenLoopPoles);
+            let own = fed_back.unwrap_or_else(|| plant.unstable_poles().ok_or(Irresolution::OpenLoopPoles));
             own.and_then(|own| points().unstable_closed_loop_poles(own, sensor))
         }
     };
@@ -56,6 +54,30 @@ pub(super) fn stability(member: &Member, compensation: &Compensation, count: Cou
     }
 }
 
+/// Poles in the unstable region of a plant whose rate is fed back within it, as the controller sees it; `None` where nothing is fed back.
+pub(crate) fn own_poles(member: &Member, compensation: &Compensation) -> Option<Result<usize, Irresolution>> {
+    let Member::Responding { plant, rate_feed_forward, .. } = member else { return None };
+    let [_, highest] = plant.range_rad_per_s();
+    if *rate_feed_forward == 0.0 || plant.rate(highest)[0] == Complex64::ZERO {
+        return None;
+    }
+    let own = plant.unstable_poles().ok_or(Irresolution::OpenLoopPoles);
+    Some(
+        own.and_then(|own| on_points(member, plant.as_ref(), compensation, Around::Rate).unstable_poles(own)),
+    )
+}
+
+fn on_points<'a>(
+    member: &'a Member,
+    plant: &dyn RespondingPlant,
+    compensation: &'a Compensation,
+    around: Around,
+) -> OpenLoop<'a> {
+    let range = range(member, plant, compensation);
+    let table = tabulated(plant, range, COARSE);
+    OpenLoop::new(member, compensation, around, &table.frequencies_rad_per_s, true)
+}
+
 /// L on an even grid: a look that a search can afford at every plant.
 pub(super) fn first_look<'a>(member: &'a Member, compensation: &'a Compensation) -> Option<OpenLoop<'a>> {
     let Member::Responding { plant, .. } = member else { return None };
@@ -63,7 +85,7 @@ pub(super) fn first_look<'a>(member: &'a Member, compensation: &'a Compensation)
     let decades = log10(to / from);
     let count = (POINTS_PER_DECADE * decades).ceil() as usize;
     let grid = logarithmic_grid(from, to, count).ok()?;
-    Some(OpenLoop::new(member, compensation, &grid, true))
+    Some(OpenLoop::new(member, compensation, Around::Output, &grid, true))
 }
 
 /// Where the loop does something of its own, rad/s: an integrator that is slower than the plant has its crossover below it.

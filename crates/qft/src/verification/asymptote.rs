@@ -8,7 +8,7 @@ use phea_dynamics::uncertain_plant::RationalCoefficients;
 use num_complex::Complex64;
 
 use super::criterion::{Criterion, Quantity, Side};
-use crate::closed_loop::{Compensation, Member};
+use crate::closed_loop::{Compensation, FedForward, Member, closed};
 use crate::specification::Limit;
 
 /// Which end of the frequency axis.
@@ -39,6 +39,29 @@ impl Asymptote {
 
     fn over(self, other: Asymptote) -> Asymptote {
         Asymptote { coefficient: self.coefficient / other.coefficient, power: self.power - other.power }
+    }
+
+    /// What is the greater at the end; of two like powers the sum, or its largest magnitude where one is turned without end. What is left
+    /// of two that cancel is less than either.
+    fn plus(self, other: Asymptote, spun: bool, end: End) -> Asymptote {
+        if other.coefficient == 0.0 {
+            return self;
+        }
+        let by_power = match end {
+            End::Zero => other.power.cmp(&self.power),
+            End::Infinity => self.power.cmp(&other.power),
+        };
+        match by_power {
+            _ if self.coefficient == 0.0 => other,
+            std::cmp::Ordering::Greater => self,
+            std::cmp::Ordering::Less => other,
+            std::cmp::Ordering::Equal if spun => {
+                Asymptote { coefficient: self.coefficient.abs() + other.coefficient.abs(), ..self }
+            }
+            std::cmp::Ordering::Equal => {
+                Asymptote { coefficient: self.coefficient + other.coefficient, ..self }
+            }
+        }
     }
 
     /// Of a polynomial, highest power first; zero if it is zero.
@@ -216,25 +239,33 @@ fn parts(
     let path = |path: &Option<RationalCoefficients<f64>>| {
         path.as_ref().map_or(zero, |path| rational(&path.numerator, &path.denominator))
     };
-    let (plant, load_motion, with_sensor, turns) = match member {
-        Member::Continuous { plant, sensor } => {
+    let forward = |fed: &FedForward| {
+        let gain = Asymptote { coefficient: fed.gain, power: 0 };
+        let path = fed.path.as_ref().map(|path| rational(&path.numerator, &path.denominator));
+        gain.times(path.unwrap_or(Asymptote { coefficient: 1.0, power: 1 }))
+    };
+    let (plant, load_motion, with_sensor, forward, turns) = match member {
+        Member::Continuous { plant, sensor, fed_forward } => {
             let command = rational(&plant.command.numerator, &plant.command.denominator);
-            (command, path(&plant.disturbance), command.times(of(sensor)?), plant.dead_time_s > 0.0)
+            let with_sensor = command.times(of(sensor)?);
+            (command, path(&plant.disturbance), with_sensor, forward(fed_forward), plant.dead_time_s > 0.0)
         }
-        Member::Sampled { command, with_sensor, disturbance } => {
-            (of(command)?, path(disturbance), of(with_sensor)?, false)
+        Member::Sampled { command, with_sensor, disturbance, fed_forward } => {
+            (of(command)?, path(disturbance), of(with_sensor)?, forward(fed_forward), false)
         }
-        Member::Responding { plant, sensor, .. } => {
+        Member::Responding { plant, sensor, rate_feed_forward, .. } => {
             // its load-motion path has the ends of the slow plant
-            let slow = plant.slow();
+            let slow = closed(*rate_feed_forward, plant.slow()).ok()?;
+            let fed = FedForward::of(*rate_feed_forward, &plant.slow());
             let command = match end {
                 End::Zero => rational(&slow.command.numerator, &slow.command.denominator),
                 End::Infinity => rolled_off(plant.as_ref())?,
             };
-            (command, path(&slow.disturbance), command.times(of(sensor)?), true)
+            (command, path(&slow.disturbance), command.times(of(sensor)?), forward(&fed), true)
         }
         Member::Measured { .. } => return None,
     };
+    let load_motion = load_motion.plus(plant.times(forward), turns && end == End::Infinity, end);
     let feedback = of(compensation.feedback())?;
     Some(LoopAsymptotes {
         plant,

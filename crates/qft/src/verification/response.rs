@@ -131,7 +131,7 @@ impl LoopAt {
             _ => none,
         };
         let (plant_numerator, around, load_motion) = match member {
-            Member::Continuous { plant, .. } => {
+            Member::Continuous { plant, fed_forward, .. } => {
                 let Fraction { mut numerator, denominator } =
                     Fraction::of_coefficients(&plant.command, frequency);
                 if plant.dead_time_s != 0.0 {
@@ -140,10 +140,14 @@ impl LoopAt {
                 (
                     numerator,
                     Fraction { numerator: numerator * self.sensor, denominator },
-                    load(&plant.disturbance),
+                    self.fed(
+                        load(&plant.disturbance),
+                        Fraction { numerator, denominator },
+                        fed_forward.at(frequency),
+                    ),
                 )
             }
-            Member::Sampled { command, with_sensor, disturbance } => {
+            Member::Sampled { command, with_sensor, disturbance, fed_forward } => {
                 let around = Fraction::of_transfer_function(with_sensor, frequency);
                 let plant = Fraction::of_transfer_function(command, frequency);
                 let same = command.poles() == with_sensor.poles();
@@ -152,7 +156,7 @@ impl LoopAt {
                 } else {
                     plant.numerator * around.denominator / plant.denominator
                 };
-                (numerator, around, load(disturbance))
+                (numerator, around, self.fed(load(disturbance), plant, fed_forward.at(frequency)))
             }
             Member::Responding { .. } | Member::Measured { .. } => {
                 let response = member.response(frequency)?;
@@ -164,6 +168,20 @@ impl LoopAt {
         let b = around.numerator * self.feedback.numerator;
         let loop_denominator = around.denominator;
         Some(ClosedLoop { characteristic: a + b, a, b, plant_numerator, loop_denominator, load_motion })
+    }
+
+    /// Pd + K V_d P over the denominator of Pd.
+    fn fed(&self, load_motion: Fraction, plant: Fraction, forward: Complex64) -> Fraction {
+        if !self.load_motion || forward == Complex64::ZERO {
+            return load_motion;
+        }
+        let numerator = forward * plant.numerator;
+        let shared = if load_motion.denominator == plant.denominator {
+            numerator
+        } else {
+            numerator / plant.denominator * load_motion.denominator
+        };
+        Fraction { numerator: load_motion.numerator + shared, ..load_motion }
     }
 
     /// The square of how far a criterion is exceeded: (quantity/limit)^2 for an upper limit, its inverse for a lower one. `None`

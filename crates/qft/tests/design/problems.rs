@@ -35,7 +35,7 @@ pub(crate) fn uncertain(
     UncertainPlant::record(parameters.iter().map(parameter).collect(), |p| {
         let (numerator, denominator) = coefficients(p);
         let command = RationalCoefficients { numerator, denominator };
-        PlantCoefficients { command, disturbance: None, dead_time_s: 0.0.into() }
+        PlantCoefficients { command, disturbance: None, dead_time_s: 0.0.into(), rate: None }
     })
     .unwrap()
 }

@@ -80,7 +80,7 @@ fn delayed(
     UncertainPlant::record(parameters.iter().map(parameter).collect(), |p| {
         let (numerator, denominator) = coefficients(p);
         let command = RationalCoefficients { numerator, denominator };
-        PlantCoefficients { command, disturbance: None, dead_time_s: delay_s.into() }
+        PlantCoefficients { command, disturbance: None, dead_time_s: delay_s.into(), rate: None }
     })
     .unwrap()
 }

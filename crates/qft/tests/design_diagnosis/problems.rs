@@ -19,6 +19,7 @@ pub(crate) fn single(numerator: &[f64], denominator: &[f64], dead_time_s: f64) -
         command: RationalCoefficients { numerator: numbers(numerator), denominator: numbers(denominator) },
         disturbance: None,
         dead_time_s: dead_time_s.into(),
+        rate: None,
     })
     .unwrap();
     let members = vec![plant.nominal()];
@@ -55,7 +56,7 @@ pub(crate) fn plain<'t>(
     dead_time_s: f64,
 ) -> PlantCoefficients<Recorded<'t>> {
     let command = RationalCoefficients { numerator, denominator };
-    PlantCoefficients { command, disturbance: None, dead_time_s: dead_time_s.into() }
+    PlantCoefficients { command, disturbance: None, dead_time_s: dead_time_s.into(), rate: None }
 }
 
 pub(crate) fn rational(numerator: &[f64], denominator: &[f64]) -> Limit {

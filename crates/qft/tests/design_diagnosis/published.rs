@@ -102,7 +102,7 @@ fn unstable() {
 }
 
 fn rig<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
-    PlantCoefficients { command: force(p), disturbance: None, dead_time_s: 0.0.into() }
+    PlantCoefficients { command: force(p), disturbance: None, dead_time_s: 0.0.into(), rate: None }
 }
 
 /// The whole of Table 6.3 with the limits of 6.30 to 6.32, continuous and sampled at 1 kHz with 0.5 ms of delay.

@@ -22,7 +22,9 @@ pub(crate) fn around(feedback: TransferFunction) -> Compensation {
 
 pub(crate) fn member(compensation: &Compensation, numerator: &[f64], denominator: &[f64]) -> Member {
     let command = RationalCoefficients { numerator: numerator.to_vec(), denominator: denominator.to_vec() };
-    compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 }).unwrap()
+    compensation
+        .member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None })
+        .unwrap()
 }
 
 /// k/s for each k, closed with gain 1: T = k/(s + k).
@@ -62,6 +64,7 @@ pub(crate) fn servo_family() -> Family {
         },
         disturbance: None,
         dead_time_s: 0.0.into(),
+        rate: None,
     })
     .unwrap();
     let along = |index: usize| Coordinate {

@@ -32,6 +32,7 @@ fn problem(delay_s: f64) -> DesignProblem {
             },
             disturbance: None,
             dead_time_s: 0.0.into(),
+            rate: None,
         }
     });
     let family = UncertainFamily::new(plant.unwrap(), vec![], vec![], Extent::Box).unwrap();

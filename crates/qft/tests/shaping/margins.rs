@@ -109,6 +109,7 @@ fn margins_are_those_of_one_plant_after_the_other() {
         Timing { delay_s: 0.01, ..Timing::default() },
         sampled(Discretization::Tustin),
         sampled(Discretization::ZeroOrderHold),
+        Timing { rate_feed_forward: -0.4, ..sampled(Discretization::Tustin) },
     ] {
         let problem = problem(timing);
         for _ in 0..5 {

@@ -111,6 +111,7 @@ pub(crate) fn problem(timing: Timing) -> DesignProblem {
                 denominator: vec![1.0.into(), damping, w * w],
             }),
             dead_time_s: 0.003.into(),
+            rate: None,
         }
     })
     .unwrap();

@@ -44,6 +44,7 @@ fn undamped() -> DesignProblem {
         },
         disturbance: None,
         dead_time_s: 0.0.into(),
+        rate: None,
     });
     let family = UncertainFamily::new(plant.unwrap(), vec![], vec![vec![4.0]], Extent::Box).unwrap();
     with_family(Family::Uncertain(family), 2.0)

@@ -20,7 +20,7 @@ pub(crate) fn coefficients<'t>(
     denominator: Vec<Recorded<'t>>,
 ) -> PlantCoefficients<Recorded<'t>> {
     let command = RationalCoefficients { numerator, denominator };
-    PlantCoefficients { command, disturbance: None, dead_time_s: 0.0.into() }
+    PlantCoefficients { command, disturbance: None, dead_time_s: 0.0.into(), rate: None }
 }
 
 /// The family over a box with a grid of so many points along each parameter.

@@ -45,6 +45,7 @@ fn process() -> Family {
         command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![p[1], 1.0.into()] },
         disturbance: None,
         dead_time_s: 0.2.into(),
+        rate: None,
     });
     on_grid(plant.unwrap(), vec![along(0, Spacing::Logarithmic, 5), along(1, Spacing::Logarithmic, 5)])
 }
@@ -105,6 +106,7 @@ fn a_load_frame_with_everything_at_once() {
                 denominator: vec![1.0.into(), damping, w * w],
             }),
             dead_time_s,
+            rate: None,
         }
     });
     let stiffness = Coordinate {

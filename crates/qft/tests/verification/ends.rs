@@ -21,6 +21,7 @@ fn gain_times(numerator: &[f64], denominator: &[f64], dead_time_s: f64) -> Famil
         },
         disturbance: None,
         dead_time_s: dead_time_s.into(),
+        rate: None,
     });
     on_grid(plant.unwrap(), vec![along(0, Spacing::Linear, 2)])
 }
@@ -172,5 +173,39 @@ fn senseless_demands_are_not_met() {
         let extreme = gain_times(&[scale], &[1.0, scale.sqrt(), 0.0], 0.0);
         let finding = judged(&extreme, &unity(1.0), requirement(0.5), EVERYWHERE);
         assert_ne!(finding.verdict, Verdict::Met, "{scale}: {finding:?}");
+    }
+}
+
+/// k/(s + 1) behind 0.1 s, k from 1 to 2, with Pd = -2 s/(s + 10) and the rate of the disturbance fed forward: Pd + K s P tends to
+/// (K k - 0.2) s at zero, where 1 + L is 1 + k, sampled or not, and at infinity to -2 + K k e^(-0.1 s), of which the delay makes 2 + K k.
+#[test]
+fn a_rate_that_is_fed_forward_has_its_share_in_both_ends() {
+    let plant = UncertainPlant::record(vec![parameter("k", 1.0, 1.0, 2.0)], |p| PlantCoefficients {
+        command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 1.0.into()] },
+        disturbance: Some(RationalCoefficients {
+            numerator: vec![(-2.0).into(), 0.0.into()],
+            denominator: vec![1.0.into(), 10.0.into()],
+        }),
+        dead_time_s: 0.1.into(),
+        rate: None,
+    });
+    let family = on_grid(plant.unwrap(), vec![along(0, Spacing::Linear, 2)]);
+    // grows by more than |Y/D| from zero on
+    let limit = Limit::Rational(rational(&[1.0, 0.1, 0.0], &[1.0, 6.0, 9.0]));
+    for (gain, at_zero) in [(1.0, 1.8 / 3.0), (0.1, 0.1 / 2.0), (-0.5, 1.2 / 3.0)] {
+        for sample_time_s in [None, Some(0.1)] {
+            let timing = Timing { sample_time_s, rate_feed_forward: gain, ..Timing::default() };
+            let unity = TransferFunction::gain_only(1.0);
+            let around = compensation(unity.clone(), unity, timing);
+            let finding = judged(&family, &around, Requirement::LoadMotion(limit.clone()), [0.0, 0.5]);
+            check(&finding, decibels(0.1 / 9.0 / at_zero), 0.0);
+        }
+        let timing = Timing { rate_feed_forward: gain, ..Timing::default() };
+        let around = compensation(TransferFunction::gain_only(0.1), TransferFunction::gain_only(1.0), timing);
+        let requirement = Requirement::LoadMotion(Limit::Constant(1.0));
+        let finding = judged(&family, &around, requirement, [1e4, f64::INFINITY]);
+        let worst = finding.worst.as_ref().unwrap();
+        let greatest = 2.0 + 2.0 * f64::abs(gain);
+        assert!((worst.margin_db + decibels(greatest)).abs() < 2e-3, "{worst:?}, not {greatest}");
     }
 }

@@ -38,6 +38,7 @@ fn recorded(
             command: RationalCoefficients { numerator, denominator },
             disturbance: None,
             dead_time_s: 0.0.into(),
+            rate: None,
         }
     })
     .unwrap()

@@ -21,6 +21,7 @@ fn carts<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
         },
         disturbance: None,
         dead_time_s: 0.0.into(),
+        rate: None,
     }
 }
 

@@ -40,6 +40,7 @@ fn resonant<'t>(p: &[Recorded<'t>], zero: f64, scale: f64) -> PlantCoefficients<
         },
         disturbance: None,
         dead_time_s: 0.0.into(),
+        rate: None,
     }
 }
 

@@ -81,6 +81,7 @@ fn servo(points: usize) -> Family {
             denominator: vec![1.0.into(), 10.0.into()],
         }),
         dead_time_s: 0.0.into(),
+        rate: None,
     });
     on_grid(plant.unwrap(), vec![along(0, Spacing::Linear, points)])
 }
@@ -123,9 +124,12 @@ fn load_motion_has_a_path_of_its_own() {
 /// A sensor in the loop, a hold and a delay: the audit agrees with the specification's own definition on a dense grid.
 #[test]
 fn a_sampled_loop_is_judged_up_to_half_its_sampling_frequency() {
-    let timing = Timing { sample_time_s: Some(0.1), delay_s: 0.03, ..Timing::default() };
-    let controller = Controller { timing, ..Controller::default() };
-    for sensor in [TransferFunction::gain_only(1.0), rational(&[20.0], &[1.0, 20.0])] {
+    for (sensor, rate_feed_forward) in
+        [(TransferFunction::gain_only(1.0), 0.0), (rational(&[20.0], &[1.0, 20.0]), 0.6)]
+    {
+        let timing =
+            Timing { sample_time_s: Some(0.1), delay_s: 0.03, rate_feed_forward, ..Timing::default() };
+        let controller = Controller { timing, ..Controller::default() };
         let around = Compensation::new(&controller, sensor).unwrap();
         let nyquist = std::f64::consts::PI / 0.1;
         for requirement in [
@@ -172,6 +176,7 @@ fn a_plant_that_cannot_be_sampled_is_not_proven() {
         },
         disturbance: None,
         dead_time_s: 0.0.into(),
+        rate: None,
     });
     let family = UncertainFamily::new(plant.unwrap(), vec![], vec![], Extent::Members).unwrap();
     let timing = Timing { sample_time_s: Some(0.1), ..Timing::default() };

@@ -14,7 +14,7 @@ use crate::rig::force;
 const SLOW: [f64; 8] = [0.01, 0.1, 1.0, 5.0, 10.0, 50.0, 100.0, 150.0];
 
 fn plant<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
-    PlantCoefficients { command: force(p), disturbance: None, dead_time_s: 0.0.into() }
+    PlantCoefficients { command: force(p), disturbance: None, dead_time_s: 0.0.into(), rate: None }
 }
 
 pub(crate) fn thesis_family(points: [usize; 6]) -> Family {

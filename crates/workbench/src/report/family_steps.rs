@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TransferFunction};
+use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
 use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::time_response::{
     TimeResponseError, delayed_loop_step, step_of_frequency_response, step_response, uniform_times,
 };
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember};
+use phea_qft::closed_loop::Member;
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::verification::{PlantPoint, Verdict};
@@ -115,15 +116,8 @@ fn closed_loop(
     plant: PlantCoefficients<f64>,
 ) -> Result<TransferFunction, LinearError> {
     let compensation = &problem.compensation;
-    let rational = TransferFunction::from_polynomials(
-        &Polynomial::new(plant.command.numerator),
-        &Polynomial::new(plant.command.denominator),
-    )?;
-    let delayed = rational.with_dead_time(plant.dead_time_s + compensation.delay_s())?;
-    let (plant, sensor) = match compensation.sample_time_s() {
-        None => (delayed, compensation.sensor().clone()),
-        Some(sample_time) => {
-            let held = delayed.discretized(sample_time, Discretization::ZeroOrderHold)?;
+    let (plant, sensor) = match compensation.member(plant)? {
+        Member::Sampled { command, .. } => {
             // A sensor with dynamics is sampled together with the plant, of which no transfer function of it alone is left.
             if !(compensation.sensor().poles().is_empty() && compensation.sensor().dead_time_s() == 0.0) {
                 return Err(LinearError::WrongDomain {
@@ -131,9 +125,17 @@ fn closed_loop(
                     needed: "continuous",
                 });
             }
-            let sensor = compensation.sensor().clone().in_domain(held.domain())?;
-            (held, sensor)
+            let sensor = compensation.sensor().clone().in_domain(command.domain())?;
+            (command, sensor)
         }
+        Member::Continuous { plant, sensor, .. } => {
+            let rational = TransferFunction::from_polynomials(
+                &Polynomial::new(plant.command.numerator),
+                &Polynomial::new(plant.command.denominator),
+            )?;
+            (rational.with_dead_time(plant.dead_time_s)?, sensor)
+        }
+        Member::Responding { .. } | Member::Measured { .. } => return Err(LinearError::NoPlant),
     };
     let closed = plant.series(compensation.feedback())?.feedback(&sensor)?;
     compensation.prefilter_of_step()?.series(&closed)

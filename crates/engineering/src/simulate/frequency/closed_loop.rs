@@ -199,12 +199,16 @@ fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
 /// T = F G P e^(-s d)/(1 + G P H e^(-s d))
 /// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of what is between the samples.
 /// ```
+///
+/// Where what is fed forward of a load that yields is fed back in samples, the command is more by P_z'/P_z, the plant in z with it and without.
 struct Model {
     /// As the loop sees it.
     rig: Rig,
     compensation: Compensation,
     /// The rig within its loop, sampled where that samples.
     member: Member,
+    /// The same without what is fed forward, where the loop has it.
+    alone: Option<Member>,
 }
 
 impl Model {
@@ -214,11 +218,14 @@ impl Model {
             None => Compensation::new(given, setup.sensor.clone())?,
             Some(_) => setup.compensation(given)?,
         };
-        let member = match rig.in_motion {
-            Some(moving) => compensation.responding(Arc::new(moving)),
-            None => compensation.member(rig.plant.coefficients()).map_err(SimulateError::Plant)?,
+        let within = |compensation: &Compensation| match rig.in_motion {
+            Some(moving) => Ok(compensation.responding(Arc::new(moving))),
+            None => compensation.member(rig.plant.coefficients()).map_err(SimulateError::Plant),
         };
-        Ok(Model { rig, compensation, member })
+        let is_fed = given.timing.sample_time_s.is_some() && given.timing.rate_feed_forward != 0.0;
+        let alone = is_fed.then(|| within(&compensation.without_feed_forward())).transpose()?;
+        let member = within(&compensation)?;
+        Ok(Model { rig, compensation, member, alone })
     }
 
     fn at(&self, frequency: f64) -> Result<Complex64, SimulateError> {
@@ -233,7 +240,9 @@ impl Model {
                 hold * self.rig.response(frequency) * portable::exp_complex(late)
             }
         };
-        let closed = feedback / (1.0 + feedback * plant.plant * plant.sensor);
+        let alone = self.alone.as_ref().and_then(|alone| alone.response(frequency));
+        let more = alone.map_or(Complex64::ONE, |alone| plant.plant / alone.plant);
+        let closed = more * feedback / (1.0 + feedback * plant.plant * plant.sensor);
         Ok(self.compensation.prefilter().at_frequency(frequency) * closed * between)
     }
 }

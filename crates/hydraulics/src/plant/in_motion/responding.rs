@@ -28,6 +28,10 @@ impl RespondingPlant for PlantInMotion {
         self.response(Complex64::new(0.0, frequency_rad_per_s))
     }
 
+    fn rate(&self, frequency_rad_per_s: f64) -> [Complex64; 2] {
+        self.load_velocity(Complex64::new(0.0, frequency_rad_per_s))
+    }
+
     fn enclosure(&self, frequencies_rad_per_s: [f64; 2]) -> Disc {
         Jet::enclosed(Disc::of_frequencies(frequencies_rad_per_s), |s| {
             let [command, _] = self.response(s);
@@ -155,7 +159,7 @@ impl RespondingPlant for PlantInMotion {
     fn echo_s(&self) -> f64 {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
         let waves = 2.0 * delays.fold(0.0, f64::max);
-        let fed = self.plant.load_velocity_feed_forward.map_or(0.0, |_| self.lateness.delay);
+        let fed = self.plant.load_velocity_feed_forward.map_or(0.0, |_| self.lateness);
         waves + fed
     }
 }
@@ -164,7 +168,7 @@ impl PlantInMotion {
     /// Whether 1 less what is fed back cannot have turned around zero from one of these points to the other: a delay turns it as often as
     /// the frequency says, which counts where it is large.
     fn is_near(&self, [here, next]: [(f64, Complex64); 2]) -> bool {
-        let turned = (next.0 - here.0) * self.lateness.delay;
+        let turned = (next.0 - here.0) * self.lateness;
         let fed = [here, next].map(|(_, difference)| (difference - 1.0).norm_sqr());
         let is_small = fed.iter().all(|fed| *fed < SMALL_FED * SMALL_FED);
         next.0 < LARGE_STEP * here.0 && (turned < SMALL_TURN || is_small)

@@ -128,7 +128,7 @@ impl Candidate {
                 let samples = (with_sensor.dead_time_s() / sample).round() as usize;
                 (images_of_z(plane, with_sensor.zeros()), excess + samples, 0.0)
             }
-            Member::Continuous { plant, sensor } => {
+            Member::Continuous { plant, sensor, .. } => {
                 let right = zeros.iter().copied().filter(is_right).collect();
                 (right, 0, plant.dead_time_s + sensor.dead_time_s())
             }

@@ -101,7 +101,7 @@ pub struct RoundingEffects {
 /// let controller = Controller { feedback, timing, ..Controller::default() };
 /// let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0))?;
 /// let command = RationalCoefficients { numerator: vec![2.0], denominator: vec![1.0, 0.0] };
-/// let plant = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0 })?;
+/// let plant = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None })?;
 /// let converter = Some(Converter::new(10, [-1.0, 1.0])?);
 /// let quantisation = Quantisation { command: converter, ..Quantisation::default() };
 /// let effect = rounding_effects(&compensation, &[plant], &quantisation)?.force_from_command.ok_or("no effect")?;

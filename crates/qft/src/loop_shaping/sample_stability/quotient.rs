@@ -26,7 +26,7 @@ impl Quotient {
     /// P H of a member; `None` for a measurement, and for a dead time that leaves no polynomials.
     pub(super) fn of_member(member: &Member) -> Option<Quotient> {
         match member {
-            Member::Continuous { plant, sensor } if plant.dead_time_s == 0.0 => {
+            Member::Continuous { plant, sensor, .. } if plant.dead_time_s == 0.0 => {
                 let sensor = Quotient::of_function(sensor)?;
                 let polynomial = |coefficients: &[f64]| {
                     RoundedPolynomial::exact(Polynomial::new(coefficients.to_vec()).coefficients())
@@ -47,12 +47,13 @@ impl Quotient {
     /// e^(-sT) ~ p(-sT)/p(sT),      p(u) = u^3/120 + u^2/10 + u/2 + 1
     /// ```
     pub(super) fn of_delayed_member(member: &Member) -> Option<Quotient> {
-        let Member::Continuous { plant, sensor } = member else { return None };
+        let Member::Continuous { plant, sensor, fed_forward } = member else { return None };
         let own_s = plant.dead_time_s + sensor.dead_time_s();
         let mut plant = plant.clone();
         plant.dead_time_s = 0.0;
         let sensor = sensor.clone().with_dead_time(0.0).ok()?;
-        let rational = Quotient::of_member(&Member::Continuous { plant, sensor })?;
+        let fed_forward = fed_forward.clone();
+        let rational = Quotient::of_member(&Member::Continuous { plant, sensor, fed_forward })?;
         let delay = |time_s: f64| {
             let [one, square, cube] = [time_s, time_s * time_s, time_s * time_s * time_s];
             RoundedPolynomial::exact(&[cube / 120.0, square / 10.0, one / 2.0, 1.0])

@@ -1,0 +1,84 @@
+//! What a plant within its loop answers.
+
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+
+use super::images::Images;
+use super::{Member, MemberResponse, turned};
+
+impl MemberResponse {
+    /// The same with this fed forward of the disturbance: Pd + K V_d P.
+    pub(super) fn fed(self, forward: Complex64) -> MemberResponse {
+        MemberResponse { load_motion: self.load_motion + forward * self.plant, ..self }
+    }
+}
+
+impl Member {
+    /// P, Pd and H at a frequency; `None` where a measurement does not reach.
+    ///
+    /// Sampling folds the response of a measured plant beyond pi/T back: its images at w + 2 pi k/T are summed as far as the measurement
+    /// reaches. Where what lies beyond it could still count for a hundredth (were it as large as at the end of the measurement), the
+    /// response is not known.
+    pub fn response(&self, frequency_rad_per_s: f64) -> Option<MemberResponse> {
+        match self {
+            Member::Continuous { plant, sensor, fed_forward } => {
+                let own = continuous(plant, sensor, frequency_rad_per_s);
+                Some(own.fed(fed_forward.at(frequency_rad_per_s)))
+            }
+            Member::Sampled { command, with_sensor, disturbance, fed_forward } => {
+                let plant = command.at_frequency(frequency_rad_per_s);
+                let own = MemberResponse {
+                    plant,
+                    load_motion: load_motion(disturbance.as_ref(), frequency_rad_per_s),
+                    sensor: with_sensor.at_frequency(frequency_rad_per_s) / plant,
+                };
+                Some(own.fed(fed_forward.at(frequency_rad_per_s)))
+            }
+            Member::Responding { plant, .. } => self.images()?.of_model(plant.as_ref(), frequency_rad_per_s),
+            Member::Measured { plant, .. } => self.images()?.of_measurement(plant, frequency_rad_per_s),
+        }
+    }
+
+    /// K P_v(jw) of a plant without polynomials, with the delay of the loop and sampled where that samples; `None` of other plants, and
+    /// where its images do not die out.
+    pub(crate) fn fed_back(&self, frequency_rad_per_s: f64) -> Option<Complex64> {
+        let Member::Responding { plant, .. } = self else { return None };
+        self.images()?.fed_back(plant.as_ref(), frequency_rad_per_s)
+    }
+
+    fn images(&self) -> Option<Images<'_>> {
+        match self {
+            Member::Responding { sensor, delay_s, sample_time_s, rate_feed_forward, .. } => Some(Images {
+                sensor,
+                delay_s: *delay_s,
+                sample_time_s: *sample_time_s,
+                rate_feed_forward: *rate_feed_forward,
+            }),
+            Member::Measured { sensor, delay_s, sample_time_s, .. } => Some(Images {
+                sensor,
+                delay_s: *delay_s,
+                sample_time_s: *sample_time_s,
+                rate_feed_forward: 0.0,
+            }),
+            Member::Continuous { .. } | Member::Sampled { .. } => None,
+        }
+    }
+}
+
+pub(super) fn continuous(
+    plant: &PlantCoefficients<f64>,
+    sensor: &TransferFunction,
+    frequency_rad_per_s: f64,
+) -> MemberResponse {
+    MemberResponse {
+        plant: plant.command.at_frequency(frequency_rad_per_s)
+            * turned(frequency_rad_per_s, plant.dead_time_s),
+        load_motion: load_motion(plant.disturbance.as_ref(), frequency_rad_per_s),
+        sensor: sensor.at_frequency(frequency_rad_per_s),
+    }
+}
+
+pub(super) fn load_motion(path: Option<&RationalCoefficients<f64>>, frequency_rad_per_s: f64) -> Complex64 {
+    path.map_or(Complex64::new(0.0, 0.0), |path| path.at_frequency(frequency_rad_per_s))
+}
