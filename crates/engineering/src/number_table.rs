@@ -49,7 +49,7 @@ const GROUP: usize = 65_536;
 ///
 /// # Example
 /// ```
-/// use phea_engineering::answer::{NumberTable, TableFormat};
+/// use phea_engineering::number_table::{NumberTable, TableFormat};
 /// let mut table = NumberTable::new(Vec::new(), TableFormat::Csv, &["time_s", "force_n"])?;
 /// table.row(&[0.0, -4000.0])?;
 /// table.row(&[2.5e-4, f64::NAN])?;

@@ -26,7 +26,7 @@ use phea_quantity::{Dimension, RATIO, display};
 ///
 /// # Example
 /// ```
-/// use phea_project::{self, STARTER};
+/// use phea_project::{self as project, STARTER};
 /// use phea_project::source::Memory;
 /// let source = Memory::default().with("rig.toml", STARTER);
 /// let loaded = project::read(&source, "rig.toml", &["supply.pressure=80 bar".to_string()], &[])?;

@@ -30,7 +30,7 @@ const SEEDS: f64 = 4e9;
 /// Every run follows from seed and index.
 /// ```
 /// use phea_engineering::campaign::Plan;
-/// use phea_project;
+/// use phea_project as project;
 /// use phea_project::source::Memory;
 /// let text = include_str!("../../../../examples/benchmark/campaign.toml");
 /// let source = Memory::default().with("campaign.toml", text);
