@@ -106,7 +106,8 @@ pub enum PlantMember {
 /// let plant = UncertainPlant::record(vec![parameter("k"), parameter("a")], |p| PlantCoefficients {
 ///     command: RationalCoefficients { numerator: vec![p[0] * p[1]], denominator: vec![1.0.into(), p[1], 0.0.into()] },
 ///     disturbance: None,
-///     dead_time_s: 0.0.into(), rate: None,
+///     dead_time_s: 0.0.into(),
+///     rate: None,
 /// })?;
 /// let member = plant.coefficients(&[2.0, 5.0]).ok_or("a rational plant")?;
 /// assert_eq!(member.command.denominator, vec![1.0, 5.0, 0.0]);
@@ -242,7 +243,8 @@ impl UncertainPlant {
     /// let plant = UncertainPlant::record(vec![mass], |p| PlantCoefficients {
     ///     command: RationalCoefficients { numerator: vec![1.0.into()], denominator: vec![p[0] - 0.5.into(), 1.0.into()] },
     ///     disturbance: None,
-    ///     dead_time_s: 0.0.into(), rate: None,
+    ///     dead_time_s: 0.0.into(),
+    ///     rate: None,
     /// })?;
     /// let enclosed = plant.enclosures(&[Interval::new(0.0, 2.0)]).ok_or("a rational plant")?;
     /// assert!(enclosed.command.denominator[0].has_both_signs()); // in between, a pole passes through infinity
@@ -369,12 +371,15 @@ mod tests {
             },
             disturbance: Some(RationalCoefficients { numerator: vec![-p[0]], denominator: vec![2.0.into()] }),
             dead_time_s: 0.5.into(),
-            rate: None,
+            rate: Some(RateNumerators {
+                command: vec![p[0] + p[0]],
+                disturbance: vec![3.0.into(), 0.0.into()],
+            }),
         }
     }
 
     #[test]
-    fn both_paths_and_the_dead_time_come_back() {
+    fn all_paths_and_the_dead_time_come_back() {
         let plant = UncertainPlant::record(vec![parameter(1.0, 2.0, 3.0)], integrator).unwrap();
         let member = plant.coefficients(&[3.0]).unwrap();
         assert_eq!(
@@ -385,6 +390,7 @@ mod tests {
             member.disturbance,
             Some(RationalCoefficients { numerator: vec![-3.0], denominator: vec![2.0] })
         );
+        assert_eq!(member.rate, Some(RateNumerators { command: vec![6.0], disturbance: vec![3.0, 0.0] }));
         // ORIGIN: analytic, 3/(j pi) e^(-j pi/2) = -3/pi
         let response = plant.response(&[3.0], std::f64::consts::PI).unwrap();
         assert!((response - Complex64::new(-3.0 / std::f64::consts::PI, 0.0)).norm_sqr() < 1e-30);

@@ -40,7 +40,8 @@ enum Stage {
 /// let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {
 ///     command: RationalCoefficients { numerator: vec![1.0.into()], denominator: vec![1.0.into(), 0.0.into()] },
 ///     disturbance: None,
-///     dead_time_s: 0.0.into(), rate: None,
+///     dead_time_s: 0.0.into(),
+///     rate: None,
 /// })?;
 /// let family = Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?);
 /// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;

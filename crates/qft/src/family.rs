@@ -86,7 +86,8 @@ pub const MEMBERS_MAXIMUM: usize = 2_000_000;
 /// let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
 ///     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
 ///     disturbance: None,
-///     dead_time_s: 0.0.into(), rate: None,
+///     dead_time_s: 0.0.into(),
+///     rate: None,
 /// })?;
 /// let coordinate = Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Logarithmic], points: 3 };
 /// let members = grid(&plant, &[coordinate.clone()])?;

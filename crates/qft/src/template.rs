@@ -111,7 +111,8 @@ pub struct BuiltTemplate {
 /// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
 /// #     disturbance: None,
 /// #     dead_time_s: 0.0.into(),
-/// #, rate: None })?;
+/// #     rate: None,
+/// # })?;
 /// # let coordinate = Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
 /// # let members = vertices(&plant, &[coordinate.clone()])?;
 /// # let family = Family::Uncertain(UncertainFamily::new(plant, vec![coordinate], members, Extent::Box)?);
@@ -176,7 +177,8 @@ impl Iterator for Templates<'_> {
 /// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into()] },
 /// #     disturbance: None,
 /// #     dead_time_s: p[1],
-/// #, rate: None })?;
+/// #     rate: None,
+/// # })?;
 /// # let along = |index| Coordinate { parameters: vec![index], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
 /// # let coordinates = vec![along(0), along(1)];
 /// # let members = vertices(&plant, &coordinates)?;

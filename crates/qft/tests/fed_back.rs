@@ -264,12 +264,11 @@ fn its_poles_are_those_of_the_loop_in_states() {
             StabilityStatus::NotResolved(_) => {}
             status => {
                 assert_eq!(status == StabilityStatus::Stable, stable, "{number}: {status:?} {expected}");
-                assert!(stable || !asked.is_stable(around.feedback()).unwrap(), "{number}");
+                assert_eq!(asked.is_stable(around.feedback()).unwrap(), stable, "{number}");
                 hidden_seen[usize::from(stable)] += 1;
             }
         }
     }
-    println!("{seen:?} {hidden_seen:?}");
     assert!(seen.iter().all(|count| *count > 40), "{seen:?}");
     assert!(hidden_seen.iter().all(|count| *count > 5), "{hidden_seen:?}");
 }
@@ -290,7 +289,7 @@ fn hidden_polynomials_fold_onto_the_same() {
                 [(other.plant, one.plant), (other.sensor, one.sensor), (other.load_motion, one.load_motion)]
             {
                 let error = magnitude(found / expected - 1.0);
-                assert!(error < 1e-2, "{number} at {frequency}: {error:e}");
+                assert!(error < 2e-3, "{number} at {frequency}: {error:e}");
             }
         }
     }

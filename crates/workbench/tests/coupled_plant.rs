@@ -241,7 +241,6 @@ fn a_sampled_feed_forward_is_in_the_loop() {
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();
         let machine = overshoot("machine").unwrap();
-        println!("{gain} {sample_ms} {delay_ms}: {machine} {:?}", overshoot("linear"));
         assert_eq!(machine < 40.0, stable, "{gain} {sample_ms} {delay_ms}: {run}");
         if stable {
             assert!((machine - overshoot("linear").unwrap()).abs() < 5.0, "{gain} {delay_ms}: {run}");

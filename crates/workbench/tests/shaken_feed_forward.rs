@@ -96,10 +96,6 @@ fn check(settings: &[&str], hertz: &[u32]) {
         let fed = [settings, &["controller.load_velocity_feed_forward.gain=20"]].concat();
         let (machine, linear) = (of_machine(&fed, hertz), of_loop(&fed, hertz));
         let error = apart(machine, linear);
-        println!(
-            "{settings:?} {hertz} Hz: {error:.1e}, without {:.2}",
-            apart(of_loop(settings, hertz), linear)
-        );
         assert!(error < 1e-3, "{settings:?} at {hertz} Hz: {machine}, not {linear}: {error}");
         assert!(apart(of_loop(settings, hertz), linear) > 0.01, "{settings:?} at {hertz} Hz");
     }

@@ -48,7 +48,8 @@ const SAME: f64 = 1e-6;
 /// #     command: RationalCoefficients { numerator: vec![4.0.into()], denominator: vec![1.0.into(), 0.0.into()] },
 /// #     disturbance: None,
 /// #     dead_time_s: 0.0.into(),
-/// #, rate: None })?;
+/// #     rate: None,
+/// # })?;
 /// # let problem = DesignProblem {
 /// #     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
 /// #     beside: vec![],

@@ -51,7 +51,8 @@ use crate::specification::{Limit, Specification};
 /// #     command: RationalCoefficients { numerator: vec![1.0.into()], denominator: vec![1.0.into(), (-4.0).into()] },
 /// #     disturbance: None,
 /// #     dead_time_s: 0.0.into(),
-/// #, rate: None })?;
+/// #     rate: None,
+/// # })?;
 /// # let members = vec![plant.nominal()];
 /// # let family = Family::Uncertain(UncertainFamily::new(plant, vec![], members, Extent::Members)?);
 /// let problem = DesignProblem {

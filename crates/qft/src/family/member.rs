@@ -40,7 +40,8 @@ pub fn vertices(plant: &UncertainPlant, coordinates: &[Coordinate]) -> Result<Ve
 /// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
 /// #     disturbance: None,
 /// #     dead_time_s: 0.0.into(),
-/// #, rate: None })?;
+/// #     rate: None,
+/// # })?;
 /// let gain = Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Logarithmic], points: 3 };
 /// let drawn = random(&plant, std::slice::from_ref(&gain), 1000, 7)?; // between 1 and 100
 /// let below = drawn.iter().filter(|values| values[0] < 10.0).count();

@@ -52,7 +52,8 @@ pub enum SamplesError {
 /// let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
 ///     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
 ///     disturbance: None,
-///     dead_time_s: 0.0.into(), rate: None,
+///     dead_time_s: 0.0.into(),
+///     rate: None,
 /// })?;
 /// let problem = DesignProblem {
 ///     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),

@@ -50,7 +50,8 @@ const WINDOW_DB: f64 = 20.0;
 /// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
 /// #     disturbance: None,
 /// #     dead_time_s: 0.0.into(),
-/// #, rate: None })?;
+/// #     rate: None,
+/// # })?;
 /// # let problem = DesignProblem {
 /// #     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
 /// #     beside: vec![],

@@ -31,7 +31,8 @@ use crate::verification::{PlantPoint, TrackingJudgement};
 /// let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
 ///     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into()] },
 ///     disturbance: None,
-///     dead_time_s: 0.0.into(), rate: None,
+///     dead_time_s: 0.0.into(),
+///     rate: None,
 /// })?;
 /// let along = Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
 /// let members = vec![vec![1.0], vec![4.0]];

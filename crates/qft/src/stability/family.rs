@@ -56,7 +56,8 @@ pub struct FamilyStability {
 ///         denominator: vec![1.0.into(), 0.0.into(), (-2.5).into()],
 ///     },
 ///     disturbance: None,
-///     dead_time_s: 0.0.into(), rate: None,
+///     dead_time_s: 0.0.into(),
+///     rate: None,
 /// })?;
 /// let coordinate =
 ///     |index| Coordinate { parameters: vec![index], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
