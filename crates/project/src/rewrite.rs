@@ -20,8 +20,8 @@ const BESIDE: [&str; 7] = [
     "load_velocity_feed_forward",
 ];
 
-/// The bytes of a project file with this controller, and with this prefilter if there is one, in place of what it said. Keys of [controller]
-/// and [prefilter] beside the law stay as they are written, unless `settings` overrode them.
+/// The bytes of a project file with this controller, and with this prefilter if there is one, in place of what it said. Keys of `[controller]`
+/// and `[prefilter]` beside the law stay as they are written, unless `settings` overrode them.
 pub fn with_laws(
     bytes: &[u8],
     settings: &[String],

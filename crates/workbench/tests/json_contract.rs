@@ -131,7 +131,7 @@ fn unexplained(path: &str, value: &Value, found: &mut Vec<String>) {
 fn a_number_that_does_not_exist_has_a_reason() {
     let mut found = Vec::new();
     for (label, object) in everything() {
-        unexplained(&label, &object, &mut found);
+        unexplained(label, object, &mut found);
     }
     found.dedup();
     assert!(found.is_empty(), "{}", found.join("\n"));

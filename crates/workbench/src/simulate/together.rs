@@ -173,7 +173,7 @@ fn forces(runs: &[Named<'_>], height: f64, span_s: [f64; 2], wish: Option<&Wish>
     let first = runs.first().map(|named| named.run);
     let windows = first.map(|run| run.windows.as_slice()).unwrap_or_default();
     let lines = wish.map(|wish| {
-        wish.lines(windows.iter().map(|(window, _)| window), span_s).iter().map(series).collect()
+        wish.lines(windows.iter().map(|(window, _)| window), span_s).iter().map(|line| series(line)).collect()
     });
     TimePanel {
         reference: first.and_then(|run| asked_for(&run.record)),
@@ -229,7 +229,7 @@ fn commands(runs: &[Named<'_>], height: f64) -> TimePanel {
 }
 
 /// A line that the force should not cross.
-fn series(line: &Vec<[f64; 2]>) -> TimeSeries {
+fn series(line: &[[f64; 2]]) -> TimeSeries {
     let (times_s, values) = line.iter().map(|[time_s, value]| (*time_s, *value)).unzip();
     TimeSeries { name: String::new(), times_s, values }
 }
