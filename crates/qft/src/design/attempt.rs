@@ -26,7 +26,7 @@ use crate::verification::{Audit, SpecificationAudit, TrackingJudgement};
 
 /// Below this worst margin of the samples, the reserve taken off, a structure counts as unable to meet the specifications, dB.
 pub(super) const FEASIBLE_DB: f64 = -1.5e-3;
-/// Where a counterexample misses by more than this, the margins of what was found lead nowhere, dB.
+/// Where a counterexample misses by this much more than all samples did, the margins of what was found lead nowhere, dB.
 const ASTRAY_DB: f64 = -6.0;
 /// Beside the frequency of a counterexample the same plants are looked at at these multiples of it.
 const NEIGHBOURS: [f64; 4] = [0.94, 0.97, 1.03, 1.06];
@@ -364,6 +364,8 @@ impl Attempt {
     /// The descent again, with these among the samples; `None` if they are among them already, or it was made often enough.
     fn with(&mut self, examples: &[Counterexample]) -> Result<Option<Stage>, DesignError> {
         let mut news = false;
+        let missing_db =
+            if self.relaxes { self.shaping.judge(&self.x).worst_margin_db.min(0.0) } else { 0.0 };
         let [lowest, highest] = self.frequency_range();
         for example in examples {
             // towards the ends of the axis a decade at a time
@@ -383,7 +385,7 @@ impl Attempt {
             return Ok(None);
         }
         let judgement = self.shaping.judge(&self.x);
-        let leads_on = judgement.stable && (self.relaxes || judgement.worst_margin_db > ASTRAY_DB);
+        let leads_on = judgement.stable && judgement.worst_margin_db > missing_db + ASTRAY_DB;
         if leads_on {
             self.sound = self.x.clone();
             return Ok(Some(self.descend(true)));
