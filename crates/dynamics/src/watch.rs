@@ -11,3 +11,47 @@ pub struct Progress {
 
 /// Told the progress of a long procedure from time to time; it stops where the answer is `false`.
 pub type Watch<'a> = &'a mut dyn FnMut(Progress) -> bool;
+
+/// The watch stopped the procedure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("stopped")]
+pub struct Stopped;
+
+/// Tells the watch how far the procedure is: `done` steps of `all`.
+///
+/// # Errors
+/// [`Stopped`] where the watch answers `false`.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::watch::{Progress, Stopped, Watch, tell, unwatched};
+/// fn sum(numbers: &[f64], watch: Watch<'_>) -> Result<f64, Stopped> {
+///     let mut sum = 0.0;
+///     for (done, number) in numbers.iter().enumerate() {
+///         tell(watch, "adding", done, numbers.len())?;
+///         sum += number;
+///     }
+///     Ok(sum)
+/// }
+/// assert_eq!(sum(&[1.0, 2.0], &mut unwatched), Ok(3.0));
+/// let mut until_half = |progress: Progress| progress.share < 0.5;
+/// assert_eq!(sum(&[1.0, 2.0], &mut until_half), Err(Stopped));
+/// ```
+pub fn tell(watch: Watch<'_>, stage: &'static str, done: usize, all: usize) -> Result<(), Stopped> {
+    let share = done as f64 / all.max(1) as f64;
+    if watch(Progress { stage, share }) { Ok(()) } else { Err(Stopped) }
+}
+
+/// The watch of a part of a procedure, which takes it from one share of the whole to another; the stage is that of the whole.
+pub fn part<'a>(
+    watch: Watch<'a>,
+    stage: &'static str,
+    [from, to]: [f64; 2],
+) -> impl FnMut(Progress) -> bool + use<'a> {
+    move |progress| watch(Progress { stage, share: from + (to - from) * progress.share })
+}
+
+/// A watch that lets everything go on.
+pub fn unwatched(_: Progress) -> bool {
+    true
+}

@@ -14,9 +14,10 @@ pub use words::{
 };
 
 use phea_dynamics::portable;
-use phea_qft::audit::AuditRun;
 use phea_qft::family::{Extent, Family};
-use phea_qft::verification::{Audit, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Verdict};
+use phea_qft::verification::{
+    Audit, AuditProblem, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Verdict,
+};
 
 use crate::caveat::Caveat;
 use crate::error::ProcedureError;
@@ -25,7 +26,7 @@ use crate::quantity::DisplayUnit;
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
-use phea_dynamics::watch::{Progress, Watch};
+use phea_dynamics::watch::Watch;
 
 /// Why there is nothing to audit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -70,18 +71,21 @@ pub fn audit_project(
 /// # Errors
 /// [`ProcedureError::Stopped`] where the watcher stops it.
 pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, ProcedureError> {
-    let RobustProblem { family, compensation, specifications, .. } = problem;
-    let tracking = match problem.has_prefilter {
-        true => TrackingJudgement::Magnitude,
-        false => TrackingJudgement::Spread,
-    };
-    let mut run = AuditRun::new(family, compensation, specifications, tracking, TOLERANCE_DB);
-    while run.step() {
-        if !watch(Progress { stage: "auditing", share: run.progress() }) {
-            return Err(ProcedureError::Stopped);
-        }
+    Ok(ProjectAudit::new(problem, phea_qft::audit::audit(&asked(problem, &problem.family), watch)?))
+}
+
+/// What is audited of a problem, over a family that may be another.
+fn asked<'a>(problem: &'a RobustProblem, family: &'a Family) -> AuditProblem<'a> {
+    AuditProblem {
+        family,
+        compensation: &problem.compensation,
+        specifications: &problem.specifications,
+        tracking: match problem.has_prefilter {
+            true => TrackingJudgement::Magnitude,
+            false => TrackingJudgement::Spread,
+        },
+        tolerance_db: TOLERANCE_DB,
     }
-    Ok(ProjectAudit::new(problem, run.audit()))
 }
 
 /// What the plants of a family are called.

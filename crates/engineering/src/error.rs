@@ -74,6 +74,12 @@ pub enum ProcedureError {
     Stopped,
 }
 
+impl From<phea_dynamics::watch::Stopped> for ProcedureError {
+    fn from(_: phea_dynamics::watch::Stopped) -> ProcedureError {
+        ProcedureError::Stopped
+    }
+}
+
 impl ProcedureError {
     /// The findings, where files that the project names were refused with a place for each.
     pub fn refusal(&self) -> Option<&Refusal> {

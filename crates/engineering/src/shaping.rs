@@ -12,7 +12,7 @@ pub use change::{Change, RequestedChange};
 use num_complex::Complex64;
 use phea_dynamics::controller::Compensator;
 use phea_qft::manual_shaping::{DesignChart, DesignMargin, DesignPoint, History};
-use phea_qft::stability::StabilityAudit;
+use phea_qft::stability::family_stability;
 use phea_qft::template::{TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::{StabilityFinding, TrackingJudgement};
 
@@ -22,7 +22,7 @@ use crate::project::{self, Element, Findings, Loaded, Report};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
-use phea_dynamics::watch::{Progress, Watch};
+use phea_dynamics::watch::{Watch, tell};
 use workpiece::Workpiece;
 
 /// What of a project is shaped.
@@ -133,7 +133,7 @@ pub fn shape(
         changes: changes.len(),
         elements,
         names: problem.names.clone(),
-        stability: stability(&problem, watch)?,
+        stability: family_stability(&problem.family, &problem.compensation, watch)?.finding,
         margins: chart.margins(&problem.compensation, tracking),
         points: chart.points(&problem.compensation),
         unreached_rad_per_s,
@@ -153,25 +153,12 @@ fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<
             Err(TemplateError::OutOfReach { frequency_rad_per_s }) => unreached.push(frequency_rad_per_s),
             built => found.push(built.map_err(RobustError::from)?.template),
         }
-        let share = (index + 1) as f64 / frequencies.len() as f64;
-        proceed(watch, "templates", share)?;
+        tell(watch, "templates", index + 1, frequencies.len())?;
     }
     let frequency_rad_per_s = found.first().map_or(f64::NAN, |template| template.frequency_rad_per_s);
     let chart = DesignChart::new(&problem.family, found, &problem.specifications)
         .map_err(|error| RobustError::Bound { frequency_rad_per_s, error })?;
     Ok((chart, unreached))
-}
-
-fn stability(problem: &RobustProblem, watch: Watch<'_>) -> Result<StabilityFinding, ProcedureError> {
-    let mut audit = StabilityAudit::new(&problem.family, &problem.compensation);
-    while audit.step() {
-        proceed(watch, "stability", audit.progress())?;
-    }
-    Ok(audit.result().finding)
-}
-
-fn proceed(watch: Watch<'_>, stage: &'static str, share: f64) -> Result<(), ProcedureError> {
-    if watch(Progress { stage, share }) { Ok(()) } else { Err(ProcedureError::Stopped) }
 }
 
 /// Where what is shaped lies at a frequency: the nominal loop L0, or the prefilter F. `None` where it is not known.

@@ -1,41 +1,39 @@
 //! The audit of a controller: stability, delay margin and specifications of a family put together into one verdict.
+//!
+//! ```text
+//! stability -> unstable: nothing more to look at
+//!           -> specifications, at the plants nearest to instability too -> stability of the worst plants of each
+//! ```
 
-use crate::closed_loop::Compensation;
-use crate::family::Family;
+use phea_dynamics::watch::{Stopped, Watch, part};
+
 use crate::sampled::SampledPlants;
-use crate::specification::{Requirement, Specification};
-use crate::stability::StabilityAudit;
+use crate::specification::Requirement;
+use crate::stability::{FamilyStability, StabilityAudit};
 use crate::verification::{
-    Audit, Evidence, PlantPoint, SpecificationAudit, SpecificationFinding, StabilityFinding,
-    TrackingJudgement, Verdict,
+    Audit, AuditProblem, Evidence, PlantPoint, SpecificationFinding, StabilityFinding, Verdict, audit_among,
 };
 
-/// Share of the work that stability takes, for the progress.
-const STABILITY_SHARE: f64 = 0.4;
+/// What the watch is told.
+const STAGE: &str = "auditing";
 
-/// What an audit is at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stage {
-    Stability,
-    Specifications,
-    /// Stability once more, of the worst plants of each specification.
-    Suspects,
-    Done,
-}
-
-/// An audit stepped by its owner, who may show its progress or stop it at any step.
+/// Audits a controller over the whole family and band.
+///
+/// # Errors
+/// [`Stopped`] by the watch.
 ///
 /// # Example
-/// The integrator 1/s closed with gain 1 is stable, bears pi/2 s of delay, and keeps |T| <= 1.2 everywhere:
+/// The integrator 1/s closed with gain 1 is stable, tolerates pi/2 s of delay, and satisfies |T| <= 1.2 everywhere:
 /// ```
 /// use phea_dynamics::controller::Controller;
 /// use phea_dynamics::linear::TransferFunction;
 /// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
-/// use phea_qft::audit::AuditRun;
+/// use phea_dynamics::watch::unwatched;
+/// use phea_qft::audit::audit;
 /// use phea_qft::closed_loop::Compensation;
 /// use phea_qft::family::{Extent, Family, UncertainFamily};
 /// use phea_qft::specification::{Limit, Requirement, Specification};
-/// use phea_qft::verification::{TOLERANCE_DB, TrackingJudgement, Verdict};
+/// use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {
 ///     command: RationalCoefficients { numerator: vec![1.0.into()], denominator: vec![1.0.into(), 0.0.into()] },
@@ -50,135 +48,68 @@ enum Stage {
 ///     frequencies_rad_per_s: vec![1.0],
 ///     band_rad_per_s: [0.0, f64::INFINITY],
 /// }];
-/// let mut run =
-///     AuditRun::new(&family, &compensation, &specifications, TrackingJudgement::Magnitude, TOLERANCE_DB);
-/// while run.step() {}
-/// let audit = run.audit();
+/// let problem = AuditProblem {
+///     family: &family,
+///     compensation: &compensation,
+///     specifications: &specifications,
+///     tracking: TrackingJudgement::Magnitude,
+///     tolerance_db: TOLERANCE_DB,
+/// };
+/// let audit = audit(&problem, &mut unwatched)?;
 /// assert_eq!(audit.verdict, Verdict::Met);
-/// let bears = audit.delay_margin.ok_or("it is stable")?.delay_s;
-/// assert!((bears - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
+/// let tolerated = audit.delay_margin.ok_or("it is stable")?.delay_s;
+/// assert!((tolerated - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug)]
-pub struct AuditRun {
-    stability: StabilityAudit,
-    stage: Stage,
-    specifications: SpecificationAudit,
-    tolerance_db: f64,
+pub fn audit(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Result<Audit, Stopped> {
+    audit_with(problem, &SampledPlants::default(), watch)
 }
 
-impl AuditRun {
-    /// An audit that has not begun. A margin of minus `tolerance_db` still counts as met.
-    pub fn new(
-        family: &Family,
-        compensation: &Compensation,
-        specifications: &[Specification],
-        tracking: TrackingJudgement,
-        tolerance_db: f64,
-    ) -> AuditRun {
-        AuditRun {
-            stability: StabilityAudit::new(family, compensation),
-            stage: Stage::Stability,
-            specifications: SpecificationAudit::new(
-                family,
-                compensation,
-                specifications,
-                tracking,
-                tolerance_db,
-            ),
-            tolerance_db,
-        }
+/// The same, with plants of the same family within the same loop, whatever its controller, so that none is sampled twice.
+pub(crate) fn audit_with(
+    problem: &AuditProblem<'_>,
+    sampled: &SampledPlants,
+    watch: Watch<'_>,
+) -> Result<Audit, Stopped> {
+    let mut stability = StabilityAudit::new(problem.family, problem.compensation, sampled);
+    stability.look(&mut part(watch, STAGE, [0.0, 0.4]))?;
+    let found = stability.result();
+    if is_unstable(&found.finding) {
+        // an unstable loop has no margins to look for
+        return Ok(joined(problem, found, problem.unexamined()));
     }
-
-    /// Hands over the plants of the audit of stability, for the tests of this package.
-    #[doc(hidden)]
-    pub fn take_stability_plants(&mut self) -> SampledPlants {
-        self.stability.take_sampled()
+    let between = if stability.searched() { stability.plants_between() } else { vec![] };
+    let (specifications, _) = audit_among(problem, &between, sampled, &mut part(watch, STAGE, [0.4, 0.98]))?;
+    if stability.searched() {
+        stability.look_at(&suspects(&specifications), &mut part(watch, STAGE, [0.98, 1.0]))?;
     }
+    Ok(joined(problem, stability.result(), specifications))
+}
 
-    /// Takes over plants of the same family within the same loop, whatever its controller, so that none is sampled twice.
-    pub(crate) fn take_over(&mut self, sampled: SampledPlants) {
-        self.stability.take_over(sampled);
+/// One verdict of both.
+fn joined(
+    problem: &AuditProblem<'_>,
+    stability: FamilyStability,
+    mut specifications: Vec<SpecificationFinding>,
+) -> Audit {
+    if is_unstable(&stability.finding) {
+        specifications = problem.unexamined();
     }
-
-    /// Hands over the plants that were sampled, once all is done.
-    pub(crate) fn take_sampled(&mut self) -> SampledPlants {
-        self.specifications.take_sampled()
+    for finding in &mut specifications {
+        without_stability(finding, &stability.finding);
     }
-
-    /// Does a small part of the work; whether there is more to do.
-    ///
-    /// Both audits share their plants: those that the audit of stability looked at between members and corners, and the nearest to
-    /// instability, are looked at for every specification, and the worst of each specification is judged for its stability.
-    pub fn step(&mut self) -> bool {
-        match self.stage {
-            Stage::Stability => {
-                if !self.stability.step() {
-                    self.specifications.take_over(self.stability.take_sampled());
-                    if self.stability.searched() {
-                        self.specifications.add(self.stability.plants_between());
-                    }
-                    // an unstable loop has no margins to look for
-                    let decided = is_unstable(&self.stability.result().finding);
-                    self.stage = if decided { Stage::Done } else { Stage::Specifications };
-                }
-            }
-            Stage::Specifications => {
-                if !self.specifications.step() {
-                    let worst = suspects(self.specifications.findings());
-                    self.stability.take_over(self.specifications.take_sampled());
-                    if self.stability.searched() {
-                        self.stability.look_at(worst);
-                    }
-                    self.stage = Stage::Suspects;
-                }
-            }
-            Stage::Suspects => {
-                if !self.stability.step() {
-                    self.specifications.take_over(self.stability.take_sampled());
-                    self.stage = Stage::Done;
-                }
-            }
-            Stage::Done => return false,
-        }
-        self.stage != Stage::Done
-    }
-
-    /// The share of the work that is done, 0 to 1.
-    pub fn progress(&self) -> f64 {
-        match self.stage {
-            Stage::Stability => STABILITY_SHARE * self.stability.progress(),
-            Stage::Specifications => {
-                STABILITY_SHARE + (0.98 - STABILITY_SHARE) * self.specifications.progress()
-            }
-            Stage::Suspects => 0.98,
-            Stage::Done => 1.0,
-        }
-    }
-
-    /// What was found; complete once [`AuditRun::step`] has answered that there is nothing left.
-    pub fn audit(&self) -> Audit {
-        let stability = self.stability.result();
-        let mut specifications = match is_unstable(&stability.finding) && self.stage == Stage::Done {
-            true => self.specifications.unexamined(),
-            false => self.specifications.findings().to_vec(),
-        };
-        for finding in &mut specifications {
-            without_stability(finding, &stability.finding);
-        }
-        let verdicts = specifications.iter().map(|finding| finding.verdict);
-        let verdict = verdicts.fold(stability.finding.verdict, worse);
-        let evidences = specifications.iter().map(|finding| finding.evidence);
-        let evidence = evidences.fold(stability.finding.evidence, Evidence::min);
-        Audit {
-            verdict,
-            evidence,
-            tolerance_db: self.tolerance_db,
-            delay_margin: stability.delay_margin,
-            stability: stability.finding,
-            specifications,
-        }
+    let verdicts = specifications.iter().map(|finding| finding.verdict);
+    let verdict = verdicts.fold(stability.finding.verdict, worse);
+    let evidences = specifications.iter().map(|finding| finding.evidence);
+    let evidence = evidences.fold(stability.finding.evidence, Evidence::min);
+    Audit {
+        verdict,
+        evidence,
+        tolerance_db: problem.tolerance_db,
+        delay_margin: stability.delay_margin,
+        stability: stability.finding,
+        specifications,
     }
 }
 

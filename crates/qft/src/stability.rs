@@ -32,7 +32,8 @@ mod search;
 use phea_dynamics::linear::LinearError;
 
 pub use crossover::CriticalDelay;
-pub use family::{FamilyStability, StabilityAudit};
+pub(crate) use family::StabilityAudit;
+pub use family::{FamilyStability, family_stability};
 
 use crate::closed_loop::{Compensation, Member};
 use crate::verification::rounded;
@@ -196,7 +197,7 @@ pub struct MemberStability {
 ///
 /// A rational loop must be stable by its poles and by the turns of its characteristic function alike, or it is not
 /// resolved. In a sampled loop the critical delay is phase over frequency at the crossovers of the sampled L: exact where it is a whole
-/// number of samples; between, a delay also changes what hold and sampler make of the plant. [`StabilityAudit`] samples the worst
+/// number of samples; between, a delay also changes what hold and sampler make of the plant. [`family_stability`] samples the worst
 /// plants anew, but where a rate is fed back within the plant: of such a plant it is the delay of the controller's own path.
 ///
 /// # Example

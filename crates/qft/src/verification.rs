@@ -14,8 +14,8 @@ mod search;
 mod start;
 
 pub(crate) use asymptote::{End, tracking_ratio};
-pub(crate) use audit::corners;
-pub use audit::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Work};
+pub use audit::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Work, audit_specifications};
+pub(crate) use audit::{audit_among, corners};
 pub(crate) use minimum::between;
 pub(crate) use remark::rounded;
 

@@ -1,16 +1,17 @@
-//! Plants that one audit hands on to the next.
+//! An audit made of two.
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
-use phea_qft::audit::AuditRun;
+use phea_dynamics::watch::{Stopped, unwatched};
+use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::specification::{Limit, Requirement, Specification};
-use phea_qft::stability::StabilityAudit;
-use phea_qft::verification::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Verdict};
+use phea_qft::stability::family_stability;
+use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict, audit_specifications};
 
 /// k/(s^2 + 0.4 s + 1) under integral control, sampled ten times a second.
 fn family(extent: Extent) -> Family {
@@ -31,8 +32,8 @@ fn family(extent: Extent) -> Family {
     Family::Uncertain(UncertainFamily::new(plant, along, members, extent).unwrap())
 }
 
-fn sampled_loop(delay_s: f64) -> Compensation {
-    let timing = Timing { sample_time_s: Some(0.1), delay_s, ..Timing::default() };
+fn sampled_loop() -> Compensation {
+    let timing = Timing { sample_time_s: Some(0.1), ..Timing::default() };
     let integral = Element::ProportionalIntegral { proportional_gain: 0.05, integral_gain: 0.1 };
     let feedback = Compensator::new(vec![integral]);
     let controller = Controller { feedback, timing, ..Controller::default() };
@@ -47,43 +48,46 @@ fn specifications() -> [Specification; 1] {
     }]
 }
 
-fn specification_audit(family: &Family, around: &Compensation) -> SpecificationAudit {
-    SpecificationAudit::new(family, around, &specifications(), TrackingJudgement::Magnitude, TOLERANCE_DB)
-}
-
 /// Handing plants on from one audit to the other saves work and changes nothing.
 #[test]
 fn both_audits_find_what_they_find_alone() {
     for extent in [Extent::Box, Extent::Members] {
-        let (family, around) = (family(extent), sampled_loop(0.0));
-        let mut stability = StabilityAudit::new(&family, &around);
-        while stability.step() {}
-        let mut alone = specification_audit(&family, &around);
-        while alone.step() {}
-        let all = &specifications();
-        let mut run = AuditRun::new(&family, &around, all, TrackingJudgement::Magnitude, TOLERANCE_DB);
-        while run.step() {}
-        let audit = run.audit();
-        assert_eq!(audit.stability, stability.result().finding);
-        assert_eq!(audit.delay_margin, stability.result().delay_margin);
+        let (family, around) = (family(extent), sampled_loop());
+        let problem = AuditProblem {
+            family: &family,
+            compensation: &around,
+            specifications: &specifications(),
+            tracking: TrackingJudgement::Magnitude,
+            tolerance_db: TOLERANCE_DB,
+        };
+        let stability = family_stability(&family, &around, &mut unwatched).unwrap();
+        let (alone, _) = audit_specifications(&problem, &mut unwatched).unwrap();
+        let audit = audit(&problem, &mut unwatched).unwrap();
+        assert_eq!(audit.stability, stability.finding);
+        assert_eq!(audit.delay_margin, stability.delay_margin);
         assert_eq!(audit.stability.verdict, Verdict::Met, "{:?}", audit.stability);
-        assert_eq!(audit.specifications, alone.findings());
-        assert_eq!(run.take_stability_plants().count(), 0);
-        assert!(stability.take_sampled().count() >= 5);
+        assert_eq!(audit.specifications, alone);
     }
 }
 
-/// Plants of a loop with more delay show that they are not sampled again.
+/// Wherever its watch stops it, an audit stops at once, and shows its progress until then.
 #[test]
-fn plants_that_were_taken_over_are_not_sampled_again() {
-    let (family, around) = (family(Extent::Members), sampled_loop(0.0));
-    let mut delayed = StabilityAudit::new(&family, &sampled_loop(0.5));
-    while delayed.step() {}
-    let mut own = specification_audit(&family, &around);
-    let mut others = own.clone();
-    others.take_over(delayed.take_sampled());
-    while own.step() {}
-    while others.step() {}
-    let worst = |audit: &SpecificationAudit| audit.findings()[0].worst.as_ref().unwrap().margin_db;
-    assert!(worst(&others) < worst(&own) - 0.01, "{} {}", worst(&others), worst(&own));
+fn an_audit_stops_where_it_is_told() {
+    let (family, around) = (family(Extent::Box), sampled_loop());
+    let problem = AuditProblem {
+        family: &family,
+        compensation: &around,
+        specifications: &specifications(),
+        tracking: TrackingJudgement::Magnitude,
+        tolerance_db: TOLERANCE_DB,
+    };
+    for limit in [0.0, 0.3, 0.5, 0.9] {
+        let mut last = 0.0;
+        let stopped = audit(&problem, &mut |progress| {
+            assert!((last..=1.0).contains(&progress.share) && last <= limit, "{progress:?}");
+            last = progress.share;
+            last <= limit
+        });
+        assert_eq!(stopped, Err(Stopped));
+    }
 }

@@ -10,11 +10,11 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
-use phea_qft::audit::AuditRun;
+use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
 use phea_qft::specification::{Limit, Requirement, Specification};
-use phea_qft::verification::{Audit, PlantPoint, TOLERANCE_DB, TrackingJudgement, Verdict};
+use phea_qft::verification::{Audit, AuditProblem, PlantPoint, TOLERANCE_DB, TrackingJudgement, Verdict};
 
 /// Name, nominal value, least, greatest.
 type Range = (&'static str, f64, f64, f64);
@@ -92,10 +92,14 @@ fn robust_stability(limit: f64) -> Specification {
 
 fn audit(family: &Family, controller: &Controller, specifications: &[Specification]) -> Audit {
     let compensation = Compensation::new(controller, TransferFunction::gain_only(1.0)).unwrap();
-    let tracking = TrackingJudgement::Magnitude;
-    let mut run = AuditRun::new(family, &compensation, specifications, tracking, TOLERANCE_DB);
-    while run.step() {}
-    run.audit()
+    let problem = AuditProblem {
+        family,
+        compensation: &compensation,
+        specifications,
+        tracking: TrackingJudgement::Magnitude,
+        tolerance_db: TOLERANCE_DB,
+    };
+    phea_qft::audit::audit(&problem, &mut unwatched).unwrap()
 }
 
 fn close(found: f64, truth: f64, tolerance: f64) {

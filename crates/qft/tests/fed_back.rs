@@ -16,12 +16,13 @@ use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RateNumerators, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
+use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::loop_shaping::SampleStability;
 use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
 use phea_qft::stability::{StabilityStatus, member_stability};
-use phea_qft::verification::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement};
+use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, audit_specifications};
 
 const SAMPLE_TIME: f64 = 0.01;
 const FREQUENCIES: [f64; 5] = [0.02, 1.0, 17.0, 99.0, 300.0];
@@ -348,10 +349,14 @@ fn an_audit_sees_it() {
         }
         let whole = Family::Uncertain(family.clone());
         let demands = std::slice::from_ref(&demanded);
-        let mut audit =
-            SpecificationAudit::new(&whole, &around, demands, TrackingJudgement::Magnitude, TOLERANCE_DB);
-        while audit.step() {}
-        let worst = audit.findings()[0].worst.clone().unwrap();
+        let problem = AuditProblem {
+            family: &whole,
+            compensation: &around,
+            specifications: demands,
+            tracking: TrackingJudgement::Magnitude,
+            tolerance_db: TOLERANCE_DB,
+        };
+        let worst = audit_specifications(&problem, &mut unwatched).unwrap().0[0].worst.clone().unwrap();
         assert!((worst.margin_db - truth).abs() < 2e-3, "{truth} {worst:?}");
     }
 }

@@ -38,6 +38,8 @@ mod power_of_two;
 mod product;
 #[path = "../src/bound/quadratic.rs"]
 mod quadratic;
+#[path = "../src/sampled.rs"]
+mod sampled;
 #[path = "../src/stability/search.rs"]
 mod search_of_a_box;
 #[path = "../src/loop_shaping/start/spread.rs"]
@@ -45,6 +47,6 @@ mod spread;
 #[path = "../src/loop_shaping/subproblem.rs"]
 mod subproblem;
 
-use phea_qft::closed_loop::Compensation;
+use phea_qft::closed_loop::{self, Compensation};
 use phea_qft::loop_shaping as search;
 use phea_qft::stability::Irresolution;

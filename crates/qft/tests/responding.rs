@@ -14,11 +14,12 @@ use phea_dynamics::responding::{RespondingPlant, RespondingPlants};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
+use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, FINE, Family, Spacing, UncertainFamily, tabulated, vertices};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::stability::{Instability, MemberStability, StabilityStatus, member_stability};
-use phea_qft::verification::{SpecificationAudit, TOLERANCE_DB, TrackingJudgement, Verdict};
+use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict, audit_specifications};
 
 /// k/((s + slow)(s^2 + 2 d w s + w^2)), with dead time.
 #[derive(Clone, Copy, Debug)]
@@ -224,15 +225,14 @@ fn a_box_is_searched_as_that_of_the_polynomials() {
         let members = vertices(&plant, &coordinates).unwrap();
         let family = UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap();
         let (family, specifications) = (Family::Uncertain(family), specifications());
-        let mut audit = SpecificationAudit::new(
-            &family,
-            &compensation,
-            &specifications,
-            TrackingJudgement::Magnitude,
-            TOLERANCE_DB,
-        );
-        while audit.step() {}
-        audit.findings().to_vec()
+        let problem = AuditProblem {
+            family: &family,
+            compensation: &compensation,
+            specifications: &specifications,
+            tracking: TrackingJudgement::Magnitude,
+            tolerance_db: TOLERANCE_DB,
+        };
+        audit_specifications(&problem, &mut unwatched).unwrap().0
     });
     let [shown, own] = findings;
     for (shown, own) in shown.iter().zip(&own) {

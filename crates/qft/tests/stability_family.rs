@@ -8,9 +8,10 @@ use phea_dynamics::portable::atan2;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
+use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
-use phea_qft::stability::{FamilyStability, StabilityAudit};
+use phea_qft::stability::{FamilyStability, family_stability};
 use phea_qft::verification::{Evidence, PlantPoint, Verdict};
 
 /// 1e-3/(s^2 + d s + 1) with d = (p - 0.3)^2 + least: among members at p = 0, 0.5 and 1 nothing shows how small d becomes.
@@ -38,9 +39,7 @@ fn dip(least: f64, extent: Extent) -> Family {
 fn audited(family: &Family, prefilter: Vec<Element>, timing: Timing) -> FamilyStability {
     let controller = Controller { prefilter: Compensator::new(prefilter), timing, ..Controller::default() };
     let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
-    let mut audit = StabilityAudit::new(family, &compensation);
-    while audit.step() {}
-    audit.result()
+    family_stability(family, &compensation, &mut unwatched).unwrap()
 }
 
 fn timings() -> [Timing; 3] {

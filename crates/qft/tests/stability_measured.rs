@@ -5,10 +5,11 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Family, MeasuredFamily, MeasuredPlant};
 use phea_qft::stability::{
-    FamilyStability, Instability, Irresolution, MemberStability, StabilityAudit, StabilityStatus,
+    FamilyStability, Instability, Irresolution, MemberStability, StabilityStatus, family_stability,
     member_stability,
 };
 use phea_qft::verification::{Evidence, PlantPoint, Verdict};
@@ -120,9 +121,7 @@ fn a_measured_family_is_judged_plant_by_plant() {
         let plants = gains.iter().map(|&gain| third_order(gain)).collect();
         let family = Family::Measured(MeasuredFamily::new(plants).unwrap());
         let compensation = loop_of(vec![], Timing::default());
-        let mut audit = StabilityAudit::new(&family, &compensation);
-        while audit.step() {}
-        audit.result()
+        family_stability(&family, &compensation, &mut unwatched).unwrap()
     };
     // (s + 1)^3 bears a gain of 8
     let good = audited(&[1.0, 7.5]).finding;

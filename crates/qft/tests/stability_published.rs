@@ -7,9 +7,10 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
+use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
-use phea_qft::stability::{FamilyStability, StabilityAudit};
+use phea_qft::stability::{FamilyStability, family_stability};
 use phea_qft::verification::{Evidence, PlantPoint, Verdict};
 
 use crate::rig::force;
@@ -39,10 +40,7 @@ fn controller(numerator: &[f64], denominator: &[f64], delay_s: f64) -> Compensat
 }
 
 fn audited(family: &Family, compensation: &Compensation) -> FamilyStability {
-    let mut audit = StabilityAudit::new(family, compensation);
-    while audit.step() {}
-    assert_eq!(audit.progress(), 1.0);
-    audit.result()
+    family_stability(family, compensation, &mut unwatched).unwrap()
 }
 
 fn without_load<S>(numerator: Vec<S>, denominator: Vec<S>, dead_time_s: S) -> PlantCoefficients<S> {

@@ -9,10 +9,11 @@ use phea_dynamics::portable::{asin, ln, log1p, sin};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
+use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
 use phea_qft::stability::{
-    Instability, Irresolution, MemberStability, StabilityAudit, StabilityStatus, member_stability,
+    Instability, Irresolution, MemberStability, StabilityStatus, family_stability, member_stability,
 };
 use phea_qft::verification::PlantPoint;
 
@@ -92,9 +93,8 @@ fn a_fraction_of_a_sample_is_borne_exactly() {
         let feedback = Compensator::new(vec![Element::Gain(1.0 / SAMPLE)]);
         let controller = Controller { feedback, timing, ..Controller::default() };
         let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
-        let mut audit = StabilityAudit::new(&family, &compensation);
-        while audit.step() {}
-        let margin = audit.result().delay_margin.unwrap();
+        let found = family_stability(&family, &compensation, &mut unwatched).unwrap();
+        let margin = found.delay_margin.unwrap();
         assert_eq!(margin.plant, PlantPoint::Parameters(vec![1.25]));
         assert!((margin.delay_s / SAMPLE - 0.8).abs() < 1e-8, "{margin:?}");
     }

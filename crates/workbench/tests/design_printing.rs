@@ -6,7 +6,8 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::TransferFunction;
-use phea_qft::audit::AuditRun;
+use phea_dynamics::watch::unwatched;
+use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantisation::{CoefficientFormat, rounded};
 use phea_qft::design::{
@@ -14,7 +15,7 @@ use phea_qft::design::{
     PrefilterChoice, Relaxation,
 };
 use phea_qft::loop_shaping::{Part, Structure};
-use phea_qft::verification::{PlantPoint, TOLERANCE_DB, TrackingJudgement, Verdict};
+use phea_qft::verification::{AuditProblem, PlantPoint, TOLERANCE_DB, TrackingJudgement, Verdict};
 use phea_workbench::audit::audit_project;
 use phea_workbench::command::{Request, answer};
 use phea_workbench::design::{
@@ -55,14 +56,13 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         format => rounded(&law, format).unwrap().controller,
     };
     let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
-    let mut run = AuditRun::new(
-        &problem.family,
-        &compensation,
-        &problem.specifications,
-        TrackingJudgement::Magnitude,
-        TOLERANCE_DB,
-    );
-    while run.step() {}
+    let asked = AuditProblem {
+        family: &problem.family,
+        compensation: &compensation,
+        specifications: &problem.specifications,
+        tracking: TrackingJudgement::Magnitude,
+        tolerance_db: TOLERANCE_DB,
+    };
     let structure = Structure {
         sign: 1.0,
         gain: [0.1, 100.0],
@@ -77,7 +77,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         starts: None,
         objective_db: 34.0,
         beside: vec![],
-        audit: run.audit(),
+        audit: audit(&asked, &mut unwatched).unwrap(),
         binding: vec![BindingLimit { specification: 1, frequency_rad_per_s: 1.0, plant, margin_db: 0.0 }],
         rounds: vec![DesignRound {
             structure,

@@ -1,8 +1,9 @@
 //! The rig itself, where the family does not contain it.
 
-use phea_qft::audit::AuditRun;
-use phea_qft::verification::{TOLERANCE_DB, TrackingJudgement, Verdict};
+use phea_dynamics::watch::unwatched;
+use phea_qft::verification::Verdict;
 
+use super::asked;
 use crate::caveat::Caveat;
 use crate::project::Project;
 use crate::quantity::significant;
@@ -44,14 +45,7 @@ pub fn outside(setup: &Setup<'_>) -> Option<(Project, String)> {
 /// What the loop of a problem does to the rig itself, where the family does not contain it.
 pub(super) fn caveat(problem: &RobustProblem) -> Option<Caveat> {
     let (alone, beyond) = problem.rig_outside.as_ref()?;
-    let tracking = match problem.has_prefilter {
-        true => TrackingJudgement::Magnitude,
-        false => TrackingJudgement::Spread,
-    };
-    let RobustProblem { compensation, specifications, .. } = problem;
-    let mut run = AuditRun::new(alone, compensation, specifications, tracking, TOLERANCE_DB);
-    while run.step() {}
-    let audit = run.audit();
+    let audit = phea_qft::audit::audit(&asked(problem, alone), &mut unwatched).ok()?;
     let violated: Vec<String> = audit
         .specifications
         .iter()

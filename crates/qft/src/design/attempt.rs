@@ -7,6 +7,7 @@ mod deployment;
 mod error;
 
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::watch::unwatched;
 
 pub(super) use self::beginning::Beginning;
 use self::beginning::{best_of, search_options};
@@ -14,7 +15,6 @@ pub use self::error::DesignError;
 use super::counterexample::{Counterexample, counterexamples, worst_margin_db};
 use super::problem::{DesignOptions, DesignProblem, Objective, PrefilterChoice};
 use super::result::{DesignRound, Starts};
-use crate::audit::AuditRun;
 use crate::closed_loop::Compensation;
 use crate::loop_shaping::{
     Aim, Descent, DescentOptions, Judgement, Samples, Search, SearchProblem, SearchStatus, Shaping, Structure,
@@ -22,7 +22,7 @@ use crate::loop_shaping::{
 use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, PrefilterRun};
 use crate::sampled::SampledPlants;
 use crate::specification::Requirement;
-use crate::verification::{Audit, SpecificationAudit, TrackingJudgement};
+use crate::verification::{Audit, AuditProblem, TrackingJudgement, audit_among};
 
 /// Below this worst margin of the samples, the reserve taken off, a structure counts as unable to meet the specifications, dB.
 pub(super) const FEASIBLE_DB: f64 = -1.5e-3;
@@ -58,10 +58,10 @@ enum Stage {
     Fitting(Box<PrefilterRun>),
     Descending(Box<Descent>),
     /// The specifications over the box, from the plants of the samples alone.
-    Checking(Box<SpecificationAudit>),
+    Checking,
     /// The next plant beside the family.
-    Beside(Box<AuditRun>),
-    Auditing(Box<AuditRun>),
+    Beside,
+    Auditing,
     Ended(Ending),
 }
 
@@ -157,8 +157,7 @@ impl Attempt {
             Stage::Searching(search) => search.step(&mut self.shaping),
             Stage::Fitting(run) => run.step(),
             Stage::Descending(descent) => descent.step(&mut self.shaping),
-            Stage::Checking(audit) => audit.step(),
-            Stage::Beside(run) | Stage::Auditing(run) => run.step(),
+            Stage::Checking | Stage::Beside | Stage::Auditing => false,
             Stage::Ended(_) => return Ok(false),
         };
         if !goes_on {
@@ -166,9 +165,9 @@ impl Attempt {
                 Stage::Searching(_) => self.after_search()?,
                 Stage::Fitting(_) => self.after_fit()?,
                 Stage::Descending(_) => self.after_descent()?,
-                Stage::Checking(_) => self.after_check()?,
-                Stage::Beside(_) => self.after_beside()?,
-                Stage::Auditing(_) => self.after_audit()?,
+                Stage::Checking => self.after_check()?,
+                Stage::Beside => self.after_beside()?,
+                Stage::Auditing => self.after_audit()?,
                 Stage::Ended(ending) => Stage::Ended(ending.clone()),
             };
         }
@@ -180,8 +179,8 @@ impl Attempt {
         match self.stage {
             Stage::Searching(_) | Stage::Descending(_) => "shaping the loop",
             Stage::Fitting(_) => "fitting the prefilter",
-            Stage::Checking(_) => "looking between the samples",
-            Stage::Beside(_) | Stage::Auditing(_) | Stage::Ended(_) => "auditing",
+            Stage::Checking => "looking between the samples",
+            Stage::Beside | Stage::Auditing | Stage::Ended(_) => "auditing",
         }
     }
 
@@ -330,23 +329,20 @@ impl Attempt {
         if let Some(next) = self.drawn_in() {
             return Ok(next);
         }
-        let samples = self.shaping.samples();
-        let problem = samples.problem();
-        let mut audit = SpecificationAudit::new(
-            &samples.family(),
-            &self.compensation()?,
-            &problem.specifications,
-            self.shaping.tracking(),
-            self.options.tolerance_db,
-        );
-        audit.take_over(std::mem::take(&mut self.sampled));
-        Ok(Stage::Checking(Box::new(audit)))
+        Ok(Stage::Checking)
     }
 
     fn after_check(&mut self) -> Result<Stage, DesignError> {
-        let Stage::Checking(audit) = &mut self.stage else { return self.check() };
-        self.sampled = audit.take_sampled();
-        let findings = audit.findings().to_vec();
+        let samples = self.shaping.samples();
+        let problem = AuditProblem {
+            family: &samples.family(),
+            compensation: &self.compensation()?,
+            specifications: &samples.problem().specifications,
+            tracking: self.shaping.tracking(),
+            tolerance_db: self.options.tolerance_db,
+        };
+        let checked = audit_among(&problem, &[], &self.sampled, &mut unwatched);
+        let findings = checked.map(|(findings, _)| findings).unwrap_or_default();
         let judgement = self.judgement();
         let tolerance_db = self.new_below_db(&judgement);
         let audited_db = worst_margin_db(&findings);

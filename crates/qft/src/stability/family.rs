@@ -1,6 +1,7 @@
 //! Stability of a family: every member, then the worst of what lies between them.
 
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::watch::{Stopped, Watch, part, tell};
 
 use super::badness::{Badness, badness_of};
 use super::characteristic::FeedbackPath;
@@ -31,10 +32,13 @@ pub struct FamilyStability {
     pub delay_margin: Option<DelayMargin>,
 }
 
-/// Stability of a family, one plant or one search a step.
+/// Stability of a family: every member, then what lies between the members.
 ///
-/// Over a box, a search starts from the worst members for the largest real part (where there are poles), for the smallest
+/// Over a box, searches start from the worst members for the largest real part (where there are poles), for the smallest
 /// |1 + L|, and for the least critical delay.
+///
+/// # Errors
+/// [`Stopped`] by the watch.
 ///
 /// # Example
 /// s^2 = 2.5 with an uncertain gain and zero, k (s + a)/(s^2 - 2.5), needs C k a > 2.5:
@@ -42,9 +46,10 @@ pub struct FamilyStability {
 /// use phea_dynamics::controller::{Compensator, Controller, Element};
 /// use phea_dynamics::linear::TransferFunction;
 /// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// use phea_dynamics::watch::unwatched;
 /// use phea_qft::closed_loop::Compensation;
 /// use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-/// use phea_qft::stability::StabilityAudit;
+/// use phea_qft::stability::family_stability;
 /// use phea_qft::verification::Verdict;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let parameter =
@@ -68,53 +73,55 @@ pub struct FamilyStability {
 ///     let feedback = Compensator::new(vec![Element::Gain(gain)]);
 ///     let controller = Controller { feedback, ..Controller::default() };
 ///     let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0))?;
-///     let mut audit = StabilityAudit::new(&family, &compensation);
-///     while audit.step() {}
-///     Ok::<_, phea_dynamics::linear::LinearError>(audit.result().finding.verdict)
+///     let found = family_stability(&family, &compensation, &mut unwatched)?;
+///     Ok::<_, Box<dyn std::error::Error>>(found.finding.verdict)
 /// };
 /// assert_eq!(verdict(24.9)?, Verdict::Violated);
 /// assert_eq!(verdict(25.1)?, Verdict::Met);
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug)]
-pub struct StabilityAudit {
-    family: Family,
-    compensation: Compensation,
+pub fn family_stability(
+    family: &Family,
+    compensation: &Compensation,
+    watch: Watch<'_>,
+) -> Result<FamilyStability, Stopped> {
+    let sampled = SampledPlants::default();
+    let mut audit = StabilityAudit::new(family, compensation, &sampled);
+    audit.look(watch)?;
+    Ok(audit.result())
+}
+
+/// The audit of stability of one family.
+pub(crate) struct StabilityAudit<'a> {
+    family: &'a Family,
+    compensation: &'a Compensation,
     path: Result<FeedbackPath, Irresolution>,
     /// The members, the corners of the box, and plants between them whose modes fold.
     plants: Vec<PlantPoint>,
     /// The last of them, once the others were looked at.
-    folded: Option<Folded>,
+    folded: Folded,
     /// Real part, closeness and delay sensitivity of each plant, as far as it was looked at.
     badness: Vec<[f64; 3]>,
-    /// What is left to do after the plants, the last first; `None` before.
-    tasks: Option<Vec<Task>>,
     /// Plants of a sampled loop whose critical delay is still an estimate.
     estimated: Vec<Vec<f64>>,
     /// Whether the delay margin of a sampled loop is one already, and not an estimate.
     resampled: bool,
     /// The plants that were judged, within a sampled loop.
-    sampled: SampledPlants,
+    sampled: &'a SampledPlants,
     record: Record,
 }
 
-/// What is done once every member was looked at.
-#[derive(Clone, Debug)]
-enum Task {
-    /// Whether a pole passes through infinity inside the box.
-    Infinity,
-    /// A plant that was the worst of something else, and a search from there if it is worse than what was found here.
-    Suspect(PlantPoint),
-    /// Searches one after the other for the worst plant, the first from these shares of the box.
-    Search(&'static [Badness], Vec<f64>),
-    /// The worst delays of a sampled loop, sampled anew.
-    Resample,
-}
+/// What the watch is told.
+const STAGE: &str = "stability";
 
-impl StabilityAudit {
-    /// An audit that has not begun.
-    pub fn new(family: &Family, compensation: &Compensation) -> StabilityAudit {
+impl<'a> StabilityAudit<'a> {
+    /// An audit that has not begun; plants that were sampled already are not sampled again.
+    pub(crate) fn new(
+        family: &'a Family,
+        compensation: &'a Compensation,
+        sampled: &'a SampledPlants,
+    ) -> StabilityAudit<'a> {
         let plants = match family {
             Family::Uncertain(family) => {
                 let members = family.members().iter().cloned();
@@ -123,85 +130,85 @@ impl StabilityAudit {
             Family::Measured(family) => (0..family.plants().len()).map(PlantPoint::Measured).collect(),
         };
         StabilityAudit {
-            family: family.clone(),
-            compensation: compensation.clone(),
+            family,
+            compensation,
             path: FeedbackPath::new(compensation),
             plants,
-            folded: None,
+            folded: Folded::none(0),
             badness: Vec::new(),
-            tasks: None,
             estimated: Vec::new(),
             resampled: false,
-            sampled: SampledPlants::default(),
+            sampled,
             record: Record::default(),
         }
     }
 
-    /// Looks at one more plant, or searches from one more start; false when there is nothing left to do.
-    pub fn step(&mut self) -> bool {
-        if let Some(plant) = self.plants.get(self.badness.len()) {
+    /// Looks at members and corners, at the plants between them whose modes fold, and then between all of these.
+    pub(crate) fn look(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
+        self.look_at_plants(&mut part(watch, STAGE, [0.0, 0.3]))?;
+        self.folded = self.fold();
+        self.plants.extend(self.folded.plants.iter().cloned().map(PlantPoint::Parameters));
+        self.look_at_plants(&mut part(watch, STAGE, [0.3, 0.8]))?;
+        self.look_between(&mut part(watch, STAGE, [0.8, 1.0]))?;
+        if self.compensation.sample_time_s().is_some() {
+            self.resample();
+        }
+        Ok(())
+    }
+
+    /// The plants that were not looked at yet.
+    fn look_at_plants(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
+        let (first, all) = (self.badness.len(), self.plants.len());
+        for index in first..all {
+            tell(watch, STAGE, index - first, all - first)?;
+            let Some(plant) = self.plants.get(index) else { break };
             let found = self.judged(plant);
             self.record.take(plant.clone(), &found);
             self.badness.push(badness_of(&found));
-            return true;
         }
-        if self.folded.is_none() {
-            let folded = self.fold();
-            self.plants.extend(folded.plants.iter().cloned().map(PlantPoint::Parameters));
-            self.folded = Some(folded);
-            return true;
-        }
-        let mut tasks = self.tasks.take().unwrap_or_else(|| self.tasks_after_plants());
-        let next = tasks.pop();
-        self.tasks = Some(tasks);
-        match next {
-            None => return false,
-            Some(Task::Search(searches, start)) => self.search(searches, start),
-            Some(Task::Resample) => self.resample(),
-            Some(Task::Infinity) => self.through_infinity(),
-            Some(Task::Suspect(plant)) => self.suspect(plant),
-        }
-        true
+        Ok(())
     }
 
-    /// Takes over plants of the same family within the same loop, whatever its controller, so that none is sampled twice.
-    pub(crate) fn take_over(&mut self, sampled: SampledPlants) {
-        self.sampled = sampled;
-    }
-
-    /// Hands over the plants that were judged, as they are within a sampled loop.
-    #[doc(hidden)]
-    pub fn take_sampled(&mut self) -> SampledPlants {
-        std::mem::take(&mut self.sampled)
-    }
-
-    /// The share of the work that is done, as far as it can be foreseen; 1 when all is.
-    pub fn progress(&self) -> f64 {
-        let between = self.folded.as_ref().map_or(0, |folded| folded.plants.len());
-        let first = self.plants.len() - between;
-        let share = |done: usize, all: usize| done as f64 / all.max(1) as f64;
-        match (&self.tasks, &self.folded) {
-            (None, None) => 0.3 * share(self.badness.len(), first),
-            (None, Some(_)) => 0.3 + 0.5 * share(self.badness.len() - first, between),
-            (Some(left), _) => 1.0 - 0.2 * share(left.len(), 4 * STARTS + 2).min(1.0),
+    /// Over a box, searches from the worst plants; and whether a pole passes through infinity inside it.
+    fn look_between(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
+        let Family::Uncertain(family) = self.family else { return Ok(()) };
+        // an unstable plant decides, and without polynomials a search costs much
+        let decided = self.record.unstable.is_some() && !family.plant().is_rational();
+        if family.extent() != Extent::Box || decided {
+            return Ok(());
         }
+        let searches: [(Badness, &[Badness]); 4] = [
+            (Badness::RealPart, &[Badness::RealPart]),
+            (Badness::Closeness, &[Badness::Closeness]),
+            (Badness::DelaySensitivity, &[Badness::DelaySensitivity]),
+            (Badness::Closeness, &[Badness::Peak, Badness::DelaySensitivity]),
+        ];
+        for (number, (ranked_by, searched)) in searches.into_iter().enumerate() {
+            for (start, shares) in self.starts(family, ranked_by).into_iter().enumerate() {
+                tell(watch, STAGE, STARTS * number + start, STARTS * searches.len() + 1)?;
+                self.search(searched, shares);
+            }
+        }
+        tell(watch, STAGE, STARTS * searches.len(), STARTS * searches.len() + 1)?;
+        self.through_infinity();
+        Ok(())
     }
 
     fn judged(&self, plant: &PlantPoint) -> MemberStability {
         match (&self.path, self.member(plant)) {
             (Ok(_), Ok(member @ Member::Responding { .. })) if self.plants.first() != Some(plant) => {
-                responding::stability(&member, &self.compensation, Count::OnPoints)
+                responding::stability(&member, self.compensation, Count::OnPoints)
             }
-            (Ok(path), Ok(member)) => of_member(&member, &self.compensation, path),
+            (Ok(path), Ok(member)) => of_member(&member, self.compensation, path),
             (Err(reason), _) => MemberStability::not_resolved(reason.clone()),
             (_, Err(error)) => MemberStability::not_resolved(Irresolution::Linear(error)),
         }
     }
 
     fn member(&self, plant: &PlantPoint) -> Result<Member, LinearError> {
-        match (&self.family, plant) {
+        match (self.family, plant) {
             (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
-                self.sampled.member(&self.compensation, family.plant(), values)
+                self.sampled.member(self.compensation, family.plant(), values)
             }
             (Family::Measured(family), PlantPoint::Measured(index)) => {
                 let plant = family.plants().get(*index).ok_or(LinearError::ZeroPolynomial)?;
@@ -212,7 +219,7 @@ impl StabilityAudit {
     }
 
     fn search(&mut self, searches: &[Badness], mut shares: Vec<f64>) {
-        let Family::Uncertain(family) = &self.family else { return };
+        let Family::Uncertain(family) = self.family else { return };
         for &badness in searches {
             (shares, _) = climb(&shares, &mut |shares| self.badness_at(badness, family.values(shares)));
         }
@@ -233,7 +240,7 @@ impl StabilityAudit {
 
     /// Replaces the delay margin by the least that the worst plants bear when they are sampled anew with every delay.
     fn resample(&mut self) {
-        let (Family::Uncertain(family), Ok(path)) = (&self.family, &self.path) else { return };
+        let (Family::Uncertain(family), Ok(path)) = (self.family, &self.path) else { return };
         let worst = self.record.delay.as_ref().map(|margin| margin.plant.clone());
         if let Some(PlantPoint::Parameters(values)) = worst {
             self.estimated.push(values);
@@ -241,7 +248,7 @@ impl StabilityAudit {
         let mut least: Option<DelayMargin> = None;
         for values in self.estimated.drain(..) {
             let Some(plant) = family.plant().coefficients(&values) else { continue };
-            let Some(found) = resampled::critical_delay(&plant, &self.compensation, path) else { continue };
+            let Some(found) = resampled::critical_delay(&plant, self.compensation, path) else { continue };
             if least.as_ref().is_none_or(|least| found.delay_s < least.delay_s) {
                 let CriticalDelay { delay_s, frequency_rad_per_s } = found;
                 let plant = PlantPoint::Parameters(values);
@@ -250,30 +257,6 @@ impl StabilityAudit {
         }
         self.record.delay = least.or(self.record.delay.take());
         self.resampled = true;
-    }
-
-    fn tasks_after_plants(&self) -> Vec<Task> {
-        let Family::Uncertain(family) = &self.family else { return Vec::new() };
-        let mut tasks = Vec::new();
-        if self.compensation.sample_time_s().is_some() {
-            tasks.push(Task::Resample);
-        }
-        // an unstable plant decides, and without polynomials a search costs much
-        let decided = self.record.unstable.is_some() && !family.plant().is_rational();
-        if family.extent() == Extent::Box && !decided {
-            tasks.push(Task::Infinity);
-            let searches: [(Badness, &'static [Badness]); 4] = [
-                (Badness::Closeness, &[Badness::Peak, Badness::DelaySensitivity]),
-                (Badness::DelaySensitivity, &[Badness::DelaySensitivity]),
-                (Badness::Closeness, &[Badness::Closeness]),
-                (Badness::RealPart, &[Badness::RealPart]),
-            ];
-            for (ranked_by, searches) in searches {
-                let starts = self.starts(family, ranked_by);
-                tasks.extend(starts.into_iter().rev().map(|shares| Task::Search(searches, shares)));
-            }
-        }
-        tasks
     }
 
     /// The worst plants that lie apart from each other, as shares of the box.
@@ -298,13 +281,13 @@ impl StabilityAudit {
 
     /// Whether two plants lie so far apart, along one coordinate at least, that searches from both may find different things.
     fn apart(&self, one: &[f64], other: &[f64]) -> bool {
-        let distances = self.folded.as_ref().map_or(&[][..], |folded| &folded.apart);
+        let distances = &self.folded.apart;
         one.iter().zip(other).zip(distances).any(|((a, b), distance)| (a - b).abs() > *distance)
     }
 
     /// The plants between members and corners that modes beyond half of the sampling rate call for, around the worst so far.
     fn fold(&mut self) -> Folded {
-        let Family::Uncertain(family) = &self.family else { return Folded::none(0) };
+        let Family::Uncertain(family) = self.family else { return Folded::none(0) };
         let dimension = family.coordinates().len();
         let Some(sample_time_s) = self.compensation.sample_time_s().filter(|_| self.searched()) else {
             return Folded::none(dimension);
@@ -326,34 +309,32 @@ impl StabilityAudit {
 
     /// The plants that were found to be of interest to other audits: those that fold, and the nearest to instability.
     pub(crate) fn plants_between(&self) -> Vec<Vec<f64>> {
-        let folded = self.folded.iter().flat_map(|folded| folded.plants.iter().cloned());
-        folded.chain(self.record.worst()).collect()
+        self.folded.plants.iter().cloned().chain(self.record.worst()).collect()
     }
 
-    /// Looks at plants that were the worst of something else; the steps that follow do so.
-    pub(crate) fn look_at(&mut self, plants: impl IntoIterator<Item = PlantPoint>) {
-        self.tasks.get_or_insert_default().extend(plants.into_iter().map(Task::Suspect));
-    }
-
-    fn suspect(&mut self, plant: PlantPoint) {
-        let found = self.judged(&plant);
-        let worse = self.record.is_worse(&found);
-        self.take(plant.clone(), found);
-        if let (true, Family::Uncertain(family), PlantPoint::Parameters(values)) =
-            (worse, &self.family, plant)
-            && family.extent() == Extent::Box
-        {
-            let shares = family.shares(&values);
-            let searches: [&'static [Badness]; 2] = [&[Badness::RealPart], &[Badness::Closeness]];
-            let more = searches.map(|searches| Task::Search(searches, shares.clone()));
-            self.tasks.get_or_insert_default().extend(more);
+    /// Looks at plants that were the worst of something else, and searches from those that are worse than what was found here.
+    pub(crate) fn look_at(&mut self, plants: &[PlantPoint], watch: Watch<'_>) -> Result<(), Stopped> {
+        for (done, plant) in plants.iter().rev().enumerate() {
+            tell(watch, STAGE, done, plants.len())?;
+            let found = self.judged(plant);
+            let worse = self.record.is_worse(&found);
+            self.take(plant.clone(), found);
+            if let (true, Family::Uncertain(family), PlantPoint::Parameters(values)) =
+                (worse, self.family, plant)
+                && family.extent() == Extent::Box
+            {
+                let shares = family.shares(values);
+                self.search(&[Badness::Closeness], shares.clone());
+                self.search(&[Badness::RealPart], shares);
+            }
         }
+        Ok(())
     }
 
     /// Judges plants on either side of a pole at infinity.
     fn through_infinity(&mut self) {
-        let Family::Uncertain(family) = &self.family else { return };
-        match infinity::search(family, &self.compensation) {
+        let Family::Uncertain(family) = self.family else { return };
+        match infinity::search(family, self.compensation) {
             Infinity::Kept => {}
             Infinity::Open => self.record.doubt(Irresolution::InfinityOpen, self.nominal()),
             Infinity::Changed(shares) => {
@@ -371,29 +352,28 @@ impl StabilityAudit {
 
     fn badness_at(&self, badness: Badness, values: Vec<f64>) -> f64 {
         let Ok(path) = &self.path else { return f64::NAN };
-        let Family::Uncertain(family) = &self.family else { return f64::NAN };
-        let Ok(member) = self.sampled.member(&self.compensation, family.plant(), &values) else {
+        let Family::Uncertain(family) = self.family else { return f64::NAN };
+        let Ok(member) = self.sampled.member(self.compensation, family.plant(), &values) else {
             return f64::NAN;
         };
         match characteristic(&member, path) {
             Some(Ok(characteristic)) => badness.of(&characteristic).unwrap_or(f64::NAN),
             Some(Err(_)) => f64::NAN,
-            None => responding::first_look(&member, &self.compensation)
+            None => responding::first_look(&member, self.compensation)
                 .and_then(|open_loop| badness.of_response(&open_loop))
                 .unwrap_or(f64::NAN),
         }
     }
 
-    /// What was found, once all steps are done; before, what was found so far.
-    pub fn result(&self) -> FamilyStability {
+    /// What was found so far.
+    pub(crate) fn result(&self) -> FamilyStability {
         let record = &self.record;
         let (verdict, plant, reason) = self.judgement();
         let stable = verdict == Verdict::Met;
-        let searched = self.tasks.is_some() && self.searched();
         FamilyStability {
             finding: StabilityFinding {
                 verdict,
-                evidence: if searched { Evidence::Search } else { Evidence::Grid },
+                evidence: if self.searched() { Evidence::Search } else { Evidence::Grid },
                 largest_real_part: record.real_part.as_ref().map(|(real_part, _)| *real_part),
                 plant,
                 closest_approach: record.closest.clone().filter(|_| stable),
@@ -419,12 +399,12 @@ impl StabilityAudit {
             let reason = Irresolution::NearBoundary { frequency_rad_per_s: closest.frequency_rad_per_s };
             return (Verdict::NotProven, closest.plant.clone(), reason.to_string());
         }
-        let between = self.folded.as_ref().map_or(0, |folded| folded.plants.len());
+        let between = self.folded.plants.len();
         let folding = match between {
             0 => String::new(),
             _ => format!(" and {between} plants between them, through which modes fold,"),
         };
-        let which = match &self.family {
+        let which = match self.family {
             Family::Uncertain(family) if self.plants.len() > family.members().len() => {
                 let corners = self.plants.len() - family.members().len() - between;
                 format!("{} members and {corners} corners of the box{folding}", family.members().len())
@@ -432,7 +412,7 @@ impl StabilityAudit {
             _ if self.plants.len() == 1 => String::new(),
             _ => format!("{} plants", self.plants.len()),
         };
-        let way = match (&record.real_part, &self.family) {
+        let way = match (&record.real_part, self.family) {
             (_, Family::Measured(_)) => "by Nyquist's count on the points of their responses",
             (None, Family::Uncertain(family)) if !family.plant().is_rational() => {
                 match self.compensation.sample_time_s() {
@@ -469,7 +449,7 @@ impl StabilityAudit {
 
     /// Whether what lies between the members belongs to the family.
     pub(crate) fn searched(&self) -> bool {
-        match &self.family {
+        match self.family {
             Family::Uncertain(family) => family.extent() == Extent::Box,
             Family::Measured(_) => false,
         }

@@ -18,9 +18,9 @@ use crate::sampled::SampledPlants;
 pub(super) const FREQUENCY_TOLERANCE: f64 = 1e-7;
 
 /// A loop without its plant, and what is demanded of it.
-#[derive(Clone, Debug)]
-pub(super) struct Evaluator {
-    pub(super) compensation: Compensation,
+#[derive(Debug)]
+pub(super) struct Evaluator<'a> {
+    pub(super) compensation: &'a Compensation,
     pub(super) criteria: Vec<Criterion>,
     pub(super) with_prefilter: bool,
     /// Numerator and denominator of G H without its dead time, where both are continuous.
@@ -31,15 +31,16 @@ pub(super) struct Evaluator {
     /// The power of s that the first plant's |T| follows at either end; plants of another power have no spread there.
     steepness: [Cell<Option<i32>>; 2],
     /// Plants that were sampled before.
-    pub(super) sampled: SampledPlants,
+    sampled: &'a SampledPlants,
 }
 
-impl Evaluator {
+impl<'a> Evaluator<'a> {
     pub(super) fn new(
-        compensation: Compensation,
+        compensation: &'a Compensation,
         criteria: Vec<Criterion>,
         with_prefilter: bool,
-    ) -> Evaluator {
+        sampled: &'a SampledPlants,
+    ) -> Evaluator<'a> {
         let (feedback, sensor) = (compensation.feedback(), compensation.sensor());
         let compensator_dead_time_s = feedback.dead_time_s() + sensor.dead_time_s();
         let compensator = compensation.sample_time_s().is_none().then(|| {
@@ -54,7 +55,7 @@ impl Evaluator {
             compensator_dead_time_s,
             responses: Cell::new(0),
             steepness: [Cell::new(None), Cell::new(None)],
-            sampled: SampledPlants::default(),
+            sampled,
         }
     }
 
@@ -65,11 +66,11 @@ impl Evaluator {
 
     /// A plant within the loop; `None` if it cannot be sampled.
     pub(super) fn member(&self, plant: &UncertainPlant, values: &[f64]) -> Option<Member> {
-        self.sampled.member(&self.compensation, plant, values).ok()
+        self.sampled.member(self.compensation, plant, values).ok()
     }
 
     pub(super) fn loop_at(&self, frequency: f64) -> LoopAt {
-        LoopAt::new(&self.compensation, &self.criteria, self.with_prefilter, frequency)
+        LoopAt::new(self.compensation, &self.criteria, self.with_prefilter, frequency)
     }
 
     pub(super) fn closed(&self, at: &LoopAt, member: &Member) -> Option<ClosedLoop> {
@@ -110,7 +111,7 @@ impl Evaluator {
 
     fn finite(&self, criterion: &Criterion, member: &Member, frequency: f64) -> Option<(ClosedLoop, f64)> {
         let only = std::slice::from_ref(criterion);
-        let at = LoopAt::new(&self.compensation, only, self.with_prefilter, frequency);
+        let at = LoopAt::new(self.compensation, only, self.with_prefilter, frequency);
         let closed = self.closed(&at, member)?;
         let excess = at.excess(0, criterion, &closed)?;
         (!excess.is_nan()).then(|| (closed, decibels(excess)))
@@ -118,7 +119,7 @@ impl Evaluator {
 
     fn end_margin_db(&self, criterion: &Criterion, member: &Member, end: End) -> Option<f64> {
         self.responses.set(self.responses.get() + 1);
-        let found = asymptote::margin(criterion, &self.compensation, member, self.with_prefilter, end)?;
+        let found = asymptote::margin(criterion, self.compensation, member, self.with_prefilter, end)?;
         if self.with_prefilter || criterion.upper.is_none() {
             return Some(found.margin_db);
         }

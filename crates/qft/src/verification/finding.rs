@@ -122,7 +122,7 @@ pub(super) struct Joining<'a> {
     pub(super) part: Part,
     pub(super) family: &'a Family,
     pub(super) specification: &'a Specification,
-    pub(super) evaluator: &'a Evaluator,
+    pub(super) evaluator: &'a Evaluator<'a>,
     pub(super) plants: &'a [Plant],
     pub(super) cases: &'a [Case],
     /// A frequency at which a plant met in a search, or the spread of the family, has no margin.

@@ -65,7 +65,7 @@ fn around(root: Complex64) -> Vec<f64> {
 }
 
 /// What one plant adds: the roots of P, of Pd, and of 1 + L where that is a polynomial.
-pub(super) fn features(evaluator: &Evaluator, member: &Member) -> Features {
+pub(super) fn features(evaluator: &Evaluator<'_>, member: &Member) -> Features {
     match member {
         Member::Continuous { plant, .. } => {
             let numerator = Polynomial::new(plant.command.numerator.clone());
@@ -93,7 +93,7 @@ pub(super) fn features(evaluator: &Evaluator, member: &Member) -> Features {
                 roots.extend(roots_of(command));
             }
             let own = Features::of_roots(&roots, false, 0.0);
-            let crossing = asymptote::crossing(&evaluator.compensation, member);
+            let crossing = asymptote::crossing(evaluator.compensation, member);
             let crossing = crossing.map(|frequency| [frequency, frequency]);
             Features { range: [own.range, crossing].into_iter().flatten().reduce(joined), ..own }
         }
@@ -139,8 +139,8 @@ fn roots_of(function: &TransferFunction) -> Vec<Complex64> {
 }
 
 /// What controller, prefilter, sensor and limits add.
-pub(super) fn common_features(evaluator: &Evaluator) -> Features {
-    let compensation = &evaluator.compensation;
+pub(super) fn common_features(evaluator: &Evaluator<'_>) -> Features {
+    let compensation = evaluator.compensation;
     let parts = [compensation.feedback(), compensation.prefilter(), compensation.sensor()];
     let limits = evaluator.criteria.iter().filter_map(|criterion| match &criterion.limit {
         Limit::Rational(function) => Some(function),
@@ -152,7 +152,7 @@ pub(super) fn common_features(evaluator: &Evaluator) -> Features {
 
 /// The frequencies at which every plant is looked at: increasing, from zero (0) or to infinity where a band reaches there.
 pub(super) fn common_grid<'a>(
-    evaluator: &Evaluator,
+    evaluator: &Evaluator<'_>,
     features: impl Iterator<Item = &'a Features>,
     given: &[f64],
 ) -> Vec<f64> {

@@ -61,7 +61,7 @@ struct Sample {
 }
 
 impl Scan {
-    pub(super) fn new(evaluator: &Evaluator, frequencies: &[f64]) -> Scan {
+    pub(super) fn new(evaluator: &Evaluator<'_>, frequencies: &[f64]) -> Scan {
         let criteria = evaluator.criteria.len();
         let at = |&frequency: &f64| (frequency, loop_at(evaluator, frequency));
         Scan {
@@ -91,7 +91,7 @@ impl Scan {
     }
 
     /// Adds a frequency at which the whole family is looked at.
-    pub(super) fn add_frequency(&mut self, evaluator: &Evaluator, plants: &[Plant], frequency: f64) {
+    pub(super) fn add_frequency(&mut self, evaluator: &Evaluator<'_>, plants: &[Plant], frequency: f64) {
         let place = self.grid.partition_point(|point| point.0 < frequency);
         if self.grid.get(place).is_some_and(|point| point.0 == frequency) {
             return;
@@ -104,7 +104,7 @@ impl Scan {
     /// The worst of the family at any frequency, by criterion.
     pub(super) fn family_at(
         &mut self,
-        evaluator: &Evaluator,
+        evaluator: &Evaluator<'_>,
         plants: &[Plant],
         frequency: f64,
     ) -> Vec<Option<Worst>> {
@@ -120,7 +120,7 @@ impl Scan {
     }
 
     /// Looks at one plant at all common frequencies and at its own.
-    pub(super) fn look_at(&mut self, evaluator: &Evaluator, plant: &Plant, index: usize) {
+    pub(super) fn look_at(&mut self, evaluator: &Evaluator<'_>, plant: &Plant, index: usize) {
         let common = std::mem::take(&mut self.grid);
         let mut samples = Vec::with_capacity(common.len() + plant.features.frequencies.len());
         for (place, (frequency, at)) in common.iter().enumerate() {
@@ -152,7 +152,7 @@ impl Scan {
 
     fn sample(
         &mut self,
-        evaluator: &Evaluator,
+        evaluator: &Evaluator<'_>,
         plant: &Plant,
         index: usize,
         frequency: f64,
@@ -187,7 +187,7 @@ impl Scan {
     /// Halves each interval over which the characteristic value turns too far to be without a resonance.
     fn with_resonances(
         &mut self,
-        evaluator: &Evaluator,
+        evaluator: &Evaluator<'_>,
         plant: &Plant,
         index: usize,
         samples: Vec<Sample>,
@@ -232,7 +232,7 @@ impl Scan {
 }
 
 /// G, F, H and limits at a frequency; `None` at the ends of the axis.
-fn loop_at(evaluator: &Evaluator, frequency: f64) -> Option<LoopAt> {
+fn loop_at(evaluator: &Evaluator<'_>, frequency: f64) -> Option<LoopAt> {
     (frequency > 0.0 && frequency < f64::INFINITY).then(|| evaluator.loop_at(frequency))
 }
 

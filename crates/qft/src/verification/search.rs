@@ -64,7 +64,7 @@ struct Place {
 }
 
 /// Goes downhill from a start until a sweep over all coordinates gains nothing.
-pub(super) fn search(evaluator: &Evaluator, family: &UncertainFamily, task: &Task) -> Outcome {
+pub(super) fn search(evaluator: &Evaluator<'_>, family: &UncertainFamily, task: &Task) -> Outcome {
     let descent = Descent { evaluator, family, task, follower: None, undefined: &Cell::new(None) };
     let place = descent.start().map(|start| match task.resonances {
         true => descent.with_resonances(start),
@@ -87,7 +87,7 @@ struct Along {
 
 #[derive(Clone, Copy)]
 struct Descent<'a> {
-    evaluator: &'a Evaluator,
+    evaluator: &'a Evaluator<'a>,
     family: &'a UncertainFamily,
     task: &'a Task,
     /// The share that follows its minimum.

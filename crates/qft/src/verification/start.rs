@@ -13,7 +13,7 @@ pub(super) const STARTS: usize = 4;
 const FREQUENCY_RATIO: f64 = 1.1;
 
 /// Between which finite frequencies a search may move.
-pub(super) fn interior_range(part: Part, evaluator: &Evaluator, scan: &Scan) -> Option<[f64; 2]> {
+pub(super) fn interior_range(part: Part, evaluator: &Evaluator<'_>, scan: &Scan) -> Option<[f64; 2]> {
     let demanded = |frequency: &f64| {
         let mut bands = evaluator.criteria.iter().skip(part.first).take(part.count);
         *frequency > 0.0 && *frequency < f64::INFINITY && bands.all(|criterion| criterion.demands(*frequency))

@@ -6,7 +6,8 @@ use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
-use phea_qft::audit::AuditRun;
+use phea_dynamics::watch::unwatched;
+use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantisation::CoefficientFormat;
 use phea_qft::design::{
@@ -16,7 +17,7 @@ use phea_qft::design::{
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::loop_shaping::{Part, Structure};
 use phea_qft::specification::{Limit, Requirement, Specification};
-use phea_qft::verification::{Audit, TOLERANCE_DB, TrackingJudgement, Verdict};
+use phea_qft::verification::{Audit, AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict};
 
 pub(crate) const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];
 
@@ -145,10 +146,14 @@ pub(crate) fn designed(problem: &DesignProblem, options: DesignOptions) -> Desig
 /// An audit of its own of a design.
 pub(crate) fn audited(problem: &DesignProblem, design: &Design, tracking: TrackingJudgement) -> Audit {
     let compensation = Compensation::new(&design.controller, problem.sensor.clone()).unwrap();
-    let (family, specifications) = (&problem.family, &problem.specifications);
-    let mut run = AuditRun::new(family, &compensation, specifications, tracking, TOLERANCE_DB);
-    while run.step() {}
-    run.audit()
+    let problem = AuditProblem {
+        family: &problem.family,
+        compensation: &compensation,
+        specifications: &problem.specifications,
+        tracking,
+        tolerance_db: TOLERANCE_DB,
+    };
+    audit(&problem, &mut unwatched).unwrap()
 }
 
 /// That it is met, by its own account and by an audit of its own.

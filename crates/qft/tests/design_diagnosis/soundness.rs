@@ -4,11 +4,12 @@ use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::expression::Recorded;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::magnitude;
+use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::{Compensation, MemberResponse};
 use phea_qft::design::DesignProblem;
 use phea_qft::family::Family;
 use phea_qft::specification::{Limit, LimitTable, LoopResponse, Requirement, Specification};
-use phea_qft::stability::StabilityAudit;
+use phea_qft::stability::family_stability;
 use phea_qft::verification::Verdict;
 
 use super::problems::{boxed, demand, impossibilities, plain, problem};
@@ -128,9 +129,8 @@ fn what_is_reached_is_possible_and_half_of_it_is_not() {
     while judged < 12 {
         let (family, gains, controller) = drawn(&mut draw);
         let around = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
-        let mut stability = StabilityAudit::new(&family, &around);
-        while stability.step() {}
-        if stability.result().finding.verdict != Verdict::Met {
+        let stability = family_stability(&family, &around, &mut unwatched).unwrap();
+        if stability.finding.verdict != Verdict::Met {
             continue;
         }
         judged += 1;

@@ -3,6 +3,7 @@
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{Discretization, TransferFunction};
 use phea_dynamics::portable::magnitude;
+use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::loop_shaping::{Part, SearchProblem, Structure};
 use phea_qft::prefilter::{
@@ -10,7 +11,7 @@ use phea_qft::prefilter::{
     TrackingExtremes,
 };
 use phea_qft::specification::Limit;
-use phea_qft::verification::{SpecificationAudit, TrackingJudgement, Verdict};
+use phea_qft::verification::{AuditProblem, TrackingJudgement, Verdict, audit_specifications};
 
 use super::loops::{integrators, member, servo, servo_controller, servo_family, spaced, tracking};
 
@@ -117,10 +118,15 @@ fn a_servo_gets_a_prefilter_that_its_audit_meets() {
     let feedback = Compensator::new(vec![Element::General(servo_controller())]);
     let controller = Controller { feedback, prefilter, ..Controller::default() };
     let both = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
-    let mut audit =
-        SpecificationAudit::new(&servo_family(), &both, &[specification], TrackingJudgement::Magnitude, 0.0);
-    while audit.step() {}
-    let finding = &audit.findings()[0];
+    let problem = AuditProblem {
+        family: &servo_family(),
+        compensation: &both,
+        specifications: &[specification],
+        tracking: TrackingJudgement::Magnitude,
+        tolerance_db: 0.0,
+    };
+    let (findings, _) = audit_specifications(&problem, &mut unwatched).unwrap();
+    let finding = &findings[0];
     assert_eq!(finding.verdict, Verdict::Met);
     assert_eq!(finding.worst.as_ref().map(|worst| worst.frequency_rad_per_s), Some(0.0)); // where there is no slack
 }

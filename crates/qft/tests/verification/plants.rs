@@ -7,7 +7,7 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{
-    SpecificationAudit, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Work,
+    AuditProblem, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Work, audit_specifications,
 };
 
 pub(crate) fn parameter(name: &str, nominal: f64, minimum: f64, maximum: f64) -> UncertainParameter {
@@ -54,12 +54,12 @@ pub(crate) fn audited(
     specifications: &[Specification],
     tracking: TrackingJudgement,
 ) -> (Vec<SpecificationFinding>, Work) {
-    let mut audit = SpecificationAudit::new(family, compensation, specifications, tracking, TOLERANCE_DB);
-    let mut before = audit.progress();
-    while audit.step() {
-        assert!(audit.progress() >= before && audit.progress() <= 1.0);
-        before = audit.progress();
-    }
-    assert_eq!(audit.progress(), 1.0);
-    (audit.findings().to_vec(), audit.work())
+    let problem = AuditProblem { family, compensation, specifications, tracking, tolerance_db: TOLERANCE_DB };
+    let mut before = 0.0;
+    let found = audit_specifications(&problem, &mut |progress| {
+        assert!(progress.share >= before && progress.share <= 1.0);
+        before = progress.share;
+        true
+    });
+    found.unwrap()
 }

@@ -1,16 +1,18 @@
 //! The audits of an attempt: of each plant beside its family by itself, then of the family, which takes longer.
 
-use phea_dynamics::uncertain_plant::UncertainPlant;
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::watch::unwatched;
 
 use super::{Attempt, DesignError, Ending, Stage};
-use crate::audit::AuditRun;
+use crate::audit::audit_with;
 use crate::design::counterexample::{
     Counterexample, audited_margin_db, counterexamples, of_beside, too_little_delay, unstable_plant,
     worst_over_rate_db,
 };
 use crate::family::{Family, UncertainFamily};
 use crate::loop_shaping::{Aim, Judgement};
-use crate::verification::{Audit, Verdict};
+use crate::sampled::SampledPlants;
+use crate::verification::{Audit, AuditProblem, Verdict};
 
 /// A relaxation is found to this, dB.
 const RELAXATION_TOLERANCE_DB: f64 = 0.005;
@@ -23,35 +25,28 @@ impl Attempt {
 
     /// The audit of the next plant beside the family, or of the family after the last of them.
     pub(super) fn audit(&mut self) -> Result<Stage, DesignError> {
-        let problem = self.shaping.samples().problem();
-        if let Some(plant) = problem.beside.get(self.beside.len()) {
-            return Ok(Stage::Beside(Box::new(self.audit_of(plant)?)));
+        match self.beside.len() < self.shaping.samples().problem().beside.len() {
+            true => Ok(Stage::Beside),
+            false => Ok(Stage::Auditing),
         }
-        let mut run = AuditRun::new(
-            &problem.family,
-            &self.compensation()?,
-            &problem.specifications,
-            self.shaping.tracking(),
-            self.options.tolerance_db,
-        );
-        run.take_over(std::mem::take(&mut self.sampled));
-        Ok(Stage::Auditing(Box::new(run)))
     }
 
-    fn audit_of(&self, plant: &UncertainPlant) -> Result<AuditRun, DesignError> {
-        let alone = UncertainFamily::of_nominal(plant.clone());
-        Ok(AuditRun::new(
-            &Family::Uncertain(alone),
-            &self.compensation()?,
-            &self.shaping.samples().problem().specifications,
-            self.shaping.tracking(),
-            self.options.tolerance_db,
-        ))
+    fn audit_of(&self, family: &Family, sampled: &SampledPlants) -> Result<Audit, DesignError> {
+        let problem = AuditProblem {
+            family,
+            compensation: &self.compensation()?,
+            specifications: &self.shaping.samples().problem().specifications,
+            tracking: self.shaping.tracking(),
+            tolerance_db: self.options.tolerance_db,
+        };
+        audit_with(&problem, sampled, &mut unwatched).map_err(|_| LinearError::ZeroPolynomial.into())
     }
 
     pub(super) fn after_beside(&mut self) -> Result<Stage, DesignError> {
-        let Stage::Beside(run) = &self.stage else { return self.audit() };
-        let audit = run.audit();
+        let problem = self.shaping.samples().problem();
+        let Some(plant) = problem.beside.get(self.beside.len()) else { return self.audit() };
+        let alone = Family::Uncertain(UncertainFamily::of_nominal(plant.clone()));
+        let audit = self.audit_of(&alone, &SampledPlants::default())?;
         let judgement = self.judgement();
         let examples = of_beside(self.beside.len(), self.examples(&audit, &judgement));
         if !examples.is_empty() && !self.audits_only {
@@ -65,9 +60,7 @@ impl Attempt {
     }
 
     pub(super) fn after_audit(&mut self) -> Result<Stage, DesignError> {
-        let Stage::Auditing(run) = &mut self.stage else { return self.audit() };
-        self.sampled = run.take_sampled();
-        let audit = Box::new(run.audit());
+        let audit = Box::new(self.audit_of(&self.shaping.samples().problem().family, &self.sampled)?);
         if self.audits_only {
             return Ok(Stage::Ended(Ending::Hopeless(audit)));
         }
