@@ -28,6 +28,7 @@ mod step_matrix;
 mod stretch;
 mod task;
 mod trajectory;
+mod vector;
 
 pub use closed_loop::{ClosedLoop, HeldPlant, LoopSignals};
 pub use course::{
@@ -45,6 +46,7 @@ pub use small_signal::small_signal;
 pub use stretch::Stretch;
 pub use task::{Queue, Task};
 pub use trajectory::{Simulated, Trajectory, drive_one, simulate};
+pub use vector::{Vectorized, can_drive};
 
 use crate::scalar::{Lanes, Scalar};
 
@@ -162,7 +164,7 @@ pub trait Plant<S: Scalar> {
 /// lanes.set_lane(1, 5.0);
 /// assert_eq!(lanes, Lanes([1.0, 5.0]));
 /// ```
-pub trait Lane: Scalar {
+pub trait Lane: Scalar + Vectorized {
     /// How many numbers.
     const COUNT: usize;
 

@@ -4,7 +4,7 @@ use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::scalar::Lanes;
 use phea_dynamics::simulation::{
-    ClosedLoop, HeldPlant, Lane, Outcome, Queue, Sensed, Settings, SimulationError, Task, drive,
+    ClosedLoop, HeldPlant, Lane, Outcome, Queue, Sensed, Settings, SimulationError, Task, can_drive, drive,
 };
 use phea_hydraulics::machine::{Machine, MachineError};
 
@@ -63,6 +63,11 @@ enum System {
 }
 
 impl Lanewise {
+    /// Whether this processor has the vector instructions that lanes want; [`one_by_one`] gives the same bits without.
+    pub fn is_available() -> bool {
+        can_drive::<Lanes<LANES>>()
+    }
+
     /// Lanes of machines built like this one, behind this sensor, under a controller with what it feeds forward of the load's velocity in
     /// V s/m; without one under a stated command.
     ///

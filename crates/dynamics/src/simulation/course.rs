@@ -271,6 +271,11 @@ pub enum SimulationError {
         /// Its value.
         value: f64,
     },
+    /// Lanes on a processor whose vector instructions they want.
+    #[error(
+        "machines cannot be driven side by side on this processor: it lacks the vector instructions AVX2 and FMA"
+    )]
+    NoVectors,
     /// More states and inputs than a simulation can have.
     #[error(
         "{states} states and {inputs} inputs are more than {} together",

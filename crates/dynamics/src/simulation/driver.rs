@@ -12,6 +12,7 @@ use super::quartic::Quartic;
 use super::rosenbrock::DIRECTIONS;
 use super::slot::Slot;
 use super::task::{Queue, Task, check};
+use super::vector::can_drive;
 use super::{Lane, System};
 use crate::scalar::{Dependence, Dual};
 
@@ -70,6 +71,9 @@ where
     if !(tolerance > 0.0 && tolerance < 1.0) {
         let requirement = "above 0 and below 1";
         return Err(SimulationError::Setting { what: "tolerance", value: tolerance, requirement });
+    }
+    if !can_drive::<S>() {
+        return Err(SimulationError::NoVectors);
     }
     let mut drive = Drive::new(system, settings)?;
     let mut empty = false;

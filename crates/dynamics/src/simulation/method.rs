@@ -1,6 +1,6 @@
 //! The methods that a system can be driven by, behind one interface.
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::explicit::{self, DormandPrince};
 use super::growth::AmplitudeLost;
@@ -83,13 +83,14 @@ where
 
     /// Takes note of the start of a step: rates, and what derivatives the method needs.
     pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>) {
-        match &mut self.steps {
-            Steps::Implicit(method) => Arch::new().dispatch(Linearization { method, system, state, inputs }),
+        let method = match &mut self.steps {
+            Steps::Implicit(method) => method,
             Steps::Explicit(method, jacobian) => {
                 method.begin(system, state, inputs);
-                jacobian.linearize(system, state, inputs);
+                jacobian
             }
-        }
+        };
+        S::vectorized(Linearization { method, system, state, inputs });
     }
 
     /// One step of length h from where [`Stepper::linearize`] was called; the error of each lane in units of the tolerance.
@@ -105,7 +106,8 @@ where
         let scales = &self.scales;
         match &mut self.steps {
             Steps::Implicit(method) => {
-                Arch::new().dispatch(Attempt { method, system, state, step, inputs, scales, tolerance })
+                let attempt = Attempt { method, system, state, step, inputs, scales, tolerance };
+                S::vectorized(attempt).unwrap_or(S::from(f64::NAN))
             }
             Steps::Explicit(method, _) => method.attempt(system, state, step, inputs, scales, tolerance),
         }
@@ -135,7 +137,8 @@ where
         let scales = &self.scales;
         match &mut self.steps {
             Steps::Implicit(method) => {
-                Arch::new().dispatch(Between { method, system, state, step, inputs, scales, tolerance })
+                let between = Between { method, system, state, step, inputs, scales, tolerance };
+                S::vectorized(between).unwrap_or(S::from(f64::NAN))
             }
             Steps::Explicit(..) => S::from(0.0),
         }

@@ -111,7 +111,8 @@ impl<S: Lane> Propagator<S> {
         scales: &[S],
         tolerance: f64,
     ) -> S {
-        Arch::new().dispatch(Attempt { propagator: self, system, state, inputs, scales, tolerance })
+        let attempt = Attempt { propagator: self, system, state, inputs, scales, tolerance };
+        S::vectorized(attempt).unwrap_or(S::from(f64::NAN))
     }
 
     #[inline(always)]

@@ -85,13 +85,13 @@ pub(super) fn one_by_one(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Re
 
 /// Drives so many runs at most in lanes; those that were stopped are not given. Under a sampled controller they are driven one by
 /// one: from sample to sample a machine goes by its own matrices, and where one has to leave them its neighbours wait. Lanes have
-/// the same bits there, and take as long.
+/// the same bits there, and take as long. So are all on a processor without the vector instructions that lanes want.
 ///
 /// # Errors
 /// A start or course that does not fit the machine.
 pub(super) fn in_lanes(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Result<(), CampaignError> {
     let plan = shared.plan;
-    if matches!(plan.bench.control, Control::Sampled(_)) {
+    if matches!(plan.bench.control, Control::Sampled(_)) || !Lanewise::is_available() {
         return one_by_one(shared, most, give);
     }
     let setup = Setup::new(&plan.project).map_err(SimulateError::from)?;

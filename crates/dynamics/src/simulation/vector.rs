@@ -1,0 +1,59 @@
+//! Kernels that are compiled for the vector instructions of a processor.
+
+use pulp::{Arch, WithSimd};
+
+use crate::scalar::Lanes;
+
+/// A scalar whose kernels are compiled for the vector instructions of the processor.
+///
+/// One number has a second copy of each kernel, for processors without. Lanes have none where a processor may have vector
+/// instructions (x86-64): several machines side by side gain nothing without, and this copy alone took most of the time of a build.
+pub trait Vectorized: Copy {
+    /// Does the work; `None` where the processor lacks the instructions that these scalars want.
+    fn vectorized<W: WithSimd>(work: W) -> Option<W::Output>;
+}
+
+impl Vectorized for f64 {
+    #[inline]
+    fn vectorized<W: WithSimd>(work: W) -> Option<W::Output> {
+        Some(Arch::new().dispatch(work))
+    }
+}
+
+impl<const L: usize> Vectorized for Lanes<L> {
+    #[cfg(target_arch = "x86_64")]
+    #[inline]
+    fn vectorized<W: WithSimd>(work: W) -> Option<W::Output> {
+        pulp::x86::V3::try_new().map(|instructions| pulp::Simd::vectorize(instructions, work))
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    #[inline]
+    fn vectorized<W: WithSimd>(work: W) -> Option<W::Output> {
+        Some(Arch::new().dispatch(work))
+    }
+}
+
+/// Nothing, to ask whether there are the instructions for it.
+struct Nothing;
+
+impl WithSimd for Nothing {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: pulp::Simd>(self, _: V) {}
+}
+
+/// Whether this processor can drive machines side by side; where it cannot, [`super::drive`] refuses lanes.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::scalar::Lanes;
+/// use phea_dynamics::simulation::can_drive;
+/// assert!(can_drive::<f64>()); // on every processor
+/// let lanes_are_worth_it = can_drive::<Lanes<4>>();
+/// # let _ = lanes_are_worth_it;
+/// ```
+pub fn can_drive<S: Vectorized>() -> bool {
+    S::vectorized(Nothing).is_some()
+}
