@@ -24,7 +24,7 @@ pub use words::{status_sentence, structure_words};
 
 use phea_dynamics::controller::{Controller, Timing};
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::{Design, DesignOptions, DesignProblem, DesignRun, PrefilterChoice};
+use phea_qft::design::{Design, DesignOptions, DesignOutcome, DesignProblem, PrefilterChoice};
 use phea_qft::verification::Verdict;
 
 use crate::audit::{ProjectAudit, audit_problem};
@@ -35,7 +35,7 @@ use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{Agreement, Trial, tried};
-use phea_dynamics::watch::{Progress, Watch};
+use phea_dynamics::watch::{Watch, part};
 
 /// Name of the file with the project that a design makes.
 pub const DESIGNED_PROJECT: &str = "designed.toml";
@@ -194,7 +194,13 @@ pub fn design_project(
     designed(source, setup, seed, watch).map(|(_, told)| told)
 }
 
-/// The design with the run that made it.
+/// What was designed for, and what came of it.
+struct DesignRun {
+    problem: DesignProblem,
+    outcome: DesignOutcome,
+}
+
+/// The design with what it was made from.
 fn designed(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -215,21 +221,17 @@ fn designed(
     };
     let problem = design_problem(setup, &given);
     let options = design_options(setup, &given, seed)?;
-    let mut run = DesignRun::new(problem, options);
-    let explanations = run.findings().iter().map(Explanation::of).collect::<Vec<_>>();
-    let mut stopped = false;
-    while !stopped && run.step().map_err(DesignError::from)? {
-        stopped = !watch(Progress { stage: run.stage(), share: run.progress() });
-    }
-    if stopped {
-        run.conclude().map_err(DesignError::from)?;
-    }
-    let (options, found) = (run.options().clone(), run.design().cloned());
-    match found {
+    let mut outcome = phea_qft::design::design(&problem, &options, watch).map_err(DesignError::from)?;
+    outcome.conclude().map_err(DesignError::from)?;
+    let stopped = outcome.stopped;
+    let explanations = outcome.findings.iter().map(Explanation::of).collect::<Vec<_>>();
+    match outcome.design.clone() {
         Some(design) => {
-            let told = ProjectDesign::new(setup, &given, run.problem(), design, options)?;
-            let continuous = if stopped { None } else { continuous_as_sampled(setup, &run, &told, watch)? };
+            let told = ProjectDesign::new(setup, &given, &problem, design, options)?;
+            let continuous =
+                if stopped { None } else { continuous_as_sampled(setup, &problem, &told, watch)? };
             let trial = if stopped { None } else { tried_design(source, project, &told, watch)? };
+            let run = DesignRun { problem, outcome };
             Ok((run, ProjectDesign { stopped, published, explanations, continuous, trial, ..told }))
         }
         None if stopped => Err(ProcedureError::Stopped),
@@ -255,24 +257,21 @@ fn tried_design(
 /// where the loop does not sample, or no such design is found.
 fn continuous_as_sampled(
     setup: &Setup<'_>,
-    sampled: &DesignRun,
+    sampled: &DesignProblem,
     told: &ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Option<Side>, ProcedureError> {
-    let timing = sampled.problem().timing;
+    let timing = sampled.timing;
     if timing.sample_time_s.is_none() {
         return Ok(None);
     }
     let at_once = Timing { rate_feed_forward: timing.rate_feed_forward, ..Timing::default() };
-    let problem = DesignProblem { timing: at_once, ..sampled.problem().clone() };
-    let mut run = DesignRun::new(problem, sampled.options().clone());
-    while run.step().map_err(DesignError::from)? {
-        if !watch(Progress { stage: "designing without samples", share: run.progress() }) {
-            return Ok(None);
-        }
-    }
-    let Some(design) = run.design() else { return Ok(None) };
-    let controller = Controller { timing, ..design.law.clone() };
+    let problem = DesignProblem { timing: at_once, ..sampled.clone() };
+    let stage = "designing without samples";
+    let outcome = phea_qft::design::design(&problem, &told.options, &mut part(watch, stage, [0.0, 1.0]));
+    let outcome = outcome.map_err(DesignError::from)?;
+    let Some(design) = outcome.design.filter(|_| !outcome.stopped) else { return Ok(None) };
+    let controller = Controller { timing, ..design.law };
     let compensation = setup.compensation(&controller)?;
     let problem = RobustProblem { compensation, ..told.designed.problem.clone() };
     let view = audit_problem(&problem, watch)?;

@@ -16,10 +16,10 @@ use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
+use phea_dynamics::watch::unwatched;
 use phea_qft::design::quantisation::CoefficientFormat;
 use phea_qft::design::{
-    ControllerChoice, Design, DesignOptions, DesignProblem, DesignRun, DesignStatus, Objective,
-    PrefilterChoice,
+    ControllerChoice, Design, DesignOptions, DesignProblem, DesignStatus, Objective, PrefilterChoice, design,
 };
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::loop_shaping::{Part, Structure};
@@ -100,10 +100,8 @@ fn timed(task: &Task, problem: &DesignProblem, seed: u64) -> Result<(f64, Design
     let mut found = None;
     for _ in 0..RUNS {
         let begun = Instant::now();
-        let mut run = DesignRun::new(problem.clone(), options(task, seed));
-        while run.step()? {}
+        found = design(problem, &options(task, seed), &mut unwatched)?.design;
         fastest = fastest.min(begun.elapsed().as_secs_f64());
-        found = run.design().cloned();
     }
     Ok((fastest, found.ok_or("no design")?))
 }

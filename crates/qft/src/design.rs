@@ -17,4 +17,4 @@ pub use candidates::gain_range;
 pub use diagnosis::{Constraint, Finding, Party, Place, Severity, SharedLimit, diagnose};
 pub use problem::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
 pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation, Starts};
-pub use run::DesignRun;
+pub use run::{DesignOutcome, design, design_again};

@@ -14,16 +14,17 @@ mod ends;
 mod extremes;
 mod fit;
 mod margin;
-mod run;
 mod structures;
+mod synthesis;
 
 pub use band::{PrefilterBand, PrefilterBandPoint};
 pub use extremes::{TrackingExtremes, tracking_extremes};
 pub use fit::PrefilterFit;
 pub use margin::{BandEdge, PrefilterMargin};
-pub use run::{FittedPrefilter, PrefilterOptions, PrefilterOutcome, PrefilterRun};
+pub use synthesis::{FittedPrefilter, PrefilterOptions, PrefilterOutcome, fit_prefilter};
 
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::watch::Stopped;
 
 /// Why there is no band for a prefilter, or no search in it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -48,4 +49,7 @@ pub enum PrefilterError {
     /// A prefilter that cannot be sampled as the loop is.
     #[error(transparent)]
     Linear(#[from] LinearError),
+    /// The watch stopped the synthesis.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }

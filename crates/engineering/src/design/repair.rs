@@ -3,18 +3,18 @@
 //!
 //! ```text
 //! trial contradicts -> the plant of that machine, its lines in motion -> audit of the loop with it
-//!   not met  -> DesignRun::taking_in -> met: tried on the machine anew      not met: how near, and what would help
+//!   not met  -> qft::design_again    -> met: tried on the machine anew      not met: how near, and what would help
 //!   met      -> no linear plant does what the machine does: what the run met
 //! ```
 
 mod words;
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
-use phea_qft::design::{DesignRun, DesignStatus};
+use phea_qft::design::DesignStatus;
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::verification::Verdict;
 
-use super::{DesignError, ProjectDesign, tried_design};
+use super::{DesignError, DesignRun, ProjectDesign, tried_design};
 use crate::audit::{ProjectAudit, audit_problem};
 use crate::error::ProcedureError;
 use crate::family::family;
@@ -22,7 +22,7 @@ use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{self, Agreement, Run, waves_alone};
-use phea_dynamics::watch::{Progress, Watch};
+use phea_dynamics::watch::{Watch, part};
 
 /// What became of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -203,13 +203,16 @@ fn designed_again(
     (plant, told): (&UncertainPlant, &ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(RepairStatus, ProjectDesign)>, ProcedureError> {
-    let mut run = run.taking_in(plant.clone()).map_err(DesignError::from)?;
-    while run.step().map_err(DesignError::from)? {
-        if !watch(Progress { stage: STAGE, share: run.progress() }) {
-            return Err(ProcedureError::Stopped);
-        }
+    let DesignRun { mut problem, outcome } = run;
+    problem.beside.push(plant.clone());
+    let options = told.options.clone();
+    let outcome =
+        phea_qft::design::design_again(&problem, &options, outcome, &mut part(watch, STAGE, [0.0, 1.0]));
+    let outcome = outcome.map_err(DesignError::from)?;
+    if outcome.stopped {
+        return Err(ProcedureError::Stopped);
     }
-    let Some(design) = run.design().cloned() else { return Ok(None) };
+    let Some(design) = outcome.design else { return Ok(None) };
     let status = match &design.status {
         DesignStatus::Met => RepairStatus::Met,
         DesignStatus::Infeasible(relaxation) => {
@@ -218,8 +221,7 @@ fn designed_again(
         DesignStatus::NotConverged { .. } => RepairStatus::NotConverged,
         DesignStatus::NotStabilised => RepairStatus::NotStabilised,
     };
-    let options = run.options().clone();
-    let found = ProjectDesign::new(setup, &told.designed.problem, run.problem(), design, options)?;
+    let found = ProjectDesign::new(setup, &told.designed.problem, &problem, design, options)?;
     let trial = tried_design(source, setup.project, &found, watch)?;
     Ok(Some((status, ProjectDesign { trial, ..found })))
 }

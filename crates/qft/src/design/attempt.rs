@@ -1,5 +1,9 @@
-//! One structure on its way to a design: a search, the fit of a prefilter, a descent with both, an audit, and the descent again with what
-//! the audit found.
+//! One structure on its way to a design:
+//!
+//! ```text
+//! search -> prefilter, descent with both -> look between the samples -> audit -> met
+//!             ^--------- descent, or search anew, with the counterexamples --+
+//! ```
 
 mod auditing;
 mod beginning;
@@ -7,7 +11,7 @@ mod deployment;
 mod error;
 
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::watch::unwatched;
+use phea_dynamics::watch::{Watch, part};
 
 pub(super) use self::beginning::Beginning;
 use self::beginning::{best_of, search_options};
@@ -17,11 +21,11 @@ use super::problem::{DesignOptions, DesignProblem, Objective, PrefilterChoice};
 use super::result::{DesignRound, Starts};
 use crate::closed_loop::Compensation;
 use crate::loop_shaping::{
-    Aim, Descent, DescentOptions, Judgement, Samples, Search, SearchProblem, SearchStatus, Shaping, Structure,
+    Aim, DescentOptions, Judgement, Samples, SearchProblem, SearchStatus, Shaping, Structure, descend, search,
 };
-use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, PrefilterRun};
+use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, fit_prefilter};
 use crate::sampled::SampledPlants;
-use crate::specification::Requirement;
+use crate::specification::{Requirement, Specification};
 use crate::verification::{Audit, AuditProblem, TrackingJudgement, audit_among};
 
 /// Below this worst margin of the samples, the reserve taken off, a structure counts as unable to meet the specifications, dB.
@@ -46,24 +50,28 @@ pub(super) enum Ending {
     Missed { worst_margin_db: f64, audit: Option<Box<Audit>> },
     /// No stable controller of the structure was found.
     NotStabilised,
-    /// The same, with the audit of what came nearest.
-    Hopeless(Box<Audit>),
     /// Search and audit did not come to agree.
     NotConverged(Box<Audit>),
 }
 
-#[derive(Clone, Debug)]
-enum Stage {
-    Searching(Box<Search>),
-    Fitting(Box<PrefilterRun>),
-    Descending(Box<Descent>),
-    /// The specifications over the box, from the plants of the samples alone.
-    Checking,
-    /// The next plant beside the family.
-    Beside,
-    Auditing,
+/// What leaves the attempt before an audit agrees.
+enum Leave {
     Ended(Ending),
+    Failed(DesignError),
 }
+
+impl<E: Into<DesignError>> From<E> for Leave {
+    fn from(error: E) -> Leave {
+        Leave::Failed(error.into())
+    }
+}
+
+/// What the watch is told.
+const SHAPING: &str = "shaping the loop";
+const FITTING: &str = "fitting the prefilter";
+const CHECKING: &str = "looking between the samples";
+const AUDITING: &str = "auditing";
+const WHOLE: [f64; 2] = [0.0, 1.0];
 
 /// One structure on its way.
 #[derive(Clone, Debug)]
@@ -81,26 +89,25 @@ pub(super) struct Attempt {
     /// Order of the prefilter that is fitted next.
     prefilter_order: usize,
     restarts: u64,
+    /// The worst margin before the last counterexamples were taken in, dB, at most 0; of no account where no relaxation is looked for.
+    missing_db: f64,
     /// The last x from which margins led on.
     sound: Vec<f64>,
+    /// Points that the first search looks at before any that is spread.
+    given: Vec<Vec<f64>>,
     /// Points at which the nominal plant is stabilised.
     stabilising: Vec<Vec<f64>>,
     is_hard: bool,
     /// Where the starts of its last search ended.
     starts: Option<Starts>,
-    /// Whether no more than an audit is wanted.
-    audits_only: bool,
     x: Vec<f64>,
-    stage: Stage,
     rounds: Vec<DesignRound>,
-    /// The plants that its audits sampled.
-    sampled: SampledPlants,
     /// The audits of the plants beside the family, of the controller that is audited.
     beside: Vec<Audit>,
 }
 
 impl Attempt {
-    /// An attempt that has not begun, with points to begin with, and plants that were sampled in the same loop. With `relaxes` it looks for
+    /// An attempt that has not begun, with points to begin with. With `relaxes` it looks for
     /// the smallest common relaxation.
     pub(super) fn new(
         structure: Structure,
@@ -108,7 +115,6 @@ impl Attempt {
         options: &DesignOptions,
         relaxes: bool,
         beginning: Beginning,
-        sampled: SampledPlants,
     ) -> Result<Attempt, DesignError> {
         let reserve_db = if relaxes { 0.0 } else { RESERVE_DB };
         samples.keep_in_reserve(reserve_db);
@@ -127,7 +133,6 @@ impl Attempt {
         let Beginning { mut simpler, stabilising, is_hard } = beginning;
         let stabilising = best_of(&mut shaping, stabilising);
         simpler.extend_from_slice(&stabilising);
-        let search = Search::new(search_options(aim, options.seed, relaxes, is_hard)).beginning_with(simpler);
         Ok(Attempt {
             shaping,
             stabilising,
@@ -141,53 +146,38 @@ impl Attempt {
             draws: 0,
             prefilter_order: 2,
             restarts: 0,
+            missing_db: 0.0,
             sound: vec![],
-            audits_only: false,
+            given: simpler,
             x: vec![],
-            stage: Stage::Searching(Box::new(search)),
             rounds: vec![],
-            sampled,
             beside: vec![],
         })
     }
 
-    /// Does a small part of the work; whether there is more to do.
-    pub(super) fn step(&mut self) -> Result<bool, DesignError> {
-        let goes_on = match &mut self.stage {
-            Stage::Searching(search) => search.step(&mut self.shaping),
-            Stage::Fitting(run) => run.step(),
-            Stage::Descending(descent) => descent.step(&mut self.shaping),
-            Stage::Checking | Stage::Beside | Stage::Auditing => false,
-            Stage::Ended(_) => return Ok(false),
-        };
-        if !goes_on {
-            self.stage = match &self.stage {
-                Stage::Searching(_) => self.after_search()?,
-                Stage::Fitting(_) => self.after_fit()?,
-                Stage::Descending(_) => self.after_descent()?,
-                Stage::Checking => self.after_check()?,
-                Stage::Beside => self.after_beside()?,
-                Stage::Auditing => self.after_audit()?,
-                Stage::Ended(ending) => Stage::Ended(ending.clone()),
-            };
-        }
-        Ok(true)
-    }
-
-    /// What is being done.
-    pub(super) fn stage(&self) -> &'static str {
-        match self.stage {
-            Stage::Searching(_) | Stage::Descending(_) => "shaping the loop",
-            Stage::Fitting(_) => "fitting the prefilter",
-            Stage::Checking => "looking between the samples",
-            Stage::Beside | Stage::Auditing | Stage::Ended(_) => "auditing",
+    /// Shapes the loop and audits it, again with every counterexample, until search and audit agree. Plants that were sampled in the same loop
+    /// are not sampled again.
+    ///
+    /// # Errors
+    /// [`DesignError::Stopped`] by the watch; what was found until then remains.
+    pub(super) fn run(&mut self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<Ending, DesignError> {
+        match self.until_agreed(sampled, watch) {
+            Ok(ending) | Err(Leave::Ended(ending)) => Ok(ending),
+            Err(Leave::Failed(error)) => Err(error),
         }
     }
 
-    pub(super) fn ending(&self) -> Option<&Ending> {
-        match &self.stage {
-            Stage::Ended(ending) => Some(ending),
-            _ => None,
+    fn until_agreed(&mut self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<Ending, Leave> {
+        let given = std::mem::take(&mut self.given);
+        self.search(given, self.options.seed, watch)?;
+        loop {
+            self.draw_in(watch)?;
+            if !self.learns_between_samples(sampled, watch)?
+                && let Some(ending) = self.audited(sampled, watch)?
+            {
+                return Ok(ending);
+            }
+            self.shape_again(watch)?;
         }
     }
 
@@ -223,116 +213,102 @@ impl Attempt {
         self.shaping.samples().clone()
     }
 
-    /// Hands over the plants that were sampled, once it has ended.
-    pub(super) fn take_sampled(&mut self) -> SampledPlants {
-        std::mem::take(&mut self.sampled)
-    }
-
-    fn after_search(&mut self) -> Result<Stage, DesignError> {
-        let Stage::Searching(search) = &self.stage else { return Ok(Stage::Ended(Ending::NotStabilised)) };
-        let Some(result) = search.result() else { return Ok(Stage::Ended(Ending::NotStabilised)) };
+    /// Searches, and fits a prefilter to what was found.
+    fn search(&mut self, given: Vec<Vec<f64>>, seed: u64, watch: Watch<'_>) -> Result<(), Leave> {
+        let options = search_options(self.aim, seed, self.relaxes, self.is_hard);
+        let found = search(&mut self.shaping, given, &options, &mut part(watch, SHAPING, WHOLE))?;
+        let Some(result) = found else { return Err(Leave::Ended(Ending::NotStabilised)) };
         self.starts = Some(Starts::of(&result));
         self.x = result.x;
         if matches!(result.status, SearchStatus::NotStabilised { .. }) {
-            return Ok(Stage::Ended(Ending::NotStabilised));
+            return Err(Leave::Ended(Ending::NotStabilised));
         }
         if self.options.objective == Objective::BestWorstMargin && !self.relaxes {
             self.shaping.count_shares_of_room();
         }
         let worst_margin_db = result.judgement.worst_margin_db;
         if worst_margin_db < FEASIBLE_DB && !self.relaxes {
-            return Ok(Stage::Ended(Ending::Missed { worst_margin_db, audit: None }));
+            return Err(Leave::Ended(Ending::Missed { worst_margin_db, audit: None }));
         }
-        self.fit_or(Self::check)
+        if self.fits_prefilter(watch)? { self.descend(false, watch) } else { Ok(()) }
     }
 
-    /// Fits a prefilter to the loop as it is, or goes on where none is looked for.
-    fn fit_or(&mut self, go_on: fn(&mut Self) -> Result<Stage, DesignError>) -> Result<Stage, DesignError> {
+    /// Fits a prefilter to the loop as it is, a start for the descent with both; false where none is looked for.
+    fn fits_prefilter(&mut self, watch: Watch<'_>) -> Result<bool, Leave> {
         let missing_db = if self.relaxes { -self.shaping.judge(&self.x).worst_margin_db } else { 0.0 };
         let room_db = BAND_ROOM_DB + missing_db.max(0.0);
-        let problem = self.shaping.samples().problem();
+        let samples = self.shaping.samples();
+        let problem = samples.problem();
         let (PrefilterChoice::Grow { maximum_order }, Some(tracking)) =
             (&self.options.prefilter, tracks(problem))
         else {
-            return go_on(self);
+            return Ok(false);
         };
-        let specification = &problem.specifications[tracking];
-        let samples = self.shaping.samples();
         let around = Compensation::new(&self.shaping.controller(&self.x), problem.sensor.clone())?;
-        let band = PrefilterBand::of_family(
-            &around,
-            samples.members(),
-            &samples.grid_frequencies_rad_per_s(),
-            specification,
-        )?;
+        let frequencies = samples.grid_frequencies_rad_per_s();
+        let band = PrefilterBand::of_family(&around, samples.members(), &frequencies, tracking)?;
         let order = self.prefilter_order.min(*maximum_order);
-        // what the band lacks the descent that follows will find: only a start is wanted here
-        let band = band.relaxed(room_db);
         let options =
             PrefilterOptions { least_order: order, ..PrefilterOptions::new(order, self.options.seed) };
-        Ok(Stage::Fitting(Box::new(PrefilterRun::new(band, &problem.timing, options)?)))
-    }
-
-    fn after_fit(&mut self) -> Result<Stage, DesignError> {
-        let Stage::Fitting(run) = &self.stage else { return Ok(Stage::Ended(Ending::NotStabilised)) };
-        let fitted = match run.outcome() {
-            Some(PrefilterOutcome::Found(fitted)) => Some(fitted.clone()),
-            Some(PrefilterOutcome::OrderTooLow { best }) => best.clone(),
-            Some(PrefilterOutcome::NoBand(_)) | None => None,
+        // what the band lacks the descent that follows will find: only a start is wanted here
+        let band = band.relaxed(room_db);
+        let outcome = fit_prefilter(&band, &problem.timing, &options, &mut part(watch, FITTING, WHOLE))?;
+        let fitted = match outcome {
+            PrefilterOutcome::Found(fitted) => Some(fitted),
+            PrefilterOutcome::OrderTooLow { best } => best,
+            PrefilterOutcome::NoBand(_) => None,
         };
         let Some(FittedPrefilter { structure, x, .. }) = fitted else {
             let judgement = self.shaping.judge(&self.x);
             let worst_margin_db = judgement.worst_margin_db.min(-2.0 * BAND_ROOM_DB);
-            return Ok(Stage::Ended(Ending::Missed { worst_margin_db, audit: None }));
+            return Err(Leave::Ended(Ending::Missed { worst_margin_db, audit: None }));
         };
-        let own = &self.x[..self.structure.dimension().min(self.x.len())];
-        self.x = [own, &x].concat();
+        self.x.truncate(self.structure.dimension());
+        self.x.extend(x);
+        self.shape_with(Some(structure))?;
+        Ok(true)
+    }
+
+    /// The same samples and controller, with another prefilter or none.
+    fn shape_with(&mut self, prefilter: Option<Structure>) -> Result<(), DesignError> {
         let samples = self.shaping.samples().clone();
-        self.shaping =
-            Shaping::new(self.structure.clone(), Some(structure), self.options.objective, samples)?;
-        Ok(self.descend(false))
+        self.shaping = Shaping::new(self.structure.clone(), prefilter, self.options.objective, samples)?;
+        Ok(())
     }
 
-    fn descend(&self, is_near: bool) -> Stage {
-        let options = DescentOptions { reserve_db: 0.0, is_near, ..DescentOptions::new(self.aim) };
-        Stage::Descending(Box::new(Descent::new(&self.x, options)))
-    }
-
-    fn after_descent(&mut self) -> Result<Stage, DesignError> {
-        let Stage::Descending(descent) = &self.stage else { return self.check() };
-        let is_near = descent.options().is_near;
-        self.x = descent.x().to_vec();
-        let Some(judgement) = descent.judgement().filter(|judgement| judgement.stable) else {
-            return Ok(Stage::Ended(Ending::NotStabilised));
-        };
-        let worst_margin_db = judgement.worst_margin_db;
-        if worst_margin_db >= FEASIBLE_DB || self.relaxes {
-            return self.check();
-        }
-        if is_near {
-            return Ok(self.descend(false));
-        }
-        match self.options.prefilter {
-            PrefilterChoice::Grow { maximum_order } if self.prefilter_order < maximum_order => {
-                self.prefilter_order += 1;
-                let samples = self.shaping.samples().clone();
-                self.x.truncate(self.structure.dimension());
-                self.shaping = Shaping::new(self.structure.clone(), None, self.options.objective, samples)?;
-                self.fit_or(Self::check)
+    /// Descends until the samples satisfy the specifications: from near by, then with the steps of a start, then with prefilters of more poles.
+    fn descend(&mut self, mut is_near: bool, watch: Watch<'_>) -> Result<(), Leave> {
+        loop {
+            let options = DescentOptions { reserve_db: 0.0, is_near, ..DescentOptions::new(self.aim) };
+            let found = descend(&mut self.shaping, &self.x, options, &mut part(watch, SHAPING, WHOLE))?;
+            self.x = found.x;
+            let Some(judgement) = found.judgement.filter(|judgement| judgement.stable) else {
+                return Err(Leave::Ended(Ending::NotStabilised));
+            };
+            let worst_margin_db = judgement.worst_margin_db;
+            if worst_margin_db >= FEASIBLE_DB || self.relaxes {
+                return Ok(());
             }
-            _ => Ok(Stage::Ended(Ending::Missed { worst_margin_db, audit: None })),
+            if is_near {
+                is_near = false;
+                continue;
+            }
+            match self.options.prefilter {
+                PrefilterChoice::Grow { maximum_order } if self.prefilter_order < maximum_order => {
+                    self.prefilter_order += 1;
+                    self.x.truncate(self.structure.dimension());
+                    self.shape_with(None)?;
+                }
+                _ => return Err(Leave::Ended(Ending::Missed { worst_margin_db, audit: None })),
+            }
+            if !self.fits_prefilter(watch)? {
+                return Ok(());
+            }
         }
     }
 
-    /// Looks between the samples: over the whole box, but beginning from the plants of the samples.
-    fn check(&mut self) -> Result<Stage, DesignError> {
-        if let Some(next) = self.drawn_in() {
-            return Ok(next);
-        }
-        Ok(Stage::Checking)
-    }
-
-    fn after_check(&mut self) -> Result<Stage, DesignError> {
+    /// Looks between the samples, over the whole box, but beginning from the plants of the samples; whether counterexamples were taken in.
+    fn learns_between_samples(&mut self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<bool, Leave> {
         let samples = self.shaping.samples();
         let problem = AuditProblem {
             family: &samples.family(),
@@ -341,26 +317,21 @@ impl Attempt {
             tracking: self.shaping.tracking(),
             tolerance_db: self.options.tolerance_db,
         };
-        let checked = audit_among(&problem, &[], &self.sampled, &mut unwatched);
-        let findings = checked.map(|(findings, _)| findings).unwrap_or_default();
+        let (findings, _) = audit_among(&problem, &[], sampled, &mut part(watch, CHECKING, WHOLE))?;
         let judgement = self.judgement();
         let tolerance_db = self.new_below_db(&judgement);
-        let audited_db = worst_margin_db(&findings);
         let examples = counterexamples(&findings, tolerance_db, self.shaping.tracking());
-        if !examples.is_empty() {
-            self.note(Some(audited_db), &judgement);
-            if let Some(next) = self.with(&examples)? {
-                return Ok(next);
-            }
+        if examples.is_empty() {
+            return Ok(false);
         }
-        self.beside.clear();
-        self.audit()
+        self.note(Some(worst_margin_db(&findings)), &judgement);
+        Ok(self.takes_in(&examples)?)
     }
 
-    /// The descent again, with these among the samples; `None` if they are among them already, or it was made often enough.
-    fn with(&mut self, examples: &[Counterexample]) -> Result<Option<Stage>, DesignError> {
+    /// Takes counterexamples in among the samples; false if they are among them already, or that was done often enough.
+    fn takes_in(&mut self, examples: &[Counterexample]) -> Result<bool, DesignError> {
         let mut news = false;
-        let missing_db =
+        self.missing_db =
             if self.relaxes { self.shaping.judge(&self.x).worst_margin_db.min(0.0) } else { 0.0 };
         let [lowest, highest] = self.frequency_range();
         for example in examples {
@@ -377,32 +348,31 @@ impl Attempt {
                 self.shaping.add(&example.plants, (at * share).clamp(lowest, highest))?;
             }
         }
-        if !news || self.rounds.len() >= ROUNDS_MAXIMUM {
-            return Ok(None);
-        }
+        Ok(news && self.rounds.len() < ROUNDS_MAXIMUM)
+    }
+
+    /// Descends again, with the counterexamples among the samples; searches anew where their margins lead nowhere from here.
+    fn shape_again(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         let judgement = self.shaping.judge(&self.x);
-        let leads_on = judgement.stable && judgement.worst_margin_db > missing_db + ASTRAY_DB;
-        if leads_on {
+        if judgement.stable && judgement.worst_margin_db > self.missing_db + ASTRAY_DB {
             self.sound = self.x.clone();
-            return Ok(Some(self.descend(true)));
+            return self.descend(true, watch);
         }
-        Ok(Some(self.search_anew()?))
+        self.search_anew(watch)
     }
 
     /// A plant that was added is unstable with what was found, or nearly so, and margins lead nowhere from there: begins again among all plants
     /// that are known now, where they last led on besides.
-    fn search_anew(&mut self) -> Result<Stage, DesignError> {
+    fn search_anew(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         self.restarts += 1;
         self.x.truncate(self.structure.dimension());
         if self.prefilter_is_fitted() {
-            let samples = self.shaping.samples().clone();
-            self.shaping = Shaping::new(self.structure.clone(), None, self.options.objective, samples)?;
+            self.shape_with(None)?;
         }
         let seed = self.options.seed.wrapping_add(self.restarts);
         let sound = self.sound.get(..self.structure.dimension()).map(<[f64]>::to_vec);
-        let search = Search::new(search_options(self.aim, seed, self.relaxes, self.is_hard));
         let given = sound.into_iter().chain(self.stabilising.iter().cloned()).collect();
-        Ok(Stage::Searching(Box::new(search.beginning_with(given))))
+        self.search(given, seed, watch)
     }
 
     fn prefilter_is_fitted(&self) -> bool {
@@ -428,7 +398,7 @@ impl Attempt {
     }
 }
 
-/// Index of the tracking specification, if there is one.
-fn tracks(problem: &DesignProblem) -> Option<usize> {
-    problem.specifications.iter().position(|one| matches!(one.requirement, Requirement::Tracking { .. }))
+/// The tracking specification, if there is one.
+fn tracks(problem: &DesignProblem) -> Option<&Specification> {
+    problem.specifications.iter().find(|one| matches!(one.requirement, Requirement::Tracking { .. }))
 }

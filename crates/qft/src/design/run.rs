@@ -1,9 +1,9 @@
-//! A design stepped by its owner.
+//! The design: which structures are tried after which, and what is taken of them.
 
 use std::collections::VecDeque;
 
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::uncertain_plant::UncertainPlant;
+use phea_dynamics::watch::{Progress, Watch, unwatched};
 
 use super::attempt::{Attempt, Beginning, DesignError, Ending, FEASIBLE_DB};
 use super::binding::{all_conflicts, binding_limits};
@@ -29,9 +29,107 @@ const SEED_AGAIN: u64 = 1000;
 /// A larger order is worth its poles where it lowers the relaxation by more than this, dB.
 const RELAXATION_GAINED_DB: f64 = 0.01;
 
-/// What is tried after what.
+/// What a design ended with.
 #[derive(Clone, Debug)]
-struct Plan {
+pub struct DesignOutcome {
+    /// The best design; `None` where no controller was found.
+    pub design: Option<Design>,
+    /// What no controller can do, and what will be hard; see [`diagnose`].
+    pub findings: Vec<Finding>,
+    /// Whether the watch stopped it: then the design is the best so far.
+    pub stopped: bool,
+    /// What was tried when it was stopped.
+    at_hand: Option<Box<Attempt>>,
+    known: Known,
+}
+
+impl DesignOutcome {
+    /// Where it was stopped before any design was there: audits the controller at hand, which becomes one that is not converged.
+    ///
+    /// # Errors
+    /// Those of [`design`].
+    pub fn conclude(&mut self) -> Result<(), DesignError> {
+        let at_hand = self.at_hand.take().filter(|attempt| !attempt.x().is_empty());
+        if let (None, Some(mut attempt)) = (&self.design, at_hand) {
+            let audit = attempt.audited_as_it_is(&self.known.sampled, &mut unwatched)?;
+            let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
+            self.known.rounds.extend_from_slice(attempt.rounds());
+            self.design = Some(design_of(&attempt, status, audit, &self.known.rounds)?);
+        }
+        Ok(())
+    }
+}
+
+/// What was learnt of the plants.
+#[derive(Clone, Debug, Default)]
+struct Known {
+    /// What searches look at; `None` before the first.
+    samples: Option<Samples>,
+    /// The plants that audits sampled.
+    sampled: SampledPlants,
+    rounds: Vec<DesignRound>,
+}
+
+/// Designs a controller and its prefilter: structures of growing order are tried, each by search and audit, until one meets every
+/// specification; then with fewer zeros as long as that does too. Where none does, the smallest relaxation is looked for.
+///
+/// # Errors
+/// [`DesignError`] where a part of the problem is no transfer function, or cannot be put into the loop. A watch that stops it is no error.
+pub fn design(
+    problem: &DesignProblem,
+    options: &DesignOptions,
+    watch: Watch<'_>,
+) -> Result<DesignOutcome, DesignError> {
+    design_knowing(problem, options, None, Known::default(), watch)
+}
+
+/// Goes on from a design that has ended, with more plants beside the family that the loop must serve: of each the nominal one. What did not
+/// do without these plants does not do with them, so that structures of the order that was found come first, and what was looked at is
+/// known.
+///
+/// # Errors
+/// Those of [`design`], and [`DesignError`] for a plant that does not fit the loop.
+pub fn design_again(
+    problem: &DesignProblem,
+    options: &DesignOptions,
+    before: DesignOutcome,
+    watch: Watch<'_>,
+) -> Result<DesignOutcome, DesignError> {
+    let DesignOutcome { design, mut known, .. } = before;
+    if let Some(samples) = &mut known.samples {
+        for plant in problem.beside.iter().skip(samples.problem().beside.len()) {
+            samples.take_in(plant.clone())?;
+        }
+    }
+    design_knowing(problem, options, design, known, watch)
+}
+
+fn design_knowing(
+    problem: &DesignProblem,
+    options: &DesignOptions,
+    found: Option<Design>,
+    known: Known,
+    watch: Watch<'_>,
+) -> Result<DesignOutcome, DesignError> {
+    let findings = diagnose(problem);
+    let Known { samples, sampled, rounds } = known;
+    let mut run = Run::new(problem, options, &sampled);
+    // where no controller of any order will do, what is left is by how much
+    run.relaxing = findings.iter().any(|finding| finding.severity() == Severity::Impossible);
+    (run.samples, run.rounds) = (samples, rounds);
+    if let Some(found) = found {
+        run.begin_at(&found);
+    }
+    let at_hand = run.try_structures(watch)?.map(Box::new);
+    let Run { design, samples, rounds, .. } = run;
+    let known = Known { samples, sampled, rounds };
+    Ok(DesignOutcome { design, findings, stopped: at_hand.is_some(), at_hand, known })
+}
+
+/// A design on its way.
+struct Run<'a> {
+    problem: &'a DesignProblem,
+    options: &'a DesignOptions,
     ground: Ground,
     /// (order, zeros) that are still to be tried.
     waiting: VecDeque<(usize, usize)>,
@@ -42,324 +140,250 @@ struct Plan {
     last: Option<Structure>,
     /// Whether a controller was found already, and fewer zeros are tried in its order.
     found: bool,
-    /// Whether what was thought infeasible was begun anew.
-    again: bool,
-}
-
-/// A design stepped by its owner, who may show its progress or stop it at any step.
-#[derive(Clone, Debug)]
-pub struct DesignRun {
-    problem: DesignProblem,
-    options: DesignOptions,
-    findings: Vec<Finding>,
-    plan: Plan,
-    attempt: Option<Attempt>,
-    samples: Option<Samples>,
+    /// Whether the smallest relaxation is looked for.
+    relaxing: bool,
+    /// What was thought infeasible and is begun anew, from this controller; that is done once.
+    again: Option<(Structure, Option<TransferFunction>)>,
+    begun_again: bool,
     /// The attempt that came nearest, with its worst margin over rate.
     nearest: Option<(f64, Structure, Option<TransferFunction>)>,
     /// The controller of the attempt before.
     before: Option<TransferFunction>,
-    relaxing: bool,
     /// The last attempt that found nothing stable.
     unstable: Option<Attempt>,
-    /// What is begun anew, from this controller.
-    again: Option<(Structure, Option<TransferFunction>)>,
+    samples: Option<Samples>,
     rounds: Vec<DesignRound>,
-    /// The plants that the audits sampled so far.
-    sampled: SampledPlants,
+    sampled: &'a SampledPlants,
     design: Option<Design>,
-    done: bool,
 }
 
-impl DesignRun {
-    /// A design that has not begun.
-    pub fn new(problem: DesignProblem, options: DesignOptions) -> DesignRun {
-        let ground = Ground::new(&problem);
-        let is_hard = has_poles_to_move(&problem);
-        let waiting: VecDeque<(usize, usize)> = match options.controller {
-            ControllerChoice::Given(_) => VecDeque::from([(0, 0)]),
-            ControllerChoice::Grow { maximum_order } => {
-                let sampled = problem.timing.sample_time_s.is_some();
-                let orders = ground.integrators..=maximum_order;
-                let usual = orders.clone().flat_map(|order| degrees(order, ground.integrators, sampled));
-                let biproper = orders.filter(|order| !sampled && is_worth_as_many_zeros(*order, &ground));
-                let each = usual.chain(biproper.map(|order| (order, order)));
-                each.flat_map(|degrees| std::iter::repeat_n(degrees, if is_hard { 2 } else { 1 })).collect()
-            }
-        };
-        // where no controller of any order will do, what is left is by how much
-        let findings = diagnose(&problem);
-        let impossible = findings.iter().any(|finding| finding.severity() == Severity::Impossible);
-        DesignRun {
-            plan: Plan {
-                ground,
-                all: waiting.len(),
-                waiting,
-                is_hard,
-                last: None,
-                found: false,
-                again: false,
-            },
+impl<'a> Run<'a> {
+    fn new(problem: &'a DesignProblem, options: &'a DesignOptions, sampled: &'a SampledPlants) -> Run<'a> {
+        let ground = Ground::new(problem);
+        let is_hard = has_poles_to_move(problem);
+        let waiting = structures_to_try(problem, options, &ground, is_hard);
+        Run {
             problem,
             options,
-            findings,
-            attempt: None,
-            samples: None,
+            ground,
+            all: waiting.len(),
+            waiting,
+            is_hard,
+            last: None,
+            found: false,
+            relaxing: false,
+            again: None,
+            begun_again: false,
             nearest: None,
             before: None,
-            relaxing: impossible,
             unstable: None,
-            again: None,
+            samples: None,
             rounds: vec![],
-            sampled: SampledPlants::default(),
+            sampled,
             design: None,
-            done: false,
         }
     }
 
-    /// A design that goes on from one that has ended, with one more plant that its loop must serve: of this the nominal one. What did not do
-    /// without the plant does not do with it, so that structures of the order that was found come first, and what was looked at is known.
-    ///
-    /// # Errors
-    /// [`DesignError`] for a plant that does not fit the loop.
-    pub fn taking_in(self, plant: UncertainPlant) -> Result<DesignRun, DesignError> {
-        let mut problem = self.problem.clone();
-        problem.beside.push(plant.clone());
-        let mut next = DesignRun::new(problem, self.options);
-        next.sampled = self.sampled;
-        next.rounds = self.rounds;
-        if let Some(mut samples) = self.samples {
-            samples.take_in(plant)?;
-            next.samples = Some(samples);
+    /// Leaves out what has fewer poles than a design of fewer plants, and begins with its controller.
+    fn begin_at(&mut self, found: &Design) {
+        if let ControllerChoice::Grow { .. } = self.options.controller {
+            let order = found.structure.roots(-1.0);
+            self.waiting.retain(|(own, _)| *own >= order);
         }
-        if let Some(found) = self.design {
-            if let ControllerChoice::Grow { .. } = next.options.controller {
-                let order = found.structure.roots(-1.0);
-                next.plan.waiting.retain(|(own, _)| *own >= order);
-            }
-            next.plan.all = next.plan.waiting.len();
-            next.before = found.law.feedback.transfer_function().ok();
-        }
-        Ok(next)
+        self.all = self.waiting.len();
+        self.before = found.law.feedback.transfer_function().ok();
     }
 
-    /// What it works on.
-    pub fn problem(&self) -> &DesignProblem {
-        &self.problem
-    }
-
-    /// How it works.
-    pub fn options(&self) -> &DesignOptions {
-        &self.options
-    }
-
-    /// What no controller can do, and what will be hard; see [`diagnose`].
-    pub fn findings(&self) -> &[Finding] {
-        &self.findings
-    }
-
-    /// Does a small part of the work; whether there is more to do.
-    ///
-    /// # Errors
-    /// [`DesignError`] where a part of the problem is no transfer function, or cannot be put into the loop.
-    pub fn step(&mut self) -> Result<bool, DesignError> {
-        if self.done {
-            return Ok(false);
-        }
-        match &mut self.attempt {
-            None => self.begin()?,
-            Some(attempt) => {
-                if !attempt.step()? {
-                    self.end_attempt()?;
+    /// Tries one structure after the other; the attempt at which the watch stopped it.
+    fn try_structures(&mut self, watch: Watch<'_>) -> Result<Option<Attempt>, DesignError> {
+        while let Some((structure, feedback)) = self.next() {
+            let mut attempt = self.attempt(structure, feedback)?;
+            match attempt.run(self.sampled, &mut self.part(watch)) {
+                Err(DesignError::Stopped(_)) => return Ok(Some(attempt)),
+                ending => {
+                    if self.is_done_with(attempt, ending?)? {
+                        return Ok(None);
+                    }
                 }
             }
         }
-        Ok(!self.done)
-    }
-
-    /// Ends it as it stands: where no design is there yet, the controller at hand is audited and becomes one that is not converged.
-    ///
-    /// # Errors
-    /// Those of [`DesignRun::step`].
-    pub fn conclude(&mut self) -> Result<(), DesignError> {
-        let attempt = self.attempt.take().filter(|attempt| !attempt.x().is_empty());
-        if let (None, Some(attempt)) = (&self.design, attempt) {
-            let mut attempt = attempt.audited_as_it_is()?;
-            while attempt.step()? {}
-            if let Some(Ending::Hopeless(audit)) = attempt.ending() {
-                let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
-                self.rounds.extend_from_slice(attempt.rounds());
-                self.take(&attempt, status, audit)?;
+        let Some(mut attempt) = self.unstable.take().filter(|_| self.design.is_none()) else {
+            return Ok(None);
+        };
+        match attempt.audited_as_it_is(self.sampled, &mut self.part(watch)) {
+            Err(DesignError::Stopped(_)) => Ok(Some(attempt)),
+            audit => {
+                self.take(&attempt, DesignStatus::NotStabilised, audit?)?;
+                Ok(None)
             }
         }
-        self.done = true;
-        Ok(())
     }
 
-    /// What is being done.
-    pub fn stage(&self) -> &'static str {
-        match &self.attempt {
-            Some(_) if self.relaxing => "looking for the smallest relaxation",
-            Some(attempt) => attempt.stage(),
-            None => "shaping the loop",
+    /// The next structure, with a controller to begin from: what was begun anew, what waits, or a relaxation of what came nearest.
+    fn next(&mut self) -> Option<(Structure, Option<TransferFunction>)> {
+        if let Some(again) = self.again.take() {
+            return Some(again);
+        }
+        if let Some((order, zeros)) = self.waiting.pop_front() {
+            let structure = match &self.options.controller {
+                ControllerChoice::Given(structure) => structure.clone(),
+                ControllerChoice::Grow { .. } => self.ground.structure(order, zeros),
+            };
+            return Some((structure, self.before.clone()));
+        }
+        let (_, structure, feedback) = self.nearest.take().filter(|_| !self.found && !self.relaxing)?;
+        self.relaxing = true;
+        Some((structure, feedback))
+    }
+
+    /// The watch of one attempt. The share is an estimate, for the structures that it takes are not known before.
+    fn part<'w>(&self, watch: Watch<'w>) -> impl FnMut(Progress) -> bool + use<'w> {
+        let left = self.waiting.len() as f64 + 1.0;
+        let share = (1.0 - left / (self.all as f64 + 1.0)).max(0.0);
+        let relaxing = self.relaxing;
+        move |Progress { stage, .. }| {
+            let stage = if relaxing { "looking for the smallest relaxation" } else { stage };
+            watch(Progress { stage, share })
         }
     }
 
-    /// The share of the work that is done, 0 to 1: an estimate, for the structures that it takes are not known before.
-    pub fn progress(&self) -> f64 {
-        let left = self.plan.waiting.len() as f64 + f64::from(u8::from(!self.done));
-        (1.0 - left / (self.plan.all as f64 + 1.0)).max(0.0)
-    }
-
-    /// The best design so far; the last one once [`DesignRun::step`] has answered that there is nothing left.
-    pub fn design(&self) -> Option<&Design> {
-        self.design.as_ref()
-    }
-
-    fn begin(&mut self) -> Result<(), DesignError> {
-        if let Some((structure, feedback)) = self.again.take() {
-            let at = feedback.map(|feedback| self.plan.ground.grown(&structure, &feedback));
-            return self.attempt(structure, at.unwrap_or_default());
-        }
-        let structure = match (&self.options.controller, self.plan.waiting.pop_front()) {
-            (_, None) => return self.end(),
-            (ControllerChoice::Given(structure), Some(_)) => structure.clone(),
-            (ControllerChoice::Grow { .. }, Some((order, zeros))) => self.plan.ground.structure(order, zeros),
-        };
-        let beginning = match &self.before {
-            Some(before) => self.plan.ground.grown(&structure, before),
-            None => vec![],
-        };
-        self.attempt(structure, beginning)
-    }
-
-    fn attempt(&mut self, structure: Structure, beginning: Vec<Vec<f64>>) -> Result<(), DesignError> {
-        let samples = match self.samples.take() {
-            Some(samples) => samples,
+    fn attempt(
+        &mut self,
+        structure: Structure,
+        feedback: Option<TransferFunction>,
+    ) -> Result<Attempt, DesignError> {
+        let simpler = feedback.map(|feedback| self.ground.grown(&structure, &feedback)).unwrap_or_default();
+        let samples = match &self.samples {
+            Some(samples) => samples.clone(),
             None => self.first_samples()?,
         };
-        self.samples = Some(samples.clone());
-        let sampled = std::mem::take(&mut self.sampled);
-        let stabilising = self.plan.ground.stabilising(&structure, &self.problem);
-        let beginning = Beginning { simpler: beginning, stabilising, is_hard: self.plan.is_hard };
+        let stabilising = self.ground.stabilising(&structure, self.problem);
+        let beginning = Beginning { simpler, stabilising, is_hard: self.is_hard };
         let options = self.options_of(&structure);
-        let attempt = Attempt::new(structure, samples, &options, self.relaxing, beginning, sampled)?;
-        self.attempt = Some(attempt);
-        Ok(())
+        Attempt::new(structure, samples, &options, self.relaxing, beginning)
     }
 
     /// Those of the design; the same structure again begins at other random points.
     fn options_of(&mut self, structure: &Structure) -> DesignOptions {
         let mut options = self.options.clone();
-        if self.plan.last.as_ref() == Some(structure) {
+        if self.last.as_ref() == Some(structure) {
             options.seed = options.seed.wrapping_add(SEED_AGAIN);
         }
-        self.plan.last = Some(structure.clone());
+        self.last = Some(structure.clone());
         options
     }
 
     fn first_samples(&self) -> Result<Samples, DesignError> {
-        let plants = first_plants(&self.problem, self.options.seed);
-        let frequencies = search_frequencies(&self.problem, &plants, POINTS_PER_DECADE)?;
-        let mut samples = Samples::new(&self.problem, &plants, &frequencies)?;
+        let plants = first_plants(self.problem, self.options.seed);
+        let frequencies = search_frequencies(self.problem, &plants, POINTS_PER_DECADE)?;
+        let mut samples = Samples::new(self.problem, &plants, &frequencies)?;
         for beside in (0..self.problem.beside.len()).map(PlantPoint::Beside) {
             samples.look_closely_at(&beside)?;
         }
         Ok(samples)
     }
 
-    fn end_attempt(&mut self) -> Result<(), DesignError> {
-        let Some(mut attempt) = self.attempt.take() else { return Ok(()) };
-        self.sampled = attempt.take_sampled();
+    /// Takes what an attempt found; whether no other is worth a try.
+    fn is_done_with(&mut self, attempt: Attempt, ending: Ending) -> Result<bool, DesignError> {
         self.samples = Some(attempt.samples());
         self.rounds.extend_from_slice(attempt.rounds());
         self.before = attempt.feedback().or(self.before.take());
-        match attempt.ending() {
-            Some(Ending::Met(audit)) => {
-                self.take(&attempt, DesignStatus::Met, audit)?;
-                self.plan.found = true;
-                self.plan.waiting = fewer_zeros(&self.options.controller, attempt.structure());
-                self.done = self.relaxing || self.plan.waiting.is_empty();
+        match ending {
+            Ending::Met(audit) => {
+                self.take(&attempt, DesignStatus::Met, *audit)?;
+                self.found = true;
+                self.waiting = fewer_zeros(&self.options.controller, attempt.structure());
+                Ok(self.relaxing || self.waiting.is_empty())
             }
-            Some(Ending::Missed { worst_margin_db, audit: Some(_) })
-                if *worst_margin_db > FEASIBLE_DB && !self.plan.again =>
+            Ending::Missed { worst_margin_db, audit: Some(_) }
+                if worst_margin_db > FEASIBLE_DB && !self.begun_again =>
             {
                 // it can be met after all: from here the objective is looked for
-                (self.plan.again, self.relaxing) = (true, false);
+                (self.begun_again, self.relaxing) = (true, false);
                 self.again = Some((attempt.structure().clone(), attempt.feedback()));
+                Ok(false)
             }
-            Some(Ending::Missed { worst_margin_db, audit: Some(audit) }) => {
-                let relaxation_db = -worst_margin_db;
-                let is_less = match &self.design {
-                    Some(Design { status: DesignStatus::Infeasible(known), .. }) => {
-                        relaxation_db < known.relaxation_db - RELAXATION_GAINED_DB
-                    }
-                    _ => true,
-                };
-                if is_less {
-                    let conflicts = all_conflicts(audit, attempt.beside(), 0.8 * relaxation_db);
-                    let status = DesignStatus::Infeasible(Relaxation { relaxation_db, conflicts });
-                    self.take(&attempt, status, audit)?;
+            Ending::Missed { worst_margin_db, audit: Some(audit) } => {
+                self.take_relaxation(&attempt, -worst_margin_db, *audit)?;
+                Ok(self.waiting.is_empty())
+            }
+            Ending::Missed { worst_margin_db, audit: None } => {
+                if self.nearest.as_ref().is_none_or(|(best, ..)| worst_margin_db > *best) {
+                    self.nearest = Some((worst_margin_db, attempt.structure().clone(), attempt.feedback()));
                 }
-                self.done = self.plan.waiting.is_empty();
+                Ok(self.found)
             }
-            Some(Ending::Missed { worst_margin_db, audit: None }) => {
-                if self.nearest.as_ref().is_none_or(|(best, ..)| worst_margin_db > best) {
-                    self.nearest = Some((*worst_margin_db, attempt.structure().clone(), attempt.feedback()));
-                }
-                self.done = self.plan.found;
-            }
-            Some(Ending::NotConverged(audit)) => {
+            Ending::NotConverged(audit) => {
                 let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
                 if self.design.is_none() {
-                    self.take(&attempt, status, audit)?;
+                    self.take(&attempt, status, *audit)?;
                 }
-                self.done = self.plan.found || self.relaxing;
+                Ok(self.found || self.relaxing)
             }
-            Some(Ending::NotStabilised) | None => {
+            Ending::NotStabilised => {
                 self.unstable = Some(attempt);
-                self.done = self.plan.found;
-            }
-            Some(Ending::Hopeless(audit)) => {
-                self.take(&attempt, DesignStatus::NotStabilised, audit)?;
-                self.done = true;
-            }
-        }
-        Ok(())
-    }
-
-    /// What is left when no structure is waiting: a relaxation, or nothing.
-    fn end(&mut self) -> Result<(), DesignError> {
-        match self.nearest.take() {
-            Some((_, structure, feedback)) if !self.plan.found && !self.relaxing => {
-                self.relaxing = true;
-                let at = feedback.map(|feedback| self.plan.ground.grown(&structure, &feedback));
-                self.attempt(structure, at.unwrap_or_default())
-            }
-            _ => {
-                let unstable = self.unstable.take().filter(|_| self.design.is_none());
-                self.done = unstable.is_none();
-                self.attempt = unstable.map(Attempt::audited_as_it_is).transpose()?;
-                Ok(())
+                Ok(self.found)
             }
         }
     }
 
-    fn take(&mut self, attempt: &Attempt, status: DesignStatus, audit: &Audit) -> Result<(), DesignError> {
-        self.design = Some(Design {
-            status,
-            controller: attempt.deployed()?,
-            law: attempt.shaping().controller(attempt.x()),
-            structure: attempt.structure().clone(),
-            starts: attempt.starts().cloned(),
-            objective_db: self.rounds.last().map_or(f64::NAN, |round| round.objective_db),
-            audit: audit.clone(),
-            beside: attempt.beside().to_vec(),
-            binding: binding_limits(audit),
-            rounds: self.rounds.clone(),
-        });
+    fn take_relaxation(
+        &mut self,
+        attempt: &Attempt,
+        relaxation_db: f64,
+        audit: Audit,
+    ) -> Result<(), DesignError> {
+        if let Some(Design { status: DesignStatus::Infeasible(known), .. }) = &self.design
+            && relaxation_db >= known.relaxation_db - RELAXATION_GAINED_DB
+        {
+            return Ok(());
+        }
+        let conflicts = all_conflicts(&audit, attempt.beside(), 0.8 * relaxation_db);
+        self.take(attempt, DesignStatus::Infeasible(Relaxation { relaxation_db, conflicts }), audit)
+    }
+
+    fn take(&mut self, attempt: &Attempt, status: DesignStatus, audit: Audit) -> Result<(), DesignError> {
+        self.design = Some(design_of(attempt, status, audit, &self.rounds)?);
         Ok(())
     }
+}
+
+fn design_of(
+    attempt: &Attempt,
+    status: DesignStatus,
+    audit: Audit,
+    rounds: &[DesignRound],
+) -> Result<Design, DesignError> {
+    Ok(Design {
+        status,
+        controller: attempt.deployed()?,
+        law: attempt.shaping().controller(attempt.x()),
+        structure: attempt.structure().clone(),
+        starts: attempt.starts().cloned(),
+        objective_db: rounds.last().map_or(f64::NAN, |round| round.objective_db),
+        binding: binding_limits(&audit),
+        audit,
+        beside: attempt.beside().to_vec(),
+        rounds: rounds.to_vec(),
+    })
+}
+
+/// (order, zeros) in the order in which they are tried.
+fn structures_to_try(
+    problem: &DesignProblem,
+    options: &DesignOptions,
+    ground: &Ground,
+    is_hard: bool,
+) -> VecDeque<(usize, usize)> {
+    let ControllerChoice::Grow { maximum_order } = options.controller else {
+        return VecDeque::from([(0, 0)]);
+    };
+    let sampled = problem.timing.sample_time_s.is_some();
+    let orders = ground.integrators..=maximum_order;
+    let usual = orders.clone().flat_map(|order| degrees(order, ground.integrators, sampled));
+    let biproper = orders.filter(|order| !sampled && is_worth_as_many_zeros(*order, ground));
+    let each = usual.chain(biproper.map(|order| (order, order)));
+    each.flat_map(|degrees| std::iter::repeat_n(degrees, if is_hard { 2 } else { 1 })).collect()
 }
 
 /// (order, zeros) of an order: one pole more than zeros; as many for a gain alone, for proportional-integral control, and where the loop is

@@ -6,10 +6,12 @@ mod place;
 
 use std::collections::BTreeMap;
 
+use phea_dynamics::watch::{Stopped, Watch, tell};
+
 use super::search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
 use super::subproblem::{Answer, Failure, Subproblem, dot};
 pub(super) use curvature::Curvature;
-pub use outcome::{Binding, DescentStatus, Work};
+pub use outcome::{Binding, DescentResult, DescentStatus, Work};
 use place::Place;
 
 /// First trust region, and the largest, in units of x.
@@ -66,7 +68,7 @@ impl DescentOptions {
     }
 }
 
-/// A descent from one point, stepped by its owner.
+/// Descends from one point.
 ///
 /// ```text
 /// merit(x) = f(x) + sigma max(0, m_r - m(x)),   m(x) the worst margin;     -m(x) for Aim::WorstMargin
@@ -80,10 +82,14 @@ impl DescentOptions {
 ///
 /// The end is a local optimum. Source: Fletcher (1987), chapters 12 and 14; Nocedal and Wright (2006), chapter 18.
 ///
+/// # Errors
+/// [`Stopped`] by the watch.
+///
 /// # Example
 /// ```
+/// use phea_dynamics::watch::unwatched;
 /// use phea_qft::loop_shaping::{
-///     Aim, Descent, DescentOptions, DescentStatus, Judgement, MarginRow, SearchProblem, Slopes,
+///     Aim, DescentOptions, DescentStatus, Judgement, MarginRow, SearchProblem, Slopes, descend,
 /// };
 ///
 /// /// Least x + y with margin 1 - x^2 - y^2: at x = y = -sqrt(1/2).
@@ -106,15 +112,31 @@ impl DescentOptions {
 ///
 /// let mut disc = Disc([[-3.0, 3.0]; 2]);
 /// let options = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(Aim::Objective) };
-/// let mut descent = Descent::new(&[2.0, 1.0], options);
-/// while descent.step(&mut disc) {}
-/// assert_eq!(descent.status(), Some(DescentStatus::Converged));
-/// assert!((descent.judgement().unwrap().objective_db + 2_f64.sqrt()).abs() < 1e-4);
+/// let found = descend(&mut disc, &[2.0, 1.0], options, &mut unwatched)?;
+/// assert_eq!(found.status, DescentStatus::Converged);
+/// assert!((found.judgement.unwrap().objective_db + 2_f64.sqrt()).abs() < 1e-4);
 /// let multiplier = 0.5_f64.sqrt(); // of x + y against the square of the radius
-/// assert!((descent.binding()[0].multiplier - multiplier).abs() < 1e-2);
+/// assert!((found.binding[0].multiplier - multiplier).abs() < 1e-2);
+/// # Ok::<(), phea_dynamics::watch::Stopped>(())
 /// ```
+pub fn descend(
+    problem: &mut dyn SearchProblem,
+    start: &[f64],
+    options: DescentOptions,
+    watch: Watch<'_>,
+) -> Result<DescentResult, Stopped> {
+    let mut descent = Descent::new(start, options);
+    loop {
+        if let Some(status) = descent.advance(problem) {
+            return Ok(descent.result(status));
+        }
+        tell(watch, "descent", descent.steps, options.steps_maximum)?;
+    }
+}
+
+/// A descent on its way.
 #[derive(Clone, Debug)]
-pub struct Descent {
+pub(super) struct Descent {
     options: DescentOptions,
     x: Vec<f64>,
     /// Where it stands; `None` before it has begun.
@@ -133,7 +155,7 @@ pub struct Descent {
 
 impl Descent {
     /// A descent that has not begun.
-    pub fn new(x: &[f64], options: DescentOptions) -> Descent {
+    pub(super) fn new(x: &[f64], options: DescentOptions) -> Descent {
         Descent {
             options,
             x: x.to_vec(),
@@ -150,51 +172,41 @@ impl Descent {
         }
     }
 
-    /// What it looks for.
-    pub fn options(&self) -> DescentOptions {
-        self.options
-    }
-
     /// Where it stands.
-    pub fn x(&self) -> &[f64] {
+    pub(super) fn x(&self) -> &[f64] {
         self.here.as_ref().map_or(&self.x, |here| &here.x)
     }
 
     /// The judgement of where it stands; `None` before the first step.
-    pub fn judgement(&self) -> Option<Judgement> {
+    pub(super) fn judgement(&self) -> Option<Judgement> {
         self.here.as_ref().map(|here| here.judgement)
     }
 
     /// Why it ended; `None` as long as it goes on.
-    pub fn status(&self) -> Option<DescentStatus> {
+    pub(super) fn status(&self) -> Option<DescentStatus> {
         self.status
     }
 
     /// The margins that stood in the way of the last step, the strongest first.
-    pub fn binding(&self) -> &[Binding] {
+    pub(super) fn binding(&self) -> &[Binding] {
         &self.binding
     }
 
     /// Work done so far.
-    pub fn work(&self) -> Work {
+    pub(super) fn work(&self) -> Work {
         self.work
     }
 
-    /// Begins again from where it stands, after the problem has been given further margins: what was learnt of curvature and penalty
-    /// is kept, all else is judged afresh.
-    pub fn resume(&mut self) {
-        if let Some(here) = self.here.take() {
-            self.x = here.x;
-        }
-        self.radius = self.radius.clamp(RADIUS_FIRST / 10.0, RADIUS_FIRST);
-        (self.steps, self.failures, self.status) = (0, 0, None);
-        self.binding.clear();
+    fn result(self, status: DescentStatus) -> DescentResult {
+        let Descent { x, here, binding, work, .. } = self;
+        let judgement = here.as_ref().map(|here| here.judgement);
+        DescentResult { x: here.map_or(x, |here| here.x), judgement, status, binding, work }
     }
 
-    /// Makes one step, of a few judgements; whether there is more to do.
-    pub fn step(&mut self, problem: &mut dyn SearchProblem) -> bool {
+    /// Makes one step, of a few judgements; why it ended, as soon as it has.
+    pub(super) fn advance(&mut self, problem: &mut dyn SearchProblem) -> Option<DescentStatus> {
         if self.status.is_some() {
-            return false;
+            return self.status;
         }
         match self.here.take() {
             None => self.begin(problem),
@@ -207,7 +219,7 @@ impl Descent {
                 self.here = Some(self.advanced(problem, here));
             }
         }
-        self.status.is_none()
+        self.status
     }
 
     fn begin(&mut self, problem: &mut dyn SearchProblem) {

@@ -5,6 +5,8 @@ mod spread;
 
 use std::cmp::Ordering;
 
+use phea_dynamics::watch::{Stopped, Watch, part, tell};
+
 use super::descent::{Binding, Descent, DescentOptions, DescentStatus, Work, is_usable};
 use super::search::{Aim, Judgement, SearchProblem};
 use evolution::Evolution;
@@ -130,22 +132,8 @@ impl Candidate {
     }
 }
 
-#[derive(Clone, Debug)]
-enum Stage {
-    Sampling(Option<Spread>),
-    Evolving(Evolution),
-    /// Which of the descents goes on, and how many steps it has made in this stage.
-    Rough {
-        at: usize,
-        steps: usize,
-    },
-    Fine {
-        at: usize,
-    },
-    Done,
-}
-
-/// A search from many starts, stepped by its owner: it may be left at any step, and is the same on every machine.
+/// Searches from many starts, the same on every machine. The points that are `given` are looked at besides: where a simpler problem ended,
+/// say. `None` where not one point is looked at.
 ///
 /// ```text
 /// samples -> (evolution, if too few are stable) -> a few steps down from the best distinct ones -> the best of these to their end
@@ -153,9 +141,13 @@ enum Stage {
 ///
 /// The result is the best local optimum that was met; how far the other ends are from it says what that is worth.
 ///
+/// # Errors
+/// [`Stopped`] by the watch.
+///
 /// # Example
 /// ```
-/// use phea_qft::loop_shaping::{Aim, Judgement, MarginRow, Search, SearchOptions, SearchProblem, Slopes};
+/// use phea_dynamics::watch::unwatched;
+/// use phea_qft::loop_shaping::{Aim, Judgement, MarginRow, SearchOptions, SearchProblem, Slopes, search};
 ///
 /// /// Least x with margin (x^2 - 1)^2 - 1/4: there are walls around -1 and 1 that no descent passes.
 /// struct Walls([[f64; 2]; 1]);
@@ -176,138 +168,92 @@ enum Stage {
 ///     }
 /// }
 ///
-/// let mut search = Search::new(SearchOptions::new(Aim::Objective, 1));
 /// let mut walls = Walls([[-2.0, 2.0]]);
-/// while search.step(&mut walls) {}
-/// let found = search.result().unwrap();
+/// let options = SearchOptions::new(Aim::Objective, 1);
+/// let found = search(&mut walls, vec![], &options, &mut unwatched)?.unwrap();
 /// assert_eq!(found.x, [-2.0]);
 /// assert_eq!(found.ends[1].x, [-2.0]); // the next start agrees
+/// # Ok::<(), phea_dynamics::watch::Stopped>(())
 /// ```
-#[derive(Clone, Debug)]
-pub struct Search {
-    options: SearchOptions,
-    stage: Stage,
-    /// Points that are looked at before any that is spread.
+pub fn search(
+    problem: &mut dyn SearchProblem,
     given: Vec<Vec<f64>>,
-    candidates: Vec<Candidate>,
-    descents: Vec<Descent>,
+    options: &SearchOptions,
+    watch: Watch<'_>,
+) -> Result<Option<SearchResult>, Stopped> {
+    let mut search = Search { problem, options, work: Work::default(), random: options.seed };
+    let samples = search.sampled(given, &mut part(watch, STAGE, [0.0, 0.2]))?;
+    let points = search.evolved(samples, &mut part(watch, STAGE, [0.2, 0.4]))?;
+    let mut descents = search.descents_from(&points);
+    search.descend_roughly(&mut descents, &mut part(watch, STAGE, [0.4, 0.7]))?;
+    search.leave_all_but_the_best(&mut descents);
+    search.descend_to_the_end(&mut descents, &mut part(watch, STAGE, [0.7, 1.0]))?;
+    Ok(search.result(&points, &descents))
+}
+
+/// What the watch is told.
+const STAGE: &str = "search";
+
+/// A search on its way.
+struct Search<'a> {
+    problem: &'a mut dyn SearchProblem,
+    options: &'a SearchOptions,
     /// Work of samples, evolution, and descents left behind.
-    other_work: Work,
+    work: Work,
     random: u64,
 }
 
-impl Search {
-    /// A search that has not begun.
-    pub fn new(options: SearchOptions) -> Search {
-        Search {
-            options,
-            stage: Stage::Sampling(None),
-            given: vec![],
-            candidates: vec![],
-            descents: vec![],
-            other_work: Work::default(),
-            random: options.seed,
+impl Search<'_> {
+    /// The points that are given and those that are spread over the bounds, the best first.
+    fn sampled(&mut self, given: Vec<Vec<f64>>, watch: Watch<'_>) -> Result<Vec<Candidate>, Stopped> {
+        let mut candidates = Vec::new();
+        for x in given.into_iter().rev() {
+            tell(watch, STAGE, candidates.len(), self.options.samples)?;
+            candidates.push(self.judged(x));
         }
-    }
-
-    /// Looks at these points too, within the bounds: where a simpler problem ended, say.
-    pub fn beginning_with(self, given: Vec<Vec<f64>>) -> Search {
-        Search { given, ..self }
-    }
-
-    /// Does a small part of the work: a sample, or a step of a descent. Whether there is more to do.
-    pub fn step(&mut self, problem: &mut dyn SearchProblem) -> bool {
-        self.stage = match std::mem::replace(&mut self.stage, Stage::Done) {
-            Stage::Sampling(spread) => self.sampled(problem, spread),
-            Stage::Evolving(evolution) => self.evolved(problem, evolution),
-            Stage::Rough { at, steps } => self.roughly(problem, at, steps),
-            Stage::Fine { at } => self.finely(problem, at),
-            Stage::Done => Stage::Done,
-        };
-        !matches!(self.stage, Stage::Done)
-    }
-
-    /// The share of the work that is done, 0 to 1: an estimate, for the steps of the descents are not known before.
-    pub fn progress(&self) -> f64 {
-        let share = |done: usize, of: usize| done as f64 / of.max(1) as f64;
-        match &self.stage {
-            Stage::Sampling(_) => 0.2 * share(self.candidates.len(), self.options.samples),
-            Stage::Evolving(evolution) => 0.2 + 0.2 * share(evolution.generation(), self.options.generations),
-            Stage::Rough { at, .. } => 0.4 + 0.3 * share(*at, self.descents.len()),
-            Stage::Fine { at } => 0.7 + 0.3 * share(*at, self.descents.len()),
-            Stage::Done => 1.0,
-        }
-    }
-
-    /// What was found, once [`Search::step`] has answered that there is nothing left; `None` before, and if not one sample was allowed.
-    pub fn result(&self) -> Option<SearchResult> {
-        if !matches!(self.stage, Stage::Done) {
-            return None;
-        }
-        let end = |descent: &Descent| {
-            Some(End { x: descent.x().to_vec(), judgement: descent.judgement()?, status: descent.status()? })
-        };
-        let ends: Vec<End> = self.descents.iter().filter_map(end).collect();
-        let work = self.descents.iter().fold(self.other_work, |sum, descent| sum + descent.work());
-        let (status, best) = match ends.first() {
-            Some(End { x, judgement, status }) => {
-                (SearchStatus::Ended(*status), Candidate { x: x.clone(), judgement: *judgement })
+        let bounds = self.problem.bounds().to_vec();
+        if candidates.len() < self.options.samples {
+            let spread = Spread::new(bounds.len(), &mut self.random);
+            for index in candidates.len()..self.options.samples {
+                tell(watch, STAGE, index, self.options.samples)?;
+                candidates.push(self.scanned(spread.point(index, &bounds)));
             }
-            None => {
-                let best = self.candidates.first()?.clone();
-                (SearchStatus::NotStabilised { instability: best.judgement.instability }, best)
-            }
-        };
-        Some(SearchResult {
-            status,
-            x: best.x,
-            judgement: best.judgement,
-            binding: self.descents.first().map_or(vec![], |descent| descent.binding().to_vec()),
-            spread_db: self.spread_db(&ends),
-            points: self.candidates.len(),
-            stable_points: self.candidates.iter().filter(|one| is_usable(&one.judgement)).count(),
-            ends,
-            work,
-        })
+        }
+        Candidate::sort(&mut candidates, self.options.descent.aim);
+        Ok(candidates)
     }
 
-    fn sampled(&mut self, problem: &mut dyn SearchProblem, spread: Option<Spread>) -> Stage {
-        if let Some(x) = self.given.pop() {
-            let candidate = self.judged(problem, x);
-            self.candidates.push(candidate);
-            return Stage::Sampling(spread);
+    /// The samples, where enough of them are stable; otherwise a population that has evolved from them, the best first.
+    fn evolved(&mut self, samples: Vec<Candidate>, watch: Watch<'_>) -> Result<Vec<Candidate>, Stopped> {
+        let mut evolution = Evolution::new(&samples, self.problem.bounds());
+        if self.is_enough(evolution.candidates()) || evolution.is_too_small() {
+            return Ok(samples);
         }
-        if self.candidates.len() < self.options.samples {
-            let bounds = problem.bounds();
-            let spread = spread.unwrap_or_else(|| Spread::new(bounds.len(), &mut self.random));
-            let x = spread.point(self.candidates.len(), bounds);
-            let candidate = self.scanned(problem, x);
-            self.candidates.push(candidate);
-            return Stage::Sampling(Some(spread));
+        while evolution.generation() < self.options.generations && !self.is_enough(evolution.candidates()) {
+            tell(watch, STAGE, evolution.generation(), self.options.generations)?;
+            evolution.step(self.problem, &mut self.random);
+            self.work.judgements += 1;
         }
-        Candidate::sort(&mut self.candidates, self.options.descent.aim);
-        let evolution = Evolution::new(&self.candidates, problem.bounds());
-        match self.is_enough(evolution.candidates()) || evolution.is_too_small() {
-            true => self.chosen(problem),
-            false => Stage::Evolving(evolution),
-        }
+        let mut candidates = evolution.candidates().to_vec();
+        Candidate::sort(&mut candidates, self.options.descent.aim);
+        Ok(candidates)
     }
 
     /// The point, or the best along its first x.
-    fn scanned(&mut self, problem: &mut dyn SearchProblem, x: Vec<f64>) -> Candidate {
-        let range = problem.bounds().first().copied().unwrap_or_default();
+    fn scanned(&mut self, x: Vec<f64>) -> Candidate {
+        let range = self.problem.bounds().first().copied().unwrap_or_default();
         let values = (0..self.options.scanned).map(|step| {
             let share = (step as f64 + 0.5) / self.options.scanned as f64;
             range[0] + share * (range[1] - range[0])
         });
         let values: Vec<f64> = values.collect();
-        let mut best = self.judged(problem, x);
+        let mut best = self.judged(x);
         for value in values {
             let mut x = best.x.clone();
             if let Some(first) = x.first_mut() {
                 *first = value;
             }
-            let candidate = self.judged(problem, x);
+            let candidate = self.judged(x);
             if candidate.is_better_than(&best, self.options.descent.aim) {
                 best = candidate;
             }
@@ -315,21 +261,10 @@ impl Search {
         best
     }
 
-    fn judged(&mut self, problem: &mut dyn SearchProblem, x: Vec<f64>) -> Candidate {
-        self.other_work.judgements += 1;
-        let judgement = problem.judge(&x);
+    fn judged(&mut self, x: Vec<f64>) -> Candidate {
+        self.work.judgements += 1;
+        let judgement = self.problem.judge(&x);
         Candidate { x, judgement }
-    }
-
-    fn evolved(&mut self, problem: &mut dyn SearchProblem, mut evolution: Evolution) -> Stage {
-        if evolution.generation() < self.options.generations && !self.is_enough(evolution.candidates()) {
-            evolution.step(problem, &mut self.random);
-            self.other_work.judgements += 1;
-            return Stage::Evolving(evolution);
-        }
-        self.candidates = evolution.candidates().to_vec();
-        Candidate::sort(&mut self.candidates, self.options.descent.aim);
-        self.chosen(problem)
     }
 
     fn is_enough(&self, candidates: &[Candidate]) -> bool {
@@ -337,10 +272,10 @@ impl Search {
     }
 
     /// Descents from the best candidates that are distinct; the candidates are sorted.
-    fn chosen(&mut self, problem: &dyn SearchProblem) -> Stage {
-        let bounds = problem.bounds();
+    fn descents_from(&self, candidates: &[Candidate]) -> Vec<Descent> {
+        let bounds = self.problem.bounds();
         let usable: Vec<&Candidate> =
-            self.candidates.iter().filter(|candidate| is_usable(&candidate.judgement)).collect();
+            candidates.iter().filter(|candidate| is_usable(&candidate.judgement)).collect();
         let mut modest: Vec<&Candidate> =
             usable.iter().copied().filter(|one| one.judgement.worst_margin_db > MODEST_DB).collect();
         modest.sort_by(|one, other| one.judgement.objective_db.total_cmp(&other.judgement.objective_db));
@@ -351,41 +286,75 @@ impl Search {
         add_distinct(&mut starts, self.options.starts / 2, &usable, bounds);
         add_distinct(&mut starts, self.options.starts, &modest, bounds);
         add_distinct(&mut starts, self.options.starts, &usable, bounds);
-        self.descents = starts.iter().map(|start| Descent::new(&start.x, self.options.descent)).collect();
-        if self.descents.is_empty() { Stage::Done } else { Stage::Rough { at: 0, steps: 0 } }
+        starts.iter().map(|start| Descent::new(&start.x, self.options.descent)).collect()
     }
 
-    fn roughly(&mut self, problem: &mut dyn SearchProblem, at: usize, steps: usize) -> Stage {
-        let Some(descent) = self.descents.get_mut(at) else {
-            self.sort_descents();
-            for left in self.descents.drain(self.options.finished.max(1).min(self.descents.len())..) {
-                self.other_work = self.other_work + left.work();
+    /// A few steps of each.
+    fn descend_roughly(&mut self, descents: &mut [Descent], watch: Watch<'_>) -> Result<(), Stopped> {
+        let all = descents.len();
+        for (done, descent) in descents.iter_mut().enumerate() {
+            for _ in 0..STEPS_ROUGH {
+                tell(watch, STAGE, done, all)?;
+                if descent.advance(self.problem).is_some() {
+                    break;
+                }
             }
-            return Stage::Fine { at: 0 };
-        };
-        match steps < STEPS_ROUGH && descent.step(problem) {
-            true => Stage::Rough { at, steps: steps + 1 },
-            false => Stage::Rough { at: at + 1, steps: 0 },
+        }
+        Ok(())
+    }
+
+    fn leave_all_but_the_best(&mut self, descents: &mut Vec<Descent>) {
+        self.sort(descents);
+        for left in descents.drain(self.options.finished.max(1).min(descents.len())..) {
+            self.work = self.work + left.work();
         }
     }
 
-    fn finely(&mut self, problem: &mut dyn SearchProblem, at: usize) -> Stage {
-        match self.descents.get_mut(at).map(|descent| descent.step(problem)) {
-            Some(true) => Stage::Fine { at },
-            Some(false) => Stage::Fine { at: at + 1 },
-            None => {
-                self.sort_descents();
-                Stage::Done
+    fn descend_to_the_end(&mut self, descents: &mut [Descent], watch: Watch<'_>) -> Result<(), Stopped> {
+        let all = descents.len();
+        for (done, descent) in descents.iter_mut().enumerate() {
+            while descent.advance(self.problem).is_none() {
+                tell(watch, STAGE, done, all)?;
             }
         }
+        self.sort(descents);
+        Ok(())
     }
 
-    fn sort_descents(&mut self) {
+    /// The best first.
+    fn sort(&self, descents: &mut [Descent]) {
         let standing = |descent: &Descent| standing(&self.options.descent, descent.judgement());
-        self.descents.sort_by(|a, b| {
+        descents.sort_by(|a, b| {
             let (a, b) = (standing(a), standing(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
+    }
+
+    fn result(&self, points: &[Candidate], descents: &[Descent]) -> Option<SearchResult> {
+        let end = |descent: &Descent| {
+            Some(End { x: descent.x().to_vec(), judgement: descent.judgement()?, status: descent.status()? })
+        };
+        let ends: Vec<End> = descents.iter().filter_map(end).collect();
+        let (status, best) = match ends.first() {
+            Some(End { x, judgement, status }) => {
+                (SearchStatus::Ended(*status), Candidate { x: x.clone(), judgement: *judgement })
+            }
+            None => {
+                let best = points.first()?.clone();
+                (SearchStatus::NotStabilised { instability: best.judgement.instability }, best)
+            }
+        };
+        Some(SearchResult {
+            status,
+            x: best.x,
+            judgement: best.judgement,
+            binding: descents.first().map_or(vec![], |descent| descent.binding().to_vec()),
+            spread_db: self.spread_db(&ends),
+            points: points.len(),
+            stable_points: points.iter().filter(|one| is_usable(&one.judgement)).count(),
+            ends,
+            work: descents.iter().fold(self.work, |sum, descent| sum + descent.work()),
+        })
     }
 
     fn spread_db(&self, ends: &[End]) -> Option<f64> {

@@ -1,7 +1,8 @@
 //! Designs that serve a plant beside their family: they must be those of a family that has it among its members.
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
-use phea_qft::design::{Design, DesignOptions, DesignProblem, DesignRun, DesignStatus};
+use phea_dynamics::watch::unwatched;
+use phea_qft::design::{Design, DesignOptions, DesignProblem, DesignStatus, design, design_again};
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::specification::Requirement;
 use phea_qft::verification::{TrackingJudgement, Verdict};
@@ -63,12 +64,12 @@ fn a_plant_beside_the_family_counts_as_a_member_does() {
 #[test]
 fn a_design_goes_on_with_a_plant_that_it_takes_in() {
     let both = regulation(&[LATE]);
-    let mut run = DesignRun::new(regulation(&[]), options());
-    while run.step().unwrap() {}
-    let rounds = run.design().unwrap().rounds.clone();
-    let mut run = run.taking_in(lagging(LATE)).unwrap();
-    while run.step().unwrap() {}
-    let found = run.design().unwrap();
+    let mut problem = regulation(&[]);
+    let alone = design(&problem, &options(), &mut unwatched).unwrap();
+    let rounds = alone.design.as_ref().unwrap().rounds.clone();
+    problem.beside.push(lagging(LATE));
+    let outcome = design_again(&problem, &options(), alone, &mut unwatched).unwrap();
+    let found = &outcome.design.unwrap();
     assert_eq!(found.status, DesignStatus::Met);
     assert!(found.rounds.starts_with(&rounds) && found.rounds.len() > rounds.len());
     assert_eq!(audited(&both, found, TrackingJudgement::Spread).verdict, Verdict::Met);

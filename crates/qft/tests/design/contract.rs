@@ -1,6 +1,6 @@
-//! What holds of every run: the same seed gives the same design, and it may be stopped at any step.
+//! What holds of every design: the same seed gives the same, and it may be stopped at any time.
 
-use phea_qft::design::{ControllerChoice, DesignOptions, DesignRun, DesignStatus};
+use phea_qft::design::{ControllerChoice, DesignOptions, DesignStatus, design};
 use phea_qft::verification::{TrackingJudgement, Verdict};
 
 use super::problems::{assert_met, designed, example_d, least_gain, structure};
@@ -18,27 +18,38 @@ fn the_same_seed_gives_the_same_design() {
     assert_ne!(first.controller, other.controller);
 }
 
-/// Structures of growing order: what is shown at any step is audited, and nothing that is met is given up for what is not.
+/// Structures of growing order: wherever it is stopped, what is found is audited, and nothing that is met is given up for what is not.
 #[test]
 fn a_run_that_is_stopped_has_the_best_so_far() {
     let problem = example_d();
     let controller = ControllerChoice::Grow { maximum_order: 3 };
-    let mut run = DesignRun::new(problem.clone(), DesignOptions { controller, ..complex_poles(1) });
-    let (mut shown, mut steps, mut met_at) = (0, 0, None);
-    while run.step().unwrap() {
+    let options = DesignOptions { controller, ..complex_poles(1) };
+    let mut steps = 0;
+    let whole = design(&problem, &options, &mut |progress| {
         steps += 1;
-        assert!((0.0..=1.0).contains(&run.progress()) && !run.stage().is_empty());
-        if let Some(design) = run.design() {
-            shown += 1;
-            assert!(design.objective_db.is_finite() && !design.rounds.is_empty(), "{design:?}");
-            let met = design.status == DesignStatus::Met;
-            assert_eq!(met, design.audit.verdict == Verdict::Met);
-            assert!(met_at.is_none() || met, "met at step {met_at:?}, and not at {steps}");
-            met_at = met_at.or(met.then_some(steps));
-        }
+        (0.0..=1.0).contains(&progress.share) && !progress.stage.is_empty()
+    });
+    let whole = whole.unwrap();
+    assert!(!whole.stopped, "a share or a stage that is none");
+    assert_met(&problem, &whole.design.unwrap(), TrackingJudgement::Spread);
+    let (mut shown, mut met_at) = (0, None);
+    for last in [steps / 10, steps / 3, steps / 2, 9 * steps / 10, 99 * steps / 100, steps - 1] {
+        let mut left = last;
+        let outcome = design(&problem, &options, &mut |_| {
+            left -= 1;
+            left > 0
+        });
+        let mut outcome = outcome.unwrap();
+        assert!(outcome.stopped && left == 0, "it goes on after its end");
+        let concludes = outcome.design.is_none();
+        outcome.conclude().unwrap();
+        let Some(design) = outcome.design else { continue };
+        shown += 1;
+        assert!(design.objective_db.is_finite() || concludes, "{design:?}");
+        let met = design.status == DesignStatus::Met;
+        assert!(concludes || met == (design.audit.verdict == Verdict::Met));
+        assert!(met_at.is_none() || met, "met at step {met_at:?}, and not at {last}");
+        met_at = met_at.or(met.then_some(last));
     }
-    assert!(shown > 0 && met_at.unwrap() < steps, "{met_at:?} of {steps}");
-    let design = run.design().unwrap().clone();
-    assert_met(&problem, &design, TrackingJudgement::Spread);
-    assert!(!run.step().unwrap() && run.design() == Some(&design), "it goes on after its end");
+    assert!(shown > 0 && met_at.is_some(), "{shown} {met_at:?}");
 }

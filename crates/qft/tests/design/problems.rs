@@ -11,8 +11,7 @@ use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantisation::CoefficientFormat;
 use phea_qft::design::{
-    ControllerChoice, Design, DesignOptions, DesignProblem, DesignRun, DesignStatus, Objective,
-    PrefilterChoice,
+    ControllerChoice, Design, DesignOptions, DesignProblem, DesignStatus, Objective, PrefilterChoice, design,
 };
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::loop_shaping::{Part, Structure};
@@ -138,9 +137,7 @@ pub(crate) fn least_gain(structure: Structure, seed: u64) -> DesignOptions {
 }
 
 pub(crate) fn designed(problem: &DesignProblem, options: DesignOptions) -> Design {
-    let mut run = DesignRun::new(problem.clone(), options);
-    while run.step().unwrap() {}
-    run.design().unwrap().clone()
+    design(problem, &options, &mut unwatched).unwrap().design.unwrap()
 }
 
 /// An audit of its own of a design.

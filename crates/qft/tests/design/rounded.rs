@@ -1,12 +1,11 @@
 //! Designs for a computer that keeps few bits of each coefficient.
 
 use phea_dynamics::controller::{Controller, Element, Section, Timing};
+use phea_dynamics::watch::unwatched;
 use phea_qft::design::quantisation::{
     CoefficientFormat, Converter, Quantisation, QuantisationError, rounded,
 };
-use phea_qft::design::{
-    Design, DesignError, DesignOptions, DesignProblem, DesignRun, DesignStatus, Objective,
-};
+use phea_qft::design::{Design, DesignError, DesignOptions, DesignProblem, DesignStatus, Objective, design};
 use phea_qft::family::{Family, Spacing};
 use phea_qft::loop_shaping::{Part, Structure};
 use phea_qft::specification::Requirement;
@@ -94,14 +93,8 @@ fn fine_coefficients_cost_nothing() {
 #[test]
 fn a_format_that_holds_no_controller_is_told() {
     let options = least_gain(proportional_integral(), 1);
-    let mut run = DesignRun::new(regulation(), DesignOptions { coefficients: fixed(0, 12), ..options });
-    let error = loop {
-        match run.step() {
-            Ok(true) => {}
-            Ok(false) => panic!("{:?}", run.design().map(|design| &design.status)),
-            Err(error) => break error,
-        }
-    };
+    let options = DesignOptions { coefficients: fixed(0, 12), ..options };
+    let error = design(&regulation(), &options, &mut unwatched).unwrap_err();
     assert!(matches!(error, DesignError::Quantisation(QuantisationError::TooLarge { .. })), "{error}");
 }
 

@@ -7,8 +7,8 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::loop_shaping::{Part, SearchProblem, Structure};
 use phea_qft::prefilter::{
-    FittedPrefilter, PrefilterBand, PrefilterFit, PrefilterOptions, PrefilterOutcome, PrefilterRun,
-    TrackingExtremes,
+    FittedPrefilter, PrefilterBand, PrefilterFit, PrefilterOptions, PrefilterOutcome, TrackingExtremes,
+    fit_prefilter,
 };
 use phea_qft::specification::Limit;
 use phea_qft::verification::{AuditProblem, TrackingJudgement, Verdict, audit_specifications};
@@ -18,14 +18,13 @@ use super::loops::{integrators, member, servo, servo_controller, servo_family, s
 const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 
 fn run(band: PrefilterBand, timing: &Timing, options: PrefilterOptions) -> PrefilterOutcome {
-    let mut run = PrefilterRun::new(band, timing, options).unwrap();
-    let mut before = run.progress();
-    while run.step() {
-        assert!(run.progress() >= before && run.progress() <= 1.0);
-        before = run.progress();
-    }
-    assert_eq!(run.progress(), 1.0);
-    run.outcome().unwrap().clone()
+    let mut before = 0.0;
+    let outcome = fit_prefilter(&band, timing, &options, &mut |progress| {
+        assert!(progress.share >= before && progress.share <= 1.0);
+        before = progress.share;
+        true
+    });
+    outcome.unwrap()
 }
 
 #[track_caller]

@@ -1,7 +1,8 @@
 //! A problem written down as formulae, its slopes by central differences.
 
+use phea_dynamics::watch::unwatched;
 use phea_qft::loop_shaping::{
-    Aim, Descent, DescentOptions, DescentStatus, Judgement, MarginRow, SearchProblem, Slopes,
+    Aim, DescentOptions, DescentResult, DescentStatus, Judgement, MarginRow, SearchProblem, Slopes, descend,
 };
 
 type Objective = fn(&[f64]) -> f64;
@@ -76,21 +77,19 @@ impl SearchProblem for Formula {
 }
 
 /// A descent to its end, from a start, without a reserve.
-pub(crate) fn descended(problem: &mut Formula, start: &[f64], aim: Aim) -> Descent {
+pub(crate) fn descended(problem: &mut Formula, start: &[f64], aim: Aim) -> DescentResult {
     let options = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(aim) };
-    let mut descent = Descent::new(start, options);
-    while descent.step(problem) {}
-    descent
+    descend(problem, start, options, &mut unwatched).unwrap()
 }
 
 /// Asserts that a descent converges to an objective, and that its margins hold.
 #[track_caller]
-pub(crate) fn check_objective(mut problem: Formula, start: &[f64], expected: f64) -> Descent {
+pub(crate) fn check_objective(mut problem: Formula, start: &[f64], expected: f64) -> DescentResult {
     let descent = descended(&mut problem, start, Aim::Objective);
-    let judgement = descent.judgement().unwrap();
+    let judgement = descent.judgement.unwrap();
     let found = judgement.objective_db;
-    assert_eq!(descent.status(), Some(DescentStatus::Converged), "{descent:?}");
-    assert!((found - expected).abs() < 1e-3, "{found} {expected} {:?}", descent.work());
+    assert_eq!(descent.status, DescentStatus::Converged, "{descent:?}");
+    assert!((found - expected).abs() < 1e-3, "{found} {expected} {:?}", descent.work);
     assert!(judgement.worst_margin_db > -1e-4, "{judgement:?}");
     descent
 }

@@ -6,9 +6,10 @@
 //! ```
 
 use num_complex::Complex64;
+use phea_dynamics::watch::unwatched;
 use phea_qft::loop_shaping::{
-    Aim, DescentStatus, Judgement, MarginRow, Search, SearchOptions, SearchProblem, SearchResult,
-    SearchStatus, Slopes,
+    Aim, DescentStatus, Judgement, MarginRow, SearchOptions, SearchProblem, SearchResult, SearchStatus,
+    Slopes, search,
 };
 
 use super::formula::differences;
@@ -159,10 +160,7 @@ impl SearchProblem for Servo {
 fn searched(seed: u64) -> SearchResult {
     let mut options = SearchOptions::new(Aim::Objective, seed);
     options.descent.reserve_db = 0.0;
-    let mut search = Search::new(options);
-    let mut servo = Servo::new();
-    while search.step(&mut servo) {}
-    search.result().unwrap()
+    search(&mut Servo::new(), vec![], &options, &mut unwatched).unwrap().unwrap()
 }
 
 /// The least high-frequency gain with two real poles; the poles then coincide, a ridge by symmetry.

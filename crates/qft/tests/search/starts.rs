@@ -1,18 +1,17 @@
 //! The search from many starts.
 
-use phea_qft::loop_shaping::{Aim, DescentStatus, Search, SearchOptions, SearchResult, SearchStatus};
+use phea_qft::loop_shaping::{Aim, DescentStatus, SearchOptions, SearchResult, SearchStatus, search};
 
 use super::formula::Formula;
 
 fn searched(problem: &mut Formula, options: SearchOptions) -> SearchResult {
-    let mut search = Search::new(options);
-    let mut progress = 0.0;
-    assert_eq!(search.result(), None);
-    while search.step(problem) {
-        assert!((progress..=1.0).contains(&search.progress()), "{progress} {}", search.progress());
-        progress = search.progress();
-    }
-    search.result().unwrap()
+    let mut last = 0.0;
+    let found = search(problem, vec![], &options, &mut |progress| {
+        assert!((last..=1.0).contains(&progress.share), "{last} {progress:?}");
+        last = progress.share;
+        true
+    });
+    found.unwrap().unwrap()
 }
 
 /// Rastrigin's function, softened: 25 valleys within these bounds, the deepest one at the origin.

@@ -1,9 +1,8 @@
 //! The audits of an attempt: of each plant beside its family by itself, then of the family, which takes longer.
 
-use phea_dynamics::linear::LinearError;
-use phea_dynamics::watch::unwatched;
+use phea_dynamics::watch::{Watch, part};
 
-use super::{Attempt, DesignError, Ending, Stage};
+use super::{AUDITING, Attempt, DesignError, Ending, WHOLE};
 use crate::audit::audit_with;
 use crate::design::counterexample::{
     Counterexample, audited_margin_db, counterexamples, of_beside, too_little_delay, unstable_plant,
@@ -23,15 +22,12 @@ impl Attempt {
         &self.beside
     }
 
-    /// The audit of the next plant beside the family, or of the family after the last of them.
-    pub(super) fn audit(&mut self) -> Result<Stage, DesignError> {
-        match self.beside.len() < self.shaping.samples().problem().beside.len() {
-            true => Ok(Stage::Beside),
-            false => Ok(Stage::Auditing),
-        }
-    }
-
-    fn audit_of(&self, family: &Family, sampled: &SampledPlants) -> Result<Audit, DesignError> {
+    fn audit_of(
+        &self,
+        family: &Family,
+        sampled: &SampledPlants,
+        watch: Watch<'_>,
+    ) -> Result<Audit, DesignError> {
         let problem = AuditProblem {
             family,
             compensation: &self.compensation()?,
@@ -39,48 +35,73 @@ impl Attempt {
             tracking: self.shaping.tracking(),
             tolerance_db: self.options.tolerance_db,
         };
-        audit_with(&problem, sampled, &mut unwatched).map_err(|_| LinearError::ZeroPolynomial.into())
+        Ok(audit_with(&problem, sampled, &mut part(watch, AUDITING, WHOLE))?)
     }
 
-    pub(super) fn after_beside(&mut self) -> Result<Stage, DesignError> {
-        let problem = self.shaping.samples().problem();
-        let Some(plant) = problem.beside.get(self.beside.len()) else { return self.audit() };
+    fn audit_of_family(&self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<Audit, DesignError> {
+        self.audit_of(&self.shaping.samples().problem().family, sampled, watch)
+    }
+
+    /// The audits of the plants beside the family, one by one.
+    fn audit_of_next(&self, watch: Watch<'_>) -> Result<Option<Audit>, DesignError> {
+        let beside = &self.shaping.samples().problem().beside;
+        let Some(plant) = beside.get(self.beside.len()) else { return Ok(None) };
         let alone = Family::Uncertain(UncertainFamily::of_nominal(plant.clone()));
-        let audit = self.audit_of(&alone, &SampledPlants::default())?;
-        let judgement = self.judgement();
-        let examples = of_beside(self.beside.len(), self.examples(&audit, &judgement));
-        if !examples.is_empty() && !self.audits_only {
-            self.note(audited_margin_db(&audit), &judgement);
-            if let Some(next) = self.with(&examples)? {
-                return Ok(next);
-            }
-        }
-        self.beside.push(audit);
-        self.audit()
+        self.audit_of(&alone, &SampledPlants::default(), watch).map(Some)
     }
 
-    pub(super) fn after_audit(&mut self) -> Result<Stage, DesignError> {
-        let audit = Box::new(self.audit_of(&self.shaping.samples().problem().family, &self.sampled)?);
-        if self.audits_only {
-            return Ok(Stage::Ended(Ending::Hopeless(audit)));
+    /// What the audits say of the attempt; `None` where they found counterexamples, which were taken in.
+    pub(super) fn audited(
+        &mut self,
+        sampled: &SampledPlants,
+        watch: Watch<'_>,
+    ) -> Result<Option<Ending>, DesignError> {
+        self.beside.clear();
+        while let Some(audit) = self.audit_of_next(watch)? {
+            let judgement = self.judgement();
+            let examples = of_beside(self.beside.len(), self.examples(&audit, &judgement));
+            if !examples.is_empty() {
+                self.note(audited_margin_db(&audit), &judgement);
+                if self.takes_in(&examples)? {
+                    return Ok(None);
+                }
+            }
+            self.beside.push(audit);
         }
+        let audit = Box::new(self.audit_of_family(sampled, watch)?);
         let judgement = self.judgement();
         self.note(audited_margin_db(&audit), &judgement);
         let all = || self.beside.iter().chain([&*audit]);
         let problem = self.shaping.samples().problem();
         let is_met = |one: &Audit| one.verdict == Verdict::Met && too_little_delay(one, problem).is_empty();
         if all().all(is_met) {
-            return Ok(Stage::Ended(Ending::Met(audit)));
+            return Ok(Some(Ending::Met(audit)));
         }
         let stable = all().all(|one| one.stability.verdict == Verdict::Met);
         let over_rate = |one: &Audit| worst_over_rate_db(&one.specifications, self.shaping.tracking());
         let audited_db = all().map(over_rate).fold(f64::INFINITY, f64::min);
         let examples = self.examples(&audit, &judgement);
-        Ok(self.with(&examples)?.unwrap_or(Stage::Ended(if self.relaxes && stable {
-            Ending::Missed { worst_margin_db: judgement.worst_margin_db.min(audited_db), audit: Some(audit) }
-        } else {
-            Ending::NotConverged(audit)
-        })))
+        if self.takes_in(&examples)? {
+            return Ok(None);
+        }
+        let worst_margin_db = judgement.worst_margin_db.min(audited_db);
+        Ok(Some(match self.relaxes && stable {
+            true => Ending::Missed { worst_margin_db, audit: Some(audit) },
+            false => Ending::NotConverged(audit),
+        }))
+    }
+
+    /// The audit of an attempt that has come to no end, or to none that is stable, as it is.
+    pub(in crate::design) fn audited_as_it_is(
+        &mut self,
+        sampled: &SampledPlants,
+        watch: Watch<'_>,
+    ) -> Result<Audit, DesignError> {
+        self.beside.clear();
+        while let Some(audit) = self.audit_of_next(watch)? {
+            self.beside.push(audit);
+        }
+        self.audit_of_family(sampled, watch)
     }
 
     /// What an audit teaches the search.
@@ -90,14 +111,6 @@ impl Attempt {
         let tolerance_db = self.new_below_db(judgement);
         examples.extend(counterexamples(&audit.specifications, tolerance_db, self.shaping.tracking()));
         examples
-    }
-
-    /// An attempt that found nothing stable, whose nearest controller is audited all the same.
-    pub(in crate::design) fn audited_as_it_is(mut self) -> Result<Attempt, DesignError> {
-        self.audits_only = true;
-        self.beside.clear();
-        self.stage = self.audit()?;
-        Ok(self)
     }
 
     /// Margins below minus these are new, of single limits and of tracking: where the worst margin itself is looked for, what is worse than all

@@ -5,8 +5,9 @@
 //! rounded controller keeps to the limits too: rounding moves a controller by no more than so much, in a direction that nobody can tell.
 
 use phea_dynamics::controller::Controller;
+use phea_dynamics::watch::Watch;
 
-use super::{Attempt, DesignError, Ending, FEASIBLE_DB, RESERVE_DB, Stage};
+use super::{Attempt, DesignError, Ending, FEASIBLE_DB, Leave, RESERVE_DB};
 use crate::closed_loop::Compensation;
 use crate::design::quantisation::{CoefficientFormat, rounded};
 use crate::loop_shaping::{Aim, Judgement, SearchProblem};
@@ -46,27 +47,28 @@ impl Attempt {
         judgement
     }
 
-    /// The search again, further inside its limits, where rounding breaks one that the search kept; `None` where it breaks none. A worst
-    /// margin that is made as large as it can be has nothing to be drawn in from.
-    pub(super) fn drawn_in(&mut self) -> Option<Stage> {
+    /// Descends further inside its limits, as long as rounding breaks one that the search kept. A worst margin that is made as large as it
+    /// can be has nothing to be drawn in from.
+    pub(super) fn draw_in(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         if !self.rounds_coefficients() || self.aim == Aim::WorstMargin {
-            return None;
+            return Ok(());
         }
-        let judgement = self.judgement();
-        if judgement.stable && judgement.worst_margin_db >= FEASIBLE_DB {
-            return None;
+        loop {
+            let Judgement { stable, worst_margin_db, .. } = self.judgement();
+            if stable && worst_margin_db >= FEASIBLE_DB {
+                return Ok(());
+            }
+            if self.draws >= DRAWS_MAXIMUM {
+                return Err(Leave::Ended(Ending::Missed { worst_margin_db, audit: None }));
+            }
+            self.draws += 1;
+            self.reserve_db += match stable {
+                true => DRAWN * (-worst_margin_db).max(RESERVE_DB),
+                false => self.reserve_db.max(DRAWN_BLINDLY_DB),
+            };
+            self.shaping.keep_in_reserve(self.reserve_db);
+            self.descend(true, watch)?;
         }
-        if self.draws >= DRAWS_MAXIMUM {
-            let worst_margin_db = judgement.worst_margin_db;
-            return Some(Stage::Ended(Ending::Missed { worst_margin_db, audit: None }));
-        }
-        self.draws += 1;
-        self.reserve_db += match judgement.stable {
-            true => DRAWN * (-judgement.worst_margin_db).max(RESERVE_DB),
-            false => self.reserve_db.max(DRAWN_BLINDLY_DB),
-        };
-        self.shaping.keep_in_reserve(self.reserve_db);
-        Some(self.descend(true))
     }
 
     fn rounds_coefficients(&self) -> bool {

@@ -1,12 +1,13 @@
 //! Why a design cannot go on.
 
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::watch::Stopped;
 
 use crate::design::quantisation::QuantisationError;
 use crate::loop_shaping::SamplesError;
 use crate::prefilter::PrefilterError;
 
-/// Why a step of the design cannot be made at all.
+/// Why a design cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DesignError {
     /// A part is no transfer function, or cannot be sampled.
@@ -17,8 +18,20 @@ pub enum DesignError {
     Samples(#[from] SamplesError),
     /// There is no band for a prefilter.
     #[error("{0}")]
-    Prefilter(#[from] PrefilterError),
+    Prefilter(PrefilterError),
     /// The coefficients of the controller cannot be kept in their format.
     #[error("{0}")]
     Quantisation(#[from] QuantisationError),
+    /// The watch stopped the design.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl From<PrefilterError> for DesignError {
+    fn from(error: PrefilterError) -> DesignError {
+        match error {
+            PrefilterError::Stopped(stopped) => DesignError::Stopped(stopped),
+            error => DesignError::Prefilter(error),
+        }
+    }
 }

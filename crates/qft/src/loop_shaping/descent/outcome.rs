@@ -1,5 +1,7 @@
 //! What a descent ends with.
 
+use crate::loop_shaping::search::Judgement;
+
 /// Why a descent ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DescentStatus {
@@ -29,6 +31,21 @@ pub enum DescentStatus {
     StartUnusable,
     /// The start lies outside of the bounds.
     StartOutside,
+}
+
+/// Where a descent ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DescentResult {
+    /// x
+    pub x: Vec<f64>,
+    /// Its judgement; `None` for a start outside of the bounds.
+    pub judgement: Option<Judgement>,
+    /// Why it ended there.
+    pub status: DescentStatus,
+    /// The margins that stood in the way of the last step, the strongest first.
+    pub binding: Vec<Binding>,
+    /// Work done.
+    pub work: Work,
 }
 
 /// Work done: counts, not times.

@@ -1,11 +1,12 @@
-//! The synthesis of a prefilter, stepped by its owner.
+//! The synthesis of a prefilter.
 
 use phea_dynamics::controller::{Compensator, Element, Timing};
 use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::watch::{Watch, part};
 
 use super::structures::structures;
 use super::{PrefilterBand, PrefilterBandPoint, PrefilterError, PrefilterFit, PrefilterMargin};
-use crate::loop_shaping::{Aim, Search, SearchOptions, Structure};
+use crate::loop_shaping::{Aim, SearchOptions, Structure, search};
 use crate::verification::TOLERANCE_DB;
 
 /// Starting points for each free number.
@@ -68,17 +69,21 @@ pub enum PrefilterOutcome {
     },
 }
 
-/// The synthesis of a prefilter, stepped by its owner, who may show its progress or stop it at any step.
+/// Fits the prefilter of least order into its band, for a loop with this timing.
 ///
 /// Structures of growing order are fitted into the band, each by a search from many starts for the greatest worst margin over rate
-/// ([`PrefilterFit`]); the first one that keeps to both edges everywhere is taken. Source of the band: thesis 3.1.5.
+/// ([`PrefilterFit`]); the first one that satisfies both edges everywhere is taken. Source of the band: thesis 3.1.5.
+///
+/// # Errors
+/// [`PrefilterError::Linear`] for a sample time or a prewarping frequency that cannot be; [`PrefilterError::Stopped`] by the watch.
 ///
 /// # Example
 /// A band of 1 dB to both sides of a lag with its corner at 2 rad/s: the lag is found.
 /// ```
 /// use phea_dynamics::controller::{Element, Timing};
 /// use phea_dynamics::portable::magnitude;
-/// use phea_qft::prefilter::{PrefilterBand, PrefilterOptions, PrefilterOutcome, PrefilterRun, TrackingExtremes};
+/// use phea_dynamics::watch::unwatched;
+/// use phea_qft::prefilter::{PrefilterBand, PrefilterOptions, PrefilterOutcome, TrackingExtremes, fit_prefilter};
 /// use phea_qft::specification::{Limit, Requirement, Specification};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let lag = Element::RealPole { frequency: 2.0 }.transfer_function()?;
@@ -94,111 +99,63 @@ pub enum PrefilterOutcome {
 ///     band_rad_per_s: [0.1, 20.0],
 /// };
 /// let band = PrefilterBand::new(&extremes, &tracking)?;
-/// let mut run = PrefilterRun::new(band, &Timing::default(), PrefilterOptions::new(3, 1))?;
-/// while run.step() {}
-/// let Some(PrefilterOutcome::Found(found)) = run.outcome() else { return Err("it exists".into()) };
+/// let outcome = fit_prefilter(&band, &Timing::default(), &PrefilterOptions::new(3, 1), &mut unwatched)?;
+/// let PrefilterOutcome::Found(found) = outcome else { return Err("it exists".into()) };
 /// let pole = found.compensator.transfer_function()?.poles()[0];
 /// assert!((pole.re + 2.0).abs() < 1e-3 && (found.worst.margin_db - 1.0).abs() < 1e-3);
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug)]
-pub struct PrefilterRun {
-    band: PrefilterBand,
-    timing: Timing,
-    options: PrefilterOptions,
-    fits: Vec<PrefilterFit>,
-    /// The structure that is fitted now.
-    at: usize,
-    search: Search,
-    best: Option<(f64, FittedPrefilter)>,
-    outcome: Option<PrefilterOutcome>,
+pub fn fit_prefilter(
+    band: &PrefilterBand,
+    timing: &Timing,
+    options: &PrefilterOptions,
+    watch: Watch<'_>,
+) -> Result<PrefilterOutcome, PrefilterError> {
+    let synthesis = Synthesis { band, timing: timing.of_prefilter() };
+    let orders = options.least_order..=options.maximum_order;
+    let structures = structures(band, options.least_relative_degree, orders);
+    let fit = |structure| PrefilterFit::new(band, structure, &synthesis.timing, options.tolerance_db);
+    let mut fits: Vec<PrefilterFit> = structures.into_iter().map(fit).collect::<Result<_, _>>()?;
+    if let Some(closed) = band.closed(options.tolerance_db) {
+        return Ok(PrefilterOutcome::NoBand(*closed));
+    }
+    let all = fits.len() as f64 + 1.0;
+    let mut best: Option<(f64, FittedPrefilter)> = None;
+    for (done, fit) in fits.iter_mut().enumerate() {
+        let shares = [done as f64 / all, (done as f64 + 1.0) / all];
+        // the more starts the more free numbers there are
+        let samples = SAMPLES_PER_NUMBER * fit.structure().dimension();
+        let options = SearchOptions { samples, ..SearchOptions::new(Aim::WorstMargin, options.seed) };
+        let found = search(fit, vec![], &options, &mut part(watch, "fitting the prefilter", shares))?;
+        let Some(result) = found else { continue };
+        let share = result.judgement.worst_margin_db;
+        let Some(fitted) = synthesis.fitted(fit.structure(), result.x) else { continue };
+        if share >= 0.0 {
+            return Ok(PrefilterOutcome::Found(fitted));
+        }
+        if best.as_ref().is_none_or(|(best, _)| share > *best) {
+            best = Some((share, fitted));
+        }
+    }
+    // none satisfies the band to the last digit: the tolerance may forgive the best
+    let best = best.map(|(_, best)| best);
+    Ok(match best {
+        Some(best) if synthesis.is_within(&best, options.tolerance_db) => PrefilterOutcome::Found(best),
+        best => PrefilterOutcome::OrderTooLow { best },
+    })
 }
 
-impl PrefilterRun {
-    /// A synthesis that has not begun, for a loop with this timing.
-    ///
-    /// # Errors
-    /// [`PrefilterError::Linear`] for a sample time or a prewarping frequency that cannot be.
-    pub fn new(
-        band: PrefilterBand,
-        timing: &Timing,
-        options: PrefilterOptions,
-    ) -> Result<PrefilterRun, PrefilterError> {
-        let timing = timing.of_prefilter();
-        let tolerance_db = options.tolerance_db;
-        let outcome = band.closed(tolerance_db).copied().map(PrefilterOutcome::NoBand);
-        let structures =
-            structures(&band, options.least_relative_degree, options.least_order..=options.maximum_order);
-        let fits: Vec<PrefilterFit> = structures
-            .into_iter()
-            .map(|structure| PrefilterFit::new(&band, structure, &timing, tolerance_db))
-            .collect::<Result<_, _>>()?;
-        let search = search(fits.first(), &options);
-        Ok(PrefilterRun { band, timing, options, fits, at: 0, search, best: None, outcome })
-    }
+/// What is the same for every structure.
+struct Synthesis<'a> {
+    band: &'a PrefilterBand,
+    timing: Timing,
+}
 
-    /// The band that is fitted into.
-    pub fn band(&self) -> &PrefilterBand {
-        &self.band
-    }
-
-    /// Does a small part of the work; whether there is more to do.
-    pub fn step(&mut self) -> bool {
-        if self.outcome.is_some() {
-            return false;
-        }
-        match self.fits.get_mut(self.at).map(|fit| self.search.step(fit)) {
-            Some(true) => {}
-            Some(false) => self.finish_structure(),
-            None => self.outcome = Some(self.ended()),
-        }
-        self.outcome.is_none()
-    }
-
-    /// The share of the work that is done, 0 to 1, were all orders needed; 1 when it has ended.
-    pub fn progress(&self) -> f64 {
-        match self.outcome {
-            Some(_) => 1.0,
-            None => (self.at as f64 + self.search.progress()) / (self.fits.len() as f64 + 1.0),
-        }
-    }
-
-    /// What it ended with; `None` as long as it goes on.
-    pub fn outcome(&self) -> Option<&PrefilterOutcome> {
-        self.outcome.as_ref()
-    }
-
-    /// Takes what the search of one structure found, and goes on to the next structure if that does not keep to the band.
-    fn finish_structure(&mut self) {
-        let found = self.search.result().zip(self.fits.get(self.at));
-        let found = found.and_then(|(result, fit)| {
-            Some((result.judgement.worst_margin_db, self.fitted(fit.structure(), result.x)?))
-        });
-        if let Some((share, fitted)) = found {
-            if share >= 0.0 {
-                self.outcome = Some(PrefilterOutcome::Found(fitted));
-                return;
-            }
-            if self.best.as_ref().is_none_or(|(best, _)| share > *best) {
-                self.best = Some((share, fitted));
-            }
-        }
-        self.at += 1;
-        self.search = search(self.fits.get(self.at), &self.options);
-    }
-
-    /// What remains when no structure keeps to the band to the last digit: the tolerance may forgive the best.
-    fn ended(&mut self) -> PrefilterOutcome {
-        let best = self.best.take().map(|(_, best)| best);
-        let forgiven = |fitted: &FittedPrefilter| {
-            let margins = self.margins(&fitted.compensator).unwrap_or_default();
-            margins.iter().all(|margin| margin.margin_db >= -self.options.tolerance_db)
-        };
-        match best {
-            Some(best) if forgiven(&best) => PrefilterOutcome::Found(best),
-            best => PrefilterOutcome::OrderTooLow { best },
-        }
+impl Synthesis<'_> {
+    fn is_within(&self, fitted: &FittedPrefilter, tolerance_db: f64) -> bool {
+        let margins = self.margins(&fitted.compensator).unwrap_or_default();
+        margins.iter().all(|margin| margin.margin_db >= -tolerance_db)
     }
 
     fn fitted(&self, structure: &Structure, x: Vec<f64>) -> Option<FittedPrefilter> {
@@ -219,11 +176,4 @@ impl PrefilterRun {
         };
         Ok(self.band.margins(&prefilter))
     }
-}
-
-/// The search for one structure, from the more starts the more free numbers it has.
-fn search(fit: Option<&PrefilterFit>, options: &PrefilterOptions) -> Search {
-    let numbers = fit.map_or(0, |fit| fit.structure().dimension());
-    let samples = SAMPLES_PER_NUMBER * numbers;
-    Search::new(SearchOptions { samples, ..SearchOptions::new(Aim::WorstMargin, options.seed) })
 }
