@@ -4,7 +4,7 @@
 //! Time enters a system through its inputs alone. Whoever drives it knows each input and its slope at any time, and the
 //! times at which they break, so that no step ever crosses a break and every restart is exact.
 
-mod closed_loop;
+mod commanded_plant;
 mod course;
 mod driver;
 mod equilibrium;
@@ -30,7 +30,7 @@ mod task;
 mod trajectory;
 mod vector;
 
-pub use closed_loop::{ClosedLoop, HeldPlant, LoopSignals};
+pub use commanded_plant::{CommandedPlant, LoopSignals};
 pub use course::{
     Attention, Course, Event, Input, Observer, Outcome, Sampler, Settings, SimulationError, Status, Work,
 };

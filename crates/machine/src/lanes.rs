@@ -4,11 +4,11 @@ use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::scalar::Lanes;
 use phea_dynamics::simulation::{
-    ClosedLoop, HeldPlant, Lane, Outcome, Queue, Sensed, Settings, SimulationError, Task, can_drive, drive,
+    CommandedPlant, Lane, Outcome, Queue, Sensed, Settings, SimulationError, Task, can_drive, drive,
 };
 use phea_hydraulics::machine::{Machine, MachineError};
 
-use super::control::{Control, Watcher};
+use super::control::{Commanded, Control, Watcher};
 
 /// Lanes of a vector: two registers of the widest kind that is common, which hide the time that divisions and roots take.
 const LANES: usize = 4;
@@ -38,29 +38,11 @@ pub fn one_by_one<'a>(
     fleet: &mut dyn Fleet<'a>,
     settings: &Settings,
 ) -> Result<(), SimulationError> {
-    match control {
-        Control::Continuous(closed) => {
-            let machine: InLoop<f64> = in_loop;
-            drive::<f64, _, _>(&mut closed.as_ref().clone(), &mut Queued { fleet, machine }, settings)
-        }
-        Control::Sampled(sampled) => {
-            let machine: OnHold<f64> = on_hold;
-            drive::<f64, _, _>(&mut sampled.held.clone(), &mut Queued { fleet, machine }, settings)
-        }
-        Control::Open(held) => {
-            let machine: OnHold<f64> = on_hold;
-            drive::<f64, _, _>(&mut held.as_ref().clone(), &mut Queued { fleet, machine }, settings)
-        }
-    }
+    drive::<f64, _, _>(&mut control.commanded().clone(), &mut Queued(fleet), settings)
 }
 
 /// A machine in each lane, under one continuous controller or a stated command.
-pub struct Lanewise(System);
-
-enum System {
-    Closed(Box<ClosedLoop<Sensed<Machine<Lanes<LANES>>>>>),
-    Open(Box<HeldPlant<Sensed<Machine<Lanes<LANES>>>>>),
-}
+pub struct Lanewise(Box<Commanded<Lanes<LANES>>>);
 
 impl Lanewise {
     /// Whether this processor has the vector instructions that lanes want; [`one_by_one`] gives the same bits without.
@@ -80,10 +62,10 @@ impl Lanewise {
     ) -> Result<Lanewise, LinearError> {
         let machine = machine.convert(&mut |value| Lanes([value; LANES]));
         let sensed = Sensed::new(machine, sensor)?;
-        Ok(Lanewise(match controller {
-            Some((controller, gain)) => System::Closed(Box::new(ClosedLoop::new(sensed, controller, gain)?)),
-            None => System::Open(Box::new(HeldPlant::new(sensed, &TransferFunction::gain_only(1.0))?)),
-        }))
+        Ok(Lanewise(Box::new(match controller {
+            Some((controller, gain)) => CommandedPlant::in_loop(sensed, controller, gain)?,
+            None => CommandedPlant::on_hold(sensed, &TransferFunction::gain_only(1.0))?,
+        })))
     }
 
     /// Drives machines until there are none.
@@ -95,48 +77,24 @@ impl Lanewise {
         fleet: &mut dyn Fleet<'a>,
         settings: &Settings,
     ) -> Result<(), SimulationError> {
-        match &mut self.0 {
-            System::Closed(closed) => {
-                let machine: InLoop<Lanes<LANES>> = in_loop;
-                drive(closed.as_mut(), &mut Queued { fleet, machine }, settings)
-            }
-            System::Open(held) => {
-                let machine: OnHold<Lanes<LANES>> = on_hold;
-                drive(held.as_mut(), &mut Queued { fleet, machine }, settings)
-            }
-        }
+        drive(self.0.as_mut(), &mut Queued(fleet), settings)
     }
 }
 
-type InLoop<S> = fn(&mut ClosedLoop<Sensed<Machine<S>>>) -> &mut Machine<S>;
-type OnHold<S> = fn(&mut HeldPlant<Sensed<Machine<S>>>) -> &mut Machine<S>;
+struct Queued<'f, 'a>(&'f mut dyn Fleet<'a>);
 
-fn in_loop<S>(system: &mut ClosedLoop<Sensed<Machine<S>>>) -> &mut Machine<S> {
-    system.plant_mut().plant_mut()
-}
-
-fn on_hold<S>(system: &mut HeldPlant<Sensed<Machine<S>>>) -> &mut Machine<S> {
-    system.plant_mut().plant_mut()
-}
-
-/// A fleet for a kind of system, and where its machine is.
-struct Queued<'f, 'a, E, S> {
-    fleet: &'f mut dyn Fleet<'a>,
-    machine: fn(&mut E) -> &mut Machine<S>,
-}
-
-impl<'a, E, S: Lane> Queue<'a, E> for Queued<'_, 'a, E, S> {
+impl<'a, S: Lane> Queue<'a, Commanded<S>> for Queued<'_, 'a> {
     type Observer = Watcher<'a>;
 
-    fn next(&mut self, system: &mut E, lane: usize) -> Option<Task<'a, Watcher<'a>>> {
-        self.fleet.next(lane, &mut |machine| (self.machine)(system).put(lane, machine))
+    fn next(&mut self, system: &mut Commanded<S>, lane: usize) -> Option<Task<'a, Watcher<'a>>> {
+        self.0.next(lane, &mut |machine| system.plant_mut().plant_mut().put(lane, machine))
     }
 
     fn done(&mut self, lane: usize, outcome: Outcome, _: Watcher<'a>) {
-        self.fleet.done(lane, outcome);
+        self.0.done(lane, outcome);
     }
 
     fn goes_on(&mut self, _lane: usize, _time_s: f64) -> bool {
-        self.fleet.goes_on()
+        self.0.goes_on()
     }
 }

@@ -17,7 +17,7 @@ mod rest;
 mod samples;
 mod shaken;
 
-pub use control::{Control, Sampled, Watcher};
+pub use control::{Commanded, Control, Sampled, Watcher};
 pub use digital::{Digital, Memory, Waking};
 pub use lanes::{Fleet, Lanewise, one_by_one};
 pub use rest::{Rest, Standing, at_rest};

@@ -1,10 +1,10 @@
 //! A loop at rest: the rates that are simulated, all zero.
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{EquilibriumError, HeldPlant, Plant, Sensed, System, equilibrium};
-use phea_hydraulics::machine::{Beginning, Machine};
+use phea_dynamics::simulation::{EquilibriumError, Plant, System, equilibrium};
+use phea_hydraulics::machine::Beginning;
 
-use super::control::Control;
+use super::control::{Commanded, Control};
 
 /// What stands still while a loop rests.
 #[derive(Clone, Copy, Debug)]
@@ -46,19 +46,15 @@ pub fn at_rest(
     let mut inputs = vec![standing.reference_n, ground, 0.0];
     inputs.extend(machine.has_external_force().then_some(standing.external_n));
     Ok(match control {
-        Control::Open(held) => {
-            inputs.insert(0, standing.command_v);
-            let start = equilibrium(held.as_ref(), guess, &inputs, &kept)?;
-            let (state, waves) = start.split_at(System::<f64>::states(held.as_ref()));
-            let [_, measured_n] = held.sampled::<f64, f64>(state, &[inputs.as_slice(), waves].concat());
-            Rest { measured_n, command_v: standing.command_v, limit_v: f64::INFINITY, start }
-        }
-        Control::Continuous(closed) => {
-            let free = closed.as_ref().clone().unlimited();
+        Control::Open(commanded) | Control::Continuous(commanded) => {
+            if let Control::Open(_) = control {
+                inputs.insert(0, standing.command_v);
+            }
+            let free = commanded.as_ref().clone().unlimited();
             let start = equilibrium(&free, guess, &inputs, &kept)?;
             let (state, waves) = start.split_at(System::<f64>::states(&free));
             let signals = free.signals::<f64, f64>(state, &[inputs.as_slice(), waves].concat());
-            let limit_v = closed.limit();
+            let limit_v = commanded.limit();
             Rest { measured_n: signals.measurement, command_v: signals.wanted, limit_v, start }
         }
         Control::Sampled(sampled) => {
@@ -85,7 +81,7 @@ pub fn at_rest(
 ///
 /// Its last state is the command u.
 struct Resting<'a> {
-    held: &'a HeldPlant<Sensed<Machine>>,
+    held: &'a Commanded,
     /// F(1) and G(1).
     gains: [Option<f64>; 2],
 }

@@ -34,33 +34,13 @@ impl Control {
     ) -> Result<SineResponse, SimulationError> {
         let Shaken { start, inputs, sampler, settings, plan } = shaken;
         let force = |state: &[f64], _: &[f64]| force(self.sensed().plant(), state);
-        match self {
-            Control::Continuous(closed) => {
-                sine_response(closed.as_ref(), start, inputs, sampler, &settings, &plan, &force, watch)
-            }
-            Control::Sampled(sampled) => {
-                sine_response(&sampled.held, start, inputs, sampler, &settings, &plan, &force, watch)
-            }
-            Control::Open(held) => {
-                sine_response(held.as_ref(), start, inputs, sampler, &settings, &plan, &force, watch)
-            }
-        }
+        sine_response(self.commanded(), start, inputs, sampler, &settings, &plan, &force, watch)
     }
 
     /// Amplitudes of the states for a sine of amplitude one at the first input, by exact derivatives; `None` where they are no linear system.
     pub fn orbit(&self, state: &[f64], inputs: &[f64], frequency_rad_per_s: f64) -> Option<Vec<Complex64>> {
         let amplitude = [Complex64::ONE];
-        match self {
-            Control::Continuous(closed) => {
-                small_signal(closed.as_ref(), state, inputs, &amplitude, frequency_rad_per_s)
-            }
-            Control::Sampled(sampled) => {
-                small_signal(&sampled.held, state, inputs, &amplitude, frequency_rad_per_s)
-            }
-            Control::Open(held) => {
-                small_signal(held.as_ref(), state, inputs, &amplitude, frequency_rad_per_s)
-            }
-        }
+        small_signal(self.commanded(), state, inputs, &amplitude, frequency_rad_per_s)
     }
 }
 

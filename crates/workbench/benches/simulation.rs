@@ -16,8 +16,8 @@ use std::time::Instant;
 
 use phea_dynamics::controller::{ControllerState, SampledController};
 use phea_dynamics::simulation::{
-    ClosedLoop, Course, HeldPlant, Input, Observer, Outcome, Profile, Queue, Sampler, Sensed, Settings,
-    Status, System, Task, drive,
+    CommandedPlant, Course, Input, Observer, Outcome, Profile, Queue, Sampler, Sensed, Settings, Status,
+    System, Task, drive,
 };
 use phea_hydraulics::machine::{Machine, MachineOptions, Start};
 use phea_workbench::project::{self, MotionShape, Project, Signal};
@@ -127,8 +127,8 @@ struct Bench {
 }
 
 enum Control {
-    Continuous(Box<ClosedLoop<Sensed<Machine>>>),
-    Sampled { held: Box<HeldPlant<Sensed<Machine>>>, digital: SampledController },
+    Continuous(Box<CommandedPlant<Sensed<Machine>>>),
+    Sampled { held: Box<CommandedPlant<Sensed<Machine>>>, digital: SampledController },
 }
 
 impl Bench {
@@ -156,11 +156,11 @@ impl Bench {
         let mut law = Setup::new(project)?.controller.ok_or("no controller")?;
         let sensed = Sensed::new(machine, &Setup::new(project)?.sensor)?;
         let control = match law.timing.sample_time_s {
-            None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &law, 0.0)?)),
+            None => Control::Continuous(Box::new(CommandedPlant::in_loop(sensed, &law, 0.0)?)),
             Some(sample_time_s) => {
                 let between = std::mem::take(&mut law.prefilter);
                 inputs.insert(0, Input::Command);
-                let held = Box::new(HeldPlant::new(sensed, &between.transfer_function()?)?);
+                let held = Box::new(CommandedPlant::on_hold(sensed, &between.transfer_function()?)?);
                 Control::Sampled { held, digital: law.sampled(sample_time_s)? }
             }
         };
@@ -202,7 +202,7 @@ impl Bench {
 
 /// The controller in its computer.
 struct Digital<'a> {
-    held: &'a HeldPlant<Sensed<Machine>>,
+    held: &'a CommandedPlant<Sensed<Machine>>,
     controller: &'a SampledController,
     state: ControllerState,
 }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{
-    Course, HeldPlant, Input, Observer, Profile, Sensed, Settings, Status, Task,
+    CommandedPlant, Course, Input, Observer, Profile, Sensed, Settings, Status, Task,
 };
 use phea_hydraulics::machine::{Machine, MachineOptions};
 use phea_machine::{Control, Watcher};
@@ -67,7 +67,7 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
     let machine = Machine::new(&rig.actuator, &MachineOptions::default()).unwrap();
     let rest = machine.rest(&rig.point).unwrap();
     let through = TransferFunction::gain_only(1.0);
-    let held = HeldPlant::new(Sensed::new(machine, &through).unwrap(), &through).unwrap();
+    let held = CommandedPlant::on_hold(Sensed::new(machine, &through).unwrap(), &through).unwrap();
     let sine = Profile::sine(0.0, amplitude, frequency).unwrap();
     let still = [Profile::constant(rest.command), Profile::constant(rest.inputs[0])];
     let [command, ground] = match shaken {

@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_4;
 use std::time::Instant;
 
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element};
-use phea_dynamics::simulation::{ClosedLoop, Course, Input, Plant, Profile, Settings, System, simulate};
+use phea_dynamics::simulation::{CommandedPlant, Course, Input, Plant, Profile, Settings, System, simulate};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::machine::{Machine, MachineOptions, Start};
@@ -45,7 +45,7 @@ fn main() {
         anti_windup: AntiWindup::None,
         ..Controller::default()
     };
-    let closed = ClosedLoop::new(machine, &controller, 0.0).expect("a proper controller");
+    let closed = CommandedPlant::in_loop(machine, &controller, 0.0).expect("a proper controller");
     let reference = Profile::steps(0.0, &[(REFERENCE_S, REFERENCE_N)]).expect("one step");
     let ground = Profile::smooth_step(MOTION_S, 2.0, 0.02).expect("a motion").shifted(beginning.inputs[0]);
     let inputs = vec![Input::Value(reference), Input::Value(ground.clone()), Input::Rate(ground)];

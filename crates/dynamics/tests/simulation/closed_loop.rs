@@ -4,7 +4,9 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{ClosedLoop, Input, Plant, Profile, Settings, Simulated, Status, simulate};
+use phea_dynamics::simulation::{
+    CommandedPlant, Input, Plant, Profile, Settings, Simulated, Status, simulate,
+};
 use phea_dynamics::time_response::{Interpolation, Signal, forced_response};
 
 use super::laws::{course, distance, run};
@@ -116,7 +118,7 @@ fn a_linear_loop_answers_as_its_transfer_function() {
     let path = plant.transfer_function().series(&feedback).unwrap();
     let closed = path.feedback(&TransferFunction::gain_only(1.0)).unwrap();
     let whole = controller.prefilter.transfer_function().unwrap().series(&closed).unwrap();
-    let system = ClosedLoop::new(plant, &controller, 0.0).unwrap();
+    let system = CommandedPlant::in_loop(plant, &controller, 0.0).unwrap();
     let states = 3 + system.controller_states();
     let result = run(&system, &vec![0.0; states], &course(5.0, 0.02, vec![stepped(0.25, 3.0)]), 1e-11);
     let exact = answer(&whole, 3.0, 0.25, &result.trajectory.times_s);
@@ -134,7 +136,7 @@ fn a_load_is_answered_and_fed_forward() {
     let feedback = controller.feedback.transfer_function().unwrap();
     let disturbed = chain.transfer_function().feedback(&feedback).unwrap();
     for (feed_forward, part) in [(0.0, 1.0), (-1.0, 0.0), (-0.75, 0.25)] {
-        let system = ClosedLoop::new(Loaded(chain.clone()), &controller, feed_forward).unwrap();
+        let system = CommandedPlant::in_loop(Loaded(chain.clone()), &controller, feed_forward).unwrap();
         let states = 2 + system.controller_states();
         let inputs = vec![Input::Value(Profile::constant(0.0)), stepped(0.25, 2.0)];
         let result = run(&system, &vec![0.0; states], &course(3.0, 0.02, inputs), 1e-11);
@@ -161,7 +163,7 @@ fn limited(anti_windup: AntiWindup) -> Controller {
 
 fn saturating(anti_windup: AntiWindup, tolerance: f64) -> Simulated {
     let plant = Chain::new(vec![-0.5, -5.0], 5.0);
-    let system = ClosedLoop::new(plant, &limited(anti_windup), 0.0).unwrap();
+    let system = CommandedPlant::in_loop(plant, &limited(anti_windup), 0.0).unwrap();
     let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.1, 1.5), (4.0, -0.5)]).unwrap())];
     let settings = Settings { tolerance, maximum_steps: 200_000, ..Settings::default() };
     let result =
@@ -237,7 +239,7 @@ fn the_limit_is_kept_and_told() {
     assert!(events.first().is_some_and(|event| event.rising && (event.time_s - 0.1).abs() < 1e-9));
     assert!(events.windows(2).all(|pair| pair[0].rising != pair[1].rising));
     let plant = Chain::new(vec![-0.5, -5.0], 5.0);
-    let system = ClosedLoop::new(plant, &limited(AntiWindup::BackCalculation), 0.0).unwrap();
+    let system = CommandedPlant::in_loop(plant, &limited(AntiWindup::BackCalculation), 0.0).unwrap();
     for (time, (state, inputs)) in
         result.trajectory.times_s.iter().zip(result.trajectory.states.iter().zip(&result.trajectory.inputs))
     {
@@ -253,19 +255,22 @@ fn what_cannot_act_continuously_is_refused() {
     let plant = Chain::new(vec![-1.0], 1.0);
     let improper =
         Controller { feedback: Compensator::new(vec![Element::Differentiator]), ..Controller::default() };
-    assert!(matches!(ClosedLoop::new(plant.clone(), &improper, 0.0), Err(LinearError::Improper { .. })));
+    assert!(matches!(
+        CommandedPlant::in_loop(plant.clone(), &improper, 0.0),
+        Err(LinearError::Improper { .. })
+    ));
     let slow = Controller {
         feedback: Compensator::new(vec![Element::RealPole { frequency: 3.0 }]),
         anti_windup: AntiWindup::BackCalculation,
         ..Controller::default()
     };
-    assert_eq!(ClosedLoop::new(plant, &slow, 0.0), Err(LinearError::NoFeedthrough));
+    assert_eq!(CommandedPlant::in_loop(plant, &slow, 0.0), Err(LinearError::NoFeedthrough));
 }
 
 /// Without error there is nothing to do: the loop at rest stays at rest, in few steps.
 #[test]
 fn a_loop_at_rest_stays_there() {
-    let system = ClosedLoop::new(Chain::new(vec![-1.0, -3.0], 1.0), &dynamic(), 0.0).unwrap();
+    let system = CommandedPlant::in_loop(Chain::new(vec![-1.0, -3.0], 1.0), &dynamic(), 0.0).unwrap();
     let states = 2 + system.controller_states();
     let inputs = vec![Input::Value(Profile::constant(0.0))];
     let result = run(&system, &vec![0.0; states], &course(100.0, 10.0, inputs), 1e-9);

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{ClosedLoop, Input, Method, Profile, System};
+use phea_dynamics::simulation::{CommandedPlant, Input, Method, Profile, System};
 use phea_dynamics::time_response::delayed_loop_step;
 
 use super::closed_loop::Chain;
@@ -163,7 +163,7 @@ fn a_late_command_of_a_continuous_controller() {
     };
     let integrator = Chain::new(vec![0.0], 1.0);
     let delay_s = 0.3;
-    let closed = ClosedLoop::new(integrator.clone(), &controller(delay_s), 0.0).unwrap();
+    let closed = CommandedPlant::in_loop(integrator.clone(), &controller(delay_s), 0.0).unwrap();
     let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.5, 1.0)]).unwrap())];
     let result = run(&closed, &[0.0], &course(1.8, 0.01, inputs.clone()), 1e-6);
     // The error obeys e' = -2 e(t - T), e = 1 at the step and zero before: y moves one delay later.
@@ -200,7 +200,7 @@ fn a_late_command_of_a_dynamic_controller() {
     let path = plant.transfer_function().series(&feedback).unwrap().with_dead_time(0.05).unwrap();
     let prefilter = controller.prefilter.transfer_function().unwrap();
     let one = TransferFunction::gain_only(1.0);
-    let closed = ClosedLoop::new(plant, &controller, 0.0).unwrap();
+    let closed = CommandedPlant::in_loop(plant, &controller, 0.0).unwrap();
     let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.5, 1.0)]).unwrap())];
     let result = run(&closed, &[0.0; 5], &course(4.5, 0.05, inputs), 1e-9);
     // Of first order in the step: two step sizes, extrapolated.

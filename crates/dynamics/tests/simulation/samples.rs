@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::linear::{Discretization, StateSpace, TimeDomain, TransferFunction};
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{HeldPlant, Input, Method, Plant, Profile, Sampler, Status, simulate};
+use phea_dynamics::simulation::{CommandedPlant, Input, Method, Plant, Profile, Sampler, Status, simulate};
 
 use super::laws::{Integral, Lawful, course, settings};
 
@@ -109,7 +109,7 @@ fn exactly(spring: &Spring, sample_time_s: f64, delay_s: f64, samples: usize) ->
 #[track_caller]
 fn check(sample_time_s: f64, delay_s: f64, samples: usize) {
     let spring = Spring { rate: 0.2 / sample_time_s };
-    let plant = HeldPlant::new(spring.clone(), &TransferFunction::gain_only(1.0)).unwrap();
+    let plant = CommandedPlant::on_hold(spring.clone(), &TransferFunction::gain_only(1.0)).unwrap();
     let mut seen = Vec::new();
     let sampler = Box::new(Integrating { sample_time_s, delay_s, sum: 0.0, seen: &mut seen });
     let duration_s = (samples as f64 - 0.5) * sample_time_s;
@@ -166,7 +166,7 @@ fn a_delay_below_rounding_is_none() {
 /// Rows at the samples show the command that holds from then on.
 #[test]
 fn rows_show_the_command_that_is_held() {
-    let plant = HeldPlant::new(Spring { rate: 1.0 }, &TransferFunction::gain_only(1.0)).unwrap();
+    let plant = CommandedPlant::on_hold(Spring { rate: 1.0 }, &TransferFunction::gain_only(1.0)).unwrap();
     let mut seen = Vec::new();
     let sampler = Box::new(Integrating { sample_time_s: 0.1, delay_s: 0.0, sum: 0.0, seen: &mut seen });
     let course = course(2.0, 0.1, vec![Input::Command, Input::Value(Profile::constant(1.0))]);
@@ -185,7 +185,7 @@ fn rows_show_the_command_that_is_held() {
 /// transient is that of any other, shifted.
 #[test]
 fn a_step_at_a_sample_acts_there() {
-    let plant = HeldPlant::new(Spring { rate: 300.0 }, &TransferFunction::gain_only(1.0)).unwrap();
+    let plant = CommandedPlant::on_hold(Spring { rate: 300.0 }, &TransferFunction::gain_only(1.0)).unwrap();
     let commands = |tenths: u32, samples: u32| {
         let sample_time_s = f64::from(tenths) / 1e4;
         let mut seen = Vec::new();
@@ -266,7 +266,7 @@ impl Plant<f64> for Bent {
 /// From sample to sample by matrices found once, or by a method that knows of none: one answer, within the tolerance.
 #[test]
 fn a_bent_plant_gets_from_sample_to_sample() {
-    let plant = HeldPlant::new(Bent, &TransferFunction::gain_only(1.0)).unwrap();
+    let plant = CommandedPlant::on_hold(Bent, &TransferFunction::gain_only(1.0)).unwrap();
     for (sample_time_s, delay_s) in [(1e-3, 0.0), (1e-3, 0.4e-3), (0.02, 0.0), (0.02, 0.03)] {
         let reference = Profile::steps(1.0, &[(2.0, -2.0), (4.0, 5.0), (4.5013, 0.0)]).unwrap();
         let course = course(6.0, 0.5, vec![Input::Command, Input::Value(reference)]);

@@ -2,7 +2,7 @@
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::simulation::{ClosedLoop, HeldPlant, Method, Sensed, Settings};
+use phea_dynamics::simulation::{CommandedPlant, Method, Sensed, Settings};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::line::Member;
@@ -62,7 +62,9 @@ impl Bench {
         let feed_forward = feed_forward(project, &rig.linear);
         let machine = *sensed.plant();
         let control = match controller.timing.sample_time_s {
-            None => Control::Continuous(Box::new(ClosedLoop::new(sensed, &controller, feed_forward)?)),
+            None => {
+                Control::Continuous(Box::new(CommandedPlant::in_loop(sensed, &controller, feed_forward)?))
+            }
             Some(sample_time_s) => {
                 Control::Sampled(Box::new(sampled(setup, sensed, controller, sample_time_s, feed_forward)?))
             }
@@ -84,7 +86,8 @@ impl Bench {
         let project = setup.project;
         let (rig, sensed) = rig_and_machine(setup, external_force)?;
         let machine = *sensed.plant();
-        let control = Control::Open(Box::new(HeldPlant::new(sensed, &TransferFunction::gain_only(1.0))?));
+        let control =
+            Control::Open(Box::new(CommandedPlant::on_hold(sensed, &TransferFunction::gain_only(1.0))?));
         let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
         Ok(Bench {
             rig,
@@ -149,7 +152,7 @@ fn sampled(
     let controller = setup.deployed(&controller)?;
     let noise = project.actuator.as_ref().map_or(0.0, |actuator| actuator.force_sensor.noise);
     Ok(Sampled {
-        held: HeldPlant::new(sensed, &between)?,
+        held: CommandedPlant::on_hold(sensed, &between)?,
         delay_s: controller.timing.delay_s,
         command_limit: controller.command_limit.unwrap_or(f64::INFINITY),
         controller: controller.sampled(sample_time_s)?,

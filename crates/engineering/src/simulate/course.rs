@@ -193,11 +193,7 @@ fn loop_start(bench: &Bench, beginning: &Beginning, held_at: Option<f64>) -> Vec
     let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
     let reference = held_at.unwrap_or(0.0);
     let mut sensor = bench.control.sensed().sensor_at_rest(measured);
-    let mut control = match &bench.control {
-        Control::Continuous(closed) => closed.controller_at_rest(reference, measured, beginning.command),
-        Control::Sampled(sampled) => sampled.held.prefilter_at_rest(reference),
-        Control::Open(held) => held.prefilter_at_rest(reference),
-    };
+    let mut control = bench.control.commanded().controller_at_rest(reference, measured, beginning.command);
     if held_at.is_none() {
         sensor.fill(0.0);
         control.fill(0.0);

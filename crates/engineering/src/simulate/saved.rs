@@ -50,7 +50,7 @@ fn state_names(bench: &Bench) -> Vec<String> {
     match &bench.control {
         Control::Continuous(closed) => names.extend(states(closed.controller_states(), "controller")),
         Control::Sampled(sampled) => {
-            names.extend(states(sampled.held.prefilter_at_rest(0.0).len(), "prefilter"));
+            names.extend(states(sampled.held.controller_states(), "prefilter"));
         }
         Control::Open(_) => {}
     }

@@ -8,7 +8,7 @@ use std::time::Instant;
 use phea_dynamics::controller::{Compensator, Controller, ControllerState, Element, SampledController};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    ClosedLoop, Course, HeldPlant, Input, Outcome, Plant, Sampler, Settings, Status, System, Work, simulate,
+    CommandedPlant, Course, Input, Outcome, Plant, Sampler, Settings, Status, System, Work, simulate,
 };
 use phea_hydraulics::machine::{INDICATORS, Machine};
 use sundials::{CvodeError, Following, Kicks, Method, follow};
@@ -117,7 +117,7 @@ impl Ours {
 
 /// A controller in its computer, its prefilter before the converter.
 struct Digital<'a> {
-    held: &'a HeldPlant<Machine>,
+    held: &'a CommandedPlant<Machine>,
     controller: SampledController,
     state: ControllerState,
     delay_s: f64,
@@ -256,13 +256,13 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, timed: bool) -> Co
     let course = |inputs| Course { duration_s: rig.duration_s, output_step_s: OUTPUT_STEP_S, inputs };
     let mut compared = match rig.control.sample_time_s {
         None => {
-            let closed = ClosedLoop::new(rig.machine, &controller, 0.0).expect("a proper controller");
+            let closed = CommandedPlant::in_loop(rig.machine, &controller, 0.0).expect("a proper controller");
             let sampler = || None::<Box<dyn Sampler>>;
             judge(rig, &closed, &course(vec![reference, value, rate]), &sampler, timed)
         }
         Some(sample_time_s) => {
             let prefilter = controller.prefilter.transfer_function().expect("a prefilter");
-            let held = HeldPlant::new(rig.machine, &prefilter).expect("a proper prefilter");
+            let held = CommandedPlant::on_hold(rig.machine, &prefilter).expect("a proper prefilter");
             let digital = Controller { prefilter: Compensator::default(), ..controller };
             let digital = digital.sampled(sample_time_s).expect("a controller that can be sampled");
             let sampler = || {

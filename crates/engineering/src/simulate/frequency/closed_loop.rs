@@ -8,7 +8,7 @@ use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
-use phea_dynamics::simulation::{ClosedLoop, Input, Profile, Sensed, Settings};
+use phea_dynamics::simulation::{CommandedPlant, Input, Profile, Sensed, Settings};
 use phea_hydraulics::machine::Machine;
 use phea_machine::{Control, Digital, Sampled, Samples, Waking, force_amplitude};
 use phea_qft::closed_loop::{Compensation, Member};
@@ -103,7 +103,7 @@ impl Shared<'_> {
 
     fn continuous(
         &self,
-        (control, closed): (&Control, &ClosedLoop<Sensed<Machine>>),
+        (control, closed): (&Control, &CommandedPlant<Sensed<Machine>>),
         frequencies: &[f64],
         goes_on: &mut dyn FnMut(usize) -> bool,
     ) -> Result<Response, SimulateError> {
@@ -150,7 +150,7 @@ impl Shared<'_> {
         let (held, rest) = (&quiet.held, &self.rested.rest);
         let mut state = rest.state.clone();
         state.extend(held.plant().sensor_at_rest(self.rested.force_n));
-        state.extend(held.prefilter_at_rest(self.reference_n));
+        state.extend(held.controller_at_rest(self.reference_n, self.rested.force_n, rest.command));
         let control = Control::Sampled(Box::new(quiet.clone()));
         let waves = control.under_way(&state, &[rest.command, self.reference_n], rest);
         let start = [state.as_slice(), &waves].concat();

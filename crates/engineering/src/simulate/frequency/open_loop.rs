@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
-use phea_dynamics::simulation::{HeldPlant, Input, Plant, Profile, Sensed};
+use phea_dynamics::simulation::{CommandedPlant, Input, Plant, Profile, Sensed};
 use phea_machine::{Control, force_amplitude};
 
 use super::point::{Resting, finer, point, respond};
@@ -17,7 +17,7 @@ pub(super) fn measured(
     goes_on: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Response, SimulateError> {
     let through = TransferFunction::gain_only(1.0);
-    let held = HeldPlant::new(Sensed::new(rested.machine, &through)?, &through)?;
+    let held = CommandedPlant::on_hold(Sensed::new(rested.machine, &through)?, &through)?;
     let control = Control::Open(Box::new(held));
     let mut points = Vec::new();
     for (index, frequency) in frequencies.iter().enumerate() {

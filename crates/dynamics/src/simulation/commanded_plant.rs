@@ -1,4 +1,4 @@
-//! A plant under a controller: one that acts continuously, or one that holds its command between samples.
+//! A plant with what commands it: a controller that acts continuously, or a hold between samples.
 
 use super::realization::Realization;
 use super::{Plant, Sliding, System};
@@ -6,37 +6,76 @@ use crate::controller::{AntiWindup, Controller, integral_row};
 use crate::linear::{LinearError, StateSpace, TransferFunction};
 use crate::scalar::Scalar;
 
-/// A plant under a continuous controller.
+/// A plant with what commands it.
 ///
 /// ```text
-/// u = G (F r - y) + k d,    |u| <= limit,    delayed;        inputs r and those of the plant; states of plant, G, F
+/// in a loop   u = G (F r - y) + k d,    |u| <= limit,    delayed;    inputs r and those of the plant; states of plant, G, F
+/// on hold     u is an input, held between samples;                   inputs u, r and those of the plant; states of plant, F
 /// ```
 ///
-/// The plant's disturbance d (a load's velocity) may be fed forward. A limited command stops the integral part as the
+/// In a loop, the plant's disturbance d (a load's velocity) may be fed forward. A limited command stops the integral part as the
 /// controller's [`AntiWindup`] says: clamping holds the states of G while the error drives the command further out, back
 /// calculation drives them with the error that would have given the limited command. Clamping takes hold over the first
 /// ten-thousandth beyond the limit: a hold at once would let the command slide along its limit, held and let go without end.
+///
+/// On hold, F is the prefilter that stays continuous before a sampled controller; one where that is sampled too.
+///
+/// Both are one type, so that whatever simulates a plant is compiled once.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ClosedLoop<P> {
+pub struct CommandedPlant<P> {
     plant: P,
+    /// On hold there is none.
+    law: Option<Law>,
+    prefilter: Realization,
+}
+
+/// A continuous controller, its prefilter apart.
+#[derive(Clone, Debug, PartialEq)]
+struct Law {
     feedback: Realization,
     /// Reads the integral part of the command off the states of G.
     integral: Vec<f64>,
-    prefilter: Realization,
     limit: f64,
     anti_windup: AntiWindup,
     feed_forward: f64,
     delay_s: f64,
 }
 
-impl<P> ClosedLoop<P> {
-    /// This plant under this controller, the disturbance fed forward with this gain.
+impl Law {
+    /// What drives the states of G.
+    #[inline(always)]
+    fn driving<T: Scalar>(&self, signals: &LoopSignals<T>) -> T {
+        match self.anti_windup {
+            AntiWindup::BackCalculation => {
+                signals.error + (signals.command - signals.wanted).times(1.0 / self.feedback.feedthrough)
+            }
+            AntiWindup::None | AntiWindup::Clamping => signals.error,
+        }
+    }
+
+    /// Rates of the states of G.
+    #[inline(always)]
+    fn rates<T: Scalar>(&self, state: &[T], signals: &LoopSignals<T>, rates: &mut [T]) {
+        self.feedback.rates(state, self.driving(signals), rates);
+        if self.anti_windup == AntiWindup::Clamping && self.limit.is_finite() {
+            let beyond = (signals.wanted.abs() - T::from(self.limit)).times(1.0 / (HOLDING * self.limit));
+            let left = (T::from(1.0) - beyond).maximum(T::from(0.0)).minimum(T::from(1.0));
+            let outwards = T::from(0.0).less_than(signals.wanted * signals.error);
+            for rate in rates.iter_mut() {
+                *rate = T::select(outwards, *rate * left, *rate);
+            }
+        }
+    }
+}
+
+impl<P> CommandedPlant<P> {
+    /// This plant under this controller, which acts continuously, the disturbance fed forward with this gain.
     ///
     /// # Errors
     /// [`LinearError::WrongDomain`] for a sampled controller; [`LinearError::Improper`]; [`LinearError::NotRational`] for a
     /// compensator with dead time; [`LinearError::NoFeedthrough`] for back calculation through a strictly proper compensator,
     /// whose command no error can bring to its limit at once.
-    pub fn new(plant: P, controller: &Controller, feed_forward: f64) -> Result<Self, LinearError> {
+    pub fn in_loop(plant: P, controller: &Controller, feed_forward: f64) -> Result<Self, LinearError> {
         let function = controller.feedback.transfer_function()?;
         let feedback = Realization::new(&function)?;
         let system = StateSpace::from_transfer_function(&function)?;
@@ -48,7 +87,16 @@ impl<P> ClosedLoop<P> {
         }
         let limit = controller.command_limit.unwrap_or(f64::INFINITY);
         let delay_s = controller.timing.delay_s;
-        Ok(ClosedLoop { plant, feedback, integral, prefilter, limit, anti_windup, feed_forward, delay_s })
+        let law = Law { feedback, integral, limit, anti_windup, feed_forward, delay_s };
+        Ok(CommandedPlant { plant, law: Some(law), prefilter })
+    }
+
+    /// This plant behind a hold, the reference behind this prefilter.
+    ///
+    /// # Errors
+    /// As [`CommandedPlant::in_loop`].
+    pub fn on_hold(plant: P, prefilter: &TransferFunction) -> Result<Self, LinearError> {
+        Ok(CommandedPlant { plant, law: None, prefilter: Realization::new(prefilter)? })
     }
 
     /// The plant.
@@ -61,33 +109,45 @@ impl<P> ClosedLoop<P> {
         &mut self.plant
     }
 
+    /// How many inputs come before those of the plant: the reference; on hold the command and the reference.
+    #[inline(always)]
+    pub fn leading_inputs(&self) -> usize {
+        if self.law.is_some() { 1 } else { 2 }
+    }
+
     /// Limit of the command's magnitude, in its unit; infinite where there is none.
     pub fn limit(&self) -> f64 {
-        self.limit
+        self.law.as_ref().map_or(f64::INFINITY, |law| law.limit)
     }
 
     /// The same loop without a limit of the command, and so without anti-windup.
     #[must_use]
     pub fn unlimited(self) -> Self {
-        ClosedLoop { limit: f64::INFINITY, ..self }
+        CommandedPlant { law: self.law.map(|law| Law { limit: f64::INFINITY, ..law }), ..self }
     }
 
     /// How many states controller and prefilter have.
     pub fn controller_states(&self) -> usize {
-        self.feedback.states + self.prefilter.states
+        self.feedback_states() + self.prefilter.states
+    }
+
+    #[inline(always)]
+    fn feedback_states(&self) -> usize {
+        self.law.as_ref().map_or(0, |law| law.feedback.states)
     }
 
     /// States of G and F, in this order, that hold a command while reference and measurement stand still: where none do, those
-    /// that come nearest.
+    /// that come nearest. On hold those of F.
     ///
     /// # Example
     /// An integrator holds any command while there is no error.
     /// ```
     /// use phea_dynamics::controller::{Compensator, Controller, Element};
-    /// use phea_dynamics::simulation::ClosedLoop;
+    /// use phea_dynamics::simulation::CommandedPlant;
     /// let feedback = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
     /// let prefilter = Compensator::new(vec![Element::RealPole { frequency: 5.0 }]);
-    /// let closed = ClosedLoop::new((), &Controller { feedback, prefilter, ..Controller::default() }, 0.0)?;
+    /// let controller = Controller { feedback, prefilter, ..Controller::default() };
+    /// let closed = CommandedPlant::in_loop((), &controller, 0.0)?;
     /// assert_eq!(closed.controller_states(), 2);
     /// let states = closed.controller_at_rest(3.0, 3.0, 0.5);
     /// assert!((2.0 * states[0] - 0.5).abs() < 1e-12 || (states[0] - 0.5).abs() < 1e-12);
@@ -96,33 +156,48 @@ impl<P> ClosedLoop<P> {
     pub fn controller_at_rest(&self, reference: f64, measurement: f64, command: f64) -> Vec<f64> {
         let of_prefilter = self.prefilter.at_rest(reference, None);
         let error = self.prefilter.output(&of_prefilter, reference) - measurement;
-        let mut states = self.feedback.at_rest(error, Some(command));
+        let law = self.law.as_ref();
+        let mut states = law.map_or(vec![], |law| law.feedback.at_rest(error, Some(command)));
         states.extend(of_prefilter);
         states
     }
 
     #[inline(always)]
     fn is_delayed(&self) -> bool {
-        self.delay_s > 0.0
+        self.law.as_ref().is_some_and(|law| law.delay_s > 0.0)
     }
 
-    /// Command before and after its limit, error, and reference behind the prefilter, for states and inputs of the loop.
+    /// The inputs of the plant among all.
+    #[inline(always)]
+    fn own<'i, S: Scalar, T>(&self, inputs: &'i [T]) -> &'i [T]
+    where
+        P: Plant<S>,
+    {
+        let leading = self.leading_inputs();
+        &inputs[leading..leading + self.plant.inputs()]
+    }
+
+    /// Command before and after its limit, error, and reference behind the prefilter, for states and inputs of the whole.
     #[inline(always)]
     pub fn signals<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> LoopSignals<T>
     where
         P: Plant<S>,
     {
         let (of_plant, of_controller) = state.split_at(self.plant.states());
-        let (of_feedback, of_prefilter) = of_controller.split_at(self.feedback.states);
-        let own = &inputs[1..1 + self.plant.inputs()];
-        let filtered_reference = self.prefilter.output(of_prefilter, inputs[0]);
+        let (of_feedback, of_prefilter) = of_controller.split_at(self.feedback_states());
+        let own = self.own::<S, T>(inputs);
+        let filtered_reference = self.prefilter.output(of_prefilter, inputs[self.leading_inputs() - 1]);
         let measurement = self.plant.measurement(of_plant, own);
         let error = filtered_reference - measurement;
-        let mut wanted = self.feedback.output(of_feedback, error);
-        if self.feed_forward != 0.0 {
-            wanted = wanted + self.plant.disturbance(of_plant, own).times(self.feed_forward);
+        let Some(law) = &self.law else {
+            let [wanted, command] = [inputs[0]; 2];
+            return LoopSignals { filtered_reference, measurement, error, wanted, command };
+        };
+        let mut wanted = law.feedback.output(of_feedback, error);
+        if law.feed_forward != 0.0 {
+            wanted = wanted + self.plant.disturbance(of_plant, own).times(law.feed_forward);
         }
-        let command = wanted.minimum(T::from(self.limit)).maximum(T::from(-self.limit));
+        let command = wanted.minimum(T::from(law.limit)).maximum(T::from(-law.limit));
         LoopSignals { filtered_reference, measurement, error, wanted, command }
     }
 
@@ -137,7 +212,7 @@ impl<P> ClosedLoop<P> {
     /// ```
     /// use phea_dynamics::controller::{Compensator, Controller, Element};
     /// use phea_dynamics::scalar::Scalar;
-    /// use phea_dynamics::simulation::{ClosedLoop, Plant};
+    /// use phea_dynamics::simulation::{CommandedPlant, Plant};
     /// # struct Still;
     /// # impl Plant<f64> for Still {
     /// #     fn states(&self) -> usize { 0 }
@@ -150,7 +225,7 @@ impl<P> ClosedLoop<P> {
     /// # }
     /// let law = Element::ProportionalIntegral { proportional_gain: 2.0, integral_gain: 3.0 };
     /// let controller = Controller { feedback: Compensator::new(vec![law]), ..Controller::default() };
-    /// let closed = ClosedLoop::new(Still, &controller, 0.0)?;
+    /// let closed = CommandedPlant::in_loop(Still, &controller, 0.0)?;
     /// let held = closed.controller_at_rest(0.0, 0.0, 0.6);
     /// assert!((closed.integral_part(&held) - 0.6).abs() < 1e-12);
     /// # Ok::<(), phea_dynamics::linear::LinearError>(())
@@ -160,7 +235,8 @@ impl<P> ClosedLoop<P> {
         P: Plant<f64>,
     {
         let of_feedback = state.iter().skip(self.plant.states());
-        of_feedback.zip(&self.integral).map(|(state, part)| state * part).sum()
+        let integral = self.law.iter().flat_map(|law| &law.integral);
+        of_feedback.zip(integral).map(|(state, part)| state * part).sum()
     }
 
     /// The command as it comes to the plant: behind the delay.
@@ -172,15 +248,13 @@ impl<P> ClosedLoop<P> {
         delayed.unwrap_or_else(|| self.signals::<f64, f64>(state, inputs).command)
     }
 
-    /// What drives the states of G.
-    #[inline(always)]
-    fn driving<T: Scalar>(&self, signals: &LoopSignals<T>) -> T {
-        match self.anti_windup {
-            AntiWindup::BackCalculation => {
-                signals.error + (signals.command - signals.wanted).times(1.0 / self.feedback.feedthrough)
-            }
-            AntiWindup::None | AntiWindup::Clamping => signals.error,
-        }
+    /// What a sampled controller reads: reference behind the prefilter, and measurement.
+    pub fn sampled<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; 2]
+    where
+        P: Plant<S>,
+    {
+        let signals = self.signals::<S, T>(state, inputs);
+        [signals.filtered_reference, signals.measurement]
     }
 }
 
@@ -196,62 +270,59 @@ pub struct LoopSignals<T> {
     pub measurement: T,
     /// F r - y.
     pub error: T,
-    /// The command before its limit.
+    /// The command before its limit; on hold the command.
     pub wanted: T,
     /// The command within its limit, before any delay.
     pub command: T,
 }
 
-impl<S: Scalar, P: Plant<S>> System<S> for ClosedLoop<P> {
+impl<S: Scalar, P: Plant<S>> System<S> for CommandedPlant<P> {
     #[inline(always)]
     fn states(&self) -> usize {
-        self.plant.states() + self.feedback.states + self.prefilter.states
+        self.plant.states() + self.feedback_states() + self.prefilter.states
     }
 
     #[inline(always)]
     fn inputs(&self) -> usize {
-        1 + self.plant.inputs() + usize::from(self.is_delayed())
+        self.leading_inputs() + self.plant.inputs() + usize::from(self.is_delayed())
     }
 
     fn scales(&self) -> Vec<S> {
         let mut scales = self.plant.scales();
-        scales.extend(self.feedback.scales(self.plant.command_scale()));
+        if let Some(law) = &self.law {
+            scales.extend(law.feedback.scales(self.plant.command_scale()));
+        }
         scales.extend(self.prefilter.scales(self.plant.measurement_scale()));
         scales
     }
 
     #[inline(always)]
     fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
-        let signals = self.signals::<S, T>(state, inputs);
+        let leading = self.leading_inputs();
         let (of_plant, of_controller) = state.split_at(self.plant.states());
-        let (of_feedback, of_prefilter) = of_controller.split_at(self.feedback.states);
+        let (of_feedback, of_prefilter) = of_controller.split_at(self.feedback_states());
         let (plant_rates, controller_rates) = rates.split_at_mut(of_plant.len());
         let (feedback_rates, prefilter_rates) = controller_rates.split_at_mut(of_feedback.len());
-        let plant_inputs = self.plant.inputs();
-        let command = if self.is_delayed() { inputs[1 + plant_inputs] } else { signals.command };
-        self.plant.rates(of_plant, command, &inputs[1..1 + plant_inputs], plant_rates);
-        self.feedback.rates(of_feedback, self.driving(&signals), feedback_rates);
-        if self.anti_windup == AntiWindup::Clamping && self.limit.is_finite() {
-            let beyond = (signals.wanted.abs() - T::from(self.limit)).times(1.0 / (HOLDING * self.limit));
-            let left = (T::from(1.0) - beyond).maximum(T::from(0.0)).minimum(T::from(1.0));
-            let outwards = T::from(0.0).less_than(signals.wanted * signals.error);
-            for rate in feedback_rates.iter_mut() {
-                *rate = T::select(outwards, *rate * left, *rate);
-            }
+        let mut command = inputs[0];
+        if let Some(law) = &self.law {
+            let signals = self.signals::<S, T>(state, inputs);
+            command = if self.is_delayed() { inputs[1 + self.plant.inputs()] } else { signals.command };
+            law.rates(of_feedback, &signals, feedback_rates);
         }
-        self.prefilter.rates(of_prefilter, inputs[0], prefilter_rates);
+        self.plant.rates(of_plant, command, self.own::<S, T>(inputs), plant_rates);
+        self.prefilter.rates(of_prefilter, inputs[leading - 1], prefilter_rates);
     }
 
     fn delays(&self) -> Vec<S> {
         let mut delays = self.plant.delays();
-        if self.is_delayed() {
-            delays.push(S::from(self.delay_s));
+        if let Some(law) = self.law.iter().find(|law| law.delay_s > 0.0) {
+            delays.push(S::from(law.delay_s));
         }
         delays
     }
 
     fn outgoing<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
-        let own = &inputs[1..1 + self.plant.inputs()];
+        let own = self.own::<S, T>(inputs);
         let plant_waves = waves.len() - usize::from(self.is_delayed());
         self.plant.outgoing(&state[..self.plant.states()], own, &mut waves[..plant_waves]);
         if self.is_delayed() {
@@ -264,106 +335,15 @@ impl<S: Scalar, P: Plant<S>> System<S> for ClosedLoop<P> {
     }
 
     fn indicators(&self) -> usize {
-        self.plant.indicators() + usize::from(self.limit.is_finite())
+        self.plant.indicators() + usize::from(self.limit().is_finite())
     }
 
     fn indicate<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], indicators: &mut [T]) {
-        let own = &inputs[1..1 + self.plant.inputs()];
+        let own = self.own::<S, T>(inputs);
         let of_plant = self.plant.indicators();
         self.plant.indicate(&state[..self.plant.states()], own, &mut indicators[..of_plant]);
         if let Some(limited) = indicators.get_mut(of_plant) {
-            *limited = self.signals::<S, T>(state, inputs).wanted.abs() - T::from(self.limit);
+            *limited = self.signals::<S, T>(state, inputs).wanted.abs() - T::from(self.limit());
         }
-    }
-}
-
-/// A plant whose command is held between samples, its reference filtered continuously.
-///
-/// ```text
-/// inputs u, r and those of the plant; states of the plant and of F
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct HeldPlant<P> {
-    plant: P,
-    prefilter: Realization,
-}
-
-impl<P> HeldPlant<P> {
-    /// This plant behind a hold, the reference behind this prefilter (one for a prefilter that is sampled too).
-    ///
-    /// # Errors
-    /// As [`ClosedLoop::new`].
-    pub fn new(plant: P, prefilter: &TransferFunction) -> Result<Self, LinearError> {
-        Ok(HeldPlant { plant, prefilter: Realization::new(prefilter)? })
-    }
-
-    /// The plant.
-    pub fn plant(&self) -> &P {
-        &self.plant
-    }
-
-    /// The plant, to be changed.
-    pub fn plant_mut(&mut self) -> &mut P {
-        &mut self.plant
-    }
-
-    /// States of F while the reference stands still.
-    pub fn prefilter_at_rest(&self, reference: f64) -> Vec<f64> {
-        self.prefilter.at_rest(reference, None)
-    }
-
-    /// What the controller samples: reference behind the prefilter, and measurement.
-    pub fn sampled<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; 2]
-    where
-        P: Plant<S>,
-    {
-        let (of_plant, of_prefilter) = state.split_at(self.plant.states());
-        [self.prefilter.output(of_prefilter, inputs[1]), self.plant.measurement(of_plant, &inputs[2..])]
-    }
-}
-
-impl<S: Scalar, P: Plant<S>> System<S> for HeldPlant<P> {
-    #[inline(always)]
-    fn states(&self) -> usize {
-        self.plant.states() + self.prefilter.states
-    }
-
-    #[inline(always)]
-    fn inputs(&self) -> usize {
-        2 + self.plant.inputs()
-    }
-
-    fn scales(&self) -> Vec<S> {
-        let mut scales = self.plant.scales();
-        scales.extend(self.prefilter.scales(self.plant.measurement_scale()));
-        scales
-    }
-
-    #[inline(always)]
-    fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
-        let (of_plant, of_prefilter) = state.split_at(self.plant.states());
-        let (plant_rates, prefilter_rates) = rates.split_at_mut(of_plant.len());
-        self.plant.rates(of_plant, inputs[0], &inputs[2..], plant_rates);
-        self.prefilter.rates(of_prefilter, inputs[1], prefilter_rates);
-    }
-
-    fn delays(&self) -> Vec<S> {
-        self.plant.delays()
-    }
-
-    fn outgoing<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
-        self.plant.outgoing(&state[..self.plant.states()], &inputs[2..], waves);
-    }
-
-    fn sliding(&self) -> Option<Sliding> {
-        self.plant.sliding()
-    }
-
-    fn indicators(&self) -> usize {
-        self.plant.indicators()
-    }
-
-    fn indicate<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], indicators: &mut [T]) {
-        self.plant.indicate(&state[..self.plant.states()], &inputs[2..], indicators);
     }
 }
