@@ -11,6 +11,7 @@ mod equilibrium;
 mod explicit;
 mod growth;
 mod history;
+mod kernel;
 mod method;
 mod passage;
 mod pattern;

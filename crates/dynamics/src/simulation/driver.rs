@@ -5,6 +5,7 @@ mod joined;
 use super::course::{Attention, Event, Observer, Outcome, Settings, SimulationError, Status};
 use super::growth::GrowthWatch;
 use super::history::NODES;
+use super::kernel::Kernel;
 use super::method::{Extension, LOOKED_AT, StepInputs, Stepper};
 use super::passage::Passage;
 use super::propagator::Propagator;
@@ -75,13 +76,13 @@ where
     if !can_drive::<S>() {
         return Err(SimulationError::NoVectors);
     }
-    let mut drive = Drive::new(system, settings)?;
+    let mut drive = Drive::new(&*system, settings)?;
     let mut empty = false;
     loop {
         for lane in 0..S::COUNT {
             if drive.slots[lane].is_none() && !empty {
                 match queue.next(system, lane) {
-                    Some(task) => drive.enter(system, lane, task)?,
+                    Some(task) => drive.enter(&*system, lane, task)?,
                     None => empty = true,
                 }
             }
@@ -89,7 +90,7 @@ where
         if drive.slots.iter().all(Option::is_none) {
             return Ok(());
         }
-        drive.step(system);
+        drive.step(&*system);
         drive.limit_work();
         let mut running = drive.slots.iter().enumerate().filter_map(|(lane, slot)| {
             let passage = &slot.as_ref()?.passage;
@@ -109,12 +110,8 @@ where
     }
 }
 
-impl<'a, S: Lane, O: Observer> Drive<'a, S, O>
-where
-    Dependence: From<S>,
-    Dual<DIRECTIONS, S>: From<f64> + From<S>,
-{
-    fn new<E: System<S>>(system: &E, settings: &Settings) -> Result<Self, SimulationError> {
+impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
+    fn new(system: &dyn Kernel<S>, settings: &Settings) -> Result<Self, SimulationError> {
         let (states, inputs, zero) = (system.states(), system.inputs(), S::from(0.0));
         let method =
             Stepper::new(settings.method, system).ok_or(SimulationError::TooLarge { states, inputs })?;
@@ -149,9 +146,9 @@ where
     }
 
     /// Puts a machine into a free lane.
-    fn enter<E: System<S>>(
+    fn enter(
         &mut self,
-        system: &E,
+        system: &dyn Kernel<S>,
         lane: usize,
         task: Task<'a, O>,
     ) -> Result<(), SimulationError> {
@@ -194,7 +191,7 @@ where
     }
 
     /// Tries one step in every lane: where its matrices are known by them, where that is not good enough by the method.
-    fn step<E: System<S>>(&mut self, system: &E) {
+    fn step(&mut self, system: &dyn Kernel<S>) {
         for lane in 0..S::COUNT {
             self.prepare(lane);
         }
@@ -234,7 +231,7 @@ where
     }
 
     /// Rates, Jacobian and slopes in time where each lane stands.
-    fn linearize<E: System<S>>(&mut self, system: &E) {
+    fn linearize(&mut self, system: &dyn Kernel<S>) {
         let mut left = self.slots.iter().flatten().filter(|slot| !slot.propagated);
         self.inputs.moving = left.any(|slot| !slot.passage.still);
         self.method.linearize(system, &self.state, &self.inputs);
@@ -257,7 +254,7 @@ where
     }
 
     /// The error of the step with that between its ends, in lanes where the first may not be all.
-    fn look_between<E: System<S>>(&mut self, system: &E, error: S) -> S {
+    fn look_between(&mut self, system: &dyn Kernel<S>, error: S) -> S {
         let mut looked = S::from(0.0);
         for lane in 0..S::COUNT {
             let Some(Slot { passage, inputs, propagated, .. }) = &mut self.slots[lane] else { continue };
@@ -336,7 +333,7 @@ where
     }
 
     /// Moves one lane to the end of the step it took.
-    fn take<E: System<S>>(&mut self, system: &E, lane: usize) {
+    fn take(&mut self, system: &dyn Kernel<S>, lane: usize) {
         self.fresh = true;
         if let Some(slot) = &mut self.slots[lane] {
             slot.unwatched += 1;
@@ -392,7 +389,7 @@ where
         set_lane(&mut self.between.inputs, lane, &slot.inputs);
     }
 
-    fn send_waves<E: System<S>>(&mut self, system: &E, lane: usize) {
+    fn send_waves(&mut self, system: &dyn Kernel<S>, lane: usize) {
         if self.between.waves.is_empty() {
             return;
         }
@@ -413,14 +410,14 @@ where
     }
 
     /// Indicators at the end of the step, in every lane: where the last stage has its inputs.
-    fn indicate_ends<E: System<S>>(&mut self, system: &E) {
+    fn indicate_ends(&mut self, system: &dyn Kernel<S>) {
         let [.., inputs] = &self.inputs.stages;
         if !self.indicators.is_empty() {
             system.indicate(&self.between.end, inputs, &mut self.between.ends);
         }
     }
 
-    fn find_events<E: System<S>>(&mut self, system: &E, lane: usize) {
+    fn find_events(&mut self, system: &dyn Kernel<S>, lane: usize) {
         let mut any = false;
         for (before, after) in self.indicators.iter().zip(&self.between.ends) {
             any |= (before.lane(lane) > 0.0) != (after.lane(lane) > 0.0);
@@ -436,7 +433,7 @@ where
     }
 
     /// Finds when an indicator changed its sign within the step, if it did.
-    fn find_event<E: System<S>>(&mut self, system: &E, lane: usize, index: usize) {
+    fn find_event(&mut self, system: &dyn Kernel<S>, lane: usize, index: usize) {
         let (before, after) = (self.indicators[index].lane(lane), self.between.ends[index].lane(lane));
         if (before > 0.0) == (after > 0.0) {
             return;
@@ -454,7 +451,7 @@ where
         }
     }
 
-    fn indicator<E: System<S>>(&mut self, system: &E, lane: usize, index: usize, part: f64) -> f64 {
+    fn indicator(&mut self, system: &dyn Kernel<S>, lane: usize, index: usize, part: f64) -> f64 {
         self.look(lane, part);
         system.indicate(&self.between.state, &self.between.inputs, &mut self.between.indicators);
         self.between.indicators[index].lane(lane)

@@ -1,8 +1,9 @@
 //! One step of an explicit Runge-Kutta method of order five.
 
+use super::Lane;
 use super::growth::AmplitudeLost;
+use super::kernel::{Kernel, Trial};
 use super::method::{Extension, StepInputs, relative_error};
-use super::{Lane, System};
 
 /// Stages of the method, the first of the next step included.
 const STAGES: usize = 7;
@@ -72,21 +73,19 @@ impl<S: Lane> DormandPrince<S> {
     }
 
     /// Rates at the start of a step.
-    pub(super) fn begin<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>) {
+    pub(super) fn begin(&mut self, system: &dyn Kernel<S>, state: &[S], inputs: &StepInputs<S>) {
         system.rates(state, &inputs.stages[0], &mut self.rates[..state.len()]);
     }
 
     /// One step of length h from here, [`DormandPrince::begin`] having been called here; the error of each lane in units of
     /// the tolerance.
-    pub(super) fn attempt<E: System<S>>(
+    pub(super) fn attempt(
         &mut self,
-        system: &E,
-        state: &[S],
-        step: S,
+        system: &dyn Kernel<S>,
+        trial: Trial<'_, S>,
         inputs: &StepInputs<S>,
-        scales: &[S],
-        tolerance: f64,
     ) -> S {
+        let Trial { state, step, scales, tolerance } = trial;
         let states = state.len();
         self.step = step;
         for (before, weights) in A.iter().enumerate() {

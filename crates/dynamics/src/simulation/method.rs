@@ -1,13 +1,11 @@
 //! The methods that a system can be driven by, behind one interface.
 
-use pulp::{Simd, WithSimd};
-
+use super::Lane;
 use super::explicit::{self, DormandPrince};
 use super::growth::AmplitudeLost;
+use super::kernel::{Kernel, Trial};
 use super::passage::Passage;
-use super::rosenbrock::{self, DIRECTIONS, Rosenbrock};
-use super::{Lane, System};
-use crate::scalar::{Dependence, Dual};
+use super::rosenbrock::{self, Rosenbrock};
 
 /// Where in a step the equations are asked how far its course is off: late, since a step that is shortened for a kink comes to
 /// end shortly behind it.
@@ -50,13 +48,9 @@ pub(super) struct Stepper<S> {
     pub(super) scales: Vec<S>,
 }
 
-impl<S: Lane> Stepper<S>
-where
-    Dependence: From<S>,
-    Dual<DIRECTIONS, S>: From<f64> + From<S>,
-{
+impl<S: Lane> Stepper<S> {
     /// This method for this system; `None` when the system is too large to find its pattern.
-    pub(super) fn new<E: System<S>>(method: Method, system: &E) -> Option<Self> {
+    pub(super) fn new(method: Method, system: &dyn Kernel<S>) -> Option<Self> {
         let implicit = Box::new(Rosenbrock::new(system)?);
         let steps = match method {
             Method::Rosenbrock => Steps::Implicit(implicit),
@@ -82,7 +76,7 @@ where
     }
 
     /// Takes note of the start of a step: rates, and what derivatives the method needs.
-    pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>) {
+    pub(super) fn linearize(&mut self, system: &dyn Kernel<S>, state: &[S], inputs: &StepInputs<S>) {
         let method = match &mut self.steps {
             Steps::Implicit(method) => method,
             Steps::Explicit(method, jacobian) => {
@@ -90,26 +84,23 @@ where
                 jacobian
             }
         };
-        S::vectorized(Linearization { method, system, state, inputs });
+        system.linearize(method, state, inputs);
     }
 
     /// One step of length h from where [`Stepper::linearize`] was called; the error of each lane in units of the tolerance.
     /// Above one, or not a number, the step is to be tried again with a shorter one.
-    pub(super) fn attempt<E: System<S>>(
+    pub(super) fn attempt(
         &mut self,
-        system: &E,
+        system: &dyn Kernel<S>,
         state: &[S],
         step: S,
         inputs: &StepInputs<S>,
         tolerance: f64,
     ) -> S {
-        let scales = &self.scales;
+        let trial = Trial { state, step, scales: &self.scales, tolerance };
         match &mut self.steps {
-            Steps::Implicit(method) => {
-                let attempt = Attempt { method, system, state, step, inputs, scales, tolerance };
-                S::vectorized(attempt).unwrap_or(S::from(f64::NAN))
-            }
-            Steps::Explicit(method, _) => method.attempt(system, state, step, inputs, scales, tolerance),
+            Steps::Implicit(method) => system.attempt(method, trial, inputs),
+            Steps::Explicit(method, _) => method.attempt(system, trial, inputs),
         }
     }
 
@@ -126,20 +117,17 @@ where
 
     /// How far what lies between the ends of the step just attempted is off, for the inputs at [`LOOKED_AT`], in units of
     /// the tolerance.
-    pub(super) fn error_between<E: System<S>>(
+    pub(super) fn error_between(
         &mut self,
-        system: &E,
+        system: &dyn Kernel<S>,
         state: &[S],
         step: S,
         inputs: &[S],
         tolerance: f64,
     ) -> S {
-        let scales = &self.scales;
+        let trial = Trial { state, step, scales: &self.scales, tolerance };
         match &mut self.steps {
-            Steps::Implicit(method) => {
-                let between = Between { method, system, state, step, inputs, scales, tolerance };
-                S::vectorized(between).unwrap_or(S::from(f64::NAN))
-            }
+            Steps::Implicit(method) => system.error_between(method, trial, inputs),
             Steps::Explicit(..) => S::from(0.0),
         }
     }
@@ -190,78 +178,6 @@ where
             part * part
         });
         (parts.sum::<f64>() / rates.len().max(1) as f64).sqrt()
-    }
-}
-
-/// [`Rosenbrock::linearize`] with the vector instructions that there are. A closure would not do: the call of a closure is a
-/// function of its own, and compiled without them.
-struct Linearization<'m, S, E> {
-    method: &'m mut Rosenbrock<S>,
-    system: &'m E,
-    state: &'m [S],
-    inputs: &'m StepInputs<S>,
-}
-
-impl<S: Lane, E: System<S>> WithSimd for Linearization<'_, S, E>
-where
-    Dependence: From<S>,
-    Dual<DIRECTIONS, S>: From<f64> + From<S>,
-{
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<V: Simd>(self, _: V) {
-        self.method.linearize(self.system, self.state, self.inputs);
-    }
-}
-
-/// [`Rosenbrock::attempt`] with the vector instructions that there are.
-struct Attempt<'m, S, E> {
-    method: &'m mut Rosenbrock<S>,
-    system: &'m E,
-    state: &'m [S],
-    step: S,
-    inputs: &'m StepInputs<S>,
-    scales: &'m [S],
-    tolerance: f64,
-}
-
-impl<S: Lane, E: System<S>> WithSimd for Attempt<'_, S, E>
-where
-    Dependence: From<S>,
-    Dual<DIRECTIONS, S>: From<f64> + From<S>,
-{
-    type Output = S;
-
-    #[inline(always)]
-    fn with_simd<V: Simd>(self, _: V) -> S {
-        let Attempt { method, system, state, step, inputs, scales, tolerance } = self;
-        method.attempt(system, state, step, inputs, scales, tolerance)
-    }
-}
-
-/// [`Rosenbrock::error_between`] with the vector instructions that there are.
-struct Between<'m, S, E> {
-    method: &'m mut Rosenbrock<S>,
-    system: &'m E,
-    state: &'m [S],
-    step: S,
-    inputs: &'m [S],
-    scales: &'m [S],
-    tolerance: f64,
-}
-
-impl<S: Lane, E: System<S>> WithSimd for Between<'_, S, E>
-where
-    Dependence: From<S>,
-    Dual<DIRECTIONS, S>: From<f64> + From<S>,
-{
-    type Output = S;
-
-    #[inline(always)]
-    fn with_simd<V: Simd>(self, _: V) -> S {
-        let Between { method, system, state, step, inputs, scales, tolerance } = self;
-        method.error_between(system, state, step, inputs, scales, tolerance)
     }
 }
 

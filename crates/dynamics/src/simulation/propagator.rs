@@ -3,6 +3,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use super::kernel::Trial;
 use super::rosenbrock::Rosenbrock;
 use super::square::Square;
 use super::{Lane, System};
@@ -103,27 +104,9 @@ impl<S: Lane> Propagator<S> {
     }
 
     /// The step from a state with inputs that stand still; the error of each lane in units of the tolerance.
-    pub(super) fn attempt<E: System<S>>(
-        &mut self,
-        system: &E,
-        state: &[S],
-        inputs: &[S],
-        scales: &[S],
-        tolerance: f64,
-    ) -> S {
-        let attempt = Attempt { propagator: self, system, state, inputs, scales, tolerance };
-        S::vectorized(attempt).unwrap_or(S::from(f64::NAN))
-    }
-
     #[inline(always)]
-    fn step<E: System<S>>(
-        &mut self,
-        system: &E,
-        state: &[S],
-        inputs: &[S],
-        scales: &[S],
-        tolerance: f64,
-    ) -> S {
+    pub(super) fn step<E: System<S>>(&mut self, system: &E, trial: Trial<'_, S>, inputs: &[S]) -> S {
+        let Trial { state, scales, tolerance, .. } = trial;
         let [before, after] = &mut self.rates;
         system.rates(state, inputs, before);
         self.first.times(before, &mut self.difference);
@@ -146,26 +129,6 @@ impl<S: Lane> Propagator<S> {
             *end = *end + error;
         }
         sum.times(1.0 / self.states.max(1) as f64).sqrt().times(1.0 / tolerance)
-    }
-}
-
-/// [`Propagator::step`] with the vector instructions that there are.
-struct Attempt<'p, S, E> {
-    propagator: &'p mut Propagator<S>,
-    system: &'p E,
-    state: &'p [S],
-    inputs: &'p [S],
-    scales: &'p [S],
-    tolerance: f64,
-}
-
-impl<S: Lane, E: System<S>> WithSimd for Attempt<'_, S, E> {
-    type Output = S;
-
-    #[inline(always)]
-    fn with_simd<V: Simd>(self, _: V) -> S {
-        let Attempt { propagator, system, state, inputs, scales, tolerance } = self;
-        propagator.step(system, state, inputs, scales, tolerance)
     }
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::growth::AmplitudeLost;
+use super::kernel::{Kernel, Trial};
 use super::method::{Extension, LOOKED_AT, StepInputs, relative_error};
 use super::pattern::Pattern;
 use super::step_matrix::{COLUMN, Column, StepMatrix};
@@ -151,14 +152,10 @@ pub(super) struct Rosenbrock<S> {
     pub(super) end: Vec<S>,
 }
 
-impl<S: Lane> Rosenbrock<S>
-where
-    Dependence: From<S>,
-    Dual<DIRECTIONS, S>: From<f64> + From<S>,
-{
+impl<S: Lane> Rosenbrock<S> {
     /// For this system; `None` when it is too large to find its pattern.
-    pub(super) fn new<E: System<S>>(system: &E) -> Option<Self> {
-        let pattern = Pattern::of(system)?;
+    pub(super) fn new(system: &dyn Kernel<S>) -> Option<Self> {
+        let pattern = system.pattern()?;
         let (states, inputs) = (system.states(), system.inputs());
         let (groups, zero) = (states.div_ceil(4), S::from(0.0));
         let seeded = |pass: usize| {
@@ -192,7 +189,11 @@ where
 
     /// Rates, Jacobian and slopes in time at the start of a step.
     #[inline(always)]
-    pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>) {
+    pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>)
+    where
+        Dependence: From<S>,
+        Dual<DIRECTIONS, S>: From<f64> + From<S>,
+    {
         // The slope in time is one more direction.
         let in_time = self.pattern.colour_count;
         let directions = (in_time + usize::from(inputs.moving)).max(1);
@@ -243,12 +244,10 @@ where
     pub(super) fn attempt<E: System<S>>(
         &mut self,
         system: &E,
-        state: &[S],
-        step: S,
+        trial: Trial<'_, S>,
         inputs: &StepInputs<S>,
-        scales: &[S],
-        tolerance: f64,
     ) -> S {
+        let Trial { state, step, scales, tolerance } = trial;
         let per_step = S::from(1.0) / step;
         self.matrix.reset(per_step * S::from(1.0 / GAMMA));
         for (&value, found) in self.jacobian.iter().zip(&self.found) {
@@ -291,15 +290,8 @@ where
     ///
     /// Where a state is bound stiffly to others or to an input the error at the end says nothing of what lies between.
     #[inline(always)]
-    pub(super) fn error_between<E: System<S>>(
-        &mut self,
-        system: &E,
-        state: &[S],
-        step: S,
-        inputs: &[S],
-        scales: &[S],
-        tolerance: f64,
-    ) -> S {
+    pub(super) fn error_between<E: System<S>>(&mut self, system: &E, trial: Trial<'_, S>, inputs: &[S]) -> S {
+        let Trial { state, step, scales, tolerance } = trial;
         let (states, per_step) = (state.len(), S::from(1.0) / step);
         for (index, &start) in state.iter().enumerate() {
             let extension = self.extension(index, start);

@@ -1,7 +1,8 @@
 //! Machines to be driven: where they come from, and whether they fit.
 
 use super::course::{Observer, Outcome, Sampler, SimulationError};
-use super::{Course, Lane, System};
+use super::kernel::Kernel;
+use super::{Course, Lane};
 
 /// One machine to be driven.
 pub struct Task<'a, O> {
@@ -33,8 +34,8 @@ pub trait Queue<'a, E> {
 }
 
 /// Whether a machine in its lane can be driven by its task.
-pub(super) fn check<S: Lane, E: System<S>, O: Observer>(
-    system: &E,
+pub(super) fn check<S: Lane, O: Observer>(
+    system: &dyn Kernel<S>,
     task: &Task<'_, O>,
     lane: usize,
     delays: &[f64],

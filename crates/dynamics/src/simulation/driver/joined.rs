@@ -1,20 +1,15 @@
 //! Lanes that go from sample to sample by matrices found once.
 
 use super::Drive;
-use crate::scalar::{Dependence, Dual};
-use crate::simulation::rosenbrock::DIRECTIONS;
+use crate::simulation::kernel::{Kernel, Trial};
 use crate::simulation::slot::Slot;
-use crate::simulation::{Attention, Lane, Observer, System};
+use crate::simulation::{Attention, Lane, Observer};
 
 /// Largest error of a step with known matrices, in units of the tolerance: such errors have one sign for many samples and
 /// add up.
 const PROPAGATED: f64 = 0.1;
 
-impl<S: Lane, O: Observer> Drive<'_, S, O>
-where
-    Dependence: From<S>,
-    Dual<DIRECTIONS, S>: From<f64> + From<S>,
-{
+impl<S: Lane, O: Observer> Drive<'_, S, O> {
     /// Which lanes have matrices for the step to their next break.
     pub(super) fn choose_propagated(&mut self) {
         for lane in 0..S::COUNT {
@@ -26,7 +21,7 @@ where
 
     /// Asks now and then for the modes of lanes that go by their matrices. These are exact for a mode that grows as long as friction
     /// feeds it as it did when they were found; where it does not they are found anew. Whether everything has been linearised for it.
-    pub(super) fn watch_propagated<E: System<S>>(&mut self, system: &E, fresh: bool) -> bool {
+    pub(super) fn watch_propagated(&mut self, system: &dyn Kernel<S>, fresh: bool) -> bool {
         let due = |slot: &Slot<'_, O>| slot.propagated && slot.is_due();
         if !self.slots.iter().flatten().any(due) {
             return false;
@@ -50,12 +45,14 @@ where
     }
 
     /// Takes a step with known matrices in every lane that has them; whether this was so in all.
-    pub(super) fn propagate<E: System<S>>(&mut self, system: &E) -> bool {
+    pub(super) fn propagate(&mut self, system: &dyn Kernel<S>) -> bool {
         if !self.slots.iter().flatten().any(|slot| slot.propagated) {
             return false;
         }
         let (inputs, tolerance) = (&self.inputs.stages[0], self.settings.tolerance);
-        let error = self.propagator.attempt(system, &self.state, inputs, &self.method.scales, tolerance);
+        let (state, scales) = (&self.state[..], &self.method.scales[..]);
+        let trial = Trial { state, step: self.step, scales, tolerance };
+        let error = system.propagate(&mut self.propagator, trial, inputs);
         self.between.extensions.fill(None);
         self.between.propagated = true;
         self.between.end.copy_from_slice(&self.propagator.end);
