@@ -36,7 +36,7 @@ use crate::simulate::{SimulateError, compare_projects};
 use crate::sizing::{self, Question, size};
 use crate::source::{Destination, Held, Source};
 use crate::specification::{self, specifications, wishes};
-use crate::trial::{self, Agreement, tried};
+use crate::trial::{Agreement, tried};
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
 
@@ -332,7 +332,7 @@ fn verify_on_machine(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> 
         return Err(RigError::NoActuator.into());
     };
     Ok(Answer {
-        text: format!("{}{}", audit::text(&view), trial::text(&trial)),
+        text: audit::text_on_machine(&view, &trial),
         json: audit::json_on_machine(loaded, &view, &trial),
         files: audit::files(&view),
         affirmative: view.audit.verdict == Verdict::Met && trial.agreement() != Agreement::Contradicts,

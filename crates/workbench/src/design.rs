@@ -1,12 +1,12 @@
 //! What is told of `design`: text, JSON, files and figures.
 
 mod answer;
+mod document;
 mod stages;
-mod text;
 
 pub use phea_engineering::design::*;
 
 pub use answer::json;
+pub use document::text;
+pub(crate) use document::{costs, explanation_words, laws, side_by_side, status};
 pub use stages::{files, stage_files};
-pub(crate) use text::explanation_words;
-pub use text::text;

@@ -8,6 +8,7 @@ pub mod campaign;
 pub mod command;
 pub mod derived;
 pub mod design;
+pub mod document;
 pub mod linearize;
 pub mod report;
 pub mod shaping;

@@ -1,7 +1,6 @@
 //! The report: everything this workbench can say of a rig, as one page that needs nothing else.
 
 mod audit;
-mod badge;
 mod bounds;
 mod campaign;
 mod chapter;
@@ -25,15 +24,13 @@ mod simulation;
 mod sizing;
 mod specifications;
 mod stiffness;
-mod trial;
-mod typeset;
 
 use maud::{Markup, html};
 
+pub use crate::document::{prose, typeset};
 pub(crate) use bounds::files as bound_files;
 pub use chapter::Chapter;
 pub use opening::{Decided, Decision};
-pub use typeset::{prose, typeset};
 
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
@@ -194,11 +191,13 @@ fn robust_tables(loaded: &Loaded, judged: &Judged) -> Vec<OutputFile> {
 fn verdict_facts(judged: &Judged) -> Facts {
     let mut facts = Vec::new();
     facts.extend(judged.given.as_ref().map(|view| ("Audit of the controller", audit_words(view))));
-    facts.extend(judged.given_trial.as_ref().map(|trial| ("Controller on the machine", trial::words(trial))));
+    facts.extend(
+        judged.given_trial.as_ref().map(|trial| ("Controller on the machine", crate::trial::words(trial))),
+    );
     if let Some(designed) = &judged.designed {
         facts.push(("Designed controller", designed.words()));
         facts.extend(
-            designed.trial().map(|trial| ("Designed controller on the machine", trial::words(trial))),
+            designed.trial().map(|trial| ("Designed controller on the machine", crate::trial::words(trial))),
         );
     }
     facts

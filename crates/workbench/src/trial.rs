@@ -1,7 +1,9 @@
 //! What is told of `trial`: text, JSON, files and figures.
 
 mod answer;
+mod document;
 
 pub use phea_engineering::trial::*;
 
-pub(crate) use answer::{Body, HEADINGS, body, cells, reasons, text};
+pub(crate) use answer::{Body, body};
+pub(crate) use document::{document, words};

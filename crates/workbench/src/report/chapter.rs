@@ -1,7 +1,9 @@
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
-use super::typeset::prose;
 use crate::caveat::of_models;
+use crate::document::Document;
+pub(super) use crate::document::place;
+use crate::document::prose;
 use crate::figure::Figure;
 use crate::project::Project;
 
@@ -17,13 +19,10 @@ pub struct Chapter {
     pub figures: Vec<Figure>,
 }
 
-/// A figure with its caption, set into a page.
-pub(super) fn place(figure: &Figure) -> Markup {
-    html! {
-        figure {
-            (PreEscaped(figure.to_svg_inline()))
-            figcaption { b { (figure.title) "." } " " (figure.caption) }
-        }
+impl Chapter {
+    /// With what a document says.
+    pub(super) fn of(anchor: &'static str, title: &'static str, document: Document) -> Chapter {
+        Chapter { anchor, title, body: document.markup(), figures: document.into_figures() }
     }
 }
 

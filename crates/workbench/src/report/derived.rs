@@ -3,8 +3,8 @@
 use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, table};
-use super::typeset::{figures, prose, typeset};
 use crate::derived::{Derived, sentence, stated};
+use crate::document::{figures, prose, typeset};
 
 pub(super) fn chapter(derived: &[Derived]) -> Chapter {
     let mut groups: Vec<&'static str> = derived.iter().map(|quantity| quantity.group).collect();

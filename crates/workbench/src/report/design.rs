@@ -5,30 +5,24 @@ mod loops;
 mod magnitudes;
 mod prefilter;
 mod sampling;
-mod tables;
 
-use maud::{Markup, html};
 use phea_engineering::error::ProcedureError;
 use phea_qft::design::DesignStatus;
 use phea_qft::verification::Verdict;
 
-use super::audit::verdict_edge;
-use super::chapter::{Chapter, place};
+use super::chapter::Chapter;
 use super::family_steps;
-use super::trial;
-use super::typeset::prose;
 use crate::answer::{OutputFile, significant};
-use crate::audit::{basis, summary};
+use crate::audit::basis;
 use crate::command::{CommandError, Watch};
-use crate::design::{
-    DesignError, ProjectDesign, Rounding, design_project, explanation_words, files, status_sentence,
-};
+use crate::design::{DesignError, ProjectDesign, costs, design_project, files, laws, side_by_side, status};
+use crate::document::{Document, Mark};
 use crate::figure::Figure;
 use crate::project::{Loaded, Project};
 use crate::robust::DesignFrequency;
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::Trial;
+use crate::trial::{self, Trial};
 
 /// Whether the report of a project looks for a controller: where it says how, or gives none.
 pub(super) fn is_asked_for(project: &Project) -> bool {
@@ -133,17 +127,11 @@ impl Designed {
     pub(super) fn chapter(&self) -> Result<Chapter, CommandError> {
         match self {
             Designed::Found(design) => chapter(design),
-            Designed::Nothing(sentences) => Ok(Chapter {
-                anchor: ANCHOR,
-                title: TITLE,
-                body: html! {
-                    div.callout.bad-edge {
-                        p { b { "No controller was designed." } }
-                        ul { @for sentence in sentences { li { (prose(sentence)) } } }
-                    }
-                },
-                figures: vec![],
-            }),
+            Designed::Nothing(sentences) => {
+                let mut out = Document::default();
+                out.verdict(Mark::Bad, "No controller was designed", sentences.clone());
+                Ok(Chapter::of(ANCHOR, TITLE, out))
+            }
         }
     }
 }
@@ -154,64 +142,37 @@ const TITLE: &str = "Design of the controller";
 fn chapter(found: &FoundDesign) -> Result<Chapter, CommandError> {
     let view = &found.view;
     let side = &view.designed;
-    let magnitudes = magnitudes::figures(view)?;
-    let prefilters = prefilter::figures(view)?;
-    let steps = family_steps::figure(
+    let mut out = status(view);
+    if let Some(trial) = &view.trial {
+        out.append(trial::document(
+            trial,
+            Some(["design_machine_steps", "The designed controller on the machine"]),
+        ));
+    }
+    out.heading("The designed controller");
+    out.append(laws(side)?);
+    if let Some(published) = &view.published {
+        out.heading("The given controller");
+        out.append(laws(published)?);
+    }
+    out.append(side_by_side(view));
+    if let Some(continuous) = &view.continuous {
+        out.explanation(sampling::sentence(side, continuous));
+    }
+    out.explanation("The first page has the Nichols chart.");
+    out.figures_below("The closed loops of the family", magnitudes::figures(view)?);
+    out.figures_below("The prefilter", prefilter::figures(view)?);
+    match family_steps::figure(
         &side.problem,
         &side.view,
         ["design_steps", "Step responses of the family with the designed controller"],
-    );
-    let driven = trial::figure(
-        view.trial.as_ref(),
-        ["design_machine_steps", "The designed controller on the machine"],
-    );
-    let body = html! {
-        (status(view))
-        (trial::section(view.trial.as_ref(), driven.as_ref()))
-        h3 { "The laws" }
-        (tables::laws(view)?)
-        h3 { @if view.published.is_some() { "Given and designed side by side" } @else { "What it reaches" } }
-        (tables::comparison(view))
-        @if let Some(continuous) = &view.continuous { p { (sampling::sentence(side, continuous)) } }
-        p { "The first page has the Nichols chart." }
-        (opened("The closed loops of the family", &magnitudes.iter().collect::<Vec<_>>()))
-        (opened("The prefilter", &prefilters.iter().collect::<Vec<_>>()))
-        @match &steps {
-            Some(Ok(figure)) => (place(figure)),
-            Some(Err(reason)) => p { "No step responses of the family: " (reason) "." },
-            None => {},
-        }
-        (tables::conflicts(view))
-        h3 { "What the specifications cost" }
-        (tables::binding(view))
-        h3 { "How it was found" }
-        (tables::rounds(view))
-        h3 { "What this rests on" }
-        ul { @for sentence in basis(&side.view) { li { (prose(&sentence)) } } }
-    };
-    let mut figures: Vec<Figure> = driven.into_iter().chain(magnitudes).chain(prefilters).collect();
-    figures.extend(steps.and_then(Result::ok));
-    Ok(Chapter { anchor: ANCHOR, title: TITLE, body, figures })
-}
-
-/// A heading above figures; nothing without them.
-fn opened(heading: &str, figures: &[&Figure]) -> Markup {
-    html! {
-        @if !figures.is_empty() { h3 { (heading) } }
-        @for figure in figures { (place(figure)) }
+    ) {
+        Some(Ok(figure)) => out.figures([figure]),
+        Some(Err(reason)) => out.explanation(format!("No step responses of the family: {reason}.")),
+        None => {}
     }
-}
-
-/// How the search ended, what can be said whatever a search finds, and what the audit says of what was found.
-fn status(view: &ProjectDesign) -> Markup {
-    html! {
-        div class=(verdict_edge(view.designed.view.audit.verdict)) {
-            p { b { "Design " (status_sentence(view)) "." } }
-            ul {
-                @for explanation in &view.explanations { li { (prose(&explanation_words(view, explanation))) } }
-                @for sentence in summary(&view.designed.view) { li { (prose(&sentence)) } }
-                @for sentence in view.rounding.iter().flat_map(Rounding::sentences) { li { (prose(&sentence)) } }
-            }
-        }
-    }
+    out.append(costs(view));
+    out.heading("What this rests on");
+    out.sentences(basis(&side.view));
+    Ok(Chapter::of(ANCHOR, TITLE, out))
 }

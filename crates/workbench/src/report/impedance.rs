@@ -7,8 +7,8 @@ use phea_hydraulics::impedance::AsymptoteKind;
 
 use super::chapter::{Chapter, cell, place, table, without};
 use super::load_motion::{self, Moved};
-use super::typeset::{prose, typeset};
 use crate::answer::significant;
+use crate::document::{prose, typeset};
 use crate::figure::{Asymptote, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance};
 use crate::linearize::{Linearization, PortView, frequency_grid, passivity_sentence};
 use crate::project::Project;

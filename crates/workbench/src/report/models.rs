@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, place, table};
-use super::typeset::prose;
+use crate::document::prose;
 use crate::figure::{
     BodeInput, Figure, FrequencyMark, FrequencySeries, PoleMapInput, PoleMapScale, PoleSeries, Words, bode,
     pole_map,

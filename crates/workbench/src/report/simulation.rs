@@ -3,11 +3,11 @@
 
 use maud::{Markup, html};
 
-use super::badge::{Mark, badge};
 use super::chapter::{Chapter, cell, grouped, place, table, unbroken};
 use super::driven::Driven;
 use super::driving;
 use crate::answer::significant;
+use crate::document::{Mark, badge};
 use crate::figure::Figure;
 use crate::project::{Project, Scenario, Signal};
 use crate::simulate::{
@@ -162,7 +162,7 @@ fn row(name: Markup, told: &[usize], metrics: &Metrics, wish: Option<&Wish>) -> 
     };
     let shown = |metric: &usize| {
         let text = cells[*metric].as_str();
-        match Mark::of_kept(held(*metric).and_then(|held| held.kept)) {
+        match held(*metric).and_then(|held| held.kept).map(Mark::of) {
             Some(mark) => badge(mark, text),
             None => cell(text),
         }

@@ -3,8 +3,8 @@
 use maud::{Markup, html};
 
 use super::chapter::{Chapter, cell, place, table};
-use super::typeset::prose;
 use crate::answer::significant;
+use crate::document::prose;
 use crate::figure::{
     DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput, SizingCurve,
     TornadoBar, TornadoInput, Verdict, Words, nomograph, sizing_chart, tornado,

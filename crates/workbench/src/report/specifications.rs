@@ -10,10 +10,10 @@ use phea_qft::specification::{
 };
 
 use super::chapter::{Chapter, cell, table};
-use super::typeset::{prose, typeset};
 use crate::answer::significant;
 use crate::audit::{closed_loop_symbol, frequency_number, frequency_words, meaning};
 use crate::command::CommandError;
+use crate::document::{prose, typeset};
 use crate::project::Project;
 use crate::quantity::{RATIO, display};
 use crate::robust::RobustProblem;

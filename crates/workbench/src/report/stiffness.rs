@@ -5,7 +5,7 @@ use phea_hydraulics::line::Member;
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::chapter::{Chapter, place};
-use super::typeset::prose;
+use crate::document::prose;
 use crate::figure::{Figure, StiffnessCurve, StiffnessInput, Words, stiffness_over_stroke};
 use crate::linearize::{Linearization, stiffness_at, stiffness_sentence};
 use crate::rig::Rig;

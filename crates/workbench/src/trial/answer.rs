@@ -1,12 +1,9 @@
-//! What the machine did, for people and for programs.
+//! The key `machine` of an answer.
 
 use serde::Serialize;
 
-use super::percent_words;
 use super::{Agreement, Run, Step, Trial, agreement_word};
-use crate::answer::table;
 use crate::audit::NamedPlant;
-use crate::quantity::DisplayUnit;
 
 /// The key `machine` of an answer.
 #[derive(Serialize)]
@@ -79,48 +76,4 @@ pub(crate) fn body(trial: &Trial) -> Body<'_> {
         runs: trial.runs.iter().map(row).collect(),
         not_driven: &trial.not_driven,
     }
-}
-
-/// What the table for people says of each machine.
-pub(crate) const HEADINGS: [&str; 6] = ["machine", "", "overshoot", "linear", "settles in", "linear"];
-
-/// A row of that table.
-pub(crate) fn cells(run: &Run) -> [String; HEADINGS.len()] {
-    let settling = |step: Option<&Step>| match step.and_then(|step| step.settling_time_s) {
-        Some(time_s) => DisplayUnit::MILLISECOND.text(time_s, 3),
-        None => "-".to_string(),
-    };
-    let overshoot = |step: Option<&Step>| match step.and_then(|step| step.overshoot_percent) {
-        Some(percent) => percent_words(percent),
-        None => "-".to_string(),
-    };
-    let (linear, machine) = (run.linear.as_ref(), run.machine.as_ref());
-    [
-        run.what.clone(),
-        agreement_word(run.agreement).to_string(),
-        overshoot(machine),
-        overshoot(linear),
-        settling(machine),
-        settling(linear),
-    ]
-}
-
-/// Why a machine does not do what the linear loop does, and which plants were not driven.
-pub(crate) fn reasons(trial: &Trial) -> Vec<String> {
-    let others = trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees);
-    let told = others.map(|run| format!("{}: {}", run.what, run.reason));
-    told.chain(trial.not_driven.iter().map(|missing| format!("not driven: {missing}"))).collect()
-}
-
-/// The same for people.
-pub(crate) fn text(trial: &Trial) -> String {
-    let mut rows = table(&HEADINGS);
-    for run in &trial.runs {
-        rows.add_row(cells(run));
-    }
-    let mut out = format!("\nOn the machine: {}\n{}\n", agreement_word(trial.agreement()), rows.trim_fmt());
-    for reason in reasons(trial) {
-        out.push_str(&format!("  {reason}\n"));
-    }
-    out
 }

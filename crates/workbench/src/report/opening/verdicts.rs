@@ -7,13 +7,13 @@ use super::Contents;
 use super::side::Side;
 use crate::answer::significant;
 use crate::audit::frequency_words;
+use crate::document::{Cell, Mark, badge};
+use crate::document::{prose, typeset};
 use crate::quantity::DisplayUnit;
-use crate::report::badge::{Mark, agreement_badge, badge, verdict_badge};
 use crate::report::chapter::{cell, grouped};
 use crate::report::specifications::demand;
-use crate::report::trial;
-use crate::report::typeset::{prose, typeset};
 use crate::simulate::{Held, ScenarioRun};
+use crate::trial;
 
 type Rows = Vec<Vec<Markup>>;
 
@@ -52,7 +52,7 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     let Some(judged) = contents.judged else { return vec![] };
     let mut rows = Vec::new();
     rows.extend(row(html! { b { "every specification, at every frequency" } }, sides, |side| {
-        Some(html! { b { (verdict_badge(side.view?.audit.verdict)) } })
+        Some(html! { b { (Cell::verdict(side.view?.audit.verdict).markup()) } })
     }));
     rows.extend(row(cell("every plant stable"), sides, |side| {
         let verdict = side.view?.audit.stability.verdict;
@@ -61,7 +61,7 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
             Verdict::Violated => "unstable",
             Verdict::NotProven => "not proven",
         };
-        Some(badge(Mark::of_verdict(verdict), word))
+        Some(badge(verdict.into(), word))
     }));
     for (index, specification) in judged.problem.specifications.iter().enumerate() {
         let name = html! {
@@ -74,7 +74,7 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
 
 /// The verdict, by how much, and where.
 fn finding(finding: &SpecificationFinding) -> Markup {
-    let Some(worst) = &finding.worst else { return verdict_badge(finding.verdict) };
+    let Some(worst) = &finding.worst else { return Cell::verdict(finding.verdict).markup() };
     let place = frequency_words(worst.frequency_rad_per_s);
     let size = significant(worst.margin_db.abs(), 3);
     let told = match finding.verdict {
@@ -86,7 +86,7 @@ fn finding(finding: &SpecificationFinding) -> Markup {
             format!("; {size} dB {} {place}", if worst.margin_db < 0.0 { "off" } else { "to spare" })
         }
     };
-    html! { (verdict_badge(finding.verdict)) (told) }
+    html! { (Cell::verdict(finding.verdict).markup()) (told) }
 }
 
 fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
@@ -95,7 +95,7 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         let trial = side.trial?;
         let words = trial::words(trial);
         let which = words.split_once(": ").map_or(String::new(), |(_, which)| format!(": {which}"));
-        Some(html! { (agreement_badge(trial.agreement())) (which) })
+        Some(html! { (Cell::agreement(trial.agreement()).markup()) (which) })
     }));
     rows.extend(row(cell("every scenario driven to its end"), sides, |side| Some(driven(side.runs?))));
     let Some(wish) = contents.driven.and_then(|driven| driven.wish.as_ref()) else { return rows };

@@ -6,7 +6,7 @@ use maud::{Markup, PreEscaped, html};
 ///
 /// # Example
 /// ```
-/// use phea_workbench::report::typeset;
+/// use phea_workbench::document::typeset;
 /// let markup = typeset("K_H = A^2/V_{ho}").into_string();
 /// assert!(markup.contains("<i>K</i><sub>H</sub>") && markup.contains("<sup>2</sup>"));
 /// ```
@@ -48,7 +48,7 @@ pub fn typeset(equation: &str) -> Markup {
 ///
 /// # Example
 /// ```
-/// use phea_workbench::report::prose;
+/// use phea_workbench::document::prose;
 /// let markup = prose("take K_p = 2.7e-4 V/N of `by_volume`").into_string();
 /// assert!(markup.contains("<i>K</i><sub>p</sub>") && markup.contains("2.7·10<sup>-4</sup>"));
 /// assert!(markup.contains("`by_volume`"));
@@ -74,7 +74,7 @@ pub fn prose(sentence: &str) -> Markup {
 }
 
 /// The same, what stands between back ticks as code.
-pub(super) fn coded(sentence: &str) -> Markup {
+pub(crate) fn coded(sentence: &str) -> Markup {
     let parts = sentence.split('`').enumerate();
     html! {
         @for (index, part) in parts {
@@ -91,7 +91,7 @@ fn number(word: &str) -> Option<String> {
 }
 
 /// A number for people, see [`prose`].
-pub(super) fn figures(value: f64, digits: usize) -> Markup {
+pub(crate) fn figures(value: f64, digits: usize) -> Markup {
     if value.is_nan() {
         html! { "-" }
     } else {

@@ -1,0 +1,180 @@
+//! What an audit says to people.
+
+use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
+
+use super::ProjectAudit;
+use super::{
+    closed_loop_symbol, evidence_sentence, finding_sentence, place_words, stability_sentence, verdict_words,
+    worst_at_design,
+};
+use crate::answer::significant;
+use crate::document::{Cell, Document, Table};
+use crate::figure::Figure;
+use crate::quantity::DisplayUnit;
+use crate::trial::{self, Trial};
+
+/// The tables and sentences of `verify` for people.
+pub fn text(view: &ProjectAudit) -> String {
+    document(view, vec![]).text()
+}
+
+/// The same with what the machine did.
+pub(crate) fn text_on_machine(view: &ProjectAudit, tried: &Trial) -> String {
+    let mut out = document(view, vec![]);
+    out.append(trial::document(tried, None));
+    out.text()
+}
+
+/// What an audit says: the verdict first, then what it rests on; before that the figures.
+pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
+    let verdict = view.audit.verdict;
+    let mut out = Document::default();
+    out.verdict(verdict.into(), format!("Verdict: {}", verdict_words(verdict)), summary(view));
+    out.section("Specifications", specifications(view));
+    out.section("Worst plants", plants(view));
+    out.section("Where it is violated", violations(view));
+    out.figures_below("Closed loops of the family", figures);
+    out.heading("What this rests on");
+    out.sentences(basis(view));
+    out
+}
+
+/// Stability, delay margin and each specification, a sentence each; before them what none of them counts.
+pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
+    let mut sentences: Vec<String> = view.caveats.iter().map(|caveat| caveat.sentence.clone()).collect();
+    sentences.push(stability_sentence(&view.audit.stability, &view.names));
+    sentences.extend(delay_sentence(view));
+    let stable = view.audit.stability.verdict != Verdict::Violated;
+    let findings = view.audit.specifications.iter().enumerate();
+    sentences.extend(findings.map(|(index, finding)| {
+        let reached = view.reached.get(index).and_then(Option::as_ref);
+        finding_sentence(&view.numbered(index), finding, reached, stable)
+    }));
+    sentences
+}
+
+fn delay_sentence(view: &ProjectAudit) -> Option<String> {
+    let margin = view.audit.delay_margin.as_ref()?;
+    if margin.delay_s == f64::INFINITY {
+        return Some("no delay makes a plant unstable".to_string());
+    }
+    Some(format!(
+        "the loop tolerates {} ms more delay before a plant becomes unstable, {}",
+        DisplayUnit::MILLISECOND.number(margin.delay_s, 3),
+        place_words(margin.frequency_rad_per_s)
+    ))
+}
+
+/// A margin, and where.
+fn margin_at(worst: Option<&WorstCase>) -> [Cell; 2] {
+    match worst {
+        Some(worst) => [Cell::margin(worst.margin_db), Cell::frequency(worst.frequency_rad_per_s)],
+        None => [Cell::Missing, Cell::Missing],
+    }
+}
+
+fn specifications(view: &ProjectAudit) -> Table {
+    let mut rows = Table::new([
+        "",
+        "specification",
+        "limits",
+        "verdict",
+        "worst margin",
+        "rad/s",
+        "worst at a design frequency",
+        "rad/s",
+    ]);
+    for (index, finding) in view.audit.specifications.iter().enumerate() {
+        let mut row = vec![
+            Cell::count(index + 1),
+            view.name_of(index).into(),
+            closed_loop_symbol(&finding.requirement).into(),
+            Cell::verdict(finding.verdict),
+        ];
+        row.extend(margin_at(finding.worst.as_ref()));
+        row.extend(margin_at(worst_at_design(finding)));
+        rows.row(row);
+        // a worst margin at an end of the band says little
+        let interior = finding.interior.as_ref().filter(|interior| finding.worst.as_ref() != Some(*interior));
+        if let Some(interior) = interior {
+            let [margin, frequency] = margin_at(Some(interior));
+            let inside = "  inside its band".into();
+            let [one, limits, verdict, design, place] = [(); 5].map(|()| Cell::empty());
+            rows.row([one, inside, limits, verdict, margin, frequency, design, place]);
+        }
+    }
+    rows
+}
+
+/// The worst plant of each specification, a column each.
+fn plants(view: &ProjectAudit) -> Table {
+    let columns = worst_plants(view);
+    if columns.is_empty() {
+        return Table::default();
+    }
+    let names = columns.iter().map(|(name, _)| name.as_str());
+    let mut rows = Table::new(std::iter::once("parameter").chain(names));
+    for (index, parameter) in view.names.headings().into_iter().enumerate() {
+        let values =
+            columns.iter().map(|(_, cells)| Cell::from(cells.get(index).cloned().unwrap_or_default()));
+        rows.row(std::iter::once(Cell::Code(parameter.to_string())).chain(values));
+    }
+    rows
+}
+
+/// The specifications that have a worst plant, each with the values of that plant.
+fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
+    let findings = view.audit.specifications.iter().enumerate();
+    let of = |(index, finding): (usize, &SpecificationFinding)| {
+        let worst = finding.worst.as_ref()?;
+        let (name, own) = (view.numbered(index), view.names.cells(&worst.plant));
+        Some(match &worst.other {
+            None => vec![(name, own)],
+            Some(other) => {
+                let other = view.names.cells(other);
+                vec![(format!("{name}, greatest |T|"), own), (format!("{name}, least |T|"), other)]
+            }
+        })
+    };
+    findings.filter_map(of).flatten().collect()
+}
+
+fn violations(view: &ProjectAudit) -> Table {
+    let mut rows = Table::new(["specification", "from", "to rad/s", "worst margin", "at rad/s"]);
+    for (index, finding) in view.audit.specifications.iter().enumerate() {
+        for band in &finding.violations {
+            let [from, to] = band.band_rad_per_s.map(Cell::frequency);
+            let [margin, frequency] = margin_at(Some(&band.worst));
+            rows.row([view.numbered(index).into(), from, to, margin, frequency]);
+        }
+    }
+    rows
+}
+
+/// Family, loop, tolerance and everything that was not looked at.
+pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
+    let audit = &view.audit;
+    let mut sentences = vec![
+        view.family_sentence(),
+        view.loop_sentence(),
+        evidence_sentence(audit.evidence, view.names.headings().is_empty()).to_string(),
+        format!("A margin of -{} dB still counts as met.", significant(audit.tolerance_db, 1)),
+    ];
+    sentences.extend(remarks(view));
+    sentences
+}
+
+/// Each remark once, with the specifications that it is made of.
+fn remarks(view: &ProjectAudit) -> Vec<String> {
+    let mut found: Vec<(&str, Vec<String>)> = Vec::new();
+    for (index, finding) in view.audit.specifications.iter().enumerate() {
+        for remark in &finding.remarks {
+            let name = view.numbered(index);
+            match found.iter_mut().find(|(text, _)| text == remark) {
+                Some((_, names)) => names.push(name),
+                None => found.push((remark, vec![name])),
+            }
+        }
+    }
+    found.into_iter().map(|(remark, names)| format!("{}: {remark}", names.join(", "))).collect()
+}

@@ -1,0 +1,258 @@
+//! What a design says to people.
+
+use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
+use phea_qft::design::{DesignRound, DesignStatus, Objective, Starts};
+use phea_qft::verification::{PlantPoint, Verdict};
+
+use super::compared;
+use super::factored;
+use super::{Explanation, ProjectDesign, Repair, RepairStatus, Rounding, Side};
+use super::{repair_words, status_sentence, structure_words};
+use crate::answer::significant;
+use crate::audit::{self, margin_words, summary};
+use crate::document::{Cell, Document, Mark, Table};
+use crate::project::{Loaded, snippet};
+use crate::quantity::DisplayUnit;
+use crate::trial;
+
+/// Digits of the numbers of a law, for people.
+const DIGITS: usize = 5;
+
+/// What `design` says to people: the status first, then the law, what it reaches, and what that rests on.
+pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError> {
+    let mut out = status(view);
+    if view.minimum_delay_margin_s > 0.0 {
+        let does = if view.bears_its_delay { "tolerates" } else { "does not tolerate" };
+        let asked = DisplayUnit::MILLISECOND.text(view.minimum_delay_margin_s, 3);
+        out.sentences([format!("the loop {does} the delay of {asked} that was asked for")]);
+    }
+    if let Some(trial) = &view.trial {
+        out.append(trial::document(trial, None));
+    }
+    if let Some(repair) = &view.repair {
+        out.append(repaired(repair)?);
+    }
+    out.heading("Controller");
+    out.append(laws(&view.designed)?);
+    out.append(side_by_side(view));
+    let caution = match view.designed.view.audit.verdict {
+        _ if view.is_met() => "",
+        Verdict::NotProven => ", though it is not proven",
+        _ => ", though it does not satisfy every specification",
+    };
+    out.heading(format!("To be pasted into the project{caution}"));
+    out.preformatted(snippet(&view.declared_controller, view.declared_prefilter.as_ref()));
+    out.append(costs(view));
+    out.heading("Audit of the designed controller");
+    out.append(audit::document(&view.designed.view, vec![]));
+    out.preformatted(settings_sentence(loaded));
+    Ok(out.text())
+}
+
+/// How the search ended, what can be said whatever a search finds, and what the audit says of what was found.
+pub(crate) fn status(view: &ProjectDesign) -> Document {
+    let mut sentences: Vec<String> =
+        view.explanations.iter().map(|explanation| explanation_words(view, explanation)).collect();
+    sentences.extend(summary(&view.designed.view));
+    sentences.extend(view.rounding.iter().flat_map(Rounding::sentences));
+    let mut out = Document::default();
+    let mark = view.designed.view.audit.verdict.into();
+    out.verdict(mark, format!("Design: {}", status_sentence(view)), sentences);
+    out
+}
+
+/// What followed from the machine's contradiction; with the laws that come nearest to what cannot be had.
+fn repaired(repair: &Repair) -> Result<Document, LinearError> {
+    let mut out = Document::default();
+    out.heading(format!("Repair: {}", repair_words(repair)));
+    out.sentences(repair.sentences.iter().cloned());
+    if let Some(nearest) = repair.nearest() {
+        out.heading("Nearest controller");
+        out.append(laws(&nearest.designed)?);
+        out.heading_on_page("To be pasted into the project");
+        out.preformatted(snippet(&nearest.declared_controller, nearest.declared_prefilter.as_ref()));
+    }
+    Ok(out)
+}
+
+/// What stands against one another, what the specifications cost, and how it was found.
+pub(crate) fn costs(view: &ProjectDesign) -> Document {
+    let mut out = Document::default();
+    out.section("What stands against one another", conflicts(view));
+    let binding = limits(
+        view,
+        view.design
+            .binding
+            .iter()
+            .map(|one| (one.specification, one.frequency_rad_per_s, one.margin_db, &one.plant)),
+    );
+    out.section("What the specifications cost: the limits that the loop touches", binding);
+    out.explanation(
+        "The specification that leaves the designed loop least room at each design frequency, with the plant that sets it. Where the margin is next to nothing the limit costs: relaxed there it would allow a controller of less gain; relaxing any other gains nothing. The head of the chapter names where each specification is worst over its whole band, which may lie between these frequencies.",
+    );
+    out.heading("Rounds of search and audit");
+    out.explanation(
+        "A search over some plants and frequencies, then an audit over the whole family and band, whose worst plants and frequencies the next search includes, until both agree. The same seed finds the same controller.",
+    );
+    out.folded("Every round", rounds(view));
+    out.sentences(
+        std::iter::once(seed_sentence(view)).chain(view.design.starts.as_ref().map(starts_sentence)),
+    );
+    out
+}
+
+/// The sentence, and the first plant that it concerns.
+pub(crate) fn explanation_words(view: &ProjectDesign, explanation: &Explanation) -> String {
+    let kind = if explanation.is_impossible { "" } else { "to be kept in mind: " };
+    let plant = explanation.plants.first().map(|plant| view.designed.view.names.text(plant));
+    let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
+    format!("{kind}{}{plant}", explanation.sentence)
+}
+
+/// The laws of one controller in factored form; those of a sampled loop before and as they are deployed.
+pub(crate) fn laws(side: &Side) -> Result<Document, LinearError> {
+    let deployed = &side.problem.compensation;
+    let mut laws = vec![("G", side.controller.feedback.transfer_function()?, deployed.feedback())];
+    if side.problem.has_prefilter {
+        laws.push(("F", side.controller.prefilter.transfer_function()?, deployed.prefilter()));
+    }
+    let line = |name: &str, function: &TransferFunction| {
+        let variable = if function.domain() == TimeDomain::Continuous { "s" } else { "z" };
+        format!("{name}({variable}) = {}", factored(function, DIGITS))
+    };
+    let both = laws.iter().flat_map(|(name, law, deployed)| {
+        let changed = (law != *deployed).then(|| line(name, deployed));
+        std::iter::once(line(name, law)).chain(changed)
+    });
+    let mut out = Document::default();
+    out.equations(both.collect());
+    out.sentences(
+        deployed
+            .sample_time_s()
+            .map(|time_s| format!("sampled every {}", DisplayUnit::MILLISECOND.text(time_s, 3))),
+    );
+    Ok(out)
+}
+
+/// What is compared, a row each: the given controller, the one before the repair, the designed one, and in a sampled loop the one that
+/// was designed without samples.
+pub(crate) fn side_by_side(view: &ProjectDesign) -> Document {
+    let sides = [
+        ("given", view.published.as_ref()),
+        ("before the repair", before_repair(view).map(|before| &before.designed)),
+        ("designed", Some(&view.designed)),
+        ("made without samples", view.continuous.as_ref()),
+    ];
+    let columns: Vec<(&str, Vec<(String, String)>)> =
+        sides.into_iter().filter_map(|(name, side)| Some((name, compared(side?)))).collect();
+    let mut table = Table::new(std::iter::once("").chain(columns.iter().map(|(name, _)| *name)));
+    let names = columns.first().into_iter().flat_map(|(_, rows)| rows).map(|(name, _)| name);
+    for (index, name) in names.enumerate() {
+        let cell = |rows: &Vec<(String, String)>| {
+            rows.get(index).map_or(Cell::Missing, |(_, text)| compared_cell(index, text))
+        };
+        table.row(std::iter::once(name.as_str().into()).chain(columns.iter().map(|(_, rows)| cell(rows))));
+    }
+    let mut out = Document::default();
+    out.heading_on_page(if view.published.is_some() {
+        "Given and designed side by side"
+    } else {
+        "What it reaches"
+    });
+    out.table(table);
+    out
+}
+
+/// The first row holds verdicts.
+fn compared_cell(row: usize, text: &str) -> Cell {
+    match text {
+        "met" | "violated" if row == 0 => Cell::Status(Mark::of(text == "met"), text.to_string()),
+        _ => text.into(),
+    }
+}
+
+/// The first design, where the repair came to another one.
+fn before_repair(view: &ProjectDesign) -> Option<&ProjectDesign> {
+    let repair = view.repair.as_ref().filter(|repair| repair.status == RepairStatus::Met)?;
+    repair.other.as_deref()
+}
+
+/// The limits at which the smallest relaxation is found, with their plants.
+fn conflicts(view: &ProjectDesign) -> Table {
+    let DesignStatus::Infeasible(relaxation) = &view.design.status else { return Table::default() };
+    let rows = relaxation.conflicts.iter();
+    limits(view, rows.map(|one| (one.specification, one.frequency_rad_per_s, one.margin_db, &one.plant)))
+}
+
+fn limits<'a>(view: &ProjectDesign, rows: impl Iterator<Item = (usize, f64, f64, &'a PlantPoint)>) -> Table {
+    let names = &view.designed.view.names;
+    let mut found = Table::new(["specification", "rad/s", "margin"].into_iter().chain(names.headings()));
+    for (specification, frequency, margin, plant) in rows {
+        let name = view.designed.view.numbered(specification).into();
+        let row = [name, Cell::frequency(frequency), Cell::margin(margin)];
+        found.row(row.into_iter().chain(names.cells(plant).into_iter().map(Cell::from)));
+    }
+    found
+}
+
+fn rounds(view: &ProjectDesign) -> Table {
+    let headings =
+        ["", "structure", "objective", "plants", "frequencies", "margin searched", "margin audited"];
+    let row = |(index, round): (usize, &DesignRound)| {
+        [
+            Cell::count(index + 1),
+            structure_words(&round.structure).into(),
+            format!("{} dB", significant(round.objective_db, 5)).into(),
+            Cell::count(round.plants),
+            Cell::count(round.frequencies),
+            Cell::margin(round.searched_margin_db),
+            round.audited_margin_db.map_or("unstable".into(), Cell::margin),
+        ]
+    };
+    Table::new(headings).with(view.design.rounds.iter().enumerate().map(row))
+}
+
+/// What another seed may do.
+fn seed_sentence(view: &ProjectDesign) -> String {
+    let better = match (&view.design.status, view.options.objective) {
+        (DesignStatus::Infeasible(_), _) => "may need less relaxation",
+        (DesignStatus::NotConverged { .. } | DesignStatus::NotStabilised, _) => "may find one",
+        (DesignStatus::Met, Objective::BestWorstMargin) => "may end with more margin",
+        (DesignStatus::Met, _) => "may end lower",
+    };
+    format!("begun at random points of seed {}; a local optimum: other seeds {better}", view.options.seed)
+}
+
+/// How much the result owes to its starts: where the descents of the last search ended.
+fn starts_sentence(starts: &Starts) -> String {
+    let mut sentence = format!("{} of {} starts stabilise every plant", starts.stabilised, starts.tried);
+    let three = |[best, median, worst]: [String; 3]| {
+        format!("{best} at best, {median} in the middle, {worst} at worst")
+    };
+    if let Some(margins_db) = starts.margins_db {
+        let (descents, margins) = (starts.ended, three(margins_db.map(margin_words)));
+        sentence.push_str(&format!("; worst margin where {descents} descents ended: {margins}"));
+    }
+    if let Some(objectives_db) = starts.objectives_db {
+        let objectives = three(objectives_db.map(|value| format!("{} dB", significant(value, 4))));
+        sentence.push_str(&format!("; objective of those that keep the limits: {objectives}"));
+    }
+    sentence
+}
+
+/// What was set on the command line is not in the file that a design writes.
+fn settings_sentence(loaded: &Loaded) -> String {
+    let others: Vec<&str> = loaded
+        .settings
+        .iter()
+        .map(|setting| setting.trim())
+        .filter(|setting| !setting.starts_with("controller") || setting.contains("quantization"))
+        .collect();
+    if others.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\nA project written by this design does not hold what was set beside it: --set {}\n",
+        others.join(" --set ")
+    )
+}

@@ -1,0 +1,144 @@
+//! What a result says, once for everybody who reads it: headings, sentences, tables of typed cells, figures. A procedure builds the tree,
+//! the terminal and the page print it.
+
+mod cell;
+mod page;
+mod table;
+mod terminal;
+mod typeset;
+
+pub(crate) use cell::{Cell, Mark};
+pub(crate) use page::{badge, place};
+pub(crate) use table::Table;
+pub(crate) use typeset::{coded, figures};
+pub use typeset::{prose, typeset};
+
+use crate::figure::Figure;
+
+/// Blocks in the order in which they are read.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Document {
+    blocks: Vec<Block>,
+}
+
+/// One part of a document. In every text, words such as `K_H` are symbols, and what stands between back ticks is code.
+#[derive(Clone, Debug)]
+enum Block {
+    /// Begins a section.
+    Heading(String),
+    /// The same where a terminal has room for an empty line alone.
+    HeadingOnPage(String),
+    /// Above figures.
+    HeadingOfFigures(String),
+    /// Begins a section with what came of it; the sentences say why.
+    Verdict { mark: Mark, title: String, sentences: Vec<String> },
+    /// What only a reader of the page has the time for.
+    Explanation(String),
+    /// A sentence each, those that decide with a mark.
+    Sentences(Vec<(Option<Mark>, String)>),
+    /// One in each line.
+    Equations(Vec<String>),
+    /// Rows of cells.
+    Table(Table),
+    /// On the page alone.
+    Figure(Box<Figure>),
+    /// What the page shows where it is asked for.
+    Folded(String, Table),
+    /// Lines as they are.
+    Preformatted(String),
+}
+
+impl Document {
+    /// Begins a section.
+    pub(crate) fn heading(&mut self, title: impl Into<String>) {
+        self.blocks.push(Block::Heading(title.into()));
+    }
+
+    /// Begins a section that a terminal sets off by an empty line alone.
+    pub(crate) fn heading_on_page(&mut self, title: impl Into<String>) {
+        self.blocks.push(Block::HeadingOnPage(title.into()));
+    }
+
+    /// Begins a section with what came of it.
+    pub(crate) fn verdict(&mut self, mark: Mark, title: impl Into<String>, sentences: Vec<String>) {
+        self.blocks.push(Block::Verdict { mark, title: title.into(), sentences });
+    }
+
+    /// A paragraph that a terminal leaves out.
+    pub(crate) fn explanation(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Explanation(text.into()));
+    }
+
+    /// Paragraphs that a terminal leaves out.
+    pub(crate) fn explanations(&mut self, texts: impl IntoIterator<Item = String>) {
+        self.blocks.extend(texts.into_iter().map(Block::Explanation));
+    }
+
+    /// A sentence each.
+    pub(crate) fn sentences(&mut self, sentences: impl IntoIterator<Item = String>) {
+        self.marked(sentences.into_iter().map(|sentence| (None, sentence)));
+    }
+
+    /// The same, some of them with a mark.
+    pub(crate) fn marked(&mut self, sentences: impl IntoIterator<Item = (Option<Mark>, String)>) {
+        let sentences: Vec<_> = sentences.into_iter().collect();
+        if !sentences.is_empty() {
+            self.blocks.push(Block::Sentences(sentences));
+        }
+    }
+
+    /// Equations, one in each line.
+    pub(crate) fn equations(&mut self, equations: Vec<String>) {
+        self.blocks.push(Block::Equations(equations));
+    }
+
+    /// A table.
+    pub(crate) fn table(&mut self, table: Table) {
+        self.blocks.push(Block::Table(table));
+    }
+
+    /// A table below its heading; nothing where it has no rows.
+    pub(crate) fn section(&mut self, title: impl Into<String>, table: Table) {
+        if !table.is_empty() {
+            self.heading(title);
+            self.table(table);
+        }
+    }
+
+    /// A table that the page shows where it is asked for.
+    pub(crate) fn folded(&mut self, summary: impl Into<String>, table: Table) {
+        self.blocks.push(Block::Folded(summary.into(), table));
+    }
+
+    /// Figures, which a terminal leaves out.
+    pub(crate) fn figures(&mut self, figures: impl IntoIterator<Item = Figure>) {
+        self.blocks.extend(figures.into_iter().map(|figure| Block::Figure(Box::new(figure))));
+    }
+
+    /// The same below their heading, which a terminal leaves out too.
+    pub(crate) fn figures_below(&mut self, title: &str, figures: Vec<Figure>) {
+        if !figures.is_empty() {
+            self.blocks.push(Block::HeadingOfFigures(title.to_string()));
+            self.figures(figures);
+        }
+    }
+
+    /// Lines as they are.
+    pub(crate) fn preformatted(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Preformatted(text.into()));
+    }
+
+    /// What another document says, behind this one.
+    pub(crate) fn append(&mut self, other: Document) {
+        self.blocks.extend(other.blocks);
+    }
+
+    /// Its figures in their order.
+    pub(crate) fn into_figures(self) -> Vec<Figure> {
+        let figures = self.blocks.into_iter().filter_map(|block| match block {
+            Block::Figure(figure) => Some(*figure),
+            _ => None,
+        });
+        figures.collect()
+    }
+}

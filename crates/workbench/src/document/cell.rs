@@ -1,0 +1,182 @@
+//! What stands in a cell of a table, with its type.
+
+use phea_qft::verification::Verdict;
+
+use crate::answer::significant;
+use crate::audit::{frequency_number, margin_words, verdict_words};
+use crate::quantity::DisplayUnit;
+use crate::trial::{Agreement, agreement_word};
+
+/// A verdict as a form and a colour beside its word, so that none of them is needed alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mark {
+    /// A circle with a tick.
+    Good,
+    /// A triangle with an exclamation mark.
+    Note,
+    /// A square with a cross.
+    Bad,
+}
+
+impl Mark {
+    /// Of what is good or bad.
+    pub(crate) fn of(good: bool) -> Mark {
+        if good { Mark::Good } else { Mark::Bad }
+    }
+}
+
+impl From<Verdict> for Mark {
+    fn from(verdict: Verdict) -> Mark {
+        match verdict {
+            Verdict::Met => Mark::Good,
+            Verdict::NotProven => Mark::Note,
+            Verdict::Violated => Mark::Bad,
+        }
+    }
+}
+
+impl From<Agreement> for Mark {
+    fn from(agreement: Agreement) -> Mark {
+        match agreement {
+            Agreement::Agrees => Mark::Good,
+            Agreement::Differs => Mark::Note,
+            Agreement::Contradicts => Mark::Bad,
+        }
+    }
+}
+
+/// How the digits of a number are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Precision {
+    /// So many significant digits.
+    Significant(usize),
+    /// Four significant digits without zeros at the end, as of a frequency.
+    Frequency,
+    /// With its sign, to a hundredth or a thousandth, as of a margin in dB.
+    Margin,
+    /// To so many decimal places, a zero without sign.
+    Decimal(usize),
+}
+
+/// A cell.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Cell {
+    /// Words, a sentence.
+    Text(String),
+    /// A path or a name of a file or of a program.
+    Code(String),
+    /// An equation or one of its symbols.
+    Equation(String),
+    /// A number with its unit, which is empty where the heading has it.
+    Quantity { value: f64, precision: Precision, unit: &'static str },
+    /// A word that is good or bad.
+    Status(Mark, String),
+    /// No such thing.
+    Missing,
+}
+
+impl Cell {
+    /// Nothing at all.
+    pub(crate) fn empty() -> Cell {
+        Cell::Text(String::new())
+    }
+
+    /// A number with so many significant digits.
+    pub(crate) fn number(value: f64, digits: usize) -> Cell {
+        Cell::Quantity { value, precision: Precision::Significant(digits), unit: "" }
+    }
+
+    /// The same with its unit, to which it is converted from SI.
+    pub(crate) fn quantity(value: f64, digits: usize, unit: DisplayUnit) -> Cell {
+        let symbol = if unit.symbol == "1" { "" } else { unit.symbol };
+        Cell::Quantity { value: unit.of(value), precision: Precision::Significant(digits), unit: symbol }
+    }
+
+    /// A frequency in rad/s, the heading having the unit.
+    pub(crate) fn frequency(value: f64) -> Cell {
+        Cell::Quantity { value, precision: Precision::Frequency, unit: "" }
+    }
+
+    /// A margin in dB.
+    pub(crate) fn margin(value: f64) -> Cell {
+        Cell::Quantity { value, precision: Precision::Margin, unit: "" }
+    }
+
+    /// To so many decimal places; missing where it is no finite number.
+    pub(crate) fn decimal(value: f64, places: usize) -> Cell {
+        match value.is_finite() {
+            true => Cell::Quantity { value, precision: Precision::Decimal(places), unit: "" },
+            false => Cell::Missing,
+        }
+    }
+
+    /// How many.
+    pub(crate) fn count(value: usize) -> Cell {
+        Cell::Text(value.to_string())
+    }
+
+    /// That of a verdict.
+    pub(crate) fn verdict(verdict: Verdict) -> Cell {
+        Cell::Status(verdict.into(), verdict_words(verdict).to_string())
+    }
+
+    /// That of what the machine did with a verdict.
+    pub(crate) fn agreement(agreement: Agreement) -> Cell {
+        Cell::Status(agreement.into(), agreement_word(agreement).to_string())
+    }
+
+    /// Whether it is a number, or one that there is not.
+    pub(super) fn is_numeric(&self) -> bool {
+        match self {
+            Cell::Quantity { .. } | Cell::Missing => true,
+            Cell::Text(text) => text.is_empty() || text.parse::<f64>().is_ok(),
+            _ => false,
+        }
+    }
+
+    /// As a text, in which symbols and numbers are not set.
+    pub(super) fn text(&self) -> String {
+        match self {
+            Cell::Text(text) | Cell::Code(text) | Cell::Status(_, text) => text.clone(),
+            // braces are what only typesetting needs
+            Cell::Equation(equation) => equation.replace(['{', '}'], ""),
+            Cell::Quantity { value, precision, unit } => {
+                let number = number(*value, *precision);
+                if unit.is_empty() { number } else { format!("{number} {unit}") }
+            }
+            Cell::Missing => "-".to_string(),
+        }
+    }
+}
+
+/// The digits of a number.
+fn number(value: f64, precision: Precision) -> String {
+    match precision {
+        Precision::Significant(digits) => significant(value, digits),
+        Precision::Frequency => frequency_number(value),
+        Precision::Margin => margin_words(value),
+        Precision::Decimal(places) => {
+            let text = format!("{value:.places$}");
+            let is_zero = text.trim_start_matches('-').trim_matches(['0', '.']).is_empty();
+            if is_zero { text.replace('-', "") } else { text }
+        }
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Cell {
+        Cell::Text(text)
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Cell {
+        Cell::Text(text.to_string())
+    }
+}
+
+impl<T: Into<Cell>> From<Option<T>> for Cell {
+    fn from(cell: Option<T>) -> Cell {
+        cell.map_or(Cell::Missing, Into::into)
+    }
+}

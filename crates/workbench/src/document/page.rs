@@ -1,0 +1,121 @@
+//! A document as a part of a page.
+
+use maud::{Markup, PreEscaped, html};
+
+use super::{Block, Cell, Document, Mark, Table, coded, prose, typeset};
+use crate::figure::Figure;
+
+/// Columns from which a table takes the whole width of the paper.
+const WIDE: usize = 5;
+
+impl Document {
+    /// For the page.
+    pub(crate) fn markup(&self) -> Markup {
+        html! { @for block in &self.blocks { (block.markup()) } }
+    }
+}
+
+impl Block {
+    fn markup(&self) -> Markup {
+        match self {
+            Block::Heading(title) | Block::HeadingOnPage(title) | Block::HeadingOfFigures(title) => {
+                html! { h3 { (prose(title)) } }
+            }
+            Block::Verdict { mark, title, sentences } => html! {
+                div class={ "callout " (mark.class()) "-edge" } {
+                    p { b { (prose(title)) "." } }
+                    @if !sentences.is_empty() { ul { @for sentence in sentences { li { (coded(sentence)) } } } }
+                }
+            },
+            Block::Explanation(text) => html! { p { (coded(text)) } },
+            Block::Sentences(sentences) => html! {
+                ul { @for (mark, sentence) in sentences {
+                    li { @if let Some(mark) = mark { (badge(*mark, "")) } (coded(sentence)) }
+                } }
+            },
+            Block::Equations(equations) => {
+                html! { ul.equations { @for equation in equations { li { (typeset(equation)) } } } }
+            }
+            Block::Table(table) => table.markup(),
+            Block::Figure(figure) => place(figure),
+            Block::Folded(summary, table) => html! { details { summary { (summary) } (table.markup()) } },
+            Block::Preformatted(text) => html! { pre { (text) } },
+        }
+    }
+}
+
+impl Table {
+    fn markup(&self) -> Markup {
+        let wide = self.headings.len() >= WIDE;
+        let numeric: Vec<bool> = (0..self.headings.len()).map(|column| self.is_numeric(column)).collect();
+        let is_number = |column: usize| numeric.get(column).copied().unwrap_or_default();
+        html! {
+            div.table.wide[wide] { table {
+                thead { tr { @for (column, heading) in self.headings.iter().enumerate() { th.number[is_number(column)] { (breakable(heading)) } } } }
+                @for group in &self.groups {
+                    tbody.group[self.grouped_by.is_some()] {
+                        @if self.grouped_by.is_some() { tr { th colspan=(self.headings.len()) { (prose(&group.name)) } } }
+                        @for row in &group.rows { tr { @for (column, cell) in row.iter().enumerate() { td.number[is_number(column)] { (cell.markup()) } } } }
+                    }
+                }
+            } }
+        }
+    }
+}
+
+/// A heading, whose long names may be broken where they are joined.
+fn breakable(heading: &str) -> Markup {
+    PreEscaped(prose(heading).into_string().replace('_', "_<wbr>"))
+}
+
+impl Cell {
+    /// For the page.
+    pub(crate) fn markup(&self) -> Markup {
+        match self {
+            Cell::Text(text) => coded(text),
+            Cell::Code(text) => html! { code { (text) } },
+            Cell::Equation(equation) => typeset(equation),
+            Cell::Status(mark, word) => badge(*mark, word),
+            Cell::Quantity { .. } | Cell::Missing => prose(&self.text()),
+        }
+    }
+}
+
+/// A figure with its caption.
+pub(crate) fn place(figure: &Figure) -> Markup {
+    html! {
+        figure {
+            (PreEscaped(figure.to_svg_inline()))
+            figcaption { b { (figure.title) "." } " " (figure.caption) }
+        }
+    }
+}
+
+impl Mark {
+    /// The class of its colour, which that of an edge begins with.
+    fn class(self) -> &'static str {
+        match self {
+            Mark::Good => "good",
+            Mark::Note => "note",
+            Mark::Bad => "bad",
+        }
+    }
+}
+
+/// The form with the word in its colour.
+pub(crate) fn badge(mark: Mark, word: &str) -> Markup {
+    let (outline, inside) = match mark {
+        Mark::Good => ("M8 1a7 7 0 1 1 0 14a7 7 0 1 1 0-14z", "M4.5 8.3l2.4 2.4l4.6-5.2"),
+        Mark::Note => ("M8 1.2l7.2 13.2h-14.4z", "M8 6v4.2M8 12v.8"),
+        Mark::Bad => ("M1.5 1.5h13v13h-13z", "M5 5l6 6M11 5l-6 6"),
+    };
+    html! {
+        span class={ "mark " (mark.class()) } {
+            svg viewBox="0 0 16 16" aria-hidden="true" {
+                path d=(outline) fill="currentColor" {}
+                path d=(inside) fill="none" stroke="var(--paper)" stroke-width="1.9" stroke-linecap="round" {}
+            }
+            (word)
+        }
+    }
+}

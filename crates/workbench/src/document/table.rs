@@ -1,0 +1,74 @@
+//! A table of typed cells, in groups of rows where it has such.
+
+use super::Cell;
+
+/// A table.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Table {
+    /// What the groups are; where there is none, the rows stand by themselves.
+    pub(super) grouped_by: Option<String>,
+    pub(super) headings: Vec<String>,
+    pub(super) groups: Vec<Group>,
+}
+
+/// Rows that belong together.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Group {
+    pub(super) name: String,
+    pub(super) rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// An empty table with these headings.
+    pub(crate) fn new<Heading: Into<String>>(headings: impl IntoIterator<Item = Heading>) -> Table {
+        Table { headings: headings.into_iter().map(Into::into).collect(), ..Table::default() }
+    }
+
+    /// The same in groups, whose names have a heading too: a terminal shows it, and the name beside the first of the rows.
+    pub(crate) fn grouped_by<Heading: Into<String>>(
+        groups: &str,
+        headings: impl IntoIterator<Item = Heading>,
+    ) -> Table {
+        Table { grouped_by: Some(groups.to_string()), ..Table::new(headings) }
+    }
+
+    /// The rows that follow belong together.
+    pub(crate) fn group(&mut self, name: impl Into<String>) {
+        self.groups.push(Group { name: name.into(), rows: vec![] });
+    }
+
+    /// A row.
+    pub(crate) fn row<Item: Into<Cell>>(&mut self, cells: impl IntoIterator<Item = Item>) {
+        let row = cells.into_iter().map(Into::into).collect();
+        match self.groups.last_mut() {
+            Some(group) => group.rows.push(row),
+            None => self.groups.push(Group { rows: vec![row], ..Group::default() }),
+        }
+    }
+
+    /// With these rows.
+    pub(crate) fn with<Item: Into<Cell>, Row: IntoIterator<Item = Item>>(
+        mut self,
+        rows: impl IntoIterator<Item = Row>,
+    ) -> Table {
+        for row in rows {
+            self.row(row);
+        }
+        self
+    }
+
+    /// Whether it has no row.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.groups.iter().all(|group| group.rows.is_empty())
+    }
+
+    pub(super) fn rows(&self) -> impl Iterator<Item = &Vec<Cell>> {
+        self.groups.iter().flat_map(|group| &group.rows)
+    }
+
+    /// Whether a column holds numbers alone.
+    pub(super) fn is_numeric(&self, column: usize) -> bool {
+        let cells = || self.rows().filter_map(|row| row.get(column));
+        cells().all(Cell::is_numeric) && cells().any(|cell| cell.is_numeric() && cell.text() != "")
+    }
+}

@@ -1,0 +1,54 @@
+//! A document as plain text: columns are aligned by spaces, so that it can be read, searched and pasted anywhere.
+
+use comfy_table::presets;
+
+use super::{Block, Document, Table};
+
+impl Document {
+    /// For a terminal.
+    pub(crate) fn text(&self) -> String {
+        let mut out = String::new();
+        let mut below_heading = true;
+        for block in &self.blocks {
+            let above = if below_heading { "" } else { "\n" };
+            below_heading = matches!(block, Block::Heading(_));
+            match block {
+                Block::Heading(title) => out.push_str(&format!("{above}{title}\n")),
+                Block::HeadingOnPage(_) => out.push('\n'),
+                Block::Verdict { title, sentences, .. } => {
+                    out.push_str(&format!("{above}{title}\n"));
+                    indented(&mut out, sentences);
+                }
+                Block::Sentences(sentences) => indented(&mut out, sentences.iter().map(|(_, text)| text)),
+                Block::Equations(equations) => indented(&mut out, equations),
+                Block::Table(table) | Block::Folded(_, table) => out.push_str(&format!("{}\n", table.text())),
+                Block::Preformatted(text) => out.push_str(text),
+                Block::HeadingOfFigures(_) | Block::Explanation(_) | Block::Figure(_) => {}
+            }
+        }
+        out
+    }
+}
+
+fn indented<'a>(out: &mut String, sentences: impl IntoIterator<Item = &'a String>) {
+    for sentence in sentences {
+        out.push_str(&format!("  {sentence}\n"));
+    }
+}
+
+impl Table {
+    /// Its lines without the last line break.
+    pub(crate) fn text(&self) -> String {
+        let mut printed = comfy_table::Table::new();
+        printed.load_style(presets::NOTHING);
+        printed.set_header(self.grouped_by.iter().chain(&self.headings));
+        for group in &self.groups {
+            let mut name = group.name.as_str();
+            for row in &group.rows {
+                let first = self.grouped_by.is_some().then(|| std::mem::take(&mut name).to_string());
+                printed.add_row(first.into_iter().chain(row.iter().map(|cell| cell.text())));
+            }
+        }
+        printed.trim_fmt()
+    }
+}

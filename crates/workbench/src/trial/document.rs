@@ -1,0 +1,82 @@
+//! What the machine did with a verdict, for people.
+
+use super::{Agreement, Response, Run, Step, Trial, agreement_word, percent_words};
+use crate::document::{Cell, Document, Table};
+use crate::figure::{FamilyStepInput, Figure, TimeSeries, Words, family_step};
+use crate::quantity::DisplayUnit;
+
+/// What a trial says; with its figure where that has a name and a title.
+pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Document {
+    let mut out = Document::default();
+    out.heading(format!("On the machine: {}", agreement_word(trial.agreement())));
+    out.explanation(
+        "The nonlinear rig under this controller: a step of the reference by a tenth of the force that the supply can push with, beside the same step of the linear loop.",
+    );
+    out.table(
+        Table::new(["machine", "", "overshoot", "linear", "settles in", "linear"])
+            .with(trial.runs.iter().map(cells)),
+    );
+    out.sentences(reasons(trial));
+    out.figures(figure_words.and_then(|words| figure(trial, words)));
+    out
+}
+
+fn cells(run: &Run) -> [Cell; 6] {
+    let settling = |step: Option<&Step>| {
+        let time_s = step.and_then(|step| step.settling_time_s);
+        time_s.map_or(Cell::Missing, |time_s| Cell::quantity(time_s, 3, DisplayUnit::MILLISECOND))
+    };
+    let overshoot =
+        |step: Option<&Step>| Cell::from(step.and_then(|step| step.overshoot_percent).map(percent_words));
+    let (linear, machine) = (run.linear.as_ref(), run.machine.as_ref());
+    [
+        run.what.as_str().into(),
+        Cell::agreement(run.agreement),
+        overshoot(machine),
+        overshoot(linear),
+        settling(machine),
+        settling(linear),
+    ]
+}
+
+/// Why a machine does not do what the linear loop does, and which plants were not driven.
+fn reasons(trial: &Trial) -> Vec<String> {
+    let others = trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees);
+    let told = others.map(|run| format!("{}: {}", run.what, run.reason));
+    told.chain(trial.not_driven.iter().map(|missing| format!("not driven: {missing}"))).collect()
+}
+
+/// Settling times of the linear loop that are drawn.
+const SETTLING_TIMES: f64 = 3.0;
+/// A response that leaves these parts of the step is drawn up to there.
+const SHOWN: std::ops::RangeInclusive<f64> = -0.4..=2.4;
+
+/// The steps of all machines that were driven, and that of the linear loop with the nominal plant.
+fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
+    let runs = &trial.runs;
+    let first = runs.first()?;
+    let driven_s = first.machine_response.times_s.last().copied()?;
+    let settles_s = first.linear.and_then(|step| step.settling_time_s);
+    let end_s = settles_s.map_or(driven_s, |time_s| driven_s.min(SETTLING_TIMES * time_s));
+    let series = |name: &str, response: &Response| {
+        let rows = response.times_s.iter().copied().zip(response.values.iter().copied());
+        let shown = rows.take_while(|(time_s, value)| *time_s <= end_s && SHOWN.contains(value));
+        let (times_s, values): (Vec<f64>, Vec<f64>) = shown.unzip();
+        (!times_s.is_empty()).then(|| TimeSeries { name: name.to_string(), times_s, values })
+    };
+    let nominal = series("linear loop, nominal plant", &first.linear_response);
+    let named = runs.iter().filter_map(|run| series(&run.what, &run.machine_response)).collect();
+    let quantity = "Force, part of the step".to_string();
+    let input = FamilyStepInput { quantity, nominal, named, ..FamilyStepInput::default() };
+    let caption = "A step of the reference on the nonlinear machine: the rig as declared, with waves in its lines, and its worst plants made into rigs. A force that leaves the frame is drawn up to there.";
+    Some(family_step(Words::new(name, title, caption), &input))
+}
+
+/// The same in a few words: the word, and the machine that is worst.
+pub(crate) fn words(trial: &Trial) -> String {
+    let word = agreement_word(trial.agreement());
+    match trial.runs.iter().find(|run| run.agreement == trial.agreement()) {
+        Some(run) if run.agreement != Agreement::Agrees => format!("{word}: {}", run.what),
+        _ => word.to_string(),
+    }
+}
