@@ -1,8 +1,10 @@
 //! What is told of `derived`: text, JSON, files and figures.
 
 mod answer;
+mod document;
 
 pub use phea_engineering::derived::*;
 
-pub use answer::{files, json, text, visited_text};
-pub(crate) use answer::{sentence, stated};
+pub use answer::{files, json};
+pub(crate) use document::document;
+pub use document::{text, visited_text};

@@ -10,7 +10,7 @@ mod typeset;
 pub(crate) use cell::{Cell, Mark};
 pub(crate) use page::{badge, place};
 pub(crate) use table::Table;
-pub(crate) use typeset::{coded, figures};
+pub(crate) use typeset::{coded, figures, unit};
 pub use typeset::{prose, typeset};
 
 use crate::figure::Figure;

@@ -5,7 +5,6 @@ mod bounds;
 mod campaign;
 mod chapter;
 mod closed_loops;
-mod derived;
 mod design;
 mod driven;
 mod driving;
@@ -37,7 +36,7 @@ use phea_qft::verification::{SpecificationFinding, Verdict};
 use crate::answer::{OutputFile, significant};
 use crate::audit::{ProjectAudit, verdict_words};
 use crate::command::{CommandError, Watch};
-use crate::derived::derive;
+use crate::derived::{self, derive};
 use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
 use crate::linearize::{Linearization, linearize};
@@ -231,7 +230,7 @@ fn rig_part(
     }
     let appendix = vec![
         stiffness::chapter(rig, &linearization),
-        derived::chapter(&derived),
+        Chapter::of("derived", "Derived quantities", derived::document(&derived)),
         models::chapter(&linearization)?,
         impedance::chapter(project, &linearization)?,
         response::chapter(project, given.as_ref(), reference(project)),

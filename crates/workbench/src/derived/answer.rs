@@ -3,9 +3,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::Derived;
-use crate::answer::{self, Number, OutputFile, significant, table};
+use crate::answer::{self, Number, OutputFile};
 use crate::family::{Extreme, VisitedRange};
-use crate::project::{Loaded, Project};
+use crate::project::Loaded;
 use crate::specification::{CheckedWish, WishRow};
 
 #[derive(Serialize)]
@@ -105,109 +105,6 @@ pub fn json(
     answer::json("check", loaded, body)
 }
 
-/// The table of `check` for people, and a sentence for each contradiction.
-pub fn text(derived: &[Derived]) -> String {
-    let mut out = String::new();
-    let mut group = "";
-    let mut rows = table(&["quantity", "value", "unit", "equation"]);
-    for quantity in derived {
-        if quantity.group != group {
-            if !group.is_empty() {
-                out.push_str(&format!("{group}\n{}\n\n", rows.trim_fmt()));
-                rows = table(&["quantity", "value", "unit", "equation"]);
-            }
-            group = quantity.group;
-        }
-        let value = shown(quantity.value, 5);
-        rows.add_row([&quantity.name, &value, quantity.unit, &plain(quantity.equation)]);
-    }
-    out.push_str(&format!("{group}\n{}\n", rows.trim_fmt()));
-    let stated = stated(derived);
-    if !stated.is_empty() {
-        out.push_str("\nStated by the project and used instead of the derived value\n");
-    }
-    for quantity in stated {
-        out.push_str(&format!("  {}\n", sentence(quantity)));
-    }
-    out
-}
-
-/// The box of linear parameters that the family visits, for people.
-pub fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String {
-    let mut rows = table(&["quantity", "least", "most", "unit"]);
-    for range in ranges {
-        let [least, most] = [&range.minimum, &range.maximum].map(|end| significant(end.value, 4));
-        rows.add_row([range.symbol, &least, &most, range.unit]);
-    }
-    let place = |of: &str, symbol: &str, end: &Extreme| {
-        let at: Vec<String> = end
-            .at
-            .iter()
-            .map(|(name, value)| format!("{name} = {}", project.in_words(name, *value)))
-            .collect();
-        (!at.is_empty()).then(|| format!("  {of} {symbol} at {}\n", at.join(", ")))
-    };
-    let ends = ranges.iter().flat_map(|range| {
-        [place("least", range.symbol, &range.minimum), place("most", range.symbol, &range.maximum)]
-    });
-    let places: String = ends.flatten().collect();
-    format!(
-        "The box of the family: what its operating points and numbers make of the linear model\n{}\n{places}",
-        rows.trim_fmt()
-    )
-}
-
-/// Difference in percent below which a stated value is unremarkable: it prints as zero.
-const UNREMARKABLE: f64 = 0.05;
-
-/// What the project states for quantities that also follow from the rest: contradictions first, then what differs, then
-/// the unremarkable.
-pub(crate) fn stated(derived: &[Derived]) -> Vec<&Derived> {
-    let mut stated: Vec<&Derived> = derived.iter().filter(|quantity| quantity.stated.is_some()).collect();
-    stated.sort_by_key(|quantity| match quantity.difference_percent() {
-        _ if quantity.contradicts() => 0,
-        Some(percent) if percent.abs() < UNREMARKABLE => 2,
-        _ => 1,
-    });
-    stated
-}
-
-/// What is stated beside what follows, in a sentence.
-pub(crate) fn sentence(quantity: &Derived) -> String {
-    let Some(stated) = &quantity.stated else { return String::new() };
-    let with_unit = match quantity.unit {
-        "1" => significant(stated.value, 4),
-        unit => format!("{} {unit}", significant(stated.value, 4)),
-    };
-    let bounds = stated.bounds.map_or(String::new(), |[minimum, maximum]| {
-        format!(", from {} to {}", significant(minimum, 4), significant(maximum, 4))
-    });
-    let own = if quantity.outside_own_bounds() { "; the stated value lies outside these bounds" } else { "" };
-    let verdict = match (quantity.contradicts_derived(), stated.bounds) {
-        (true, Some(_)) => "; the derived value lies outside these bounds",
-        (true, None) => "; they contradict each other",
-        (false, _) => "",
-    };
-    let difference = quantity.difference_percent().filter(|percent| percent.is_finite());
-    let percent = difference.map_or(String::new(), |percent| format!(" ({percent:+.1} %)"));
-    format!(
-        "{} = {} in {}{bounds}; derived {}{percent}{own}{verdict}.",
-        quantity.symbol,
-        with_unit,
-        stated.place,
-        shown(quantity.value, 4)
-    )
-}
-
-fn shown(value: Result<f64, &str>, digits: usize) -> String {
-    value.map_or("-".to_string(), |value| significant(value, digits))
-}
-
-/// An equation without the braces that only typesetting needs.
-fn plain(equation: &str) -> String {
-    equation.replace(['{', '}'], "")
-}
-
 /// The list as a table for other programs.
 pub fn files(derived: &[Derived]) -> Vec<OutputFile> {
     let mut csv = String::from("name,value,unit,equation,stated_value\n");
@@ -218,7 +115,7 @@ pub fn files(derived: &[Derived]) -> Vec<OutputFile> {
             quantity.name,
             quantity.value.map_or("NaN".to_string(), |value| value.to_string()),
             quantity.unit,
-            plain(quantity.equation)
+            quantity.equation.replace(['{', '}'], "")
         ));
     }
     vec![OutputFile { name: "derived.csv".to_string(), bytes: csv.into_bytes() }]

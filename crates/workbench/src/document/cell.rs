@@ -67,6 +67,8 @@ pub(crate) enum Cell {
     Code(String),
     /// An equation or one of its symbols.
     Equation(String),
+    /// A unit.
+    Unit(&'static str),
     /// A number with its unit, which is empty where the heading has it.
     Quantity { value: f64, precision: Precision, unit: &'static str },
     /// A word that is good or bad.
@@ -138,6 +140,7 @@ impl Cell {
     pub(super) fn text(&self) -> String {
         match self {
             Cell::Text(text) | Cell::Code(text) | Cell::Status(_, text) => text.clone(),
+            Cell::Unit(unit) => unit.to_string(),
             // braces are what only typesetting needs
             Cell::Equation(equation) => equation.replace(['{', '}'], ""),
             Cell::Quantity { value, precision, unit } => {

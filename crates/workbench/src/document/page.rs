@@ -2,6 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
+use super::typeset::unit;
 use super::{Block, Cell, Document, Mark, Table, coded, prose, typeset};
 use crate::figure::Figure;
 
@@ -74,6 +75,7 @@ impl Cell {
         match self {
             Cell::Text(text) => coded(text),
             Cell::Code(text) => html! { code { (text) } },
+            Cell::Unit(text) => html! { span.unit { (unit(text)) } },
             Cell::Equation(equation) => typeset(equation),
             Cell::Status(mark, word) => badge(*mark, word),
             Cell::Quantity { .. } | Cell::Missing => prose(&self.text()),

@@ -99,6 +99,11 @@ pub(crate) fn figures(value: f64, digits: usize) -> Markup {
     }
 }
 
+/// A unit as it is printed: m3/(s.V) as m³/(s·V).
+pub(crate) fn unit(text: &str) -> String {
+    text.replace("Pa^0.5", "√Pa").replace('2', "²").replace('3', "³").replace('.', "·")
+}
+
 /// The operand of `_` or `^` and what follows it.
 fn script(text: &str) -> (&str, &str) {
     if let Some((group, remainder)) = text.strip_prefix('{').and_then(|grouped| grouped.split_once('}')) {

@@ -2,14 +2,12 @@ use num_complex::Complex64;
 use phea_dynamics::frequency::PassivityReport;
 use phea_dynamics::linear::TransferFunction;
 use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
-use phea_hydraulics::linear::{ModeShare, ResponseDifference};
+use phea_hydraulics::linear::ResponseDifference;
 use serde::Serialize;
 
 use super::sweep_answer::{SweepRow, SweptRow, head, rows};
-use super::{
-    Agreement, Comparison, Linearization, PortView, Sweep, WITHIN_DB, WITHIN_DEG, stiffness_sentence,
-};
-use crate::answer::{self, Number, OutputFile, significant, table};
+use super::{Agreement, Comparison, Linearization, PortView, Sweep, models, stiffness_sentence};
+use crate::answer::{self, Number, OutputFile};
 use crate::caveat::of_models;
 use crate::project::Loaded;
 
@@ -299,63 +297,6 @@ fn passivity_row(report: &PassivityReport) -> PassivityRow {
     }
 }
 
-/// The tables and sentences of `linearize` for people.
-pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
-    let mut out = String::new();
-    for sentence in of_models(&loaded.project) {
-        out.push_str(&format!("warning: {sentence}\n"));
-    }
-    out.push_str(&format!("Stiffness\n  {}\n", stiffness_sentence(&linearization.stiffness_models)));
-    let mut poles = table(&["model", "equation", "poles, rad/s"]);
-    for (model, equation, function) in models(linearization) {
-        poles.add_row([model, equation, &root_list(function.poles())]);
-    }
-    out.push_str(&format!("\nPoles\n{}\n", poles.trim_fmt()));
-    out.push_str(&format!("\n{}\n{}\n", agreement_heading(), agreement_table(linearization)));
-    let mut errors = table(&["comparison", "below 1000 rad/s", "everywhere"]);
-    for (name, comparison) in comparisons(linearization) {
-        errors.add_row([name.to_string(), difference_text(&comparison.low), located(&comparison.all)]);
-    }
-    out.push_str(&format!("\nLargest differences\n{}\n", errors.trim_fmt()));
-    let mut modes =
-        table(&["mode, rad/s", "share of the step response", "decays faster than the slowest by"]);
-    for mode in &linearization.modes {
-        let [share, decay] = mode_words(mode);
-        modes.add_row([root_list(&[mode.pole]), share, decay]);
-    }
-    out.push_str(&format!("\nDominance\n{}\n\nDriving-point impedance Z = -F_e/(s X_L)\n", modes.trim_fmt()));
-    out.push_str(&format!("  open loop:   {}\n", passivity_sentence(&linearization.open_loop.passivity)));
-    match (&linearization.closed_loop, &linearization.closed_loop_absent) {
-        (Some(view), _) => out.push_str(&format!("  closed loop: {}\n", passivity_sentence(&view.passivity))),
-        (None, reason) => {
-            out.push_str(&format!("  closed loop: none, {}\n", reason.as_deref().unwrap_or("not computed")))
-        }
-    }
-    let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
-    out.push_str(&format!("  above {hidden} rad/s the piston's mass hides the compliance\n"));
-    out
-}
-
-/// What the table below it tells.
-pub(crate) fn agreement_heading() -> String {
-    format!("Where a reduction is within {WITHIN_DB} dB and {WITHIN_DEG}° of the plant")
-}
-
-/// The bands of an agreement in words.
-pub(crate) fn band_words(agreement: &Agreement) -> String {
-    let band = |[from, to]: &[f64; 2]| format!("{} to {} rad/s", significant(*from, 3), significant(*to, 3));
-    let bands: Vec<String> = agreement.bands_rad_per_s.iter().map(band).collect();
-    if bands.is_empty() { "nowhere".to_string() } else { bands.join(", ") }
-}
-
-fn agreement_table(linearization: &Linearization) -> String {
-    let mut rows = table(&["model", "equation", "frequencies"]);
-    for agreement in &linearization.agreement {
-        rows.add_row([agreement.model, agreement.equation, &band_words(agreement)]);
-    }
-    rows.trim_fmt()
-}
-
 /// The poles of every model as a table for other programs.
 pub fn files(linearization: &Linearization) -> Vec<OutputFile> {
     let mut csv = String::from("model,equation,real_rad_per_s,imaginary_rad_per_s\n");
@@ -365,90 +306,4 @@ pub fn files(linearization: &Linearization) -> Vec<OutputFile> {
         }
     }
     vec![OutputFile { name: "poles.csv".to_string(), bytes: csv.into_bytes() }]
-}
-
-/// Share and decay ratio of a mode; in place of a number that does not exist, why.
-pub(crate) fn mode_words(mode: &ModeShare) -> [String; 2] {
-    let absence = mode.absence.map(|absence| absence.to_string()).unwrap_or_default();
-    let words = |value: f64, otherwise: &str| match value.is_nan() {
-        true => otherwise.to_string(),
-        false => significant(value, 3),
-    };
-    [words(mode.step_share, &absence), words(mode.decay_ratio, "none")]
-}
-
-/// Every model with its equation, the fullest first; with the values that hold where nothing else is said.
-pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 7] {
-    [
-        ("plant", "4.1 to 4.45", &linearization.plant.command),
-        ("two-pressure, derived parameters", "4.25 to 4.29", &linearization.two_pressure.command),
-        ("fifth order, derived parameters", "6.7", &linearization.derived_full.command),
-        ("fifth order", "6.7", &linearization.full.command),
-        ("decomposed, as printed", "6.12", &linearization.decomposed[0]),
-        ("decomposed, corrected", "6.12", &linearization.decomposed[1]),
-        ("first order", "6.13", &linearization.first_order),
-    ]
-}
-
-/// Every comparison with its name.
-pub(crate) fn comparisons(linearization: &Linearization) -> [(&'static str, &Comparison); 4] {
-    [
-        ("6.7 instead of two-pressure, both with derived parameters", &linearization.reduction),
-        ("6.12 as printed instead of 6.7", &linearization.printed_decomposition),
-        ("6.12 corrected instead of 6.7", &linearization.corrected_decomposition),
-        ("6.13 instead of 6.7", &linearization.truncation),
-    ]
-}
-
-/// Roots in the upper half plane, pairs as `a ± bi`.
-pub(crate) fn root_list(roots: &[Complex64]) -> String {
-    let shown: Vec<String> = roots
-        .iter()
-        .filter(|root| root.im >= 0.0)
-        .map(|root| match root.im {
-            0.0 => significant(root.re, 4),
-            imaginary => format!("{} ± {}i", significant(root.re, 4), significant(imaginary, 4)),
-        })
-        .collect();
-    shown.join(", ")
-}
-
-pub(crate) fn difference_text(difference: &ResponseDifference) -> String {
-    format!("{} dB, {}°", significant(difference.magnitude_db, 2), significant(difference.phase_deg, 2))
-}
-
-pub(crate) fn located(difference: &ResponseDifference) -> String {
-    format!(
-        "{} dB at {} rad/s, {}° at {} rad/s",
-        significant(difference.magnitude_db, 2),
-        significant(difference.magnitude_frequency, 4),
-        significant(difference.phase_deg, 2),
-        significant(difference.phase_frequency, 4)
-    )
-}
-
-/// Whether an impedance is passive, and where not.
-pub(crate) fn passivity_sentence(report: &PassivityReport) -> String {
-    if report.passive {
-        return "passive at every frequency".to_string();
-    }
-    let mut reasons = Vec::new();
-    if !report.right_half_plane_poles.is_empty() {
-        reasons
-            .push(format!("poles in the right half plane at {}", root_list(&report.right_half_plane_poles)));
-    }
-    for pole in report.imaginary_poles.iter().filter(|pole| !pole.passive) {
-        reasons.push(format!(
-            "a pole on the imaginary axis at {} rad/s",
-            significant(pole.frequency_rad_per_s, 4)
-        ));
-    }
-    for band in &report.bands {
-        reasons.push(format!(
-            "Re Z < 0 from {} to {} rad/s",
-            significant(band.from_rad_per_s, 4),
-            significant(band.to_rad_per_s, 4)
-        ));
-    }
-    format!("not passive: {}", reasons.join("; "))
 }

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use super::root_list;
 use super::{Sweep, SweepPoint, Swept};
-use crate::answer::{OutputFile, significant, table};
+use crate::answer::{OutputFile, significant};
+use crate::document::Table;
 use crate::figure::{Figure, PoleSweepInput, PoleSweepPoint, Words, pole_sweep};
 use crate::quantity::DisplayUnit;
 
@@ -123,7 +124,7 @@ pub fn sweep_text(sweep: &Sweep) -> String {
         symbol => format!("{}, {symbol}", sweep.path),
     };
     let heads = [
-        &key,
+        key.as_str(),
         "K_H over the stroke, MN/m",
         "poles, rad/s",
         "resonance, rad/s",
@@ -131,11 +132,11 @@ pub fn sweep_text(sweep: &Sweep) -> String {
         "bandwidth, rad/s",
         "passive",
     ];
-    let mut lines = table(&heads);
+    let mut lines = Table::new(heads);
     for point in &sweep.points {
-        lines.add_row(cells(sweep, point));
+        lines.row(cells(sweep, point));
     }
-    out.push_str(&format!("{}\n", lines.trim_fmt()));
+    out.push_str(&format!("{}\n", lines.text()));
     out.push_str("  K_H is of the nominal wall; the bandwidth is that of the nominal loop with the given controller, to -3 dB.\n");
     let reasons = sweep.points.iter().filter_map(|point| Some((point.value, point.found.as_ref().err()?)));
     for (value, reason) in reasons {

@@ -4,13 +4,13 @@ use maud::{Markup, html};
 use phea_engineering::error::ProcedureError;
 
 use super::chapter::{Chapter, cell, grouped, place, table, unbroken};
-use super::derived::unit;
 use crate::answer::significant;
 use crate::campaign::{
     CampaignError, LUMP_NAMES, METRIC_NAMES, Nowhere, Plan, QUANTILES, Shard, Spread, Summary, VariedRange,
     Wanted, Worst, campaign, counted, lump_words, meaningful, metric_words, pictures, without,
 };
 use crate::command::{CommandError, Watch};
+use crate::document::unit;
 use crate::document::{figures, prose};
 use crate::figure::Figure;
 use crate::project::{Distribution, Loaded};

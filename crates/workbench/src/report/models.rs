@@ -1,70 +1,24 @@
 //! The chapter on linear models: poles, Bode diagram of the models with their difference, dominance.
 
-use maud::{Markup, html};
-
-use super::chapter::{Chapter, cell, place, table};
-use crate::document::prose;
+use super::chapter::Chapter;
+use crate::document::Document;
 use crate::figure::{
     BodeInput, Figure, FrequencyMark, FrequencySeries, PoleMapInput, PoleMapScale, PoleSeries, Words, bode,
     pole_map,
 };
-use crate::linearize::{
-    Linearization, comparisons, difference_text, frequency_grid, located, mode_words, models, resonance,
-    root_list,
-};
+use crate::linearize::{Linearization, document, frequency_grid, resonance};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 
 pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearError> {
     let figures = vec![poles(linearization), responses(linearization)?, reduction(linearization)?];
-    let body = html! {
-        p {
-            "The two-pressure model is the linearised truth of the rig as declared; the fifth-order model (6.7) takes one stiffness and one load pressure. "
-            "What that leaves out is judged with derived parameters in both; everything else here uses the values that hold. "
-            "(6.12) splits it into hydraulic, mechanical and valve part; (6.13) keeps the hydraulic part alone."
-        }
-        (pole_table(linearization))
-        (place(&figures[0]))
-        (place(&figures[1]))
-        (place(&figures[2]))
-        h3 { "Largest differences" }
-        (difference_table(linearization))
-        h3 { "Dominance" }
-        p { "Share: greatest amplitude of the mode in the step response over its final value. The slowest mode rules when every other share is small." }
-        (dominance_table(linearization))
-    };
-    Ok(Chapter { anchor: "models", title: "Linear models", body, figures })
-}
-
-fn pole_table(linearization: &Linearization) -> Markup {
-    let rows: Vec<Vec<Markup>> = models(linearization)
-        .iter()
-        .map(|(model, equation, function)| {
-            vec![cell(*model), cell(*equation), cell(root_list(function.poles()))]
-        })
-        .collect();
-    table(&["model", "equation", "poles, rad/s"], 9, &rows)
-}
-
-fn difference_table(linearization: &Linearization) -> Markup {
-    let rows: Vec<Vec<Markup>> = comparisons(linearization)
-        .iter()
-        .map(|(name, comparison)| {
-            vec![cell(*name), prose(&difference_text(&comparison.low)), prose(&located(&comparison.all))]
-        })
-        .collect();
-    table(&["model, instead of the fuller one", "below 1000 rad/s", "everywhere"], 9, &rows)
-}
-
-fn dominance_table(linearization: &Linearization) -> Markup {
-    let rows: Vec<Vec<Markup>> = linearization
-        .modes
-        .iter()
-        .map(|mode| {
-            let [share, decay] = mode_words(mode);
-            vec![cell(root_list(&[mode.pole])), prose(&share), cell(decay)]
-        })
-        .collect();
-    table(&["mode, rad/s", "share of the step response", "times faster gone than the slowest"], 1, &rows)
+    let mut out = Document::default();
+    out.explanation(
+        "The two-pressure model is the linearised truth of the rig as declared; the fifth-order model (6.7) takes one stiffness and one load pressure. \
+         What that leaves out is judged with derived parameters in both; everything else here uses the values that hold. \
+         (6.12) splits it into hydraulic, mechanical and valve part; (6.13) keeps the hydraulic part alone.",
+    );
+    out.append(document(linearization, figures));
+    Ok(Chapter::of("models", "Linear models", out))
 }
 
 fn poles(linearization: &Linearization) -> Figure {

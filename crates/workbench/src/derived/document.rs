@@ -1,0 +1,103 @@
+//! What follows from a project, for people.
+
+use super::Derived;
+use crate::answer::significant;
+use crate::document::{Cell, Document, Mark, Table};
+use crate::family::{Extreme, VisitedRange};
+use crate::project::Project;
+
+/// The tables of `check`, and a sentence for each contradiction.
+pub fn text(derived: &[Derived]) -> String {
+    document(derived).text()
+}
+
+/// Everything that follows, and what the project states instead.
+pub(crate) fn document(derived: &[Derived]) -> Document {
+    let mut out = Document::default();
+    let mut groups: Vec<&str> = derived.iter().map(|quantity| quantity.group).collect();
+    groups.dedup();
+    for group in groups {
+        let own = derived.iter().filter(|quantity| quantity.group == group);
+        out.section(group, Table::new(["quantity", "value", "unit", "equation"]).with(own.map(cells)));
+    }
+    let absent = derived.iter().filter_map(|quantity| Some((&quantity.name, quantity.value.err()?)));
+    out.explanations(absent.map(|(name, reason)| format!("`{name}`: {reason}.")));
+    let stated = stated(derived);
+    if !stated.is_empty() {
+        out.heading("Stated by the project and used instead of the derived value");
+        out.explanation("The linear models use these values. Where a stated value and the derived one differ, the nonlinear machine follows the derived one.");
+        out.marked(stated.into_iter().map(|one| (one.contradicts().then_some(Mark::Bad), sentence(one))));
+    }
+    out
+}
+
+fn cells(quantity: &Derived) -> [Cell; 4] {
+    [
+        Cell::Code(quantity.name.clone()),
+        quantity.value.map_or(Cell::Missing, |value| Cell::number(value, 5)),
+        Cell::Unit(quantity.unit),
+        Cell::Equation(quantity.equation.to_string()),
+    ]
+}
+
+/// The box of linear parameters that the family visits, for people.
+pub fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String {
+    let mut out = Document::default();
+    out.heading("The box of the family: what its operating points and numbers make of the linear model");
+    let row = |range: &VisitedRange| {
+        let [least, most] = [&range.minimum, &range.maximum].map(|end| Cell::number(end.value, 4));
+        [range.symbol.into(), least, most, Cell::Unit(range.unit)]
+    };
+    out.table(Table::new(["quantity", "least", "most", "unit"]).with(ranges.iter().map(row)));
+    let place = |of: &str, symbol: &str, end: &Extreme| {
+        let at = end.at.iter().map(|(name, value)| format!("{name} = {}", project.in_words(name, *value)));
+        (!end.at.is_empty()).then(|| format!("{of} {symbol} at {}", at.collect::<Vec<_>>().join(", ")))
+    };
+    let ends = ranges.iter().flat_map(|range| {
+        [place("least", range.symbol, &range.minimum), place("most", range.symbol, &range.maximum)]
+    });
+    out.sentences(ends.flatten());
+    out.text()
+}
+
+/// Difference in percent below which a stated value is unremarkable: it prints as zero.
+const UNREMARKABLE: f64 = 0.05;
+
+/// What the project states for quantities that also follow from the rest: contradictions first, then what differs, then
+/// the unremarkable.
+fn stated(derived: &[Derived]) -> Vec<&Derived> {
+    let mut stated: Vec<&Derived> = derived.iter().filter(|quantity| quantity.stated.is_some()).collect();
+    stated.sort_by_key(|quantity| match quantity.difference_percent() {
+        _ if quantity.contradicts() => 0,
+        Some(percent) if percent.abs() < UNREMARKABLE => 2,
+        _ => 1,
+    });
+    stated
+}
+
+/// What is stated beside what follows, in a sentence.
+fn sentence(quantity: &Derived) -> String {
+    let Some(stated) = &quantity.stated else { return String::new() };
+    let with_unit = match quantity.unit {
+        "1" => significant(stated.value, 4),
+        unit => format!("{} {unit}", significant(stated.value, 4)),
+    };
+    let bounds = stated.bounds.map_or(String::new(), |[minimum, maximum]| {
+        format!(", from {} to {}", significant(minimum, 4), significant(maximum, 4))
+    });
+    let own = if quantity.outside_own_bounds() { "; the stated value lies outside these bounds" } else { "" };
+    let verdict = match (quantity.contradicts_derived(), stated.bounds) {
+        (true, Some(_)) => "; the derived value lies outside these bounds",
+        (true, None) => "; they contradict each other",
+        (false, _) => "",
+    };
+    let difference = quantity.difference_percent().filter(|percent| percent.is_finite());
+    let percent = difference.map_or(String::new(), |percent| format!(" ({percent:+.1} %)"));
+    format!(
+        "{} = {} in {}{bounds}; derived {}{percent}{own}{verdict}.",
+        quantity.symbol,
+        with_unit,
+        stated.place,
+        quantity.value.map_or("-".to_string(), |value| significant(value, 4))
+    )
+}

@@ -1,0 +1,158 @@
+//! Linear models for people.
+
+use num_complex::Complex64;
+use phea_dynamics::frequency::PassivityReport;
+use phea_dynamics::linear::TransferFunction;
+use phea_hydraulics::linear::{ModeShare, ResponseDifference};
+
+use super::{Agreement, Comparison, Linearization, WITHIN_DB, WITHIN_DEG, stiffness_sentence};
+use crate::answer::significant;
+use crate::caveat::of_models;
+use crate::document::{Cell, Document, Table};
+use crate::figure::Figure;
+use crate::project::Loaded;
+
+/// The tables and sentences of `linearize` for people.
+pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
+    let mut out = Document::default();
+    for sentence in of_models(&loaded.project) {
+        out.preformatted(format!("warning: {sentence}\n"));
+    }
+    out.preformatted(format!("Stiffness\n  {}\n", stiffness_sentence(&linearization.stiffness_models)));
+    out.append(document(linearization, vec![]));
+    out.heading("Driving-point impedance Z = -F_e/(s X_L)");
+    let closed = match (&linearization.closed_loop, &linearization.closed_loop_absent) {
+        (Some(view), _) => passivity_sentence(&view.passivity),
+        (None, reason) => format!("none, {}", reason.as_deref().unwrap_or("not computed")),
+    };
+    let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
+    out.sentences([
+        format!("open loop:   {}", passivity_sentence(&linearization.open_loop.passivity)),
+        format!("closed loop: {closed}"),
+        format!("above {hidden} rad/s the piston's mass hides the compliance"),
+    ]);
+    out.text()
+}
+
+/// Poles of the models, how far they differ, and which modes rule; below the poles the figures.
+pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> Document {
+    let mut out = Document::default();
+    let pole = |(model, equation, function): (&'static str, &'static str, &TransferFunction)| {
+        [model.into(), equation.into(), Cell::Text(root_list(function.poles()))]
+    };
+    out.section(
+        "Poles",
+        Table::new(["model", "equation", "poles, rad/s"]).with(models(linearization).map(pole)),
+    );
+    out.figures(figures);
+    let band = |one: &Agreement| [one.model.into(), one.equation.into(), Cell::Text(band_words(one))];
+    out.section(
+        format!("Where a reduction is within {WITHIN_DB} dB and {WITHIN_DEG}° of the plant"),
+        Table::new(["model", "equation", "frequencies"]).with(linearization.agreement.iter().map(band)),
+    );
+    let error =
+        |(name, one): (&str, &Comparison)| [name.to_string(), difference_text(&one.low), located(&one.all)];
+    out.section(
+        "Largest differences",
+        Table::new(["comparison", "below 1000 rad/s", "everywhere"])
+            .with(comparisons(linearization).map(error)),
+    );
+    out.heading("Dominance");
+    out.explanation("Share: greatest amplitude of the mode in the step response over its final value. The slowest mode dominates when every other share is small.");
+    out.table(
+        Table::new(["mode, rad/s", "share of the step response", "decays faster than the slowest by"])
+            .with(linearization.modes.iter().map(mode_cells)),
+    );
+    out
+}
+
+/// A mode with its share and decay ratio; in place of a number that does not exist, why.
+fn mode_cells(mode: &ModeShare) -> [Cell; 3] {
+    let absence = mode.absence.map(|absence| absence.to_string()).unwrap_or_default();
+    let or =
+        |value: f64, otherwise: &str| if value.is_nan() { otherwise.into() } else { Cell::number(value, 3) };
+    [root_list(&[mode.pole]).into(), or(mode.step_share, &absence), or(mode.decay_ratio, "none")]
+}
+
+/// The bands of an agreement in words.
+fn band_words(agreement: &Agreement) -> String {
+    let band = |[from, to]: &[f64; 2]| format!("{} to {} rad/s", significant(*from, 3), significant(*to, 3));
+    let bands: Vec<String> = agreement.bands_rad_per_s.iter().map(band).collect();
+    if bands.is_empty() { "nowhere".to_string() } else { bands.join(", ") }
+}
+
+/// Every model with its equation, the fullest first; with the values that hold where nothing else is said.
+pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 7] {
+    [
+        ("plant", "4.1 to 4.45", &linearization.plant.command),
+        ("two-pressure, derived parameters", "4.25 to 4.29", &linearization.two_pressure.command),
+        ("fifth order, derived parameters", "6.7", &linearization.derived_full.command),
+        ("fifth order", "6.7", &linearization.full.command),
+        ("decomposed, as printed", "6.12", &linearization.decomposed[0]),
+        ("decomposed, corrected", "6.12", &linearization.decomposed[1]),
+        ("first order", "6.13", &linearization.first_order),
+    ]
+}
+
+/// Every comparison with its name.
+fn comparisons(linearization: &Linearization) -> [(&'static str, &Comparison); 4] {
+    [
+        ("6.7 instead of two-pressure, both with derived parameters", &linearization.reduction),
+        ("6.12 as printed instead of 6.7", &linearization.printed_decomposition),
+        ("6.12 corrected instead of 6.7", &linearization.corrected_decomposition),
+        ("6.13 instead of 6.7", &linearization.truncation),
+    ]
+}
+
+/// Roots in the upper half plane, pairs as `a ± bi`.
+pub(crate) fn root_list(roots: &[Complex64]) -> String {
+    let shown: Vec<String> = roots
+        .iter()
+        .filter(|root| root.im >= 0.0)
+        .map(|root| match root.im {
+            0.0 => significant(root.re, 4),
+            imaginary => format!("{} ± {}i", significant(root.re, 4), significant(imaginary, 4)),
+        })
+        .collect();
+    shown.join(", ")
+}
+
+fn difference_text(difference: &ResponseDifference) -> String {
+    format!("{} dB, {}°", significant(difference.magnitude_db, 2), significant(difference.phase_deg, 2))
+}
+
+fn located(difference: &ResponseDifference) -> String {
+    format!(
+        "{} dB at {} rad/s, {}° at {} rad/s",
+        significant(difference.magnitude_db, 2),
+        significant(difference.magnitude_frequency, 4),
+        significant(difference.phase_deg, 2),
+        significant(difference.phase_frequency, 4)
+    )
+}
+
+/// Whether an impedance is passive, and where not.
+pub(crate) fn passivity_sentence(report: &PassivityReport) -> String {
+    if report.passive {
+        return "passive at every frequency".to_string();
+    }
+    let mut reasons = Vec::new();
+    if !report.right_half_plane_poles.is_empty() {
+        reasons
+            .push(format!("poles in the right half plane at {}", root_list(&report.right_half_plane_poles)));
+    }
+    for pole in report.imaginary_poles.iter().filter(|pole| !pole.passive) {
+        reasons.push(format!(
+            "a pole on the imaginary axis at {} rad/s",
+            significant(pole.frequency_rad_per_s, 4)
+        ));
+    }
+    for band in &report.bands {
+        reasons.push(format!(
+            "Re Z < 0 from {} to {} rad/s",
+            significant(band.from_rad_per_s, 4),
+            significant(band.to_rad_per_s, 4)
+        ));
+    }
+    format!("not passive: {}", reasons.join("; "))
+}
