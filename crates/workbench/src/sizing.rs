@@ -1,8 +1,10 @@
 //! What is told of `sizing`: text, JSON, files and figures.
 
 mod answer;
+mod document;
 
 pub use phea_engineering::sizing::*;
 
-pub(crate) use answer::{alike, answer_sentence};
-pub use answer::{files, json, text};
+pub use answer::{files, json};
+pub(crate) use document::document;
+pub use document::text;

@@ -33,7 +33,7 @@ pub(crate) fn document(derived: &[Derived]) -> Document {
 
 fn cells(quantity: &Derived) -> [Cell; 4] {
     [
-        Cell::Code(quantity.name.clone()),
+        Cell::Name(quantity.name.clone()),
         quantity.value.map_or(Cell::Missing, |value| Cell::number(value, 5)),
         Cell::Unit(quantity.unit),
         Cell::Equation(quantity.equation.to_string()),

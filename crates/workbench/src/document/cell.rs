@@ -65,6 +65,8 @@ pub(crate) enum Cell {
     Text(String),
     /// A path or a name of a file or of a program.
     Code(String),
+    /// What a number is called for programs, such as `line.a.wave_speed`; the page says it in words.
+    Name(String),
     /// An equation or one of its symbols.
     Equation(String),
     /// A unit.
@@ -139,7 +141,7 @@ impl Cell {
     /// As a text, in which symbols and numbers are not set.
     pub(super) fn text(&self) -> String {
         match self {
-            Cell::Text(text) | Cell::Code(text) | Cell::Status(_, text) => text.clone(),
+            Cell::Text(text) | Cell::Code(text) | Cell::Name(text) | Cell::Status(_, text) => text.clone(),
             Cell::Unit(unit) => unit.to_string(),
             // braces are what only typesetting needs
             Cell::Equation(equation) => equation.replace(['{', '}'], ""),

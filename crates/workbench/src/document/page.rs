@@ -64,9 +64,20 @@ impl Table {
     }
 }
 
-/// A heading, whose long names may be broken where they are joined.
-fn breakable(heading: &str) -> Markup {
-    PreEscaped(prose(heading).into_string().replace('_', "_<wbr>"))
+/// A text, whose long names may be broken where they are joined.
+fn breakable(text: &str) -> Markup {
+    PreEscaped(prose(text).into_string().replace('_', "_<wbr>").replace('.', ".<wbr>"))
+}
+
+/// `line.a.wave_speed` as "wave speed, line A": the word of the group is not repeated.
+fn words(name: &str) -> String {
+    let (group, quantity) = name.split_once('.').unwrap_or(("", name));
+    match (group, quantity.split_once('.')) {
+        ("line", Some((side, quantity))) => {
+            format!("{}, line {}", quantity.replace('_', " "), side.to_uppercase())
+        }
+        _ => quantity.replace(['_', '.'], " "),
+    }
 }
 
 impl Cell {
@@ -74,7 +85,8 @@ impl Cell {
     pub(crate) fn markup(&self) -> Markup {
         match self {
             Cell::Text(text) => coded(text),
-            Cell::Code(text) => html! { code { (text) } },
+            Cell::Code(text) => html! { code { (breakable(text)) } },
+            Cell::Name(name) => prose(&words(name)),
             Cell::Unit(text) => html! { span.unit { (unit(text)) } },
             Cell::Equation(equation) => typeset(equation),
             Cell::Status(mark, word) => badge(*mark, word),

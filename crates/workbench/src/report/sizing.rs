@@ -1,46 +1,25 @@
 //! The chapter on sizing: decisions, nomograph, candidates, what is uncertain.
 
-use maud::{Markup, html};
-
-use super::chapter::{Chapter, cell, place, table};
-use crate::answer::significant;
-use crate::document::prose;
+use super::chapter::Chapter;
+use crate::document::Document;
 use crate::figure::{
     DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput, SizingCurve,
     TornadoBar, TornadoInput, Verdict, Words, nomograph, sizing_chart, tornado,
 };
-use crate::sizing::{
-    BoreVerdict, Candidate, Severity, Sizing, SizingProblem, alike, answer_sentence, model_name,
-};
+use crate::sizing::{BoreVerdict, Candidate, Sizing, SizingProblem, document, model_name};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
     let mut figures = vec![bores(problem, sizing), lengths(problem, sizing)];
     figures.extend(uncertain(sizing));
-    let body = html! {
-        p {
-            "The procedure of Ledezma (2019), section 6.3, walked over "
-            (if problem.hoses.len() == 1 { "the one hose".to_string() } else { format!("the {} hoses", problem.hoses.len()) })
-            " of the catalogue, once with each stiffness model; both lines alike."
-        }
-        div.callout.good-edge[sizing.best().is_some()].bad-edge[sizing.best().is_none()] {
-            @for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
-                p { code { (model_name(model)) } ": " (prose(&answer_sentence(sizing.best_of(model)))) }
-            }
-        }
-        (place(&figures[0]))
-        h3 { "Candidates" }
-        (candidates(sizing))
-        (place(&figures[1]))
-        @if let Some(figure) = figures.get(2) {
-            h3 { "What is uncertain" }
-            p { "Each number goes from its low to its high value while all others stay nominal. Stiffening has its declared interval; where none is stated, 10 % either way is assumed." }
-            (place(figure))
-            (influences(sizing))
-        }
-        details open="open" { summary { "Every decision of the procedure" } (decisions(sizing)) }
+    let hoses = match problem.hoses.len() {
+        1 => "the one hose".to_string(),
+        count => format!("the {count} hoses"),
     };
-    Chapter { anchor: "sizing", title: "Sizing of the hose", body, figures }
+    let mut out = Document::default();
+    out.explanation(format!("The procedure of Ledezma (2019), section 6.3, applied to {hoses} of the catalogue, once with each stiffness model; both lines alike."));
+    out.append(document(sizing, figures));
+    Chapter::of("sizing", "Sizing of the hose", out)
 }
 
 fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
@@ -116,52 +95,6 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
     sizing_chart(Words::new("sizing-length", "Length, stiffness and gain", caption), &input)
 }
 
-/// One body for candidates that share their findings: a row each, and below them the reasons over the whole width.
-fn candidates(sizing: &Sizing) -> Markup {
-    let headings =
-        ["", "hose", "compliance", "branch", "length, m", "K_H, MN/m", "K_p, V/N", "τ over the stroke, ms"];
-    html! {
-        div.table.wide { table {
-            thead { tr { @for (column, heading) in headings.iter().enumerate() { th.number[column >= 4] { (prose(heading)) } } } }
-            @for group in alike(&sizing.candidates) { tbody.candidate {
-                @for candidate in &group { (candidate_row(candidate)) }
-                @if let Some(first) = group.first() {
-                    tr { td.reasons colspan="8" { @if !first.findings.is_empty() { (reasons(first)) } } }
-                }
-            } }
-        } }
-    }
-}
-
-fn candidate_row(candidate: &Candidate) -> Markup {
-    let branch = &candidate.branch;
-    let range = |values: [f64; 2], unit: DisplayUnit| {
-        let [from, to] = values.map(|value| unit.number(value, 3));
-        if from == to { from } else { format!("{from} to {to}") }
-    };
-    html! {
-        tr {
-            td { @if candidate.accepted() { span.good { "accepted" } } @else { span.bad { "rejected" } } }
-            td { code { (candidate.option.name) } }
-            td { code { (model_name(branch.model)) } }
-            td { (if branch.by_gain { "gain" } else { "length" }) }
-            td.number { (significant(branch.length_m, 4)) }
-            td.number { (range([branch.stiffness.minimum, branch.stiffness.maximum], DisplayUnit::MEGANEWTON_PER_METRE)) }
-            td.number { (prose(&significant(branch.gain_v_per_n, 3))) }
-            td.number { (range(candidate.time_constant_s, DisplayUnit::MILLISECOND)) }
-        }
-    }
-}
-
-fn reasons(candidate: &Candidate) -> Markup {
-    html! {
-        ul { @for finding in &candidate.findings {
-            @let rejects = finding.severity == Severity::Rejects;
-            li { span.bad[rejects].note[!rejects] { (if rejects { "rejects" } else { "warns" }) } ": " (prose(&finding.text)) }
-        } }
-    }
-}
-
 fn uncertain(sizing: &Sizing) -> Option<Figure> {
     let nominal = sizing.influences.first()?.stiffness_n_per_m[1];
     let bars = sizing.influences.iter().map(|influence| TornadoBar {
@@ -179,40 +112,4 @@ fn uncertain(sizing: &Sizing) -> Option<Figure> {
     };
     let caption = "Least stiffness over the stroke of the chosen hose.";
     Some(tornado(Words::new("sizing-sensitivity", "Influence on the stiffness", caption), &input))
-}
-
-fn influences(sizing: &Sizing) -> Markup {
-    let three = |values: [f64; 3]| cell(values.map(|value| significant(value, 4)).join(" · "));
-    let rows: Vec<Vec<Markup>> = sizing
-        .influences
-        .iter()
-        .map(|influence| {
-            vec![
-                prose(influence.quantity),
-                cell(influence.setting_words()),
-                three(
-                    influence
-                        .stiffness_n_per_m
-                        .map(|stiffness| DisplayUnit::MEGANEWTON_PER_METRE.of(stiffness)),
-                ),
-                three(influence.length_m),
-            ]
-        })
-        .collect();
-    table(
-        &[
-            "quantity",
-            "low · nominal · high",
-            "K_H at the chosen length, MN/m",
-            "length for the chosen K_H, m",
-        ],
-        1,
-        &rows,
-    )
-}
-
-fn decisions(sizing: &Sizing) -> Markup {
-    let rows: Vec<Vec<Markup>> =
-        sizing.decisions.iter().map(|decision| vec![cell(decision.step), prose(&decision.text)]).collect();
-    table(&["step", "decision"], 9, &rows)
 }

@@ -2,9 +2,8 @@ use serde::Serialize;
 
 use super::model_name;
 use super::{BoreVerdict, Candidate, Severity, Sizing};
-use crate::answer::{self, Number, OutputFile, significant, table};
+use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
-use crate::quantity::DisplayUnit;
 
 #[derive(Serialize)]
 struct Body<'a> {
@@ -126,7 +125,7 @@ fn candidate_row(candidate: &Candidate) -> CandidateRow<'_> {
     }
 }
 
-pub(crate) fn verdict_name(verdict: BoreVerdict) -> &'static str {
+fn verdict_name(verdict: BoreVerdict) -> &'static str {
     match verdict {
         BoreVerdict::Recommended => "recommended",
         BoreVerdict::Slow => "slow",
@@ -136,121 +135,6 @@ pub(crate) fn verdict_name(verdict: BoreVerdict) -> &'static str {
 
 pub(crate) fn branch_name(by_gain: bool) -> &'static str {
     if by_gain { "by_gain" } else { "by_length" }
-}
-
-/// What to buy and which gain to set, in a sentence.
-pub(crate) fn answer_sentence(best: Option<&Candidate>) -> String {
-    match best {
-        None => {
-            "no hose of the catalogue meets every demand; the reasons stand with the candidates.".to_string()
-        }
-        Some(candidate) => format!(
-            "{} with {} m a line: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
-            candidate.option.name,
-            significant(candidate.length_m(), 3),
-            DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.minimum, 3),
-            DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.maximum, 3),
-            significant(candidate.branch.gain_v_per_n, 3)
-        ),
-    }
-}
-
-/// The tables and sentences of `size` for people.
-pub fn text(sizing: &Sizing) -> String {
-    let mut out = String::from("Procedure (letters as in the flowchart of Ledezma 2019, section 6.3.2)\n");
-    for decision in &sizing.decisions {
-        out.push_str(&format!("  ({}) {}\n", decision.step, decision.text));
-    }
-    let mut candidates =
-        table(&["", "hose", "compliance", "branch", "length", "K_H over the stroke", "K_p", "tau"]);
-    for candidate in &sizing.candidates {
-        candidates.add_row(candidate_cells(candidate));
-    }
-    out.push_str(&format!("\nCandidates\n{}\n", candidates.trim_fmt()));
-    for alike in alike(&sizing.candidates) {
-        out.push_str(&alike_text(&alike));
-    }
-    let declared = model_name(sizing.model);
-    let other = model_name(sizing.other_model());
-    out.push_str(&format!("\nAnswer\n  {declared} (the project's): {}\n", answer_sentence(sizing.best())));
-    out.push_str(&format!("  {other}: {}\n", answer_sentence(sizing.best_of(sizing.other_model()))));
-    if !sizing.influences.is_empty() {
-        out.push_str(&format!("\nWhat is uncertain\n{}\n", influence_table(sizing)));
-    }
-    out
-}
-
-/// Candidates of one hose with the same findings, so that these are said once; in the order of the first of each.
-pub(crate) fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
-    let mut groups: Vec<Vec<&Candidate>> = Vec::new();
-    for candidate in candidates {
-        let same = |group: &&mut Vec<&Candidate>| {
-            group.first().is_some_and(|first| {
-                first.option.name == candidate.option.name && first.findings == candidate.findings
-            })
-        };
-        match groups.iter_mut().find(same) {
-            Some(group) => group.push(candidate),
-            None => groups.push(vec![candidate]),
-        }
-    }
-    groups
-}
-
-fn alike_text(group: &[&Candidate]) -> String {
-    let Some(first) = group.first() else { return String::new() };
-    let verdict = if first.accepted() { "accepted" } else { "rejected" };
-    let names: Vec<String> = group
-        .iter()
-        .map(|candidate| {
-            format!("{} {}", model_name(candidate.branch.model), branch_name(candidate.branch.by_gain))
-        })
-        .collect();
-    if first.findings.is_empty() {
-        return String::new();
-    }
-    let mut out = format!("\n{} ({}): {verdict}\n", first.option.name, names.join(", "));
-    for finding in &first.findings {
-        let sign = if finding.severity == Severity::Rejects { "rejects" } else { "warns" };
-        out.push_str(&format!("  {sign}: {}\n", finding.text));
-    }
-    out
-}
-
-fn candidate_cells(candidate: &Candidate) -> Vec<String> {
-    let branch = &candidate.branch;
-    let stiffness = &branch.stiffness;
-    vec![
-        if candidate.accepted() { "yes" } else { "no" }.to_string(),
-        candidate.option.name.clone(),
-        model_name(branch.model).to_string(),
-        branch_name(branch.by_gain).to_string(),
-        format!("{} m", significant(branch.length_m, 4)),
-        format!("{} to {} N/m", significant(stiffness.minimum, 4), significant(stiffness.maximum, 4)),
-        format!("{} V/N", significant(branch.gain_v_per_n, 3)),
-        format!(
-            "{} to {} ms",
-            DisplayUnit::MILLISECOND.number(candidate.time_constant_s[0], 3),
-            DisplayUnit::MILLISECOND.number(candidate.time_constant_s[1], 3)
-        ),
-    ]
-}
-
-fn influence_table(sizing: &Sizing) -> String {
-    let mut influences =
-        table(&["quantity", "low · nominal · high", "K_H at this length, MN/m", "length for this K_H, m"]);
-    let three = |values: [f64; 3]| values.map(|value| significant(value, 4)).join(" · ");
-    for influence in &sizing.influences {
-        influences.add_row([
-            influence.quantity.to_string(),
-            influence.setting_words(),
-            three(
-                influence.stiffness_n_per_m.map(|stiffness| DisplayUnit::MEGANEWTON_PER_METRE.of(stiffness)),
-            ),
-            three(influence.length_m),
-        ]);
-    }
-    influences.trim_fmt()
 }
 
 /// The candidates as a table for other programs.
