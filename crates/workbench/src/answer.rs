@@ -1,17 +1,15 @@
 //! What a command answers: a text for people, one JSON object for programs, and files.
 //!
 //! Each command has one typed output; this module gives them all the same envelope, the same treatment of numbers that
-//! do not exist, and the same tables.
+//! do not exist.
 
 mod number;
-mod table;
 
 use serde::Serialize;
 
 pub use crate::quantity::significant;
 pub use number::Number;
 pub use phea_engineering::number_table::{NumberTable, TableFormat};
-pub use table::table;
 
 pub use crate::source::OutputFile;
 

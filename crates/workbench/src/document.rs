@@ -10,7 +10,7 @@ mod typeset;
 pub(crate) use cell::{Cell, Mark};
 pub(crate) use page::{badge, place};
 pub(crate) use table::Table;
-pub(crate) use typeset::{coded, figures, unit};
+pub(crate) use typeset::coded;
 pub use typeset::{prose, typeset};
 
 use crate::figure::Figure;
@@ -95,6 +95,11 @@ impl Document {
     /// A table.
     pub(crate) fn table(&mut self, table: Table) {
         self.blocks.push(Block::Table(table));
+    }
+
+    /// Tables, those that have rows.
+    pub(crate) fn tables(&mut self, tables: impl IntoIterator<Item = Table>) {
+        self.blocks.extend(tables.into_iter().filter(|table| !table.is_empty()).map(Block::Table));
     }
 
     /// A table below its heading; nothing where it has no rows.

@@ -1,6 +1,6 @@
 //! Equations of plain text as a page sets them.
 
-use phea_workbench::report::typeset;
+use phea_workbench::document::typeset;
 
 #[test]
 fn text_is_escaped_and_scripts_end_where_they_should() {

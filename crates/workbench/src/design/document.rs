@@ -10,7 +10,7 @@ use super::{Explanation, ProjectDesign, Repair, RepairStatus, Rounding, Side};
 use super::{repair_words, status_sentence, structure_words};
 use crate::answer::significant;
 use crate::audit::{self, margin_words, summary};
-use crate::document::{Cell, Document, Mark, Table};
+use crate::document::{Cell, Document, Table};
 use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 use crate::trial;
@@ -166,7 +166,7 @@ pub(crate) fn side_by_side(view: &ProjectDesign) -> Document {
 /// The first row holds verdicts.
 fn compared_cell(row: usize, text: &str) -> Cell {
     match text {
-        "met" | "violated" if row == 0 => Cell::Status(Mark::of(text == "met"), text.to_string()),
+        "met" | "violated" if row == 0 => Cell::from(text).marked(text == "met"),
         _ => text.into(),
     }
 }

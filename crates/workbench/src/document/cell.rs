@@ -18,9 +18,8 @@ pub(crate) enum Mark {
     Bad,
 }
 
-impl Mark {
-    /// Of what is good or bad.
-    pub(crate) fn of(good: bool) -> Mark {
+impl From<bool> for Mark {
+    fn from(good: bool) -> Mark {
         if good { Mark::Good } else { Mark::Bad }
     }
 }
@@ -59,7 +58,7 @@ pub(crate) enum Precision {
 }
 
 /// A cell.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) enum Cell {
     /// Words, a sentence.
     Text(String),
@@ -73,9 +72,10 @@ pub(crate) enum Cell {
     Unit(&'static str),
     /// A number with its unit, which is empty where the heading has it.
     Quantity { value: f64, precision: Precision, unit: &'static str },
-    /// A word that is good or bad.
-    Status(Mark, String),
+    /// What is good or bad.
+    Status(Mark, Box<Cell>),
     /// No such thing.
+    #[default]
     Missing,
 }
 
@@ -119,29 +119,36 @@ impl Cell {
         Cell::Text(value.to_string())
     }
 
+    /// With a mark.
+    pub(crate) fn marked(self, mark: impl Into<Mark>) -> Cell {
+        Cell::Status(mark.into(), Box::new(self))
+    }
+
     /// That of a verdict.
     pub(crate) fn verdict(verdict: Verdict) -> Cell {
-        Cell::Status(verdict.into(), verdict_words(verdict).to_string())
+        Cell::from(verdict_words(verdict)).marked(verdict)
     }
 
     /// That of what the machine did with a verdict.
     pub(crate) fn agreement(agreement: Agreement) -> Cell {
-        Cell::Status(agreement.into(), agreement_word(agreement).to_string())
+        Cell::from(agreement_word(agreement)).marked(agreement)
     }
 
-    /// Whether it is a number, or one that there is not.
+    /// Whether it is a number.
     pub(super) fn is_numeric(&self) -> bool {
         match self {
-            Cell::Quantity { .. } | Cell::Missing => true,
-            Cell::Text(text) => text.is_empty() || text.parse::<f64>().is_ok(),
+            Cell::Quantity { .. } => true,
+            Cell::Status(_, cell) => cell.is_numeric(),
+            Cell::Text(text) => text.parse::<f64>().is_ok(),
             _ => false,
         }
     }
 
     /// As a text, in which symbols and numbers are not set.
-    pub(super) fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         match self {
-            Cell::Text(text) | Cell::Code(text) | Cell::Name(text) | Cell::Status(_, text) => text.clone(),
+            Cell::Text(text) | Cell::Code(text) | Cell::Name(text) => text.clone(),
+            Cell::Status(_, cell) => cell.text(),
             Cell::Unit(unit) => unit.to_string(),
             // braces are what only typesetting needs
             Cell::Equation(equation) => equation.replace(['{', '}'], ""),

@@ -89,7 +89,7 @@ impl Cell {
             Cell::Name(name) => prose(&words(name)),
             Cell::Unit(text) => html! { span.unit { (unit(text)) } },
             Cell::Equation(equation) => typeset(equation),
-            Cell::Status(mark, word) => badge(*mark, word),
+            Cell::Status(mark, cell) => badge(*mark, &cell.text()),
             Cell::Quantity { .. } | Cell::Missing => prose(&self.text()),
         }
     }

@@ -66,9 +66,14 @@ impl Table {
         self.groups.iter().flat_map(|group| &group.rows)
     }
 
-    /// Whether a column holds numbers alone.
+    /// Whether most of what a column holds is numbers.
     pub(super) fn is_numeric(&self, column: usize) -> bool {
-        let cells = || self.rows().filter_map(|row| row.get(column));
-        cells().all(Cell::is_numeric) && cells().any(|cell| cell.is_numeric() && cell.text() != "")
+        let cells = self.rows().filter_map(|row| row.get(column));
+        let told = cells.filter(|cell| **cell != Cell::Missing && **cell != Cell::empty());
+        let [numbers, words] = told.fold([0, 0], |[numbers, words], cell| match cell.is_numeric() {
+            true => [numbers + 1, words],
+            false => [numbers, words + 1],
+        });
+        numbers > words
     }
 }

@@ -90,17 +90,8 @@ fn number(word: &str) -> Option<String> {
     Some(format!("{mantissa}·10<sup>{exponent}</sup>"))
 }
 
-/// A number for people, see [`prose`].
-pub(crate) fn figures(value: f64, digits: usize) -> Markup {
-    if value.is_nan() {
-        html! { "-" }
-    } else {
-        prose(&crate::answer::significant(value, digits))
-    }
-}
-
 /// A unit as it is printed: m3/(s.V) as m³/(s·V).
-pub(crate) fn unit(text: &str) -> String {
+pub(super) fn unit(text: &str) -> String {
     text.replace("Pa^0.5", "√Pa").replace('2', "²").replace('3', "³").replace('.', "·")
 }
 

@@ -74,11 +74,6 @@ pub(super) fn without(project: &Project) -> Markup {
     html! { @for sentence in of_models(project) { div.callout { p { (sentence) "." } } } }
 }
 
-/// A text that is not broken into lines.
-pub(super) fn unbroken(text: &str) -> Markup {
-    html! { (text.replace(' ', "\u{a0}")) }
-}
-
 /// A plain text as a cell.
 pub(super) fn cell(text: impl Into<String>) -> Markup {
     html! { (text.into()) }

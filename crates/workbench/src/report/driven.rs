@@ -6,7 +6,8 @@ use crate::project::Project;
 use crate::quantity::DisplayUnit;
 use crate::setup::Setup;
 use crate::simulate::{
-    Cause, Named, ScenarioRun, SimulateError, Window, Wish, cause_words, cells_of, simulate_project,
+    Cause, Named, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, Window, Wish, cause_words, cells_of,
+    simulate_project,
 };
 use crate::source::Source;
 use crate::specification::wishes;
@@ -108,7 +109,12 @@ fn told(runs: &[ScenarioRun]) -> Option<String> {
     let is_step = |window: &Window| matches!(window.cause, Cause::ReferenceStep { .. });
     let step = windows().find(|(window, _)| is_step(window)).map(|(window, metrics)| {
         let cells = cells_of(metrics);
-        format!("{}: {} overshoot, settling {}", cause_words(window), cells[0], cells[2])
+        format!(
+            "{}: {} overshoot, settling {}",
+            cause_words(window),
+            cells[OVERSHOOT].text(),
+            cells[SETTLING].text()
+        )
     });
     let disturbed = windows().find_map(|(window, metrics)| {
         let peak = DisplayUnit::KILONEWTON.text(metrics.disturbance_peak_n.ok()?, 3);

@@ -1,17 +1,16 @@
 //! The appendix on what is not known well: the first scenario with the load cell and the friction multiplied.
 
-use maud::{Markup, html};
 use phea_engineering::error::ProcedureError;
 
-use super::chapter::{Chapter, cell, grouped, unbroken};
+use super::chapter::Chapter;
 use super::driven::Driven;
 use super::simulation::told;
 use crate::command::{CommandError, Watch};
-use crate::document::prose;
+use crate::document::{Document, Table};
 use crate::figure::DisplayUnit;
 use crate::project::{FrictionLaw, Project};
 use crate::setup::Setup;
-use crate::simulate::{METRICS, Metrics, ScenarioRun, Window, cause_words, cells_of, simulate_project};
+use crate::simulate::{METRICS, Metrics, ScenarioRun, Window, cause_words, metrics_row, simulate_project};
 use crate::source::Source;
 
 /// Factors of the sensitivity.
@@ -30,12 +29,18 @@ pub(super) fn chapter(
 ) -> Result<Option<Chapter>, CommandError> {
     let Some(side) = driven.sides.first().filter(|side| side.runs.is_ok()) else { return Ok(None) };
     let varied = sensitivity(source, project, watch)?;
-    let body = html! {
-        p { (prose("The first scenario again with one quantity changed: the stiffness K_S of load cell and environment, and all friction. Neither is known well of a real rig, and the overshoot follows both.")) " The controller is the " (side.name) " one." }
-        (tables(&varied))
-    };
-    let (anchor, title) = ("sensitivity", "Sensitivity of the first scenario");
-    Ok((!varied.is_empty()).then(|| Chapter { anchor, title, body, figures: vec![] }))
+    if varied.is_empty() {
+        return Ok(None);
+    }
+    let mut out = Document::default();
+    out.explanation(format!("The first scenario again with one quantity changed: the stiffness K_S of load cell and environment, and all friction. Neither is known well of a real rig, and the overshoot follows both. The controller is the {} one.", side.name));
+    let refused = varied.iter().filter_map(|varied| Some((varied, varied.run.as_ref().err()?)));
+    out.explanations(
+        refused.map(|(varied, reason)| format!("{}, {}: {reason}.", varied.quantity, varied.value)),
+    );
+    let events = varied.iter().filter_map(|varied| Some(varied.run.as_ref().ok()?.windows.len())).max();
+    out.tables((0..events.unwrap_or(0)).filter_map(|event| event_table(&varied, event)));
+    Ok(Some(Chapter::of("sensitivity", "Sensitivity of the first scenario", out)))
 }
 
 /// A quantity multiplied by a factor, and what comes of the first scenario.
@@ -97,37 +102,22 @@ fn vary(
     Ok(Varied { quantity, factor, value, run })
 }
 
-/// One table for each event, in which a column is read downwards.
-fn tables(varied: &[Varied]) -> Markup {
-    let events =
-        varied.iter().filter_map(|varied| varied.run.as_ref().ok()).map(|run| run.windows.len()).max();
-    let refused = varied.iter().filter_map(|varied| Some((varied, varied.run.as_ref().err()?)));
-    let tables = (0..events.unwrap_or(0)).filter_map(|event| event_table(varied, event));
-    html! {
-        @for (varied, reason) in refused { p { (prose(varied.quantity)) ", " (varied.value) ": " (reason) "." } }
-        @for table in tables { (table) }
-    }
-}
-
 /// What comes of one event, quantity by quantity.
-fn event_table(varied: &[Varied], event: usize) -> Option<Markup> {
+fn event_table(varied: &[Varied], event: usize) -> Option<Table> {
     let seen = |varied: &Varied| Some(*varied.run.as_ref().ok()?.windows.get(event)?);
     let windows: Vec<(Window, Metrics)> = varied.iter().filter_map(seen).collect();
-    let told = told(windows.iter());
+    let shown = told(windows.iter());
     let event = cause_words(&windows.first()?.0);
-    let mut heads = vec![event.as_str()];
-    heads.extend(told.iter().map(|metric| METRICS[*metric]));
-    let mut groups: Vec<(String, Vec<Vec<Markup>>)> = Vec::new();
+    let heads = std::iter::once(event.as_str()).chain(shown.iter().map(|place| METRICS[*place].word));
+    let mut rows = Table::grouped_by("quantity", heads);
+    let mut quantity = "";
     for varied in varied {
         let Some((_, metrics)) = seen(varied) else { continue };
-        let as_declared = if varied.factor == 1.0 { ", as declared" } else { "" };
-        let cells = cells_of(&metrics);
-        let mut row = vec![unbroken(&format!("{}{as_declared}", varied.value))];
-        row.extend(told.iter().map(|metric| cell(&cells[*metric])));
-        match groups.last_mut().filter(|(quantity, _)| quantity == varied.quantity) {
-            Some((_, rows)) => rows.push(row),
-            None => groups.push((varied.quantity.to_string(), vec![row])),
+        if varied.quantity != std::mem::replace(&mut quantity, varied.quantity) {
+            rows.group(varied.quantity);
         }
+        let as_declared = if varied.factor == 1.0 { ", as declared" } else { "" };
+        rows.row(metrics_row(format!("{}{as_declared}", varied.value), &shown, &metrics, None));
     }
-    Some(grouped(&heads, 1, &groups))
+    Some(rows)
 }

@@ -2,10 +2,12 @@
 
 use phea_dynamics::portable;
 use phea_qft::bound::Placement;
+use phea_qft::manual_shaping::DesignMargin;
 
 use super::{Shaped, Shaping};
-use crate::answer::{significant, table};
-use crate::audit::{frequency_number, margin_words, stability_sentence};
+use crate::answer::significant;
+use crate::audit::{frequency_number, stability_sentence};
+use crate::document::{Cell, Document, Table};
 use phea_qft::verification::Verdict;
 
 /// The tables and sentences of `shape`.
@@ -19,55 +21,54 @@ pub fn text(view: &Shaping) -> String {
         1 => "1 element".to_string(),
         count => format!("{count} elements"),
     };
-    let mut out = String::new();
+    let mut out = Document::default();
     for caveat in &view.problem.caveats {
-        out.push_str(&format!("warning: {}\n", caveat.sentence));
+        out.preformatted(format!("warning: {}\n", caveat.sentence));
     }
-    out.push_str(&format!("{what}: {count}\n"));
-    for (index, element) in view.elements.iter().enumerate() {
-        out.push_str(&format!("  {}  {}\n", index + 1, element.print()));
-    }
-    out.push_str(&format!("\nStability\n  {}\n", stability_sentence(&view.stability, &view.names)));
-    if view.problem.specifications.is_empty() {
-        out.push_str(
-            "\nThe project states no [[specification]]: there are no margins and no design frequencies.\n",
-        );
+    out.preformatted(format!("{what}: {count}\n"));
+    let elements = view.elements.iter().enumerate();
+    out.sentences(elements.map(|(index, element)| format!("{}  {}", index + 1, element.print())));
+    out.heading("Stability");
+    out.sentences([stability_sentence(&view.stability, &view.names)]);
+    let asked = !view.problem.specifications.is_empty();
+    if asked {
+        out.heading("Margins at the design frequencies, the worst first");
+        out.table(margins(view));
+        let unstable = view.stability.verdict == Verdict::Violated;
+        out.sentences(unstable.then(|| {
+            "The loop is unstable: these magnitudes are of no response, they only show where it lies."
+                .to_string()
+        }));
+        out.heading("The nominal loop at the design frequencies");
+        out.table(points(view));
     } else {
-        out.push_str(&format!("\nMargins at the design frequencies, the worst first\n{}\n", margins(view)));
-        if view.stability.verdict == Verdict::Violated {
-            out.push_str(
-                "  The loop is unstable: these are magnitudes of no response, and tell where it lies only.\n",
-            );
-        }
-        out.push_str(&format!("\nThe nominal loop at the design frequencies\n{}\n", points(view)));
+        out.heading(
+            "The project states no [[specification]]: there are no margins and no design frequencies.",
+        );
     }
     if !view.unreached_rad_per_s.is_empty() {
         let missing: Vec<String> = view.unreached_rad_per_s.iter().copied().map(frequency_number).collect();
-        out.push_str(&format!("  Not measured at {} rad/s.\n", missing.join(", ")));
+        out.sentences([format!("Not measured at {} rad/s.", missing.join(", "))]);
     }
-    if !view.problem.specifications.is_empty() {
-        out.push_str("  Nothing is said of what lies between these frequencies: `verify` looks there.\n");
-    }
-    out
+    let between = "Nothing is said of what lies between these frequencies: `verify` looks there.";
+    out.sentences(asked.then(|| between.to_string()));
+    out.text()
 }
 
-fn margins(view: &Shaping) -> String {
-    let mut rows = table(&["rad/s", "specification", "margin", "the nominal loop", "worst plant"]);
-    for margin in &view.margins {
-        let name = format!("{} {}", margin.specification + 1, view.problem.name_of(margin.specification));
-        let plant = match &margin.other {
-            None => view.names.text(&margin.plant),
-            Some(other) => format!("{}; {}", view.names.text(&margin.plant), view.names.text(other)),
-        };
-        rows.add_row([
-            frequency_number(margin.frequency_rad_per_s),
-            name,
-            margin_words(margin.margin_db),
-            placement(&margin.placement),
-            plant,
-        ]);
-    }
-    rows.trim_fmt()
+fn margins(view: &Shaping) -> Table {
+    let row = |margin: &DesignMargin| {
+        let plants = [Some(&margin.plant), margin.other.as_ref()].into_iter().flatten();
+        let plants: Vec<String> = plants.map(|plant| view.names.text(plant)).collect();
+        [
+            Cell::frequency(margin.frequency_rad_per_s),
+            format!("{} {}", margin.specification + 1, view.problem.name_of(margin.specification)).into(),
+            Cell::margin(margin.margin_db),
+            placement(&margin.placement).into(),
+            plants.join("; ").into(),
+        ]
+    };
+    Table::new(["rad/s", "specification", "margin", "the nominal loop", "worst plant"])
+        .with(view.margins.iter().map(row))
 }
 
 /// What a placement asks for.
@@ -83,18 +84,18 @@ fn placement(placement: &Placement) -> String {
     }
 }
 
-fn points(view: &Shaping) -> String {
-    let mut rows = table(&["rad/s", "|L0| dB", "phase deg", "among all bounds"]);
+fn points(view: &Shaping) -> Table {
+    let mut rows = Table::new(["rad/s", "|L0| dB", "phase deg", "among all bounds"]);
     for point in &view.points {
         let (decibels, degrees) = polar(point.nominal_loop);
-        rows.add_row([
-            frequency_number(point.frequency_rad_per_s),
-            format!("{decibels:.2}"),
-            format!("{degrees:.2}"),
-            placement(&point.placement),
+        rows.row([
+            Cell::frequency(point.frequency_rad_per_s),
+            format!("{decibels:.2}").into(),
+            format!("{degrees:.2}").into(),
+            placement(&point.placement).into(),
         ]);
     }
-    rows.trim_fmt()
+    rows
 }
 
 /// dB, and degrees in (-360, 0] as on the chart.

@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::FrequencyResponse;
-use super::Measured;
 use super::check::{self, CheckRow};
 use super::frequency;
+use super::metrics::MetricsRow;
 use super::state_names;
 use super::{
     BeyondExpansion, Cause, Comparison, Exceeded, Metrics, Occurrence, Overlay, ScenarioRun, Window,
@@ -36,7 +36,7 @@ struct ScenarioRow<'a> {
     /// Name of the file with the state at the end.
     state_file: Option<String>,
     state_file_reason: Option<&'static str>,
-    events: Vec<EventRow>,
+    events: Vec<EventRow<'a>>,
     occurrences: Vec<OccurrenceRow>,
     outside_model_s: Option<f64>,
     outside_model_s_reason: Option<&'static str>,
@@ -93,7 +93,7 @@ struct WorkRow {
 }
 
 #[derive(Serialize)]
-struct EventRow {
+struct EventRow<'a> {
     kind: &'static str,
     time_s: f64,
     until_s: f64,
@@ -102,30 +102,7 @@ struct EventRow {
     reference_n_reason: Option<&'static str>,
     command_v: Option<[f64; 2]>,
     command_v_reason: Option<&'static str>,
-    metrics: MetricsRow,
-}
-
-#[derive(Serialize)]
-struct MetricsRow {
-    overshoot_percent: Option<f64>,
-    overshoot_percent_reason: Option<&'static str>,
-    rise_time_s: Option<f64>,
-    rise_time_s_reason: Option<&'static str>,
-    settling_time_s: Option<f64>,
-    settling_time_s_reason: Option<&'static str>,
-    settling_band_percent: f64,
-    disturbance_peak_n: Option<f64>,
-    disturbance_peak_n_reason: Option<&'static str>,
-    tracking_error_peak_n: Option<f64>,
-    tracking_error_peak_n_reason: Option<&'static str>,
-    force_peak_n: Option<f64>,
-    force_peak_n_reason: Option<&'static str>,
-    steady_state_error_n: Option<f64>,
-    steady_state_error_n_reason: Option<&'static str>,
-    control_peak_v: Option<f64>,
-    control_peak_v_reason: Option<&'static str>,
-    control_rms_v: Option<f64>,
-    control_rms_v_reason: Option<&'static str>,
+    metrics: MetricsRow<'a>,
 }
 
 #[derive(Serialize)]
@@ -254,7 +231,7 @@ fn measured(overlay: &Overlay) -> MeasuredRow<'_> {
     }
 }
 
-fn event((window, metrics): &(Window, Metrics)) -> EventRow {
+fn event((window, metrics): &(Window, Metrics)) -> EventRow<'_> {
     let reference_n = match window.cause {
         Cause::ReferenceStep { from_n, to_n } => Some([from_n, to_n]),
         _ => None,
@@ -271,41 +248,7 @@ fn event((window, metrics): &(Window, Metrics)) -> EventRow {
         reference_n_reason: reference_n.is_none().then_some("the reference does not step"),
         command_v,
         command_v_reason: command_v.is_none().then_some("no open-loop command steps"),
-        metrics: metrics_row(metrics),
-    }
-}
-
-fn metrics_row(metrics: &Metrics) -> MetricsRow {
-    let split = |measured: Measured| (measured.ok(), measured.err());
-    let (overshoot_percent, overshoot_percent_reason) = split(metrics.overshoot_percent);
-    let (rise_time_s, rise_time_s_reason) = split(metrics.rise_time_s);
-    let (settling_time_s, settling_time_s_reason) = split(metrics.settling_time_s);
-    let (disturbance_peak_n, disturbance_peak_n_reason) = split(metrics.disturbance_peak_n);
-    let (tracking_error_peak_n, tracking_error_peak_n_reason) = split(metrics.tracking_error_peak_n);
-    let (force_peak_n, force_peak_n_reason) = split(metrics.force_peak_n);
-    let (steady_state_error_n, steady_state_error_n_reason) = split(metrics.steady_state_error_n);
-    let (control_peak_v, control_peak_v_reason) = split(metrics.control_peak_v);
-    let (control_rms_v, control_rms_v_reason) = split(metrics.control_rms_v);
-    MetricsRow {
-        overshoot_percent,
-        overshoot_percent_reason,
-        rise_time_s,
-        rise_time_s_reason,
-        settling_time_s,
-        settling_time_s_reason,
-        settling_band_percent: metrics.settling_band_percent,
-        disturbance_peak_n,
-        disturbance_peak_n_reason,
-        tracking_error_peak_n,
-        tracking_error_peak_n_reason,
-        force_peak_n,
-        force_peak_n_reason,
-        steady_state_error_n,
-        steady_state_error_n_reason,
-        control_peak_v,
-        control_peak_v_reason,
-        control_rms_v,
-        control_rms_v_reason,
+        metrics: MetricsRow(metrics),
     }
 }
 

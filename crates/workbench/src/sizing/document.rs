@@ -26,8 +26,8 @@ pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
     let [own, other] =
         [sizing.model, sizing.other_model()].map(|model| (model_name(model), sizing.best_of(model)));
     out.marked([
-        (Some(Mark::of(own.1.is_some())), format!("{} (the project's): {}", own.0, answer_sentence(own.1))),
-        (Some(Mark::of(other.1.is_some())), format!("{}: {}", other.0, answer_sentence(other.1))),
+        (Some(own.1.is_some().into()), format!("{} (the project's): {}", own.0, answer_sentence(own.1))),
+        (Some(other.1.is_some().into()), format!("{}: {}", other.0, answer_sentence(other.1))),
     ]);
     out.figures(figures);
     let headings = ["quantity", "low · nominal · high", "K_H at this length, MN/m", "length for this K_H, m"];
@@ -96,7 +96,7 @@ fn candidate_cells(candidate: &Candidate) -> [Cell; 8] {
     let [fastest, slowest] =
         candidate.time_constant_s.map(|time_s| DisplayUnit::MILLISECOND.number(time_s, 3));
     [
-        Cell::Status(Mark::of(accepted), if accepted { "yes" } else { "no" }.to_string()),
+        Cell::from(if accepted { "yes" } else { "no" }).marked(accepted),
         Cell::Code(candidate.option.name.clone()),
         Cell::Code(model_name(branch.model).to_string()),
         Cell::Code(branch_name(branch.by_gain).to_string()),

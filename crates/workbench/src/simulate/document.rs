@@ -1,34 +1,30 @@
 //! What `simulate` and `compare` say to people.
 
 use super::check;
-use super::{BeyondExpansion, Cause, Comparison, Metrics, Occurrence, Overlay, ScenarioRun, Stopped, Window};
-use super::{Measured, NOT_SETTLED, exceeded_words};
-use crate::answer::{significant, table};
-use crate::project::Loaded;
+use super::exceeded_words;
+use super::metrics::{METRICS, OVERSHOOT, SETTLING, cells_of};
+use super::{
+    BeyondExpansion, Cause, Comparison, Metrics, Occurrence, Overlay, ScenarioRun, Stopped, Window, Wish,
+};
+use crate::answer::significant;
+use crate::document::{Cell, Document, Table};
+use crate::project::{Loaded, Scenario, Signal};
 use crate::quantity::{DisplayUnit, FORCE, PRESSURE, TIME, VOLTAGE, display};
 
-/// Occurrences that are told one by one; more are counted.
+/// Occurrences that are named one by one; more are counted.
 const TOLD: usize = 8;
 
 /// The tables and sentences of `simulate`.
 pub(crate) fn text(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
-    let mut out = String::new();
+    let mut out = Document::default();
     for run in runs {
-        out.push_str(&format!("{}\n", headline(run)));
-        if !run.windows.is_empty() {
-            out.push_str(&format!("{}\n", windows(run)));
-        }
-        if !run.measured.is_empty() {
-            out.push_str(&format!("{}\n", measured(run)));
-        }
+        out.heading(headline(run));
+        out.tables([windows(run, None, None), measured(&[(None, run)])]);
         let checked = run.check.iter().flat_map(check::sentences);
-        for sentence in coarse_sentence(run).into_iter().chain(checked).chain(occurrence_sentences(run)) {
-            out.push_str(&format!("  {sentence}\n"));
-        }
-        out.push('\n');
+        out.sentences(coarse_sentence(run).into_iter().chain(checked).chain(occurrence_sentences(run)));
     }
-    out.push_str(&not_run(loaded, runs));
-    out
+    let below = if runs.is_empty() { "" } else { "\n" };
+    format!("{}{below}{}", out.text(), not_run(loaded, runs))
 }
 
 fn not_run(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
@@ -72,52 +68,105 @@ fn why(stopped: &Stopped) -> String {
 /// Metrics that have a column only where some window has them.
 const RARE: [&str; 2] = ["tracking error peak", "force peak"];
 
-fn windows(run: &ScenarioRun) -> String {
-    let band = run.settling_band_percent;
-    let cells: Vec<[String; METRICS.len()]> =
-        run.windows.iter().map(|(_, metrics)| cells_of(metrics)).collect();
-    let has = |metric: usize| cells.iter().any(|cells| cells[metric] != ABSENT);
+/// What is read off each event of a run, judged by what was wished, beside what was published of it.
+pub(crate) fn windows(run: &ScenarioRun, wish: Option<&Wish>, declared: Option<&Scenario>) -> Table {
+    let cells: Vec<_> = run.windows.iter().map(|(_, metrics)| cells_of(metrics)).collect();
     let always = |name: &str| !run.open_loop && !RARE.contains(&name);
+    let has = |place: &usize| cells.iter().any(|cells| cells[*place] != Cell::Missing);
     let shown: Vec<usize> =
-        (0..METRICS.len()).filter(|metric| always(METRICS[*metric]) || has(*metric)).collect();
-    let head = |metric: &usize| match METRICS[*metric] {
-        "settling" => format!("settling ({band} %)"),
+        (0..METRICS.len()).filter(|place| always(METRICS[*place].word) || has(place)).collect();
+    let head = |place: &usize| match METRICS[*place].word {
+        "settling" => format!("settling ({} %)", run.settling_band_percent),
         "disturbance peak" => "disturbance".to_string(),
         name => name.to_string(),
     };
-    let heads: Vec<String> = std::iter::once("event".to_string()).chain(shown.iter().map(head)).collect();
-    let mut rows = table(&heads.iter().map(String::as_str).collect::<Vec<_>>());
-    for ((window, _), cells) in run.windows.iter().zip(&cells) {
-        let shown = shown.iter().map(|metric| cells[*metric].clone());
-        rows.add_row(std::iter::once(cause_words(window)).chain(shown).collect::<Vec<_>>());
+    let mut rows = Table::new(std::iter::once("event".to_string()).chain(shown.iter().map(head)));
+    for (window, metrics) in &run.windows {
+        rows.row(metrics_row(cause_words(window), &shown, metrics, wish));
+        if let Some((source, cells)) = declared.and_then(|declared| published(declared, window)) {
+            rows.row(published_row(source, &shown, cells));
+        }
     }
-    rows.trim_fmt()
+    rows
 }
 
-fn measured(run: &ScenarioRun) -> String {
-    let mut rows = table(&MEASURED);
-    for overlay in &run.measured {
-        rows.add_row(measured_cells(overlay));
+/// The metrics of one event, those that something was wished of with a mark.
+pub(crate) fn metrics_row(
+    name: String,
+    shown: &[usize],
+    metrics: &Metrics,
+    wish: Option<&Wish>,
+) -> Vec<Cell> {
+    let mut cells = cells_of(metrics);
+    for (place, held) in [
+        (OVERSHOOT, wish.and_then(|wish| wish.overshoot(metrics))),
+        (SETTLING, wish.and_then(|wish| wish.settling(metrics))),
+    ] {
+        if let Some(kept) = held.and_then(|held| held.kept) {
+            cells[place] = std::mem::take(&mut cells[place]).marked(kept);
+        }
     }
-    rows.trim_fmt()
+    std::iter::once(name.into()).chain(shown.iter().map(|place| std::mem::take(&mut cells[*place]))).collect()
 }
 
-/// Heads of the table of what was measured, and its cells.
-pub(crate) const MEASURED: [&str; 5] = ["measured", "as column of", "NRMSE", "RMSE", "rows"];
+/// What was published of an event.
+pub(crate) fn published_row(source: &str, shown: &[usize], mut cells: [Cell; METRICS.len()]) -> Vec<Cell> {
+    std::iter::once(source.into())
+        .chain(shown.iter().map(|place| std::mem::take(&mut cells[*place])))
+        .collect()
+}
 
-pub(crate) fn measured_cells(overlay: &Overlay) -> [String; 5] {
-    let unit = overlay.display_unit();
-    let percent = |ratio: f64| format!("{} %", significant(100.0 * ratio, 3));
+/// What was published of the step that begins this window, and where; `None` where that are no numbers.
+pub(crate) fn published<'a>(
+    declared: &'a Scenario,
+    window: &Window,
+) -> Option<(&'a str, [Cell; METRICS.len()])> {
+    let begins = |step: &&Signal| matches!(step, Signal::Step { at, .. } if *at == window.start_s);
+    let step = declared.reference.iter().find(begins)?;
+    let published = step.published().filter(|_| matches!(window.cause, Cause::ReferenceStep { .. }))?;
+    let known = [(OVERSHOOT, published.overshoot_percent), (SETTLING, published.settling_time)];
+    let mut cells: [Cell; METRICS.len()] = Default::default();
+    for (place, value) in known {
+        cells[place] = value.map_or(Cell::Missing, |value| METRICS[place].cell(value));
+    }
+    let any = known.iter().any(|(_, value)| value.is_some());
+    any.then_some((published.source.as_deref().unwrap_or("published"), cells))
+}
+
+/// What was measured beside what the machine does, under each of several controllers.
+pub(crate) fn measured(runs: &[(Option<&'static str>, &ScenarioRun)]) -> Table {
+    let several = runs.iter().any(|(name, _)| name.is_some());
+    let mut heads = vec!["measured", "as column of", "NRMSE", "RMSE", "rows"];
+    if several {
+        heads.insert(2, "simulated with");
+    }
+    let mut rows = Table::new(heads);
+    let signals = runs.first().map_or(0, |(_, run)| run.measured.len());
+    for index in 0..signals {
+        for (name, run) in runs {
+            let Some(overlay) = run.measured.get(index) else { continue };
+            let mut row = measured_cells(overlay).to_vec();
+            if several {
+                row.insert(2, name.unwrap_or_default().into());
+            }
+            rows.row(row);
+        }
+    }
+    rows
+}
+
+fn measured_cells(overlay: &Overlay) -> [Cell; 5] {
+    let percent = |ratio: f64| Cell::quantity(100.0 * ratio, 3, DisplayUnit { symbol: "%", in_si: 1.0 });
     let rows = match overlay.rows_outside {
         0 => overlay.times_s.len().to_string(),
         outside => format!("{}, {outside} more outside", overlay.times_s.len()),
     };
     [
-        overlay.signal.to_string(),
-        format!("{} `{}`", overlay.file, overlay.column),
-        overlay.nrmse.map_or(ABSENT.to_string(), percent),
-        overlay.rmse.map_or(ABSENT.to_string(), |rmse| unit.text(rmse, 3)),
-        rows,
+        overlay.signal.into(),
+        format!("{} `{}`", overlay.file, overlay.column).into(),
+        overlay.nrmse.map_or(Cell::Missing, percent),
+        overlay.rmse.map_or(Cell::Missing, |rmse| Cell::quantity(rmse, 3, overlay.display_unit())),
+        rows.into(),
     ]
 }
 
@@ -132,51 +181,6 @@ pub(crate) fn cause_words(window: &Window) -> String {
         Cause::LoadMotion => format!("load motion at {at}"),
         Cause::ExternalForce => format!("force from outside at {at}"),
     }
-}
-
-/// Names and cells of the metrics, in one order.
-pub(crate) const METRICS: [&str; 9] = [
-    "overshoot",
-    "rise",
-    "settling",
-    "disturbance peak",
-    "tracking error peak",
-    "force peak",
-    "steady-state error",
-    "control peak",
-    "control rms",
-];
-
-/// In place of a metric that there is not.
-pub(crate) const ABSENT: &str = "-";
-
-/// Each metric with its unit; [`ABSENT`] where there is none.
-pub(crate) fn cells_of(metrics: &Metrics) -> [String; METRICS.len()] {
-    let cell = |measured: Measured, digits: usize, unit: &str| {
-        measured.map_or(ABSENT.to_string(), |value| format!("{} {unit}", significant(value, digits)))
-    };
-    let settling = match metrics.settling_time_s {
-        Ok(time_s) => format!("{} s", significant(time_s, 3)),
-        Err(NOT_SETTLED) => "not settled".to_string(),
-        Err(_) => ABSENT.to_string(),
-    };
-    let error = metrics.steady_state_error_n.map(small_as_zero);
-    [
-        cell(metrics.overshoot_percent, 3, "%"),
-        cell(metrics.rise_time_s, 3, "s"),
-        settling,
-        cell(metrics.disturbance_peak_n, 4, "N"),
-        cell(metrics.tracking_error_peak_n, 4, "N"),
-        cell(metrics.force_peak_n, 4, "N"),
-        cell(error, 2, "N"),
-        cell(metrics.control_peak_v, 3, "V"),
-        cell(metrics.control_rms_v, 3, "V"),
-    ]
-}
-
-/// A steady error below a millinewton is what the method leaves, not what the loop does.
-pub(crate) fn small_as_zero(error_n: f64) -> f64 {
-    if error_n.abs() < 1e-3 { 0.0 } else { error_n }
 }
 
 /// What the figures of a long scenario do not show.
@@ -242,7 +246,7 @@ pub(crate) fn compare_text(comparison: &Comparison<'_>, asked: &[Loaded]) -> Str
     }
     for name in comparison.scenarios() {
         let columns: Vec<Option<&ScenarioRun>> = comparison.runs_of(name).collect();
-        out.push_str(&format!("\n{name}\n{}\n", side_by_side(&columns)));
+        out.push_str(&format!("\n{name}\n{}\n", side_by_side(&columns).text()));
         for (number, run) in columns.iter().enumerate() {
             for exceeded in run.iter().flat_map(|run| &run.exceeded) {
                 out.push_str(&format!("   {}: {}\n", letter(number), exceeded_words(exceeded)));
@@ -256,27 +260,24 @@ fn letter(number: usize) -> String {
     char::from_u32('A' as u32 + number as u32 % 26).unwrap_or('?').to_string()
 }
 
-fn side_by_side(columns: &[Option<&ScenarioRun>]) -> String {
-    let letters: Vec<String> = (0..columns.len()).map(letter).collect();
-    let mut head = vec!["event", "metric"];
-    head.extend(letters.iter().map(String::as_str));
-    let mut rows = table(&head);
+fn side_by_side(columns: &[Option<&ScenarioRun>]) -> Table {
+    let letters = (0..columns.len()).map(letter);
+    let mut rows = Table::grouped_by("event", std::iter::once("metric".to_string()).chain(letters));
     let most = columns.iter().flatten().map(|run| run.windows.len()).max().unwrap_or(0);
     for index in 0..most {
         let windows: Vec<Option<&(Window, Metrics)>> =
             columns.iter().map(|run| run.and_then(|run| run.windows.get(index))).collect();
         let Some((first, _)) = windows.iter().flatten().next() else { continue };
-        let mut name = cause_words(first);
-        let cells: Vec<Option<[String; METRICS.len()]>> =
+        rows.group(cause_words(first));
+        let cells: Vec<_> =
             windows.iter().map(|window| window.map(|(_, metrics)| cells_of(metrics))).collect();
-        for (row, metric) in METRICS.iter().enumerate() {
-            let values = cells.iter().map(|cells| cells.as_ref().map_or(ABSENT, |cells| cells[row].as_str()));
-            let values: Vec<String> = values.map(str::to_string).collect();
-            if values.iter().all(|value| value == ABSENT) {
-                continue;
+        for (place, metric) in METRICS.iter().enumerate() {
+            let of = |cells: &Option<[Cell; METRICS.len()]>| cells.as_ref().map(|cells| cells[place].clone());
+            let values: Vec<Cell> = cells.iter().map(|cells| of(cells).unwrap_or_default()).collect();
+            if values.iter().any(|value| *value != Cell::Missing) {
+                rows.row(std::iter::once(metric.word.into()).chain(values));
             }
-            rows.add_row([vec![std::mem::take(&mut name), (*metric).to_string()], values].concat());
         }
     }
-    rows.trim_fmt()
+    rows
 }

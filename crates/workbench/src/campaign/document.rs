@@ -5,45 +5,34 @@ use super::Wanted;
 use super::{Draw, Plan};
 use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
 use super::{QUANTILES, Spread};
-use crate::answer::{significant, table};
+use crate::answer::significant;
+use crate::document::{Cell, Table};
 use crate::project::Loaded;
-use crate::simulate::{self, ScenarioRun, cause_words};
+use crate::simulate::{self, ScenarioRun, cause_words, metric_of};
 
-/// Refused, ended and worst runs that are told one by one.
+/// Refused and ended runs that are named one by one.
 const TOLD: usize = 6;
-
-/// Words and units of [`METRIC_NAMES`].
-const METRIC_WORDS: [&str; 9] = [
-    "overshoot (%)",
-    "rise (s)",
-    "settling (s)",
-    "disturbance peak (N)",
-    "steady-state error (N)",
-    "control peak (V)",
-    "control rms (V)",
-    "tracking error peak (N)",
-    "force peak (N)",
-];
 
 const LUMP_WORDS: [&str; 3] = ["K_H (N/m)", "K_qU (m3/(s.V))", "K_c (m3/(s.Pa))"];
 
 /// A metric in words, with its unit.
-pub(crate) fn metric_words(metric: usize) -> &'static str {
-    METRIC_WORDS.get(metric).copied().unwrap_or_default()
+fn metric_words(metric: usize) -> String {
+    let known = METRIC_NAMES.get(metric).and_then(|key| metric_of(key));
+    known.map_or(String::new(), |metric| format!("{} ({})", metric.word, metric.unit))
 }
 
 /// One of [`LUMP_NAMES`] as it is written in equations, with its unit.
-pub(crate) fn lump_words(lump: usize) -> &'static str {
+fn lump_words(lump: usize) -> &'static str {
     LUMP_WORDS.get(lump).copied().unwrap_or_default()
 }
 
-/// So many runs.
+/// A number of runs.
 pub(crate) fn counted(runs: usize) -> String {
     if runs == 1 { "1 run".to_string() } else { format!("{runs} runs") }
 }
 
 /// How many of the driven runs are left out of the quantiles of a metric because they have no such number; `None` where all have one.
-pub(crate) fn without(metric: usize, spread: Option<Spread>, driven: usize) -> Option<String> {
+fn without(metric: usize, spread: Option<Spread>, driven: usize) -> Option<String> {
     let missing = spread.map_or(driven, |spread| spread.missing);
     let words = match (METRIC_NAMES.get(metric), missing) {
         (Some(&"settling_time_s"), 1) => "never settles",
@@ -83,7 +72,7 @@ pub(crate) fn text(plan: &Plan, (wanted, kept): (Wanted, bool), rows: usize, sum
         ));
     }
     if rows > 0 {
-        out.push_str(&format!("\n{}\n\n{}\n", metrics(plan, summary), lumps(plan, summary)));
+        out.push_str(&format!("\n{}\n\n{}\n", metrics(plan, summary).text(), lumps(plan, summary).text()));
     }
     if let Some(worst) = summary.worst.first() {
         out.push_str(&format!(
@@ -94,53 +83,49 @@ pub(crate) fn text(plan: &Plan, (wanted, kept): (Wanted, bool), rows: usize, sum
     out
 }
 
-fn heads(first: [&'static str; 2], last: &'static str) -> Vec<String> {
+/// The spread of each metric, event by event.
+pub(crate) fn metrics(plan: &Plan, summary: &Summary) -> Table {
     let quantiles = QUANTILES.map(|percent| format!("{percent} %"));
-    let names = first.into_iter().filter(|name| !name.is_empty()).map(str::to_string);
-    names.chain(quantiles).chain([last.to_string()]).collect()
-}
-
-fn metrics(plan: &Plan, summary: &Summary) -> String {
-    let heads = heads(["event", "metric"], "worst (run)");
-    let driven = summary.driven();
-    let mut rows = table(&heads.iter().map(String::as_str).collect::<Vec<_>>());
+    let heads = std::iter::once("metric".to_string()).chain(quantiles).chain(["worst (run)".to_string()]);
+    let mut rows = Table::grouped_by("event", heads);
     for (window, spreads) in plan.windows().iter().zip(&summary.metrics) {
-        let mut name = cause_words(window);
+        rows.group(cause_words(window));
         for metric in meaningful(window, plan.is_open_loop()) {
-            let missing =
-                without(metric, spreads[metric], driven).map_or(String::new(), |text| format!("; {text}"));
-            let mut cells = vec![std::mem::take(&mut name), format!("{}{missing}", metric_words(metric))];
-            cells.extend(spread_cells(spreads[metric]));
-            rows.add_row(cells);
+            let missing = without(metric, spreads[metric], summary.driven());
+            let missing = missing.map_or(String::new(), |text| format!("; {text}"));
+            let name = Cell::from(format!("{}{missing}", metric_words(metric)));
+            rows.row(std::iter::once(name).chain(spread_cells(spreads[metric])));
         }
     }
-    rows.trim_fmt()
+    rows
 }
 
-/// Quantiles, and the worst with its run; dashes where no run has such a number.
-fn spread_cells(spread: Option<Spread>) -> Vec<String> {
-    let Some(spread) = spread else { return vec!["-".to_string(); QUANTILES.len() + 1] };
+/// Quantiles, and the worst with its run; nothing where no run has such a number.
+fn spread_cells(spread: Option<Spread>) -> Vec<Cell> {
+    let Some(spread) = spread else { return vec![Cell::Missing; QUANTILES.len() + 1] };
     let (value, run) = spread.worst;
-    let worst = format!("{} ({run})", significant(value, 4));
-    spread.quantiles.iter().map(|value| significant(*value, 4)).chain([worst]).collect()
+    let worst = format!("{} ({run})", significant(value, 4)).into();
+    spread.quantiles.iter().map(|value| Cell::number(*value, 4)).chain([worst]).collect()
 }
 
-fn lumps(plan: &Plan, summary: &Summary) -> String {
-    let mut rows = table(&["visited", "least", "median", "greatest", "box of [uncertainty]", "runs outside"]);
-    for (index, spread) in summary.lumps.iter().enumerate() {
-        let Some(spread) = spread else { continue };
+/// The parameters of the linear models that were visited, beside the box for which the controller is judged.
+pub(crate) fn lumps(plan: &Plan, summary: &Summary) -> Table {
+    let row = |(index, spread): (usize, &Option<Spread>)| {
+        let spread = (*spread)?;
         let number = |value: f64| significant(value, 4);
-        let bounds = plan.bounds(LUMP_NAMES[index]);
-        rows.add_row([
-            lump_words(index).to_string(),
-            number(spread.extremes[0]),
-            number(spread.quantiles[2]),
-            number(spread.extremes[1]),
-            bounds.map_or("-".to_string(), |[low, high]| format!("{} to {}", number(low), number(high))),
-            summary.outside[index].map_or("-".to_string(), |count| count.to_string()),
-        ]);
-    }
-    rows.trim_fmt()
+        let bounds =
+            plan.bounds(LUMP_NAMES[index]).map(|[low, high]| format!("{} to {}", number(low), number(high)));
+        Some([
+            lump_words(index).into(),
+            Cell::number(spread.extremes[0], 4),
+            Cell::number(spread.quantiles[2], 4),
+            Cell::number(spread.extremes[1], 4),
+            bounds.into(),
+            summary.outside[index].map(|count| count.to_string()).into(),
+        ])
+    };
+    Table::new(["visited", "least", "median", "greatest", "box of [uncertainty]", "runs outside"])
+        .with(summary.lumps.iter().enumerate().filter_map(row))
 }
 
 /// One run: its numbers as settings, and what `simulate` says of it.

@@ -1,0 +1,86 @@
+//! The metrics of an event: words, units and digits of each, for tables and for answers.
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::{Metrics, NOT_SETTLED};
+use crate::document::Cell;
+use crate::quantity::DisplayUnit;
+
+/// How a metric is told.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Metric {
+    /// Its name in answers.
+    pub(crate) key: &'static str,
+    /// For people.
+    pub(crate) word: &'static str,
+    /// Its unit, that of the answer.
+    pub(crate) unit: &'static str,
+    digits: usize,
+}
+
+const fn metric(key: &'static str, word: &'static str, unit: &'static str, digits: usize) -> Metric {
+    Metric { key, word, unit, digits }
+}
+
+/// In the order of [`Metrics::named`].
+pub(crate) const METRICS: [Metric; 9] = [
+    metric("overshoot_percent", "overshoot", "%", 3),
+    metric("rise_time_s", "rise", "s", 3),
+    metric("settling_time_s", "settling", "s", 3),
+    metric("disturbance_peak_n", "disturbance peak", "N", 4),
+    metric("tracking_error_peak_n", "tracking error peak", "N", 4),
+    metric("force_peak_n", "force peak", "N", 4),
+    metric("steady_state_error_n", "steady-state error", "N", 2),
+    metric("control_peak_v", "control peak", "V", 3),
+    metric("control_rms_v", "control rms", "V", 3),
+];
+
+/// Places of two metrics among all of them.
+pub(crate) const OVERSHOOT: usize = 0;
+pub(crate) const SETTLING: usize = 2;
+
+/// The metric with this name in answers.
+pub(crate) fn metric_of(key: &str) -> Option<&'static Metric> {
+    METRICS.iter().find(|metric| metric.key == key)
+}
+
+impl Metric {
+    /// A value of it.
+    pub(crate) fn cell(&self, value: f64) -> Cell {
+        let small = self.key == "steady_state_error_n";
+        let unit = DisplayUnit { symbol: self.unit, in_si: 1.0 };
+        Cell::quantity(if small { small_as_zero(value) } else { value }, self.digits, unit)
+    }
+}
+
+/// Each metric with its unit.
+pub(crate) fn cells_of(metrics: &Metrics) -> [Cell; METRICS.len()] {
+    let named = metrics.named();
+    std::array::from_fn(|place| match named[place].1 {
+        Ok(value) => METRICS[place].cell(value),
+        Err(NOT_SETTLED) if place == SETTLING => "not settled".into(),
+        Err(_) => Cell::Missing,
+    })
+}
+
+/// A steady error below a millinewton is what the method leaves, not what the loop does.
+fn small_as_zero(error_n: f64) -> f64 {
+    if error_n.abs() < 1e-3 { 0.0 } else { error_n }
+}
+
+/// The metrics in an answer: of each its value, and the reason where there is none.
+pub(crate) struct MetricsRow<'a>(pub(crate) &'a Metrics);
+
+impl Serialize for MetricsRow<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for (place, (name, measured)) in self.0.named().into_iter().enumerate() {
+            map.serialize_entry(name, &measured.ok())?;
+            map.serialize_entry(&format!("{name}_reason"), &measured.err())?;
+            if place == SETTLING {
+                map.serialize_entry("settling_band_percent", &self.0.settling_band_percent)?;
+            }
+        }
+        map.end()
+    }
+}
