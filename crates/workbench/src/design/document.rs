@@ -79,6 +79,12 @@ fn repaired(repair: &Repair) -> Result<Document, LinearError> {
 pub(crate) fn costs(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
     out.section("What stands against one another", conflicts(view));
+    if let DesignStatus::Infeasible(relaxation) = &view.design.status {
+        out.explanation(format!(
+            "With every limit {} dB wider these are all reached at once: to improve one of them costs another.",
+            significant(relaxation.relaxation_db, 3)
+        ));
+    }
     let binding = limits(
         view,
         view.design

@@ -68,10 +68,11 @@ fn why(stopped: &Stopped) -> String {
 /// Metrics that have a column only where some window has them.
 const RARE: [&str; 2] = ["tracking error peak", "force peak"];
 
-/// What is read off each event of a run, judged by what was wished, beside what was published of it.
+/// What is read off each event of a run, judged by what was wished; beside what was published of it, where only metrics that some event has
+/// are shown.
 pub(crate) fn windows(run: &ScenarioRun, wish: Option<&Wish>, declared: Option<&Scenario>) -> Table {
     let cells: Vec<_> = run.windows.iter().map(|(_, metrics)| cells_of(metrics)).collect();
-    let always = |name: &str| !run.open_loop && !RARE.contains(&name);
+    let always = |name: &str| declared.is_none() && !run.open_loop && !RARE.contains(&name);
     let has = |place: &usize| cells.iter().any(|cells| cells[*place] != Cell::Missing);
     let shown: Vec<usize> =
         (0..METRICS.len()).filter(|place| always(METRICS[*place].word) || has(place)).collect();

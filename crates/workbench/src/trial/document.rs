@@ -9,9 +9,14 @@ use crate::quantity::DisplayUnit;
 pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Document {
     let mut out = Document::default();
     out.heading(format!("On the machine: {}", agreement_word(trial.agreement())));
-    out.explanation(
-        "The nonlinear rig under this controller: a step of the reference by a tenth of the force that the supply can push with, beside the same step of the linear loop.",
-    );
+    let did = match trial.agreement() {
+        Agreement::Agrees => "agrees with the linear loop",
+        Agreement::Differs => "differs from the linear loop",
+        Agreement::Contradicts => "contradicts the verdict",
+    };
+    out.explanation(format!(
+        "The machine {did}. The nonlinear rig under this controller: a step of the reference by a tenth of the force that the supply can push with, beside the same step of the linear loop."
+    ));
     out.table(
         Table::new(["machine", "", "overshoot", "linear", "settles in", "linear"])
             .with(trial.runs.iter().map(cells)),
