@@ -74,7 +74,7 @@ pub(crate) enum Command {
         #[arg(long, value_name = "FILE")]
         save: Option<PathBuf>,
     },
-    /// Find a controller and prefilter that keep to every specification, for every plant; Ctrl-C gives the best so far
+    /// Find a controller and prefilter that satisfy every specification, for every plant; Ctrl-C gives the best so far
     Design {
         #[command(flatten)]
         common: Common,

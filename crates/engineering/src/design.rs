@@ -1,4 +1,4 @@
-//! The design of a controller and its prefilter: from the project to a law that keeps to every specification, beside the one that was
+//! The design of a controller and its prefilter: from the project to a law that satisfies every specification, beside the one that was
 //! published, and how both are told.
 
 mod comparison;
@@ -160,7 +160,7 @@ impl ProjectDesign {
         self.trial.as_ref().map_or(Agreement::Agrees, Trial::agreement)
     }
 
-    /// Whether the designed controller keeps to every specification.
+    /// Whether the designed controller satisfies every specification.
     pub fn is_met(&self) -> bool {
         self.designed.view.audit.verdict == Verdict::Met && self.bears_its_delay
     }

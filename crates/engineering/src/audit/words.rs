@@ -118,7 +118,7 @@ pub fn finding_sentence(
 ) -> String {
     let Some(worst) = &finding.worst else {
         return match finding.verdict {
-            Verdict::Violated => format!("{name} is violated: an unstable loop keeps to no specification"),
+            Verdict::Violated => format!("{name} is violated: an unstable loop satisfies no specification"),
             _ => format!("{name}: nothing could be judged"),
         };
     };

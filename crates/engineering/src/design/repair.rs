@@ -27,7 +27,7 @@ use phea_dynamics::watch::{Watch, part};
 /// What became of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RepairStatus {
-    /// The controller now keeps to every specification over the family, and with the plant that was taken in.
+    /// The controller now satisfies every specification over the family, and with the plant that was taken in.
     Met,
     /// No controller that was tried does; one does with every limit this much wider.
     Infeasible {

@@ -25,7 +25,7 @@ pub fn status_key(view: &ProjectDesign) -> &'static str {
 /// The same for people, with what it means.
 pub fn status_sentence(view: &ProjectDesign) -> String {
     let verdict =
-        if view.is_met() { "keeps to every specification" } else { "does not keep to every specification" };
+        if view.is_met() { "satisfies every specification" } else { "does not satisfy every specification" };
     if view.stopped {
         return format!("stopped: this is the best controller found so far, and it {verdict}");
     }
@@ -34,9 +34,9 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
             "not proven: the controller satisfies every specification over the family, which does not count all that is declared"
                 .to_string()
         }
-        DesignStatus::Met => "met: the controller keeps to every specification".to_string(),
+        DesignStatus::Met => "met: the controller satisfies every specification".to_string(),
         DesignStatus::Infeasible(relaxation) => format!(
-            "infeasible: no controller that was tried{} keeps to every specification; with every limit {} dB wider one does",
+            "infeasible: no controller that was tried{} satisfies every specification; with every limit {} dB wider one does",
             tried(&view.options.controller),
             significant(relaxation.relaxation_db, 3)
         ),

@@ -217,7 +217,7 @@ fn feasibility(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<String
         if let Feasibility::Nowhere { collisions } = &one.bounds.feasibility {
             let frequency = frequency_number(one.frequency_rad_per_s);
             sentences.push(format!(
-                "No loop keeps to all specifications at {frequency} rad/s, whatever its controller."
+                "No loop satisfies all specifications at {frequency} rad/s, whatever its controller."
             ));
             sentences.extend(collisions.iter().map(sentence));
         }

@@ -136,7 +136,7 @@ fn spread(number: usize, specification: &Specification) -> Markup {
             },
             LimitOrder::Crossed { from_rad_per_s, excess_db, frequency_rad_per_s } => html! {
                 div.callout.bad-edge { p {
-                    "No loop keeps to specification " (number) ": from " (frequency_number(from_rad_per_s))
+                    "No loop satisfies specification " (number) ": from " (frequency_number(from_rad_per_s))
                     " rad/s on its lower limit is above its upper one, by " (decibels(excess_db)) " dB "
                     (frequency_words(frequency_rad_per_s)) "."
                 } }
@@ -190,7 +190,7 @@ fn margin_sentence(number: usize, margins: &GuaranteedMargins) -> String {
         angle => format!("the phase margin is at least {}°", significant(angle.to_degrees(), 3)),
     };
     format!(
-        "A stable loop that keeps to specification {number} stays stable while its gain grows {growth} or falls {fall}; {phase}, and L stays at least {} away from -1.",
+        "A stable loop that satisfies specification {number} stays stable while its gain grows {growth} or falls {fall}; {phase}, and L stays at least {} away from -1.",
         significant(margins.modulus, 3)
     )
 }

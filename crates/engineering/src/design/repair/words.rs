@@ -36,7 +36,7 @@ fn whole(view: Option<&ProjectAudit>) -> String {
     let told = match view {
         None => return format!("taken in was the plant of the rig itself: {every}"),
         Some(view) if view.audit.verdict == Verdict::Met => {
-            "the controller keeps to every specification with those too".to_string()
+            "the controller satisfies every specification with those too".to_string()
         }
         Some(view) if view.audit.stability.verdict != Verdict::Met => {
             stability_sentence(&view.audit.stability, &view.names)
@@ -68,17 +68,17 @@ fn outcome(repair: &Repair, found: &ProjectDesign) -> String {
         RepairStatus::Met => {
             let crossover = crossover_of(found)
                 .map_or(String::new(), |crossover| format!(", and crosses over at {}", frequency(crossover)));
-            format!("that plant was taken in: the controller keeps to every specification {both}{crossover}")
+            format!("that plant was taken in: the controller satisfies every specification {both}{crossover}")
         }
         RepairStatus::Infeasible { relaxation_db } => format!(
-            "that plant was taken in: no controller that was tried keeps to every specification {both}; with every limit {} dB wider one does",
+            "that plant was taken in: no controller that was tried satisfies every specification {both}; with every limit {} dB wider one does",
             significant(relaxation_db, 3)
         ),
         RepairStatus::NotStabilised => {
             format!("that plant was taken in: no controller that was tried is stable {both}")
         }
         RepairStatus::NotConverged | RepairStatus::Stopped | RepairStatus::NothingToTakeIn => format!(
-            "that plant was taken in: the search for a controller that keeps to every specification {both} has not converged; another `design.seed` may find one"
+            "that plant was taken in: the search for a controller that satisfies every specification {both} has not converged; another `design.seed` may find one"
         ),
     }
 }
@@ -172,7 +172,7 @@ fn nearest(found: &ProjectDesign) -> Option<String> {
 /// A machine with waves that contradicts, though its plant keeps to everything in the loop.
 pub(super) fn stable_with_waves(run: &Run) -> String {
     format!(
-        "the linear loop keeps to every specification with waves in its plant too, and {} contradicts it all the same: that is none of the waves",
+        "the linear loop satisfies every specification with waves in its plant too, and {} contradicts it all the same: that is none of the waves",
         run.what
     )
 }

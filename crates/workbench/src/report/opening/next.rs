@@ -89,9 +89,9 @@ fn is_violated(view: &ProjectAudit) -> bool {
 /// `the given controller violates 1 robust stability by 19.2 dB at 1304 rad/s, and 2 more specifications`
 fn given_words(view: &ProjectAudit) -> String {
     match view.audit.verdict {
-        Verdict::Met => return "the given controller keeps to every specification".to_string(),
+        Verdict::Met => return "the given controller satisfies every specification".to_string(),
         Verdict::NotProven => {
-            return "the given controller is not proven to keep to the specifications".to_string();
+            return "the given controller is not proven to satisfy the specifications".to_string();
         }
         Verdict::Violated => {}
     }
@@ -106,7 +106,7 @@ fn given_words(view: &ProjectAudit) -> String {
         .collect();
     violated.sort_by(|one, other| one.1.margin_db.total_cmp(&other.1.margin_db));
     let Some((index, worst)) = violated.first() else {
-        return "the given controller does not keep to every specification".to_string();
+        return "the given controller does not satisfy every specification".to_string();
     };
     let more = match violated.len() - 1 {
         0 => String::new(),
@@ -134,7 +134,7 @@ fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) 
 fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
     match &view.design.status {
         DesignStatus::Met if view.agreement() == Agreement::Contradicts => format!(
-            "do not use the designed one (`{DESIGNED_PROJECT}`) before the machine agrees: it keeps to every specification over the family, and the machine contradicts it; `phea design` goes on from there with the plant that does, or says what cannot be had"
+            "do not use the designed one (`{DESIGNED_PROJECT}`) before the machine agrees: it satisfies every specification over the family, and the machine contradicts it; `phea design` goes on from there with the plant that does, or says what cannot be had"
         ),
         DesignStatus::Met if given_is_met => {
             format!("keep it, or take the designed one of `{DESIGNED_PROJECT}` where its numbers are better")
@@ -143,7 +143,7 @@ fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
             "the designed one of `{DESIGNED_PROJECT}` satisfies every specification over the family, but what is not counted leaves the verdict open"
         ),
         DesignStatus::Met => {
-            format!("use the designed one (`{DESIGNED_PROJECT}`), which keeps to every specification")
+            format!("use the designed one (`{DESIGNED_PROJECT}`), which satisfies every specification")
         }
         DesignStatus::Infeasible(relaxation) => infeasible_words(view, relaxation),
         DesignStatus::NotConverged { .. } => {
@@ -165,7 +165,7 @@ fn infeasible_words(view: &ProjectDesign, relaxation: &Relaxation) -> String {
     }
     let which = if names.is_empty() { "the specifications".to_string() } else { names.join(" or ") };
     format!(
-        "ease {which} by {} dB, or shrink the family: no controller that was tried keeps to all of them at once",
+        "ease {which} by {} dB, or shrink the family: no controller that was tried satisfies all of them at once",
         significant(relaxation.relaxation_db, 3)
     )
 }
