@@ -4,13 +4,14 @@
 mod alone;
 mod plant;
 mod words;
+pub(crate) use words::rounded;
 pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
 pub use alone::outside;
 pub use plant::{NamedPlant, PlantNames};
 pub use words::{
     closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words, margin_words, meaning,
-    stability_sentence, verdict_key, verdict_words, worst_at_design,
+    stability_reason, stability_sentence, verdict_key, verdict_words, worst_at_design,
 };
 
 use phea_dynamics::portable;
@@ -164,7 +165,7 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
         return single.then_some(Reached { magnitude, limit: upper, side: LimitSide::Only });
     }
     let response = problem.response(&problem.member(&worst.plant)?, frequency)?;
-    let magnitude = portable::magnitude(finding.requirement.closed_loop(&response));
+    let magnitude = portable::magnitude(finding.requirement.closed_loop().response(&response));
     let (limit, side) = match lower {
         None => (upper, LimitSide::Only),
         Some(lower) => {

@@ -7,4 +7,3 @@ mod malformed;
 mod mutation;
 mod plausible;
 mod reading;
-mod schema;

@@ -8,7 +8,6 @@
 use phea_dynamics::watch::{Stopped, Watch, part};
 
 use crate::sampled::SampledPlants;
-use crate::specification::Requirement;
 use crate::stability::{FamilyStability, StabilityAudit};
 use crate::verification::{
     Audit, AuditProblem, Evidence, PlantPoint, SpecificationFinding, StabilityFinding, Verdict, audit_among,
@@ -147,7 +146,7 @@ fn is_unstable(stability: &StabilityFinding) -> bool {
 /// The magnitudes of an unstable loop are those of no response: it keeps to no specification, by no margin. Of a loop that is not known to
 /// be stable, they may be.
 fn without_stability(finding: &mut SpecificationFinding, stability: &StabilityFinding) {
-    let tracks = matches!(finding.requirement, Requirement::Tracking { .. });
+    let tracks = finding.requirement.is_tracking();
     match stability.verdict {
         Verdict::Met => {}
         Verdict::Violated if !is_unstable(stability) && !tracks => {}

@@ -1,5 +1,6 @@
 //! Specifications: a closed-loop magnitude, its limit over frequency, where bounds are drawn and where it must hold.
 
+mod closed_loop;
 mod limit;
 mod margin;
 mod minimum;
@@ -8,6 +9,8 @@ mod time_domain;
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
+pub use closed_loop::ClosedLoop;
+pub(crate) use closed_loop::PlantPath;
 pub use limit::{Limit, LimitError, LimitTable};
 pub use margin::{
     DelayGuarantee, GuaranteedMargins, MarginError, delay_margin_limit, delay_margin_limit_table,
@@ -63,19 +66,21 @@ pub struct LoopResponse {
 }
 
 impl Requirement {
-    /// What it limits, of this loop: T, S, P S, G S, Pd S or F P G S, with S = 1/(1+L).
-    pub fn closed_loop(&self, response: &LoopResponse) -> Complex64 {
-        let sensitivity = 1.0 / (1.0 + response.open_loop());
+    /// Which closed loop it limits.
+    pub fn closed_loop(&self) -> ClosedLoop {
         match self {
-            Requirement::RobustStability(_) => response.open_loop() * sensitivity,
-            Requirement::Sensitivity(_) => sensitivity,
-            Requirement::PlantInputDisturbance(_) => response.plant * sensitivity,
-            Requirement::ControlEffort(_) => response.controller * sensitivity,
-            Requirement::LoadMotion(_) => response.load_motion * sensitivity,
-            Requirement::Tracking { .. } => {
-                response.prefilter * response.plant * response.controller * sensitivity
-            }
+            Requirement::RobustStability(_) => ClosedLoop::RobustStability,
+            Requirement::Sensitivity(_) => ClosedLoop::Sensitivity,
+            Requirement::PlantInputDisturbance(_) => ClosedLoop::PlantInputDisturbance,
+            Requirement::ControlEffort(_) => ClosedLoop::ControlEffort,
+            Requirement::LoadMotion(_) => ClosedLoop::LoadMotion,
+            Requirement::Tracking { .. } => ClosedLoop::Tracking,
         }
+    }
+
+    /// Whether it limits what follows the reference, which alone has a lower limit.
+    pub fn is_tracking(&self) -> bool {
+        self.closed_loop() == ClosedLoop::Tracking
     }
 
     /// The lower limit, of tracking alone, and the upper one.
@@ -136,7 +141,7 @@ impl Specification {
         let below = |limit: &Limit, value: Complex64| {
             Some(decibel(limit.magnitude(frequency_rad_per_s)? / portable::magnitude(value)))
         };
-        let value = self.requirement.closed_loop(response);
+        let value = self.requirement.closed_loop().response(response);
         match self.requirement.limits() {
             (Some(lower), upper) => Some(below(upper, value)?.min(-below(lower, value)?)),
             (None, upper) => below(upper, value),

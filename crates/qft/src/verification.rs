@@ -21,6 +21,7 @@ pub(crate) use remark::rounded;
 
 use crate::family::{Extent, Family};
 use crate::specification::Requirement;
+use crate::stability::{Instability, Irresolution};
 
 /// A verdict. `Met` means that the margin is not below the negative of the tolerance, everywhere that was looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,8 +93,47 @@ pub struct StabilityFinding {
     pub plant: PlantPoint,
     /// How near the family comes to -1; `None` unless it is stable.
     pub closest_approach: Option<ClosestApproach>,
-    /// How it was decided, in words, for a reader.
-    pub reason: String,
+    /// How it was decided.
+    pub reason: StabilityReason,
+}
+
+/// How the stability of a family was decided.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StabilityReason {
+    /// All plants that were looked at are stable.
+    AllStable {
+        /// How many of them are members.
+        members: usize,
+        /// How many are corners of the box.
+        corners: usize,
+        /// How many lie between these, because modes beyond half of the sampling rate fold.
+        between: usize,
+        /// How each was judged.
+        method: StabilityMethod,
+        /// The smallest |1 + L| that was found.
+        closest: Option<ClosestApproach>,
+    },
+    /// A plant is not.
+    Unstable(Instability),
+    /// The prefilter itself is not.
+    UnstablePrefilter,
+    /// Of a plant it could not be resolved.
+    NotResolved(Irresolution),
+}
+
+/// How the stability of a plant is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StabilityMethod {
+    /// By the closed-loop poles.
+    Poles,
+    /// By the turns of the characteristic function.
+    Turns,
+    /// By Nyquist's count, 1 + L of the nominal plant enclosed from each frequency to the next.
+    Enclosed,
+    /// By Nyquist's count on points of the responses.
+    Points,
+    /// The same on the points of a measurement.
+    MeasuredPoints,
 }
 
 /// The smallest |1 + L| over family and frequency, the inverse of the largest sensitivity.

@@ -12,7 +12,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::stability::{FamilyStability, family_stability};
-use phea_qft::verification::{Evidence, PlantPoint, Verdict};
+use phea_qft::verification::{Evidence, PlantPoint, StabilityReason, Verdict};
 
 /// 1e-3/(s^2 + d s + 1) with d = (p - 0.3)^2 + least: among members at p = 0, 0.5 and 1 nothing shows how small d becomes.
 fn dip(least: f64, extent: Extent) -> Family {
@@ -134,7 +134,7 @@ fn an_unstable_prefilter_makes_the_whole_unstable() {
     let unstable = TransferFunction::from_factors(-1.0, vec![], vec![Complex64::new(1.0, 0.0)]).unwrap();
     let found = audited(&dip(0.1, Extent::Box), vec![Element::General(unstable)], Timing::default());
     assert_eq!((found.finding.verdict, found.delay_margin), (Verdict::Violated, None));
-    assert!(found.finding.reason.contains("prefilter"));
+    assert_eq!(found.finding.reason, StabilityReason::UnstablePrefilter);
 }
 
 /// The same audit twice gives the same bits.

@@ -7,6 +7,7 @@ mod campaign;
 mod coupled_plant;
 mod derived_statements;
 mod design_contract;
+mod design_explanation;
 mod design_printing;
 mod design_truth;
 mod exceeded_limits;

@@ -1,5 +1,7 @@
 //! What can be said of a problem whatever a search finds: impossibilities, and what will be hard.
 
+mod words;
+
 use phea_qft::design::{Finding, Severity};
 use phea_qft::verification::PlantPoint;
 
@@ -24,7 +26,7 @@ impl Explanation {
     /// Of what a diagnosis found.
     pub fn of(finding: &Finding) -> Explanation {
         Explanation {
-            sentence: finding.to_string(),
+            sentence: words::Words(finding).to_string(),
             is_impossible: finding.severity() == Severity::Impossible,
             frequency_rad_per_s: frequency(finding),
             plants: plants(finding),

@@ -5,7 +5,6 @@ use phea_qft::design::{
     ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice, gain_range,
 };
 use phea_qft::loop_shaping::{Part, Structure};
-use phea_qft::specification::Requirement;
 use phea_qft::verification::TOLERANCE_DB;
 
 use crate::control::{ControlError, element};
@@ -72,9 +71,7 @@ fn prefilter_choice(
     given: &RobustProblem,
     maximum_order: u32,
 ) -> Result<PrefilterChoice, ProcedureError> {
-    let tracks = |one: &phea_qft::specification::Specification| {
-        matches!(one.requirement, Requirement::Tracking { .. })
-    };
+    let tracks = |one: &phea_qft::specification::Specification| one.requirement.is_tracking();
     let is_designed = given.specifications.iter().any(tracks) && maximum_order > 0;
     let is_kept = setup.prefilter.is_some() && (!given.has_controller || !is_designed);
     Ok(match &setup.prefilter {

@@ -8,27 +8,17 @@ use super::ceiling::Candidate;
 use super::fill::Edge;
 use super::inequality::{Form, Plant};
 use super::power_of_two::power_of_two;
-use crate::specification::{Limit, Requirement};
+use crate::specification::{ClosedLoop, Limit, PlantPath, Requirement};
 use crate::template::{Template, TemplatePoint};
 
 /// A requirement at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rule {
-    kind: Kind,
+    closed_loop: ClosedLoop,
     /// W; upper/lower for tracking.
     limit: f64,
     /// P0 H0
     nominal: Complex64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    RobustStability,
-    Sensitivity,
-    PlantInputDisturbance,
-    ControlEffort,
-    LoadMotion,
-    Tracking,
 }
 
 impl Rule {
@@ -37,13 +27,9 @@ impl Rule {
         let at = |limit: &Limit| {
             limit.magnitude(frequency_rad_per_s).ok_or(BoundError::NoLimit { frequency_rad_per_s })
         };
-        let (kind, limit) = match requirement {
-            Requirement::RobustStability(limit) => (Kind::RobustStability, at(limit)?),
-            Requirement::Sensitivity(limit) => (Kind::Sensitivity, at(limit)?),
-            Requirement::PlantInputDisturbance(limit) => (Kind::PlantInputDisturbance, at(limit)?),
-            Requirement::ControlEffort(limit) => (Kind::ControlEffort, at(limit)?),
-            Requirement::LoadMotion(limit) => (Kind::LoadMotion, at(limit)?),
-            Requirement::Tracking { lower, upper } => (Kind::Tracking, at(upper)? / at(lower)?),
+        let limit = match requirement.limits() {
+            (None, upper) => at(upper)?,
+            (Some(lower), upper) => at(upper)? / at(lower)?,
         };
         if limit.is_nan() || limit < 0.0 {
             return Err(BoundError::Limit { frequency_rad_per_s, limit });
@@ -51,7 +37,7 @@ impl Rule {
         if !is_response(template.nominal) {
             return Err(BoundError::Nominal { frequency_rad_per_s });
         }
-        Ok(Rule { kind, limit, nominal: template.nominal })
+        Ok(Rule { closed_loop: requirement.closed_loop(), limit, nominal: template.nominal })
     }
 
     /// Whether nothing is demanded.
@@ -60,16 +46,16 @@ impl Rule {
     }
 
     pub(super) fn form(&self) -> Form {
-        match self.kind {
-            Kind::RobustStability | Kind::ControlEffort => Form::Complementary,
-            Kind::Sensitivity | Kind::PlantInputDisturbance | Kind::LoadMotion => Form::Sensitivity,
-            Kind::Tracking => Form::Spread,
+        match self.closed_loop {
+            ClosedLoop::Tracking => Form::Spread,
+            closed_loop if closed_loop.has_feedback() => Form::Complementary,
+            _ => Form::Sensitivity,
         }
     }
 
     /// Whether more of a plant is needed than P H.
     pub(super) fn needs_paths(&self) -> bool {
-        matches!(self.kind, Kind::PlantInputDisturbance | Kind::LoadMotion | Kind::Tracking)
+        matches!(self.closed_loop.plant_path(), PlantPath::Plant | PlantPath::LoadMotion)
     }
 
     /// A plant with its limit and weight.
@@ -84,12 +70,12 @@ impl Rule {
         let inverse = self.nominal / point.response;
         let response = || portable::magnitude(point.response);
         let sensor = || portable::magnitude(point.sensor);
-        let (limit, weight) = match self.kind {
-            Kind::RobustStability | Kind::Sensitivity => scaled(self.limit, 1.0),
-            Kind::PlantInputDisturbance => scaled(self.limit, response() / sensor()),
-            Kind::LoadMotion => scaled(self.limit, portable::magnitude(point.load_motion)),
-            Kind::ControlEffort => scaled(self.limit * response(), 1.0),
-            Kind::Tracking => (self.limit / self.tracking_scale() * sensor(), 1.0),
+        let (limit, weight) = match self.closed_loop {
+            ClosedLoop::RobustStability | ClosedLoop::Sensitivity => scaled(self.limit, 1.0),
+            ClosedLoop::PlantInputDisturbance => scaled(self.limit, response() / sensor()),
+            ClosedLoop::LoadMotion => scaled(self.limit, portable::magnitude(point.load_motion)),
+            ClosedLoop::ControlEffort => scaled(self.limit * response(), 1.0),
+            ClosedLoop::Tracking => (self.limit / self.tracking_scale() * sensor(), 1.0),
         };
         let sound =
             is_response(point.response) && is_response(inverse) && limit.is_finite() && weight.is_finite();
@@ -105,16 +91,18 @@ impl Rule {
     /// The contour between two plants.
     pub(super) fn edge(&self, ends: [&Plant; 2], points: [&TemplatePoint; 2]) -> Edge {
         let [from, to] = points;
-        match self.kind {
-            Kind::RobustStability | Kind::Tracking => Edge::of_complementary(ends),
-            Kind::ControlEffort => {
+        match self.closed_loop {
+            ClosedLoop::RobustStability | ClosedLoop::Tracking => Edge::of_complementary(ends),
+            ClosedLoop::ControlEffort => {
                 Edge::of_control_effort(ends, self.limit * portable::magnitude(self.nominal))
             }
-            Kind::Sensitivity => Edge::of_sensitivity(ends, ends.map(|plant| plant.inverse), self.limit),
-            Kind::PlantInputDisturbance => {
+            ClosedLoop::Sensitivity => {
+                Edge::of_sensitivity(ends, ends.map(|plant| plant.inverse), self.limit)
+            }
+            ClosedLoop::PlantInputDisturbance => {
                 Edge::of_sensitivity(ends, [from, to].map(|point| self.nominal / point.sensor), self.limit)
             }
-            Kind::LoadMotion => Edge::of_sensitivity(
+            ClosedLoop::LoadMotion => Edge::of_sensitivity(
                 ends,
                 [from, to].map(|point| point.load_motion * self.nominal / point.response),
                 self.limit,

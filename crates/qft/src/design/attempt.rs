@@ -25,7 +25,7 @@ use crate::loop_shaping::{
 };
 use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, fit_prefilter};
 use crate::sampled::SampledPlants;
-use crate::specification::{Requirement, Specification};
+use crate::specification::Specification;
 use crate::verification::{Audit, AuditProblem, TrackingJudgement, audit_among};
 
 /// Below this worst margin of the samples, the reserve taken off, a structure counts as unable to meet the specifications, dB.
@@ -400,5 +400,5 @@ impl Attempt {
 
 /// The tracking specification, if there is one.
 fn tracks(problem: &DesignProblem) -> Option<&Specification> {
-    problem.specifications.iter().find(|one| matches!(one.requirement, Requirement::Tracking { .. }))
+    problem.specifications.iter().find(|one| one.requirement.is_tracking())
 }

@@ -87,5 +87,5 @@ pub(super) fn worst_over_rate_db(findings: &[SpecificationFinding], tracking: Tr
 }
 
 fn is_spread(finding: &SpecificationFinding, tracking: TrackingJudgement) -> bool {
-    tracking == TrackingJudgement::Spread && matches!(finding.requirement, Requirement::Tracking { .. })
+    tracking == TrackingJudgement::Spread && finding.requirement.is_tracking()
 }

@@ -8,7 +8,6 @@ mod finding;
 mod interpolation;
 mod plane;
 mod pointwise;
-mod words;
 
 use phea_dynamics::controller::Controller;
 

@@ -14,7 +14,7 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 
 use super::samples::Column;
-use crate::specification::{Requirement, Specification};
+use crate::specification::{ClosedLoop, PlantPath, Specification};
 use crate::verification::TrackingJudgement;
 
 pub(super) use crossover::{DelayMargins, bandwidth, delay_margins};
@@ -24,30 +24,19 @@ pub(super) use rows::{Candidate, candidates};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Demand {
     pub(super) specification: usize,
-    pub(super) quantity: Quantity,
+    pub(super) closed_loop: ClosedLoop,
+    limited: Limited,
     /// The square of the limit; of the quotient of both limits for a spread.
     allowed: f64,
     rate: f64,
 }
 
-/// What is limited.
+/// From which side a closed loop is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
-    /// |L/(1+L)|
-    Complementary,
-    /// |1/(1+L)|
-    Sensitivity,
-    /// |P/(1+L)|
-    PlantInput,
-    /// |G/(1+L)|
-    Effort,
-    /// |Pd/(1+L)|
-    LoadMotion,
-    /// |F P G/(1+L)| from above
-    TrackingBelow,
-    /// |F P G/(1+L)| from below
-    TrackingAbove,
-    /// The greatest |P G/(1+L)| over the least
+pub(super) enum Limited {
+    FromAbove,
+    FromBelow,
+    /// The greatest magnitude over the least, without a prefilter.
     Spread,
 }
 
@@ -94,23 +83,18 @@ pub(super) fn demands(
         let room_db = ratio.map_or(1.0, |ratio| 10.0 * portable::log10(ratio)).clamp(0.0, 1.0);
         let inwards = portable::pow(10.0, -0.1 * reserve_db * room_db);
         let [lower, upper] = [lower.map(|lower| lower / inwards), upper.map(|upper| upper * inwards)];
-        let limits = match specification.requirement {
-            Requirement::RobustStability(_) => vec![(Quantity::Complementary, upper)],
-            Requirement::Sensitivity(_) => vec![(Quantity::Sensitivity, upper)],
-            Requirement::PlantInputDisturbance(_) => vec![(Quantity::PlantInput, upper)],
-            Requirement::ControlEffort(_) => vec![(Quantity::Effort, upper)],
-            Requirement::LoadMotion(_) => vec![(Quantity::LoadMotion, upper)],
-            Requirement::Tracking { .. } if tracking == TrackingJudgement::Magnitude => {
-                vec![(Quantity::TrackingBelow, upper), (Quantity::TrackingAbove, lower)]
+        let spread = specification.requirement.is_tracking() && tracking == TrackingJudgement::Spread;
+        let limits = match spread {
+            true => {
+                [(Limited::Spread, ratio.map(|ratio| ratio * inwards * inwards)), (Limited::Spread, None)]
             }
-            Requirement::Tracking { .. } => {
-                vec![(Quantity::Spread, ratio.map(|ratio| ratio * inwards * inwards))]
-            }
+            false => [(Limited::FromAbove, upper), (Limited::FromBelow, lower)],
         };
-        demands.extend(limits.into_iter().filter_map(|(quantity, allowed)| {
-            let unit = if quantity == Quantity::Spread { 2.0 } else { 1.0 };
+        demands.extend(limits.into_iter().filter_map(|(limited, allowed)| {
+            let unit = if limited == Limited::Spread { 2.0 } else { 1.0 };
             let rate = if share_of_room { unit * room_db.max(ROOM_LEAST_DB) } else { unit };
-            Some(Demand { specification: index, quantity, allowed: allowed?, rate })
+            let closed_loop = specification.requirement.closed_loop();
+            Some(Demand { specification: index, closed_loop, limited, allowed: allowed?, rate })
         }));
     }
     if demands.is_empty() && !specifications.is_empty() && frequency <= highest_frequency {
@@ -122,8 +106,13 @@ pub(super) fn demands(
 impl Demand {
     /// Where no specification demands anything: |1/(1+L)| stays below 20 dB, so that no search for the least objective slides along the
     /// edge of stability beyond the bands.
-    const RESERVE: Demand =
-        Demand { specification: usize::MAX, quantity: Quantity::Sensitivity, allowed: 100.0, rate: 1.0 };
+    const RESERVE: Demand = Demand {
+        specification: usize::MAX,
+        closed_loop: ClosedLoop::Sensitivity,
+        limited: Limited::FromAbove,
+        allowed: 100.0,
+        rate: 1.0,
+    };
 
     /// Whether it belongs to no specification.
     pub(super) fn is_reserve(&self) -> bool {
@@ -138,61 +127,63 @@ impl Demand {
         self.rate
     }
 
+    /// Whether F stands in what is limited: in a spread it cancels.
+    fn has_prefilter(&self) -> bool {
+        self.closed_loop.has_prefilter() && self.limited != Limited::Spread
+    }
+
     /// The power of F in what is limited, with the sign of the limit: 1 for an upper one, -1 for a lower one.
     pub(super) fn prefilter_power(&self) -> f64 {
-        match self.quantity {
-            Quantity::TrackingBelow => 1.0,
-            Quantity::TrackingAbove => -1.0,
+        match self.limited {
+            Limited::FromAbove if self.has_prefilter() => 1.0,
+            Limited::FromBelow if self.has_prefilter() => -1.0,
             _ => 0.0,
         }
     }
 
     /// a: the power of G in what is limited.
     fn feedback_power(&self) -> f64 {
-        match self.quantity {
-            Quantity::Sensitivity | Quantity::PlantInput | Quantity::LoadMotion => 0.0,
-            Quantity::Complementary
-            | Quantity::Effort
-            | Quantity::TrackingBelow
-            | Quantity::TrackingAbove
-            | Quantity::Spread => 1.0,
+        if self.closed_loop.has_feedback() { 1.0 } else { 0.0 }
+    }
+
+    /// The square of G and F in what is limited.
+    fn compensator_squared(&self, around: &ColumnLoop) -> f64 {
+        match (self.closed_loop.has_feedback(), self.has_prefilter()) {
+            (true, true) => around.feedback_squared * around.prefilter_squared,
+            (true, false) => around.feedback_squared,
+            (false, _) => 1.0,
+        }
+    }
+
+    /// The square of A of each plant; `None` where that is 1.
+    fn paths_squared<'c>(&self, column: &'c Column) -> Option<&'c [f64]> {
+        match self.closed_loop.plant_path() {
+            PlantPath::PlantAndSensor => Some(&column.loop_squared),
+            PlantPath::One => None,
+            PlantPath::Plant => Some(&column.plant_squared),
+            PlantPath::LoadMotion => Some(&column.load_motion_squared),
         }
     }
 
     /// The square of what is limited, of the plant at this place.
     fn squared(&self, column: &Column, around: &ColumnLoop, place: usize) -> f64 {
-        let sensitivity = around.sensitivity_squared[place];
-        let feedback = around.feedback_squared;
-        match self.quantity {
-            Quantity::Complementary => column.loop_squared[place] * sensitivity * feedback,
-            Quantity::Sensitivity => sensitivity,
-            Quantity::PlantInput => column.plant_squared[place] * sensitivity,
-            Quantity::Effort => sensitivity * feedback,
-            Quantity::LoadMotion => column.load_motion_squared[place] * sensitivity,
-            Quantity::TrackingBelow | Quantity::TrackingAbove => {
-                column.plant_squared[place] * sensitivity * feedback * around.prefilter_squared
-            }
-            Quantity::Spread => column.plant_squared[place] * sensitivity * feedback,
-        }
+        let path = self.paths_squared(column).map_or(1.0, |paths| paths[place]);
+        let closed = path * around.sensitivity_squared[place];
+        let closed = if self.closed_loop.has_feedback() { closed * around.feedback_squared } else { closed };
+        if self.has_prefilter() { closed * around.prefilter_squared } else { closed }
     }
 
     /// The square of how far the worst plant, or pair of plants, of the column goes beyond the limit; 0 where there is no plant.
     pub(super) fn worst_excess(&self, column: &Column, around: &ColumnLoop) -> f64 {
         let sensitivity = &around.sensitivity_squared;
-        let feedback = around.feedback_squared;
-        let forward = feedback * around.prefilter_squared;
-        match self.quantity {
-            Quantity::Complementary => greatest(&column.loop_squared, sensitivity) * feedback / self.allowed,
-            Quantity::Sensitivity => extremes(sensitivity.iter().copied())[1] / self.allowed,
-            Quantity::PlantInput => greatest(&column.plant_squared, sensitivity) / self.allowed,
-            Quantity::Effort => extremes(sensitivity.iter().copied())[1] * feedback / self.allowed,
-            Quantity::LoadMotion => greatest(&column.load_motion_squared, sensitivity) / self.allowed,
-            Quantity::TrackingBelow => greatest(&column.plant_squared, sensitivity) * forward / self.allowed,
-            Quantity::TrackingAbove => self.allowed / (least(&column.plant_squared, sensitivity) * forward),
-            Quantity::Spread => {
-                let [least, greatest] = extremes(products(&column.plant_squared, sensitivity));
-                greatest / (least * self.allowed)
-            }
+        let [least, greatest] = match self.paths_squared(column) {
+            Some(paths) => extremes(products(paths, sensitivity)),
+            None => extremes(sensitivity.iter().copied()),
+        };
+        match self.limited {
+            Limited::FromAbove => greatest * self.compensator_squared(around) / self.allowed,
+            Limited::FromBelow => self.allowed / (least * self.compensator_squared(around)),
+            Limited::Spread => greatest / (least * self.allowed),
         }
     }
 }
@@ -214,14 +205,6 @@ impl ColumnLoop {
 
 fn products<'a>(one: &'a [f64], other: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
     one.iter().zip(other).map(|(one, other)| one * other)
-}
-
-fn greatest(one: &[f64], other: &[f64]) -> f64 {
-    extremes(products(one, other))[1]
-}
-
-fn least(one: &[f64], other: &[f64]) -> f64 {
-    extremes(products(one, other))[0]
 }
 
 /// The least and the greatest; infinity and 0 of none.

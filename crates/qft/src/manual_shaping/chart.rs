@@ -6,7 +6,7 @@ use phea_dynamics::portable;
 use crate::bound::{BoundError, Fill, FrequencyBounds, Placement};
 use crate::closed_loop::Compensation;
 use crate::family::Family;
-use crate::specification::{LoopResponse, Requirement, Specification};
+use crate::specification::{LoopResponse, Specification};
 use crate::template::{Template, TemplatePoint};
 use crate::verification::{PlantPoint, TrackingJudgement};
 
@@ -209,7 +209,7 @@ fn demands(specification: &Specification, frequency: f64) -> bool {
 }
 
 fn is_tracking(specification: &Specification) -> bool {
-    matches!(specification.requirement, Requirement::Tracking { .. })
+    specification.requirement.is_tracking()
 }
 
 type Plants<'a> = [(LoopResponse, &'a TemplatePoint)];
@@ -238,7 +238,7 @@ fn spread<'a>(
         |response: &LoopResponse| LoopResponse { prefilter: Complex64::new(1.0, 0.0), ..*response };
     let magnitudes = || {
         plants.iter().map(|(response, point)| {
-            let closed = specification.requirement.closed_loop(&without_prefilter(response));
+            let closed = specification.requirement.closed_loop().response(&without_prefilter(response));
             (portable::magnitude(closed), *point)
         })
     };

@@ -15,7 +15,7 @@ use crate::closed_loop::{Compensation, Member};
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::sampled::SampledPlants;
 use crate::verification::{
-    ClosestApproach, DelayMargin, Evidence, PlantPoint, StabilityFinding, Verdict, corners, rounded,
+    DelayMargin, Evidence, PlantPoint, StabilityFinding, StabilityMethod, StabilityReason, Verdict, corners,
 };
 
 /// Starts of the search for each worst case.
@@ -383,64 +383,41 @@ impl<'a> StabilityAudit<'a> {
         }
     }
 
-    fn judgement(&self) -> (Verdict, PlantPoint, String) {
+    fn judgement(&self) -> (Verdict, PlantPoint, StabilityReason) {
         let record = &self.record;
         if let Some((_, reason, plant)) = &record.unstable {
-            return (Verdict::Violated, plant.clone(), reason.clone());
+            return (Verdict::Violated, plant.clone(), StabilityReason::Unstable(*reason));
         }
         if !self.compensation.prefilter().is_stable() {
-            let reason = "the prefilter itself is unstable".to_owned();
-            return (Verdict::Violated, self.nominal(), reason);
+            return (Verdict::Violated, self.nominal(), StabilityReason::UnstablePrefilter);
         }
         if let Some((reason, plant)) = &record.unresolved {
-            return (Verdict::NotProven, plant.clone(), reason.clone());
+            return (Verdict::NotProven, plant.clone(), StabilityReason::NotResolved(reason.clone()));
         }
         if let Some(closest) = record.closest.as_ref().filter(|closest| closest.distance < ZERO) {
             let reason = Irresolution::NearBoundary { frequency_rad_per_s: closest.frequency_rad_per_s };
-            return (Verdict::NotProven, closest.plant.clone(), reason.to_string());
-        }
-        let between = self.folded.plants.len();
-        let folding = match between {
-            0 => String::new(),
-            _ => format!(" and {between} plants between them, through which modes fold,"),
-        };
-        let which = match self.family {
-            Family::Uncertain(family) if self.plants.len() > family.members().len() => {
-                let corners = self.plants.len() - family.members().len() - between;
-                format!("{} members and {corners} corners of the box{folding}", family.members().len())
-            }
-            _ if self.plants.len() == 1 => String::new(),
-            _ => format!("{} plants", self.plants.len()),
-        };
-        let way = match (&record.real_part, self.family) {
-            (_, Family::Measured(_)) => "by Nyquist's count on the points of their responses",
-            (None, Family::Uncertain(family)) if !family.plant().is_rational() => {
-                match self.compensation.sample_time_s() {
-                    None => {
-                        "by Nyquist's count, 1 + L of the nominal plant enclosed from each frequency to the next"
-                    }
-                    Some(_) => "by Nyquist's count on points of their responses",
-                }
-            }
-            (Some(_), _) => "by their closed-loop poles",
-            (None, _) => "by the turns of their characteristic function",
-        };
-        let mut reason = match which.as_str() {
-            "" => format!("the family is one plant, stable {way}"),
-            _ => format!("all {which} are stable {way}"),
-        };
-        if let Some(closest) = &record.closest {
-            let ClosestApproach { distance, frequency_rad_per_s, .. } = closest;
-            let between = if self.searched() { " between them, too," } else { "" };
-            reason += &format!(
-                "; the smallest |1 + L| found{between} is {} (at {} rad/s)",
-                rounded(*distance),
-                rounded(*frequency_rad_per_s)
-            );
+            return (Verdict::NotProven, closest.plant.clone(), StabilityReason::NotResolved(reason));
         }
         let nearest = record.real_part.as_ref().map(|(_, plant)| plant.clone());
         let nearest = nearest.or(record.closest.as_ref().map(|closest| closest.plant.clone()));
-        (Verdict::Met, nearest.unwrap_or_else(|| self.nominal()), reason)
+        (Verdict::Met, nearest.unwrap_or_else(|| self.nominal()), self.all_stable())
+    }
+
+    fn all_stable(&self) -> StabilityReason {
+        let between = self.folded.plants.len();
+        let members = match self.family {
+            Family::Uncertain(family) => family.members().len(),
+            Family::Measured(family) => family.plants().len(),
+        };
+        let method = match (&self.record.real_part, self.family) {
+            (_, Family::Measured(_)) => StabilityMethod::MeasuredPoints,
+            (Some(_), _) => StabilityMethod::Poles,
+            (None, Family::Uncertain(family)) if family.plant().is_rational() => StabilityMethod::Turns,
+            (None, _) if self.compensation.sample_time_s().is_none() => StabilityMethod::Enclosed,
+            (None, _) => StabilityMethod::Points,
+        };
+        let corners = self.plants.len() - members - between;
+        StabilityReason::AllStable { members, corners, between, method, closest: self.record.closest.clone() }
     }
 
     fn nominal(&self) -> PlantPoint {

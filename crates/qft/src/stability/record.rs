@@ -1,13 +1,13 @@
 //! The worst that was found of a family.
 
-use super::{Irresolution, MemberStability, StabilityStatus};
+use super::{Instability, Irresolution, MemberStability, StabilityStatus};
 use crate::verification::{ClosestApproach, DelayMargin, PlantPoint};
 
 /// The worst found so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Record {
-    pub(super) unstable: Option<(f64, String, PlantPoint)>,
-    pub(super) unresolved: Option<(String, PlantPoint)>,
+    pub(super) unstable: Option<(f64, Instability, PlantPoint)>,
+    pub(super) unresolved: Option<(Irresolution, PlantPoint)>,
     pub(super) real_part: Option<(f64, PlantPoint)>,
     pub(super) closest: Option<ClosestApproach>,
     pub(super) delay: Option<DelayMargin>,
@@ -17,7 +17,7 @@ impl Record {
     /// What keeps the verdict open, unless a plant does already.
     pub(super) fn doubt(&mut self, reason: Irresolution, plant: PlantPoint) {
         if self.unresolved.is_none() {
-            self.unresolved = Some((reason.to_string(), plant));
+            self.unresolved = Some((reason, plant));
         }
     }
 
@@ -55,11 +55,11 @@ impl Record {
             StabilityStatus::Unstable(instability) => {
                 let size = real_part.unwrap_or(0.0);
                 if self.unstable.as_ref().is_none_or(|(largest, ..)| size > *largest) {
-                    self.unstable = Some((size, instability.to_string(), plant.clone()));
+                    self.unstable = Some((size, *instability, plant.clone()));
                 }
             }
             StabilityStatus::NotResolved(reason) if self.unresolved.is_none() => {
-                self.unresolved = Some((reason.to_string(), plant.clone()));
+                self.unresolved = Some((reason.clone(), plant.clone()));
             }
             _ => {}
         }

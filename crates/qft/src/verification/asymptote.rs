@@ -7,9 +7,9 @@ use phea_dynamics::uncertain_plant::RationalCoefficients;
 
 use num_complex::Complex64;
 
-use super::criterion::{Criterion, Quantity, Side};
+use super::criterion::{Criterion, Side};
 use crate::closed_loop::{Compensation, FedForward, Member, closed};
-use crate::specification::Limit;
+use crate::specification::{ClosedLoop, Limit};
 
 /// Which end of the frequency axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,13 +150,13 @@ pub(super) fn margin(
         return None;
     }
     let parts = parts(compensation, member, with_prefilter, end)?;
-    let numerator = match criterion.quantity {
-        Quantity::Complementary => parts.open_loop,
-        Quantity::Sensitivity => Asymptote::ONE,
-        Quantity::PlantInput => parts.plant,
-        Quantity::Effort => parts.feedback,
-        Quantity::LoadMotion => parts.load_motion,
-        Quantity::Tracking => parts.prefilter.times(parts.plant).times(parts.feedback),
+    let numerator = match criterion.closed_loop {
+        ClosedLoop::RobustStability => parts.open_loop,
+        ClosedLoop::Sensitivity => Asymptote::ONE,
+        ClosedLoop::PlantInputDisturbance => parts.plant,
+        ClosedLoop::ControlEffort => parts.feedback,
+        ClosedLoop::LoadMotion => parts.load_motion,
+        ClosedLoop::Tracking => parts.prefilter.times(parts.plant).times(parts.feedback),
     };
     let mut closed = numerator.over(parts.one_plus_loop(criterion.side, end)?);
     let power = closed.power;

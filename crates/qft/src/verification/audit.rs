@@ -13,7 +13,7 @@ use super::{Evidence, PlantPoint, SpecificationFinding, Verdict};
 use crate::closed_loop::Compensation;
 use crate::family::{Extent, Family, UncertainFamily, vertices};
 use crate::sampled::SampledPlants;
-use crate::specification::{Requirement, Specification};
+use crate::specification::Specification;
 
 /// A margin of minus this much still counts as met unless another tolerance is asked for, dB.
 pub const TOLERANCE_DB: f64 = 0.001;
@@ -184,8 +184,7 @@ impl<'a> SpecificationAudit<'a> {
         let mut parts = Vec::new();
         for specification in specifications {
             let own = criteria(specification, compensation.highest_frequency_rad_per_s());
-            let spread = matches!(specification.requirement, Requirement::Tracking { .. })
-                && tracking == TrackingJudgement::Spread;
+            let spread = specification.requirement.is_tracking() && tracking == TrackingJudgement::Spread;
             parts.push(Part { first: all.len(), count: own.len(), spread });
             all.extend(own);
         }

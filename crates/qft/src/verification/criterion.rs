@@ -1,37 +1,20 @@
 //! One side of one requirement: a closed-loop magnitude and what it must stay below, or above.
 
-use crate::specification::{Limit, Requirement, Specification};
+use crate::specification::{ClosedLoop, Limit, Specification};
 
-/// A closed-loop magnitude.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
-    /// |L/(1+L)|
-    Complementary,
-    /// |1/(1+L)|
-    Sensitivity,
-    /// |P/(1+L)|
-    PlantInput,
-    /// |G/(1+L)|
-    Effort,
-    /// |Pd/(1+L)|
-    LoadMotion,
-    /// |F P G/(1+L)|
-    Tracking,
-}
-
-/// On which side of its limit the quantity must stay.
+/// On which side of its limit the magnitude must stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
-    /// quantity <= limit
+    /// magnitude <= limit
     Below,
-    /// quantity >= limit
+    /// magnitude >= limit
     Above,
 }
 
-/// `quantity <= limit` or `quantity >= limit` over a band.
+/// `magnitude <= limit` or `magnitude >= limit` of a closed loop over a band.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Criterion {
-    pub(super) quantity: Quantity,
+    pub(super) closed_loop: ClosedLoop,
     pub(super) side: Side,
     pub(super) limit: Limit,
     /// The upper limit beside it, for tracking.
@@ -49,24 +32,16 @@ impl Criterion {
 
 /// The criteria of a specification: two for tracking, one for all others.
 pub(super) fn criteria(specification: &Specification, highest_frequency: f64) -> Vec<Criterion> {
-    let one = |quantity, side, limit: &Limit| {
-        let band = reach(limit, specification.band_rad_per_s, highest_frequency);
-        let upper = match &specification.requirement {
-            Requirement::Tracking { upper, .. } => Some(upper.clone()),
-            _ => None,
-        };
-        Criterion { quantity, side, limit: limit.clone(), upper, band }
+    let requirement = &specification.requirement;
+    let (lower, upper) = requirement.limits();
+    let one = |side, limit: &Limit| Criterion {
+        closed_loop: requirement.closed_loop(),
+        side,
+        limit: limit.clone(),
+        upper: lower.is_some().then(|| upper.clone()),
+        band: reach(limit, specification.band_rad_per_s, highest_frequency),
     };
-    match &specification.requirement {
-        Requirement::RobustStability(limit) => vec![one(Quantity::Complementary, Side::Below, limit)],
-        Requirement::Sensitivity(limit) => vec![one(Quantity::Sensitivity, Side::Below, limit)],
-        Requirement::PlantInputDisturbance(limit) => vec![one(Quantity::PlantInput, Side::Below, limit)],
-        Requirement::ControlEffort(limit) => vec![one(Quantity::Effort, Side::Below, limit)],
-        Requirement::LoadMotion(limit) => vec![one(Quantity::LoadMotion, Side::Below, limit)],
-        Requirement::Tracking { lower, upper } => {
-            vec![one(Quantity::Tracking, Side::Below, upper), one(Quantity::Tracking, Side::Above, lower)]
-        }
-    }
+    std::iter::once(one(Side::Below, upper)).chain(lower.map(|lower| one(Side::Above, lower))).collect()
 }
 
 /// The part of a band in which the limit exists and the loop has a response; an end that is no number demands nothing.

@@ -10,7 +10,7 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 use super::asymptote::{self, End};
 use super::criterion::Criterion;
 use super::minimum;
-use super::response::{ClosedLoop, LoopAt, decibels};
+use super::response::{LoopAround, LoopAt, decibels};
 use crate::closed_loop::{Compensation, Member};
 use crate::sampled::SampledPlants;
 
@@ -73,7 +73,7 @@ impl<'a> Evaluator<'a> {
         LoopAt::new(self.compensation, &self.criteria, self.with_prefilter, frequency)
     }
 
-    pub(super) fn closed(&self, at: &LoopAt, member: &Member) -> Option<ClosedLoop> {
+    pub(super) fn closed(&self, at: &LoopAt, member: &Member) -> Option<LoopAround> {
         self.responses.set(self.responses.get() + 1);
         at.closed(member)
     }
@@ -109,7 +109,7 @@ impl<'a> Evaluator<'a> {
         Some((closed.vanishing(criterion), margin_db))
     }
 
-    fn finite(&self, criterion: &Criterion, member: &Member, frequency: f64) -> Option<(ClosedLoop, f64)> {
+    fn finite(&self, criterion: &Criterion, member: &Member, frequency: f64) -> Option<(LoopAround, f64)> {
         let only = std::slice::from_ref(criterion);
         let at = LoopAt::new(self.compensation, only, self.with_prefilter, frequency);
         let closed = self.closed(&at, member)?;

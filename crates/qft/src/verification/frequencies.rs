@@ -6,11 +6,10 @@ use phea_dynamics::linear::{Polynomial, TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 
 use super::asymptote;
-use super::criterion::Quantity;
 use super::evaluator::Evaluator;
 use crate::closed_loop::Member;
 use crate::family::{COARSE, tabulated};
-use crate::specification::Limit;
+use crate::specification::{ClosedLoop, Limit};
 
 /// Points in a decade where roots are, and beyond them.
 const POINTS_PER_DECADE: f64 = 40.0;
@@ -76,7 +75,7 @@ pub(super) fn features(evaluator: &Evaluator<'_>, member: &Member) -> Features {
                 .map(|(n, d)| denominator.product(d).sum(&numerator.product(n)));
             let dead_time_s = plant.dead_time_s + evaluator.compensator_dead_time_s;
             let has_load_motion =
-                evaluator.criteria.iter().any(|criterion| criterion.quantity == Quantity::LoadMotion);
+                evaluator.criteria.iter().any(|criterion| criterion.closed_loop == ClosedLoop::LoadMotion);
             let load = plant.disturbance.as_ref().filter(|_| has_load_motion);
             let load = load.filter(|path| path.denominator != plant.command.denominator);
             let load = load.map(|path| Polynomial::new(path.denominator.clone()));

@@ -10,8 +10,9 @@ use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
-use super::criterion::{Criterion, Quantity, Side};
+use super::criterion::{Criterion, Side};
 use crate::closed_loop::{Compensation, Member};
+use crate::specification::ClosedLoop;
 
 /// A complex number as a quotient whose denominator may be zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +35,7 @@ pub(super) struct LoopAt {
 
 /// The closed loop around one plant at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ClosedLoop {
+pub(super) struct LoopAround {
     /// a + b, whose zeros are the poles of the closed loop.
     pub(super) characteristic: Complex64,
     a: Complex64,
@@ -86,14 +87,16 @@ fn turned(angle: f64) -> Complex64 {
     Complex64::new(portable::cos(angle), portable::sin(angle))
 }
 
-impl ClosedLoop {
+impl LoopAround {
     /// What is nearly zero where a criterion has a peak: the characteristic value, with the denominator of a Pd that has its own;
     /// the plant's numerator for a magnitude that must not fall.
     pub(super) fn vanishing(&self, criterion: &Criterion) -> Complex64 {
         let own = self.load_motion.denominator != self.loop_denominator;
-        match (criterion.side, criterion.quantity) {
+        match (criterion.side, criterion.closed_loop) {
             (Side::Above, _) => self.plant_numerator,
-            (Side::Below, Quantity::LoadMotion) if own => self.characteristic * self.load_motion.denominator,
+            (Side::Below, ClosedLoop::LoadMotion) if own => {
+                self.characteristic * self.load_motion.denominator
+            }
             (Side::Below, _) => self.characteristic,
         }
     }
@@ -118,12 +121,12 @@ impl LoopAt {
             prefilter: if with_prefilter { compensation.prefilter().at_frequency(frequency) } else { one },
             sensor: compensation.sensor().at_frequency(frequency),
             limits_squared: criteria.iter().map(limit).collect(),
-            load_motion: criteria.iter().any(|criterion| criterion.quantity == Quantity::LoadMotion),
+            load_motion: criteria.iter().any(|criterion| criterion.closed_loop == ClosedLoop::LoadMotion),
         }
     }
 
     /// The loop closed around a plant; `None` where a measurement does not reach.
-    pub(super) fn closed(&self, member: &Member) -> Option<ClosedLoop> {
+    pub(super) fn closed(&self, member: &Member) -> Option<LoopAround> {
         let frequency = self.frequency;
         let none = Fraction::of_value(Complex64::new(0.0, 0.0));
         let load = |path: &Option<RationalCoefficients<f64>>| match path {
@@ -167,7 +170,7 @@ impl LoopAt {
         let a = around.denominator * self.feedback.denominator;
         let b = around.numerator * self.feedback.numerator;
         let loop_denominator = around.denominator;
-        Some(ClosedLoop { characteristic: a + b, a, b, plant_numerator, loop_denominator, load_motion })
+        Some(LoopAround { characteristic: a + b, a, b, plant_numerator, loop_denominator, load_motion })
     }
 
     /// Pd + K V_d P over the denominator of Pd.
@@ -186,15 +189,17 @@ impl LoopAt {
 
     /// The square of how far a criterion is exceeded: (quantity/limit)^2 for an upper limit, its inverse for a lower one. `None`
     /// where nothing is demanded; NaN where it is not defined.
-    pub(super) fn excess(&self, index: usize, criterion: &Criterion, closed: &ClosedLoop) -> Option<f64> {
+    pub(super) fn excess(&self, index: usize, criterion: &Criterion, closed: &LoopAround) -> Option<f64> {
         let limit = (*self.limits_squared.get(index)?)?;
-        let numerator = match criterion.quantity {
-            Quantity::Complementary => closed.b.norm_sqr(),
-            Quantity::Sensitivity => closed.a.norm_sqr(),
-            Quantity::PlantInput => (closed.plant_numerator * self.feedback.denominator).norm_sqr(),
-            Quantity::Effort => (closed.loop_denominator * self.feedback.numerator).norm_sqr(),
-            Quantity::LoadMotion => self.load_motion_squared(closed),
-            Quantity::Tracking => {
+        let numerator = match criterion.closed_loop {
+            ClosedLoop::RobustStability => closed.b.norm_sqr(),
+            ClosedLoop::Sensitivity => closed.a.norm_sqr(),
+            ClosedLoop::PlantInputDisturbance => {
+                (closed.plant_numerator * self.feedback.denominator).norm_sqr()
+            }
+            ClosedLoop::ControlEffort => (closed.loop_denominator * self.feedback.numerator).norm_sqr(),
+            ClosedLoop::LoadMotion => self.load_motion_squared(closed),
+            ClosedLoop::Tracking => {
                 (self.prefilter * closed.plant_numerator * self.feedback.numerator).norm_sqr()
             }
         };
@@ -206,7 +211,7 @@ impl LoopAt {
     }
 
     /// |Pd a|^2; a denominator that Pd shares with P drops out.
-    fn load_motion_squared(&self, closed: &ClosedLoop) -> f64 {
+    fn load_motion_squared(&self, closed: &LoopAround) -> f64 {
         let Fraction { numerator, denominator } = closed.load_motion;
         if denominator == closed.loop_denominator {
             return (numerator * self.feedback.denominator).norm_sqr();

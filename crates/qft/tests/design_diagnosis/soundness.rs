@@ -85,7 +85,7 @@ fn specifications(
         if whole { [0.0, f64::INFINITY] } else { [place(ends[0].min(ends[1])), place(ends[0].max(ends[1]))] }
     };
     let sizes = |requirement: &Requirement, members: &[LoopResponse]| -> Vec<f64> {
-        members.iter().map(|member| magnitude(requirement.closed_loop(member))).collect()
+        members.iter().map(|member| magnitude(requirement.closed_loop().response(member))).collect()
     };
     let greatest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
     let least = |all: &[f64]| all.iter().copied().fold(f64::INFINITY, f64::min);

@@ -39,7 +39,7 @@ fn plain(
     let responses: Vec<LoopResponse> =
         members.iter().map(|member| response(around, member, frequency)).collect();
     if spread && let Requirement::Tracking { lower, upper } = &specification.requirement {
-        let closed = |at: &LoopResponse| magnitude(specification.requirement.closed_loop(at));
+        let closed = |at: &LoopResponse| magnitude(specification.requirement.closed_loop().response(at));
         let greatest = responses.iter().map(closed).fold(0.0, f64::max);
         let least = responses.iter().map(closed).fold(f64::INFINITY, f64::min);
         let allowed = upper.magnitude(frequency)? / lower.magnitude(frequency)?;

@@ -3,7 +3,7 @@ use serde::Serialize;
 
 use super::{NamedPlant, PlantNames};
 use super::{ProjectAudit, Reached};
-use super::{evidence_key, kind_key, kind_words, verdict_key};
+use super::{evidence_key, kind_key, kind_words, stability_reason, verdict_key};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 use crate::trial::{self, Trial};
@@ -15,8 +15,8 @@ pub(crate) struct Body<'a> {
     tolerance_db: f64,
     stable: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    stable_reason: Option<&'a str>,
-    stability: StabilityRow<'a>,
+    stable_reason: Option<String>,
+    stability: StabilityRow,
     delay_margin_s: Number,
     #[serde(skip_serializing_if = "Option::is_none")]
     delay_margin_s_reason: Option<&'static str>,
@@ -38,12 +38,12 @@ struct TimingRow {
 }
 
 #[derive(Serialize)]
-struct StabilityRow<'a> {
+struct StabilityRow {
     verdict: &'static str,
     evidence: &'static str,
     largest_real_part_per_s: Number,
     plant: NamedPlant,
-    reason: &'a str,
+    reason: String,
 }
 
 #[derive(Serialize)]
@@ -168,13 +168,13 @@ pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
             Verdict::Violated => Some(false),
             Verdict::NotProven => None,
         },
-        stable_reason: (stability.verdict == Verdict::NotProven).then_some(stability.reason.as_str()),
+        stable_reason: (stability.verdict == Verdict::NotProven).then(|| stability_reason(stability)),
         stability: StabilityRow {
             verdict: verdict_key(stability.verdict),
             evidence: evidence_key(stability.evidence),
             largest_real_part_per_s: Number(stability.largest_real_part.unwrap_or(f64::NAN)),
             plant: names.named(&stability.plant),
-            reason: &stability.reason,
+            reason: stability_reason(stability),
         },
         delay_margin_s: Number(margin.map_or(f64::NAN, |margin| margin.delay_s)),
         delay_margin_s_reason: margin

@@ -120,7 +120,7 @@ fn prefilter_band(side: &Side) -> Result<Option<String>, LinearError> {
         for frequency in drawn(problem).into_iter().filter(|frequency| (from..=to).contains(frequency)) {
             let [mut least, mut greatest] = [f64::INFINITY, 0.0_f64];
             for response in members.iter().filter_map(|member| problem.response(member, frequency)) {
-                let size = portable::magnitude(one.requirement.closed_loop(&response));
+                let size = portable::magnitude(one.requirement.closed_loop().response(&response));
                 (least, greatest) = (least.min(size), greatest.max(size));
             }
             let [Some(low), Some(high)] = [lower, upper].map(|limit| limit.magnitude(frequency)) else {

@@ -167,7 +167,7 @@ pub(super) fn curve(
     for &frequency in frequencies {
         let Some(response) = problem.response(member, frequency) else { continue };
         curve.frequencies_rad_per_s.push(frequency);
-        curve.magnitudes.push(portable::magnitude(requirement.closed_loop(&response)));
+        curve.magnitudes.push(portable::magnitude(requirement.closed_loop().response(&response)));
     }
     curve
 }
@@ -204,7 +204,7 @@ pub(super) fn mark(
     }
     let member = problem.member(&worst.plant)?;
     let response = problem.response(&member, frequency)?;
-    let magnitude = portable::magnitude(requirement.closed_loop(&response));
+    let magnitude = portable::magnitude(requirement.closed_loop().response(&response));
     let is_violation = finding.verdict == Verdict::Violated;
     let word = if is_violation {
         match requirement.limits() {

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::Shaping;
 use super::text::polar;
 use crate::answer::{self, Number, OutputFile};
-use crate::audit::{NamedPlant, kind_key, verdict_key};
+use crate::audit::{NamedPlant, kind_key, stability_reason, verdict_key};
 use crate::project::Loaded;
 
 #[derive(Serialize)]
@@ -15,8 +15,8 @@ struct Body<'a> {
     elements: Vec<ElementRow>,
     stable: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    stable_reason: Option<&'a str>,
-    stability: StabilityRow<'a>,
+    stable_reason: Option<String>,
+    stability: StabilityRow,
     margins: Vec<MarginRow>,
     #[serde(rename = "loop")]
     points: Vec<PointRow>,
@@ -33,10 +33,10 @@ struct ElementRow {
 }
 
 #[derive(Serialize)]
-struct StabilityRow<'a> {
+struct StabilityRow {
     verdict: &'static str,
     plant: NamedPlant,
-    reason: &'a str,
+    reason: String,
 }
 
 #[derive(Serialize)]
@@ -134,11 +134,11 @@ pub fn json(loaded: &Loaded, view: &Shaping) -> String {
             Verdict::Violated => Some(false),
             Verdict::NotProven => None,
         },
-        stable_reason: (stability.verdict == Verdict::NotProven).then_some(stability.reason.as_str()),
+        stable_reason: (stability.verdict == Verdict::NotProven).then(|| stability_reason(stability)),
         stability: StabilityRow {
             verdict: verdict_key(stability.verdict),
             plant: view.names.named(&stability.plant),
-            reason: &stability.reason,
+            reason: stability_reason(stability),
         },
         margins: margin_rows(view),
         points: view.points.iter().map(point).collect(),

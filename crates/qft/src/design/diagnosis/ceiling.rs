@@ -5,7 +5,7 @@ use phea_dynamics::portable;
 use super::candidate::Candidate;
 use super::plane::Boundary;
 use crate::closed_loop::MemberResponse;
-use crate::specification::{Requirement, Specification};
+use crate::specification::{ClosedLoop, Requirement, Specification};
 
 /// An upper limit, and the specification that sets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,19 +97,19 @@ impl<'a> Ceilings<'a> {
             let Some(specification) = self.specifications.get(index) else { continue };
             let by = Some(index);
             let relaxed = factor * limit;
-            match (&specification.requirement, own) {
-                (Requirement::RobustStability(_), _) => ceiling.complementary.lowered(relaxed, by),
-                (Requirement::Sensitivity(_), _) => ceiling.sensitivity.lowered(relaxed, by),
-                (Requirement::PlantInputDisturbance(_), Some(own)) => {
+            match (specification.requirement.closed_loop(), own) {
+                (ClosedLoop::RobustStability, _) => ceiling.complementary.lowered(relaxed, by),
+                (ClosedLoop::Sensitivity, _) => ceiling.sensitivity.lowered(relaxed, by),
+                (ClosedLoop::PlantInputDisturbance, Some(own)) => {
                     ceiling.sensitivity.lowered(relaxed / size(own.plant), by);
                 }
-                (Requirement::LoadMotion(_), Some(own)) => {
+                (ClosedLoop::LoadMotion, Some(own)) => {
                     ceiling.sensitivity.lowered(relaxed / size(own.load_motion), by);
                 }
-                (Requirement::ControlEffort(_), Some(own)) => {
+                (ClosedLoop::ControlEffort, Some(own)) => {
                     ceiling.complementary.lowered(relaxed * size(own.plant * own.sensor), by);
                 }
-                (Requirement::Tracking { .. }, Some(own)) => {
+                (ClosedLoop::Tracking, Some(own)) => {
                     for partner in &node.partners {
                         let [sensitivity, complementary] = spread(own, partner, factor * relaxed);
                         ceiling.sensitivity.lowered(sensitivity, by);
@@ -156,12 +156,11 @@ fn node(specifications: &[Specification], candidates: &[Candidate], frequency: f
         .collect();
     let tracked = |(index, limit): &(usize, f64)| {
         // crossed limits are told of by themselves
-        *limit >= 1.0 && matches!(of(index), Some(Requirement::Tracking { .. }))
+        *limit >= 1.0 && of(index).is_some_and(Requirement::is_tracking)
     };
     let partners = if demands.iter().any(tracked) { extremes(&responses) } else { Vec::new() };
-    let crossed = |demand: &(usize, f64)| {
-        matches!(of(&demand.0), Some(Requirement::Tracking { .. })) && !tracked(demand)
-    };
+    let crossed =
+        |demand: &(usize, f64)| of(&demand.0).is_some_and(Requirement::is_tracking) && !tracked(demand);
     let demands = demands.into_iter().filter(|demand| !crossed(demand)).collect();
     Node { demands, responses, partners }
 }

@@ -20,7 +20,7 @@ use super::interpolation::least_relaxation_db;
 use super::plane::Boundary;
 use crate::bound::{Bound, Feasibility, Fill, FrequencyBounds, PhaseGrid};
 use crate::closed_loop::MemberResponse;
-use crate::specification::{Limit, LoopResponse, Requirement, Specification};
+use crate::specification::{Limit, LoopResponse, Specification};
 use crate::template::{Resolution, Template, TemplatePoint};
 use crate::verification::PlantPoint;
 
@@ -219,14 +219,14 @@ impl<'a> Place<'a> {
                 prefilter: one,
                 sensor: own / plant.plant,
             };
-            let size = portable::magnitude(specification.requirement.closed_loop(&response));
+            let size = portable::magnitude(specification.requirement.closed_loop().response(&response));
             (*point, 20.0 * portable::log10(size))
         };
         let sizes: Vec<(&PlantPoint, f64)> = self.plants.iter().map(size_db).collect();
         let greatest = sizes.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let least = sizes.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
         let limit_db = 20.0 * portable::log10(demanded(specification, self.frequency)?);
-        let spread = matches!(specification.requirement, Requirement::Tracking { .. });
+        let spread = specification.requirement.is_tracking();
         let (size, other, rate) =
             if spread { (greatest.1 - least.1, Some(least.0.clone()), 2.0) } else { (greatest.1, None, 1.0) };
         let margin_db = limit_db - size;
@@ -246,18 +246,13 @@ fn proven_db(high_db: f64, turn: f64, largest_complementary: f64) -> f64 {
 
 /// The specification at one frequency alone, its limits relaxed by a factor.
 fn constant(specification: &Specification, frequency: f64, factor: f64) -> Option<Specification> {
-    let above = |limit: &Limit| Some(Limit::Constant(factor * limit.magnitude(frequency)?));
-    let requirement = match &specification.requirement {
-        Requirement::RobustStability(limit) => Requirement::RobustStability(above(limit)?),
-        Requirement::Sensitivity(limit) => Requirement::Sensitivity(above(limit)?),
-        Requirement::PlantInputDisturbance(limit) => Requirement::PlantInputDisturbance(above(limit)?),
-        Requirement::ControlEffort(limit) => Requirement::ControlEffort(above(limit)?),
-        Requirement::LoadMotion(limit) => Requirement::LoadMotion(above(limit)?),
-        Requirement::Tracking { lower, upper } => Requirement::Tracking {
-            lower: Limit::Constant(lower.magnitude(frequency)? / factor),
-            upper: above(upper)?,
-        },
+    let (lower, upper) = specification.requirement.limits();
+    let upper = Limit::Constant(factor * upper.magnitude(frequency)?);
+    let lower = match lower {
+        Some(lower) => Some(Limit::Constant(lower.magnitude(frequency)? / factor)),
+        None => None,
     };
+    let requirement = specification.requirement.closed_loop().limited(lower, upper);
     Some(Specification {
         requirement,
         frequencies_rad_per_s: vec![frequency],

@@ -20,7 +20,7 @@ fn decibels(ratio: f64) -> f64 {
 /// Tracking limits that are crossed, each specification where it is worst, over its design frequencies and those of the cells.
 pub(super) fn crossed(specifications: &[Specification], frequencies: &[f64]) -> Vec<Finding> {
     let of = |(index, specification): (usize, &Specification)| {
-        if !matches!(specification.requirement, Requirement::Tracking { .. }) {
+        if !specification.requirement.is_tracking() {
             return None;
         }
         let own = specification.frequencies_rad_per_s.iter().chain(&specification.band_rad_per_s);

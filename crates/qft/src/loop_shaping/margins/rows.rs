@@ -5,7 +5,7 @@ use phea_dynamics::portable;
 
 use super::super::samples::Column;
 use super::super::structure::DECIBELS_PER_NEPER;
-use super::{ColumnLoop, Demand, Quantity, extremes};
+use super::{ColumnLoop, Demand, Limited, extremes};
 
 /// Change of ln G up to which a margin may be asked for.
 const REACH: f64 = 0.5;
@@ -52,9 +52,9 @@ pub(crate) fn candidates(
         prominent(low.map(|(place, square)| of(place, half_decibels(square / allowed), -1.0)).collect())
     };
     let allowed = demand.allowed;
-    match demand.quantity {
-        Quantity::TrackingAbove => above(allowed),
-        Quantity::Spread => {
+    match demand.limited {
+        Limited::FromBelow => above(allowed),
+        Limited::Spread => {
             let (tops, bottoms) = (below(1.0), above(1.0));
             let allowed_db = half_decibels(allowed);
             let mut pairs: Vec<Candidate> = Vec::new();
@@ -68,7 +68,7 @@ pub(crate) fn candidates(
             }
             prominent(pairs)
         }
-        _ => below(allowed),
+        Limited::FromAbove => below(allowed),
     }
 }
 

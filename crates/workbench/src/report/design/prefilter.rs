@@ -4,7 +4,7 @@ use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_qft::prefilter::{PrefilterBand, PrefilterBandPoint};
-use phea_qft::specification::{Requirement, Specification};
+use phea_qft::specification::Specification;
 use phea_qft::verification::{TOLERANCE_DB, Verdict};
 
 use crate::answer::significant;
@@ -21,7 +21,7 @@ const BEYOND: [f64; 2] = [0.1, 10.0];
 pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
     let mut figures = Vec::new();
     for (index, one) in view.designed.problem.specifications.iter().enumerate() {
-        if matches!(one.requirement, Requirement::Tracking { .. }) && view.designed.problem.has_prefilter {
+        if one.requirement.is_tracking() && view.designed.problem.has_prefilter {
             figures.extend(figure(view, index, one)?);
         }
     }

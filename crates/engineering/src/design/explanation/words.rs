@@ -1,16 +1,20 @@
-//! Findings in words.
+//! What a diagnosis found, in words.
 
 use std::f64::consts::TAU;
 use std::fmt::{Display, Formatter, Result};
 
 use num_complex::Complex64;
 
-use super::finding::{Constraint, Finding, Party, Place};
-use crate::verification::rounded;
+use phea_qft::design::{Constraint, Finding, Party, Place};
 
-impl Display for Finding {
+use crate::audit::rounded;
+
+/// A finding as a sentence.
+pub(super) struct Words<'a>(pub(super) &'a Finding);
+
+impl Display for Words<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        match self {
+        match self.0 {
             Finding::CrossedLimits { specification, frequency_rad_per_s, lower, upper, relaxation_db } => {
                 write!(
                     f,
@@ -62,7 +66,7 @@ impl Display for Finding {
             | Finding::DelayMargin { .. }
             | Finding::UnstableController { .. }
             | Finding::OutOfReach { .. }
-            | Finding::StaticGain { .. } => of_the_plants(self, f),
+            | Finding::StaticGain { .. } => of_the_plants(self.0, f),
         }
     }
 }

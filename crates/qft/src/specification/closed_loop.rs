@@ -1,0 +1,103 @@
+//! The closed loops whose magnitudes are limited.
+
+use num_complex::Complex64;
+
+use super::{Limit, LoopResponse, Requirement};
+
+/// A closed loop, with S = 1/(1+L) and L = P G H.
+///
+/// ```text
+/// X = A G^a F^f S,    A one of P H, 1, P, Pd, and a and f 0 or 1
+/// ```
+///
+/// # Example
+/// ```
+/// use num_complex::Complex64;
+/// use phea_qft::specification::{ClosedLoop, LoopResponse};
+/// let value = |real| Complex64::new(real, 0.0);
+/// let response = LoopResponse {
+///     plant: value(2.0),
+///     load_motion: value(5.0),
+///     controller: value(3.0),
+///     prefilter: value(0.5),
+///     sensor: value(1.0),
+/// };
+/// assert_eq!(ClosedLoop::ControlEffort.response(&response), value(3.0 / 7.0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClosedLoop {
+    /// L S
+    RobustStability,
+    /// S
+    Sensitivity,
+    /// P S
+    PlantInputDisturbance,
+    /// G S
+    ControlEffort,
+    /// Pd S
+    LoadMotion,
+    /// F P G S
+    Tracking,
+}
+
+/// What of the plant stands in a closed loop besides S: A.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PlantPath {
+    /// P H
+    PlantAndSensor,
+    /// 1
+    One,
+    /// P
+    Plant,
+    /// Pd
+    LoadMotion,
+}
+
+impl ClosedLoop {
+    /// X
+    pub fn response(self, response: &LoopResponse) -> Complex64 {
+        let sensitivity = 1.0 / (1.0 + response.open_loop());
+        match self {
+            ClosedLoop::RobustStability => response.open_loop() * sensitivity,
+            ClosedLoop::Sensitivity => sensitivity,
+            ClosedLoop::PlantInputDisturbance => response.plant * sensitivity,
+            ClosedLoop::ControlEffort => response.controller * sensitivity,
+            ClosedLoop::LoadMotion => response.load_motion * sensitivity,
+            ClosedLoop::Tracking => response.prefilter * response.plant * response.controller * sensitivity,
+        }
+    }
+
+    /// A
+    pub(crate) fn plant_path(self) -> PlantPath {
+        match self {
+            ClosedLoop::RobustStability => PlantPath::PlantAndSensor,
+            ClosedLoop::Sensitivity | ClosedLoop::ControlEffort => PlantPath::One,
+            ClosedLoop::PlantInputDisturbance | ClosedLoop::Tracking => PlantPath::Plant,
+            ClosedLoop::LoadMotion => PlantPath::LoadMotion,
+        }
+    }
+
+    /// Whether G stands before S: a = 1.
+    pub(crate) fn has_feedback(self) -> bool {
+        matches!(self, ClosedLoop::RobustStability | ClosedLoop::ControlEffort | ClosedLoop::Tracking)
+    }
+
+    /// Whether F does: f = 1.
+    pub(crate) fn has_prefilter(self) -> bool {
+        self == ClosedLoop::Tracking
+    }
+
+    /// This closed loop within these limits; the lower one counts for tracking alone.
+    pub(crate) fn limited(self, lower: Option<Limit>, upper: Limit) -> Requirement {
+        match self {
+            ClosedLoop::RobustStability => Requirement::RobustStability(upper),
+            ClosedLoop::Sensitivity => Requirement::Sensitivity(upper),
+            ClosedLoop::PlantInputDisturbance => Requirement::PlantInputDisturbance(upper),
+            ClosedLoop::ControlEffort => Requirement::ControlEffort(upper),
+            ClosedLoop::LoadMotion => Requirement::LoadMotion(upper),
+            ClosedLoop::Tracking => {
+                Requirement::Tracking { lower: lower.unwrap_or(Limit::Constant(0.0)), upper }
+            }
+        }
+    }
+}

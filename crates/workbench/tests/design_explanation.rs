@@ -1,0 +1,35 @@
+//! What a diagnosis found, as sentences.
+#![cfg(test)]
+
+use num_complex::Complex64;
+use phea_qft::design::{Constraint, Finding, Place, SharedLimit};
+use phea_qft::verification::PlantPoint;
+use phea_workbench::design::Explanation;
+
+/// The sentences name frequencies, specifications counted from 1, and what it would take.
+#[test]
+fn findings_read_as_sentences() {
+    let plant = PlantPoint::Parameters(vec![]);
+    let sum = Finding::SumBelowOne {
+        frequency_rad_per_s: 1.0,
+        plant: plant.clone(),
+        sensitivity: SharedLimit { specification: 0, limit: 0.3 },
+        complementary: SharedLimit { specification: 1, limit: 0.5 },
+        relaxation_db: 20.0 * 1.25_f64.log10(),
+    };
+    let text = Explanation::of(&sum).sentence;
+    assert!(text.contains("specifications 1 and 2") && text.contains("1.938 dB"), "{text}");
+    let constraint = Constraint {
+        place: Place::UnstablePole(Complex64::new(2.0, 0.0)),
+        plant,
+        dead_time_s: 0.0,
+        sensitivity: 0.3,
+        complementary: 0.5,
+        crossover_rad_per_s: Some(2.236),
+        specifications: vec![1],
+    };
+    let text = Explanation::of(&Finding::RightHalfPlane { constraint, relaxation_db: 6.0 }).sentence;
+    for part in ["unstable pole at 2 rad/s", "|T| = 1", "above 2.236 rad/s", "specification 2"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
