@@ -60,11 +60,6 @@ impl Expression {
         self.nodes.contains(&Node::Parameter(parameter))
     }
 
-    /// Number of results.
-    pub fn result_count(&self) -> usize {
-        self.results.len()
-    }
-
     /// Intervals that hold every result while the parameters run through theirs. An operation on twice the same number is known as such:
     /// a square is not negative, x - x is zero.
     ///

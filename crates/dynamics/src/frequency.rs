@@ -29,7 +29,7 @@ pub use margins::{GainMargin, Margins, ModulusMargin, PhaseMargin, margins};
 pub use passivity::{Band, ImaginaryPole, PassivityReport, passivity};
 
 use crate::linear::TransferFunction;
-use crate::portable::{log10, magnitude};
+use crate::portable::log10;
 
 /// Values of a system along the imaginary axis (or the unit circle), with their phase unwrapped.
 ///
@@ -44,7 +44,6 @@ use crate::portable::{log10, magnitude};
 /// )?;
 /// let response = FrequencyResponse::of(&triple, &[1.0, 10.0]);
 /// assert_eq!(response.phases_deg(), [-270.0, -270.0]);
-/// assert_eq!(response.magnitudes_db(), [0.0, -60.0]);
 /// # Ok(())
 /// # }
 /// ```
@@ -66,23 +65,6 @@ impl FrequencyResponse {
         }
     }
 
-    /// A response known only by its values (measured, or of a state space): from one frequency to the next the phase
-    /// takes the shorter way round, so the frequencies must be dense. Surplus values of the longer list are dropped.
-    pub fn from_values(frequencies_rad_per_s: &[f64], values: &[Complex64]) -> Self {
-        let count = frequencies_rad_per_s.len().min(values.len());
-        let mut phases_deg: Vec<f64> = Vec::with_capacity(count);
-        for value in values.iter().take(count) {
-            let principal = crate::portable::argument(*value).to_degrees();
-            let turns = phases_deg.last().map_or(0.0, |last: &f64| ((last - principal) / 360.0).round());
-            phases_deg.push(principal + 360.0 * if turns.is_finite() { turns } else { 0.0 });
-        }
-        FrequencyResponse {
-            frequencies_rad_per_s: frequencies_rad_per_s.iter().copied().take(count).collect(),
-            values: values.iter().copied().take(count).collect(),
-            phases_deg,
-        }
-    }
-
     /// Frequencies in rad/s.
     pub fn frequencies_rad_per_s(&self) -> &[f64] {
         &self.frequencies_rad_per_s
@@ -96,11 +78,6 @@ impl FrequencyResponse {
     /// Unwrapped phases in degrees.
     pub fn phases_deg(&self) -> &[f64] {
         &self.phases_deg
-    }
-
-    /// Magnitudes in dB; minus infinity for zero.
-    pub fn magnitudes_db(&self) -> Vec<f64> {
-        self.values.iter().map(|value| decibels(magnitude(*value))).collect()
     }
 }
 

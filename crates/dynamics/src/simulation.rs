@@ -33,7 +33,8 @@ mod vector;
 
 pub use commanded_plant::{CommandedPlant, LoopSignals};
 pub use course::{
-    Attention, Course, Event, Input, Observer, Outcome, Sampler, Settings, SimulationError, Status, Work,
+    Attention, Event, Input, InputSchedule, Observer, Outcome, Sampler, Settings, SimulationError, Status,
+    Work,
 };
 pub use driver::drive;
 pub use equilibrium::{EquilibriumError, equilibrium};

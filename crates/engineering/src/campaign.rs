@@ -20,7 +20,7 @@ mod supply;
 mod varied;
 mod workers;
 
-pub use ledger::{Ledger, Nowhere, Shard, Wanted};
+pub use ledger::{Nowhere, RowStore, Shard, Wanted};
 pub use plan::{Draw, Plan};
 pub use range::VariedRange;
 pub use row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS};
@@ -138,7 +138,7 @@ pub enum CampaignError {
     },
     /// Rows cannot be kept.
     #[error("{0}")]
-    Ledger(String),
+    RowStore(String),
     /// The machine or its controller cannot be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),

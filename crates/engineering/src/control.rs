@@ -96,7 +96,7 @@ pub fn timing(project: &Project) -> Timing {
 ///
 /// # Errors
 /// [`ControlError::Quantisation`] for a converter that is none.
-pub fn quantisation(project: &Project) -> Result<Quantisation, ControlError> {
+pub fn quantization(project: &Project) -> Result<Quantisation, ControlError> {
     let declared = project.controller.as_ref().and_then(|controller| controller.quantization.clone());
     let Some(declared) = declared else { return Ok(Quantisation::default()) };
     let converter = |bits: u32, range: Option<[f64; 2]>| -> Result<_, QuantisationError> {

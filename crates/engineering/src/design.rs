@@ -17,7 +17,7 @@ pub use factors::Factors;
 pub use problem::{design_options, design_problem};
 pub use repair::{Repair, RepairStatus};
 pub use rounding::Rounding;
-pub use side::{LoopFigures, NominalMargins, Side};
+pub use side::{AuditedController, LoopFigures, NominalMargins};
 
 pub use comparison::compared;
 pub use words::{status_sentence, structure_words};
@@ -71,11 +71,11 @@ pub struct ProjectDesign {
     /// Whether whoever watched it stopped it: then it is the best so far.
     pub stopped: bool,
     /// The designed controller with its audit.
-    pub designed: Side,
+    pub designed: AuditedController,
     /// The controller that the project gives, with its audit; absent where it gives none.
-    pub published: Option<Side>,
+    pub published: Option<AuditedController>,
     /// In a sampled loop: the design that was made for the continuous one, sampled and audited as the loop is.
-    pub continuous: Option<Side>,
+    pub continuous: Option<AuditedController>,
     /// What no controller can do, and what will be hard, whatever the search found.
     pub explanations: Vec<Explanation>,
     /// What the computer's converters do to the designed loop; absent where nothing is rounded.
@@ -127,7 +127,7 @@ impl ProjectDesign {
             }),
             PrefilterChoice::None | PrefilterChoice::Given(_) => None,
         };
-        let designed = Side::new(law, problem, view)?;
+        let designed = AuditedController::new(law, problem, view)?;
         Ok(ProjectDesign {
             bears_its_delay: asked.bears_its_delay(designed.figures.delay_margin_s.unwrap_or(0.0)),
             minimum_delay_margin_s: asked.minimum_delay_margin_s,
@@ -216,7 +216,7 @@ fn designed(
         None => None,
         Some(law) => {
             let view = audit_problem(&given, watch)?;
-            Some(Side::new(law.clone(), given.clone(), view)?)
+            Some(AuditedController::new(law.clone(), given.clone(), view)?)
         }
     };
     let problem = design_problem(setup, &given);
@@ -260,7 +260,7 @@ fn continuous_as_sampled(
     sampled: &DesignProblem,
     told: &ProjectDesign,
     watch: Watch<'_>,
-) -> Result<Option<Side>, ProcedureError> {
+) -> Result<Option<AuditedController>, ProcedureError> {
     let timing = sampled.timing;
     if timing.sample_time_s.is_none() {
         return Ok(None);
@@ -275,5 +275,5 @@ fn continuous_as_sampled(
     let compensation = setup.compensation(&controller)?;
     let problem = RobustProblem { compensation, ..told.designed.problem.clone() };
     let view = audit_problem(&problem, watch)?;
-    Ok(Some(Side::new(controller, problem, view)?))
+    Ok(Some(AuditedController::new(controller, problem, view)?))
 }

@@ -101,7 +101,7 @@ impl ProcedureError {
             self,
             ProcedureError::Simulate(SimulateError::Write(_))
                 | ProcedureError::Campaign(
-                    CampaignError::Ledger(_) | CampaignError::Simulate(SimulateError::Write(_))
+                    CampaignError::RowStore(_) | CampaignError::Simulate(SimulateError::Write(_))
                 )
         )
     }

@@ -20,7 +20,7 @@ use phea_hydraulics::linear::{
     LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance,
     first_order_model, linear_model, response_difference, transfer_functions,
 };
-use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, Plant};
+use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant};
 use phea_hydraulics::stiffness::{
     ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference,
 };
@@ -201,8 +201,8 @@ fn is_fifth_order(rig: &Rig) -> bool {
 }
 
 /// What the load feels: the actuator without it.
-fn felt(plant: &Plant) -> Result<LinearModel, LinearError> {
-    transfer_functions(&Plant { load: LinearLoad::Prescribed, ..*plant }.coefficients())
+fn felt(plant: &LinearPlant) -> Result<LinearModel, LinearError> {
+    transfer_functions(&LinearPlant { load: LinearLoad::Prescribed, ..*plant }.coefficients())
 }
 
 fn closed_loop_view(rig: &Rig, controller: &TransferFunction) -> Result<PortView, LinearError> {

@@ -18,7 +18,7 @@ use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
     Balance, Condition, OperatingPoint, OperatingPointError, Settled, SettledSupply, operating_point,
 };
-use phea_hydraulics::plant::{LinearLoad, Plant, PlantInMotion};
+use phea_hydraulics::plant::{LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::servovalve::Direction;
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
@@ -65,7 +65,7 @@ pub struct Rig {
     /// What the force sensor pushes on, where it yields.
     pub load: Option<YieldingLoad>,
     /// The linear plant that every verdict is of: nominal, at the operating point, with lumped lines.
-    pub plant: Plant,
+    pub plant: LinearPlant,
     /// The same with its lines in motion, which is then what every verdict is of; `None` where both are lumped.
     pub in_motion: Option<PlantInMotion>,
     /// What the linear loop counts of the load's velocity that is fed forward; [`Rig::in_loop`] has it.

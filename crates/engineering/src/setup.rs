@@ -1,7 +1,7 @@
 //! A project, lowered: what every procedure computes with, made of what is declared in this one place.
 //!
 //! ```text
-//! Project -> Setup { rig, controller, prefilter, sensor, timing, quantisation } -> machine, plant, family, sizing, reductions
+//! Project -> Setup { rig, controller, prefilter, sensor, timing, quantization } -> machine, plant, family, sizing, reductions
 //! ```
 
 use phea_dynamics::controller::{Compensator, Controller, Timing};
@@ -27,7 +27,7 @@ pub struct Setup<'a> {
     /// When the controller acts, be its law given or to be designed; continuous and without delay where the project says nothing.
     pub timing: Timing,
     /// What the computer of the controller rounds: nothing where the project does not say.
-    pub quantisation: Quantisation,
+    pub quantization: Quantisation,
     rig: Result<Rig, RigError>,
 }
 
@@ -60,7 +60,7 @@ impl<'a> Setup<'a> {
             prefilter: control::prefilter(project)?,
             sensor: control::sensor(project)?,
             timing,
-            quantisation: control::quantisation(project)?,
+            quantization: control::quantization(project)?,
             rig,
         })
     }
@@ -84,8 +84,8 @@ impl<'a> Setup<'a> {
     /// The same rig and controller, of which something else is asked: in its scenarios, specifications and settings alone may the project
     /// differ.
     pub fn asked<'b>(&self, project: &'b Project) -> Setup<'b> {
-        let Setup { controller, prefilter, sensor, timing, quantisation, rig, .. } = self.clone();
-        Setup { project, controller, prefilter, sensor, timing, quantisation, rig }
+        let Setup { controller, prefilter, sensor, timing, quantization, rig, .. } = self.clone();
+        Setup { project, controller, prefilter, sensor, timing, quantization, rig }
     }
 
     /// A controller as the project's computer runs it: in z with rounded coefficients, or as it is where nothing is rounded.
@@ -93,7 +93,7 @@ impl<'a> Setup<'a> {
     /// # Errors
     /// [`ControlError::Quantisation`] for coefficients that cannot be stored.
     pub fn deployed(&self, controller: &Controller) -> Result<Controller, ControlError> {
-        match self.quantisation.coefficients {
+        match self.quantization.coefficients {
             CoefficientFormat::Double => Ok(controller.clone()),
             format => Ok(rounded(controller, format)?.controller),
         }

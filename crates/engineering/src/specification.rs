@@ -8,7 +8,7 @@ use phea_qft::specification::{
     LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
 };
 
-use self::limit::{MarginOf, Side};
+use self::limit::{MarginOf, TrackingLimit};
 pub use self::rounding::of_rounding;
 use crate::project::{self, FormulaError, Project, SpecificationKind};
 
@@ -115,9 +115,10 @@ pub fn wishes(project: &Project) -> Result<Vec<CheckedWish>, SpecificationError>
     let mut checked = Vec::new();
     for (index, declared) in project.specifications.iter().enumerate() {
         let number = index + 1;
-        for (key, side, limit) in
-            [("upper", Side::Upper, &declared.upper), ("lower", Side::Lower, &declared.lower)]
-        {
+        for (key, side, limit) in [
+            ("upper", TrackingLimit::Upper, &declared.upper),
+            ("lower", TrackingLimit::Lower, &declared.lower),
+        ] {
             if let Some(project::Limit::Response(wish)) = limit {
                 let (_, check) = limit::of_wish(wish, side).map_err(|reason| SpecificationError {
                     number,
@@ -153,8 +154,8 @@ fn specification(
         SpecificationKind::ControlEffort => Requirement::ControlEffort(plain()?),
         SpecificationKind::LoadMotion => Requirement::LoadMotion(plain()?),
         SpecificationKind::Tracking => Requirement::Tracking {
-            lower: found("lower", &declared.lower, limit::Takes::Wish(Side::Lower))?,
-            upper: found("upper", &declared.upper, limit::Takes::Wish(Side::Upper))?,
+            lower: found("lower", &declared.lower, limit::Takes::Wish(TrackingLimit::Lower))?,
+            upper: found("upper", &declared.upper, limit::Takes::Wish(TrackingLimit::Upper))?,
         },
     };
     Ok(Specification {

@@ -135,7 +135,7 @@ impl Axis {
     }
 
     /// Title, with the power of ten where the labels are divided by one.
-    pub fn full_title(&self) -> String {
+    pub(crate) fn full_title(&self) -> String {
         match self.exponent() {
             0 => self.title.clone(),
             exponent => format!("{}, \u{d7}10^{exponent}", self.title),

@@ -105,7 +105,7 @@ fn curves(series: &[FrequencySeries]) -> Vec<Curve> {
 }
 
 /// Phase in degrees without jumps of a turn, its first value nearest to `start` (or in (-180, 180]).
-pub fn unwrapped_degrees(response: &[Complex64], start: Option<f64>) -> Vec<f64> {
+pub(crate) fn unwrapped_degrees(response: &[Complex64], start: Option<f64>) -> Vec<f64> {
     let mut previous = start.filter(|v| v.is_finite());
     response
         .iter()

@@ -177,7 +177,7 @@ pub const fn series_stroke(index: usize) -> Stroke {
 }
 
 /// Dash pattern of the series with this index.
-pub const fn series_dash(index: usize) -> Dash {
+pub(crate) const fn series_dash(index: usize) -> Dash {
     match index % 8 {
         0 => Dash::Solid,
         1 => Dash::Dashed,

@@ -56,18 +56,18 @@ impl Occupancy {
     }
 
     /// A thing to keep away from.
-    pub fn add_obstacle(&mut self, bounds: Rectangle) {
+    pub(crate) fn add_obstacle(&mut self, bounds: Rectangle) {
         self.obstacles.push(bounds);
     }
 
     /// A curve of some width to keep away from.
-    pub fn add_polyline(&mut self, points: &[Point], width: f64) {
+    pub(crate) fn add_polyline(&mut self, points: &[Point], width: f64) {
         let piece = |pair: &[Point]| Some(Piece { from: *pair.first()?, to: *pair.get(1)?, width });
         self.segments.extend(points.windows(2).filter_map(piece));
     }
 
     /// A line from a point to its label, which no other such label or line may cross.
-    pub fn add_lead(&mut self, from: Point, to: Point) {
+    pub(crate) fn add_lead(&mut self, from: Point, to: Point) {
         self.leads.push((from, to));
     }
 
@@ -93,7 +93,7 @@ impl Occupancy {
 
     /// Like [`Occupancy::choose`] for labels that may be led to their point by a line: a line crosses no text and no other
     /// such line, and its length counts against a place as much as the curves that label and line lie upon.
-    pub fn choose_led(&self, candidates: &[Led], frame: &Rectangle) -> Option<usize> {
+    pub(crate) fn choose_led(&self, candidates: &[Led], frame: &Rectangle) -> Option<usize> {
         let mut best: Option<(usize, f64)> = None;
         for (index, Led { point, bounds, line }) in candidates.iter().enumerate() {
             let spaced = bounds.grown(1.5);

@@ -36,7 +36,7 @@ pub struct Rectangle {
 
 impl Rectangle {
     /// From two opposite corners in any order.
-    pub fn from_corners(a: Point, b: Point) -> Self {
+    pub(crate) fn from_corners(a: Point, b: Point) -> Self {
         Rectangle { left: a.x.min(b.x), top: a.y.min(b.y), right: a.x.max(b.x), bottom: a.y.max(b.y) }
     }
 
@@ -163,7 +163,7 @@ impl Fill {
     }
 
     /// A tint for areas behind curves and text.
-    pub const fn tint(role: Role) -> Self {
+    pub(crate) const fn tint(role: Role) -> Self {
         Fill { role, opacity: 0.14 }
     }
 }
@@ -261,7 +261,7 @@ impl Text {
     }
 
     /// With an outline of the background.
-    pub fn with_halo(self) -> Self {
+    pub(crate) fn with_halo(self) -> Self {
         Text { halo: true, ..self }
     }
 
@@ -332,7 +332,7 @@ impl Scene {
     }
 
     /// Adds a rectangle.
-    pub fn rectangle(&mut self, rectangle: Rectangle, stroke: Option<Stroke>, fill: Option<Fill>) {
+    pub(crate) fn rectangle(&mut self, rectangle: Rectangle, stroke: Option<Stroke>, fill: Option<Fill>) {
         self.shape(Shape::Rectangle(rectangle, 0.0), stroke, fill);
     }
 

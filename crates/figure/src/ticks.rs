@@ -117,7 +117,7 @@ pub fn logarithmic(minimum: f64, maximum: f64, count: usize) -> Vec<Tick> {
 }
 
 /// Ticks of a signed logarithmic axis: zero, and decades from `limit` on either side.
-pub fn signed_logarithmic(minimum: f64, maximum: f64, limit: f64, count: usize) -> Vec<Tick> {
+pub(crate) fn signed_logarithmic(minimum: f64, maximum: f64, limit: f64, count: usize) -> Vec<Tick> {
     let start = floor_log10(limit * (1.0 + 1e-9));
     let reach = |bound: f64| if bound > limit { floor_log10(bound * (1.0 + 1e-9)) - start + 1 } else { 0 };
     let (below, above) = (reach(-minimum), reach(maximum));
@@ -168,7 +168,7 @@ pub fn floor_log10(value: f64) -> i32 {
 }
 
 /// The exponent, a multiple of three, that labels of an axis are divided by: 0 while they stay readable.
-pub fn engineering_exponent(minimum: f64, maximum: f64) -> i32 {
+pub(crate) fn engineering_exponent(minimum: f64, maximum: f64) -> i32 {
     let largest = minimum.abs().max(maximum.abs());
     let power = floor_log10(largest);
     if (-2..=4).contains(&power) { 0 } else { 3 * power.div_euclid(3) }

@@ -20,32 +20,6 @@ pub const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
 /// Families a browser tries: the embedded font where the page or the machine has it, then faces about as wide.
 pub const FONT_FAMILY: &str = "'DejaVu Sans',Verdana,Geneva,'Segoe UI',sans-serif";
 
-/// A `@font-face` rule that carries the embedded font (94 kB), for pages that must look the same everywhere.
-///
-/// # Example
-/// ```
-/// let rule = phea_figure::typeset::font_face();
-/// assert!(rule.starts_with("@font-face{font-family:'DejaVu Sans';src:url(data:font/ttf;base64,AAEAAA"));
-/// ```
-pub fn font_face() -> String {
-    format!("@font-face{{font-family:'DejaVu Sans';src:url(data:font/ttf;base64,{})}}\n", base64(FONT))
-}
-
-/// Base 64 of RFC 4648, section 4.
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |index: usize| u32::from(chunk.get(index).copied().unwrap_or(0));
-        let group = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for place in 0..4 {
-            let index = (group >> (18 - 6 * place)) as usize % 64;
-            text.push(if place <= chunk.len() { char::from(LETTERS[index]) } else { '=' });
-        }
-    }
-    text
-}
-
 /// Height of a capital, in font sizes.
 pub const CAPITAL: f64 = 0.729;
 const ASCENDER: f64 = 0.76;
@@ -189,7 +163,7 @@ fn advance(letter: char) -> f64 {
 }
 
 /// Downward shift from the held point to the line of the letters, in view box units.
-pub fn drop_to_letters(text: &Text) -> f64 {
+pub(crate) fn drop_to_letters(text: &Text) -> f64 {
     match text.baseline {
         Baseline::Letters => 0.0,
         Baseline::Middle => 0.5 * CAPITAL * text.size,

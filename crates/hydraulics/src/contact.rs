@@ -59,12 +59,12 @@ impl<S: Scalar> Contact<S> {
     }
 
     /// Elastic energy in J at a penetration in m.
-    pub fn stored_energy(&self, penetration: S) -> S {
+    pub(crate) fn stored_energy(&self, penetration: S) -> S {
         S::from(0.5) * self.stiffness * penetration.maximum(S::from(0.0)).squared()
     }
 
     /// Power in W that the contact turns into heat: never negative.
-    pub fn dissipated(&self, penetration: S, rate: S) -> S {
+    pub(crate) fn dissipated(&self, penetration: S, rate: S) -> S {
         let elastic = self.stiffness * penetration.maximum(S::from(0.0));
         (self.force(penetration, rate) - elastic) * rate
     }

@@ -29,11 +29,6 @@ pub struct Cylinder<S = f64> {
 }
 
 impl Cylinder {
-    /// Whether both sides of the piston have the same area.
-    pub fn is_symmetric(&self) -> bool {
-        self.area_a == self.area_b
-    }
-
     /// What about this cylinder is impossible; empty if nothing is.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();

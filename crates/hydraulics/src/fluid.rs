@@ -27,7 +27,7 @@ pub struct EntrainedAir<S = f64> {
     /// Volume of air over volume of the mixture at atmospheric pressure, in [0, 1).
     pub volume_fraction: S,
     /// Polytropic index of its compression: 1 isothermal, 1.4 adiabatic.
-    pub polytropic_index: S,
+    pub polytropic_exponent: S,
 }
 
 impl Fluid {
@@ -37,7 +37,7 @@ impl Fluid {
         problems.positive("bulk_modulus", self.bulk_modulus);
         problems.positive("density", self.density);
         problems.positive("kinematic_viscosity", self.kinematic_viscosity);
-        if let Some(EntrainedAir { volume_fraction, polytropic_index }) = self.entrained_air {
+        if let Some(EntrainedAir { volume_fraction, polytropic_exponent }) = self.entrained_air {
             let is_fraction = (0.0..1.0).contains(&volume_fraction);
             problems.require(
                 "entrained_air.volume_fraction",
@@ -45,20 +45,15 @@ impl Fluid {
                 is_fraction,
                 "from 0 to below 1",
             );
-            let is_index = (1.0..=5.0 / 3.0).contains(&polytropic_index);
-            problems.require("entrained_air.polytropic_index", polytropic_index, is_index, "from 1 to 5/3");
+            let is_index = (1.0..=5.0 / 3.0).contains(&polytropic_exponent);
+            problems.require(
+                "entrained_air.polytropic_exponent",
+                polytropic_exponent,
+                is_index,
+                "from 1 to 5/3",
+            );
         }
         problems.into_vec()
-    }
-
-    /// Dynamic viscosity in Pa s.
-    pub fn dynamic_viscosity(&self) -> f64 {
-        self.density * self.kinematic_viscosity
-    }
-
-    /// Speed of sound in the unconfined fluid at a gauge pressure, sqrt(beta/rho), in m/s.
-    pub fn speed_of_sound(&self, pressure: f64) -> f64 {
-        (self.modulus_at(pressure) / self.density).sqrt()
     }
 }
 
@@ -70,7 +65,7 @@ impl<S: Scalar> Fluid<S> {
     /// use phea_hydraulics::fluid::{EntrainedAir, Fluid};
     /// let clean = Fluid { bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None };
     /// assert_eq!(clean.modulus_at(35e5), 1.45e9);
-    /// let air = EntrainedAir { volume_fraction: 0.01, polytropic_index: 1.4 };
+    /// let air = EntrainedAir { volume_fraction: 0.01, polytropic_exponent: 1.4 };
     /// let foamy = Fluid { entrained_air: Some(air), ..clean };
     /// assert!(foamy.modulus_at(35e5) < 1.3e9 && foamy.modulus_at(5e5) < 0.3e9);
     /// ```
@@ -80,7 +75,7 @@ impl<S: Scalar> Fluid<S> {
             Some(air) => bulk_modulus_with_air(
                 self.bulk_modulus,
                 air.volume_fraction,
-                air.polytropic_index,
+                air.polytropic_exponent,
                 pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE),
             ),
         }
@@ -109,11 +104,11 @@ impl<S: Scalar> Fluid<S> {
 pub fn bulk_modulus_with_air<S: Scalar>(
     bulk_modulus: S,
     volume_fraction: S,
-    polytropic_index: S,
+    polytropic_exponent: S,
     pressure_absolute: S,
 ) -> S {
     let reference = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
     let liquid = (S::from(1.0) - volume_fraction) * ((reference - pressure_absolute) / bulk_modulus).exp();
-    let gas = volume_fraction * ((reference / pressure_absolute).ln() / polytropic_index).exp();
-    (liquid + gas) / (liquid / bulk_modulus + gas / (polytropic_index * pressure_absolute))
+    let gas = volume_fraction * ((reference / pressure_absolute).ln() / polytropic_exponent).exp();
+    (liquid + gas) / (liquid / bulk_modulus + gas / (polytropic_exponent * pressure_absolute))
 }

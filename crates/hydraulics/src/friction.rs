@@ -81,7 +81,7 @@ impl Friction {
     /// ```
     /// use phea_hydraulics::friction::{Friction, Stribeck, ViscousSlope};
     /// let friction = Friction::Stribeck(Stribeck {
-    ///     coulomb: 80.0, breakaway: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
     /// });
     /// assert_eq!(friction.viscous_slope(ViscousSlope::Viscous), Some(100.0));
     /// assert_eq!(friction.viscous_slope(ViscousSlope::Secant(1.0)), Some(180.0));

@@ -40,8 +40,8 @@ pub fn open_loop_impedance(model: &LinearModel) -> Result<TransferFunction, Line
 /// P and Z_open share their poles, which are those of the open loop and cancel exactly.
 ///
 /// # Errors
-/// A controller that is sampled or has dead time: the impedance is then no rational function
-/// ([`closed_loop_impedance_at`] gives its response).
+/// A controller that is sampled or has dead time: the impedance is then not a rational
+/// function.
 pub fn closed_loop_impedance(
     model: &LinearModel,
     controller: &TransferFunction,
@@ -61,22 +61,6 @@ pub fn closed_loop_impedance(
         }
     }
     TransferFunction::from_factors(open.gain() * sensitivity_gain, zeros, poles)
-}
-
-/// Response of the closed-loop driving-point impedance at a frequency in rad/s, for any controller.
-///
-/// Dead time is included; a sampled controller is taken at z = exp(jwT), without the response of its hold.
-///
-/// # Errors
-/// See [`open_loop_impedance`].
-pub fn closed_loop_impedance_at(
-    model: &LinearModel,
-    controller: &TransferFunction,
-    frequency: f64,
-) -> Result<Complex64, LinearError> {
-    let open = open_loop_impedance(model)?.at_frequency(frequency);
-    let loop_gain = controller.at_frequency(frequency) * model.command.at_frequency(frequency);
-    Ok(open / (1.0 + loop_gain))
 }
 
 /// Force per load position F_e/X_L in N/m with the loop closed by a controller G in V/N: second half of thesis (6.8) times s.

@@ -28,7 +28,7 @@ use crate::two_pressure::TwoPressureLinearParameters;
 
 /// Everything that the linear plant depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plant<S = f64> {
+pub struct LinearPlant<S = f64> {
     /// Natural frequency w of the spool in rad/s.
     pub valve_natural_frequency: S,
     /// Damping ratio xi of the spool.
@@ -194,10 +194,14 @@ struct Chamber<S> {
     flow_pressure: S,
 }
 
-impl<S: Scalar> Plant<S> {
+impl<S: Scalar> LinearPlant<S> {
     /// The plant of these parameters of the fifth-order model, with what that model leaves out.
-    pub fn of_load_pressure(parameters: &LinearParameters<S>, leakage: S, load: LinearLoad<S>) -> Plant<S> {
-        Plant {
+    pub fn of_load_pressure(
+        parameters: &LinearParameters<S>,
+        leakage: S,
+        load: LinearLoad<S>,
+    ) -> LinearPlant<S> {
+        LinearPlant {
             valve_natural_frequency: parameters.valve_natural_frequency,
             valve_damping_ratio: parameters.valve_damping_ratio,
             chambers: ChamberDynamics::LoadPressure {
@@ -221,9 +225,9 @@ impl<S: Scalar> Plant<S> {
         parameters: &TwoPressureLinearParameters<S>,
         leakage: S,
         load: LinearLoad<S>,
-    ) -> Plant<S> {
+    ) -> LinearPlant<S> {
         let chambers = &parameters.chambers;
-        Plant {
+        LinearPlant {
             valve_natural_frequency: parameters.valve_natural_frequency,
             valve_damping_ratio: parameters.valve_damping_ratio,
             chambers: ChamberDynamics::TwoPressures {
@@ -259,13 +263,13 @@ impl<S: Scalar> Plant<S> {
     /// What the load adds: with a mass as heavy as the earth it does not move.
     /// ```
     /// # use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
-    /// use phea_hydraulics::plant::{LinearLoad, Plant};
+    /// use phea_hydraulics::plant::{LinearLoad, LinearPlant};
     /// # let parameters = LinearParameters {
     /// #     useful_area: 1.58e-3, moving_mass: 13.1, viscous_friction: 100.0, flow_gain: 5.4e-5,
     /// #     flow_pressure_coefficient: 6.4e-13, hydraulic_stiffness: 2.24e6, sensor_stiffness: 2e7,
     /// #     valve_natural_frequency: 1099.0, valve_damping_ratio: 0.9,
     /// # };
-    /// let plant = |load| Plant::of_load_pressure(&parameters, 0.0, load).coefficients().command.at_frequency(500.0);
+    /// let plant = |load| LinearPlant::of_load_pressure(&parameters, 0.0, load).coefficients().command.at_frequency(500.0);
     /// let heavy = LinearLoad::Yielding { mass: 6e24, damping: 500.0, stiffness: 2e5 };
     /// let light = LinearLoad::Yielding { mass: 100.0, damping: 500.0, stiffness: 2e5 };
     /// let prescribed = plant(LinearLoad::Prescribed);

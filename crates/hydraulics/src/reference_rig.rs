@@ -123,7 +123,7 @@ pub fn benchmark_components() -> Components {
     let line = Line::Volume { volume: 1.9e-4, effective_bulk_modulus: 2.6e8 };
     let curve = Stribeck {
         coulomb: 80.0,
-        breakaway: 120.0,
+        static_friction: 120.0,
         stribeck_velocity: 0.01,
         stribeck_exponent: 2.0,
         viscous: 100.0,

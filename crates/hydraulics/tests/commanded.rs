@@ -18,7 +18,7 @@ pub(super) fn power_unit(number: u64) -> PowerUnit {
     let mut state = stream(31, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     let gas_volume = spread(1e-4, 1e-2);
-    let accumulator = Accumulator { gas_volume, precharge_pressure: 40e5, polytropic_index: 1.3 };
+    let accumulator = Accumulator { gas_volume, precharge_pressure: 40e5, polytropic_exponent: 1.3 };
     PowerUnit::PumpLimited(PumpLimited {
         pump_flow: spread(6e-6, 3e-4),
         relief_override: spread(1e5, 2e6),

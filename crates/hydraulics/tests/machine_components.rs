@@ -184,7 +184,7 @@ fn the_rate_is_limited() {
 
 fn foamy() -> Components {
     let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
-    let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_index: 1.4 });
+    let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });
     let hose = components(hose_line(), StiffnessModel::ByVolume);
     Components {
         fluid: Fluid { entrained_air: air, ..hose.fluid },
@@ -271,7 +271,7 @@ fn contacts_restitute_as_hunt_and_crossley_say() {
 }
 
 fn pump() -> PumpLimited {
-    let accumulator = Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_index: 1.3 };
+    let accumulator = Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_exponent: 1.3 };
     PumpLimited {
         pump_flow: 1.633e-4,
         relief_override: 5e5,

@@ -149,13 +149,13 @@ fn pump() -> PowerUnit {
 }
 
 /// A pump that leans on gas of this precharge in Pa and this index.
-fn charged_pump(precharge_pressure: f64, polytropic_index: f64) -> PowerUnit {
-    pump_with(Some(Accumulator { gas_volume: 1e-4, precharge_pressure, polytropic_index }))
+fn charged_pump(precharge_pressure: f64, polytropic_exponent: f64) -> PowerUnit {
+    pump_with(Some(Accumulator { gas_volume: 1e-4, precharge_pressure, polytropic_exponent }))
 }
 
 /// The rig with bubbles in its fluid.
-fn foamy(rig: Components, stiffness_model: StiffnessModel, polytropic_index: f64) -> Components {
-    let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_index });
+fn foamy(rig: Components, stiffness_model: StiffnessModel, polytropic_exponent: f64) -> Components {
+    let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent });
     Components { fluid: Fluid { entrained_air: air, ..rig.fluid }, stiffness_model, ..rig }
 }
 

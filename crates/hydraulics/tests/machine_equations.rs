@@ -47,7 +47,7 @@ fn rates_of(machine: &Machine, state: &[f64], command: f64, inputs: &[f64]) -> V
 }
 
 fn pump() -> PumpLimited {
-    let accumulator = Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_index: 1.3 };
+    let accumulator = Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_exponent: 1.3 };
     PumpLimited {
         pump_flow: 1.633e-4,
         relief_override: 5e5,
@@ -80,10 +80,10 @@ fn hose() -> Components {
 /// Unequal areas and lines, air, and a static friction curve.
 fn asymmetric() -> Components {
     let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
-    let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_index: 1.4 });
+    let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });
     let curve = Stribeck {
         coulomb: 80.0,
-        breakaway: 120.0,
+        static_friction: 120.0,
         stribeck_velocity: 0.01,
         stribeck_exponent: 1.4,
         viscous: 100.0,

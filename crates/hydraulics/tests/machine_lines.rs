@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Course, Input, Plant, Profile, Settings, Status, System, simulate};
+use phea_dynamics::simulation::{Input, InputSchedule, Plant, Profile, Settings, Status, System, simulate};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::line::{
     Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, Member, Segments, TransmissionLine, TwoWaveHose,
@@ -85,7 +85,7 @@ fn forces(line: Option<DynamicLine>, motion_s: f64, duration_s: f64) -> Vec<f64>
     let rest = machine.rest(&point).unwrap();
     let motion = Profile::smooth_step(0.02, motion_s, 2e-3).unwrap();
     let inputs = vec![Input::Value(motion.clone()), Input::Rate(motion)];
-    let course = Course { duration_s, output_step_s: 1e-3, inputs };
+    let course = InputSchedule { duration_s, output_step_s: 1e-3, inputs };
     let held = Held { machine, command: rest.command, ground: rest.inputs[0] };
     let result = simulate(
         &held,
@@ -152,7 +152,7 @@ fn nothing_is_felt_before_the_wave_arrives() {
     let rest = machine.rest(&point).unwrap();
     let ground = Profile::constant(0.0);
     let inputs = vec![Input::Value(ground.clone()), Input::Rate(ground)];
-    let course = Course { duration_s: 0.008, output_step_s: 1e-4, inputs };
+    let course = InputSchedule { duration_s: 0.008, output_step_s: 1e-4, inputs };
     let held = Held { machine, command: rest.command + 5.0, ground: rest.inputs[0] };
     let settings = Settings { tolerance: 1e-8, ..Settings::default() };
     let result = simulate(

@@ -4,7 +4,7 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    Course, Input, Plant, Profile, Settings, Simulated, Status, System, simulate,
+    Input, InputSchedule, Plant, Profile, Settings, Simulated, Status, System, simulate,
 };
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
@@ -57,7 +57,7 @@ fn drive(
     let beginning = machine.start(start).unwrap();
     let command = Profile::steps(0.0, command).unwrap();
     let inputs = vec![Input::Value(command), Input::Value(ground.clone()), Input::Rate(ground)];
-    let course = Course { duration_s, output_step_s: duration_s / 1000.0, inputs };
+    let course = InputSchedule { duration_s, output_step_s: duration_s / 1000.0, inputs };
     let settings = Settings { maximum_steps: 200_000, ..Settings::default() };
     let result =
         simulate(&Commanded(machine), &beginning.state, &course, None, &settings, &mut |_| true).unwrap();
@@ -127,7 +127,7 @@ fn a_piston_meets_its_end_stops() {
 /// 20 mm of load in 10 ms: chambers cavitate and are reported, not clamped, and the run ends in time.
 #[test]
 fn violent_loads_are_survived() {
-    let air = Some(EntrainedAir { volume_fraction: 0.01, polytropic_index: 1.4 });
+    let air = Some(EntrainedAir { volume_fraction: 0.01, polytropic_exponent: 1.4 });
     let rig = benchmark_components();
     let foamy = Components { fluid: Fluid { entrained_air: air, ..rig.fluid }, ..rig };
     let hose = components(hose_line(), StiffnessModel::ByVolume);

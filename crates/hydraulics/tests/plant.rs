@@ -16,7 +16,7 @@ use phea_hydraulics::line::Member;
 use phea_hydraulics::linear::linear_model_coefficients;
 use phea_hydraulics::machine::{Beginning, LoadModel, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
-use phea_hydraulics::plant::{LinearLoad, Plant};
+use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
 use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -42,7 +42,7 @@ fn drawn(number: u64) -> Drawn {
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     let friction = spread(50.0, 2e4);
     let air = (number.is_multiple_of(3))
-        .then(|| EntrainedAir { volume_fraction: spread(1e-3, 3e-2), polytropic_index: spread(1.0, 1.4) });
+        .then(|| EntrainedAir { volume_fraction: spread(1e-3, 3e-2), polytropic_exponent: spread(1.0, 1.4) });
     let rods = [0.022, spread(0.01, 0.036)];
     let [area_a, area_b] = areas_from_diameters(0.05, rods).unwrap();
     let line_b = if number.is_multiple_of(2) { hose_line() } else { pipe_line() };
@@ -91,7 +91,7 @@ fn drawn(number: u64) -> Drawn {
 
 impl Drawn {
     /// The plant where the machine rests.
-    fn plant(&self) -> Plant {
+    fn plant(&self) -> LinearPlant {
         let state = &self.rest.state;
         let pressures = [state[2], state[3]];
         let stated = self.actuator.components().supply;
@@ -113,7 +113,7 @@ impl Drawn {
         };
         let parameters = two_pressure_linear_parameters(&model, &point, Direction::Extending);
         let supply = yielding(&self.actuator, &self.unit, state[0], pressures, supplied);
-        Plant { supply, ..Plant::of_two_pressures(&parameters, self.leakage, self.load) }
+        LinearPlant { supply, ..LinearPlant::of_two_pressures(&parameters, self.leakage, self.load) }
     }
 
     /// F_e/U_C and F_e/X_0 of the machine's own derivatives.
@@ -138,7 +138,7 @@ fn it_is_the_machine_for_small_motions() {
         let feed_forward =
             if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 300.0) } else { 0.0 };
         let fed = (feed_forward > 0.0).then_some(feed_forward);
-        let coefficients = Plant { load_velocity_feed_forward: fed, ..rig.plant() }.coefficients();
+        let coefficients = LinearPlant { load_velocity_feed_forward: fed, ..rig.plant() }.coefficients();
         let disturbance = coefficients.disturbance.unwrap();
         for step in 0..20 {
             let frequency = 1e-3 * pow(1e7, f64::from(step) / 19.0);
@@ -180,13 +180,13 @@ fn a_limited_pump_settles_where_the_machine_rests() {
 /// Without leakage and with a prescribed load it is the model it is made of, coefficient by coefficient.
 #[test]
 fn without_load_and_leakage_it_is_the_known_models() {
-    let of_load_pressure = Plant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
+    let of_load_pressure = LinearPlant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
     let rig = drawn(0);
     let state = &rig.rest.state;
     let model = TwoPressureModel::new(&rig.actuator, [state[2], state[3]], Member::Nominal, rig.friction);
     let point = operating_point(&rig.actuator, 0.2, Condition::Command(0.3)).unwrap();
     let parameters = two_pressure_linear_parameters(&model, &point, Direction::Extending);
-    let of_two_pressures = Plant::of_two_pressures(&parameters, 0.0, LinearLoad::Prescribed);
+    let of_two_pressures = LinearPlant::of_two_pressures(&parameters, 0.0, LinearLoad::Prescribed);
     for (plant, known) in [
         (of_load_pressure.coefficients(), linear_model_coefficients(&nominal_plant())),
         (of_two_pressures.coefficients(), two_pressure_coefficients(&parameters)),
@@ -221,8 +221,8 @@ fn equal_chambers_need_one_pressure() {
     let parameters = two_pressure_linear_parameters(&model, &point, Direction::Mean);
     let load = LinearLoad::Yielding { mass: 100.0, damping: 500.0, stiffness: 2e5 };
     let reduced = phea_hydraulics::two_pressure::reduce(&parameters);
-    let one = Plant::of_load_pressure(&reduced, 1e-11, load).coefficients().command;
-    let two = Plant::of_two_pressures(&parameters, 1e-11, load).coefficients().command;
+    let one = LinearPlant::of_load_pressure(&reduced, 1e-11, load).coefficients().command;
+    let two = LinearPlant::of_two_pressures(&parameters, 1e-11, load).coefficients().command;
     for frequency in [1e-3, 0.1, 5.0, 40.0, 300.0, 1300.0, 2e4] {
         assert!((one.at_frequency(frequency) / two.at_frequency(frequency) - 1.0).norm_sqr() < 1e-24);
     }

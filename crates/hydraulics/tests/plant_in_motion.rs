@@ -18,7 +18,7 @@ use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, Member, Segments};
 use phea_hydraulics::machine::{Chambers, LoadModel, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
-use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
+use phea_hydraulics::plant::{BehindLines, LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
 use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -41,14 +41,14 @@ fn model(number: u64, time: f64) -> LineModel {
     }
 }
 
-/// Plant and machine of a rig of its own for every number, with a model of its own for every line.
+/// LinearPlant and machine of a rig of its own for every number, with a model of its own for every line.
 struct Drawn {
     machine: Machine,
     inputs: Vec<f64>,
     state: Vec<f64>,
     command: f64,
     sensor: f64,
-    plant: Plant,
+    plant: LinearPlant,
     behind: BehindLines,
 }
 
@@ -98,7 +98,7 @@ fn drawn(number: u64) -> Drawn {
     let [area_a, area_b] = areas_from_diameters(0.05, [0.022, spread(0.01, 0.036)]).unwrap();
     let stiffness_model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
     let reference = components(hose_line(), stiffness_model);
-    let air = EntrainedAir { volume_fraction: spread(1e-3, 1e-2), polytropic_index: 1.3 };
+    let air = EntrainedAir { volume_fraction: spread(1e-3, 1e-2), polytropic_exponent: 1.3 };
     let of_length = |length| Line::Hose { hose: hose(), length };
     let models = [model(number, spread(1e-4, 0.1)), model(number / 6, spread(1e-4, 0.1))];
     let line_b = match models[1] {
@@ -143,7 +143,7 @@ fn drawn(number: u64) -> Drawn {
         state: rest.state,
         command: rest.command,
         sensor: parts.force_sensor.stiffness,
-        plant: Plant { supply, ..Plant::of_two_pressures(&parameters, leakage, linear_load) },
+        plant: LinearPlant { supply, ..LinearPlant::of_two_pressures(&parameters, leakage, linear_load) },
         behind,
     }
 }
@@ -208,7 +208,7 @@ fn the_velocity_of_the_load_is_that_of_the_machine() {
         let rig = drawn(number);
         let moving = PlantInMotion::new(&rig.plant, &rig.behind);
         let gain = 12.0;
-        let fed = Plant { load_velocity_feed_forward: Some(gain), ..rig.plant };
+        let fed = LinearPlant { load_velocity_feed_forward: Some(gain), ..rig.plant };
         let [own, closed] =
             [rig.plant, fed].map(|plant| (plant.coefficients(), PlantInMotion::lumped(&plant)));
         for step in 0..14 {
@@ -291,7 +291,7 @@ fn a_late_feed_forward_is_enclosed() {
 /// The plant's own poles in the right half plane against those with e^(-s tau) as six quotients of second order.
 #[test]
 fn poles_of_a_late_plant_are_counted() {
-    let plant = Plant::of_load_pressure(
+    let plant = LinearPlant::of_load_pressure(
         &phea_hydraulics::reference_rig::nominal_plant(),
         0.0,
         LinearLoad::Yielding { mass: 100.0, damping: 500.0, stiffness: 2e5 },
@@ -299,8 +299,10 @@ fn poles_of_a_late_plant_are_counted() {
     let alone = Polynomial::new(plant.coefficients().command.denominator);
     let mut seen = [0; 3];
     for gain in [5.0, 20.0, 29.0, 40.0] {
-        let fed =
-            Plant { load_velocity_feed_forward: Some(gain), ..plant }.coefficients().command.denominator;
+        let fed = LinearPlant { load_velocity_feed_forward: Some(gain), ..plant }
+            .coefficients()
+            .command
+            .denominator;
         let back = Polynomial::new(fed).sum(&alone.scaled(-1.0));
         for delay in [0.0, 1e-3, 3e-3, 1e-2, 2e-2, 3e-2, 4e-2] {
             let part = delay / 6.0;
@@ -325,8 +327,12 @@ fn lumped_lines_make_the_rational_plant() {
     for number in (0..36).step_by(6).map(|first| first * 6) {
         let rig = drawn(number);
         let plants = [
-            Plant { load_velocity_feed_forward: Some(20.0), ..rig.plant },
-            Plant::of_load_pressure(&phea_hydraulics::reference_rig::nominal_plant(), 1e-12, rig.plant.load),
+            LinearPlant { load_velocity_feed_forward: Some(20.0), ..rig.plant },
+            LinearPlant::of_load_pressure(
+                &phea_hydraulics::reference_rig::nominal_plant(),
+                1e-12,
+                rig.plant.load,
+            ),
         ];
         let BehindLines { chambers, lumped, .. } = rig.behind;
         let lines = [0, 1].map(|side| DynamicLine::Segments(Segments::lumped(lumped[side] - chambers[side])));

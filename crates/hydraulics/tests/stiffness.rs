@@ -198,7 +198,7 @@ fn no_hose_is_needed_when_the_chambers_are_soft_enough() {
 #[test]
 fn entrained_air_softens_the_chamber_at_lower_pressure() {
     let clean = components(hose_line(), StiffnessModel::ByVolume);
-    let air = Some(EntrainedAir { volume_fraction: 0.01, polytropic_index: 1.4 });
+    let air = Some(EntrainedAir { volume_fraction: 0.01, polytropic_exponent: 1.4 });
     let foamy =
         Components { fluid: phea_hydraulics::fluid::Fluid { entrained_air: air, ..clean.fluid }, ..clean };
     let least = |components: Components, pressure: f64| {

@@ -70,7 +70,7 @@ fn rigs() -> Vec<Components> {
         line_b: pipe_line(),
         ..components(hose_line(), StiffnessModel::ByVolume)
     };
-    let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_index: 1.4 });
+    let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });
     vec![
         unequal,
         Components { valve: valve_with_equal_edges(), ..unequal },

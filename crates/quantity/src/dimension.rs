@@ -14,7 +14,7 @@ impl Exponents {
     pub const NONE: Exponents = Exponents([0; 5]);
 
     /// In SI base units, such as `kg/(m.s^2)`; `1` for a pure number.
-    pub fn in_base_units(self) -> String {
+    pub(crate) fn in_base_units(self) -> String {
         let symbols = ["kg", "m", "s", "V", "rad"];
         let side = |positive: bool| -> Vec<String> {
             let mut factors = Vec::new();

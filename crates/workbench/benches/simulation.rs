@@ -16,8 +16,8 @@ use std::time::Instant;
 
 use phea_dynamics::controller::{ControllerState, SampledController};
 use phea_dynamics::simulation::{
-    CommandedPlant, Course, Input, Observer, Outcome, Profile, Queue, Sampler, Sensed, Settings, Status,
-    System, Task, drive,
+    CommandedPlant, Input, InputSchedule, Observer, Outcome, Profile, Queue, Sampler, Sensed, Settings,
+    Status, System, Task, drive,
 };
 use phea_hydraulics::machine::{Machine, MachineOptions, Start};
 use phea_workbench::project::{self, MotionShape, Project, Signal};
@@ -122,7 +122,7 @@ fn read(text: &str) -> Result<Project, Fault> {
 struct Bench {
     control: Control,
     start: Vec<f64>,
-    course: Course,
+    course: InputSchedule,
     stiffness: f64,
 }
 
@@ -170,7 +170,8 @@ impl Bench {
         };
         let mut start = beginning.state;
         start.resize(states, 0.0);
-        let course = Course { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs };
+        let course =
+            InputSchedule { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs };
         Ok(Bench { control, start, course, stiffness: rig.actuator.components().force_sensor.stiffness })
     }
 

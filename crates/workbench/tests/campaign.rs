@@ -10,7 +10,8 @@ use std::path::Path;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use phea_workbench::campaign::{
-    CampaignError, Effort, Ledger, METRIC_NAMES, Plan, Row, RowOutcome, STATUS_WORDS, Shard, Summary, Wanted,
+    CampaignError, Effort, METRIC_NAMES, Plan, Row, RowOutcome, RowStore, STATUS_WORDS, Shard, Summary,
+    Wanted,
 };
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, ProcedureError, Request};
 use phea_workbench::project::{self, Loaded};
@@ -188,7 +189,7 @@ struct Page {
     text: String,
 }
 
-impl Ledger for Page {
+impl RowStore for Page {
     fn kept(&mut self) -> Result<String, String> {
         Ok(self.text.clone())
     }

@@ -19,7 +19,8 @@ use phea_qft::verification::{AuditProblem, PlantPoint, TOLERANCE_DB, TrackingJud
 use phea_workbench::audit::audit_project;
 use phea_workbench::command::{Request, answer};
 use phea_workbench::design::{
-    DESIGNED_PROJECT, ProjectDesign, Side, design_options, design_problem, files, json, stage_files, text,
+    AuditedController, DESIGNED_PROJECT, ProjectDesign, design_options, design_problem, files, json,
+    stage_files, text,
 };
 use phea_workbench::project::{
     self, FeedForward, Loaded, Prefilter, Quantization, RationalFunction, Transfer,
@@ -96,7 +97,7 @@ fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
     let setup = Setup::new(&loaded.project).unwrap();
     let law = setup.controller.clone().unwrap();
     let audit = audit_project(&source, &Setup::new(&loaded.project).unwrap(), &mut |_| true).unwrap();
-    let published = Side::new(law, given.clone(), audit).unwrap();
+    let published = AuditedController::new(law, given.clone(), audit).unwrap();
     let problem = design_problem(&Setup::new(&loaded.project).unwrap(), &given);
     let options = design_options(&Setup::new(&loaded.project).unwrap(), &given, Some(7)).unwrap();
     assert_eq!(options.controller, ControllerChoice::Grow { maximum_order: 4 });

@@ -99,7 +99,7 @@ fn the_measurement_is_rounded_to_its_levels() {
 fn the_command_is_rounded_to_its_levels() {
     let converter = "], quantization = { command_bits = 16, command_range = [-10, 10] }";
     let setting = sampled(1e-3, converter);
-    let converter = Setup::new(&still(&[&setting])).unwrap().quantisation.command.unwrap();
+    let converter = Setup::new(&still(&[&setting])).unwrap().quantization.command.unwrap();
     // ORIGIN: analytic, 20 V/65536, and 1 V between the levels 3276 and 3277, at 3276.8
     assert_eq!(converter.step(), 0.00030517578125);
     assert_eq!(converter.rounded(1.0), 3277.0 * 0.00030517578125);

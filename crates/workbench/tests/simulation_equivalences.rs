@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{
-    CommandedPlant, Course, Input, Observer, Profile, Sensed, Settings, Status, Task,
+    CommandedPlant, Input, InputSchedule, Observer, Profile, Sensed, Settings, Status, Task,
 };
 use phea_hydraulics::machine::{Machine, MachineOptions};
 use phea_machine::{Control, Watcher};
@@ -79,8 +79,11 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
     let period = TAU / frequency;
     // the slowest pole lies near 0.5 rad/s
     let settled = (25.0 / period).ceil();
-    let course =
-        Course { duration_s: (settled + 2.5) * period, output_step_s: period / ROWS_PER_PERIOD, inputs };
+    let course = InputSchedule {
+        duration_s: (settled + 2.5) * period,
+        output_step_s: period / ROWS_PER_PERIOD,
+        inputs,
+    };
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
     let mut forces = Forces::default();
     let task = Task {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use phea_workbench::answer::Answer;
-use phea_workbench::campaign::{Effort, Ledger, Nowhere, Shard, Wanted};
+use phea_workbench::campaign::{Effort, Nowhere, RowStore, Shard, Wanted};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
 use phea_workbench::source::Destination;
 
@@ -60,7 +60,7 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     };
     let tables = common.out.as_deref().map(Folder::new);
     let destination = tables.as_ref().map(|tables| tables as &dyn Destination);
-    let ledger: &mut dyn Ledger = match &mut table {
+    let ledger: &mut dyn RowStore = match &mut table {
         Some(table) => table,
         None => &mut Nowhere,
     };
@@ -129,7 +129,7 @@ impl Table {
     }
 }
 
-impl Ledger for Table {
+impl RowStore for Table {
     fn kept(&mut self) -> Result<String, String> {
         let mut text = String::new();
         let read = self.file.rewind().and_then(|()| self.file.read_to_string(&mut text));

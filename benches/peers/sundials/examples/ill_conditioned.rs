@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_4;
 use std::time::Instant;
 
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element};
-use phea_dynamics::simulation::{CommandedPlant, Course, Input, Plant, Profile, Settings, System, simulate};
+use phea_dynamics::simulation::{CommandedPlant, InputSchedule, Input, Plant, Profile, Settings, System, simulate};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::machine::{Machine, MachineOptions, Start};
@@ -49,7 +49,7 @@ fn main() {
     let reference = Profile::steps(0.0, &[(REFERENCE_S, REFERENCE_N)]).expect("one step");
     let ground = Profile::smooth_step(MOTION_S, 2.0, 0.02).expect("a motion").shifted(beginning.inputs[0]);
     let inputs = vec![Input::Value(reference), Input::Value(ground.clone()), Input::Rate(ground)];
-    let course = Course { duration_s: 5.0, output_step_s: OUTPUT_STEP_S, inputs };
+    let course = InputSchedule { duration_s: 5.0, output_step_s: OUTPUT_STEP_S, inputs };
     let mut state = beginning.state.clone();
     state.resize(System::<f64>::states(&closed), 0.0);
     let states = Plant::<f64>::states(&machine);

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use phea_dynamics::random;
-use phea_dynamics::simulation::{Course, Input, Sampler, System};
+use phea_dynamics::simulation::{InputSchedule, Input, Sampler, System};
 
 use crate::waves::{Waves, integrate_delayed};
 use crate::{CvodeError, Method, integrate};
@@ -57,7 +57,7 @@ impl Following {
 ///
 /// ```
 /// use phea_dynamics::scalar::Scalar;
-/// use phea_dynamics::simulation::{Course, Input, Profile, System};
+/// use phea_dynamics::simulation::{InputSchedule, Input, Profile, System};
 /// use sundials::{Following, Method};
 /// struct Lag;
 /// impl System<f64> for Lag {
@@ -75,7 +75,7 @@ impl Following {
 ///     }
 /// }
 /// let inputs = vec![Input::Value(Profile::steps(0.0, &[(1.0, 5.0)]).unwrap())];
-/// let course = Course { duration_s: 3.0, output_step_s: 1.0, inputs };
+/// let course = InputSchedule { duration_s: 3.0, output_step_s: 1.0, inputs };
 /// let rows = sundials::follow(&Lag, &[0.0], &course, None, &Following::new(1e-10, Method::Adams))?;
 /// assert!((rows[3][0] - 5.0 * (1.0 - (-2.0f64).exp())).abs() < 1e-8);
 /// # Ok::<(), sundials::CvodeError>(())
@@ -83,7 +83,7 @@ impl Following {
 pub fn follow<E: System<f64>>(
     system: &E,
     start: &[f64],
-    course: &Course,
+    course: &InputSchedule,
     mut sampler: Option<&mut dyn Sampler>,
     following: &Following,
 ) -> Result<Vec<Vec<f64>>, CvodeError> {
@@ -197,7 +197,7 @@ impl Kicked {
     }
 }
 
-fn inputs_at(course: &Course, time: f64, command: f64, waves: &Waves, inputs: &mut [f64]) {
+fn inputs_at(course: &InputSchedule, time: f64, command: f64, waves: &Waves, inputs: &mut [f64]) {
     let (told, arriving) = inputs.split_at_mut(course.inputs.len().min(inputs.len()));
     waves.arriving(time, arriving);
     for (place, input) in told.iter_mut().zip(&course.inputs) {
@@ -209,7 +209,7 @@ fn inputs_at(course: &Course, time: f64, command: f64, waves: &Waves, inputs: &m
     }
 }
 
-fn breaks(course: &Course) -> Vec<f64> {
+fn breaks(course: &InputSchedule) -> Vec<f64> {
     let profiles = course.inputs.iter().filter_map(|input| match input {
         Input::Value(profile) | Input::Rate(profile) => Some(profile),
         Input::Command => None,
@@ -218,7 +218,7 @@ fn breaks(course: &Course) -> Vec<f64> {
 }
 
 /// From one time to another, over the rows between them; a row is as many output steps from zero as there are before it.
-fn times(course: &Course, from: f64, until: f64, row: usize) -> Vec<f64> {
+fn times(course: &InputSchedule, from: f64, until: f64, row: usize) -> Vec<f64> {
     let rows = (row..).map(|row| row as f64 * course.output_step_s);
     let between = rows.take_while(|time| *time < until).filter(|time| *time > from);
     std::iter::once(from).chain(between).chain([until]).collect()

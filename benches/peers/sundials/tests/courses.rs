@@ -1,7 +1,7 @@
 //! phea's method and CVODE on the same equations, inputs and samples.
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Course, Input, Profile, Sampler, Settings, Status, System, simulate};
+use phea_dynamics::simulation::{InputSchedule, Input, Profile, Sampler, Settings, Status, System, simulate};
 use sundials::{CvodeError, Following, Method, follow};
 
 /// y'' = mu (1 - y^2) y' - y + w1 + c w2, with a load's motion w1 and its velocity w2, and a command.
@@ -73,9 +73,9 @@ impl System<f64> for Integrator {
     }
 }
 
-fn course(motion: &Profile, output_step_s: f64) -> Course {
+fn course(motion: &Profile, output_step_s: f64) -> InputSchedule {
     let inputs = vec![Input::Value(motion.clone()), Input::Rate(motion.clone()), Input::Command];
-    Course { duration_s: 10.0, output_step_s, inputs }
+    InputSchedule { duration_s: 10.0, output_step_s, inputs }
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn samples_and_late_commands_act_alike() {
 
 #[test]
 fn a_sampled_integrator_shrinks_by_the_same_factor_each_sample() {
-    let course = Course { duration_s: 2.0, output_step_s: 0.1, inputs: vec![Input::Command] };
+    let course = InputSchedule { duration_s: 2.0, output_step_s: 0.1, inputs: vec![Input::Command] };
     let mut feedback = Feedback { gain: 2.0, sample_time_s: 0.1, delay_s: 0.0 };
     let rows =
         follow(&Integrator, &[1.0], &course, Some(&mut feedback), &Following::new(1e-9, Method::Adams))
@@ -174,7 +174,7 @@ impl System<f64> for Late {
 
 #[test]
 fn a_delayed_wave_arrives_as_it_was_sent() {
-    let course = Course { duration_s: 4.0, output_step_s: 0.3, inputs: vec![] };
+    let course = InputSchedule { duration_s: 4.0, output_step_s: 0.3, inputs: vec![] };
     let rows = follow(&Late, &[1.0, 1.0], &course, None, &Following::new(1e-11, Method::Adams)).unwrap();
     // y = sum over k of (-1)^k (t - k + 1)^k/k! from t = k - 1 on
     let exact = |t: f64| {
@@ -194,7 +194,7 @@ fn a_delayed_wave_arrives_as_it_was_sent() {
 
 #[test]
 fn waves_that_the_start_does_not_tell_are_refused() {
-    let course = Course { duration_s: 1.0, output_step_s: 0.1, inputs: vec![] };
+    let course = InputSchedule { duration_s: 1.0, output_step_s: 0.1, inputs: vec![] };
     let answer = follow(&Late, &[1.0], &course, None, &Following::new(1e-6, Method::Adams));
     assert!(matches!(answer, Err(CvodeError::Argument(_))));
 }

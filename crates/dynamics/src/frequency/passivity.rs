@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use super::grid::logarithmic_grid;
 use crate::linear::even_part::EvenPart;
 use crate::linear::{LinearError, TimeDomain, TransferFunction};
-use crate::portable::{argument, magnitude};
+use crate::portable::magnitude;
 
 /// Frequencies in rad/s between which Re Z(jw) < 0; the upper end may be infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,13 +18,6 @@ pub struct Band {
     pub worst_frequency_rad_per_s: f64,
     /// Z(jw) there.
     pub worst_impedance: Complex64,
-}
-
-impl Band {
-    /// Magnitude of the phase of Z in degrees where it is farthest beyond 90.
-    pub fn worst_phase_deg(&self) -> f64 {
-        argument(self.worst_impedance).abs().to_degrees()
-    }
 }
 
 /// A pole on the imaginary axis.

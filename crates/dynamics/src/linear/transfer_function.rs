@@ -160,7 +160,7 @@ impl TransferFunction {
     }
 
     /// Whether the system has no more zeros than poles.
-    pub fn is_proper(&self) -> bool {
+    pub(crate) fn is_proper(&self) -> bool {
         self.zeros.len() <= self.poles.len()
     }
 

@@ -4,7 +4,7 @@ use super::{Method, Profile, Stretch};
 
 /// How long a system is driven, by what, and how often it is looked at.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Course {
+pub struct InputSchedule {
     /// From time zero, in s; positive.
     pub duration_s: f64,
     /// Time between rows of the result in s; positive.

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::growth::Growing;
 use super::history::History;
-use super::{Attention, Course, Event, Input, Piece, Sampler, Status, Work};
+use super::{Attention, Event, Input, InputSchedule, Piece, Sampler, Status, Work};
 use crate::portable;
 
 /// No step grows by more than this, nor shrinks below the other.
@@ -25,7 +25,7 @@ enum Segment {
 
 /// One machine's way through time.
 pub(super) struct Passage<'a> {
-    pub(super) course: &'a Course,
+    pub(super) course: &'a InputSchedule,
     /// The inputs of the course up to the next break.
     segments: Vec<Segment>,
     /// Whether no input moves before the next break.
@@ -62,7 +62,7 @@ pub(super) struct Passage<'a> {
 
 impl<'a> Passage<'a> {
     /// At time zero, with a command that is held.
-    pub(super) fn new(course: &'a Course, command: f64) -> Passage<'a> {
+    pub(super) fn new(course: &'a InputSchedule, command: f64) -> Passage<'a> {
         let mut times: Vec<f64> = Vec::new();
         let mut longest_s = course.duration_s;
         for input in &course.inputs {

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 
 use super::task::Task;
 use super::trajectory::drive_one;
-use super::{Course, Input, Observer, Sampler, Settings, SimulationError, Status, System, Work};
+use super::{Input, InputSchedule, Observer, Sampler, Settings, SimulationError, Status, System, Work};
 use crate::portable;
 
 /// Rows of a period: harmonics up to the thirtieth do not meet one another.
@@ -118,7 +118,7 @@ pub fn sine_response<E: System<f64> + Clone>(
     let output_step_s = period_s / ROWS as f64;
     let rows = window as f64 * f64::from(plan.most_windows);
     // half a row more, so that rounding does not leave the last one out
-    let course = Course { duration_s: (rows + 0.5) * output_step_s, output_step_s, inputs };
+    let course = InputSchedule { duration_s: (rows + 0.5) * output_step_s, output_step_s, inputs };
     let done = Cell::new(false);
     let observer = Windows {
         wanted: (0..system.states()).collect(),

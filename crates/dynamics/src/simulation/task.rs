@@ -2,7 +2,7 @@
 
 use super::course::{Observer, Outcome, Sampler, SimulationError};
 use super::kernel::Kernel;
-use super::{Course, Lane};
+use super::{InputSchedule, Lane};
 
 /// One machine to be driven.
 pub struct Task<'a, O> {
@@ -10,7 +10,7 @@ pub struct Task<'a, O> {
     /// while nothing arrives.
     pub start: Vec<f64>,
     /// What it is driven by.
-    pub course: &'a Course,
+    pub course: &'a InputSchedule,
     /// A digital controller, if one commands it.
     pub sampler: Option<Box<dyn Sampler + 'a>>,
     /// Who looks at it.
@@ -40,7 +40,7 @@ pub(super) fn check<S: Lane, O: Observer>(
     lane: usize,
     delays: &[f64],
 ) -> Result<(), SimulationError> {
-    let Course { duration_s, output_step_s, inputs } = task.course;
+    let InputSchedule { duration_s, output_step_s, inputs } = task.course;
     let with_waves = system.states() + delays.len();
     let expected = if task.start.len() == with_waves { with_waves } else { system.states() };
     let scales = system.scales();

@@ -2,7 +2,7 @@
 
 use super::driver::drive;
 use super::task::{Queue, Task};
-use super::{Course, Observer, Outcome, Sampler, Settings, SimulationError, System};
+use super::{InputSchedule, Observer, Outcome, Sampler, Settings, SimulationError, System};
 
 /// States and inputs at the rows of a result.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -74,7 +74,7 @@ impl<'a, E, O: Observer> Queue<'a, E> for Single<'a, '_, O> {
 /// The largest force of a spring of 8 N/m whose end is drawn out at 2 m/s for 3 s, without its course.
 /// ```
 /// use phea_dynamics::scalar::Scalar;
-/// use phea_dynamics::simulation::{Course, Observer, Settings, System, Task, drive_one};
+/// use phea_dynamics::simulation::{InputSchedule, Observer, Settings, System, Task, drive_one};
 /// #[derive(Clone)]
 /// struct Drawn;
 /// impl System<f64> for Drawn {
@@ -100,7 +100,7 @@ impl<'a, E, O: Observer> Queue<'a, E> for Single<'a, '_, O> {
 ///         self.0 = self.0.max(8.0 * states[0]);
 ///     }
 /// }
-/// let course = Course { duration_s: 3.0, output_step_s: 1e-3, inputs: vec![] };
+/// let course = InputSchedule { duration_s: 3.0, output_step_s: 1e-3, inputs: vec![] };
 /// let task = Task { start: vec![0.0], course: &course, sampler: None, observer: Largest(0.0) };
 /// let (_, Largest(force_n)) = drive_one(&Drawn, task, &Settings::default(), &mut |_| true)?;
 /// assert!((force_n - 48.0).abs() < 1e-9);
@@ -127,7 +127,7 @@ pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
 /// A mass of 2 kg on a spring of 8 N/m, pulled by 1 m and let go
 /// ```
 /// use phea_dynamics::scalar::Scalar;
-/// use phea_dynamics::simulation::{Course, Settings, Status, System, simulate};
+/// use phea_dynamics::simulation::{InputSchedule, Settings, Status, System, simulate};
 /// #[derive(Clone)]
 /// struct Oscillator;
 /// impl System<f64> for Oscillator {
@@ -145,7 +145,7 @@ pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
 ///         rates[1] = T::from(-8.0) * state[0] / T::from(2.0);
 ///     }
 /// }
-/// let course = Course { duration_s: 3.0, output_step_s: 0.5, inputs: vec![] };
+/// let course = InputSchedule { duration_s: 3.0, output_step_s: 0.5, inputs: vec![] };
 /// let settings = Settings { tolerance: 1e-9, ..Settings::default() };
 /// let result = simulate(&Oscillator, &[1.0, 0.0], &course, None, &settings, &mut |_| true)?;
 /// assert_eq!(result.outcome.status, Status::Completed);
@@ -157,7 +157,7 @@ pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
 pub fn simulate<E: System<f64> + Clone>(
     system: &E,
     start: &[f64],
-    course: &Course,
+    course: &InputSchedule,
     sampler: Option<Box<dyn Sampler + '_>>,
     settings: &Settings,
     watch: &mut dyn FnMut(f64) -> bool,

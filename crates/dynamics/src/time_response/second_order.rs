@@ -133,7 +133,7 @@ impl SecondOrder {
     }
 
     /// Damped natural frequency w_d = w_n sqrt(1 - xi^2), rad/s; none from critical damping on.
-    pub fn damped_frequency_rad_per_s(&self) -> Option<f64> {
+    pub(crate) fn damped_frequency_rad_per_s(&self) -> Option<f64> {
         let ratio = self.damping_ratio;
         (ratio < 1.0).then(|| self.natural_frequency_rad_per_s * ((1.0 - ratio) * (1.0 + ratio)).sqrt())
     }
@@ -160,11 +160,6 @@ impl SecondOrder {
             return 0.0;
         }
         100.0 * exp(-PI * ratio / ((1.0 - ratio) * (1.0 + ratio)).sqrt())
-    }
-
-    /// Settling time by a rule of thumb, s; infinite without damping.
-    pub fn settling_time_by_rule_s(&self, rule: SettlingRule) -> f64 {
-        rule.factor() / (self.damping_ratio * self.natural_frequency_rad_per_s)
     }
 
     /// The exact time after which the step response stays within plus or minus `band_percent`, s; none without

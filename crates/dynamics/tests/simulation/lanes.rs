@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::{Dependence, Dual, Lanes, Scalar};
 use phea_dynamics::simulation::{
-    Course, Event, Input, Lane, Method, Observer, Outcome, Profile, Queue, Sampler, Settings,
+    Event, Input, InputSchedule, Lane, Method, Observer, Outcome, Profile, Queue, Sampler, Settings,
     SimulationError, Sliding, Status, System, Task, drive,
 };
 
@@ -63,7 +63,7 @@ impl<S: Lane> System<S> for Machine<S> {
 struct Case {
     parameters: [f64; 4],
     start: [f64; 3],
-    course: Course,
+    course: InputSchedule,
     sample_time_s: Option<f64>,
     /// Largest of what is added to each command.
     noise: f64,
@@ -171,7 +171,7 @@ fn cases() -> Vec<Case> {
                     [0.0, 3.0][index / 2 % 2],
                 ],
                 start: [0.1 * (part - 5.0), 0.0, if index % 4 == 3 { 1e3 } else { 0.0 }],
-                course: Course {
+                course: InputSchedule {
                     duration_s: 1.0 + 0.1 * part,
                     output_step_s: 0.05,
                     inputs: vec![Input::Value(motions[index % 6].clone()), Input::Command],
@@ -298,7 +298,7 @@ impl<S: Lane> System<S> for Root {
 }
 
 /// Courses in order, and how they ended.
-struct Ends<'a>(Vec<&'a Course>, Vec<Status>, &'static [usize]);
+struct Ends<'a>(Vec<&'a InputSchedule>, Vec<Status>, &'static [usize]);
 
 impl<'a, E> Queue<'a, E> for Ends<'a> {
     type Observer = Notes;
@@ -318,7 +318,7 @@ impl<'a, E> Queue<'a, E> for Ends<'a> {
 #[test]
 fn who_stands_still_is_not_moved_by_a_neighbour() {
     let course =
-        |profile| Course { duration_s: 1.0, output_step_s: 1.0, inputs: vec![Input::Value(profile)] };
+        |profile| InputSchedule { duration_s: 1.0, output_step_s: 1.0, inputs: vec![Input::Value(profile)] };
     let (still, moving) =
         (course(Profile::constant(0.0)), course(Profile::table(&[0.0, 1.0], &[1.0, 4.0]).unwrap()));
     let mut ends = Ends(vec![&still, &moving], Vec::new(), &[0]);
@@ -328,8 +328,11 @@ fn who_stands_still_is_not_moved_by_a_neighbour() {
 
 #[test]
 fn a_state_that_is_not_there_is_not_looked_at() {
-    let course =
-        Course { duration_s: 1.0, output_step_s: 1.0, inputs: vec![Input::Value(Profile::constant(1.0))] };
+    let course = InputSchedule {
+        duration_s: 1.0,
+        output_step_s: 1.0,
+        inputs: vec![Input::Value(Profile::constant(1.0))],
+    };
     let mut ends = Ends(vec![&course], Vec::new(), &[0, 1]);
     let result = drive::<f64, _, _>(&mut Root, &mut ends, &Settings::default());
     assert!(matches!(result, Err(SimulationError::Count { found: 2, expected: 1, .. })), "{result:?}");

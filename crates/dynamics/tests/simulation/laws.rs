@@ -1,7 +1,9 @@
 //! Systems with known solutions, and how the tests drive them.
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Course, Input, Method, Settings, Simulated, Status, System, simulate};
+use phea_dynamics::simulation::{
+    Input, InputSchedule, Method, Settings, Simulated, Status, System, simulate,
+};
 
 /// Rates without parameters of each lane, delays or indicators.
 pub(crate) trait Law: Clone {
@@ -82,8 +84,8 @@ impl Law for Oscillator {
     }
 }
 
-pub(crate) fn course(duration_s: f64, output_step_s: f64, inputs: Vec<Input>) -> Course {
-    Course { duration_s, output_step_s, inputs }
+pub(crate) fn course(duration_s: f64, output_step_s: f64, inputs: Vec<Input>) -> InputSchedule {
+    InputSchedule { duration_s, output_step_s, inputs }
 }
 
 pub(crate) fn settings(tolerance: f64, method: Method) -> Settings {
@@ -94,7 +96,7 @@ pub(crate) fn settings(tolerance: f64, method: Method) -> Settings {
 pub(crate) fn run<E: System<f64> + Clone>(
     system: &E,
     start: &[f64],
-    course: &Course,
+    course: &InputSchedule,
     tolerance: f64,
 ) -> Simulated {
     run_by(Method::Rosenbrock, system, start, course, tolerance)
@@ -105,7 +107,7 @@ pub(crate) fn run_by<E: System<f64> + Clone>(
     method: Method,
     system: &E,
     start: &[f64],
-    course: &Course,
+    course: &InputSchedule,
     tolerance: f64,
 ) -> Simulated {
     let result = simulate(system, start, course, None, &settings(tolerance, method), &mut |_| true).unwrap();

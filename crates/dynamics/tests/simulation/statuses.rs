@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    Course, Input, Profile, Sampler, Settings, Simulated, SimulationError, Status, System, simulate,
+    Input, InputSchedule, Profile, Sampler, Settings, Simulated, SimulationError, Status, System, simulate,
 };
 
 use super::laws::{Integral, Law, Lawful, Oscillator, course};
@@ -55,7 +55,12 @@ impl Law for Chattering {
     }
 }
 
-fn driven<E: System<f64> + Clone>(system: &E, start: &[f64], course: &Course, steps: u64) -> Simulated {
+fn driven<E: System<f64> + Clone>(
+    system: &E,
+    start: &[f64],
+    course: &InputSchedule,
+    steps: u64,
+) -> Simulated {
     let settings = Settings { maximum_steps: steps, ..Settings::default() };
     let result = simulate(system, start, course, None, &settings, &mut |_| true).unwrap();
     let end = match result.outcome.status {
@@ -162,7 +167,12 @@ fn a_command_that_is_no_number_ends_it() {
 }
 
 #[track_caller]
-fn refused(start: &[f64], course: &Course, sampler: Option<Saying>, tolerance: f64) -> SimulationError {
+fn refused(
+    start: &[f64],
+    course: &InputSchedule,
+    sampler: Option<Saying>,
+    tolerance: f64,
+) -> SimulationError {
     let settings = Settings { tolerance, ..Settings::default() };
     let sampler = sampler.map(|sampler| Box::new(sampler) as Box<dyn Sampler>);
     simulate(&Lawful(Integral, 1.0), start, course, sampler, &settings, &mut |_| true).unwrap_err()
@@ -179,7 +189,7 @@ fn what_does_not_fit_is_refused() {
         assert_eq!(setting(refused(&[0.0], &good, None, tolerance)), "tolerance");
     }
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let with = |duration_s, output_step_s| Course { duration_s, output_step_s, ..good.clone() };
+        let with = |duration_s, output_step_s| InputSchedule { duration_s, output_step_s, ..good.clone() };
         assert_eq!(setting(refused(&[0.0], &with(bad, 0.1), None, 1e-6)), "duration");
         assert_eq!(setting(refused(&[0.0], &with(1.0, bad), None, 1e-6)), "output step");
         assert_eq!(setting(refused(&[0.0], &good, Some(Saying(bad, 0.0, 1.0)), 1e-6)), "sample time");
@@ -194,8 +204,8 @@ fn what_does_not_fit_is_refused() {
     let counted = |error| matches!(error, SimulationError::Count { .. });
     assert!(counted(refused(&[0.0, 1.0], &good, None, 1e-6)) && counted(refused(&[], &good, None, 1e-6)));
     let inputs = vec![Input::Command; 2];
-    assert!(counted(refused(&[0.0], &Course { inputs, ..good.clone() }, None, 1e-6)));
-    assert!(counted(refused(&[0.0], &Course { inputs: vec![], ..good }, None, 1e-6)));
+    assert!(counted(refused(&[0.0], &InputSchedule { inputs, ..good.clone() }, None, 1e-6)));
+    assert!(counted(refused(&[0.0], &InputSchedule { inputs: vec![], ..good }, None, 1e-6)));
 }
 
 /// A magnitude that is none would make every error infinite or nothing.

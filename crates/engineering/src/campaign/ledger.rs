@@ -85,7 +85,7 @@ impl Shard {
 }
 
 /// Where the rows of a campaign are kept while it runs: a text that grows at its end.
-pub trait Ledger {
+pub trait RowStore {
     /// All of it.
     ///
     /// # Errors
@@ -104,7 +104,7 @@ pub trait Ledger {
     /// Why it cannot be written.
     fn append(&mut self, text: &str) -> Result<(), String>;
 
-    /// Rows that wait for one before them, as they were kept by [`Ledger::keep_ahead`]; whatever else is there is passed over.
+    /// Rows that wait for one before them, as they were kept by [`RowStore::keep_ahead`]; whatever else is there is passed over.
     ///
     /// # Errors
     /// Why they cannot be read.
@@ -133,7 +133,7 @@ pub trait Ledger {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Nowhere;
 
-impl Ledger for Nowhere {
+impl RowStore for Nowhere {
     fn kept(&mut self) -> Result<String, String> {
         Ok(String::new())
     }
@@ -154,7 +154,7 @@ impl Ledger for Nowhere {
 pub fn campaign(
     plan: &Plan,
     wanted: Wanted,
-    ledger: &mut dyn Ledger,
+    ledger: &mut dyn RowStore,
     watch: Watch<'_>,
 ) -> Result<Vec<Row>, CampaignError> {
     let runs = wanted.shard.runs_of(wanted.runs);
@@ -173,19 +173,19 @@ pub fn campaign(
         }
         News::Rows(more) => {
             let text: String = more.iter().map(|one| plan.columns.line(&one.row)).collect();
-            ledger.append(&text).map_err(CampaignError::Ledger)?;
+            ledger.append(&text).map_err(CampaignError::RowStore)?;
             rows.extend(more.into_iter().map(|one| one.row));
             Ok(true)
         }
         News::Ahead(more) => {
             let text: String = more.iter().map(|row| plan.columns.line(row)).collect();
-            ledger.keep_ahead(&text).map_err(CampaignError::Ledger)?;
+            ledger.keep_ahead(&text).map_err(CampaignError::RowStore)?;
             Ok(true)
         }
     };
     run(plan, Asked { runs: missing, known, forces: false }, wanted.effort, &mut tell)?;
     if rows.len() as u64 == asked {
-        ledger.forget_ahead().map_err(CampaignError::Ledger)?;
+        ledger.forget_ahead().map_err(CampaignError::RowStore)?;
     }
     Ok(rows)
 }
@@ -194,9 +194,9 @@ pub fn campaign(
 fn ahead(
     plan: &Plan,
     missing: &Range<u64>,
-    ledger: &mut dyn Ledger,
+    ledger: &mut dyn RowStore,
 ) -> Result<BTreeMap<u64, Row>, CampaignError> {
-    let text = ledger.ahead().map_err(CampaignError::Ledger)?;
+    let text = ledger.ahead().map_err(CampaignError::RowStore)?;
     let rows = text.lines().filter_map(|line| plan.columns.row(line).ok());
     let ours = |row: &Row| missing.contains(&row.run) && row.values == plan.draw(row.run).values;
     Ok(rows.filter(ours).map(|row| (row.run, row)).collect())
@@ -219,9 +219,9 @@ fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, Campa
 }
 
 /// The rows that are kept already; whatever was torn at the end is dropped, and an empty ledger is begun.
-fn resumed(plan: &Plan, wanted: Wanted, ledger: &mut dyn Ledger) -> Result<Vec<Row>, CampaignError> {
+fn resumed(plan: &Plan, wanted: Wanted, ledger: &mut dyn RowStore) -> Result<Vec<Row>, CampaignError> {
     let runs = wanted.shard.runs_of(wanted.runs);
-    let text = ledger.kept().map_err(CampaignError::Ledger)?;
+    let text = ledger.kept().map_err(CampaignError::RowStore)?;
     let (whole, torn) = text.split_at(text.rfind('\n').map_or(0, |last| last + 1));
     let header = if wanted.shard.begins() { plan.columns.header() } else { String::new() };
     let (mut rows, mut lines) = (Vec::new(), whole.split_terminator('\n').zip(1..));
@@ -249,10 +249,10 @@ fn resumed(plan: &Plan, wanted: Wanted, ledger: &mut dyn Ledger) -> Result<Vec<R
         return Err(CampaignError::MoreKept { kept, asked: runs.end - runs.start });
     }
     if !torn.is_empty() {
-        ledger.cut(whole.len()).map_err(CampaignError::Ledger)?;
+        ledger.cut(whole.len()).map_err(CampaignError::RowStore)?;
     }
     if whole.is_empty() && !header.is_empty() {
-        ledger.append(&header).map_err(CampaignError::Ledger)?;
+        ledger.append(&header).map_err(CampaignError::RowStore)?;
     }
     Ok(rows)
 }

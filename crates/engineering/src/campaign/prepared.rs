@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use phea_dynamics::simulation::{Attention, Course, Input, Observer, Outcome, Sampler, Stretch, Task};
+use phea_dynamics::simulation::{Attention, Input, InputSchedule, Observer, Outcome, Sampler, Stretch, Task};
 use phea_hydraulics::machine::{Machine, MachineOptions};
 use phea_machine::{Control, Digital, Samples, Waking, Watcher};
 
@@ -21,7 +21,7 @@ pub(super) struct Prepared {
     pub(super) lumps: Option<[f64; 3]>,
     /// The controller around this machine.
     pub(super) bench: Bench,
-    course: Course,
+    course: InputSchedule,
     start: Vec<f64>,
     waking: Waking,
     /// What a sampled controller did.
@@ -73,7 +73,7 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         draw,
         lumps,
         bench,
-        course: Course { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs },
+        course: InputSchedule { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs },
         start: course.start,
         waking: course.waking,
         log: RefCell::default(),

@@ -257,7 +257,8 @@ fn dynamics(rig: &Rig, list: &mut List) {
 fn friction(rig: &Rig, list: &mut List) {
     let Friction::LuGre(lugre) = &rig.actuator.components().friction else { return };
     list.group("Friction");
-    let least = lugre.bristle_damping * (lugre.curve.breakaway - lugre.curve.coulomb) / lugre.curve.coulomb;
+    let least =
+        lugre.bristle_damping * (lugre.curve.static_friction - lugre.curve.coulomb) / lugre.curve.coulomb;
     list.add(
         "friction.passive_viscous_minimum",
         "σ_2",

@@ -2,14 +2,14 @@
 
 use phea_qft::verification::Verdict;
 
-use super::side::Side;
+use super::side::AuditedController;
 use crate::audit::{margin_words, verdict_words};
 use crate::quantity::DisplayUnit;
 use crate::quantity::significant;
 
 /// Name and value of everything that a controller is compared by: verdicts first, then size, then margins. The same names for
 /// every controller of a project.
-pub fn compared(side: &Side) -> Vec<(String, String)> {
+pub fn compared(side: &AuditedController) -> Vec<(String, String)> {
     let mut rows = vec![("verdict".to_string(), verdict_words(side.view.audit.verdict).to_string())];
     rows.extend(side.view.audit.specifications.iter().enumerate().map(|(index, finding)| {
         let margin = finding.worst.as_ref().map_or("-".to_string(), |worst| margin_words(worst.margin_db));
@@ -49,7 +49,7 @@ pub fn compared(side: &Side) -> Vec<(String, String)> {
     rows
 }
 
-fn high_frequency_words(side: &Side) -> String {
+fn high_frequency_words(side: &AuditedController) -> String {
     let gain = significant(side.figures.high_frequency_gain_db, 5);
     match side.figures.relative_degree {
         _ if side.is_in_z() => format!("{gain} dB, |G| at pi/T"),
@@ -60,7 +60,7 @@ fn high_frequency_words(side: &Side) -> String {
 }
 
 /// The least change of phase that reaches -1; a stable loop with several crossovers may be nearest to it in lead.
-fn phase_words(side: &Side, phase_deg: f64) -> String {
+fn phase_words(side: &AuditedController, phase_deg: f64) -> String {
     match side.view.audit.stability.verdict {
         Verdict::Met if phase_deg < 0.0 => format!("{}, of lead", limited(-phase_deg, "deg")),
         _ => limited(phase_deg, "deg"),

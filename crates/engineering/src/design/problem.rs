@@ -57,7 +57,7 @@ pub fn design_options(
         prefilter: prefilter_choice(setup, given, design.prefilter_maximum_order)?,
         seed: u64::from(seed.unwrap_or(design.seed)),
         tolerance_db: TOLERANCE_DB,
-        coefficients: setup.quantisation.coefficients,
+        coefficients: setup.quantization.coefficients,
     })
 }
 

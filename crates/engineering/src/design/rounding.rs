@@ -22,11 +22,11 @@ pub(super) fn rounding(
     setup: &Setup<'_>,
     problem: &RobustProblem,
 ) -> Result<Option<Rounding>, ProcedureError> {
-    let quantisation = setup.quantisation;
-    if quantisation.command.is_none() && quantisation.measurement.is_none() {
+    let quantization = setup.quantization;
+    if quantization.command.is_none() && quantization.measurement.is_none() {
         return Ok(None);
     }
-    let effects = rounding_effects(&problem.compensation, &problem.members()?, &quantisation);
+    let effects = rounding_effects(&problem.compensation, &problem.members()?, &quantization);
     let plants = match &problem.family {
         Family::Uncertain(family) => family.members().iter().cloned().map(PlantPoint::Parameters).collect(),
         Family::Measured(family) => (0..family.plants().len()).map(PlantPoint::Measured).collect(),

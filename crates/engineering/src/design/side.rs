@@ -12,7 +12,7 @@ use crate::robust::RobustProblem;
 
 /// A controller with its audit.
 #[derive(Clone, Debug)]
-pub struct Side {
+pub struct AuditedController {
     /// Controller, prefilter, timing.
     pub controller: Controller,
     /// The family in its loop.
@@ -55,7 +55,7 @@ pub struct NominalMargins {
     pub crossover_rad_per_s: f64,
 }
 
-impl Side {
+impl AuditedController {
     /// A controller with the audit of its loop.
     ///
     /// # Errors
@@ -64,9 +64,9 @@ impl Side {
         controller: Controller,
         problem: RobustProblem,
         view: ProjectAudit,
-    ) -> Result<Side, LinearError> {
+    ) -> Result<AuditedController, LinearError> {
         let figures = figures(&controller, &problem, &view)?;
-        Ok(Side { controller, problem, view, figures })
+        Ok(AuditedController { controller, problem, view, figures })
     }
 
     /// Whether the law itself is given in z.

@@ -11,7 +11,7 @@ use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
     Balance, OperatingPoint, Settled, SettledSupply, Steady, hydraulic_force,
 };
-use phea_hydraulics::plant::{LinearLoad, Plant, PlantInMotion, YieldingSupply};
+use phea_hydraulics::plant::{LinearLoad, LinearPlant, PlantInMotion, YieldingSupply};
 use phea_hydraulics::servovalve::{Direction, Supply};
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
@@ -73,7 +73,7 @@ pub(super) struct Open<'a> {
 }
 
 /// A rig at its operating point.
-pub(super) struct Place<S> {
+pub(super) struct RigAtPoint<S> {
     /// With the supply as it is stated.
     pub(super) components: Components<S>,
     pub(super) point: OperatingPoint<S>,
@@ -122,7 +122,7 @@ impl Open<'_> {
     }
 
     /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed forward is that of the declared rig.
-    fn plant<S: Scalar>(&self, values: &[S], moved: bool, equal: Equal) -> (Place<S>, Plant<S>) {
+    fn plant<S: Scalar>(&self, values: &[S], moved: bool, equal: Equal) -> (RigAtPoint<S>, LinearPlant<S>) {
         let place = self.place(values, moved);
         let numbers = Numbers::open(self.names, values);
         let load = yielding_load(&self.declared.load, &numbers, place.point.hydraulic_force);
@@ -135,11 +135,11 @@ impl Open<'_> {
             _ => plant,
         };
         let load_velocity_feed_forward = self.rig.fed.as_ref().and_then(FedForward::at_once).map(S::from);
-        (place, Plant { load_velocity_feed_forward, ..plant })
+        (place, LinearPlant { load_velocity_feed_forward, ..plant })
     }
 
     /// The rig with these values; its pressures are those of the declared rig where nothing moves them.
-    pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> Place<S> {
+    pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> RigAtPoint<S> {
         let numbers = Numbers::open(self.names, values);
         let components = components(self.declared, &numbers);
         let (position, steady, idle) = self.idle(&components, &numbers);
@@ -178,7 +178,7 @@ impl Open<'_> {
         let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));
         let settled = SettledSupply { supply, settled: at, taken: none };
         let supply = yielding_supply(self.declared, &numbers, &idle, &settled);
-        Place { components, point, chambers, linear, leakage: balance.leakage.unwrap_or(none), supply }
+        RigAtPoint { components, point, chambers, linear, leakage: balance.leakage.unwrap_or(none), supply }
     }
 }
 

@@ -69,7 +69,7 @@ fn fluid<S: Scalar>(declared: &project::Fluid, numbers: &Numbers<'_, S>) -> Flui
         ),
         entrained_air: declared.entrained_air.filter(holds).map(|fraction| EntrainedAir {
             volume_fraction: at("entrained_air", fraction),
-            polytropic_index: at("polytropic_exponent", declared.polytropic_exponent),
+            polytropic_exponent: at("polytropic_exponent", declared.polytropic_exponent),
         }),
     }
 }
@@ -269,7 +269,7 @@ fn friction<S: Scalar>(declared: Option<&project::Friction>, numbers: &Numbers<'
     let viscous = at("viscous", declared.viscous);
     let stribeck = |curve: &StribeckCurve| Stribeck {
         coulomb: at("coulomb", curve.coulomb),
-        breakaway: at("static", curve.static_friction),
+        static_friction: at("static", curve.static_friction),
         stribeck_velocity: at("stribeck_velocity", curve.stribeck_velocity),
         stribeck_exponent: at("stribeck_exponent", curve.stribeck_exponent),
         viscous,

@@ -1,7 +1,7 @@
 //! The plant as the loop around it sees it: with the velocity of the load that is fed forward.
 
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::plant::{Plant, PlantInMotion};
+use phea_hydraulics::plant::{LinearPlant, PlantInMotion};
 
 use super::Rig;
 use crate::project::{Load, Project, SpecificationKind};
@@ -31,7 +31,7 @@ impl Rig {
     pub fn in_loop(&self) -> Rig {
         let gain = self.fed.as_ref().and_then(FedForward::at_once);
         Rig {
-            plant: Plant { load_velocity_feed_forward: gain, ..self.plant },
+            plant: LinearPlant { load_velocity_feed_forward: gain, ..self.plant },
             in_motion: as_response(self.fed, self.in_motion, &self.plant),
             ..self.clone()
         }
@@ -92,7 +92,7 @@ impl FedForward {
 pub fn as_response(
     fed: Option<FedForward>,
     moving: Option<PlantInMotion>,
-    lumped: &Plant,
+    lumped: &LinearPlant,
 ) -> Option<PlantInMotion> {
     let Some(FedForward::InPlant { gain, delay }) = fed else { return moving };
     let plant = moving.or_else(|| (delay > 0.0).then(|| PlantInMotion::lumped(lumped)))?;

@@ -7,7 +7,7 @@ use phea_hydraulics::line::{
     Stiffening,
 };
 use phea_hydraulics::operating_point::OperatingPoint;
-use phea_hydraulics::plant::{BehindLines, Plant, PlantInMotion};
+use phea_hydraulics::plant::{BehindLines, LinearPlant, PlantInMotion};
 use phea_hydraulics::servovalve::Supply;
 use phea_hydraulics::stiffness::compliance_at;
 use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
@@ -23,7 +23,7 @@ pub fn in_motion(
     components: &Components,
     point: &OperatingPoint,
     chambers: &TwoPressureLinearParameters,
-    plant: &Plant,
+    plant: &LinearPlant,
 ) -> Result<Option<PlantInMotion>, LineError> {
     let [line_a, line_b] = [components.line_a, components.line_b].map(stiffened_alike);
     let Supply { pressure, tank_pressure } = components.supply;

@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, Plant, YieldingSupply};
+use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
 use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
 
@@ -110,9 +110,9 @@ pub fn plant<S: Scalar>(
     one_pressure: bool,
     leakage: S,
     load: LinearLoad<S>,
-) -> Plant<S> {
+) -> LinearPlant<S> {
     if one_pressure {
-        return Plant::of_load_pressure(linear, leakage, load);
+        return LinearPlant::of_load_pressure(linear, leakage, load);
     }
     let stated = TwoPressureLinearParameters {
         moving_mass: linear.moving_mass,
@@ -122,16 +122,16 @@ pub fn plant<S: Scalar>(
         valve_damping_ratio: linear.valve_damping_ratio,
         ..*chambers
     };
-    Plant::of_two_pressures(&stated, leakage, load)
+    LinearPlant::of_two_pressures(&stated, leakage, load)
 }
 
 /// The same plant at a supply that yields. Where a stated number makes the valve of one load pressure another than its parts are, what
 /// it takes from the supply is another alike.
 pub fn with_supply<S: Scalar>(
-    plant: Plant<S>,
+    plant: LinearPlant<S>,
     supply: YieldingSupply<S>,
     chambers: &TwoPressureLinearParameters<S>,
-) -> Plant<S> {
+) -> LinearPlant<S> {
     let supply = match plant.chambers {
         ChamberDynamics::TwoPressures { .. } => supply,
         ChamberDynamics::LoadPressure { flow_gain, flow_pressure_coefficient, .. } => {
@@ -145,7 +145,7 @@ pub fn with_supply<S: Scalar>(
             }
         }
     };
-    Plant { supply: Some(supply), ..plant }
+    LinearPlant { supply: Some(supply), ..plant }
 }
 
 /// What the project states of the linear model: name and value.

@@ -24,7 +24,7 @@ pub fn power_unit<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_,
         accumulator: pump.accumulator.map(|accumulator| Accumulator {
             gas_volume: at("accumulator.gas_volume", accumulator.gas_volume),
             precharge_pressure: at("accumulator.precharge_pressure", accumulator.precharge_pressure),
-            polytropic_index: at("accumulator.polytropic_exponent", accumulator.polytropic_exponent),
+            polytropic_exponent: at("accumulator.polytropic_exponent", accumulator.polytropic_exponent),
         }),
     })
 }

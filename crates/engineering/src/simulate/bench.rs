@@ -157,8 +157,8 @@ fn sampled(
         command_limit: controller.command_limit.unwrap_or(f64::INFINITY),
         controller: controller.sampled(sample_time_s)?,
         feed_forward,
-        command_converter: setup.quantisation.command,
-        measurement_converter: setup.quantisation.measurement,
+        command_converter: setup.quantization.command,
+        measurement_converter: setup.quantization.measurement,
         noise,
         seed: u64::from(project.simulation.seed),
     })

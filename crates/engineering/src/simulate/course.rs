@@ -15,7 +15,7 @@ use crate::project::{self, LoadMotion, MotionShape, Project, Scenario};
 use crate::source::Source;
 
 /// A scenario ready to be run.
-pub struct Course {
+pub struct PreparedScenario {
     /// In N.
     pub reference: Profile,
     /// In V, of an open loop.
@@ -48,7 +48,7 @@ pub struct Driven {
     saved: Option<SavedState>,
 }
 
-impl Course {
+impl PreparedScenario {
     /// What drives the machine beside its command.
     pub fn machine_inputs(&self) -> Vec<Input> {
         let ground = [Input::Value(self.ground.clone()), Input::Rate(self.ground.clone())];
@@ -61,7 +61,7 @@ pub(super) fn course(
     project: &Project,
     bench: &Bench,
     scenario: &Scenario,
-) -> Result<Course, SimulateError> {
+) -> Result<PreparedScenario, SimulateError> {
     let driven = driven(source, project, bench, scenario)?;
     course_of(&driven, bench, scenario)
 }
@@ -90,7 +90,11 @@ pub fn driven(
 }
 
 /// The scenario for the machine of a bench.
-pub fn course_of(driven: &Driven, bench: &Bench, scenario: &Scenario) -> Result<Course, SimulateError> {
+pub fn course_of(
+    driven: &Driven,
+    bench: &Bench,
+    scenario: &Scenario,
+) -> Result<PreparedScenario, SimulateError> {
     if let Some(saved) = &driven.saved {
         let waking = saved.memory.clone().map_or(Waking::AtRest, Waking::Resumed);
         let states = saved.states.iter().map(|(_, value)| *value).collect();
@@ -122,8 +126,8 @@ impl Driven {
     }
 
     /// From a state, the ground of the load where it is in m.
-    fn course(&self, bench: &Bench, ground: f64, start: Vec<f64>, waking: Waking) -> Course {
-        Course {
+    fn course(&self, bench: &Bench, ground: f64, start: Vec<f64>, waking: Waking) -> PreparedScenario {
+        PreparedScenario {
             reference: self.reference.clone(),
             command: self.command.clone(),
             ground: self.motion.clone().shifted(ground),

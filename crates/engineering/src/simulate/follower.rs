@@ -178,7 +178,9 @@ fn through([from, until]: [f64; 2], mut value: impl FnMut(f64) -> f64) -> Quarti
 mod tests {
     use phea_dynamics::portable;
     use phea_dynamics::scalar::Scalar;
-    use phea_dynamics::simulation::{Attention, Course, Input, Observer, Settings, System, Task, drive_one};
+    use phea_dynamics::simulation::{
+        Attention, Input, InputSchedule, Observer, Settings, System, Task, drive_one,
+    };
 
     use super::super::Cause;
     use super::*;
@@ -231,7 +233,8 @@ mod tests {
         limit: f64,
         output_step_s: f64,
     ) -> Metrics {
-        let course = Course { duration_s: 3.0, output_step_s, inputs: vec![Input::Value(driving.clone())] };
+        let course =
+            InputSchedule { duration_s: 3.0, output_step_s, inputs: vec![Input::Value(driving.clone())] };
         let commanded = Commanded::Continuously(Sum::single(1), limit);
         let follower = Follower::new(Sum::single(0), commanded, 1, Some(reference), (&[window], 1.0));
         let observer = Following(follower);
@@ -338,7 +341,7 @@ mod tests {
         // the steps are those of a course that it drives
         let driven = measured(&swing, [0.0; 2], [&reference, &nothing], window, f64::INFINITY, 1.0);
         assert!(driven.disturbance_peak_n.unwrap() > 1.0);
-        let course = Course {
+        let course = InputSchedule {
             duration_s: 3.0,
             output_step_s: 1.0,
             inputs: vec![Input::Value(Profile::sine(0.1, 1e-9, 7.0).unwrap())],

@@ -6,7 +6,7 @@ use phea_dynamics::simulation::{Attention, Observer, Stretch};
 use phea_machine::{Control, Sample, Samples};
 
 use super::bench::Bench;
-use super::course::Course;
+use super::course::PreparedScenario;
 use super::files::Table;
 use super::follower::Follower;
 use super::measured::{Measurement, Overlay, Overlaying};
@@ -55,7 +55,7 @@ impl<'a> Looking<'a> {
         (table, looks_per_row): (Option<Table<'a>>, usize),
         measurements: &'a [Measurement],
         full: &'a Cell<bool>,
-        (course, band): (&'a Course, f64),
+        (course, band): (&'a PreparedScenario, f64),
     ) -> Looking<'a> {
         let [states, _] = bench.control.size();
         let wanted: Vec<usize> = (0..states).collect();

@@ -2,12 +2,12 @@
 
 use std::cell::{Cell, RefCell};
 
-use phea_dynamics::simulation::{Course as Drive, Event, Input, Outcome, Sampler, Status, Task, Work};
+use phea_dynamics::simulation::{Event, Input, InputSchedule, Outcome, Sampler, Status, Task, Work};
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Control, Digital, Memory, Samples, Watcher};
 
 use super::bench::Bench;
-use super::course::Course;
+use super::course::PreparedScenario;
 use super::exceeded::{Exceeded, exceeded};
 use super::look::{Looking, Sighted};
 use super::measured::{Measurement, Overlay};
@@ -143,7 +143,7 @@ impl Stopped {
 pub(super) fn run(
     bench: &Bench,
     scenario: &Scenario,
-    (course, measurements): (&Course, &[Measurement]),
+    (course, measurements): (&PreparedScenario, &[Measurement]),
     table: Option<Table<'_>>,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<ScenarioRun, SimulateError> {
@@ -163,7 +163,7 @@ pub(super) fn run(
         Control::Open(_) => vec![Input::Value(course.command.clone()), reference],
     };
     inputs.extend(course.machine_inputs());
-    let drive = Drive { duration_s: scenario.duration, output_step_s: look_s, inputs };
+    let drive = InputSchedule { duration_s: scenario.duration, output_step_s: look_s, inputs };
     let band = scenario.settling_band_percent;
     let mut looking =
         Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
@@ -207,7 +207,7 @@ pub(super) fn run(
 }
 
 /// All that happened on the way.
-fn found(bench: &Bench, course: &Course, outcome: &Outcome, samples: &Samples) -> Vec<Occurrence> {
+fn found(bench: &Bench, course: &PreparedScenario, outcome: &Outcome, samples: &Samples) -> Vec<Occurrence> {
     let reference = course.reference.value(0.0);
     let leading = match &bench.control {
         Control::Continuous(_) => vec![reference],
@@ -252,7 +252,7 @@ fn looks_per_row(scenario: &Scenario) -> usize {
 pub const COMMAND_LIMIT: &str = "command_limit";
 
 /// Inputs at time zero: those before the machine's, its ground, the force from outside, and the waves under way.
-fn inputs_at_start(course: &Course, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
+fn inputs_at_start(course: &PreparedScenario, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
     first.extend([course.ground.value(0.0), course.ground.rate(0.0)]);
     first.extend(course.external_force.as_ref().map(|force| force.value(0.0)));
     let [states, _] = control.size();

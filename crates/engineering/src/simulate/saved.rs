@@ -20,7 +20,7 @@ use phea_dynamics::simulation::Status;
 use phea_machine::{Control, Memory};
 
 use super::bench::Bench;
-use super::course::Course;
+use super::course::PreparedScenario;
 use super::shortest_number::number;
 use crate::project::{Findings, Found, Node, Project, Report, TreeValue, read_tree};
 use crate::source::Source;
@@ -70,7 +70,7 @@ fn remembered(number: usize) -> String {
 /// The end of a run, or why it is not saved.
 pub(super) fn of_end(
     bench: &Bench,
-    course: &Course,
+    course: &PreparedScenario,
     (status, end, end_s): (Status, &[f64], f64),
     memory: Option<&Memory>,
 ) -> Result<SavedState, &'static str> {

@@ -20,7 +20,7 @@ use crate::project::{self, MarginWish, Rational, ResponseRule, ResponseWish};
 pub(super) enum Takes {
     Neither,
     Margins(MarginOf),
-    Wish(Side),
+    Wish(TrackingLimit),
 }
 
 /// The closed loop whose magnitude is to guarantee margins.
@@ -32,7 +32,7 @@ pub(super) enum MarginOf {
 
 /// Which limit of tracking.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Side {
+pub(super) enum TrackingLimit {
     Upper,
     Lower,
 }
@@ -96,14 +96,14 @@ fn of_margins(wish: &MarginWish, of: MarginOf) -> Result<Limit, SpecificationPro
 /// The limit that a wish in time makes, or the one given beside it, and what it does in time.
 pub(super) fn of_wish(
     wish: &ResponseWish,
-    side: Side,
+    side: TrackingLimit,
 ) -> Result<(TransferFunction, WishCheck), SpecificationProblem> {
     let needed = |value: Option<f64>| value.ok_or(SpecificationProblem::Missing);
     let settling_time_s = needed(wish.settling_time)?;
     let settling_band_percent = needed(wish.settling_band_percent)?;
     let given = wish.function.as_ref().map(function).transpose()?;
     match side {
-        Side::Upper => {
+        TrackingLimit::Upper => {
             let overshoot_percent = needed(wish.overshoot_percent)?;
             let wished = UpperWish { overshoot_percent, settling_time_s, settling_band_percent };
             if let Some(function) = given {
@@ -113,7 +113,7 @@ pub(super) fn of_wish(
             let limit = tracking_upper(&wished, extra(wish.zero), translation(wish.rule))?;
             Ok((limit.function, limit.check))
         }
-        Side::Lower => {
+        TrackingLimit::Lower => {
             let wished = LowerWish { settling_time_s, settling_band_percent };
             if let Some(function) = given {
                 let check = check_lower(&function, &wished)?;

@@ -12,16 +12,16 @@ pub fn of_rounding(setup: &Setup<'_>, frequencies_rad_per_s: &[f64]) -> Vec<Name
     let Some(declared) = setup.project.controller.as_ref().and_then(|one| one.quantization.as_ref()) else {
         return vec![];
     };
-    let quantisation = setup.quantisation;
+    let quantization = setup.quantization;
     let frequencies = || frequencies_rad_per_s.to_vec();
     let force = declared.allowed_force_error.and_then(|allowed| {
         Some((
-            quantisation.force_specification(allowed, frequencies())?,
+            quantization.force_specification(allowed, frequencies())?,
             "force error of the rounded command",
         ))
     });
     let command = declared.allowed_command_error.and_then(|allowed| {
-        let found = quantisation.command_specification(allowed, frequencies())?;
+        let found = quantization.command_specification(allowed, frequencies())?;
         Some((found, "command error of the rounded measurement"))
     });
     force.into_iter().chain(command).collect()

@@ -44,7 +44,7 @@ impl<S: Scalar> LuGre<S> {
     /// ```
     /// use phea_hydraulics::friction::{LuGre, Stribeck};
     /// let curve = Stribeck {
-    ///     coulomb: 80.0, breakaway: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
     /// };
     /// let lugre = LuGre { curve, bristle_stiffness: 1e7, bristle_damping: 2e3 };
     /// let settled = -curve.sliding_force(-0.004) / 1e7;
@@ -59,7 +59,7 @@ impl<S: Scalar> LuGre<S> {
 
     /// Friction force in N and dz/dt in m/s together: the exponential is taken once.
     #[inline(always)]
-    pub fn force_and_rate(&self, shape: StribeckShape, velocity: S, deflection: S) -> (S, S) {
+    pub(crate) fn force_and_rate(&self, shape: StribeckShape, velocity: S, deflection: S) -> (S, S) {
         let spring = self.bristle_stiffness * deflection;
         let rate = velocity - velocity.abs() * spring / self.curve.sliding_force_of(shape, velocity);
         (spring + self.bristle_damping * rate + self.curve.viscous * velocity, rate)
@@ -94,7 +94,7 @@ impl LuGre {
     /// ```
     /// use phea_hydraulics::friction::{LuGre, LuGrePassivity, Stribeck};
     /// let curve = Stribeck {
-    ///     coulomb: 80.0, breakaway: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
     /// };
     /// let lugre = LuGre { curve, bristle_stiffness: 1e7, bristle_damping: 2e3 };
     /// assert_eq!(lugre.passivity(), LuGrePassivity::NotPassive { required_viscous: 1000.0 });
@@ -102,8 +102,8 @@ impl LuGre {
     /// assert_eq!(softer.passivity(), LuGrePassivity::Passive { surplus: 50.0 });
     /// ```
     pub fn passivity(&self) -> LuGrePassivity {
-        let Stribeck { coulomb, breakaway, viscous, .. } = self.curve;
-        let required_viscous = self.bristle_damping * (breakaway - coulomb) / coulomb;
+        let Stribeck { coulomb, static_friction, viscous, .. } = self.curve;
+        let required_viscous = self.bristle_damping * (static_friction - coulomb) / coulomb;
         if viscous >= required_viscous {
             LuGrePassivity::Passive { surplus: viscous - required_viscous }
         } else {

@@ -55,7 +55,7 @@ impl MovingFriction {
 
 impl<S: Copy> MovingFriction<S> {
     /// Whether its bristles are a state.
-    pub fn has_bristles(&self) -> bool {
+    pub(crate) fn has_bristles(&self) -> bool {
         self.bristle_stiffness().is_some()
     }
 
@@ -122,7 +122,7 @@ impl<S: Scalar> MovingFriction<S> {
     }
 
     /// Energy in J that the bristles hold: sigma_0 z^2/2.
-    pub fn stored_energy(&self, bristle: S) -> S {
+    pub(crate) fn stored_energy(&self, bristle: S) -> S {
         match self {
             MovingFriction::LuGre { lugre, .. } => S::from(0.5) * lugre.bristle_stiffness * bristle.squared(),
             _ => S::from(0.0),
@@ -136,7 +136,7 @@ impl<S: Scalar> MovingFriction<S> {
     /// ```
     ///
     /// Not negative, but for LuGre outside [`super::LuGre::passivity`].
-    pub fn dissipated(&self, velocity: S, bristle: S) -> S {
+    pub(crate) fn dissipated(&self, velocity: S, bristle: S) -> S {
         let FrictionForce { force, bristle_rate } = self.at(velocity, bristle);
         match self {
             MovingFriction::LuGre { lugre, shape } => {

@@ -13,7 +13,7 @@ pub struct Stribeck<S = f64> {
     /// Coulomb friction F_C in N.
     pub coulomb: S,
     /// Static (breakaway) friction F_S in N.
-    pub breakaway: S,
+    pub static_friction: S,
     /// Stribeck velocity v_S in m/s.
     pub stribeck_velocity: S,
     /// Stribeck exponent alpha.
@@ -34,11 +34,11 @@ pub enum StribeckShape {
 impl<S: Scalar> Stribeck<S> {
     /// g(v) in N as [`Stribeck::sliding_force`], the shape known beforehand.
     #[inline(always)]
-    pub fn sliding_force_of(&self, shape: StribeckShape, velocity: S) -> S {
+    pub(crate) fn sliding_force_of(&self, shape: StribeckShape, velocity: S) -> S {
         match shape {
             StribeckShape::Squared => {
                 let square = (velocity / self.stribeck_velocity).squared();
-                self.coulomb + (self.breakaway - self.coulomb) * (-square).exp()
+                self.coulomb + (self.static_friction - self.coulomb) * (-square).exp()
             }
             StribeckShape::Power => self.sliding_force(velocity),
         }
@@ -57,7 +57,7 @@ impl<S: Scalar> Stribeck<S> {
     /// ```
     /// use phea_hydraulics::friction::{Stribeck, StribeckShape};
     /// let curve = Stribeck {
-    ///     coulomb: 80.0, breakaway: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
     /// };
     /// let smooth: f64 = curve.regular_force(StribeckShape::Squared, 0.1, 1e-5);
     /// assert!((smooth - curve.steady_force(0.1)).abs() < 1e-5);
@@ -75,7 +75,7 @@ impl<S: Scalar> Stribeck<S> {
         let least = S::from(f64::MIN_POSITIVE);
         let relative = (velocity / self.stribeck_velocity).abs().maximum(least);
         let power = (self.stribeck_exponent * relative.ln()).exp();
-        self.coulomb + (self.breakaway - self.coulomb) * (-power).exp()
+        self.coulomb + (self.static_friction - self.coulomb) * (-power).exp()
     }
 
     /// F(v) in N, zero at standstill (where any force up to F_S is possible).
@@ -85,7 +85,7 @@ impl<S: Scalar> Stribeck<S> {
     /// ```
     /// use phea_hydraulics::friction::Stribeck;
     /// let curve = Stribeck {
-    ///     coulomb: 80.0, breakaway: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
     /// };
     /// assert_eq!(curve.steady_force(0.5), 130.0);
     /// assert_eq!(curve.steady_force(-0.003), -curve.steady_force(0.003));
@@ -104,8 +104,8 @@ impl Stribeck {
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("coulomb", self.coulomb);
-        let not_below = self.breakaway >= self.coulomb;
-        problems.require("static", self.breakaway, not_below, "at least the Coulomb friction");
+        let not_below = self.static_friction >= self.coulomb;
+        problems.require("static", self.static_friction, not_below, "at least the Coulomb friction");
         problems.positive("stribeck_velocity", self.stribeck_velocity);
         problems.positive("stribeck_exponent", self.stribeck_exponent);
         problems.not_negative("viscous", self.viscous);
@@ -116,7 +116,7 @@ impl Stribeck {
     pub fn map<S: Scalar>(&self) -> Stribeck<S> {
         Stribeck {
             coulomb: S::from(self.coulomb),
-            breakaway: S::from(self.breakaway),
+            static_friction: S::from(self.static_friction),
             stribeck_velocity: S::from(self.stribeck_velocity),
             stribeck_exponent: S::from(self.stribeck_exponent),
             viscous: S::from(self.viscous),
@@ -138,7 +138,7 @@ impl<S: Copy> Stribeck<S> {
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Stribeck<T> {
         Stribeck {
             coulomb: of(self.coulomb),
-            breakaway: of(self.breakaway),
+            static_friction: of(self.static_friction),
             stribeck_velocity: of(self.stribeck_velocity),
             stribeck_exponent: of(self.stribeck_exponent),
             viscous: of(self.viscous),

@@ -78,7 +78,7 @@ impl<S: Scalar> StandardLinearSolid<S> {
     }
 
     /// Time theta = tau beta_dynamic/beta_static in s in which the volume follows while the pressure is held.
-    pub fn retardation_time(&self) -> S {
+    pub(crate) fn retardation_time(&self) -> S {
         self.relaxation_time * self.dynamic_modulus / self.static_modulus
     }
 }

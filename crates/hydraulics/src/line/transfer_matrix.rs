@@ -80,7 +80,7 @@ impl DynamicLine {
     }
 
     /// A frequency above all modes of a line that has finitely many, rad/s; 0 where waves travel.
-    pub fn fastest_rad_per_s(&self) -> f64 {
+    pub(crate) fn fastest_rad_per_s(&self) -> f64 {
         match self {
             DynamicLine::Segments(line) => line.fastest_rad_per_s(),
             DynamicLine::TransmissionLine(_) | DynamicLine::TwoWave(_) => 0.0,
@@ -88,7 +88,7 @@ impl DynamicLine {
     }
 
     /// What fluid and wall yield in the end, in m3/Pa: at once, and what the wall creeps.
-    pub fn static_compliance(&self) -> f64 {
+    pub(crate) fn static_compliance(&self) -> f64 {
         match self {
             DynamicLine::Segments(line) => line.elastic_compliance() + line.creep_compliance(),
             DynamicLine::TransmissionLine(_) | DynamicLine::TwoWave(_) => self.elastic_compliance(),

@@ -30,7 +30,7 @@ pub enum Chambers<S = f64> {
 pub struct AeratedChambers<S = f64> {
     pub(super) bulk_modulus: S,
     pub(super) volume_fraction: S,
-    pub(super) polytropic_index: S,
+    pub(super) polytropic_exponent: S,
     pub(super) stroke: S,
     pub(super) side_a: AeratedSide<S>,
     pub(super) side_b: AeratedSide<S>,
@@ -81,7 +81,7 @@ impl Chambers {
             Some(air) => Chambers::Aerated(AeratedChambers {
                 bulk_modulus: fluid.bulk_modulus,
                 volume_fraction: air.volume_fraction,
-                polytropic_index: air.polytropic_index,
+                polytropic_exponent: air.polytropic_exponent,
                 stroke: cylinder.stroke,
                 side_a: aerated_side(model, cylinder.area_a, cylinder.dead_volume_a, line_a, member),
                 side_b: aerated_side(model, cylinder.area_b, cylinder.dead_volume_b, line_b, member),
@@ -147,7 +147,7 @@ impl<S: Copy> AeratedChambers<S> {
         AeratedChambers {
             bulk_modulus: of(self.bulk_modulus),
             volume_fraction: of(self.volume_fraction),
-            polytropic_index: of(self.polytropic_index),
+            polytropic_exponent: of(self.polytropic_exponent),
             stroke: of(self.stroke),
             side_a: self.side_a.convert(of),
             side_b: self.side_b.convert(of),
@@ -205,7 +205,7 @@ impl<S: Scalar> AeratedChambers<S> {
         bulk_modulus_with_air(
             self.bulk_modulus,
             self.volume_fraction,
-            self.polytropic_index,
+            self.polytropic_exponent,
             absolute.maximum(S::from(LEAST_ABSOLUTE_PRESSURE)),
         )
     }

@@ -46,7 +46,7 @@ pub struct Accumulator<S = f64> {
     /// Precharge pressure p_0 in Pa gauge.
     pub precharge_pressure: S,
     /// Polytropic index n of the gas: 1 slow, 1.4 fast.
-    pub polytropic_index: S,
+    pub polytropic_exponent: S,
 }
 
 impl PumpLimited {
@@ -57,11 +57,16 @@ impl PumpLimited {
         problems.positive("relief_override", self.relief_override);
         problems.positive("volume", self.volume);
         problems.positive("effective_bulk_modulus", self.effective_bulk_modulus);
-        if let Some(Accumulator { gas_volume, precharge_pressure, polytropic_index }) = self.accumulator {
+        if let Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent }) = self.accumulator {
             problems.positive("accumulator.gas_volume", gas_volume);
             problems.positive("accumulator.precharge_pressure", precharge_pressure);
-            let is_index = (1.0..=5.0 / 3.0).contains(&polytropic_index);
-            problems.require("accumulator.polytropic_index", polytropic_index, is_index, "from 1 to 5/3");
+            let is_index = (1.0..=5.0 / 3.0).contains(&polytropic_exponent);
+            problems.require(
+                "accumulator.polytropic_exponent",
+                polytropic_exponent,
+                is_index,
+                "from 1 to 5/3",
+            );
         }
         problems.into_vec()
     }
@@ -86,7 +91,7 @@ impl<S: Copy> PowerUnit<S> {
                 accumulator: pump.accumulator.map(|accumulator| Accumulator {
                     gas_volume: of(accumulator.gas_volume),
                     precharge_pressure: of(accumulator.precharge_pressure),
-                    polytropic_index: of(accumulator.polytropic_index),
+                    polytropic_exponent: of(accumulator.polytropic_exponent),
                 }),
             }),
         }
@@ -122,7 +127,7 @@ impl<S: Scalar> PumpLimited<S> {
 
     /// Rate of the supply pressure in Pa/s while `taken` in m3/s goes to the valve.
     #[inline(always)]
-    pub fn pressure_rate(&self, pressure: S, stated: S, taken: S) -> S {
+    pub(crate) fn pressure_rate(&self, pressure: S, stated: S, taken: S) -> S {
         (self.pump_flow - self.relief_flow(pressure, stated) - taken) / self.compliance(pressure)
     }
 }
@@ -133,8 +138,8 @@ impl<S: Scalar> Accumulator<S> {
         let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let precharge = self.precharge_pressure + atmosphere;
         let absolute = (pressure + atmosphere).maximum(precharge);
-        let gas = self.gas_volume * ((precharge / absolute).ln() / self.polytropic_index).exp();
-        let charged = gas / (self.polytropic_index * absolute);
+        let gas = self.gas_volume * ((precharge / absolute).ln() / self.polytropic_exponent).exp();
+        let charged = gas / (self.polytropic_exponent * absolute);
         S::select(pressure.less_than(self.precharge_pressure), S::from(0.0), charged)
     }
 
@@ -142,7 +147,7 @@ impl<S: Scalar> Accumulator<S> {
     fn squeeze(&self, pressure: S) -> S {
         let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let precharge = self.precharge_pressure + atmosphere;
-        ((pressure + atmosphere).maximum(precharge) / precharge).ln() / self.polytropic_index
+        ((pressure + atmosphere).maximum(precharge) / precharge).ln() / self.polytropic_exponent
     }
 
     /// Volume V_0 - V of the oil it holds, in m3.
@@ -164,7 +169,7 @@ impl<S: Scalar> Accumulator<S> {
     pub(super) fn energy(&self, pressure: S) -> S {
         let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let squeeze = self.squeeze(pressure);
-        let above_one = self.polytropic_index - S::from(1.0);
+        let above_one = self.polytropic_exponent - S::from(1.0);
         let quotient = squeeze * exponential_quotient(above_one * squeeze);
         (self.precharge_pressure + atmosphere) * self.gas_volume * quotient - atmosphere * self.oil(pressure)
     }
@@ -185,8 +190,8 @@ mod tests {
 
     use super::*;
 
-    fn accumulator(polytropic_index: f64) -> Accumulator {
-        Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_index }
+    fn accumulator(polytropic_exponent: f64) -> Accumulator {
+        Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_exponent }
     }
 
     /// Its oil grows by its compliance and its energy by the pressure times that, below the precharge not at all; either side of
@@ -199,7 +204,7 @@ mod tests {
                 let constant = Accumulator {
                     gas_volume: Dual::<1>::constant(gas.gas_volume),
                     precharge_pressure: Dual::constant(gas.precharge_pressure),
-                    polytropic_index: Dual::constant(gas.polytropic_index),
+                    polytropic_exponent: Dual::constant(gas.polytropic_exponent),
                 };
                 let varied = Dual::variable(pressure, 0);
                 let compliance = gas.compliance(pressure);

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::analytic::Analytic;
 
 use super::supply::{Coupled, Over};
-use super::{Chamber, Chambers, LinearLoad, Plant, YieldingSupply};
+use super::{Chamber, Chambers, LinearLoad, LinearPlant, YieldingSupply};
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
 /// The plant with lines that have dynamics of their own: what no quotient of polynomials is, but a response at every frequency.
@@ -13,7 +13,7 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 /// q_valve = K_q U_sp - K_c p_port                                              valve
 /// p_port = a p + b q,   q_valve = c p + d q                                    line: TransferMatrix
 /// q = C s p + A s X + G (p - p_other)                                          chamber behind it
-/// so each chamber of Plant has   K_q/(d + K_c b)   for K_q   and   C s + (c + K_c a)/(d + K_c b)   for C s + K_c
+/// so each chamber of LinearPlant has   K_q/(d + K_c b)   for K_q   and   C s + (c + K_c a)/(d + K_c b)   for C s + K_c
 /// ```
 ///
 /// At every frequency it is the machine with these lines, for small motions. Where a stated number makes a chamber of the plant
@@ -26,11 +26,11 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 /// # use phea_hydraulics::stiffness::StiffnessModel;
 /// use num_complex::Complex64;
 /// use phea_hydraulics::line::{DynamicLine, END_SHARE, LineModel, Member};
-/// use phea_hydraulics::plant::{BehindLines, LinearLoad, Plant, PlantInMotion};
+/// use phea_hydraulics::plant::{BehindLines, LinearLoad, LinearPlant, PlantInMotion};
 /// let fluid = components(hose_line(), StiffnessModel::ByVolume).fluid;
 /// let model = LineModel::TransmissionLine { end_share: END_SHARE };
 /// let line = DynamicLine::new(&hose_line(), &fluid, 35e5, Member::Nominal, &model)?;
-/// let plant = Plant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
+/// let plant = LinearPlant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
 /// let chamber = 0.25 * 1.58e-3 / 1.45e9; // what the oil of half a stroke yields, in m3/Pa
 /// let behind = BehindLines { lines: [line; 2], chambers: [chamber; 2], lumped: [chamber + line.elastic_compliance(); 2] };
 /// let moving = PlantInMotion::new(&plant, &behind);
@@ -44,7 +44,7 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlantInMotion {
-    plant: Plant,
+    plant: LinearPlant,
     sides: [Side; 2],
     /// Whether both lines are the same.
     alike: bool,
@@ -98,7 +98,7 @@ impl PlantInMotion {
     /// The same with the velocity of the load fed forward, K_x in V s/m.
     #[must_use]
     pub fn fed_forward(self, load_velocity_feed_forward: Option<f64>) -> PlantInMotion {
-        PlantInMotion { plant: Plant { load_velocity_feed_forward, ..self.plant }, ..self }
+        PlantInMotion { plant: LinearPlant { load_velocity_feed_forward, ..self.plant }, ..self }
     }
 
     /// The same with what is fed forward late by a delay in s: K_x e^(-s tau) for K_x.
@@ -109,7 +109,7 @@ impl PlantInMotion {
 
     /// The plant with its lumped lines as they are: for a load velocity that is fed forward late, of which there is no quotient of
     /// polynomials.
-    pub fn lumped(plant: &Plant) -> PlantInMotion {
+    pub fn lumped(plant: &LinearPlant) -> PlantInMotion {
         let compliances = [0, 1].map(|side| plant.chambers.side(side).compliance);
         let none = DynamicLine::Segments(Segments::lumped(0.0));
         PlantInMotion::new(
@@ -119,7 +119,7 @@ impl PlantInMotion {
     }
 
     /// The plant with these chambers and lines in place of its lumped ones.
-    pub fn new(plant: &Plant, behind: &BehindLines) -> PlantInMotion {
+    pub fn new(plant: &LinearPlant, behind: &BehindLines) -> PlantInMotion {
         let side = |side: usize| {
             let Chamber { area, compliance, flow_gain, flow_pressure } = plant.chambers.side(side);
             let stiffer = behind.lumped[side] / compliance;
@@ -132,7 +132,7 @@ impl PlantInMotion {
         PlantInMotion { plant: *plant, sides, alike, lateness: 0.0 }
     }
 
-    /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of [`Plant::coefficients`].
+    /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of [`LinearPlant::coefficients`].
     pub fn response<A: Analytic>(&self, s: A) -> [A; 2] {
         let Paths { command, ground, sensed, fed, .. } = self.paths(s);
         let divisor = sensed - fed;

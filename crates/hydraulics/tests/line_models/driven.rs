@@ -1,7 +1,9 @@
 //! Lines driven by the integrator of the machine: delays kept by its histories.
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Course, Input, Profile, Settings, Simulated, Status, System, simulate};
+use phea_dynamics::simulation::{
+    Input, InputSchedule, Profile, Settings, Simulated, Status, System, simulate,
+};
 use phea_hydraulics::line::{Conduit, DynamicLine, LineModel, Member, TransmissionLine};
 use phea_hydraulics::reference_rig::hose_line;
 
@@ -46,7 +48,7 @@ impl Fed {
     fn run(&self, flow: f64, inflow: Profile, outflow: Profile, duration_s: f64) -> Simulated {
         let (state, waves) = self.line.steady_state(0.0, flow);
         let start = [state, vec![0.0, 0.0], waves].concat();
-        let course = Course {
+        let course = InputSchedule {
             duration_s,
             output_step_s: duration_s / 200.0,
             inputs: vec![Input::Value(inflow), Input::Value(outflow)],

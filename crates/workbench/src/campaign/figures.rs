@@ -131,7 +131,7 @@ pub(crate) fn files(
 ) -> Result<Vec<OutputFile>, crate::command::CommandError> {
     let mut files = vec![OutputFile {
         name: format!("{}.parquet", shard.name()),
-        bytes: plan.parquet(rows).map_err(CampaignError::Ledger)?,
+        bytes: plan.parquet(rows).map_err(CampaignError::RowStore)?,
     }];
     let part = shard.part();
     for figure in pictures(plan, summary)? {

@@ -2,7 +2,7 @@
 
 use super::{CommandError, Watch};
 use crate::answer::{Answer, TableFormat};
-use crate::campaign::{self, CampaignError, Ledger, Plan, Summary, Wanted};
+use crate::campaign::{self, CampaignError, Plan, RowStore, Summary, Wanted};
 use crate::project::{self, Loaded};
 use crate::setup::Setup;
 use crate::simulate::{self, simulate_into};
@@ -38,7 +38,7 @@ pub fn campaign_watched(
     loaded: &Loaded,
     catalogues: &[String],
     request: &CampaignRequest,
-    (ledger, destination): (&mut dyn Ledger, Option<&dyn Destination>),
+    (ledger, destination): (&mut dyn RowStore, Option<&dyn Destination>),
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     let plan = Plan::new(source, loaded, request.seed)?;

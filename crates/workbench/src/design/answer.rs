@@ -9,8 +9,8 @@ use phea_qft::verification::PlantPoint;
 use serde::Serialize;
 
 use self::rounding::RoundingRow;
+use super::AuditedController;
 use super::Factors;
-use super::Side;
 use super::{Explanation, ProjectDesign};
 use super::{objective_key, part_key, status_key};
 use crate::answer::{self, Number};
@@ -208,7 +208,7 @@ pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
 }
 
 /// What a sampled loop's law is in continuous time, where it was given so.
-fn continuous_law(side: &Side) -> Result<Option<LawRow>, LinearError> {
+fn continuous_law(side: &AuditedController) -> Result<Option<LawRow>, LinearError> {
     let Controller { feedback, prefilter, .. } = &side.controller;
     let law = feedback.transfer_function()?;
     let sampled = side.problem.compensation.sample_time_s().is_some();
@@ -221,7 +221,7 @@ fn continuous_law(side: &Side) -> Result<Option<LawRow>, LinearError> {
     }))
 }
 
-fn figures(side: &Side) -> FiguresRow {
+fn figures(side: &AuditedController) -> FiguresRow {
     let figures = &side.figures;
     let nominal = figures.nominal.as_ref();
     let missing = figures.modulus_margin.is_none() || nominal.is_none();
@@ -259,7 +259,7 @@ fn structure(structure: &Structure) -> StructureRow {
     }
 }
 
-fn published(side: &Side) -> PublishedRow<'_> {
+fn published(side: &AuditedController) -> PublishedRow<'_> {
     PublishedRow {
         controller: Factors::of(side.problem.compensation.feedback()),
         prefilter: Factors::of(side.problem.compensation.prefilter()),

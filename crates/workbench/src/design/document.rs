@@ -6,7 +6,7 @@ use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::compared;
 use super::factored;
-use super::{Explanation, ProjectDesign, Repair, RepairStatus, Rounding, Side};
+use super::{AuditedController, Explanation, ProjectDesign, Repair, RepairStatus, Rounding};
 use super::{repair_words, status_sentence, structure_words};
 use crate::answer::significant;
 use crate::audit::{self, margin_words, summary};
@@ -116,7 +116,7 @@ pub(crate) fn explanation_words(view: &ProjectDesign, explanation: &Explanation)
 }
 
 /// The laws of one controller in factored form; those of a sampled loop before and as they are deployed.
-pub(crate) fn laws(side: &Side) -> Result<Document, LinearError> {
+pub(crate) fn laws(side: &AuditedController) -> Result<Document, LinearError> {
     let deployed = &side.problem.compensation;
     let mut laws = vec![("G", side.controller.feedback.transfer_function()?, deployed.feedback())];
     if side.problem.has_prefilter {

@@ -9,8 +9,8 @@ use phea_qft::bound::Placement;
 use phea_qft::specification::Requirement;
 
 use super::Factors;
+use super::{AuditedController, ProjectDesign, Repair};
 use super::{DESIGNED_PROJECT, NEAREST_PROJECT, structure_words};
-use super::{ProjectDesign, Repair, Side};
 use crate::answer::OutputFile;
 use crate::audit;
 use crate::command::{CommandError, Watch};
@@ -102,7 +102,7 @@ fn nominal_loop(problem: &RobustProblem, found: &[DesignFrequency]) -> Result<St
 
 /// Least and greatest |F T| of the members against the limits of tracking, and what is left on either side; `None` without tracking or
 /// prefilter.
-fn prefilter_band(side: &Side) -> Result<Option<String>, LinearError> {
+fn prefilter_band(side: &AuditedController) -> Result<Option<String>, LinearError> {
     let problem = &side.problem;
     let mut csv = String::from(
         "specification,frequency_rad_per_s,lower_db,least_db,greatest_db,upper_db,left_below_db,left_above_db\n",

@@ -48,7 +48,7 @@ struct Pages {
     ahead: String,
 }
 
-impl Ledger for Pages {
+impl RowStore for Pages {
     fn kept(&mut self) -> Result<String, String> {
         self.table.kept()
     }

@@ -8,7 +8,7 @@ use std::time::Instant;
 use phea_dynamics::controller::{Compensator, Controller, ControllerState, Element, SampledController};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    CommandedPlant, Course, Input, Outcome, Plant, Sampler, Settings, Status, System, Work, simulate,
+    CommandedPlant, InputSchedule, Input, Outcome, Plant, Sampler, Settings, Status, System, Work, simulate,
 };
 use phea_hydraulics::machine::{INDICATORS, Machine};
 use sundials::{CvodeError, Following, Kicks, Method, follow};
@@ -253,7 +253,7 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, timed: bool) -> Co
     let controller = controller(&rig.control);
     let [value, rate] = [Input::Value, Input::Rate].map(|input| input(rig.ground.clone()));
     let reference = Input::Value(rig.reference.clone());
-    let course = |inputs| Course { duration_s: rig.duration_s, output_step_s: OUTPUT_STEP_S, inputs };
+    let course = |inputs| InputSchedule { duration_s: rig.duration_s, output_step_s: OUTPUT_STEP_S, inputs };
     let mut compared = match rig.control.sample_time_s {
         None => {
             let closed = CommandedPlant::in_loop(rig.machine, &controller, 0.0).expect("a proper controller");
@@ -311,7 +311,7 @@ type NewSampler<'a> = dyn Fn() -> Option<Box<dyn Sampler + 'a>> + 'a;
 fn judge<'a, E: System<f64> + Clone>(
     rig: &Rig,
     system: &'a E,
-    course: &Course,
+    course: &InputSchedule,
     sampler: &NewSampler<'a>,
     timed: bool,
 ) -> (Compared, Vec<f64>) {

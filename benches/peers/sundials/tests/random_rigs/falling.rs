@@ -117,12 +117,12 @@ fn components(chance: &mut Chance) -> Components {
 /// Steep enough to feed the ringing, viscous little.
 fn friction(chance: &mut Chance, most_force: f64, mass: f64) -> Friction {
     let coulomb = most_force * chance.decades(2e-3, 3e-2);
-    let breakaway = coulomb * chance.between(1.2, 2.0);
+    let static_friction = coulomb * chance.between(1.2, 2.0);
     let stribeck_velocity = chance.decades(2e-3, 3e-2);
-    let steepest = 0.86 * (breakaway - coulomb) / stribeck_velocity;
+    let steepest = 0.86 * (static_friction - coulomb) / stribeck_velocity;
     let curve = Stribeck {
         coulomb,
-        breakaway,
+        static_friction,
         stribeck_velocity,
         stribeck_exponent: if chance.happens(0.6) { 2.0 } else { chance.between(1.0, 2.0) },
         viscous: steepest * chance.decades(0.02, 0.3),

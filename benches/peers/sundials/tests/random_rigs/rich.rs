@@ -76,7 +76,7 @@ pub(crate) fn enrich(chance: &mut Chance, components: &mut Components, options: 
         pump.accumulator = chance.happens(0.5).then(|| Accumulator {
             gas_volume: pump.volume * chance.decades(0.1, 10.0),
             precharge_pressure: supply.pressure * chance.between(0.3, 1.1),
-            polytropic_index: chance.between(1.0, 1.4),
+            polytropic_exponent: chance.between(1.0, 1.4),
         });
     }
     if chance.happens(0.4) {

@@ -192,7 +192,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
             density: 870.0,
             kinematic_viscosity: 46e-6,
             entrained_air: air
-                .then(|| EntrainedAir { volume_fraction: chance.decades(1e-4, 3e-2), polytropic_index: 1.2 }),
+                .then(|| EntrainedAir { volume_fraction: chance.decades(1e-4, 3e-2), polytropic_exponent: 1.2 }),
         },
         supply: Supply { pressure, tank_pressure: chance.between(0.0, 0.05) * pressure },
         valve: Servovalve {
@@ -232,7 +232,7 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64, bristles: bool) -> 
     let coulomb = most_force * chance.decades(1e-3, 0.1);
     let curve = Stribeck {
         coulomb,
-        breakaway: coulomb * chance.between(1.0, 1.8),
+        static_friction: coulomb * chance.between(1.0, 1.8),
         stribeck_velocity: chance.decades(1e-3, 5e-2),
         stribeck_exponent: if chance.happens(0.7) { 2.0 } else { chance.between(0.7, 2.0) },
         viscous,
@@ -395,7 +395,7 @@ fn of_cylinder(components: &Components) -> Vec<(&'static str, f64)> {
     if let Friction::LuGre(friction) = components.friction {
         values.extend([
             ("coulomb", friction.curve.coulomb),
-            ("static_friction", friction.curve.breakaway),
+            ("static_friction", friction.curve.static_friction),
             ("stribeck_velocity", friction.curve.stribeck_velocity),
             ("stribeck_exponent", friction.curve.stribeck_exponent),
             ("bristle_stiffness", friction.bristle_stiffness),

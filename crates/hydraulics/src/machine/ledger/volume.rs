@@ -49,7 +49,7 @@ pub(super) enum Law<T> {
 pub(super) struct Mixture<T> {
     bulk_modulus: T,
     volume_fraction: T,
-    polytropic_index: T,
+    polytropic_exponent: T,
     /// s.
     share: T,
     /// k in 1/Pa.
@@ -82,7 +82,7 @@ impl<T: Scalar> Volume<T> {
         let law = Law::Mixture(Mixture {
             bulk_modulus: chambers.bulk_modulus,
             volume_fraction: chambers.volume_fraction,
-            polytropic_index: chambers.polytropic_index,
+            polytropic_exponent: chambers.polytropic_exponent,
             share: side.fluid_slope / area,
             wall,
         });
@@ -163,7 +163,7 @@ impl<T: Scalar> Mixture<T> {
     fn specific_volume(&self, pressure: T) -> T {
         let atmosphere = T::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let liquid = (T::from(1.0) - self.volume_fraction) * (-pressure / self.bulk_modulus).exp();
-        let squeeze = (atmosphere / (pressure + atmosphere)).ln() / self.polytropic_index;
+        let squeeze = (atmosphere / (pressure + atmosphere)).ln() / self.polytropic_exponent;
         let volume = liquid + self.volume_fraction * squeeze.exp();
         (self.share * volume.ln() - self.wall * pressure).exp()
     }
@@ -191,8 +191,14 @@ mod tests {
 
     const MODULUS: f64 = 1.45e9;
 
-    fn mixture(volume_fraction: f64, polytropic_index: f64, wall: f64) -> Law<f64> {
-        Law::Mixture(Mixture { bulk_modulus: MODULUS, volume_fraction, polytropic_index, share: 1.0, wall })
+    fn mixture(volume_fraction: f64, polytropic_exponent: f64, wall: f64) -> Law<f64> {
+        Law::Mixture(Mixture {
+            bulk_modulus: MODULUS,
+            volume_fraction,
+            polytropic_exponent,
+            share: 1.0,
+            wall,
+        })
     }
 
     /// Without a wall the integral of the volumes of liquid and gas is elementary.

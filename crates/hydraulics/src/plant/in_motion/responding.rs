@@ -8,7 +8,7 @@ use phea_dynamics::portable::argument;
 use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
-use super::super::{ChamberDynamics, LinearLoad, Plant, YieldingSupply};
+use super::super::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
 use super::{Paths, PlantInMotion, Side};
 
 /// How far below the slowest and above the fastest thing of a plant its response is its own.
@@ -71,7 +71,7 @@ impl RespondingPlant for PlantInMotion {
                 ..supply
             }
         });
-        Plant { chambers, supply, ..self.plant }.coefficients()
+        LinearPlant { chambers, supply, ..self.plant }.coefficients()
     }
 
     /// Nothing behind the valve gives energy, so that no more reaches the piston than a source with the conductance K_c can give, and the

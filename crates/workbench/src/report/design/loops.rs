@@ -5,7 +5,7 @@ use phea_qft::bound::{Bound, Placement};
 
 use super::super::bounds::nominal_loop;
 use crate::audit::frequency_number;
-use crate::design::{ProjectDesign, Side};
+use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{BoundGroup, Figure, FrequencySeries, NicholsInput, OpenLoopViolation, Words, nichols};
 use crate::robust::DesignFrequency;
 
@@ -42,7 +42,7 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
 }
 
 /// The loop of a side where it lies in a bound.
-fn forbidden(side: &Side, name: &str, one: &DesignFrequency) -> Option<OpenLoopViolation> {
+fn forbidden(side: &AuditedController, name: &str, one: &DesignFrequency) -> Option<OpenLoopViolation> {
     let frequency_rad_per_s = one.frequency_rad_per_s;
     let feedback = side.problem.compensation.response(frequency_rad_per_s).feedback;
     let open_loop = one.template.template.nominal * feedback;

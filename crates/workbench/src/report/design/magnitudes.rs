@@ -6,7 +6,7 @@ use phea_qft::specification::{Requirement, Specification};
 
 use super::super::closed_loops::{curve, extreme, limit_curve, mark, quotient, span, spread_mark};
 use crate::audit::{closed_loop_symbol, kind_key};
-use crate::design::{ProjectDesign, Side};
+use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{
     FamilyEnvelope, FamilyMagnitudeInput, Figure, MagnitudeCurve, MagnitudeMark, Words, family_magnitude,
 };
@@ -14,7 +14,7 @@ use crate::figure::{
 /// One loop that is drawn: its name, the side, and its plants.
 struct Drawn<'a> {
     name: &'static str,
-    side: &'a Side,
+    side: &'a AuditedController,
     members: Vec<Member>,
 }
 
@@ -91,7 +91,7 @@ fn words(
     Words::new(format!("design_{number}_{}", kind_key(requirement)), title, caption)
 }
 
-fn finding(side: &Side, index: usize) -> Option<&phea_qft::verification::SpecificationFinding> {
+fn finding(side: &AuditedController, index: usize) -> Option<&phea_qft::verification::SpecificationFinding> {
     side.view.audit.specifications.get(index)
 }
 

@@ -9,7 +9,7 @@ use phea_qft::verification::{TOLERANCE_DB, Verdict};
 
 use crate::answer::significant;
 use crate::audit::frequency_words;
-use crate::design::{ProjectDesign, Side};
+use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{Figure, PrefilterPanel, PrefilterPoint, Words, prefilter_band};
 
 /// Limits of tracking that lie nearer to one another are not told apart in a figure, dB.
@@ -59,7 +59,7 @@ fn figure(
 /// The band of one loop, with a sentence on where it is tightest; `None` of a loop that is not stable, or is not known.
 fn panel(
     name: &str,
-    side: &Side,
+    side: &AuditedController,
     index: usize,
     specification: &Specification,
 ) -> Result<Option<(PrefilterPanel, String)>, LinearError> {

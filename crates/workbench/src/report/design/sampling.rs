@@ -3,10 +3,10 @@
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use crate::audit::margin_words;
-use crate::design::Side;
+use crate::design::AuditedController;
 
 /// Where the design that was made without samples fares worst beside the one that was made with them.
-pub(super) fn sentence(sampled: &Side, continuous: &Side) -> String {
+pub(super) fn sentence(sampled: &AuditedController, continuous: &AuditedController) -> String {
     let margin = |finding: &SpecificationFinding| finding.worst.as_ref().map(|worst| worst.margin_db);
     let pairs = sampled.view.audit.specifications.iter().zip(&continuous.view.audit.specifications);
     let changes = pairs.enumerate().filter_map(|(index, (here, there))| {
