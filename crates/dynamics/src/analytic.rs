@@ -1,4 +1,5 @@
-//! Numbers over which a response is written once and evaluated at a point, or over a whole stretch of frequencies.
+//! Types over which a response is written once and evaluated at one frequency or over an interval
+//! of frequencies.
 
 mod disc;
 mod jet;
@@ -12,10 +13,12 @@ use crate::portable;
 pub use disc::Disc;
 pub use jet::Jet;
 
-/// A complex number, or a set of complex numbers: whatever sums, products, quotients and the exponential are known of.
+/// A complex number, or a set of complex numbers, with sums, products, quotients and the
+/// exponential.
 ///
 /// # Example
-/// The same lines give the response at a frequency, and a disc that holds it at every frequency between two.
+/// The same function gives the response at a frequency, and a disc that contains the response at
+/// every frequency of an interval.
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::analytic::{Analytic, Disc};
@@ -44,9 +47,9 @@ pub trait Analytic:
     fn mean_of_decay(self) -> Self;
 }
 
-/// Below this magnitude (1 - e^(-z))/z is taken from its series.
+/// Below this magnitude (1 - e^(-z))/z is computed from its series.
 const SMALL: f64 = 0.5;
-/// Terms of the series: the first that is left out is less than 0.5^15/16! of the value.
+/// Terms of the series: the first omitted term is less than 0.5^15/16! of the value.
 const TERMS: i32 = 15;
 
 /// 1 - z/2 (1 - z/3 (1 - z/4 (...)))

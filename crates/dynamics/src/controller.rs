@@ -1,7 +1,7 @@
 //! A controller as one value: what it is made of, when it acts, and where it is limited.
 //!
-//! Loop shaping edits the elements, verification takes the responses, simulation and generated code take the sample
-//! step of [`SampledController`]: four users of one value.
+//! Loop shaping edits the elements, verification takes the responses, simulation and generated code
+//! take the sample step of [`SampledController`]: four users of one value.
 
 mod converter;
 mod element;
@@ -29,8 +29,8 @@ pub struct Timing {
     pub discretization: Discretization,
     /// Whether the prefilter acts on the reference before it is sampled, in continuous time.
     pub continuous_prefilter: bool,
-    /// What a disturbance's rate adds to the command, with its samples and its delay, per unit of that rate: K in U = G (F R - Y) + K s D.
-    /// Zero where it is not measured.
+    /// Gain of the feed-forward of a disturbance's rate, sampled and delayed as the command is: K
+    /// in U = G (F R - Y) + K s D. Zero without feed-forward.
     pub rate_feed_forward: f64,
 }
 
@@ -50,7 +50,8 @@ pub enum AntiWindup {
     /// It goes on integrating.
     #[default]
     None,
-    /// The recursion continues from the limited command, so that the state is the one that would have given it.
+    /// The recursion continues from the limited command, so that the state is the one that would
+    /// have given it.
     BackCalculation,
     /// The state is held while the command is limited and the error drives it further out.
     Clamping,

@@ -1,8 +1,9 @@
 //! Recorded expressions: a model equation run once with [`Recorded`] numbers becomes data.
 //!
-//! An [`Expression`] is a list of operations over named parameters with one or more results. It is evaluated over any
-//! [`Scalar`] (numbers, dual numbers, intervals), printed, and turned into code, without the function it came
-//! from. Equal sub-expressions are recorded once; operations on constants are done while recording.
+//! An [`Expression`] is a list of operations over named parameters with one or more results. It is
+//! evaluated over any [`Scalar`] (numbers, dual numbers, intervals), printed, and turned into code,
+//! without the function it came from. Equal sub-expressions are recorded once; operations on
+//! constants are done while recording.
 
 mod node;
 mod recording;
@@ -12,7 +13,8 @@ pub use recording::Recorded;
 
 use crate::scalar::{Interval, Scalar};
 
-/// Operations over named parameters, in an order in which each uses only earlier ones, and the results they give.
+/// Operations over named parameters, in an order in which each uses only earlier ones, and the
+/// results they give.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     parameters: Vec<String>,
@@ -21,7 +23,8 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// Runs `equations` once on the named parameters and keeps what it did, as far as a result needs it.
+    /// Runs `equations` once on the named parameters and keeps what it did, as far as a result
+    /// needs it.
     ///
     /// # Example
     /// ```
@@ -60,8 +63,8 @@ impl Expression {
         self.nodes.contains(&Node::Parameter(parameter))
     }
 
-    /// Intervals that hold every result while the parameters run through theirs. An operation on twice the same number is known as such:
-    /// a square is not negative, x - x is zero.
+    /// Intervals that hold every result while the parameters run through theirs. An operation on
+    /// twice the same number is known as such: a square is not negative, x - x is zero.
     ///
     /// # Example
     /// ```
@@ -83,7 +86,8 @@ impl Expression {
         self.results.iter().map(|&index| values[index]).collect()
     }
 
-    /// All results for these values of the parameters. A missing value counts as NaN, a surplus one is not used.
+    /// All results for these values of the parameters. A missing value counts as NaN, a surplus one
+    /// is not used.
     pub fn evaluate<S: Scalar>(&self, parameters: &[S]) -> Vec<S> {
         let mut values: Vec<S> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {

@@ -55,8 +55,8 @@ pub struct FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// The response of a transfer function. Its phase is the sum of the phases of its factors, so it is continuous
-    /// however far apart the frequencies are ([`TransferFunction::phase_rad`]).
+    /// The response of a transfer function. Its phase is the sum of the phases of its factors, so
+    /// it is continuous however far apart the frequencies are ([`TransferFunction::phase_rad`]).
     pub fn of(system: &TransferFunction, frequencies_rad_per_s: &[f64]) -> Self {
         FrequencyResponse {
             frequencies_rad_per_s: frequencies_rad_per_s.to_vec(),

@@ -1,7 +1,9 @@
-//! Systems without a fluid: the scalar every model equation is written over, recorded expressions, linear systems,
-//! their frequency and time responses, controllers, and the uncertain plant that robust design works on.
+//! Systems without a fluid: the scalar every model equation is written over, recorded expressions,
+//! linear systems, their frequency and time responses, controllers, and the uncertain plant that
+//! robust design works on.
 //!
-//! SI units inside, angles in radians, frequencies in rad/s, polynomials with the highest power first.
+//! SI units inside, angles in radians, frequencies in rad/s, polynomials with the highest power
+//! first.
 
 pub mod analytic;
 pub mod controller;

@@ -1,9 +1,11 @@
-//! Linear time-invariant systems, continuous or sampled: factored transfer functions, polynomials and state space.
+//! Linear time-invariant systems, continuous or sampled: factored transfer functions, polynomials
+//! and state space.
 //!
-//! Hydraulic systems spread their roots over many decades (a load-holding pole at 0.01 rad/s beside a mechanical
-//! resonance at 3000 rad/s and an oil column at 1e6), where the coefficients of a polynomial no longer say where its
-//! roots are. So a [`TransferFunction`] keeps gain, zeros and poles, and is evaluated from them; [`Polynomial`]s are
-//! for text and for other tools; a [`StateSpace`] is solved, never expanded.
+//! Hydraulic systems spread their roots over many decades (a load-holding pole at 0.01 rad/s and a
+//! mechanical resonance at 3000 rad/s and an oil column at 1e6), where the coefficients of a
+//! polynomial no longer say where its roots are. So a [`TransferFunction`] keeps gain, zeros and
+//! poles, and is evaluated from them; [`Polynomial`]s are for text and for other tools; a
+//! [`StateSpace`] is solved, never expanded.
 //!
 //! # Example
 //! A loop closed from factors, and its poles:
@@ -157,7 +159,7 @@ pub enum LinearError {
         /// The sample time, s.
         sample_time_s: f64,
     },
-    /// A dead time of so many samples would need as many states.
+    /// A dead time of this many samples would need too many states.
     #[error(
         "a dead time of {samples} samples is too long to become states; at most {MAXIMUM_DELAY_STATES} may"
     )]
@@ -165,7 +167,8 @@ pub enum LinearError {
         /// Dead time in samples.
         samples: f64,
     },
-    /// The result would not be a rational function: dead time inside a sum or a loop, or in a state space.
+    /// The result would not be a rational function: dead time inside a sum or a loop, or in a state
+    /// space.
     #[error("{operation} with dead time is not a rational function")]
     NotRational {
         /// What was asked for.

@@ -1,8 +1,9 @@
 //! Transcendental functions with the same bits on every machine.
 //!
-//! The platform's mathematical library differs between operating systems and versions; `libm` is one
-//! implementation in Rust, used natively and in WebAssembly alike. The lint `clippy::disallowed_methods` keeps the
-//! methods of `f64` out. (`sqrt`, `abs` and the four operations are exact by IEEE 754 and need no substitute.)
+//! The platform's mathematical library differs between operating systems and versions; `libm` is
+//! one implementation in Rust, used natively and in WebAssembly alike. The lint
+//! `clippy::disallowed_methods` keeps the methods of `f64` out. (`sqrt`, `abs` and the four
+//! operations are exact by IEEE 754 and need no substitute.)
 
 use num_complex::Complex64;
 

@@ -17,8 +17,8 @@ pub fn share(state: &mut u64) -> f64 {
     (mixed(*state) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Where the random numbers of the experiment with this index begin: they follow from seed and index alone, whatever other
-/// experiments there are.
+/// Where the random numbers of the experiment with this index begin: they follow from seed and
+/// index alone, whatever other experiments there are.
 ///
 /// # Example
 /// ```
@@ -71,7 +71,8 @@ mod tests {
         assert!(mean(3).abs() < 4.0 * error && (mean(4) - 3.0).abs() < 10.0 * error);
     }
 
-    /// The first numbers of SplitMix64 from seed 1234567, as its reference implementation prints them.
+    /// The first numbers of SplitMix64 from seed 1234567, as its reference implementation prints
+    /// them.
     #[test]
     fn the_generator_is_the_published_one() {
         // ORIGIN: paper, Steele, Lea and Flood (2014): outputs of the reference implementation for seed 1234567

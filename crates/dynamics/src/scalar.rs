@@ -1,10 +1,10 @@
 //! The number that model equations are written over.
 //!
-//! A model equation is one generic function over [`Scalar`] and never branches on a value: a choice between two
-//! formulas is [`Scalar::less_than`] followed by [`Scalar::select`]. So the same text serves plain numbers
-//! (simulation), [`Lanes`] (ensembles), [`Dual`] numbers (exact Jacobians), [`Dependence`] (their pattern) and
-//! [`crate::expression::Recorded`] expressions (uncertain plants, generated code) and [`Interval`]s, whose comparison is not
-//! a `bool`.
+//! A model equation is one generic function over [`Scalar`] and never branches on a value: a choice
+//! between two formulas is [`Scalar::less_than`] followed by [`Scalar::select`]. So the same text
+//! serves plain numbers (simulation), [`Lanes`] (ensembles), [`Dual`] numbers (exact Jacobians),
+//! [`Dependence`] (their pattern) and [`crate::expression::Recorded`] expressions (uncertain
+//! plants, generated code) and [`Interval`]s, whose comparison is not a `bool`.
 //!
 //! # Example
 //! One equation, three users:
@@ -48,7 +48,8 @@ pub trait Scalar:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The outcome of a comparison: `bool` for one number, one flag a lane for lanes, three-valued for intervals.
+    /// The outcome of a comparison: `bool` for one number, one flag a lane for lanes, three-valued
+    /// for intervals.
     type Mask: Copy;
 
     /// Square root.
@@ -90,8 +91,8 @@ pub trait Scalar:
 
     /// A function of few numbers.
     ///
-    /// The same as the function itself, but for [`Dual`] numbers: these take its derivatives with respect to its own variables
-    /// and bring them to theirs once, by the chain rule.
+    /// The same as the function itself, but for [`Dual`] numbers: these take its derivatives with
+    /// respect to its own variables and bring them to theirs once, by the chain rule.
     ///
     /// ```text
     /// dy_m/dx = sum over k of (df_m/du_k) (du_k/dx)
@@ -108,7 +109,8 @@ pub trait Scalar:
     }
 }
 
-/// A function of K numbers with M results, its parameters of type P: a part of a model that knows few of its variables.
+/// A function of K numbers with M results, its parameters of type P: a part of a model that knows
+/// few of its variables.
 ///
 /// # Example
 /// An orifice between two of many pressures

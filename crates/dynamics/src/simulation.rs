@@ -1,8 +1,9 @@
-//! Nonlinear systems in time: equations written once over [`Scalar`], an L-stable method with error control, inputs that
-//! are known functions of time, delays, samples and events.
+//! Nonlinear systems in time: equations written once over [`Scalar`], an L-stable method with error
+//! control, inputs that are known functions of time, delays, samples and events.
 //!
-//! Time enters a system through its inputs alone. Whoever drives it knows each input and its slope at any time, and the
-//! times at which they break, so that no step ever crosses a break and every restart is exact.
+//! Time enters a system through its inputs alone. The solver knows each input and its slope at any
+//! time, and the times at which they break, so that no step ever crosses a break and every restart
+//! is exact.
 
 mod commanded_plant;
 mod course;
@@ -58,8 +59,9 @@ use crate::scalar::{Lanes, Scalar};
 /// dy/dt = f(y, w)            y states, w inputs; both in SI units
 /// ```
 ///
-/// Parameters are of type `S`: one number, or lanes of them. The equations are evaluated over any `T` that such parameters
-/// can enter as constants: `S` itself, its dual numbers, and [`crate::scalar::Dependence`].
+/// Parameters are of type `S`: one number, or lanes of them. The equations are evaluated over any
+/// `T` that such parameters can enter as constants: `S` itself, its dual numbers, and
+/// [`crate::scalar::Dependence`].
 pub trait System<S: Scalar> {
     /// Number of states.
     fn states(&self) -> usize;
@@ -67,16 +69,19 @@ pub trait System<S: Scalar> {
     /// Number of inputs, delayed waves included.
     fn inputs(&self) -> usize;
 
-    /// Typical magnitude of each state, in its unit: what the error is measured by where the state itself is smaller.
+    /// Typical magnitude of each state, in its unit: the error is relative to it where the state
+    /// itself is smaller.
     fn scales(&self) -> Vec<S>;
 
     /// Rates of all states, per second.
     fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]);
 
-    /// How long each delayed wave travels, in s. The last inputs are these waves as they arrive, in this order.
+    /// How long each delayed wave travels, in s. The last inputs are these waves as they arrive, in
+    /// this order.
     ///
-    /// What leaves at a break of the course arrives as a break, at which a step ends, through twelve delays. What jumps still
-    /// after so many is smeared over the step in which it arrives.
+    /// What leaves at a break of the course arrives as a break, at which a step ends, through up to
+    /// twelve delays. A jump that has passed more delays than that is smeared over the step in
+    /// which it arrives.
     fn delays(&self) -> Vec<S> {
         Vec::new()
     }
@@ -89,15 +94,18 @@ pub trait System<S: Scalar> {
         0
     }
 
-    /// Where friction acts. Its falling slope may feed an oscillation from one step to the next; all else in the Jacobian is
-    /// taken to change over tens of steps. `None`: nothing is taken so, and the modes are found at every step.
+    /// Where friction acts. Its falling slope may feed an oscillation from one step to the next;
+    /// all else in the Jacobian is assumed to change slowly, over tens of steps. With `None`,
+    /// nothing is assumed, and the modes are computed at every step.
     fn sliding(&self) -> Option<Sliding> {
         None
     }
 
-    /// Quantities whose change of sign is an event (contact, cavitation): reported with its time, never acted on.
+    /// Quantities whose change of sign is an event (contact, cavitation): reported with its time,
+    /// never acted on.
     ///
-    /// They are compared at the ends of each step: one that changes its sign twice within a step is not seen.
+    /// They are compared at the ends of each step: one that changes its sign twice within a step is
+    /// not seen.
     fn indicate<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _indicators: &mut [T]) {}
 }
 
@@ -110,7 +118,7 @@ pub trait Plant<S: Scalar> {
     /// Number of states.
     fn states(&self) -> usize;
 
-    /// Number of inputs beside the command, delayed waves included.
+    /// Number of inputs other than the command, delayed waves included.
     fn inputs(&self) -> usize;
 
     /// Typical magnitude of each state, in its unit.

@@ -1,9 +1,10 @@
-//! The bridge from any plant to robust design: a rational function of s whose coefficients are recorded expressions of
-//! named, bounded parameters, or where waves travel, a response for every value of them.
+//! The bridge from any plant to robust design: a rational function of s whose coefficients are
+//! recorded expressions of named, bounded parameters, or where waves travel, a response for every
+//! value of them.
 //!
-//! Whatever the plant is made of (valve, hose and cylinder, or a formula in a file), robust design sees only this value:
-//! it can evaluate a plant at any point of the parameter box, over numbers, dual numbers or intervals, and so search and
-//! prove between the grid points.
+//! Whatever the plant is made of (valve, hose and cylinder, or a formula in a file), robust design
+//! sees only this value: it can evaluate a plant at any point of the parameter box, over numbers,
+//! dual numbers or intervals, and so search and prove between the grid points.
 
 use std::sync::Arc;
 
@@ -41,16 +42,18 @@ pub struct RationalCoefficients<S> {
 pub struct PlantCoefficients<S> {
     /// From the command to the controlled output, P(s).
     pub command: RationalCoefficients<S>,
-    /// From the disturbance (for an actuator: load position, Pd = F_e/X_L) to the output, where the plant has one.
+    /// From the disturbance (for an actuator: load position, Pd = F_e/X_L) to the output, where the
+    /// plant has one.
     pub disturbance: Option<RationalCoefficients<S>>,
     /// Dead time in the command path, s.
     pub dead_time_s: S,
-    /// The rate that a controller may feed forward, where the command moves it too (for an actuator: velocity of a load that yields);
-    /// `None` where it is that of the disturbance, s.
+    /// The rate that a controller may feed forward, where the command moves it too (for an
+    /// actuator: velocity of a load that yields); `None` where it is that of the disturbance, s.
     pub rate: Option<RateNumerators<S>>,
 }
 
-/// Numerators of the paths to a rate, highest power first, over the denominator of the command's path to the output.
+/// Numerators of the paths to a rate, highest power first, over the denominator of the command's
+/// path to the output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RateNumerators<S> {
     /// From the command, before its dead time.
@@ -129,7 +132,8 @@ enum Equations {
     Responding(Arc<dyn RespondingPlants>),
 }
 
-/// Recorded coefficients: command numerator, command denominator, the same of the disturbance path, dead time, numerators of the rate.
+/// Recorded coefficients: command numerator, command denominator, the same of the disturbance path,
+/// dead time, numerators of the rate.
 #[derive(Clone, Debug, PartialEq)]
 struct RecordedPlant {
     coefficients: Expression,
@@ -154,7 +158,8 @@ impl UncertainPlant {
     /// Records the plant's coefficients as expressions of its parameters.
     ///
     /// # Errors
-    /// A parameter whose bounds do not enclose its nominal value or is listed twice; an empty polynomial.
+    /// A parameter whose bounds do not enclose its nominal value or is listed twice; an empty
+    /// polynomial.
     pub fn record<F>(
         parameters: Vec<UncertainParameter>,
         equations: F,
@@ -208,8 +213,8 @@ impl UncertainPlant {
         }
     }
 
-    /// The recorded coefficients: command numerator, command denominator, the same of the disturbance path, dead time, numerators of the
-    /// rate. `None` of a plant without polynomials.
+    /// The recorded coefficients: command numerator, command denominator, the same of the
+    /// disturbance path, dead time, numerators of the rate. `None` of a plant without polynomials.
     pub fn expression(&self) -> Option<&Expression> {
         self.recorded().map(|recorded| &recorded.coefficients)
     }
@@ -219,7 +224,8 @@ impl UncertainPlant {
         self.parameters.iter().map(|parameter| parameter.nominal).collect()
     }
 
-    /// The member at these parameter values; `None` where there is none, which a rational plant always has.
+    /// The member at these parameter values; `None` where no plant exists. A rational plant exists
+    /// for all values.
     pub fn member(&self, values: &[f64]) -> Option<PlantMember> {
         match &self.equations {
             Equations::Rational(recorded) => Some(PlantMember::Rational(recorded.at(values))),
@@ -227,13 +233,14 @@ impl UncertainPlant {
         }
     }
 
-    /// The member at these parameter values, over any scalar; `None` of a plant without polynomials.
+    /// The member at these parameter values, over any scalar; `None` of a plant without
+    /// polynomials.
     pub fn coefficients<S: Scalar>(&self, values: &[S]) -> Option<PlantCoefficients<S>> {
         self.recorded().map(|recorded| recorded.at(values))
     }
 
-    /// Intervals that hold the coefficients of every member while the parameters run through theirs; `None` of a plant without
-    /// polynomials.
+    /// Intervals that hold the coefficients of every member while the parameters run through
+    /// theirs; `None` of a plant without polynomials.
     ///
     /// # Example
     /// ```
@@ -254,7 +261,8 @@ impl UncertainPlant {
         self.recorded().map(|recorded| recorded.sorted(recorded.coefficients.enclosures(parameters)))
     }
 
-    /// P(j w) of the member at these parameter values, dead time included; `None` where there is no plant.
+    /// P(j w) of the member at these parameter values, dead time included; `None` where there is no
+    /// plant.
     pub fn response(&self, values: &[f64], frequency_rad_per_s: f64) -> Option<Complex64> {
         Some(match self.member(values)? {
             PlantMember::Responding(plant) => plant.response(frequency_rad_per_s)[0],

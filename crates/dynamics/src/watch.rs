@@ -42,7 +42,8 @@ pub fn tell(watch: Watch<'_>, stage: &'static str, done: usize, all: usize) -> R
     if watch(Progress { stage, share }) { Ok(()) } else { Err(Stopped) }
 }
 
-/// The watch of a part of a procedure, which takes it from one share of the whole to another; the stage is that of the whole.
+/// The watch of a part of a procedure, which takes it from one share of the whole to another; the
+/// stage is that of the whole.
 pub fn part<'a>(
     watch: Watch<'a>,
     stage: &'static str,

@@ -1,5 +1,5 @@
-//! The audit of a given controller: family, loop and specifications from the project, findings from `phea_qft`, and how
-//! they are told.
+//! The audit of a given controller: family, loop and specifications from the project, findings from
+//! `phea_qft`, and how they are told.
 
 mod alone;
 mod plant;
@@ -40,7 +40,7 @@ pub enum AuditError {
         "[controller] says only when it acts, and leaves its law to be designed: `phea design` does that"
     )]
     NoLaw,
-    /// There is nothing that it must keep to.
+    /// There is no specification to audit.
     #[error("the project states no [[specification]] to verify the controller by")]
     NoSpecification,
 }
@@ -48,8 +48,8 @@ pub enum AuditError {
 /// Audits the given controller and prefilter over the whole family and band.
 ///
 /// # Errors
-/// [`ProcedureError`] for a project without a controller, a part of it that is no transfer function, a family that cannot be
-/// built, or a watcher that stops.
+/// [`ProcedureError`] for a project without a controller, a part of it that is no transfer
+/// function, a family that cannot be built, or a watcher that stops.
 pub fn audit_project(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -123,7 +123,8 @@ pub struct ProjectAudit {
     pub delay_s: f64,
     /// What is declared that the audit does not count.
     pub caveats: Vec<Caveat>,
-    /// What the worst plant of each specification reaches, where that is a magnitude against a limit.
+    /// What the worst plant of each specification reaches, where that is a magnitude against a
+    /// limit.
     pub reached: Vec<Option<Reached>>,
 }
 
@@ -152,14 +153,16 @@ pub enum LimitSide {
 /// 20 log10(e)
 const DECIBELS_PER_NEPER: f64 = 20.0 * std::f64::consts::LOG10_E;
 
-/// What the worst plant reaches; `None` for a spread, and at the ends of the frequency axis where there are two limits.
+/// What the worst plant reaches; `None` for a spread, and at the ends of the frequency axis where
+/// there are two limits.
 fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Reached> {
     let worst = finding.worst.as_ref().filter(|worst| worst.other.is_none())?;
     let frequency = worst.frequency_rad_per_s;
     let (lower, upper) = finding.requirement.limits();
     let upper = upper.magnitude(frequency)?;
     if !(frequency > 0.0 && frequency.is_finite()) {
-        // A loop has no response there, but its margin has a limit, and so the magnitude where the limit is one.
+        // A loop has no response there, but its margin has a limit, and so the magnitude where the
+        // limit is one.
         let single = lower.is_none() && upper > 0.0 && upper.is_finite();
         let magnitude = upper * portable::exp(-worst.margin_db / DECIBELS_PER_NEPER);
         return single.then_some(Reached { magnitude, limit: upper, side: LimitSide::Only });

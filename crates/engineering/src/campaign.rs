@@ -1,11 +1,13 @@
-//! Monte Carlo campaigns: the nonlinear machine with drawn numbers, many times, through one scenario.
+//! Monte Carlo campaigns: the nonlinear machine with drawn numbers, many times, through one
+//! scenario.
 //!
 //! ```text
 //! seed, index -> numbers -> machine, start -> driven in lanes -> row -> table, quantiles, bands, worst runs
 //! ```
 //!
-//! A run follows from seed and index alone. Rows are in the order of the runs and the same bytes for any number of threads, in
-//! lanes or one by one; a draw that is no machine is a row that says so, never drawn again.
+//! A run follows from seed and index alone. Rows are in the order of the runs and the same bytes
+//! for any number of threads, in lanes or one by one; a draw that is no machine is a row that says
+//! so, never drawn again.
 
 mod ledger;
 mod parquet;
@@ -87,7 +89,7 @@ pub enum CampaignError {
         /// In SI.
         minimum: f64,
     },
-    /// A part of a campaign that is none.
+    /// The part of a campaign is invalid.
     #[error("--shard {text}: a part has the form 2/4, the second of four")]
     NoShard {
         /// As written.

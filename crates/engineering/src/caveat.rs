@@ -1,7 +1,7 @@
 //! What a verdict on the linear loop does not speak of, although the project declares it.
 //!
-//! A simulation is of the whole machine. What the linear plant cannot count is told before the verdict; where a specification depends
-//! on it, the verdict is not proven.
+//! A simulation is of the whole machine. What the linear plant cannot represent is stated before
+//! the verdict; where a specification depends on it, the verdict is not proven.
 
 use crate::project::{LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::DisplayUnit;
@@ -69,8 +69,8 @@ fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
     Some((place, motion.model()))
 }
 
-/// A supply that yields is counted as small motions see it, which a large step is not; where more is taken than the pump gives there is no
-/// rest to be linearised at.
+/// A supply that yields is counted as small motions see it, which a large step is not; where more
+/// is taken than the pump gives there is no rest to be linearised at.
 fn supply(setup: &Setup<'_>) -> Option<Caveat> {
     let project = setup.project;
     let supply = &project.actuator.as_ref()?.supply;
@@ -111,7 +111,8 @@ fn is_measured(project: &Project) -> bool {
     project.family.as_ref().is_some_and(|family| !family.measured.is_empty())
 }
 
-/// The load's velocity on the command: with a load that yields a feedback, else a path of the load's motion. Of a rig the loop counts both.
+/// The load's velocity on the command: with a load that yields a feedback, else a path of the
+/// load's motion. Of a rig the loop counts both.
 fn feed_forward(project: &Project) -> Option<Caveat> {
     let controller = project.controller.as_ref()?;
     let declared = controller.load_velocity_feed_forward?;
@@ -134,7 +135,8 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
     })
 }
 
-/// What the models of a linearisation, which are of the rig without its controller, do not count of the load's velocity.
+/// What the models of a linearisation, which are of the rig without its controller, do not count of
+/// the load's velocity.
 fn fed_in_loop(project: &Project) -> Option<String> {
     let controller = project.controller.as_ref()?;
     let declared = controller.load_velocity_feed_forward?;

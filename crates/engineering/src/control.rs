@@ -1,4 +1,5 @@
-//! The controller and prefilter of a project as values of `phea_dynamics`; [`Setup`](crate::setup::Setup) holds them.
+//! The controller and prefilter of a project as values of `phea_dynamics`;
+//! [`Setup`](crate::setup::Setup) holds them.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Stage, Timing};
@@ -76,7 +77,8 @@ pub fn prefilter(project: &Project) -> Result<Option<Compensator>, ControlError>
     compensator("[prefilter]", &declared.transfer, sample_time).map(Some)
 }
 
-/// When the controller acts, be its law given or to be designed; continuous and without delay where the project says nothing.
+/// When the controller acts, be its law given or to be designed; continuous and without delay where
+/// the project says nothing.
 pub fn timing(project: &Project) -> Timing {
     let Some(declared) = &project.controller else { return Timing::default() };
     Timing {

@@ -1,4 +1,5 @@
-//! Every quantity that follows from what a project declares, with its equation, and where it contradicts a declared one.
+//! Every quantity that follows from what a project declares, with its equation, and where it
+//! contradicts a declared one.
 
 mod list;
 mod rig;
@@ -36,14 +37,16 @@ pub struct Stated {
     pub bounds: Option<[f64; 2]>,
 }
 
-/// Relative difference above which a stated value is called a contradiction: more than rounding to two digits explains.
+/// Relative difference above which a stated value is called a contradiction: more than rounding to
+/// two digits explains.
 const CONTRADICTION: f64 = 0.05;
 
 /// The same for stated bounds, which are printed to three digits.
 const BEYOND_BOUNDS: f64 = 0.01;
 
 impl Derived {
-    /// How far the stated value is from the derived one, in percent of the latter; zero where both are zero.
+    /// How far the stated value is from the derived one, in percent of the latter; zero where both
+    /// are zero.
     pub fn difference_percent(&self) -> Option<f64> {
         let (stated, value) = (self.stated.as_ref()?.value, self.value.ok()?);
         Some(if stated == value { 0.0 } else { 100.0 * (stated - value) / value })
@@ -62,8 +65,8 @@ impl Derived {
         self.outside_own_bounds() || self.contradicts_derived()
     }
 
-    /// Whether the derived value contradicts what is stated: it lies more than 1 % outside the stated
-    /// bounds, or without bounds more than 5 % away.
+    /// Whether the derived value contradicts what is stated: it lies more than 1 % outside the
+    /// stated bounds, or without bounds more than 5 % away.
     pub fn contradicts_derived(&self) -> bool {
         let (Some(stated), Ok(value)) = (&self.stated, self.value) else { return false };
         match stated.bounds {

@@ -1,5 +1,5 @@
-//! The design of a controller and its prefilter: from the project to a law that satisfies every specification, beside the one that was
-//! published, and how both are told.
+//! The design of a controller and its prefilter: from the project to a law that satisfies every
+//! specification, beside the one that was published, and how both are told.
 
 mod comparison;
 mod explanation;
@@ -40,13 +40,14 @@ use phea_dynamics::watch::{Watch, part};
 /// Name of the file with the project that a design makes.
 pub const DESIGNED_PROJECT: &str = "designed.toml";
 
-/// Name of the file with the project under the controller that comes nearest to what the machine asks for and cannot be had.
+/// Name of the file with the project under the controller that comes nearest to what the machine
+/// asks for and cannot be had.
 pub const NEAREST_PROJECT: &str = "nearest.toml";
 
 /// Why nothing is designed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DesignError {
-    /// There is nothing that a controller must keep to.
+    /// There is no specification for a controller.
     #[error("the project states no [[specification]] to design a controller for")]
     NoSpecification,
     /// The search found no controller at all; with what could be said of the problem before it.
@@ -57,7 +58,7 @@ pub enum DesignError {
     Search(#[from] phea_qft::design::DesignError),
 }
 
-/// A design, beside the controller that was published.
+/// A design, and the published controller for comparison.
 #[derive(Clone, Debug)]
 pub struct ProjectDesign {
     /// What was found.
@@ -74,15 +75,18 @@ pub struct ProjectDesign {
     pub designed: AuditedController,
     /// The controller that the project gives, with its audit; absent where it gives none.
     pub published: Option<AuditedController>,
-    /// In a sampled loop: the design that was made for the continuous one, sampled and audited as the loop is.
+    /// In a sampled loop: the design that was made for the continuous one, sampled and audited as
+    /// the loop is.
     pub continuous: Option<AuditedController>,
     /// What no controller can do, and what will be hard, whatever the search found.
     pub explanations: Vec<Explanation>,
     /// What the computer's converters do to the designed loop; absent where nothing is rounded.
     pub rounding: Option<Rounding>,
-    /// What the nonlinear machine does under the designed controller; absent without a machine, and where the design was stopped.
+    /// What the nonlinear machine does under the designed controller; absent without a machine, and
+    /// where the design was stopped.
     pub trial: Option<Trial>,
-    /// What was done about a machine that contradicts it; absent where none does, or nothing was asked for.
+    /// What was done about a machine that contradicts it; absent where none does, or nothing was
+    /// asked for.
     pub repair: Option<Repair>,
     /// The designed controller as a project declares it.
     pub declared_controller: project::Controller,
@@ -91,8 +95,9 @@ pub struct ProjectDesign {
 }
 
 impl ProjectDesign {
-    /// A design with what is to be told of it alone: without a published controller beside it, and without explanations. The family
-    /// in the loop of the project is `given`, and what was `asked` for is the problem that was designed for.
+    /// A design with what is to be told of it alone: without a published controller beside it, and
+    /// without explanations. The family in the loop of the project is `given`, and what was `asked`
+    /// for is the problem that was designed for.
     ///
     /// # Errors
     /// [`ProcedureError`] for a law or a sensor that is no transfer function.
@@ -155,7 +160,7 @@ impl ProjectDesign {
         }
     }
 
-    /// How the machine does beside the linear loop, as far as it was tried.
+    /// How the machine agrees with the linear loop, as far as it was simulated.
     pub fn agreement(&self) -> Agreement {
         self.trial.as_ref().map_or(Agreement::Agrees, Trial::agreement)
     }
@@ -166,7 +171,8 @@ impl ProjectDesign {
     }
 }
 
-/// Designs a controller for the project, and goes on where the machine contradicts it: the plant that does is taken in.
+/// Designs a controller for the project, and goes on where the machine contradicts it: the plant
+/// that does is taken in.
 ///
 /// # Errors
 /// Those of [`design_project`].
@@ -183,8 +189,8 @@ pub fn design_and_repair(
 /// Designs a controller for the project, after the audit of the one that it gives.
 ///
 /// # Errors
-/// [`ProcedureError`] for a project without a specification, a part of it that is no transfer function, a family that cannot be
-/// built, or a watcher that stops it before anything was found.
+/// [`ProcedureError`] for a project without a specification, a part of it that is no transfer
+/// function, a family that cannot be built, or a watcher that stops it before anything was found.
 pub fn design_project(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -253,8 +259,9 @@ fn tried_design(
     tried(source, &Setup::new(&deployed)?, &told.designed.problem, &told.designed.view, watch)
 }
 
-/// What a design that knows nothing of samples and delay becomes by them: made for the continuous loop, audited in the sampled one. `None`
-/// where the loop does not sample, or no such design is found.
+/// What a design that knows nothing of samples and delay becomes by them: made for the continuous
+/// loop, audited in the sampled one. `None` where the loop does not sample, or no such design is
+/// found.
 fn continuous_as_sampled(
     setup: &Setup<'_>,
     sampled: &DesignProblem,

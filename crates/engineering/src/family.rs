@@ -60,7 +60,8 @@ pub enum FamilyError {
     /// Measured responses that are no family.
     #[error("[family] `measured`: {0}")]
     Measured(#[from] MeasurementError),
-    /// A member without polynomials and with a coefficient that gives energy: how many of its own poles grow is not known.
+    /// A member without polynomials and with a coefficient that gives energy: how many of its own
+    /// poles grow is not known.
     #[error(
         "with lines in motion, or a load velocity fed forward late, every coefficient of friction, leakage, valve and load must be zero or \
          more, or the plant's own stability is not known: {member}"
@@ -88,7 +89,7 @@ pub enum FamilyError {
     OperatingPoint {
         /// The parameters that move it, with their values.
         member: String,
-        /// Why there is none.
+        /// Why it does not exist.
         reason: String,
     },
     /// A region that the pump does not reach.
@@ -99,19 +100,22 @@ pub enum FamilyError {
     Path {
         /// The path.
         path: String,
-        /// Why there is none, and what to use instead.
+        /// Why it does not exist, and what to use instead.
         reason: String,
     },
 }
 
-/// The family of a project: the linear model of its actuator, or the transfer function it states, over the box of
-/// `[uncertainty]`; or the plants that were measured. Where lines move its plants have no polynomials.
+/// The family of a project: the linear model of its actuator, or the transfer function it states,
+/// over the box of `[uncertainty]`; or the plants that were measured. Where lines move its plants
+/// have no polynomials.
 ///
-/// `[family]` says which plants of the box are looked at: its `grid`, its `vertices`, points at `random`, explicit `cases`, or several
-/// of them together; the grid where it says nothing. Where the `cases` stand alone nothing between them belongs to the family.
+/// `[family]` says which plants of the box are looked at: its `grid`, its `vertices`, points at
+/// `random`, explicit `cases`, or several of them together; the grid where it says nothing. Where
+/// the `cases` stand alone nothing between them belongs to the family.
 ///
 /// # Errors
-/// [`FamilyError`] if there is no rig, an uncertain name is no parameter of the plant, or a member lies outside of the box.
+/// [`FamilyError`] if there is no rig, an uncertain name is no parameter of the plant, or a member
+/// lies outside of the box.
 ///
 /// # Example
 /// ```

@@ -69,7 +69,8 @@ pub enum LoopError {
 /// Number of samples of a step response.
 const SAMPLES: usize = 2000;
 
-/// The loop of a plant as [`linear_loop`] closes it, with the rate that its controller feeds forward in samples.
+/// The loop of a plant as [`linear_loop`] closes it, with the rate that its controller feeds
+/// forward in samples.
 ///
 /// # Errors
 /// Those of [`linear_loop`].
@@ -93,8 +94,9 @@ pub fn linear_loop_of(
 
 /// Closes the loop of plant P with a controller that sees the output through the sensor H.
 ///
-/// A continuous controller in a continuous loop; a sampled one with the plant held by a zero-order hold, the delay of the
-/// loop in it. A prefilter that acts before the samples is met by a step as the samples of its step response.
+/// A continuous controller in a continuous loop; a sampled one with the plant held by a zero-order
+/// hold, the delay of the loop in it. A prefilter that acts before the samples is met by a step as
+/// the samples of its step response.
 ///
 /// # Errors
 /// A system that cannot be built or discretised.
@@ -183,7 +185,8 @@ fn step_view(
     prefilter: &TransferFunction,
     band_percent: f64,
 ) -> Result<StepView, LoopError> {
-    // U/R = F G/(1 + G P H), closed from the factors of G and P H; the poles of P are its zeros and cancel exactly in Y = P U.
+    // U/R = F G/(1 + G P H), closed from the factors of G and P H; the poles of P are its zeros and
+    // cancel exactly in Y = P U.
     let command = prefilter.series(&feedback.feedback(with_sensor)?)?;
     let through = command.series(plant)?.without_common_factors(0.0);
     let duration = duration(&through);
@@ -206,7 +209,8 @@ fn step_view(
     })
 }
 
-/// Eight time constants of the slowest pole that matters for what is seen, within a tenth of a second and a minute.
+/// Eight time constants of the slowest pole that matters for what is seen, within a tenth of a
+/// second and a minute.
 fn duration(through: &TransferFunction) -> f64 {
     let rate = |pole: &num_complex::Complex64| match through.domain() {
         TimeDomain::Continuous => -pole.re,

@@ -1,5 +1,5 @@
-//! The linear models of a rig side by side: two-pressure, fifth order (6.7), decomposed (6.12), first order (6.13);
-//! what they leave out, what the load feels, and whether that is passive.
+//! The linear models of a rig side by side: two-pressure, fifth order (6.7), decomposed (6.12),
+//! first order (6.13); what they leave out, what the load feels, and whether that is passive.
 
 mod agreement;
 mod sweep;
@@ -42,13 +42,16 @@ pub struct Linearization {
     pub stiffness: [StrokeStiffness; 3],
     /// Both stiffness models side by side, nominal.
     pub stiffness_models: ModelDifference,
-    /// The plant that every verdict is of: with its load, its leakage, and the parameters that hold.
+    /// The plant that every verdict is of: with its load, its leakage, and the parameters that
+    /// hold.
     pub plant: LinearModel,
-    /// Whether 6.7 is the plant: one load pressure, no leakage across the piston, a load whose motion is prescribed.
+    /// Whether 6.7 is the plant: one load pressure, no leakage across the piston, a load whose
+    /// motion is prescribed.
     pub plant_is_fifth_order: bool,
     /// The linearised two-pressure model of the rig as declared, at its operating point.
     pub two_pressure: LinearModel,
-    /// The fifth-order model of the parameters that hold, equation 6.7, K_c with the leakage across the piston beside it.
+    /// The fifth-order model of the parameters that hold, equation 6.7, K_c with the leakage across
+    /// the piston beside it.
     pub full: LinearModel,
     /// The same of the derived parameters: what the two-pressure model is compared with.
     pub derived_full: LinearModel,
@@ -96,11 +99,13 @@ pub struct PortView {
     pub asymptotes: Vec<Asymptote>,
     /// Whether it is passive, and where not.
     pub passivity: PassivityReport,
-    /// Force that a load step of 1 mm leaves in the end, N (Proposition 6.2: none); absent if unstable.
+    /// Force that a load step of 1 mm leaves in the end, N (Proposition 6.2: none); absent if
+    /// unstable.
     pub final_force_n: Option<f64>,
 }
 
-/// Linearises a rig; `controller` is the given one, if there is one, which sees the force through the sensor H.
+/// Linearises a rig; `controller` is the given one, if there is one, which sees the force through
+/// the sensor H.
 ///
 /// # Errors
 /// A model without finite roots: parameters so extreme that the arithmetic ends.
@@ -192,7 +197,8 @@ fn open_loop_view(rig: &Rig, port: &LinearModel) -> Result<PortView, LinearError
     })
 }
 
-/// Whether the plant is thesis (6.7): one load pressure, a prescribed load, and neither leakage nor a supply that is seen.
+/// Whether the plant is thesis (6.7): one load pressure, a prescribed load, and neither leakage nor
+/// a supply that is seen.
 fn is_fifth_order(rig: &Rig) -> bool {
     matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
         && rig.internal_leakage == 0.0
@@ -242,8 +248,8 @@ fn fluid_moduli(rig: &Rig) -> [f64; 2] {
     [rig.point.pressure_a, rig.point.pressure_b].map(|pressure| fluid.modulus_at(pressure))
 }
 
-/// Frequencies for comparing and drawing: from a decade below the slowest pole to a decade above the fastest, at least
-/// 0.01 to 10 000 rad/s, with each resonance resolved.
+/// Frequencies for comparing and drawing: from a decade below the slowest pole to a decade above
+/// the fastest, at least 0.01 to 10 000 rad/s, with each resonance resolved.
 pub fn frequency_grid(function: &TransferFunction) -> Result<Vec<f64>, LinearError> {
     let moduli: Vec<f64> = function.poles().iter().map(|pole| portable::magnitude(*pole)).collect();
     let slowest = moduli.iter().copied().filter(|modulus| *modulus > 0.0).fold(0.1, f64::min);
@@ -257,7 +263,8 @@ pub fn frequency_grid(function: &TransferFunction) -> Result<Vec<f64>, LinearErr
     Ok(grid)
 }
 
-/// The lightly damped pole of a system, upper half plane: the complex one with the smallest damping ratio.
+/// The lightly damped pole of a system, upper half plane: the complex one with the smallest damping
+/// ratio.
 pub fn resonance(function: &TransferFunction) -> Option<Complex64> {
     let damping_ratio = |pole: &Complex64| -pole.re / portable::magnitude(*pole);
     let complex = function.poles().iter().copied().filter(|pole| pole.im > 0.0);
@@ -269,8 +276,8 @@ pub fn resonance(function: &TransferFunction) -> Option<Complex64> {
 /// Damping ratio from which a pole has no resonance peak, 1/sqrt(2).
 const LIGHT_DAMPING: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// Frequencies around a pole over which its phase turns in equal steps: the peak of a lightly damped pole is much
-/// narrower than the steps of a grid over decades.
+/// Frequencies around a pole over which its phase turns in equal steps: the peak of a lightly
+/// damped pole is much narrower than the steps of a grid over decades.
 fn resonance_grid(pole: &Complex64) -> impl Iterator<Item = f64> + use<> {
     const STEPS: i32 = 64;
     let (centre, half_width) = (pole.im, pole.re.abs());

@@ -90,7 +90,8 @@ impl<W: Write + Send> NumberTable<W> {
         Ok(NumberTable(writing))
     }
 
-    /// Adds a row, a value for each column; what is missing does not exist, what is too much is refused.
+    /// Adds a row, a value for each column; what is missing does not exist, what is too much is
+    /// refused.
     ///
     /// # Errors
     /// Those of the sink; [`io::ErrorKind::InvalidInput`] for more values than columns.
@@ -166,7 +167,8 @@ fn write_group<W: Write + Send>(
     group.close().map_err(refused).map(|_| ())
 }
 
-/// Appends the shortest text that reads back as the same number; nothing for a number that does not exist.
+/// Appends the shortest text that reads back as the same number; nothing for a number that does not
+/// exist.
 pub fn push_number(text: &mut Vec<u8>, value: f64) {
     if value.is_finite() {
         let mut buffer = zmij::Buffer::new();

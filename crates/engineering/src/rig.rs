@@ -1,5 +1,5 @@
-//! From what is declared to what is computed with: the actuator as physics, its operating point, and every parameter
-//! of the linear model with where it comes from.
+//! From what is declared to what is computed with: the actuator as physics, its operating point,
+//! and every parameter of the linear model with where it comes from.
 
 mod assembly;
 mod in_loop;
@@ -56,7 +56,8 @@ pub struct Rig {
     pub two_pressure: TwoPressureLinearParameters,
     /// Parameters of the fifth-order model as they follow from the rig.
     pub derived: LinearParameters,
-    /// The same with what the project sets: `[linear]` before the nominal of `[uncertainty]` before the derived value.
+    /// The same with what the project sets: `[linear]` before the nominal of `[uncertainty]` before
+    /// the derived value.
     pub parameters: Vec<ResolvedParameter>,
     /// The values that hold.
     pub linear: LinearParameters,
@@ -64,11 +65,14 @@ pub struct Rig {
     pub internal_leakage: f64,
     /// What the force sensor pushes on, where it yields.
     pub load: Option<YieldingLoad>,
-    /// The linear plant that every verdict is of: nominal, at the operating point, with lumped lines.
+    /// The linear plant that every verdict is of: nominal, at the operating point, with lumped
+    /// lines.
     pub plant: LinearPlant,
-    /// The same with its lines in motion, which is then what every verdict is of; `None` where both are lumped.
+    /// The same with its lines in motion, which is then what every verdict is of; `None` where both
+    /// are lumped.
     pub in_motion: Option<PlantInMotion>,
-    /// What the linear loop counts of the load's velocity that is fed forward; [`Rig::in_loop`] has it.
+    /// What the linear loop counts of the load's velocity that is fed forward; [`Rig::in_loop`] has
+    /// it.
     pub fed: Option<FedForward>,
 }
 
@@ -98,7 +102,8 @@ impl Rig {
         }
     }
 
-    /// The linear parameters that hold, the leakage across the piston beside K_c: with one load pressure it is the same.
+    /// The linear parameters in use, with the leakage across the piston in parallel to K_c: with
+    /// one load pressure both act alike.
     pub fn leaking(&self) -> LinearParameters {
         let flow_pressure_coefficient = self.linear.flow_pressure_coefficient + self.internal_leakage;
         LinearParameters { flow_pressure_coefficient, ..self.linear }
@@ -117,7 +122,8 @@ impl Rig {
         let balance = Balance::of(components);
         let supply = settled_supply(declared, &numbers, &balance, steady);
         let supply = supply.filter(|found| found.supply.pressure.is_finite());
-        // the valve at the pressure that the pump holds there, lines and stall forces at the stated one
+        // the valve at the pressure that the pump holds there, lines and stall forces at the stated
+        // one
         let settled = supply.map_or(components.supply, |found| found.supply);
         let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
         let point = operating_point(&at_valve, position, condition)?;

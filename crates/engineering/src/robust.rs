@@ -1,5 +1,5 @@
-//! What the robust method sees of a project: its family within its loop, templates and bounds at the design frequencies, and
-//! where the given loop lies among them.
+//! What the robust method sees of a project: its family within its loop, templates and bounds at
+//! the design frequencies, and where the given loop lies among them.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
@@ -35,11 +35,13 @@ pub struct RobustProblem {
     pub has_controller: bool,
     /// Whether it gives a prefilter; tracking is judged by its spread where not.
     pub has_prefilter: bool,
-    /// What must be kept to: the specifications in file order, then what the rounding of converters may do.
+    /// What must be kept to: the specifications in file order, then what the rounding of converters
+    /// may do.
     pub specifications: Vec<Specification>,
     /// What each of them is called: by its kind, or by what is rounded.
     pub specification_names: Vec<String>,
-    /// The rig itself as a family of one, where the family does not contain it, and what of it is outside.
+    /// The rig itself as a family of one, where the family does not contain it, and what of it is
+    /// outside.
     pub rig_outside: Option<(Family, String)>,
     /// Why the plants of the family have no polynomials; `None` where they have.
     pub without_polynomials: Option<&'static str>,
@@ -125,8 +127,8 @@ fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static st
     (!family.plant().is_rational()).then_some(why)
 }
 
-/// What must be kept to, and what it is called. Bounds on the rounding of converters are drawn at every design frequency that the loop
-/// reaches.
+/// What must be kept to, and what it is called. Bounds on the rounding of converters are drawn at
+/// every design frequency that the loop reaches.
 fn named_specifications(
     setup: &Setup<'_>,
     highest_frequency_rad_per_s: f64,
@@ -260,8 +262,8 @@ impl RobustProblem {
         })
     }
 
-    /// Frequencies for drawing from `from` to `to`: even in their logarithm, and denser around the lightly damped roots of the
-    /// nominal plant and of the controller, rad/s.
+    /// Frequencies for drawing from `from` to `to`: even in their logarithm, and denser around the
+    /// lightly damped roots of the nominal plant and of the controller, rad/s.
     pub fn drawn_frequencies(&self, from: f64, to: f64) -> Vec<f64> {
         let to = to.min(self.compensation.highest_frequency_rad_per_s());
         let mut frequencies = logarithmic_grid(from, to, GRID_POINTS).unwrap_or_default();

@@ -1,4 +1,5 @@
-//! A project, lowered: what every procedure computes with, made of what is declared in this one place.
+//! A project, lowered: what every procedure computes with, made of what is declared in this one
+//! place.
 //!
 //! ```text
 //! Project -> Setup { rig, controller, prefilter, sensor, timing, quantization } -> machine, plant, family, sizing, reductions
@@ -13,7 +14,8 @@ use crate::control::{self, ControlError};
 use crate::project::Project;
 use crate::rig::{Rig, RigError};
 
-/// The rig of a project with its controller, as values to compute with. Another rig, with a number changed, is another setup.
+/// The rig of a project with its controller, as values to compute with. Another rig, with a number
+/// changed, is another setup.
 #[derive(Clone, Debug)]
 pub struct Setup<'a> {
     /// What was declared, and what is asked of it: specifications, scenarios, wishes.
@@ -24,7 +26,8 @@ pub struct Setup<'a> {
     pub prefilter: Option<Compensator>,
     /// H; 1 where the project says nothing of a sensor.
     pub sensor: TransferFunction,
-    /// When the controller acts, be its law given or to be designed; continuous and without delay where the project says nothing.
+    /// When the controller acts, be its law given or to be designed; continuous and without delay
+    /// where the project says nothing.
     pub timing: Timing,
     /// What the computer of the controller rounds: nothing where the project does not say.
     pub quantization: Quantisation,
@@ -35,8 +38,8 @@ impl<'a> Setup<'a> {
     /// Lowers a project.
     ///
     /// # Errors
-    /// [`ControlError`] for a controller, prefilter or sensor that is not a transfer function. What is wrong with the rig is told where it is
-    /// asked for.
+    /// [`ControlError`] for a controller, prefilter or sensor that is not a transfer function. An
+    /// error of the rig is reported where it is asked for.
     ///
     /// # Example
     /// ```
@@ -76,19 +79,21 @@ impl<'a> Setup<'a> {
     /// The rig.
     ///
     /// # Errors
-    /// [`RigError`] for a project without an actuator, a rig that is impossible, and one that does not rest at its operating point.
+    /// [`RigError`] for a project without an actuator, a rig that is impossible, and one that does
+    /// not rest at its operating point.
     pub fn rig(&self) -> Result<&Rig, RigError> {
         self.rig.as_ref().map_err(Clone::clone)
     }
 
-    /// The same rig and controller, of which something else is asked: in its scenarios, specifications and settings alone may the project
-    /// differ.
+    /// The same rig and controller, of which something else is asked: in its scenarios,
+    /// specifications and settings alone may the project differ.
     pub fn asked<'b>(&self, project: &'b Project) -> Setup<'b> {
         let Setup { controller, prefilter, sensor, timing, quantization, rig, .. } = self.clone();
         Setup { project, controller, prefilter, sensor, timing, quantization, rig }
     }
 
-    /// A controller as the project's computer runs it: in z with rounded coefficients, or as it is where nothing is rounded.
+    /// A controller as the project's computer runs it: in z with rounded coefficients, or as it is
+    /// where nothing is rounded.
     ///
     /// # Errors
     /// [`ControlError::Quantisation`] for coefficients that cannot be stored.

@@ -1,5 +1,5 @@
-//! Shaping by hand on a project: the elements of its controller or prefilter are changed one by one, judged at the design frequencies,
-//! and written back into its file.
+//! Shaping by hand on a project: the elements of its controller or prefilter are changed one by
+//! one, judged at the design frequencies, and written back into its file.
 
 mod change;
 mod piece;
@@ -51,7 +51,7 @@ pub enum ShapingError {
     /// Changes that cannot be made, each with its place.
     #[error("{0}")]
     Refused(Report),
-    /// A prefilter without a loop behind it.
+    /// A prefilter without a loop.
     #[error("the project gives no [controller]: shape it first, the prefilter stands in front of its loop")]
     NoController,
     /// Elements in tables with others between them.
@@ -96,7 +96,8 @@ pub struct Shaping {
 /// Makes the changes in order, and judges the result.
 ///
 /// # Errors
-/// [`ProcedureError::Shaping`] for a change that cannot be made; those of [`robust_problem`]; [`ProcedureError::Stopped`].
+/// [`ProcedureError::Shaping`] for a change that cannot be made; those of [`robust_problem`];
+/// [`ProcedureError::Stopped`].
 pub fn shape(
     source: &dyn Source,
     loaded: &Loaded,
@@ -161,7 +162,8 @@ fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<
     Ok((chart, unreached))
 }
 
-/// Where what is shaped lies at a frequency: the nominal loop L0, or the prefilter F. `None` where it is not known.
+/// Where what is shaped lies at a frequency: the nominal loop L0, or the prefilter F. `None` where
+/// it is not known.
 fn present(
     workpiece: &Workpiece<'_>,
     bare: &RobustProblem,

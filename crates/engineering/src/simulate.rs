@@ -190,12 +190,12 @@ impl SimulateError {
     }
 }
 
-/// Drives the machine of a project through each of its scenarios, in file order. Where the watch answers `false` the scenario
-/// under way ends there, with what it has, and no later one begins.
+/// Drives the machine of a project through each of its scenarios, in file order. Where the watch
+/// answers `false` the scenario under way ends there, with what it has, and no later one begins.
 ///
 /// # Errors
-/// [`SimulateError`] if the project does not describe a machine with a controller and a scenario. What goes wrong on the way is
-/// in the status of its scenario.
+/// [`SimulateError`] if the project does not describe a machine with a controller and a scenario.
+/// What goes wrong on the way is in the status of its scenario.
 pub fn simulate_project(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -204,7 +204,8 @@ pub fn simulate_project(
     simulate_into(source, setup, None, watch)
 }
 
-/// The same, with a table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, its rows written as they come: no row is held, however many there are.
+/// The same, with a table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, its rows written
+/// as they come: no row is held, however many there are.
 ///
 /// # Errors
 /// As [`simulate_project`], and [`SimulateError::Write`].

@@ -1,8 +1,10 @@
-//! Sizing of high-volumetric-expansion hoses: the procedure of Ledezma (2019), section 6.3, over a whole catalogue.
+//! Sizing of high-volumetric-expansion hoses: the procedure of Ledezma (2019), section 6.3, over a
+//! whole catalogue.
 //!
-//! A first-order force response with time constant tau_d under a proportional gain K_p asks for one hydraulic
-//! stiffness; a hose of bore D and length L_ho gives one. [`size`] walks both branches of the flowchart (by gain, by
-//! length) for every hose and for both stiffness models, and records each decision with its numbers.
+//! A first-order force response with time constant tau_d under a proportional gain K_p asks for one
+//! hydraulic stiffness; a hose of bore D and length L_ho gives one. [`size`] walks both branches of
+//! the flowchart (by gain, by length) for every hose and for both stiffness models, and records
+//! each decision with its numbers.
 
 mod bore;
 mod branch;

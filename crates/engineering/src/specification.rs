@@ -36,7 +36,7 @@ pub enum SpecificationProblem {
     /// The polynomials make no transfer function.
     #[error(transparent)]
     Linear(#[from] LinearError),
-    /// The table is none.
+    /// The table is invalid.
     #[error(transparent)]
     Table(#[from] LimitError),
     /// No limit guarantees the margins.

@@ -1,4 +1,5 @@
-//! The verdict tried on the machine: the nonlinear rig under the controller as it is deployed, beside what the linear loop predicts.
+//! The verdict tried on the machine: the nonlinear rig under the controller as it is deployed,
+//! compared with what the linear loop predicts.
 //!
 //! ```text
 //! project, audit -> rigs::rigs -> Rigs { project, plant } -> run::run -> Run { linear, machine, agreement, reason } -> answer
@@ -35,10 +36,12 @@ impl Trial {
     }
 }
 
-/// Drives the machine of a project, whose controller is the one that was audited; `None` for a project without an actuator.
+/// Drives the machine of a project, whose controller is the one that was audited; `None` for a
+/// project without an actuator.
 ///
 /// # Errors
-/// [`ProcedureError`] for a controller or a sensor that is no transfer function, and where the watcher stops it.
+/// [`ProcedureError`] for a controller or a sensor that is no transfer function, and where the
+/// watcher stops it.
 pub fn tried(
     source: &dyn Source,
     setup: &Setup<'_>,

@@ -11,7 +11,8 @@ pub enum Scale {
     Linear,
     /// By the logarithm; only positive values have a place.
     Logarithmic,
-    /// sign(v) log10(1 + |v|/limit): logarithmic far from zero on both sides, linear well inside `limit`.
+    /// sign(v) log10(1 + |v|/limit): logarithmic far from zero on both sides, linear well inside
+    /// `limit`.
     SignedLogarithmic {
         /// Positive value where the scale changes its nature.
         limit: f64,
@@ -77,7 +78,8 @@ impl Axis {
         Axis { steps, ..Self::linear(title, minimum, maximum) }
     }
 
-    /// A logarithmic axis that holds the positive finite values and ends on 1, 2 or 5 times a power of ten.
+    /// A logarithmic axis that holds the positive finite values and ends on 1, 2 or 5 times a power
+    /// of ten.
     pub fn fit_logarithmic(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
         let usable = values.into_iter().filter(|v| v.is_finite() && *v > 1e-300 && *v < 1e300);
         let (low, high) = extent(usable);
@@ -93,7 +95,8 @@ impl Axis {
         Self::logarithmic(title, round(low, false), round(high, true))
     }
 
-    /// A signed logarithmic axis that holds the finite values; `limit` is the magnitude below which it is linear.
+    /// A signed logarithmic axis that holds the finite values; `limit` is the magnitude below which
+    /// it is linear.
     pub fn fit_signed_logarithmic(
         title: impl Into<String>,
         values: impl IntoIterator<Item = f64>,
@@ -111,7 +114,8 @@ impl Axis {
         Axis { title: title.into(), scale, minimum, maximum, steps: Steps::Decimal }
     }
 
-    /// Where a value lies: 0 at the lower end, 1 at the upper; not a number where the scale has no place for it.
+    /// Where a value lies: 0 at the lower end, 1 at the upper; not a number where the scale has no
+    /// place for it.
     pub fn fraction(&self, value: f64) -> f64 {
         let (low, high, at) = (self.mapped(self.minimum), self.mapped(self.maximum), self.mapped(value));
         (at - low) / (high - low)

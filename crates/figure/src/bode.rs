@@ -1,4 +1,5 @@
-//! Bode diagram: magnitude in dB and phase in degrees over rad/s, with the difference between models on request.
+//! Bode diagram: magnitude in dB and phase in degrees over rad/s, with the difference between
+//! models on request.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{argument, log10, magnitude};
@@ -31,8 +32,8 @@ pub struct BodeInput {
     pub unit: String,
     /// Models, the reference first.
     pub series: Vec<FrequencySeries>,
-    /// Adds panels with the size of each model's difference from the first, on a logarithmic axis (same frequencies
-    /// only).
+    /// Adds panels with the size of each model's difference from the first, on a logarithmic axis
+    /// (same frequencies only).
     pub with_difference: bool,
     /// Frequencies to mark.
     pub marks: Vec<FrequencyMark>,
@@ -88,7 +89,8 @@ pub(super) struct Curve {
     pub(super) degrees: Vec<f64>,
 }
 
-/// Magnitude and unwrapped phase of each response; a later one starts within half a turn of the first.
+/// Magnitude and unwrapped phase of each response; a later one starts within half a turn of the
+/// first.
 fn curves(series: &[FrequencySeries]) -> Vec<Curve> {
     let mut result: Vec<Curve> = Vec::with_capacity(series.len());
     for (index, one) in series.iter().enumerate() {
@@ -104,7 +106,8 @@ fn curves(series: &[FrequencySeries]) -> Vec<Curve> {
     result
 }
 
-/// Phase in degrees without jumps of a turn, its first value nearest to `start` (or in (-180, 180]).
+/// Phase in degrees without jumps of a turn, its first value nearest to `start` (or in (-180,
+/// 180]).
 pub(crate) fn unwrapped_degrees(response: &[Complex64], start: Option<f64>) -> Vec<f64> {
     let mut previous = start.filter(|v| v.is_finite());
     response
@@ -123,7 +126,8 @@ pub(crate) fn unwrapped_degrees(response: &[Complex64], start: Option<f64>) -> V
         .collect()
 }
 
-/// Panels of |difference| in dB and degrees: models that agree to 1e-4 dB and models that part by 40 dB in one picture.
+/// Panels of |difference| in dB and degrees: models that agree to 1e-4 dB and models that part by
+/// 40 dB in one picture.
 fn difference_panels(curves: &[Curve]) -> Vec<Panel> {
     let differences = differences(curves);
     if differences.is_empty() {

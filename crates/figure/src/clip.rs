@@ -1,8 +1,9 @@
 //! Cutting lines and polygons at a frame.
 //!
-//! A polyline is cut segment by segment (Liang and Barsky 1984): a segment that leaves the frame ends on its border, the
-//! next one that enters starts a new run, and a point that is not a number ends the run. Nothing is ever moved onto
-//! the border, so nothing smears along the frame. A polygon is cut side by side (Sutherland and Hodgman 1974).
+//! A polyline is cut segment by segment (Liang and Barsky 1984): a segment that leaves the frame
+//! ends on its border, the next one that enters starts a new run, and a point that is not a number
+//! ends the run. Nothing is ever moved onto the border, so nothing smears along the frame. A
+//! polygon is cut side by side (Sutherland and Hodgman 1974).
 
 use super::scene::{Point, Rectangle, point};
 
@@ -57,8 +58,8 @@ pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Poin
     Some((start, end))
 }
 
-/// A place along a segment by the parts done and left: both, because one of them alone is lost to rounding when an end
-/// is very far away.
+/// A place along a segment by the parts done and left: both, because one of them alone is lost to
+/// rounding when an end is very far away.
 #[derive(Clone, Copy)]
 struct Along {
     done: f64,

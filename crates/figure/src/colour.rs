@@ -1,15 +1,17 @@
 //! Colours by role, for a light and a dark page.
 //!
-//! A scene names roles; a theme gives each role its colour. On a page the style sheet ([`style_sheet`]) sets one custom
-//! property a role, so that the reader's preference chooses the theme and print is always light; a standalone file
-//! carries the resolved light colours.
+//! A scene names roles; a theme gives each role its colour. On a page the style sheet
+//! ([`style_sheet`]) sets one custom property a role, so that the reader's preference chooses the
+//! theme and print is always light; a standalone file carries the resolved light colours.
 //!
-//! Promises, asserted by tests: text has a contrast of 4.5 or more against the background of its theme, lines and
-//! series 3 or more. Grid lines and surfaces are decoration: visible, and well below the data. The eight series
-//! start from the hues of Okabe and Ito (2008), moved until every pair stays apart for normal, protanope, deuteranope and
-//! tritanope sight (simulated after Machado, Oliveira and Fernandes 2009, distance in Oklab). Dash patterns and markers carry the
-//! same distinction into a grey print. The eight steps of the ramp, for curves that have an order, change their hue and
-//! grow lighter in equal steps, so neighbours stay apart for all of these and in grey.
+//! Promises, asserted by tests: text has a contrast of 4.5 or more against the background of its
+//! theme, lines and series 3 or more. Grid lines and surfaces are decoration: visible, and well
+//! below the data. The eight series start from the hues of Okabe and Ito (2008), moved until every
+//! pair stays apart for normal, protanope, deuteranope and tritanope sight (simulated after
+//! Machado, Oliveira and Fernandes 2009, distance in Oklab). Dash patterns and markers carry the
+//! same distinction into a grey print. The eight steps of the ramp, for curves that have an order,
+//! change their hue and grow lighter in equal steps, so neighbours stay apart for all of these and
+//! in grey.
 
 use super::plot::{Marker, MarkerStyle};
 use super::scene::{Dash, Stroke};
@@ -33,7 +35,8 @@ pub enum Role {
     Muted,
     /// Data series, counted from 0; the colours repeat after eight.
     Series(u8),
-    /// Members of an ordered set such as frequencies, counted from 0, dark to light; the colours repeat after eight.
+    /// Members of an ordered set such as frequencies, counted from 0, dark to light; the colours
+    /// repeat after eight.
     Ramp(u8),
     /// The design value, the operating point: what the reader should find first.
     Accent,
@@ -190,8 +193,8 @@ pub(crate) const fn series_dash(index: usize) -> Dash {
     }
 }
 
-/// Colour of member `index` of an ordered set of `count`: spread over the ramp, repeated where there are more members than
-/// steps.
+/// Colour of member `index` of an ordered set of `count`: spread over the ramp, repeated where
+/// there are more members than steps.
 ///
 /// # Example
 /// ```
@@ -223,8 +226,9 @@ pub const fn series_marker(index: usize) -> MarkerStyle {
     MarkerStyle { marker, role: series_role(index), radius: 4.0 }
 }
 
-/// The style sheet for figures on a page: custom properties `--figure-ROLE` on the root element, one class a role for
-/// strokes (`s-ROLE`) and one for interiors (`f-ROLE`). Dark follows the reader's preference on screens; print is light.
+/// The style sheet for figures on a page: custom properties `--figure-ROLE` on the root element,
+/// one class a role for strokes (`s-ROLE`) and one for interiors (`f-ROLE`). Dark follows the
+/// reader's preference on screens; print is light.
 ///
 /// # Example
 /// ```

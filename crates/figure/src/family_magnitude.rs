@@ -46,7 +46,7 @@ pub struct FamilyEnvelope {
 /// What the figure shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FamilyMagnitudeInput {
-    /// Which loop, where another one is beside it.
+    /// The name of the loop, where two loops are drawn.
     pub name: String,
     /// The closed loop, such as `|L/(1+L)|`.
     pub quantity: String,
@@ -161,7 +161,8 @@ fn magnitude_axis(input: &FamilyMagnitudeInput) -> Axis {
     decibel_axis(&title, wanted.iter().copied().chain(family))
 }
 
-/// The family between its greatest and least magnitude, what lies beyond a limit, and faintly the frequencies where it does.
+/// The family between its greatest and least magnitude, what lies beyond a limit, and faintly the
+/// frequencies where it does.
 fn areas(input: &FamilyMagnitudeInput) -> Vec<Mark> {
     let mut marks = Vec::new();
     let mut between = |greatest: &MagnitudeCurve, least: &Option<MagnitudeCurve>, role: Role| {
@@ -218,7 +219,8 @@ fn lines(input: &FamilyMagnitudeInput) -> Vec<Mark> {
     marks
 }
 
-/// The areas where the first curve lies above the second, straight in dB over log frequency between points.
+/// The areas where the first curve lies above the second, straight in dB over log frequency between
+/// points.
 pub(super) fn excess(above: &[(f64, f64)], below: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
     let mut frequencies: Vec<f64> = above.iter().chain(below).map(|point| point.0).collect();
     frequencies.retain(|frequency| frequency.is_finite() && *frequency > 0.0);
@@ -260,7 +262,7 @@ fn closed(upper: &mut Vec<(f64, f64)>, lower: &mut Vec<(f64, f64)>) -> Option<Ve
     (around.len() > 2).then_some(around)
 }
 
-/// The value at a frequency, `None` outside of the curve or beside a point without one.
+/// The value at a frequency, `None` outside the curve or next to a point without a value.
 fn between(curve: &[(f64, f64)], frequency: f64) -> Option<f64> {
     let next = curve.partition_point(|point| point.0 < frequency);
     let &(high, above) = curve.get(next)?;

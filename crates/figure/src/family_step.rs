@@ -29,11 +29,13 @@ pub struct FamilyStepInput {
 
 /// Up to this end times are shown in milliseconds, s.
 const SHORT_S: f64 = 0.5;
-/// Values that the axis makes room for; a response that leaves them, such as an unstable one, is cut at the frame.
+/// Values that the axis makes room for; a response that leaves them, such as an unstable one, is
+/// cut at the frame.
 const VALUES: std::ops::RangeInclusive<f64> = -0.5..=2.5;
 
-/// Draws the figure. The band reaches from what the lower limit's response will still fall to, to what the upper limit's will
-/// still rise to: where the upper one swings below its final value it does not cut the band.
+/// Draws the figure. The band reaches from what the lower limit's response will still fall to, to
+/// what the upper limit's will still rise to: where the upper one swings below its final value it
+/// does not cut the band.
 pub fn family_step(words: Words, input: &FamilyStepInput) -> Figure {
     let times = shown(input).flat_map(|series| series.times_s.iter().copied());
     let (start, end) = extent(times.filter(|time| time.is_finite()));

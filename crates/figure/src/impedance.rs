@@ -1,4 +1,5 @@
-//! Driving-point impedance Z = -F_e/(s X_L): magnitude with its asymptotes, phase, and the bands where it is not passive.
+//! Driving-point impedance Z = -F_e/(s X_L): magnitude with its asymptotes, phase, and the bands
+//! where it is not passive.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{magnitude, pow};
@@ -116,7 +117,8 @@ fn asymptote_label(line: &Asymptote, x: &Axis) -> Mark {
 }
 
 fn phase_panel(input: &ImpedanceInput) -> Panel {
-    // Re Z >= 0 bounds the phase of a passive impedance, so each curve starts from its principal value.
+    // Re Z >= 0 bounds the phase of a passive impedance, so each curve starts from its principal
+    // value.
     let degrees = |response: &[Complex64]| unwrapped_degrees(response, None);
     let (low, high) = extent(input.series.iter().flat_map(|s| degrees(&s.response)));
     let mut marks = bands(input, "");

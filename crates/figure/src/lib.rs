@@ -4,14 +4,16 @@
 //! numbers -> builder (bode, nomograph, ...) -> Figure { scene } -> to_svg_inline | to_svg_standalone | to_png
 //! ```
 //!
-//! The layer is our own because one small list of primitives with roles for colours serves axes, the circuit diagram,
-//! the nomograph and control charts alike, and lets one SVG follow a light or dark page. The plotting libraries
-//! looked at resolve every colour when they draw: plotters 0.3 passes RGB values to its back ends; the themes of kuva
-//! 0.6 stop at axes and text, its clip paths are numbered by a counter of the process, so the same figure drawn twice
-//! differs, and the circuit diagram and the nomograph would have stayed our own drawing in either.
+//! The layer is our own because one small list of primitives with roles for colours serves axes,
+//! the circuit diagram, the nomograph and control charts alike, and lets one SVG follow a light or
+//! dark page. The plotting libraries looked at resolve every colour when they draw: plotters 0.3
+//! passes RGB values to its back ends; the themes of kuva 0.6 stop at axes and text, its clip paths
+//! are numbered by a counter of the process, so the same figure drawn twice differs, and the
+//! circuit diagram and the nomograph would have stayed our own drawing in either.
 //!
-//! Sizes: the view box is [`WIDTH`] units wide. Shown 680 px wide a unit is 1.21 px and the text of axes (13 units) is
-//! 16 px; printed 85 mm wide a unit is 0.152 mm and that text is 5.6 pt, the size of captions in a journal's column.
+//! Sizes: the view box is [`WIDTH`] units wide. Shown 680 px wide a unit is 1.21 px and the text of
+//! axes (13 units) is 16 px; printed 85 mm wide a unit is 0.152 mm and that text is 5.6 pt, the
+//! size of captions in a journal's column.
 
 pub mod axis;
 pub mod bode;
@@ -109,7 +111,7 @@ pub struct FrequencyMark {
     pub frequency_rad_per_s: f64,
 }
 
-/// The words of a figure.
+/// Name, title and caption of a figure.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Words {
     /// Name of files and of the anchor on a page, unique in a report.
@@ -144,7 +146,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Its marker: form and colour both tell.
+    /// Its marker: shape and colour both identify it.
     pub const fn marker(self) -> plot::MarkerStyle {
         match self {
             Verdict::Accepted => {
@@ -177,7 +179,7 @@ impl Verdict {
     pub const ALL: [Verdict; 3] = [Verdict::Accepted, Verdict::Warned, Verdict::Rejected];
 }
 
-/// A picture with its words.
+/// A picture with its title and caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Name of files and of the anchor on a page, unique in a report.
@@ -206,7 +208,8 @@ impl Figure {
         self.write(Destination::File(theme))
     }
 
-    /// PNG bytes in light colours, `scale` pixels to a unit of the view box (2 gives 1120 pixels of width).
+    /// PNG bytes in light colours, `scale` pixels to a unit of the view box (2 gives 1120 pixels of
+    /// width).
     ///
     /// # Errors
     /// A scale that gives no pixel, or more than forty million.

@@ -1,4 +1,5 @@
-//! A measured frequency response on the curves of its models: magnitude, phase, difference from the first model, distortion.
+//! A measured frequency response on the curves of its models: magnitude, phase, difference from the
+//! first model, distortion.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{argument, log10, magnitude};
@@ -98,7 +99,8 @@ fn phases(curves: &[ResponseCurve]) -> Vec<Vec<f64>> {
     phases
 }
 
-/// The phase of each measured point: that of the first model's curve at its frequency, on the same turn, and what it differs by.
+/// The phase of each measured point: that of the first model's curve at its frequency, on the same
+/// turn, and what it differs by.
 fn near_first(input: &MeasuredResponseInput, phases: &[Vec<f64>], angles: &[f64]) -> Vec<f64> {
     let Some((curve, phases)) = input.curves.first().zip(phases.first()) else { return angles.to_vec() };
     let at = input.measured.frequencies_rad_per_s.iter().zip(&input.model).zip(angles);

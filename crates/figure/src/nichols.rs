@@ -1,4 +1,5 @@
-//! Nichols chart: the open loop by phase and magnitude, with bounds, templates, contours of |T| and what violates them.
+//! Nichols chart: the open loop by phase and magnitude, with bounds, templates, contours of |T| and
+//! what violates them.
 
 mod boundary;
 mod chart;
@@ -46,7 +47,7 @@ pub struct NicholsInput<'a> {
     pub loops: Vec<FrequencySeries>,
     /// Frequencies to mark on the loops, rad/s.
     pub design_frequencies_rad_per_s: Vec<f64>,
-    /// Bounds; more than one group are told apart by their dashes, frequencies by colour.
+    /// Bounds; groups are distinguished by their dashes, frequencies by colour.
     pub bounds: Vec<BoundGroup<'a>>,
     /// Templates, drawn where the nominal loop is.
     pub templates: &'a [Template],

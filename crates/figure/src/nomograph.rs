@@ -4,7 +4,8 @@
 //! v = 4 q / (pi d^2)
 //! ```
 //!
-//! A bore is a straight line; the design flow is an upright line, and where they cross lies the velocity in that bore.
+//! A bore is a straight line; the design flow is an upright line, and where they cross lies the
+//! velocity in that bore.
 
 use std::f64::consts::PI;
 
@@ -108,7 +109,8 @@ fn bore_line(bore: &NomographBore, x: &Axis) -> Mark {
     Mark::Line { points: line_of(bore.bore_m, x), stroke }
 }
 
-/// The exact bores at which the design flow runs at the limits of the range, and the feasible stretch of the flow line.
+/// The exact bores at which the design flow runs at the limits of the range, and the feasible
+/// stretch of the flow line.
 fn limits(marks: &mut Vec<Mark>, input: &NomographInput, x: &Axis) {
     let (slowest, fastest) = input.velocity_range_m_per_s;
     let flow = DisplayUnit::LITRE_PER_MINUTE.of(input.design_flow_m3_per_s);

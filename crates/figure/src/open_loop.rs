@@ -49,7 +49,8 @@ impl OpenLoop {
         OpenLoop { frequencies: series.frequencies_rad_per_s.clone(), points }
     }
 
-    /// Phase and magnitude at a frequency, between neighbours by the logarithm of frequency; `None` where it does not reach.
+    /// Phase and magnitude at a frequency, between neighbours by the logarithm of frequency; `None`
+    /// where it does not reach.
     pub(super) fn at(&self, frequency: f64) -> Option<(f64, f64)> {
         let next = self.frequencies.iter().position(|other| *other >= frequency)?;
         let (high, above) = (*self.frequencies.get(next)?, *self.points.get(next)?);

@@ -71,8 +71,9 @@ impl Occupancy {
         self.leads.push((from, to));
     }
 
-    /// The index of the best candidate inside `frame`: free of texts, then with the fewest curves and markers beneath
-    /// it, then the earliest. `None` when every candidate leaves the frame or covers a text.
+    /// The index of the best candidate inside `frame`: free of texts, then with the fewest curves
+    /// and markers beneath it, then the earliest. `None` when every candidate leaves the frame or
+    /// covers a text.
     pub fn choose(&self, candidates: &[Rectangle], frame: &Rectangle) -> Option<usize> {
         let mut best: Option<(usize, usize)> = None;
         for (index, candidate) in candidates.iter().enumerate() {
@@ -91,8 +92,9 @@ impl Occupancy {
         best.map(|(index, _)| index)
     }
 
-    /// Like [`Occupancy::choose`] for labels that may be led to their point by a line: a line crosses no text and no other
-    /// such line, and its length counts against a place as much as the curves that label and line lie upon.
+    /// Like [`Occupancy::choose`] for labels that may be led to their point by a line: a line
+    /// crosses no text and no other such line, and its length counts against a place as much as the
+    /// curves that label and line lie upon.
     pub(crate) fn choose_led(&self, candidates: &[Led], frame: &Rectangle) -> Option<usize> {
         let mut best: Option<(usize, f64)> = None;
         for (index, Led { point, bounds, line }) in candidates.iter().enumerate() {
@@ -146,7 +148,8 @@ impl Occupancy {
         20.0 * markers as f64 + hidden.sum::<f64>()
     }
 
-    /// Curves and markers beneath a label; one curve counts once per piece, so a curve along the label costs more.
+    /// Curves and markers beneath a label; one curve counts once per piece, so a curve along the
+    /// label costs more.
     fn cost(&self, candidate: &Rectangle) -> usize {
         let markers = self.obstacles.iter().filter(|o| o.overlaps(candidate)).count();
         let pieces = self

@@ -1,4 +1,5 @@
-//! Axes with panels that share x: curves, bands, reference lines, markers and labels that do not overlap.
+//! Axes with panels that share x: curves, bands, reference lines, markers and labels that do not
+//! overlap.
 
 mod labels;
 mod layout;
@@ -108,10 +109,11 @@ pub enum Mark {
         at: f64,
         /// Line.
         stroke: Stroke,
-        /// Text beside it; empty for none.
+        /// Text next to it; empty for no text.
         label: String,
     },
-    /// A text outside the frame on the right, level with a value of y: the name of a line that ends there.
+    /// A text outside the frame on the right, level with a value of y: the name of a line that ends
+    /// there.
     EdgeLabel {
         /// Value of y.
         at: f64,
@@ -120,7 +122,7 @@ pub enum Mark {
         /// Colour.
         role: Role,
     },
-    /// A text that belongs to a point, led to it by a thin line where it does not stand beside it.
+    /// A text that belongs to a point, connected to it by a thin line where it is not next to it.
     Callout {
         /// (x, y) of the point, or of several to choose from.
         at: Vec<(f64, f64)>,
@@ -193,8 +195,8 @@ pub struct Plot {
 impl Plot {
     /// Draws the plot in the usual width.
     ///
-    /// A label that finds no free place is left out, so that nothing overlaps: whatever a figure labels must also
-    /// stand in a table of the report.
+    /// A label that finds no free place is left out, so that nothing overlaps: whatever a figure
+    /// labels must also stand in a table of the report.
     pub fn draw(&self) -> Scene {
         if self.equal_aspect { layout::draw(&layout::with_equal_aspect(self)) } else { layout::draw(self) }
     }

@@ -1,4 +1,5 @@
-//! Poles and zeros in the complex plane, linear or signed logarithmic, with damping ratios and natural frequencies.
+//! Poles and zeros in the complex plane, linear or signed logarithmic, with damping ratios and
+//! natural frequencies.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{cos, pow, sin};
@@ -144,7 +145,8 @@ fn grid_stroke() -> Stroke {
     Stroke::solid(Role::Muted, 1.0).dashed(Dash::Dotted)
 }
 
-/// Lines of constant damping ratio and constant natural frequency in the left half plane, labelled where they end.
+/// Lines of constant damping ratio and constant natural frequency in the left half plane, labelled
+/// where they end.
 fn grid(marks: &mut Vec<Mark>, input: &PoleMapInput, x: &Axis, y: &Axis) {
     let reach = x.minimum.abs().max(y.maximum.abs());
     let least = match x.scale {

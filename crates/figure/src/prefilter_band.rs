@@ -1,4 +1,5 @@
-//! The band that closed loops leave for the magnitude of their prefilters, with the prefilters in it.
+//! The band that closed loops leave for the magnitude of their prefilters, with the prefilters in
+//! it.
 
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_role};
@@ -33,7 +34,8 @@ pub struct PrefilterPanel {
 /// Below the highest magnitude that is shown no more than this is, dB.
 const DEPTH_DB: f64 = 60.0;
 
-/// Draws a panel for each loop, all with the same axes. Where the least magnitude is above the greatest no prefilter keeps to the limits.
+/// Draws a panel for each loop, all with the same axes. Where the smallest magnitude is above the
+/// largest, no prefilter satisfies the limits.
 pub fn prefilter_band(words: Words, panels: &[PrefilterPanel]) -> Figure {
     let all = || panels.iter().flat_map(|panel| &panel.points);
     let x = Axis::fit_logarithmic("Frequency (rad/s)", all().map(|point| point.frequency_rad_per_s));

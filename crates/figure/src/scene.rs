@@ -1,8 +1,8 @@
 //! A picture as a list of primitives that name roles for their colours.
 //!
-//! Coordinates are those of the view box: x to the right, y down. Geometry that leaves its frame is cut before it
-//! enters a scene ([`clip`](crate::clip)), so no clip paths and no identifiers are needed, and several figures
-//! can share one page.
+//! Coordinates are those of the view box: x to the right, y down. Geometry that leaves its frame is
+//! cut before it enters a scene ([`clip`](crate::clip)), so no clip paths and no identifiers are
+//! needed, and several figures can share one page.
 
 use super::colour::Role;
 use super::typeset;

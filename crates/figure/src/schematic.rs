@@ -1,7 +1,9 @@
-//! The hydraulic circuit with its controller, in symbols after ISO 1219-1, from the words of a project.
+//! The hydraulic circuit with its controller, in symbols after ISO 1219-1, from the words of a
+//! project.
 //!
-//! Fixed places, variable symbols and texts: cylinder, moving mass, load cell and environment on top, the lines below
-//! them, then servovalve and controller, then supply and tank. Every text comes from the caller and is cut to its place.
+//! Fixed places, variable symbols and texts: cylinder, moving mass, load cell and environment on
+//! top, the lines below them, then servovalve and controller, then supply and tank. Every text
+//! comes from the caller and is cut to its place.
 
 mod mechanics;
 mod pen;
@@ -71,9 +73,9 @@ pub struct ControllerSymbol {
 pub struct SchematicInput {
     /// Supply.
     pub supply: SupplyKind,
-    /// Words beside the supply, such as `70 bar`; two rows at most.
+    /// Label of the supply, such as `70 bar`; two rows at most.
     pub supply_rows: Vec<String>,
-    /// Word beside the tank, such as `0 bar`.
+    /// Label of the tank, such as `0 bar`.
     pub tank: String,
     /// Words of the valve, such as its model; two rows at most.
     pub valve_rows: Vec<String>,
@@ -83,13 +85,14 @@ pub struct SchematicInput {
     pub line_b: LineSymbol,
     /// Rods.
     pub rods: Rods,
-    /// Chamber B is the one beside the load; otherwise A is.
+    /// Whether chamber B faces the load; otherwise chamber A does.
     pub load_beside_b: bool,
     /// Word above the cylinder, such as `50/22 mm, stroke 500 mm`.
     pub cylinder: String,
     /// Word above the moving mass, such as `13.1 kg`.
     pub mass: String,
-    /// Words of the load cell, such as `20 MN/m`; two rows at most. Absent: the rod holds the environment itself.
+    /// Words of the load cell, such as `20 MN/m`; two rows at most. Absent: the rod holds the
+    /// environment itself.
     pub load_cell: Option<Vec<String>>,
     /// Environment.
     pub environment: Environment,

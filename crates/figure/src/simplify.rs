@@ -1,16 +1,19 @@
-//! Fewer points for the same curve: a response of a thousand samples becomes a path of a hundred corners.
+//! Fewer points for the same curve: a response of a thousand samples becomes a path of a hundred
+//! corners.
 
 use phea_dynamics::portable::hypot;
 
 use super::scene::Point;
 
-/// How far a left-out point may lie from the drawn line, in view box units: a twelfth of a pixel at twice the size.
+/// How far a left-out point may lie from the drawn line, in view box units: a twelfth of a pixel at
+/// twice the size.
 pub const TOLERANCE: f64 = 0.04;
 
 /// The directions from an anchor that pass every point since within the tolerance.
 struct Cone {
     anchor: Point,
-    /// Bounding directions, clockwise and counter-clockwise; `None` until a point is far enough to give one.
+    /// Bounding directions, clockwise and counter-clockwise; `None` until a point is far enough to
+    /// give one.
     bounds: Option<((f64, f64), (f64, f64))>,
     farthest: f64,
 }

@@ -1,4 +1,5 @@
-//! Length of the compliant line against stiffness and proportional gain: the two branches of the sizing procedure at once.
+//! Length of the compliant line against stiffness and proportional gain: the two branches of the
+//! sizing procedure at once.
 
 use super::axis::Axis;
 use super::colour::{Role, series_stroke};
@@ -8,7 +9,8 @@ use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Verdict, Words};
 use phea_quantity::DisplayUnit;
 
-/// Stiffness and gain over the length of one hose or pipe; the vectors have one value for each length.
+/// Stiffness and gain over the length of one hose or pipe; the vectors have one value for each
+/// length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SizingCurve {
     /// Hose and stiffness model.

@@ -1,4 +1,5 @@
-//! Hydraulic stiffness over the stroke, Ledezma (2019), Figure 6.4: one curve a model or design, with its band.
+//! Hydraulic stiffness over the stroke, Ledezma (2019), Figure 6.4: one curve a model or design,
+//! with its band.
 
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_role, series_stroke};
@@ -35,7 +36,8 @@ pub struct StiffnessInput {
     pub band_label: String,
 }
 
-/// Draws the figure: linear from zero, or logarithmic when the curves lie more than a factor of twelve apart.
+/// Draws the figure: linear from zero, or logarithmic when the curves lie more than a factor of
+/// twelve apart.
 pub fn stiffness_over_stroke(words: Words, input: &StiffnessInput) -> Figure {
     let (length, stiffness) = (DisplayUnit::MILLIMETRE, DisplayUnit::MEGANEWTON_PER_METRE);
     let values = || {

@@ -1,7 +1,7 @@
 //! A scene as SVG text.
 //!
-//! Numbers have two decimals at most, so the text is the same on every machine. Colours are written as attributes
-//! resolved for a theme; on a page the classes of the style sheet override them.
+//! Numbers have two decimals at most, so the text is the same on every machine. Colours are written
+//! as attributes resolved for a theme; on a page the classes of the style sheet override them.
 
 use super::colour::{Role, Theme};
 use super::scene::{Anchor, Item, PathStep, Point, Scene, Shape, Stroke, Text};
@@ -155,7 +155,8 @@ impl Writer {
     }
 }
 
-/// The pieces of a line; a change of level is a relative move, since browsers disagree on `baseline-shift`.
+/// The pieces of a line; a change of level is a relative move, since browsers disagree on
+/// `baseline-shift`.
 fn spans(text: &Text) -> String {
     let mut result = String::new();
     let mut rise = 0.0;

@@ -13,7 +13,8 @@ use super::scene::{Fill, Stroke};
 use super::ticks::plain;
 use super::{Figure, Words};
 
-/// Draws templates at several frequencies: outlines with the region known to be filled, plants, and the nominal plant.
+/// Draws templates at several frequencies: outlines with the region known to be filled, plants, and
+/// the nominal plant.
 ///
 /// # Example
 /// ```
@@ -135,7 +136,7 @@ impl PlacedTemplate {
         }
     }
 
-    /// The frequency beside the nominal plant.
+    /// The frequency, as a label at the nominal plant.
     fn label(&self) -> Mark {
         Mark::Callout { at: vec![self.nominal], text: self.name.clone(), role: Role::Text }
     }

@@ -56,8 +56,8 @@ pub fn round_step(span: f64, count: usize, steps: Steps) -> f64 {
     found.unwrap_or(10.0 * decade)
 }
 
-/// Ticks of a linear axis from `minimum` to `maximum`, at most `count` intervals, labels divided by 10^`exponent`. Where that leaves
-/// a single one, which tells no scale, the steps are finer.
+/// Ticks of a linear axis from `minimum` to `maximum`, at most `count` intervals, labels divided by
+/// 10^`exponent`. Where that leaves a single one, which tells no scale, the steps are finer.
 ///
 /// # Example
 /// ```
@@ -86,8 +86,8 @@ pub fn linear(minimum: f64, maximum: f64, count: usize, steps: Steps, exponent: 
         .collect()
 }
 
-/// Ticks of a logarithmic axis: decades with labels, at most `count` of them, and 2 to 9 between them as minor ones.
-/// Where that leaves room, 2 and 5 get labels as well.
+/// Ticks of a logarithmic axis: decades with labels, at most `count` of them, and 2 to 9 between
+/// them as minor ones. Where that leaves room, 2 and 5 get labels as well.
 pub fn logarithmic(minimum: f64, maximum: f64, count: usize) -> Vec<Tick> {
     let (low, high) = (floor_log10(minimum), floor_log10(maximum));
     let decades = (high - low).max(1) as usize;
@@ -167,7 +167,8 @@ pub fn floor_log10(value: f64) -> i32 {
     text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
 }
 
-/// The exponent, a multiple of three, that labels of an axis are divided by: 0 while they stay readable.
+/// The exponent, a multiple of three, that labels of an axis are divided by: 0 while they stay
+/// readable.
 pub(crate) fn engineering_exponent(minimum: f64, maximum: f64) -> i32 {
     let largest = minimum.abs().max(maximum.abs());
     let power = floor_log10(largest);
@@ -195,7 +196,8 @@ pub fn decimal(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A number with three significant digits for an annotation: fixed decimals from 0.001 to 99999, else `a×10^n`.
+/// A number with three significant digits for an annotation: fixed decimals from 0.001 to 99999,
+/// else `a×10^n`.
 ///
 /// # Example
 /// ```

@@ -37,7 +37,8 @@ pub struct TimePanelsInput {
     pub legend: Vec<String>,
     /// What the reference is called.
     pub reference: String,
-    /// Instants, labelled in the tallest panel, the first of several: there is most room beside the curves.
+    /// Instants, labelled in the tallest panel, the first of several: there is most room beside the
+    /// curves.
     pub events: Vec<TimeEvent>,
     /// From and to, s.
     pub span_s: [f64; 2],

@@ -109,7 +109,7 @@ fn scale(scene: &mut Scene, axis: &Axis, frame: Rectangle) {
     );
 }
 
-/// Where a bar ends and the words beside its end: one text for both ends when they lie on one side.
+/// Where a bar ends and the label at its end: one text for both ends when they lie on one side.
 fn ends(bar: &TornadoBar, nominal: f64) -> Vec<(f64, bool, String)> {
     let low = (bar.low_value, false, bar.low_setting.clone());
     let high = (bar.high_value, true, bar.high_setting.clone());
@@ -124,7 +124,7 @@ fn ends(bar: &TornadoBar, nominal: f64) -> Vec<(f64, bool, String)> {
     }
 }
 
-/// An axis with room for the words beside the longest bars.
+/// An axis with room for the labels at the ends of the longest bars.
 fn axis(input: &TornadoInput, bars: &[&TornadoBar], frame: Rectangle) -> Axis {
     let (mut low, mut high) = (input.nominal, input.nominal);
     let (mut before, mut after) = (12.0_f64, 12.0_f64);

@@ -1,9 +1,10 @@
 //! Text with sub- and superscripts, and its size by the metrics of the embedded font.
 //!
 //! Markup is small so that names given by users pass unchanged:
-//! - `_` after a single letter that begins a word starts a subscript of letters, digits and primes: `K_H`, `x_p`,
-//!   `omega_n` stays as it is, and so does `eaton_synflex_3130_08`;
-//! - `^` starts a superscript of a sign and digits: `10^-3`, `m^3`; a hyphen there is set as a minus sign;
+//! - `_` after a single letter that begins a word starts a subscript of letters, digits and primes:
+//!   `K_H`, `x_p`, `omega_n` stays as it is, and so does `eaton_synflex_3130_08`;
+//! - `^` starts a superscript of a sign and digits: `10^-3`, `m^3`; a hyphen there is set as a
+//!   minus sign;
 //! - braces hold anything: `V_{A,0}`, `e^{-sT}`.
 
 use std::collections::BTreeMap;
@@ -14,10 +15,11 @@ use skrifa::instance::{LocationRef, Size};
 
 use super::scene::{Anchor, Baseline, Point, Rectangle, Text, point};
 
-/// The embedded font, a subset of DejaVu Sans 2.37; its licence lies beside it.
+/// The embedded font, a subset of DejaVu Sans 2.37; its licence is in the same folder.
 pub const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
 
-/// Families a browser tries: the embedded font where the page or the machine has it, then faces about as wide.
+/// Families a browser tries: the embedded font where the page or the machine has it, then faces
+/// about as wide.
 pub const FONT_FAMILY: &str = "'DejaVu Sans',Verdana,Geneva,'Segoe UI',sans-serif";
 
 /// Height of a capital, in font sizes.

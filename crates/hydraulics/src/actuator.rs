@@ -1,4 +1,5 @@
-//! The actuator: valve, lines, cylinder, friction and force sensor assembled, and refused if any is impossible.
+//! The actuator: valve, lines, cylinder, friction and force sensor assembled, and refused if any is
+//! impossible.
 
 use phea_dynamics::scalar::Scalar;
 
@@ -11,7 +12,8 @@ use crate::parameter::{ParameterError, Problems};
 use crate::servovalve::{Servovalve, Supply};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance};
 
-/// The components of an actuator, not yet checked: each lies here and nowhere else, over any scalar.
+/// The components of an actuator, not yet checked: each lies here and nowhere else, over any
+/// scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Components<S = f64> {
     /// The fluid throughout.
@@ -35,7 +37,8 @@ pub struct Components<S = f64> {
 }
 
 impl<S: Scalar> Components<S> {
-    /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with entrained air alone).
+    /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with
+    /// entrained air alone).
     pub fn chamber_compliance(&self, pressures: [S; 2], member: Member) -> ChamberCompliance<S> {
         let Components { fluid, line_a, line_b, cylinder, stiffness_model, .. } = self;
         let moduli = pressures.map(|pressure| fluid.modulus_at(pressure));
@@ -59,8 +62,9 @@ impl Actuator {
     /// Assembles the components as they are; nothing is repaired.
     ///
     /// # Errors
-    /// Every parameter outside physics, by its path (`valve.flow_coefficients.supply_to_a`), with what it must be. A line
-    /// and dead volumes of zero on one side are refused too: with the piston at that end the chamber would hold nothing.
+    /// Every parameter outside physics, by its path (`valve.flow_coefficients.supply_to_a`), with
+    /// what it must be. A line and dead volumes of zero on one side are refused too: with the
+    /// piston at that end the chamber would hold nothing.
     pub fn new(components: Components) -> Result<Actuator, ActuatorError> {
         let Components { fluid, supply, valve, line_a, line_b, cylinder, friction, force_sensor, .. } =
             components;
@@ -89,13 +93,14 @@ impl Actuator {
         &self.0
     }
 
-    /// Pressure in Pa at which the fluid's modulus is taken when no operating point is given: midway between supply and
-    /// tank, where the chambers of an idle symmetric actuator stand.
+    /// Pressure in Pa at which the fluid's modulus is taken when no operating point is given:
+    /// midway between supply and tank, where the chambers of an idle symmetric actuator stand.
     pub fn mean_pressure(&self) -> f64 {
         0.5 * (self.0.supply.pressure + self.0.supply.tank_pressure)
     }
 
-    /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with entrained air alone).
+    /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with
+    /// entrained air alone).
     pub fn chamber_compliance(&self, pressures: [f64; 2], member: Member) -> ChamberCompliance {
         self.0.chamber_compliance(pressures, member)
     }

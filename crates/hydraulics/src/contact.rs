@@ -10,9 +10,10 @@ use crate::parameter::{ParameterError, Problems};
 /// F = K d+ (1 + c d')+                    d penetration, d' its rate, + the positive part
 /// ```
 ///
-/// Source: Hunt and Crossley (1975), "Coefficient of restitution interpreted as damping in vibroimpact", Journal of Applied
-/// Mechanics 42(2), with a flat contact (exponent 1). The damping grows with the penetration, so that the force has no jump at
-/// touch; its coefficient of restitution is 1 - 2 c v/3 for slow impacts at v. It takes energy whatever moves.
+/// Source: Hunt and Crossley (1975), "Coefficient of restitution interpreted as damping in
+/// vibroimpact", Journal of Applied Mechanics 42(2), with a flat contact (exponent 1). The damping
+/// grows with the penetration, so that the force has no jump at touch; its coefficient of
+/// restitution is 1 - 2 c v/3 for slow impacts at v. It takes energy whatever moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact<S = f64> {
     /// Stiffness K in N/m.

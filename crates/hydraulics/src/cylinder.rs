@@ -7,7 +7,8 @@ use crate::parameter::{ParameterError, Problems};
 
 /// A double-acting cylinder. Units: m2, m, kg, m3.
 ///
-/// The piston position x runs from 0 at the A end to the stroke at the B end, so chamber A grows with x.
+/// The piston position x runs from 0 at the A end to the stroke at the B end, so chamber A grows
+/// with x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder<S = f64> {
     /// Piston area on the A side, A_A, in m2.
@@ -22,14 +23,16 @@ pub struct Cylinder<S = f64> {
     pub dead_volume_a: S,
     /// Volume of chamber B that the piston never sweeps, without the line, in m3.
     pub dead_volume_b: S,
-    /// Laminar leakage across the piston per pressure difference, in m3/(s Pa); absent, none passes.
+    /// Laminar leakage across the piston per pressure difference, in m3/(s Pa); if absent, the
+    /// piston does not leak.
     pub internal_leakage: Option<S>,
-    /// What the piston meets at both ends of its stroke. Absent, the ends are reported and nothing stops the piston.
+    /// Contact at both ends of the stroke. If absent, reaching an end is reported, but nothing
+    /// stops the piston.
     pub end_stops: Option<Contact<S>>,
 }
 
 impl Cylinder {
-    /// What about this cylinder is impossible; empty if nothing is.
+    /// The invalid parameters of this cylinder; empty if all are valid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("area_a", self.area_a);
@@ -79,8 +82,8 @@ impl<S: Copy> Cylinder<S> {
     }
 }
 
-/// Annulus areas in m2 on the A and B sides, from the piston diameter and the rod diameters on each side in m (zero
-/// for no rod).
+/// Annulus areas in m2 on the A and B sides, from the piston diameter and the rod diameters on each
+/// side in m (zero for no rod).
 ///
 /// ```text
 /// A_A = pi/4 (D_p^2 - D_rA^2)        A_B = pi/4 (D_p^2 - D_rB^2)

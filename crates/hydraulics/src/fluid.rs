@@ -4,8 +4,9 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};
 
-/// Atmospheric pressure in Pa absolute (ISO 2533 standard atmosphere at sea level): the pressure at which the volume
-/// fraction of entrained air is stated, and the difference between gauge and absolute pressures.
+/// Atmospheric pressure in Pa absolute (ISO 2533 standard atmosphere at sea level): the pressure at
+/// which the volume fraction of entrained air is stated, and the difference between gauge and
+/// absolute pressures.
 pub const ATMOSPHERIC_PRESSURE_ABSOLUTE: f64 = 101_325.0;
 
 /// A hydraulic fluid. Units: Pa, kg/m3, m2/s.
@@ -31,7 +32,7 @@ pub struct EntrainedAir<S = f64> {
 }
 
 impl Fluid {
-    /// What about this fluid is impossible; empty if nothing is.
+    /// The invalid parameters of this fluid; empty if all are valid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("bulk_modulus", self.bulk_modulus);
@@ -58,7 +59,8 @@ impl Fluid {
 }
 
 impl<S: Scalar> Fluid<S> {
-    /// Bulk modulus in Pa at a gauge pressure: the fluid's own without air, [`bulk_modulus_with_air`] with.
+    /// Bulk modulus in Pa at a gauge pressure: the fluid's own without air,
+    /// [`bulk_modulus_with_air`] with.
     ///
     /// # Example
     /// ```
@@ -89,9 +91,10 @@ impl<S: Scalar> Fluid<S> {
 /// beta_mixture = -V dp/dV = (V_liquid + V_gas) / (V_liquid/beta + V_gas/(n p))
 /// ```
 ///
-/// The volumes of a compressible liquid and of a gas compressed polytropically from atmospheric pressure p0 add up; no
-/// air dissolves. Source: the family of models reviewed by Gholizadeh, Burton and Schoenau (2011), "Fluid bulk
-/// modulus: a literature survey", International Journal of Fluid Power 12(3). `pressure_absolute` must be positive.
+/// The volumes of a compressible liquid and of a gas compressed polytropically from atmospheric
+/// pressure p0 add up; no air dissolves. Source: the family of models reviewed by Gholizadeh,
+/// Burton and Schoenau (2011), "Fluid bulk modulus: a literature survey", International Journal of
+/// Fluid Power 12(3). `pressure_absolute` must be positive.
 ///
 /// # Example
 /// At atmospheric pressure, springs in series by volume:

@@ -20,7 +20,8 @@ impl ForceSensor {
     }
 }
 
-/// Force on the load F_e = K_S (x_p - x_L) in N, positive when the rod pushes; the deflection x_p - x_L in m.
+/// Force on the load F_e = K_S (x_p - x_L) in N, positive when the rod pushes; the deflection x_p -
+/// x_L in m.
 #[inline(always)]
 pub fn force<S: Scalar>(stiffness: S, deflection: S) -> S {
     stiffness * deflection

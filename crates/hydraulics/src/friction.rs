@@ -1,4 +1,5 @@
-//! Friction of the piston and rods: viscous, Stribeck or LuGre, and the one slope a linear model can keep of it.
+//! Friction of the piston and rods: viscous, Stribeck or LuGre, and the one slope a linear model
+//! can keep of it.
 
 mod lugre;
 mod moving;
@@ -26,17 +27,20 @@ pub enum Friction<S = f64> {
     LuGre(LuGre<S>),
 }
 
-/// Which slope dF/dv stands for the friction in a linear model. Friction has none at zero velocity that is right for every
-/// purpose, so the choice is explicit.
+/// Which slope dF/dv stands for the friction in a linear model. Friction has none at zero velocity
+/// that is right for every purpose, so the choice is explicit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ViscousSlope {
     /// The viscous part alone, sigma_2: right when sliding fast; the least damping.
     Viscous,
-    /// Steady force over velocity, F(v)/v, at this speed in m/s: what an equivalent damper would give there.
+    /// Steady force over velocity, F(v)/v, at this speed in m/s: what an equivalent damper would
+    /// give there.
     Secant(f64),
-    /// Slope of the steady curve at this speed in m/s; negative on the falling part of the Stribeck curve.
+    /// Slope of the steady curve at this speed in m/s; negative on the falling part of the Stribeck
+    /// curve.
     Tangent(f64),
-    /// Bristles stuck: sigma_1 + sigma_2 (LuGre alone; their spring sigma_0 has no place in a viscous coefficient).
+    /// Bristles stuck: sigma_1 + sigma_2 (LuGre alone; their spring sigma_0 has no place in a
+    /// viscous coefficient).
     Sticking,
 }
 
@@ -74,8 +78,8 @@ impl Friction {
         }
     }
 
-    /// Viscous friction coefficient f_v in N s/m for a linear model, as chosen; `None` where the choice has no value
-    /// (a secant through zero velocity, sticking without bristles).
+    /// Viscous friction coefficient f_v in N s/m for a linear model, as chosen; `None` where the
+    /// choice has no value (a secant through zero velocity, sticking without bristles).
     ///
     /// # Example
     /// ```

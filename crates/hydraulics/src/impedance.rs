@@ -31,7 +31,8 @@ pub fn open_loop_impedance(model: &LinearModel) -> Result<TransferFunction, Line
     TransferFunction::from_factors(-motion.gain(), zeros, poles)
 }
 
-/// Driving-point impedance in N s/m with the force fed back through a controller G in V/N, U_C = G (F_ref - F_e).
+/// Driving-point impedance in N s/m with the force fed back through a controller G in V/N, U_C = G
+/// (F_ref - F_e).
 ///
 /// ```text
 /// Z = Z_open/(1 + G P)                                                 thesis (6.8)
@@ -55,7 +56,8 @@ pub fn closed_loop_impedance(
     let sensitivity_gain = if forward.gain() == 0.0 { 1.0 } else { closed.gain() / forward.gain() };
     let mut poles = closed.poles().to_vec();
     for &pole in open.poles() {
-        // Poles that the load path alone has (a plant whose two paths do not share their denominator) stay.
+        // Poles that the load path alone has (a plant whose two paths do not share their
+        // denominator) stay.
         if !model.command.poles().contains(&pole) {
             poles.push(pole);
         }
@@ -63,7 +65,8 @@ pub fn closed_loop_impedance(
     TransferFunction::from_factors(open.gain() * sensitivity_gain, zeros, poles)
 }
 
-/// Force per load position F_e/X_L in N/m with the loop closed by a controller G in V/N: second half of thesis (6.8) times s.
+/// Force per load position F_e/X_L in N/m with the loop closed by a controller G in V/N: second
+/// half of thesis (6.8) times s.
 ///
 /// # Errors
 /// As [`closed_loop_impedance`].
@@ -77,14 +80,16 @@ pub fn closed_loop_load_motion(
     Ok(product.without_common_factors(0.0))
 }
 
-/// Force in N that remains long after the load has stepped by `step` in m: Proposition 6.2 says none.
+/// Force in N that remains long after the load has stepped by `step` in m: Proposition 6.2 says
+/// none.
 ///
 /// ```text
 /// F_e(inf) = lim s (F_e/X_L) x_L0/s = (F_e/X_L)(0) x_L0                thesis (6.9) to (6.11)
 /// ```
 ///
-/// `None` when the path is unstable and there is no final value. The proposition needs leakage or feedback: with K_c = 0
-/// and the command held still the denominator vanishes at the origin as well, and K_eq x_L0 stays.
+/// `None` when the path is unstable and there is no final value. The proposition needs leakage or
+/// feedback: with K_c = 0 and the command held still the denominator vanishes at the origin as
+/// well, and K_eq x_L0 stays.
 pub fn final_force_after_load_step(load_path: &TransferFunction, step: f64) -> Option<f64> {
     let path = load_path.without_common_factors(0.0);
     path.is_stable().then(|| path.dc_gain() * step)

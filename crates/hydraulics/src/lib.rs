@@ -1,10 +1,11 @@
-//! The actuator as physics: servovalve, lines, cylinder, friction and force sensor, the equilibrium they settle at,
-//! and the linear models of the force they put on a load.
+//! The actuator as physics: servovalve, lines, cylinder, friction and force sensor, the equilibrium
+//! they settle at, and the linear models of the force they put on a load.
 //!
-//! Every equation is written once over [`phea_dynamics::scalar::Scalar`] and cites its number in Ledezma (2019), the
-//! thesis. Parameters are plain structs in SI units; [`actuator::Actuator::new`] is the one gate that refuses
-//! impossible ones. Signs: the piston position grows from the A end to the B end, chamber flows are positive into
-//! their chamber, the force on the load is positive when the rod pushes, pressures are gauge unless a name says
+//! Every equation is written once over [`phea_dynamics::scalar::Scalar`] and cites its number in
+//! Ledezma (2019), the thesis. Parameters are plain structs in SI units;
+//! [`actuator::Actuator::new`] is the one gate that refuses impossible ones. Signs: the piston
+//! position grows from the A end to the B end, chamber flows are positive into their chamber, the
+//! force on the load is positive when the rod pushes, pressures are gauge unless a name says
 //! `absolute`.
 
 pub mod actuator;

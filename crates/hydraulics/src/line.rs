@@ -1,7 +1,9 @@
-//! The line between a valve port and a cylinder chamber: hose, pipe or plain volume, and what it does in motion.
+//! The line between a valve port and a cylinder chamber: hose, pipe or plain volume, and what it
+//! does in motion.
 //!
-//! [`Line`] says what it is, [`LineModel`] and [`DynamicLine`] what a machine calculates: capacities with or without inertances
-//! ([`Segments`]), a wall that creeps ([`StandardLinearSolid`]), one wave ([`TransmissionLine`]) or two ([`TwoWaveHose`]).
+//! [`Line`] says what it is, [`LineModel`] and [`DynamicLine`] what a machine calculates:
+//! capacities with or without inertances ([`Segments`]), a wall that creeps
+//! ([`StandardLinearSolid`]), one wave ([`TransmissionLine`]) or two ([`TwoWaveHose`]).
 
 mod attenuation;
 mod braided_wall;
@@ -79,7 +81,8 @@ pub enum Member {
 }
 
 impl Line {
-    /// What about this line is impossible; empty if nothing is. A length or volume of zero is possible: no line.
+    /// What about this line is impossible; empty if nothing is. A length or volume of zero is
+    /// possible: no line.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         match *self {
@@ -113,8 +116,8 @@ impl Line {
 }
 
 impl<S: Scalar> Line<S> {
-    /// The line as it stands at the operating pressure: a hose with the bore that it has there, [`Hose::filled`]. Pipes and
-    /// plain volumes stay as they are.
+    /// The line as it stands at the operating pressure: a hose with the bore that it has there,
+    /// [`Hose::filled`]. Pipes and plain volumes stay as they are.
     pub fn filled(&self) -> Line<S> {
         match *self {
             Line::Hose { hose, length } => Line::Hose { hose: hose.filled(), length },
@@ -131,8 +134,9 @@ impl<S: Scalar> Line<S> {
         }
     }
 
-    /// Effective bulk modulus beta_e of fluid and wall together, in Pa, for a fluid of this modulus: thesis (6.20), a hose's wall
-    /// with the modulus of thesis (6.24). That of the oil a hose holds is `filled().effective_modulus(..)`.
+    /// Effective bulk modulus beta_e of fluid and wall together, in Pa, for a fluid of this
+    /// modulus: thesis (6.20), a hose's wall with the modulus of thesis (6.24). That of the oil a
+    /// hose holds is `filled().effective_modulus(..)`.
     ///
     /// # Example
     /// ```
@@ -172,7 +176,8 @@ impl<S: Scalar> Line<S> {
         }
     }
 
-    /// Compliance of the line in the thesis' model, V_ho/beta_e in m3/Pa: the unexpanded volume over the modulus of 6.20.
+    /// Compliance of the line in the thesis' model, V_ho/beta_e in m3/Pa: the unexpanded volume
+    /// over the modulus of 6.20.
     pub fn compliance_of_unexpanded(&self, fluid_modulus: S, member: Member) -> S {
         self.volume() / self.effective_modulus(fluid_modulus, member)
     }

@@ -4,8 +4,9 @@
 //! F_e = (c_0 U_C - K_S (b_4 s^4 + ... + b_0) s X_L) / (a_5 s^5 + ... + a_0)     thesis (6.7)
 //! ```
 //!
-//! It holds for a symmetric cylinder at mid stroke with equal edges and viscous friction, exactly; elsewhere it is a
-//! reduction of [`crate::two_pressure`] whose cost [`crate::two_pressure::reduction`] measures.
+//! It holds for a symmetric cylinder at mid stroke with equal edges and viscous friction, exactly;
+//! elsewhere it is a reduction of [`crate::two_pressure`] whose cost
+//! [`crate::two_pressure::reduction`] measures.
 
 mod decomposed;
 mod difference;
@@ -55,7 +56,8 @@ pub struct LinearParameters<S = f64> {
 }
 
 impl<S: Scalar> LinearParameters<S> {
-    /// Equivalent stiffness K_eq = K_H K_S/(K_H + K_S) in N/m: both springs in series, thesis (6.12).
+    /// Equivalent stiffness K_eq = K_H K_S/(K_H + K_S) in N/m: both springs in series, thesis
+    /// (6.12).
     pub fn equivalent_stiffness(&self) -> S {
         in_series(self.hydraulic_stiffness, self.sensor_stiffness)
     }
@@ -87,8 +89,8 @@ pub struct LinearModel {
     pub load_position: TransferFunction,
 }
 
-/// Both halves of the fifth-order model, thesis (6.7), with coefficients over any scalar: numbers, or recorded
-/// expressions for an uncertain plant. The disturbance is F_e/X_L.
+/// Both halves of the fifth-order model, thesis (6.7), with coefficients over any scalar: numbers,
+/// or recorded expressions for an uncertain plant. The disturbance is F_e/X_L.
 ///
 /// ```text
 /// a_0 = w^2 K_c K_H K_S

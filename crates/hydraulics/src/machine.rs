@@ -1,4 +1,5 @@
-//! The nonlinear machine: the whole of the actuator in motion, as a [`Plant`] that a controller commands.
+//! The nonlinear machine: the whole of the actuator in motion, as a [`Plant`] that a controller
+//! commands.
 //!
 //! ```text
 //! spool          dU/dt, dr/dt, ...                              thesis (4.1) with saturation: SpoolImperfection
@@ -13,8 +14,10 @@
 //! lines          lumped, or states and waves of their own       DynamicLine
 //! ```
 //!
-//! q_A and q_B are the flows of the four edges into the chambers, through the lines if these have dynamics of their own. Nothing is clamped: a chamber below vapour pressure, a
-//! piston beyond its stroke or in its stop, a load at its wall are indicators whose change of sign an integrator reports.
+//! q_A and q_B are the flows of the four edges into the chambers, through the lines if these have
+//! dynamics of their own. Nothing is clamped: a chamber below vapour pressure, a piston beyond its
+//! stroke or in its stop, a load at its wall are indicators whose change of sign an integrator
+//! reports.
 
 mod balance;
 mod chambers;
@@ -50,11 +53,12 @@ use equations::constant;
 use signals::ground_of;
 use state::Layout;
 
-/// An actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of them.
+/// An actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of
+/// them.
 ///
-/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]), the force from outside in N where it
-/// has one ([`MachineOptions::external_force`]), and then the waves that arrive from line A and line B; its states are named by
-/// [`MachineState`].
+/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]),
+/// the force from outside in N where it has one ([`MachineOptions::external_force`]), and then the
+/// waves that arrive from line A and line B; its states are named by [`MachineState`].
 ///
 /// # Example
 /// A machine at rest stays at rest.
@@ -97,9 +101,10 @@ impl Machine {
     /// The machine of an actuator with these options.
     ///
     /// # Errors
-    /// Options outside physics, all at once; a static friction curve without the velocity that smooths its jump; end stops so
-    /// soft, or dead volumes so small, that the supply pressure would press the piston through a chamber's last fluid; a force from
-    /// outside on a load that does not yield.
+    /// Options outside physics, all at once; a static friction curve without the velocity that
+    /// smooths its jump; end stops so soft, or dead volumes so small, that the supply pressure
+    /// would press the piston through a chamber's last fluid; a force from outside on a load that
+    /// does not yield.
     pub fn new(actuator: &Actuator, options: &MachineOptions) -> Result<Machine, MachineError> {
         let problems = options.problems();
         if !problems.is_empty() {
@@ -150,7 +155,8 @@ impl Machine {
         self.cylinder.end_stops.is_some()
     }
 
-    /// Refuses end stops into which the supply pressure presses the piston further than its chambers reach.
+    /// Refuses end stops into which the supply pressure presses the piston further than its
+    /// chambers reach.
     fn check_ends(&self) -> Result<(), MachineError> {
         let Some(contact) = self.cylinder.end_stops else {
             return Ok(());

@@ -1,4 +1,5 @@
-//! Where the valve and the cylinder settle: chamber pressures at which the flows balance, for any edges and areas.
+//! Where the valve and the cylinder settle: chamber pressures at which the flows balance, for any
+//! edges and areas.
 //!
 //! At standstill nothing may flow into either chamber, in steady motion the piston takes it:
 //!
@@ -6,9 +7,11 @@
 //! q_A(U, p_A) = A_A v        q_B(U, p_B) = -A_B v        F = A_A p_A - A_B p_B
 //! ```
 //!
-//! Leakage across the piston, G (p_A - p_B), is taken from A and given to B. q_A falls strictly with p_A and q_B with p_B, so each pressure is unique. At standstill p_A rises and p_B falls with
-//! U, and in motion both move so that F falls with v: every unknown is found by bisection, to the last bit. The same balance over any
-//! scalar, recorded expressions among them, is [`Balance::settle`].
+//! Leakage across the piston, G (p_A - p_B), is taken from A and given to B. q_A falls strictly
+//! with p_A and q_B with p_B, so each pressure is unique. At standstill p_A rises and p_B falls
+//! with U, and in motion both move so that F falls with v: every unknown is found by bisection, to
+//! the last bit. The same balance over any scalar, recorded expressions among them, is
+//! [`Balance::settle`].
 
 mod balance;
 mod bisection;
@@ -35,8 +38,9 @@ pub enum Condition {
     Motion(f64, Load),
     /// Steady motion at this velocity in m/s under this load; the command that keeps it is found.
     Moving(f64, Load),
-    /// This command in V and load pressure in Pa with both edges of each path taking half the drop, as thesis (4.18)
-    /// assumes: p_A, p_B = (p_S + p_T +- p_L)/2. Steady for equal edges and areas alone; see the net flows.
+    /// This command in V and load pressure in Pa with both edges of each path taking half the drop,
+    /// as thesis (4.18) assumes: p_A, p_B = (p_S + p_T +- p_L)/2. Steady for equal edges and areas
+    /// alone; see the net flows.
     Matched(f64, f64),
 }
 
@@ -64,9 +68,11 @@ pub struct OperatingPoint<S = f64> {
     pub velocity: S,
     /// Force of the pressures on the piston, A_A p_A - A_B p_B, in N.
     pub hydraulic_force: S,
-    /// What flows into chamber A beyond what the piston takes, in m3/s: zero but for [`Condition::Matched`].
+    /// What flows into chamber A beyond what the piston takes, in m3/s: zero but for
+    /// [`Condition::Matched`].
     pub net_flow_a: S,
-    /// What flows into chamber B beyond what the piston takes, in m3/s: zero but for [`Condition::Matched`].
+    /// What flows into chamber B beyond what the piston takes, in m3/s: zero but for
+    /// [`Condition::Matched`].
     pub net_flow_b: S,
 }
 
@@ -130,7 +136,8 @@ impl OperatingPoint {
 /// The operating point of an actuator at piston position `position` in m.
 ///
 /// # Errors
-/// A position outside the stroke, a command beyond the nominal voltage, a load out of reach, a pressure below vacuum.
+/// A position outside the stroke, a command beyond the nominal voltage, a load out of reach, a
+/// pressure below vacuum.
 ///
 /// # Example
 /// Unequal edges at null do not settle at half the supply pressure, and push:
@@ -215,7 +222,8 @@ impl From<Steady> for Condition {
     }
 }
 
-/// Force of the chamber pressures on the piston, A_A p_A - A_B p_B, in N, positive towards B: thesis (4.29).
+/// Force of the chamber pressures on the piston, A_A p_A - A_B p_B, in N, positive towards B:
+/// thesis (4.29).
 #[inline(always)]
 pub fn hydraulic_force<S: Scalar>([area_a, area_b]: [S; 2], [pressure_a, pressure_b]: [S; 2]) -> S {
     area_a * pressure_a - area_b * pressure_b

@@ -8,8 +8,9 @@ use phea_dynamics::scalar::Scalar;
 /// root(dp) = dp / (dp^2 + dp_t^2)^(1/4)  ->  sign(dp) sqrt|dp|  for |dp| >> dp_t
 /// ```
 ///
-/// Value and slope are continuous at zero drop, where the slope is 1/sqrt(dp_t). Ten times the transition pressure dp_t
-/// away the square root is reached to 0.25 %. With dp_t = 0 the slope at zero drop does not exist.
+/// Value and slope are continuous at zero drop, where the slope is 1/sqrt(dp_t). Ten times the
+/// transition pressure dp_t away the square root is reached to 0.25 %. With dp_t = 0 the slope at
+/// zero drop does not exist.
 ///
 /// # Example
 /// ```
@@ -45,7 +46,8 @@ pub fn regular_root_slope<S: Scalar>(drop: S, transition_pressure: S) -> S {
     (drop_squared / S::from(2.0) + transition_squared) / (square * square.sqrt().sqrt())
 }
 
-/// Flow through a sharp edge, laminar below the transition pressure, in m3/s; positive along a positive drop.
+/// Flow through a sharp edge, laminar below the transition pressure, in m3/s; positive along a
+/// positive drop.
 ///
 /// ```text
 /// q = K sign(dp) sqrt|dp|                                              the edges of thesis (4.2) to (4.9)

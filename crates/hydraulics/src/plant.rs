@@ -1,4 +1,5 @@
-//! The linear plant: what the controller commands, at an operating point, with lumped lines and with the load that is there.
+//! The linear plant: what the controller commands, at an operating point, with lumped lines and
+//! with the load that is there.
 //!
 //! ```text
 //! U_sp = w^2/(s^2 + 2 xi w s + w^2) U_C                                  spool, thesis (4.1)
@@ -8,8 +9,8 @@
 //! U_C -> U_C + K_x s X_L                                                 what is fed forward of the load's velocity
 //! ```
 //!
-//! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v. The supply is at a constant
-//! pressure, or has one of its own: [`YieldingSupply`].
+//! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v.
+//! The supply is at a constant pressure, or has one of its own: [`YieldingSupply`].
 
 mod in_motion;
 mod supply;
@@ -47,7 +48,8 @@ pub struct LinearPlant<S = f64> {
     pub load: LinearLoad<S>,
     /// A supply that yields; `None` where its pressure is constant.
     pub supply: Option<YieldingSupply<S>>,
-    /// Gain K_x in V s/m from the velocity of the load to the command, at once; `None` where nothing is fed forward.
+    /// Gain K_x in V s/m from the velocity of the load to the command, at once; `None` where
+    /// nothing is fed forward.
     pub load_velocity_feed_forward: Option<S>,
 }
 
@@ -60,7 +62,8 @@ pub struct LinearPlant<S = f64> {
 ///                  N_v = A_A^2 Y_B + A_B^2 Y_A + G (A_A - A_B)^2
 /// ```
 ///
-/// Both are the same where both chambers are: equal areas, compliances and flow-pressure coefficients.
+/// Both are the same where both chambers are: equal areas, compliances and flow-pressure
+/// coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChamberDynamics<S = f64> {
     /// One load pressure, of a cylinder whose chambers are equal.
@@ -90,9 +93,10 @@ pub enum ChamberDynamics<S = f64> {
 /// What the force sensor pushes on, as linear as it is at the operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinearLoad<S = f64> {
-    /// It moves as it is told, whatever the force.
+    /// Its motion is prescribed, whatever the force.
     Prescribed,
-    /// A mass that yields, held to its ground by a spring and a damper; a wall that is touched is the spring.
+    /// A mass that yields, held to its ground by a spring and a damper; a wall that is touched is
+    /// the spring.
     Yielding {
         /// Mass m in kg.
         mass: S,
@@ -255,9 +259,9 @@ impl<S: Scalar> LinearPlant<S> {
     ///               v_L = s (K_S w^2 N_u U_C + (c s + k) V (Q + K_S D) X_0)/(V (Q (Z + K_S) + K_S Z D))
     /// ```
     ///
-    /// The velocity of the load that is fed forward is a second path of a prescribed motion, and a second loop of a load that yields:
-    /// V Q is less by w^2 N_u K_x s in both numerators of X_0, and in the denominator V (...) is less by K_S w^2 N_u K_x s of a load that
-    /// yields.
+    /// The velocity of the load that is fed forward is a second path of a prescribed motion, and a
+    /// second loop of a load that yields: V Q is less by w^2 N_u K_x s in both numerators of X_0,
+    /// and in the denominator V (...) is less by K_S w^2 N_u K_x s of a load that yields.
     ///
     /// # Example
     /// What the load adds: with a mass as heavy as the earth it does not move.

@@ -1,8 +1,9 @@
-//! The rig of Ledezma (2019) as a reference problem: the same numbers in examples, tests and benches.
+//! The rig of Ledezma (2019) as a reference problem: the same numbers in examples, tests and
+//! benches.
 //!
-//! Table A.1 for the components, Table 5.1 for the valve's edges, section 6.4.1 for the hose. What the thesis does not print
-//! (fluid modulus, density, viscosity, friction beyond f_v, the transition pressure) is chosen here: 1.45 GPa reproduces its
-//! tables.
+//! Table A.1 for the components, Table 5.1 for the valve's edges, section 6.4.1 for the hose. What
+//! the thesis does not print (fluid modulus, density, viscosity, friction beyond f_v, the
+//! transition pressure) is chosen here: 1.45 GPa reproduces its tables.
 
 use crate::actuator::Components;
 use crate::contact::Contact;
@@ -18,7 +19,8 @@ use crate::stiffness::StiffnessModel;
 /// Useful piston area of a 50 mm piston with 22 mm rods, in m2.
 pub const USEFUL_AREA: f64 = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
 
-/// Eaton Synflex 3130-08: 12.7 mm, E = 1.56e-5 m3/m at 70 bar and less by the slope times 35 bar at 35 bar.
+/// Eaton Synflex 3130-08: 12.7 mm, E = 1.56e-5 m3/m at 70 bar and less by the slope times 35 bar at
+/// 35 bar.
 pub fn hose() -> Hose {
     Hose {
         bore: 12.7e-3,
@@ -79,12 +81,14 @@ pub fn valve() -> Servovalve {
     }
 }
 
-/// What section 5.2.1 measured of its null: at 0.078 V rising and at -0.05 V falling. The threshold in it is not printed.
+/// What section 5.2.1 measured of its null: at 0.078 V rising and at -0.05 V falling. The threshold
+/// in it is not printed.
 pub fn measured_spool() -> SpoolImperfection {
     SpoolImperfection { null_bias: 0.014, hysteresis_width: Some(0.128), ..SpoolImperfection::default() }
 }
 
-/// The same valve with equal edges: K_vp = 3.0e-7 and K_vinp = 2.40e-9, which give K_qU 5.61e-5 and K_c 6.42e-13 at null.
+/// The same valve with equal edges: K_vp = 3.0e-7 and K_vinp = 2.40e-9, which give K_qU 5.61e-5 and
+/// K_c 6.42e-13 at null.
 pub fn valve_with_equal_edges() -> Servovalve {
     Servovalve {
         flow_coefficients: Edges::equal(3.0e-7),
@@ -93,7 +97,8 @@ pub fn valve_with_equal_edges() -> Servovalve {
     }
 }
 
-/// The whole actuator with this line on both sides, viscous friction and the sensor in series with its environment.
+/// The whole actuator with this line on both sides, viscous friction and the sensor in series with
+/// its environment.
 pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
     Components {
         fluid: Fluid {
@@ -113,8 +118,8 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
     }
 }
 
-/// The rig that solvers of differential equations are compared on: the valve and hose of the thesis in round numbers, LuGre
-/// friction, one modulus for line and chamber.
+/// The rig that solvers of differential equations are compared on: the valve and hose of the thesis
+/// in round numbers, LuGre friction, one modulus for line and chamber.
 ///
 /// ```text
 /// A_u = 1.583e-3 m2, V_line = 1.9e-4 m3, beta_e = 2.6e8 Pa, sigma_0 = 1e7 N/m, sigma_1 = 2000 N s/m, sigma_2 = 100 N s/m

@@ -1,4 +1,5 @@
-//! The servovalve: four edges with their leakage, a second-order spool, and what a data sheet says about them.
+//! The servovalve: four edges with their leakage, a second-order spool, and what a data sheet says
+//! about them.
 
 mod coefficients;
 mod flow;
@@ -70,7 +71,8 @@ pub struct Servovalve<S = f64> {
     pub flow_coefficients: Edges<S>,
     /// Leakage coefficients K_vin3 to K_vin6 at null in m3/(s Pa^0.5).
     pub leakage_coefficients: Edges<S>,
-    /// Shape lambda of the leakage over the spool position; the larger the narrower, 0 keeps the leakage constant.
+    /// Shape lambda of the leakage over the spool position; the larger the narrower, 0 keeps the
+    /// leakage constant.
     pub leakage_shape: S,
     /// Flow of the hydraulic amplifier q_tare in m3/s; takes no part in the motion.
     pub tare_flow: S,
@@ -170,7 +172,8 @@ impl Supply {
     }
 }
 
-/// Flow coefficient of one edge from rated flow and rated drop over the whole valve, in m3/(s Pa^0.5).
+/// Flow coefficient of one edge from rated flow and rated drop over the whole valve, in m3/(s
+/// Pa^0.5).
 ///
 /// ```text
 /// K_vp = q_vn / sqrt(dp_tn / 2)                                        thesis (4.12), corrected
@@ -194,9 +197,9 @@ pub fn flow_coefficient_from_rating<S: Scalar>(rated_flow: S, rated_drop: S) -> 
 /// K_vinp = (q_total - q_tare sqrt(p_in/p_tare)) / sqrt(2 p_in)         thesis (4.13), the tare flow subtracted
 /// ```
 ///
-/// Catalogues state the whole leakage, the amplifier's tare flow included; what is left runs through two paths of two
-/// edges. Flows in m3/s, the leakage at the pressure p_in and the tare flow, which goes with the root of the pressure, at
-/// p_tare, both in Pa.
+/// Catalogues state the whole leakage, the amplifier's tare flow included; what is left runs
+/// through two paths of two edges. Flows in m3/s, the leakage at the pressure p_in and the tare
+/// flow, which goes with the root of the pressure, at p_tare, both in Pa.
 ///
 /// # Example
 /// 0.61 gpm less 0.26 gpm, both at 3000 psi; 0.40 gpm at 3000 psi less what was measured at 70 bar

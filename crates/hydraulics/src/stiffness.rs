@@ -7,9 +7,10 @@
 //! C_line:     hose epsilon L/r_beta + (A_ho + E(p)) L/beta_0, else V_line/beta_e          what its sheet says
 //! ```
 //!
-//! and likewise C_B with L - x. A chamber of steel does not become soft because a hose is screwed to it, so
-//! `by_volume` is right, and takes of a hose what its sheet says at the operating pressure p; `uniform` is what the thesis' tables were made with, and is too soft wherever the chamber
-//! holds a fair share of the fluid.
+//! and likewise C_B with L - x. A chamber of steel does not become soft because a hose is screwed
+//! to it, so `by_volume` is right, and takes of a hose what its sheet says at the operating
+//! pressure p; `uniform` is what the thesis' tables were made with, and is too soft wherever the
+//! chamber holds a fair share of the fluid.
 
 mod length;
 mod range;
@@ -34,7 +35,8 @@ pub enum StiffnessModel {
     ByVolume,
 }
 
-/// Compliance dV/dp of both chambers with their lines, linear in the piston position. Units: m2, m, m3/Pa, m2/Pa.
+/// Compliance dV/dp of both chambers with their lines, linear in the piston position. Units: m2, m,
+/// m3/Pa, m2/Pa.
 ///
 /// ```text
 /// C_A(x) = constant_a + slope_a x        C_B(x) = constant_b + slope_b (L - x)
@@ -57,8 +59,8 @@ pub struct ChamberCompliance<S = f64> {
     pub slope_b: S,
 }
 
-/// Compliance of both chambers with their lines (A first), for fluids of these moduli in Pa (they differ between the
-/// chambers when air is entrained and the pressures differ).
+/// Compliance of both chambers with their lines (A first), for fluids of these moduli in Pa (they
+/// differ between the chambers when air is entrained and the pressures differ).
 ///
 /// # Example
 /// The thesis' hose, both models, piston at mid stroke
@@ -117,7 +119,8 @@ pub fn compliance_at<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> [S; 2]
     ]
 }
 
-/// Stiffness K_HA = A_A^2/C_A and K_HB = A_B^2/C_B of the two shut chambers at piston position x, in N/m.
+/// Stiffness K_HA = A_A^2/C_A and K_HB = A_B^2/C_B of the two shut chambers at piston position x,
+/// in N/m.
 ///
 /// Source: thesis (6.1).
 pub fn chamber_stiffness<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> [S; 2] {

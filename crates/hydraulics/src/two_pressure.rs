@@ -1,5 +1,6 @@
-//! The two-pressure model: one pressure a chamber, the spool, the piston on the force sensor. The full truth that the
-//! reduced linear models are measured against, at any position, with any edges and any areas.
+//! The two-pressure model: one pressure a chamber, the spool, the piston on the force sensor. The
+//! full truth that the reduced linear models are measured against, at any position, with any edges
+//! and any areas.
 //!
 //! ```text
 //! d2U_Csp/dt2 = w_nv^2 (U_C - U_Csp) - 2 xi_v w_nv dU_Csp/dt                    thesis (4.1)
@@ -9,8 +10,8 @@
 //! M dv/dt = A_A p_A - A_B p_B - f_v v - F_e,      F_e = K_S (x - x_L)           thesis (4.29)
 //! ```
 //!
-//! The deflection of the sensor is a state and the piston's position is not: the force is a small difference of two long
-//! positions, which would cost it six digits.
+//! The deflection of the sensor is a state and the piston's position is not: the force is a small
+//! difference of two long positions, which would cost it six digits.
 
 mod linearization;
 mod reduction;
@@ -106,8 +107,8 @@ impl<S: Scalar> TwoPressureModel<S> {
 }
 
 impl TwoPressureModel {
-    /// The model of an actuator, its friction replaced by a viscous one in N s/m, the fluid's modulus taken at these
-    /// chamber pressures in Pa (they matter with entrained air alone).
+    /// The model of an actuator, its friction replaced by a viscous one in N s/m, the fluid's
+    /// modulus taken at these chamber pressures in Pa (they matter with entrained air alone).
     pub fn new(
         actuator: &Actuator,
         pressures: [f64; 2],
@@ -129,7 +130,8 @@ impl TwoPressureModel {
         }
     }
 
-    /// State and input in which the model rests (or moves steadily with its load) at an operating point.
+    /// State and input in which the model rests (or moves steadily with its load) at an operating
+    /// point.
     pub fn at(&self, point: &OperatingPoint) -> (TwoPressureState, TwoPressureInput) {
         let force = point.hydraulic_force - self.viscous_friction * point.velocity;
         let deflection = force / self.sensor_stiffness;

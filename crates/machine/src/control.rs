@@ -19,14 +19,14 @@ pub enum Control {
     Continuous(Box<Commanded>),
     /// It acts once a sample.
     Sampled(Box<Sampled>),
-    /// There is none: a stated command goes to the valve.
+    /// Without a controller: a stated command goes to the valve.
     Open(Box<Commanded>),
 }
 
-/// A machine behind a hold, and the computer that commands it.
+/// A machine whose command is held between samples, and the computer that commands it.
 #[derive(Clone, Debug)]
 pub struct Sampled {
-    /// The machine behind its hold.
+    /// The machine with its hold.
     pub held: Commanded,
     /// G and F in z.
     pub controller: SampledController,
@@ -80,7 +80,8 @@ impl Control {
         [System::<f64>::states(system), System::<f64>::inputs(system)]
     }
 
-    /// How many inputs come before those of the machine: the reference; behind a hold the command and the reference.
+    /// Number of inputs before those of the machine: the reference; with a hold, the command and
+    /// the reference.
     pub fn leading_inputs(&self) -> usize {
         self.commanded().leading_inputs()
     }
@@ -90,7 +91,8 @@ impl Control {
         System::<f64>::delays(self.commanded())
     }
 
-    /// Indicators in a state: those of the machine are positive while all is well, that of the command's limit while it is reached.
+    /// Indicators in a state: those of the machine are positive while all is well, that of the
+    /// command's limit while it is reached.
     pub fn indicators(&self, state: &[f64], inputs: &[f64]) -> Vec<f64> {
         let system = self.commanded();
         let mut indicators = vec![1.0; System::<f64>::indicators(system)];
@@ -98,8 +100,9 @@ impl Control {
         indicators
     }
 
-    /// The waves under way while the machine stands as it begins: those of its lines, and those that controller and sensor sent, the
-    /// one from the other. `first` are the inputs before the machine's.
+    /// The waves under way while the machine stands as it begins: those of its lines, and those
+    /// that controller and sensor sent, the one from the other. `first` are the inputs before the
+    /// machine's.
     pub fn under_way(&self, state: &[f64], first: &[f64], beginning: &Beginning) -> Vec<f64> {
         let system = self.commanded();
         let mut inputs = [first, &beginning.all_inputs()].concat();
@@ -115,7 +118,8 @@ impl Control {
         inputs.split_off(known - lines)
     }
 
-    /// Drives it through a course; `watch` is told the simulated time after each step, and ends it by false.
+    /// Simulates it under an input schedule; `watch` is called with the simulated time after each
+    /// step and stops it by returning false.
     ///
     /// # Errors
     /// [`SimulationError`] when start or course do not fit the machine.

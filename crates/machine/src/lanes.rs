@@ -10,12 +10,14 @@ use phea_hydraulics::machine::{Machine, MachineError};
 
 use super::control::{Commanded, Control, Watcher};
 
-/// Lanes of a vector: two registers of the widest kind that is common, which hide the time that divisions and roots take.
+/// Lanes of a vector: two registers of the widest kind that is common, which hide the time that
+/// divisions and roots take.
 const LANES: usize = 4;
 
 /// Where machines come from, and where their outcomes go.
 pub trait Fleet<'a> {
-    /// The next machine, put into its lane, and what is to be done with it; `None` when there are no more.
+    /// The next machine, put into its lane, and what is to be done with it; `None` when there are
+    /// no more.
     fn next(
         &mut self,
         lane: usize,
@@ -29,7 +31,7 @@ pub trait Fleet<'a> {
     fn goes_on(&mut self) -> bool;
 }
 
-/// Drives machines one by one, until there are none. It is what lanes are held to.
+/// Simulates machines one by one until none are left. Simulations in lanes must agree with it.
 ///
 /// # Errors
 /// [`SimulationError`] when a task does not fit its machine.
@@ -45,13 +47,14 @@ pub fn one_by_one<'a>(
 pub struct Lanewise(Box<Commanded<Lanes<LANES>>>);
 
 impl Lanewise {
-    /// Whether this processor has the vector instructions that lanes want; [`one_by_one`] gives the same bits without.
+    /// Whether this processor has the vector instructions that lanes want; [`one_by_one`] gives the
+    /// same bits without.
     pub fn is_available() -> bool {
         can_drive::<Lanes<LANES>>()
     }
 
-    /// Lanes of machines built like this one, behind this sensor, under a controller with what it feeds forward of the load's velocity in
-    /// V s/m; without one under a stated command.
+    /// Lanes of machines built like this one, with this sensor, under a controller with what it
+    /// feeds forward of the load's velocity in V s/m; without one under a stated command.
     ///
     /// # Errors
     /// [`LinearError`] for a sensor or a controller that cannot be simulated.
@@ -68,7 +71,7 @@ impl Lanewise {
         })))
     }
 
-    /// Drives machines until there are none.
+    /// Simulates machines until none are left.
     ///
     /// # Errors
     /// As [`one_by_one`].

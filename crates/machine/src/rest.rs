@@ -30,7 +30,8 @@ pub struct Rest {
     pub limit_v: f64,
 }
 
-/// The rest of a loop under what stands still, near a guess of its states; `beginning` is where its machine stands there.
+/// The rest of a loop under what stands still, near a guess of its states; `beginning` is where its
+/// machine stands there.
 ///
 /// # Errors
 /// [`EquilibriumError`] where none is found.
@@ -72,7 +73,7 @@ pub fn at_rest(
     })
 }
 
-/// A machine behind a hold under a controller that stands still.
+/// A machine whose command is held by a controller in steady state.
 ///
 /// ```text
 /// 0 = F(1) r - m                 where the controller integrates

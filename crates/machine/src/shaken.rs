@@ -1,4 +1,5 @@
-//! A machine that is shaken: by its exact derivatives, and by sines until what it answers has settled.
+//! A machine that is shaken: by its exact derivatives, and by sines until what it answers has
+//! settled.
 
 use num_complex::Complex64;
 use phea_dynamics::simulation::{
@@ -10,7 +11,7 @@ use super::control::Control;
 
 /// What is shaken, and from where.
 pub struct Shaken<'a> {
-    /// States at the start, and behind them the waves under way.
+    /// States at the start, followed by the waves in transit.
     pub start: &'a [f64],
     /// What drives it.
     pub inputs: Vec<Input>,
@@ -23,7 +24,8 @@ pub struct Shaken<'a> {
 }
 
 impl Control {
-    /// What the force on the load answers to the sine of an input; `watch` is told the simulated time and ends it by false.
+    /// Response of the force on the load to a sine on an input; `watch` is called with the
+    /// simulated time and stops it by returning false.
     ///
     /// # Errors
     /// [`SimulationError`] when start or inputs do not fit the machine.
@@ -37,14 +39,16 @@ impl Control {
         sine_response(self.commanded(), start, inputs, sampler, &settings, &plan, &force, watch)
     }
 
-    /// Amplitudes of the states for a sine of amplitude one at the first input, by exact derivatives; `None` where they are no linear system.
+    /// Amplitudes of the states for a sine of amplitude one at the first input, by exact
+    /// derivatives; `None` where they are no linear system.
     pub fn orbit(&self, state: &[f64], inputs: &[f64], frequency_rad_per_s: f64) -> Option<Vec<Complex64>> {
         let amplitude = [Complex64::ONE];
         small_signal(self.commanded(), state, inputs, &amplitude, frequency_rad_per_s)
     }
 }
 
-/// Force on the load at a state of a machine, or of what begins with it; not a number for fewer states.
+/// Force on the load at a state of a machine, or of what begins with it; not a number for fewer
+/// states.
 pub fn force(machine: &Machine, state: &[f64]) -> f64 {
     let own: usize = Plant::<f64>::states(machine);
     state.get(..own).map_or(f64::NAN, |state| Plant::<f64>::measurement(machine, state, &[]))

@@ -52,7 +52,7 @@ impl DisplayUnit {
         value / self.in_si
     }
 
-    /// An SI value in this unit with so many significant digits, without the symbol.
+    /// An SI value in this unit with this number of significant digits, without the symbol.
     ///
     /// # Example
     /// ```
@@ -63,12 +63,12 @@ impl DisplayUnit {
         significant(self.of(value), digits)
     }
 
-    /// The same with the symbol behind it.
+    /// The same, followed by the symbol.
     pub fn text(self, value: f64, digits: usize) -> String {
         self.with_symbol(self.number(value, digits))
     }
 
-    /// Numbers with the symbol behind them; a ratio has none.
+    /// Numbers followed by the symbol; a ratio has no symbol.
     pub fn with_symbol(self, numbers: String) -> String {
         if self.symbol == "1" { numbers } else { format!("{numbers} {}", self.symbol) }
     }

@@ -61,8 +61,8 @@ impl Whole {
         self.0.iter().rev().map(|limb| format!("{limb:09}")).collect()
     }
 
-    /// This times 10^`ten` over the divisors, as the nearest f64: quotients are carried to forty digits, and what is
-    /// left beyond them decides a tie.
+    /// This times 10^`ten` over the divisors, as the nearest f64: quotients are carried to forty
+    /// digits, and what is left beyond them decides a tie.
     pub(crate) fn to_f64(&self, ten: i64, divisors: &[u64]) -> f64 {
         if self.is_zero() {
             return 0.0;

@@ -49,13 +49,14 @@ const MAXIMUM_EXPONENT: i32 = 16;
 
 /// The SI value of a text such as `"9.8 L/min"`.
 ///
-/// The decimal number and the factors of its units are multiplied exactly and rounded once (π and square roots are
-/// rounded on their own). `Hz` counts cycles: where an angular frequency is expected, `"175 Hz"` is 2π·175 rad/s.
-/// `inf` is read as infinity; whether a key accepts it is the key's business.
+/// The decimal number and the factors of its units are multiplied exactly and rounded once (π and
+/// square roots are rounded on their own). `Hz` counts cycles: where an angular frequency is
+/// expected, `"175 Hz"` is 2π·175 rad/s. `inf` is read as infinity; whether a key accepts it is the
+/// key's business.
 ///
 /// # Errors
-/// [`QuantityError`] for text that is no quantity, an unknown unit, another dimension, a missing unit, or a number
-/// that f64 cannot hold.
+/// [`QuantityError`] for text that is no quantity, an unknown unit, another dimension, a missing
+/// unit, or a number that f64 cannot hold.
 ///
 /// # Example
 /// ```
@@ -375,7 +376,7 @@ impl Reader<'_> {
         unit::find(name).map(|unit| Product::of(&unit)).ok_or_else(|| unknown(name, start..self.at))
     }
 
-    /// In halves; `None` where there is none.
+    /// The exponent in halves; `None` if it is absent.
     fn exponent(&mut self) -> Result<Option<i32>, QuantityError> {
         let start = self.at;
         match self.peek() {

@@ -4,8 +4,8 @@ use super::dimension::Dimension;
 use super::display_unit::DisplayUnit;
 use super::parse::parse;
 
-/// The shortest TOML text that reads back as exactly `value`: `"70 bar"` with its quotes where an engineering unit
-/// can say it, a bare SI number where none can.
+/// The shortest TOML text that reads back as exactly `value`: `"70 bar"` with its quotes where an
+/// engineering unit can say it, a bare SI number where none can.
 ///
 /// # Example
 /// ```
@@ -25,7 +25,8 @@ pub fn print(value: f64, dimension: &Dimension) -> String {
     }
 }
 
-/// For people: `value` rounded to so many significant digits, in the unit they expect, without quotes.
+/// For readers: `value` rounded to this number of significant digits, in the customary unit,
+/// without quotes.
 ///
 /// # Example
 /// ```
@@ -67,7 +68,8 @@ pub fn print_bare(value: f64) -> String {
     if value.is_nan() { "nan".to_string() } else { text }
 }
 
-/// The largest of the dimension's units that is not above the value; the smallest for zero and below.
+/// The largest of the dimension's units that is not above the value; the smallest for zero and
+/// below.
 fn fitting_unit(value: f64, dimension: &Dimension) -> Option<&'static str> {
     let fits = |unit: &&&str| factor(unit, dimension) <= value.abs() * (1.0 + 1e-12);
     dimension.units.iter().rev().find(fits).or(dimension.units.first()).copied()

@@ -1,5 +1,5 @@
-/// A number with this many significant digits, as an engineer writes it: plain between 0.001 and 100 000, with a power
-/// of ten elsewhere.
+/// A number with this many significant digits, as an engineer writes it: plain between 0.001 and
+/// 100 000, with a power of ten elsewhere.
 ///
 /// # Example
 /// ```

@@ -2,9 +2,9 @@
 
 /// The candidate a reader most likely meant, or none if every one is far off.
 ///
-/// Equal but for case wins; otherwise the fewest insertions, deletions, substitutions and swaps of neighbours, at
-/// most a third of the name's length (one for two or three characters, two from four on). Ties go to the earlier one.
-/// Another word for a candidate is taken for it.
+/// Equal but for case wins; otherwise the fewest insertions, deletions, substitutions and swaps of
+/// neighbours, at most a third of the name's length (one for two or three characters, two from four
+/// on). Ties go to the earlier one. Another word for a candidate is taken for it.
 ///
 /// # Example
 /// ```

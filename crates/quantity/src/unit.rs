@@ -2,7 +2,8 @@
 
 use super::dimension::Exponents;
 
-/// A unit: `numerator / denominator · 10^ten · (2π)^turns` of its SI unit, all whole numbers, so exact.
+/// A unit: `numerator / denominator · 10^ten · (2π)^turns` of its SI unit, all whole numbers, so
+/// exact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit {
     pub(crate) names: &'static [&'static str],
@@ -45,7 +46,8 @@ const PRESSURE: Exponents = Exponents::whole(1, -1, -2, 0, 0);
 const ANGLE: Exponents = Exponents::whole(0, 0, 0, 0, 1);
 const ROTATION: Exponents = Exponents::whole(0, 0, -1, 0, 1);
 
-/// Definitions: 1 in = 25.4 mm, 1 lb = 0.45359237 kg, g = 9.80665 m/s², 1 gal (US) = 231 in³, all exact.
+/// Definitions: 1 in = 25.4 mm, 1 lb = 0.45359237 kg, g = 9.80665 m/s², 1 gal (US) = 231 in³, all
+/// exact.
 static UNITS: &[Unit] = &[
     unit(&["m"], LENGTH, 1, 0).prefixed(),
     unit(&["in", "inch"], LENGTH, 254, -4),

@@ -5,7 +5,8 @@ use num_complex::Complex64;
 use super::{Analytic, SMALL, series, slope_of_series};
 use crate::portable;
 
-/// A disc of the complex plane: what is calculated with discs holds what is calculated with any of their points.
+/// A disc of the complex plane. The result of an operation on discs contains the results for all of
+/// their points.
 ///
 /// ```text
 /// (a, r) + (b, q) = (a + b, r + q)
@@ -14,7 +15,7 @@ use crate::portable;
 /// exp (a, r) = (e^a, |e^a| (e^r - 1))
 /// ```
 ///
-/// Every operation adds to the radius what its rounding may be, eight units in the last place of what is rounded.
+/// Every operation adds a bound of its rounding error to the radius: eight units in the last place.
 /// Source: Gargantini and Henrici (1971), Numerische Mathematik 18.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
@@ -22,19 +23,20 @@ pub struct Disc {
     radius: f64,
 }
 
-/// Bound of the rounding of one operation, as a part of its result.
+/// Bound of the rounding error of one operation, relative to its result.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl Disc {
     /// The whole plane.
     pub const WHOLE: Disc = Disc { centre: Complex64::ZERO, radius: f64::INFINITY };
 
-    /// A disc; the whole plane where a number is none.
+    /// A disc; the whole plane if the centre is not finite or the radius is not a non-negative
+    /// number.
     pub fn new(centre: Complex64, radius: f64) -> Disc {
         if centre.is_finite() && radius >= 0.0 { Disc { centre, radius } } else { Disc::WHOLE }
     }
 
-    /// The smallest disc that holds j w for every w between two frequencies in rad/s.
+    /// The smallest disc that contains j w for every w between two frequencies in rad/s.
     pub fn of_frequencies([from, to]: [f64; 2]) -> Disc {
         let middle = 0.5 * (from + to);
         let radius = (to - middle).abs().max((middle - from).abs());
@@ -46,32 +48,32 @@ impl Disc {
         self.centre
     }
 
-    /// Its radius; infinite where nothing is known.
+    /// Its radius; infinite for the whole plane.
     pub fn radius(self) -> f64 {
         self.radius
     }
 
-    /// Whether a point lies in it.
+    /// Whether it contains a point.
     pub fn contains(self, point: Complex64) -> bool {
         portable::magnitude(point - self.centre) <= self.radius
     }
 
-    /// The distance of its nearest point from zero; 0 where it holds zero.
+    /// The smallest distance of its points from zero; 0 if it contains zero.
     pub fn distance(self) -> f64 {
         (portable::magnitude(self.centre) * (1.0 - ROUNDING) - self.radius).max(0.0)
     }
 
-    /// The derivative of (1 - e^(-z))/z, whose own value is given.
+    /// The derivative of (1 - e^(-z))/z, given the value of that function.
     pub(super) fn slope_of_mean_of_decay(self, mean: Disc) -> Disc {
         if portable::magnitude(self.centre) + self.radius < SMALL {
             let found = slope_of_series(self);
-            // what the series leaves out
+            // adds the truncation error of the series
             return Disc::rounded(found.centre, found.radius, 1.0);
         }
         ((-self).exponential() - mean) / self
     }
 
-    /// The result of an operation: its centre is good to `size` times the rounding.
+    /// The result of an operation whose centre is accurate to `size` times the rounding.
     fn rounded(centre: Complex64, radius: f64, size: f64) -> Disc {
         Disc::new(centre, radius * (1.0 + ROUNDING) + ROUNDING * size)
     }
@@ -83,7 +85,8 @@ impl Disc {
             return Disc::WHOLE;
         }
         let size = portable::magnitude(self.centre) / left;
-        // the rounding of the denominator counts in full where centre and radius are nearly alike
+        // the relative rounding error of the denominator grows where radius and centre are nearly
+        // equal
         let relative = 1.0 + square / left;
         Disc::rounded(
             self.centre.conj() / left,
@@ -166,7 +169,7 @@ impl Analytic for Disc {
     fn mean_of_decay(self) -> Disc {
         if portable::magnitude(self.centre) + self.radius < SMALL {
             let found = series(self);
-            // what the series leaves out
+            // adds the truncation error of the series
             return Disc::rounded(found.centre, found.radius, 1.0);
         }
         (Disc::from(1.0) - (-self).exponential()) / self
@@ -188,7 +191,8 @@ mod tests {
         disc.centre + turn * (disc.radius * share(state).sqrt())
     }
 
-    /// Whatever points are taken from two discs, their sum, product, quotient and the rest lie in those of the discs.
+    /// Whatever points are taken from two discs, their sum, product, quotient and the rest lie in
+    /// those of the discs.
     #[test]
     fn results_hold_those_of_every_point() {
         let mut state = 4;

@@ -4,10 +4,10 @@ use num_complex::Complex64;
 
 use super::{Analytic, Disc};
 
-/// A function's value over a set of its argument, and its derivative there.
+/// The value of a function over a set of arguments, and its derivative over that set.
 ///
 /// # Example
-/// Over a short stretch a function lies in a disc whose error shrinks with the square of its length.
+/// Over a short interval the excess of the disc shrinks with the square of the interval's length.
 /// ```
 /// use phea_dynamics::analytic::{Analytic, Disc, Jet};
 /// let square_less_itself = |s: Jet| s * s - s;
@@ -23,7 +23,7 @@ pub struct Jet {
 }
 
 impl Jet {
-    /// A disc that holds what a function makes of another disc: its value at the centre, and the mean value theorem for the rest.
+    /// A disc that contains the image of a disc under a function, by the mean value theorem.
     ///
     /// ```text
     /// f(D) in f(c) + f'(D) (D - c)
@@ -113,7 +113,8 @@ mod tests {
         (s * s + A::from(4.0)).scaled(0.5) * delayed / (s + A::from(1.0)) - s.scaled(0.7).mean_of_decay()
     }
 
-    /// What is enclosed holds the function at every point, and comes closer by a hundred where the stretch is ten times shorter.
+    /// What is enclosed holds the function at every point, and comes closer by a hundred where the
+    /// stretch is ten times shorter.
     #[test]
     fn enclosures_hold_and_shrink_by_the_square() {
         for middle in [0.0, 0.2, 1.0, 5.0, 40.0] {

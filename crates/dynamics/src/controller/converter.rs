@@ -22,9 +22,10 @@ pub struct Converter {
     range: [f64; 2],
 }
 
-/// Why there is no such converter: it has between 1 and 32 bits over a range that is finite and increases.
+/// The bits or the range are invalid. A converter has 1 to 32 bits and a finite range
+/// `[minimum, maximum]` with minimum < maximum.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{bits} bits from {minimum} to {maximum} are no converter")]
+#[error("a converter with {bits} bits from {minimum} to {maximum} is invalid")]
 pub struct ConverterError {
     /// Bits.
     pub bits: u32,
@@ -35,7 +36,7 @@ pub struct ConverterError {
 }
 
 impl Converter {
-    /// A converter with so many bits over a range `[minimum, maximum]`.
+    /// A converter with this number of bits over a range `[minimum, maximum]`.
     ///
     /// # Errors
     /// [`ConverterError`].
@@ -55,7 +56,7 @@ impl Converter {
         self.step
     }
 
-    /// The nearest level, the end of the range beyond it.
+    /// The nearest level, limited to the range.
     pub fn rounded(&self, value: f64) -> f64 {
         let [minimum, maximum] = self.range;
         ((value / self.step).round() * self.step).clamp(minimum, maximum)

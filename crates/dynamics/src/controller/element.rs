@@ -2,8 +2,8 @@ use num_complex::Complex64;
 
 use crate::linear::{LinearError, TransferFunction};
 
-/// A building block of loop shaping. Frequencies in rad/s; every block but gain, integrator and differentiator has unit gain at
-/// zero frequency, so that adding one does not move the loop there.
+/// A building block of loop shaping. Frequencies in rad/s; every block but gain, integrator and
+/// differentiator has unit gain at zero frequency, so that adding one does not move the loop there.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Element {
     /// k
@@ -74,7 +74,7 @@ pub enum Element {
     General(TransferFunction),
 }
 
-/// An element that may be switched off without being lost.
+/// An element that can be disabled without being deleted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// The element.
@@ -83,7 +83,7 @@ pub struct Stage {
     pub enabled: bool,
 }
 
-/// Elements in series; none is the gain 1.
+/// Elements in series; an empty series is the gain 1.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compensator {
     /// The elements, in the order in which they were added.
@@ -96,7 +96,8 @@ impl Compensator {
         Compensator { stages: elements.into_iter().map(|element| Stage { element, enabled: true }).collect() }
     }
 
-    /// The product of the enabled elements. A gain is the same in s and in z, and so joins elements of either.
+    /// The product of the enabled elements. A gain is the same in s and in z, and so combines with
+    /// elements of either domain.
     ///
     /// # Errors
     /// A frequency of zero or a number that is not finite; elements in different time domains.

@@ -11,15 +11,16 @@ const INTEGRATING: f64 = 1e-12;
 /// Singular values below this are zero: an equation that says nothing.
 const SINGULAR: f64 = 1e-13;
 
-/// The row w that reads the integral part of an output off the states, w x; all zero where nothing integrates.
+/// The row w that reads the integral part of an output off the states, w x; all zero where nothing
+/// integrates.
 ///
 /// ```text
 /// G = c_1/(s - p) + ... + c_m/(s - p)^m + what does not integrate          p = 0; sampled, z in place of s and p = 1
 /// w (A - p)^m = 0,    w (A - p)^(k - 1) B = c_k,    k = 1 ... m
 /// ```
 ///
-/// The first equation says that the rest of the states takes no part, the others that what is read is what the integral part
-/// of G makes of the input.
+/// The first equation says that the rest of the states takes no part, the others that what is read
+/// is what the integral part of G makes of the input.
 pub(crate) fn integral_row(
     function: &TransferFunction,
     dynamics: &DMatrix<f64>,
@@ -108,7 +109,8 @@ mod tests {
         near(of(&[1.0], &[1.0, 2.0]), &[]);
     }
 
-    /// Driven by a constant error, what is read is the integral of it, however fast the other poles are.
+    /// Driven by a constant error, what is read is the integral of it, however fast the other poles
+    /// are.
     #[test]
     fn the_row_reads_the_integral() {
         let polynomial = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());

@@ -36,20 +36,23 @@ pub struct ControllerOutput {
     pub command: f64,
     /// The command before its limits.
     pub wanted: f64,
-    /// Part of the command that the integral part of G holds, the error of this sample not yet in it; zero where nothing integrates.
+    /// Part of the command that the integral part of G holds, the error of this sample not yet in
+    /// it; zero where nothing integrates.
     pub integral: f64,
     /// Whether the limit was reached.
     pub limited: bool,
-    /// The reference behind the prefilter.
+    /// The reference after the prefilter.
     pub filtered_reference: f64,
 }
 
 impl Controller {
-    /// The controller as it is deployed with this sample time: continuous compensators discretised by the timing's
-    /// method, sampled ones taken as they are. A prefilter that acts before the samples is no part of it.
+    /// The controller as it is deployed with this sample time: continuous compensators discretised
+    /// by the timing's method, sampled ones taken as they are. A prefilter that acts before the
+    /// samples is no part of it.
     ///
     /// # Errors
-    /// A compensator that is improper, has dead time or cannot be discretised, or a sampled one with another sample time.
+    /// A compensator that is improper, has dead time or cannot be discretised, or a sampled one
+    /// with another sample time.
     pub fn sampled(&self, sample_time_s: f64) -> Result<SampledController, LinearError> {
         let sampled = |compensator: &Compensator| -> Result<TransferFunction, LinearError> {
             let function = compensator.transfer_function()?;
@@ -88,8 +91,9 @@ impl SampledController {
         }
     }
 
-    /// The state in which it holds a command while reference and measurement stand still: an integral part carries the command,
-    /// and a controller without one gives what its error makes of it.
+    /// The state in which it holds a command while reference and measurement stand still: an
+    /// integral part carries the command, and a controller without one gives what its error makes
+    /// of it.
     ///
     /// # Example
     /// ```
@@ -112,7 +116,8 @@ impl SampledController {
         ControllerState { feedback, prefilter }
     }
 
-    /// A state with these memories, in the order of [`ControllerState::memories`]; `None` for another number of them.
+    /// A state with these memories, in the order of [`ControllerState::memories`]; `None` for
+    /// another number of them.
     ///
     /// # Example
     /// A controller goes on where another left off.
@@ -207,8 +212,8 @@ impl SampledController {
     }
 }
 
-/// The row that reads the integral part off the states of these sections: their matrices are what each state alone and the
-/// input alone make of them.
+/// The row that reads the integral part off the states of these sections: their matrices are what
+/// each state alone and the input alone make of them.
 fn integral_of(function: &TransferFunction, sections: &[Section]) -> Vec<f64> {
     let states = 2 * sections.len();
     let next = |state: &[f64], input: f64| -> Vec<f64> {

@@ -2,7 +2,8 @@ use num_complex::Complex64;
 
 use crate::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
 
-/// Denominators at z = 1 up to this are of integrators: 1e-12 rad of pole angle, beyond any sampled plant.
+/// Denominators at z = 1 up to this are of integrators: 1e-12 rad of pole angle, beyond any sampled
+/// plant.
 const INTEGRATING: f64 = 1e-12;
 
 /// A second-order difference equation, in the transposed direct form that rounds least.
@@ -20,12 +21,13 @@ pub struct Section {
 }
 
 impl Section {
-    /// A sampled transfer function as sections in series, in the order in which a [`super::SampledController`] runs them. The section
-    /// with the pole nearest z = 1 comes last: the integral part acts on the command itself, where a limit can be told to it.
+    /// A sampled transfer function as sections in series, in the order in which a
+    /// [`super::SampledController`] runs them. The section with the pole nearest z = 1 comes last,
+    /// so that the integral part acts on the command itself and anti-windup can act on it.
     ///
     /// # Errors
-    /// [`LinearError::WrongDomain`] for a continuous one, [`LinearError::Improper`], [`LinearError::NotRational`] for one with dead
-    /// time, which is no section.
+    /// [`LinearError::WrongDomain`] for a continuous one, [`LinearError::Improper`],
+    /// [`LinearError::NotRational`] for one with dead time, which is no section.
     ///
     /// # Example
     /// An integrator of 2/s every 0.1 s by the bilinear rule, and back:
@@ -56,7 +58,8 @@ impl Section {
         Ok(cascade(function))
     }
 
-    /// The section as a transfer function in z; poles at z = 0 that only stand for its order are left out.
+    /// The section as a transfer function in z; poles at z = 0 that only stand for its order are
+    /// left out.
     ///
     /// # Errors
     /// Those of [`Polynomial::roots`], and [`LinearError::SampleTime`].
@@ -75,8 +78,8 @@ impl Section {
         self.numerator[0] * input + state[0]
     }
 
-    /// The state in which a constant input gives a constant output, which takes the input's place; a section that
-    /// integrates gives what is wanted of it.
+    /// The state in which a constant input gives a constant output, which takes the input's place;
+    /// a section that integrates gives what is wanted of it.
     pub(super) fn settled(&self, signal: &mut f64, wanted: f64) -> [f64; 2] {
         let input = *signal;
         let under = 1.0 + self.denominator.iter().sum::<f64>();
@@ -123,7 +126,8 @@ fn cascade(function: &TransferFunction) -> Vec<Section> {
     sections.iter().enumerate().map(|(index, (poles, zeros))| section(poles, zeros, gain(index))).collect()
 }
 
-/// Conjugate pairs together, real roots two by two beginning with those nearest z = 1, a single one left over.
+/// Conjugate pairs together, real roots two by two beginning with those nearest z = 1, a single one
+/// left over.
 fn grouped(roots: &[Complex64]) -> Vec<Vec<Complex64>> {
     let mut groups: Vec<Vec<Complex64>> =
         roots.iter().filter(|root| root.im > 0.0).map(|root| vec![*root, root.conj()]).collect();

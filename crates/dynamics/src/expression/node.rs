@@ -116,7 +116,8 @@ impl Binary {
         }
     }
 
-    /// Sign between the operands, binding strength of the operation, and what its right operand must exceed.
+    /// Sign between the operands, binding strength of the operation, and what its right operand
+    /// must exceed.
     fn sign(self) -> (&'static str, u8, u8) {
         match self {
             Binary::Add => (" + ", 1, 0),

@@ -62,7 +62,8 @@ where
     needed(&tape.nodes.take(), results)
 }
 
-/// The nodes that some result is computed from, in their order, and where the results are among them.
+/// The nodes that some result is computed from, in their order, and where the results are among
+/// them.
 fn needed(nodes: &[Node], results: Vec<NodeIndex>) -> (Vec<Node>, Vec<NodeIndex>) {
     let mut wanted = vec![false; nodes.len()];
     for &result in &results {

@@ -1,4 +1,5 @@
-//! Sign changes of a function of frequency, and its minima, bracketed on a grid and refined by bisection.
+//! Sign changes of a function of frequency, and its minima, bracketed on a grid and refined by
+//! bisection.
 
 /// A function of frequency with its slope (only the slope's sign is used).
 pub(super) struct Curve<V, S> {
@@ -7,8 +8,8 @@ pub(super) struct Curve<V, S> {
 }
 
 impl<V: Fn(f64) -> f64, S: Fn(f64) -> f64> Curve<V, S> {
-    /// All frequencies at which the value changes sign or touches zero. Two crossings between neighbouring grid points
-    /// are found by the extremum that must lie between them.
+    /// All frequencies at which the value changes sign or touches zero. Two crossings between
+    /// neighbouring grid points are found by the extremum that must lie between them.
     pub(super) fn zeros(&self, grid: &[f64]) -> Vec<f64> {
         let mut found = Vec::new();
         for pair in grid.windows(2) {
@@ -45,7 +46,8 @@ impl<V: Fn(f64) -> f64, S: Fn(f64) -> f64> Curve<V, S> {
     }
 }
 
-/// The point where the sign of a function changes between two positive frequencies, to the last bit.
+/// The point where the sign of a function changes between two positive frequencies, to the last
+/// bit.
 pub(super) fn bisect(function: &impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
     let (mut low, mut high) = (low, high);
     let below = function(low) < 0.0;

@@ -5,7 +5,8 @@ use num_complex::Complex64;
 use crate::linear::{LinearError, TimeDomain, TransferFunction};
 use crate::portable::{argument, exp, ln, magnitude, pow};
 
-/// `points` frequencies from `from` to `to` (both included, positive, in rad/s), equally spaced in their logarithm.
+/// `points` frequencies from `from` to `to` (both included, positive, in rad/s), equally spaced in
+/// their logarithm.
 ///
 /// # Errors
 /// [`LinearError::Frequency`] when an end is not positive and finite, or `from` is above `to`.
@@ -37,15 +38,15 @@ pub fn logarithmic_grid(from: f64, to: f64, points: usize) -> Result<Vec<f64>, L
     Ok((0..points).map(at).collect())
 }
 
-/// Points in one decade of a search grid, besides those at the corners.
+/// Points per decade of a search grid, in addition to those at the corners.
 const POINTS_PER_DECADE: f64 = 100.0;
 /// Rotations by dead time that a search follows.
 const MAXIMUM_ROTATIONS: f64 = 1000.0;
 /// Magnitude below which rotations by dead time are of no interest.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// Frequencies between which the response has no feature: dense in logarithm, denser around every zero and pole, and
-/// as dense as the dead time turns. Beyond its ends only asymptotes are left.
+/// Frequencies between which the response has no feature: dense in logarithm, denser around every
+/// zero and pole, and as dense as the dead time turns. Beyond its ends only asymptotes are left.
 pub(super) fn search_grid(system: &TransferFunction) -> Vec<f64> {
     let corners: Vec<Complex64> = equivalent_roots(system);
     let sizes = corners.iter().map(|root| magnitude(*root)).chain(asymptotic_crossovers(system));

@@ -10,10 +10,12 @@ use super::grid::{rotation_limit, search_grid};
 use crate::linear::{TimeDomain, TransferFunction};
 use crate::portable::{ln, magnitude};
 
-/// A crossing of the negative real axis: the loop passes through -1 when its gain is multiplied by `factor`.
+/// A crossing of the negative real axis: the loop passes through -1 when its gain is multiplied by
+/// `factor`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainMargin {
-    /// Phase crossover frequency in rad/s; zero or infinity where the response ends on the negative axis.
+    /// Phase crossover frequency in rad/s; zero or infinity where the response ends on the negative
+    /// axis.
     pub frequency_rad_per_s: f64,
     /// 1/|L|. Above one: the gain may grow by it; below one: it may fall to it.
     pub factor: f64,
@@ -31,9 +33,11 @@ impl GainMargin {
 pub struct PhaseMargin {
     /// Gain crossover frequency in rad/s.
     pub frequency_rad_per_s: f64,
-    /// Angle from -1 to L in degrees, in (-180, 180]: lag (if positive) or lead (if negative) that brings L to -1.
+    /// Angle from -1 to L in degrees, in (-180, 180]: lag (if positive) or lead (if negative) that
+    /// brings L to -1.
     pub phase_deg: f64,
-    /// Dead time in s that brings this crossing to -1: the angle, taken as a lag in [0, 360), over the frequency.
+    /// Dead time in s that brings this crossing to -1: the angle, taken as a lag in [0, 360), over
+    /// the frequency.
     pub delay_s: f64,
 }
 
@@ -48,8 +52,8 @@ pub struct ModulusMargin {
 
 /// All margins of a loop L, crossings in order of frequency.
 ///
-/// The numbers say how far the response is from -1; they are margins of stability only for a loop that is stable when
-/// closed.
+/// The numbers say how far the response is from -1; they are margins of stability only for a loop
+/// that is stable when closed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Margins {
     /// Crossings of the negative real axis.
@@ -58,18 +62,21 @@ pub struct Margins {
     pub phase_margins: Vec<PhaseMargin>,
     /// Closest approach to -1.
     pub modulus_margin: ModulusMargin,
-    /// Frequency in rad/s up to which crossings were listed: infinite, unless dead time makes them endless.
+    /// Frequency in rad/s up to which crossings were listed: infinite, unless dead time makes them
+    /// endless.
     pub listed_up_to_rad_per_s: f64,
 }
 
 impl Margins {
-    /// The crossing that limits an increase of gain (smallest factor of at least one); none: any increase is allowed.
+    /// The crossing that limits an increase of gain (smallest factor of at least one); none: any
+    /// increase is allowed.
     pub fn gain_increase(&self) -> Option<&GainMargin> {
         let above = self.gain_margins.iter().filter(|margin| margin.factor >= 1.0);
         above.min_by(|a, b| a.factor.total_cmp(&b.factor))
     }
 
-    /// The crossing that limits a decrease of gain (largest factor below one); none: any decrease is allowed.
+    /// The crossing that limits a decrease of gain (largest factor below one); none: any decrease
+    /// is allowed.
     pub fn gain_decrease(&self) -> Option<&GainMargin> {
         let below = self.gain_margins.iter().filter(|margin| margin.factor < 1.0);
         below.max_by(|a, b| a.factor.total_cmp(&b.factor))
@@ -114,9 +121,10 @@ impl Margins {
 /// modulus:  min over frequency of |1 + L|
 /// ```
 ///
-/// Crossings are bracketed on a grid that is dense around every zero and pole, and refined to the last bits on the
-/// factors. A response that runs along the negative axis (a double integrator) has no crossing there; its phase margin
-/// of zero says so. With dead time the crossings are endless; the first thousand turns are listed.
+/// Crossings are bracketed on a grid that is dense around every zero and pole, and refined to the
+/// last bits on the factors. A response that runs along the negative axis (a double integrator) has
+/// no crossing there; its phase margin of zero says so. With dead time the crossings are endless;
+/// the first thousand turns are listed.
 ///
 /// # Example
 /// ```
@@ -146,7 +154,8 @@ pub fn margins(open_loop: &TransferFunction) -> Margins {
     }
 }
 
-/// d ln L / dw at a frequency: the real part is the slope of ln |L|, the imaginary part that of the phase.
+/// d ln L / dw at a frequency: the real part is the slope of ln |L|, the imaginary part that of the
+/// phase.
 fn logarithmic_slope(open_loop: &TransferFunction, frequency: f64) -> Complex64 {
     let point = open_loop.boundary_point(frequency);
     let speed = match open_loop.domain() {

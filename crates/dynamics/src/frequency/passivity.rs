@@ -23,7 +23,8 @@ pub struct Band {
 /// A pole on the imaginary axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImaginaryPole {
-    /// Its frequency in rad/s: zero at the origin, infinity for a pole there (an impedance that grows like s).
+    /// Its frequency in rad/s: zero at the origin, infinity for a pole there (an impedance that
+    /// grows like s).
     pub frequency_rad_per_s: f64,
     /// How many poles coincide there.
     pub multiplicity: usize,
@@ -46,10 +47,12 @@ pub struct PassivityReport {
     pub bands: Vec<Band>,
 }
 
-/// A pole counts as lying on the imaginary axis when its real part is below this share of its magnitude.
+/// A pole counts as lying on the imaginary axis when its real part is below this share of its
+/// magnitude.
 const ON_AXIS: f64 = 1e-12;
 
-/// Whether a driving-point impedance Z(s) is passive (Colgate 1988; Hogan and Buerger 2005; thesis section 2.2).
+/// Whether a driving-point impedance Z(s) is passive (Colgate 1988; Hogan and Buerger 2005; thesis
+/// section 2.2).
 ///
 /// ```text
 /// 1. no poles in the right half plane
@@ -57,12 +60,14 @@ const ON_AXIS: f64 = 1e-12;
 /// 3. Re Z(jw) >= 0 at every frequency
 /// ```
 ///
-/// Condition 3 is decided on N(jw) conj D(jw), an even polynomial in w formed in twice the working precision: the
-/// bands end at its sign changes. Where it vanishes to rounding, as for a lossless network, it counts as zero; so does
-/// a band in which Re Z nowhere falls below -1e-12 |Z|, since the factors themselves are rounded.
+/// Condition 3 is decided on N(jw) conj D(jw), an even polynomial in w formed in twice the working
+/// precision: the bands end at its sign changes. Where it vanishes to rounding, as for a lossless
+/// network, it counts as zero; so does a band in which Re Z nowhere falls below -1e-12 |Z|, since
+/// the factors themselves are rounded.
 ///
 /// # Errors
-/// [`LinearError::WrongDomain`] for a sampled impedance, [`LinearError::NotRational`] for one with dead time.
+/// [`LinearError::WrongDomain`] for a sampled impedance, [`LinearError::NotRational`] for one with
+/// dead time.
 ///
 /// # Example
 /// ```

@@ -8,9 +8,9 @@ use crate::portable::{atan2, cos, magnitude, sin};
 impl TransferFunction {
     /// Phase at a frequency >= 0 in rad, continuous along the frequency axis.
     ///
-    /// At low frequency it starts from 0 or, when the sign of the system is negative there, from -pi, plus pi/2 for
-    /// each differentiator and minus pi/2 for each integrator. Roots on the boundary of stability count as stable:
-    /// passing an undamped pole drops the phase by pi.
+    /// At low frequency it starts from 0 or, when the sign of the system is negative there, from
+    /// -pi, plus pi/2 for each differentiator and minus pi/2 for each integrator. Roots on the
+    /// boundary of stability count as stable: passing an undamped pole drops the phase by pi.
     ///
     /// # Example
     /// ```

@@ -24,21 +24,21 @@ pub enum Discretization {
     },
     /// Exact at the samples for an input that is constant between them (a converter's output).
     ZeroOrderHold,
-    /// Zeros and poles mapped by z = exp(sT); all but one zero at infinity go to z = -1; the gain agrees at low
-    /// frequency.
+    /// Zeros and poles mapped by z = exp(sT); all but one zero at infinity go to z = -1; the gain
+    /// agrees at low frequency.
     Matched,
 }
 
 impl TransferFunction {
     /// The sampled system; poles are mapped one by one, never through coefficients.
     ///
-    /// A dead time must be a whole number of samples, except for the zero-order hold, which takes any: a fraction of a
-    /// sample adds a pole at z = 0.
+    /// A dead time must be a whole number of samples, except for the zero-order hold, which takes
+    /// any: a fraction of a sample adds a pole at z = 0.
     ///
     /// # Errors
     /// [`LinearError::WrongDomain`], [`LinearError::SampleTime`], [`LinearError::Improper`],
-    /// [`LinearError::FractionalDeadTime`], [`LinearError::Frequency`] for a prewarping frequency at or above pi/T,
-    /// [`LinearError::NoImage`] when a root has no image under Tustin's map.
+    /// [`LinearError::FractionalDeadTime`], [`LinearError::Frequency`] for a prewarping frequency
+    /// at or above pi/T, [`LinearError::NoImage`] when a root has no image under Tustin's map.
     ///
     /// # Example
     /// ```
@@ -87,7 +87,8 @@ impl TransferFunction {
         let at_infinity = self.poles().len() - zeros.len();
         zeros.extend(std::iter::repeat_n(Complex64::new(-1.0, 0.0), at_infinity.saturating_sub(1)));
         let poles: Vec<Complex64> = self.poles().iter().map(image).collect();
-        // low-frequency asymptotes: a factor s - r is -r, its image 1 - exp(rT); a factor s is s, its image sT
+        // low-frequency asymptotes: a factor s - r is -r, its image 1 - exp(rT); a factor s is s,
+        // its image sT
         let mut gain = Complex64::new(self.gain(), 0.0);
         for index in 0..self.poles().len() {
             if let Some(zero) = self.zeros().get(index) {
@@ -143,8 +144,9 @@ impl StateSpace {
     /// The sampled system by Tustin's rule (prewarped or not) or an exact zero-order hold.
     ///
     /// # Errors
-    /// [`LinearError::WrongDomain`] (also for [`Discretization::Matched`], which is for transfer functions),
-    /// [`LinearError::SampleTime`], [`LinearError::Frequency`], [`LinearError::NoImage`].
+    /// [`LinearError::WrongDomain`] (also for [`Discretization::Matched`], which is for transfer
+    /// functions), [`LinearError::SampleTime`], [`LinearError::Frequency`],
+    /// [`LinearError::NoImage`].
     pub fn discretized(&self, sample_time_s: f64, method: Discretization) -> Result<Self, LinearError> {
         check_continuous(self.domain(), sample_time_s)?;
         match method {
@@ -275,7 +277,8 @@ fn exponential_of(z: Complex64) -> Complex64 {
     if z.im == 0.0 { Complex64::new(size, 0.0) } else { Complex64::new(size * cos(z.im), size * sin(z.im)) }
 }
 
-/// (1 - exp(rT))/(-r), and T for r = 0: low-frequency value of the image of a factor over that of the factor.
+/// (1 - exp(rT))/(-r), and T for r = 0: low-frequency value of the image of a factor over that of
+/// the factor.
 fn low_frequency_ratio(root: Complex64, sample_time_s: f64) -> Complex64 {
     if root == Complex64::new(0.0, 0.0) {
         return Complex64::new(sample_time_s, 0.0);

@@ -1,7 +1,7 @@
 //! Numbers of twice the working precision (about 32 digits), for sums that nearly cancel.
 //!
-//! A number is the unevaluated sum of two `f64`; the operations are those of Dekker (1971) and Knuth, with a fused
-//! multiply-add for the error of a product. Not for numbers beyond about 1e290.
+//! A number is the unevaluated sum of two `f64`; the operations are those of Dekker (1971) and
+//! Knuth, with a fused multiply-add for the error of a product. Not for numbers beyond about 1e290.
 
 use num_complex::Complex64;
 use std::ops::{Add, Mul, Neg, Sub};

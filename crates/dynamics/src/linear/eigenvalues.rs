@@ -1,8 +1,9 @@
 //! Eigenvalues of a real matrix whose states have very different units.
 //!
-//! The matrix is split into the irreducible blocks of its zero pattern (a cascade gives its poles exactly, an
-//! integrator gives an exact zero); each block is balanced (Parlett and Reinsch 1969), reduced by the QR algorithm,
-//! and its eigenvalues are brought to full accuracy as the roots of det(sI - A) in twice the working precision.
+//! The matrix is split into the irreducible blocks of its zero pattern (a cascade gives its poles
+//! exactly, an integrator gives an exact zero); each block is balanced (Parlett and Reinsch 1969),
+//! reduced by the QR algorithm, and its eigenvalues are brought to full accuracy as the roots of
+//! det(sI - A) in twice the working precision.
 
 use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
@@ -14,7 +15,8 @@ use super::refinement::{converge, sort, symmetrise};
 use super::structure::{balance, irreducible_blocks};
 use crate::portable::magnitude;
 
-/// All eigenvalues, sorted, in exact conjugate pairs; that of an irreducible block which is singular to rounding is zero.
+/// All eigenvalues, sorted, in exact conjugate pairs; that of an irreducible block which is
+/// singular to rounding is zero.
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Result<Vec<Complex64>, LinearError> {
     by_blocks(matrix, |block, values| {
         if is_singular(block)
@@ -25,13 +27,15 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Result<Vec<Complex64>, Linea
     })
 }
 
-/// The same for a matrix whose entries are themselves the result of a cancellation: no eigenvalue is taken for zero.
+/// The same for a matrix whose entries are themselves the result of a cancellation: no eigenvalue
+/// is taken for zero.
 pub(crate) fn eigenvalues_of_computed(matrix: &DMatrix<f64>) -> Result<Vec<Complex64>, LinearError> {
     by_blocks(matrix, |_, _| ())
 }
 
-/// The same in working precision, unsorted, for a matrix that is looked at again and again: to a part of its largest eigenvalue,
-/// and not of each. `None` where the iteration stopped without an answer.
+/// The same in working precision, unsorted, for a matrix that is looked at again and again: to a
+/// part of its largest eigenvalue, and not of each. `None` where the iteration stopped without an
+/// answer.
 pub(crate) fn working_eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Complex64>> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;
@@ -92,7 +96,8 @@ fn of_block(
     Ok(symmetrise(&values))
 }
 
-/// f/f' for f = det(s I - A), by elimination in twice the working precision on the matrix and its derivative I.
+/// f/f' for f = det(s I - A), by elimination in twice the working precision on the matrix and its
+/// derivative I.
 ///
 /// ```text
 /// f'/f = sum of u_k'/u_k over the pivots u
@@ -184,8 +189,9 @@ pub(super) fn of_two_by_two(a: f64, b: f64, c: f64, d: f64) -> [Complex64; 2] {
     }
 }
 
-/// Whether rounding the entries could make the matrix singular: its Skeel condition number, which no scaling of rows
-/// (or, transposed, of columns) changes, reaches the inverse of the working precision.
+/// Whether rounding the entries could make the matrix singular: its Skeel condition number, which
+/// no scaling of rows (or, transposed, of columns) changes, reaches the inverse of the working
+/// precision.
 fn is_singular(matrix: &DMatrix<f64>) -> bool {
     let Some(inverse) = matrix.clone().try_inverse() else { return true };
     let size = |m: DMatrix<f64>| m.row_iter().map(|row| row.sum()).fold(0.0, f64::max);

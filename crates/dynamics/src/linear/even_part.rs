@@ -7,10 +7,11 @@ use super::polynomial::{expand, multiply};
 use super::{LinearError, Polynomial};
 use crate::portable::magnitude;
 
-/// R(x) = Re (N(jw) conj D(jw)) with x = w^2, coefficients in twice the working precision, highest power first.
+/// R(x) = Re (N(jw) conj D(jw)) with x = w^2, coefficients in twice the working precision, highest
+/// power first.
 ///
-/// For real polynomials conj D(jw) = D(-jw), so R is the even part of N(s) D(-s) with s^2 = -x. Its sign is the sign of
-/// Re N/D.
+/// For real polynomials conj D(jw) = D(-jw), so R is the even part of N(s) D(-s) with s^2 = -x. Its
+/// sign is the sign of Re N/D.
 pub(crate) struct EvenPart {
     coefficients: Vec<DoubleDouble>,
 }
@@ -44,7 +45,8 @@ impl EvenPart {
         EvenPart { coefficients }
     }
 
-    /// Frequencies among which every sign change lies: the square roots of the magnitudes of all roots in x, sorted.
+    /// Frequencies among which every sign change lies: the square roots of the magnitudes of all
+    /// roots in x, sorted.
     pub(crate) fn candidate_frequencies(&self) -> Result<Vec<f64>, LinearError> {
         let polynomial = Polynomial::new(self.coefficients.iter().map(|c| c.value()).collect());
         if polynomial.is_zero() {
@@ -75,7 +77,8 @@ impl EvenPart {
         }
     }
 
-    /// The end of a band, sharpened by bisection on the sign in its immediate neighbourhood; zero and infinity stay.
+    /// The end of a band, sharpened by bisection on the sign in its immediate neighbourhood; zero
+    /// and infinity stay.
     pub(crate) fn sign_change_near(&self, frequency: f64) -> f64 {
         let (mut low, mut high) = (frequency * (1.0 - 1e-7), frequency * (1.0 + 1e-7));
         if frequency == 0.0 || frequency.is_infinite() || self.sign_at(low) == self.sign_at(high) {

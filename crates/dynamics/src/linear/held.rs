@@ -5,10 +5,12 @@
 //! numerator:  N(z) = z^f P(z) det(z I - Phi),  f = 1 with that fraction, else 0
 //! ```
 //!
-//! Phi is block triangular, its blocks the poles one by one, so that P(z) is a substitution from the last state to the first. All of it is
-//! done in twice the working precision, in which a pole of exp(-40) beside one of 0.99 loses nothing. N is a polynomial: its values at
-//! roots of -1 give its coefficients, these the first guess of its zeros, and the response itself brings the zeros to full accuracy.
-//! What comes out is compared with the response along the unit circle, where it will be used; factors that miss it are refused.
+//! Phi is block triangular, its blocks the poles one by one, so that P(z) is a substitution from
+//! the last state to the first. All of it is done in twice the working precision, in which poles at
+//! exp(-40) and at 0.99 together lose nothing. N is a polynomial: its values at roots of -1 give
+//! its coefficients, these the first guess of its zeros, and the response itself brings the zeros
+//! to full accuracy. What comes out is compared with the response along the unit circle, where it
+//! will be used; factors that miss it are refused.
 
 mod numerator;
 
@@ -47,10 +49,11 @@ pub(super) struct Local {
 }
 
 impl Held {
-    /// The plant behind a hold, with a dead time of a fraction of a sample.
+    /// The plant with a zero-order hold at its input and a dead time of a fraction of a sample.
     ///
     /// # Errors
-    /// [`LinearError::NotFinite`] for a plant that grows beyond the range of numbers within a sample.
+    /// [`LinearError::NotFinite`] for a plant that grows beyond the range of numbers within a
+    /// sample.
     pub(super) fn new(
         plant: Chain,
         poles: &[Complex64],
@@ -225,7 +228,8 @@ impl DiagonalBlock {
     }
 }
 
-/// The response of a plant at a point, with the instructions of the processor at hand; its slope is zero where it is not asked for.
+/// The response of a plant at a point, with the instructions of the processor at hand; its slope is
+/// zero where it is not asked for.
 struct Evaluation<'a> {
     held: &'a Held,
     z: ComplexDoubleDouble,

@@ -1,13 +1,15 @@
-//! Eigenvalues alone of a small matrix, in working precision: by elimination to Hessenberg form (Martin and Wilkinson 1968), then by the
-//! iteration of Francis (1961) with two shifts at once. Without vectors, and within what is still coupled, it takes a quarter of the
-//! work of a Schur form, which is the reference for it.
+//! Eigenvalues alone of a small matrix, in working precision: by elimination to Hessenberg form
+//! (Martin and Wilkinson 1968), then by the iteration of Francis (1961) with two shifts at once.
+//! Without vectors, and within what is still coupled, it takes a quarter of the work of a Schur
+//! form, which is the reference for it.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::eigenvalues::of_two_by_two;
 
-/// Sweeps that one eigenvalue may take; each tenth has shifts of its own, so that no cycle is for ever.
+/// Sweeps that one eigenvalue may take; each tenth has shifts of its own, so that no cycle is for
+/// ever.
 const SWEEPS: usize = 40;
 const EXCEPTIONAL: usize = 10;
 
@@ -39,7 +41,8 @@ pub(super) fn eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Complex64>> {
     values.iter().all(|value| value.is_finite()).then_some(values)
 }
 
-/// To zeros below the first subdiagonal, by multiples of the row with the largest pivot and what undoes them in the columns.
+/// To zeros below the first subdiagonal, by multiples of the row with the largest pivot and what
+/// undoes them in the columns.
 fn reduce(a: &mut DMatrix<f64>) {
     let order = a.nrows();
     for column in 0..order.saturating_sub(2) {
@@ -69,13 +72,14 @@ fn reduce(a: &mut DMatrix<f64>) {
     }
 }
 
-/// Whether the entry below the diagonal in this row is rounding beside its neighbours.
+/// Whether the entry below the diagonal in this row is negligible against its neighbours.
 fn is_apart(h: &DMatrix<f64>, row: usize, norm: f64) -> bool {
     let beside = h[(row - 1, row - 1)].abs() + h[(row, row)].abs();
     h[(row, row - 1)].abs() <= f64::EPSILON * if beside == 0.0 { norm } else { beside }
 }
 
-/// One step of the iteration with both eigenvalues of the last two rows as shifts, on the rows and columns from start to end.
+/// One step of the iteration with both eigenvalues of the last two rows as shifts, on the rows and
+/// columns from start to end.
 fn sweep(h: &mut DMatrix<f64>, start: usize, end: usize, exceptional: bool) {
     // first column of (H - x)(H - y) - w, divided by its last factor
     let (mut x, mut y, mut w) =
@@ -136,7 +140,8 @@ impl Mirror {
         })
     }
 
-    /// From both sides, on so many rows and columns from k on, within what is coupled.
+    /// Applies the reflection from both sides, to `COUNT` rows and columns from k on, within the
+    /// coupled block.
     fn reflect<const COUNT: usize>(&self, h: &mut DMatrix<f64>, k: usize, [start, end]: [usize; 2]) {
         let (v, u) = (&self.across, &self.along);
         let order = h.nrows();
@@ -175,8 +180,8 @@ mod tests {
         most
     }
 
-    /// The Schur form has them on its diagonal: full matrices, chains of lags whose matrix is nearly triangular, and cycles that turn on
-    /// without shifts of their own.
+    /// The Schur form has them on its diagonal: full matrices, chains of lags whose matrix is
+    /// nearly triangular, and cycles that turn on without shifts of their own.
     #[test]
     fn those_of_the_schur_form() {
         let mut seed = 5_u64;

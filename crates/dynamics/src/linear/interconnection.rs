@@ -1,7 +1,7 @@
 //! Series, parallel and negative feedback, for transfer functions and state space.
 //!
-//! The new zeros or poles of a sum are the roots of N_1 D_2 + N_2 D_1, which is evaluated from the factors in twice the
-//! working precision; its coefficients serve only to start the search.
+//! The new zeros or poles of a sum are the roots of N_1 D_2 + N_2 D_1, which is evaluated from the
+//! factors in twice the working precision; its coefficients serve only to start the search.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -35,7 +35,8 @@ impl Factors {
         (value, slope)
     }
 
-    /// The factors of the sum of two products. Leading and trailing coefficients that cancel to rounding are zero.
+    /// The factors of the sum of two products. Leading and trailing coefficients that cancel to
+    /// rounding are zero.
     fn sum(&self, other: &Factors) -> Result<Factors, LinearError> {
         let (left, right) = (expand(self.gain, &self.roots), expand(other.gain, &other.roots));
         let length = left.len().max(right.len());
@@ -105,7 +106,8 @@ impl TransferFunction {
             .with_dead_time(self.dead_time_s())
     }
 
-    /// The system closed by `other` in negative feedback, P / (1 + P H). Common factors of P and H are kept.
+    /// The system closed by `other` in negative feedback, P / (1 + P H). Common factors of P and H
+    /// are kept.
     ///
     /// # Errors
     /// [`LinearError::DomainMismatch`]; [`LinearError::NotRational`] with dead time in the loop;
@@ -174,7 +176,8 @@ impl StateSpace {
     /// This system closed by `other` in negative feedback: u = r - H y.
     ///
     /// # Errors
-    /// [`LinearError::DomainMismatch`], [`LinearError::Shape`], [`LinearError::IllPosedLoop`] when I + H D is singular.
+    /// [`LinearError::DomainMismatch`], [`LinearError::Shape`], [`LinearError::IllPosedLoop`] when
+    /// I + H D is singular.
     pub fn feedback(&self, other: &StateSpace) -> Result<Self, LinearError> {
         let expected = (self.inputs(), self.outputs());
         self.check_join(other, "the feedback system's D", other.d().shape(), expected)?;

@@ -12,8 +12,9 @@ use crate::portable::magnitude;
 /// p(s) = c_0 s^n + c_1 s^(n-1) + ... + c_n
 /// ```
 ///
-/// Products and sums are rounded once, from twice the working precision. The zero polynomial has the single
-/// coefficient 0 and degree 0. Coefficients that are not finite are kept and refused where roots are asked for.
+/// Products and sums are rounded once, from twice the working precision. The zero polynomial has
+/// the single coefficient 0 and degree 0. Coefficients that are not finite are kept and refused
+/// where roots are asked for.
 ///
 /// # Example
 /// ```
@@ -42,7 +43,8 @@ impl Polynomial {
     /// gain (s - r_1) (s - r_2) ...
     ///
     /// # Errors
-    /// [`LinearError::MissingConjugate`] when the roots do not come in conjugate pairs, [`LinearError::NotFinite`].
+    /// [`LinearError::MissingConjugate`] when the roots do not come in conjugate pairs,
+    /// [`LinearError::NotFinite`].
     pub fn from_roots(gain: f64, roots: &[Complex64]) -> Result<Self, LinearError> {
         let roots = roots::conjugate_pairs(roots)?;
         if !gain.is_finite() {
@@ -141,19 +143,22 @@ impl Polynomial {
 
     /// All roots, sorted by magnitude, in exact conjugate pairs.
     ///
-    /// Zeros at the origin are exact. The others are found by the iteration of Ehrlich and Aberth from starting radii
-    /// read off the Newton polygon (Bini 1996), which finds roots of 1e-3 and 1e6 side by side, and are polished with
-    /// residuals in twice the working precision. Roots that a rounding of the coefficients cannot tell apart are
-    /// returned as one multiple root, and those it cannot tell from the imaginary axis lie on it.
+    /// Zeros at the origin are exact. The others are found by the iteration of Ehrlich and Aberth
+    /// from starting radii read off the Newton polygon (Bini 1996), which finds roots of 1e-3 and
+    /// 1e6 side by side, and are polished with residuals in twice the working precision. Roots that
+    /// a rounding of the coefficients cannot tell apart are returned as one multiple root, and
+    /// those it cannot tell from the imaginary axis lie on it.
     ///
     /// # Errors
-    /// [`LinearError::ZeroPolynomial`], [`LinearError::NotFinite`], [`LinearError::RootsNotConverged`].
+    /// [`LinearError::ZeroPolynomial`], [`LinearError::NotFinite`],
+    /// [`LinearError::RootsNotConverged`].
     pub fn roots(&self) -> Result<Vec<Complex64>, LinearError> {
         roots::of_polynomial(self)
     }
 }
 
-/// Coefficients of gain (s - r_1) (s - r_2) ... in twice the working precision, conjugate pairs adjacent.
+/// Coefficients of gain (s - r_1) (s - r_2) ... in twice the working precision, conjugate pairs
+/// adjacent.
 pub(crate) fn expand(gain: f64, roots: &[Complex64]) -> Vec<DoubleDouble> {
     let mut coefficients = vec![DoubleDouble::from(gain)];
     for root in roots.iter().filter(|root| root.im >= 0.0) {

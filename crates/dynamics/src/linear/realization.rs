@@ -1,13 +1,14 @@
-//! A transfer function as a chain of first- and second-order sections with an output tap on every state.
+//! A transfer function as a chain of first- and second-order sections with an output tap on every
+//! state.
 //!
 //! ```text
 //! u -> 1/d_m -> ... -> 1/d_2 -> 1/d_1          d_1 ... d_m the poles, slowest first, so that the fast ones act first
 //! y = D u + r_1/d_1...d_m u + r_2/d_2...d_m u + ... + r_m/d_m u
 //! ```
 //!
-//! The taps r are the digits of the numerator in the mixed radix d_1, d_1 d_2, ...: remainders of repeated division,
-//! done in twice the working precision. The poles stand on the diagonal of A; the companion form of the whole would
-//! lose the small ones beside the large ones.
+//! The taps r are the digits of the numerator in the mixed radix d_1, d_1 d_2, ...: remainders of
+//! repeated division, done in twice the working precision. The poles stand on the diagonal of A;
+//! the companion form of the whole would lose the small ones to rounding.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -38,8 +39,8 @@ pub(crate) fn cascade(system: &TransferFunction) -> Result<StateSpace, LinearErr
     (0..delay).try_fold(result, |result, _| result.series(&sample([0.0, 1.0, 1.0, 0.0])?))
 }
 
-/// The matrices of a chain, block upper triangular, its taps in twice the working precision: where zeros lie far below the poles, they
-/// cancel in the response.
+/// The matrices of a chain, block upper triangular, its taps in twice the working precision: where
+/// zeros lie far below the poles, they cancel in the response.
 pub(super) struct Chain {
     pub(super) a: DMatrix<f64>,
     pub(super) b: DMatrix<f64>,
@@ -76,7 +77,8 @@ pub(crate) fn delay_states(samples: f64) -> Result<usize, LinearError> {
 struct Section {
     pole: Complex64,
     remainder: Vec<DoubleDouble>,
-    /// Its input and its inner coupling are multiplied by this power of two, near the magnitude of its pole.
+    /// Its input and its inner coupling are multiplied by this power of two, near the magnitude of
+    /// its pole.
     exponent: i32,
 }
 
@@ -96,8 +98,8 @@ fn slowest_first(poles: &[Complex64], domain: TimeDomain) -> Vec<Complex64> {
     upper
 }
 
-/// Quotient and remainder of a polynomial by a monic one, highest power first; the remainder has the divisor's degree
-/// as its number of coefficients.
+/// Quotient and remainder of a polynomial by a monic one, highest power first; the remainder has
+/// the divisor's degree as its number of coefficients.
 fn divided(dividend: &[DoubleDouble], divisor: &[DoubleDouble]) -> (Vec<DoubleDouble>, Vec<DoubleDouble>) {
     let degree = divisor.len() - 1;
     let mut rest = dividend.to_vec();
@@ -113,7 +115,8 @@ fn divided(dividend: &[DoubleDouble], divisor: &[DoubleDouble]) -> (Vec<DoubleDo
     (rest, [padding, remainder].concat())
 }
 
-/// The states of a chain whose slowest section comes first in the list and last in the signal's way.
+/// The states of a chain whose slowest section comes first in the list and last in the signal's
+/// way.
 ///
 /// With w = 2^exponent a section with input v has the state x = w v/(s - p), or the two states x_1 = w^2 v/d and
 /// x_2 = w (s - sigma) v/d; x or x_1 is its output.
@@ -121,7 +124,8 @@ fn states_of(chain: &[Section], order: usize, feedthrough: f64) -> Chain {
     let mut a = DMatrix::zeros(order, order);
     let mut b = DMatrix::zeros(order, 1);
     let mut taps = vec![DoubleDouble::ZERO; order];
-    // exponent of the product of all w that a signal has met before the section, from the fastest on
+    // exponent of the product of all w that a signal has met before the section, from the fastest
+    // on
     let mut before = 0;
     // where the signal comes from: a state, or (at first) the input
     let mut source: Option<usize> = None;

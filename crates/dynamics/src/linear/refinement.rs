@@ -1,4 +1,5 @@
-//! Simultaneous refinement of the zeros of any analytic function, and the conjugate symmetry of a set of roots.
+//! Simultaneous refinement of the zeros of any analytic function, and the conjugate symmetry of a
+//! set of roots.
 
 use num_complex::Complex64;
 
@@ -11,8 +12,8 @@ use crate::portable::magnitude;
 /// z_i <- z_i - N_i / (1 - N_i sum over j of 1/(z_i - z_j)),      N_i = f(z_i)/f'(z_i)
 /// ```
 ///
-/// where `newton_step` gives N. A root is left alone when it has an equal twin, when the step is no longer small, or
-/// when steps stop shrinking, so that good roots are never made worse by rounding.
+/// where `newton_step` gives N. A root is left alone when it has an equal twin, when the step is no
+/// longer small, or when steps stop shrinking, so that good roots are never made worse by rounding.
 pub(crate) fn refine<F>(roots: &mut [Complex64], sweeps: usize, newton_step: F)
 where
     F: Fn(Complex64) -> Option<Complex64>,
@@ -37,11 +38,11 @@ where
     }
 }
 
-/// The same iteration without restraint, for steps that are accurate however far they reach; roots without a step, and
-/// exact zeros (put there for a reason), stay.
+/// The same iteration without restraint, for steps that are accurate however far they reach; roots
+/// without a step, and exact zeros (put there for a reason), stay.
 ///
-/// From real points a real function never leads to complex roots, so points that are still far from a root, or that do
-/// not come to rest, are moved off the real axis.
+/// From real points a real function never leads to complex roots, so points that are still far from
+/// a root, or that do not come to rest, are moved off the real axis.
 pub(crate) fn converge<F>(roots: &mut [Complex64], sweeps: usize, newton_step: F)
 where
     F: Fn(Complex64) -> Option<Complex64>,
@@ -94,8 +95,8 @@ pub(crate) fn repelled_step(
 
 /// Makes a set of roots of a real function exactly symmetric about the real axis.
 ///
-/// Each root is either nearer to the conjugate of another one than to its own (then the two become a pair) or becomes
-/// real. The roots come out sorted.
+/// Each root is either nearer to the conjugate of another one than to its own (then the two become
+/// a pair) or becomes real. The roots come out sorted.
 pub(crate) fn symmetrise(roots: &[Complex64]) -> Vec<Complex64> {
     let mut open: Vec<Complex64> = roots.to_vec();
     // the most clearly complex first, so that the doubtful ones near the axis are left over
@@ -128,7 +129,8 @@ fn lean(root: Complex64) -> f64 {
     if size > 0.0 { root.im.abs() / size } else { 0.0 }
 }
 
-/// Sorts by magnitude; conjugate pairs stay together, the one with the negative imaginary part first.
+/// Sorts by magnitude; conjugate pairs stay together, the one with the negative imaginary part
+/// first.
 pub(crate) fn sort(roots: &mut [Complex64]) {
     roots.sort_by(|a, b| {
         let by_size = magnitude(*a).total_cmp(&magnitude(*b));
@@ -154,7 +156,8 @@ fn interleave_pairs(roots: &mut [Complex64]) {
     }
 }
 
-/// Checks that roots given by a user come in conjugate pairs, and returns them sorted and exactly paired.
+/// Checks that roots given by a user come in conjugate pairs, and returns them sorted and exactly
+/// paired.
 ///
 /// Partners may differ by rounding (1e-12 of their magnitude); anything else is refused.
 pub(crate) fn conjugate_pairs(roots: &[Complex64]) -> Result<Vec<Complex64>, LinearError> {

@@ -1,8 +1,9 @@
 //! Roots of a polynomial with real coefficients, however widely they are spread.
 //!
-//! The iteration of Ehrlich (1967) and Aberth (1973) moves all roots at once and converges cubically to simple ones.
-//! Its starting radii come from the Newton polygon of the coefficients (Bini 1996), so that roots of very different
-//! magnitude start at their own magnitude; beyond the unit circle the reversed polynomial is evaluated.
+//! The iteration of Ehrlich (1967) and Aberth (1973) moves all roots at once and converges
+//! cubically to simple ones. Its starting radii come from the Newton polygon of the coefficients
+//! (Bini 1996), so that roots of very different magnitude start at their own magnitude; beyond the
+//! unit circle the reversed polynomial is evaluated.
 
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
@@ -22,8 +23,8 @@ pub(crate) fn of_polynomial(polynomial: &Polynomial) -> Result<Vec<Complex64>, L
     found(polynomial, |deflated| Ok(merge_multiple(deflated, iterate(deflated)?)))
 }
 
-/// The same as far as working precision tells them, multiple roots a little apart: for a polynomial whose coefficients are rounded, and
-/// whose roots are refined by other means.
+/// The same as far as working precision tells them, multiple roots a little apart: for a polynomial
+/// whose coefficients are rounded, and whose roots are refined by other means.
 pub(crate) fn guessed(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
     found(polynomial, |deflated| {
         let mut roots = starting_points(deflated.coefficients());
@@ -33,7 +34,8 @@ pub(crate) fn guessed(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearE
     })
 }
 
-/// All roots, sorted, by who finds them of what is left without those at the origin, if it is of the second degree at least.
+/// All roots, sorted, by who finds them of what is left without those at the origin, if it is of
+/// the second degree at least.
 fn found(
     polynomial: &Polynomial,
     find: impl FnOnce(&Polynomial) -> Result<Vec<Complex64>, LinearError>,
@@ -64,8 +66,8 @@ fn found(
     Ok(roots)
 }
 
-/// Ehrlich-Aberth from the Newton polygon to the level of rounding, once more with residuals in twice the working
-/// precision, and made symmetric.
+/// Ehrlich-Aberth from the Newton polygon to the level of rounding, once more with residuals in
+/// twice the working precision, and made symmetric.
 fn iterate(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
     let mut roots = starting_points(polynomial.coefficients());
     sweep(&mut roots, |z| evaluate_locally(polynomial, z))
@@ -100,7 +102,8 @@ fn sweep<F: Fn(Complex64) -> LocalValue>(roots: &mut [Complex64], evaluate: F) -
     None
 }
 
-/// Points on circles whose radii are the slopes of the upper convex hull of (power, ln |coefficient|).
+/// Points on circles whose radii are the slopes of the upper convex hull of (power, ln
+/// |coefficient|).
 fn starting_points(coefficients: &[f64]) -> Vec<Complex64> {
     let degree = coefficients.len() - 1;
     // ascending powers
@@ -169,7 +172,8 @@ fn evaluate_locally(polynomial: &Polynomial, z: Complex64) -> LocalValue {
     LocalValue { newton_step, at_rounding_level }
 }
 
-/// p/p' at z with both in twice the working precision; partial sums that grow out of range are scaled down together.
+/// p/p' at z with both in twice the working precision; partial sums that grow out of range are
+/// scaled down together.
 fn evaluate_widely(polynomial: &Polynomial, z: Complex64) -> LocalValue {
     Arch::new().dispatch(Widely { polynomial, z })
 }
@@ -229,9 +233,9 @@ fn on_the_axis(mut roots: Vec<Complex64>) -> Vec<Complex64> {
 
 /// Replaces clusters that a rounding of the coefficients explains as a multiple root by that root.
 ///
-/// The mean of a cluster of m roots is well conditioned although its members are not; it is the simple root of the
-/// derivative of order m - 1 nearby, and is accepted when all lower derivatives vanish there to the rounding of the
-/// coefficients.
+/// The mean of a cluster of m roots is well conditioned although its members are not; it is the
+/// simple root of the derivative of order m - 1 nearby, and is accepted when all lower derivatives
+/// vanish there to the rounding of the coefficients.
 fn merge_multiple(polynomial: &Polynomial, roots: Vec<Complex64>) -> Vec<Complex64> {
     let mut open: Vec<Complex64> = roots.into_iter().filter(|root| root.im >= 0.0).collect();
     let mut merged = Vec::new();
@@ -259,7 +263,8 @@ fn merge_multiple(polynomial: &Polynomial, roots: Vec<Complex64>) -> Vec<Complex
     merged
 }
 
-/// The multiple root that stands for these members of the closed upper half plane, and how many of the returned set it is.
+/// The multiple root that stands for these members of the closed upper half plane, and how many of
+/// the returned set it is.
 fn multiple_root(polynomial: &Polynomial, members: &[Complex64]) -> Option<(Complex64, usize)> {
     let mean = members.iter().sum::<Complex64>() / members.len() as f64;
     let real_count: usize = members.iter().map(|root| if root.im == 0.0 { 1 } else { 2 }).sum();

@@ -15,8 +15,8 @@ use crate::portable;
 /// dx/dt = A x + B u,    y = C x + D u          (sampled: x(k+1) in place of dx/dt)
 /// ```
 ///
-/// States may have units as different as pascals and micrometres; poles, zeros and responses do not depend on the
-/// choice of units.
+/// States may have units as different as pascals and micrometres; poles, zeros and responses do not
+/// depend on the choice of units.
 ///
 /// # Example
 /// ```
@@ -43,10 +43,12 @@ pub struct StateSpace {
 }
 
 impl StateSpace {
-    /// The system with these matrices. Any of order, number of inputs and number of outputs may be zero.
+    /// The system with these matrices. Any of order, number of inputs and number of outputs may be
+    /// zero.
     ///
     /// # Errors
-    /// [`LinearError::Shape`] when the matrices do not fit, [`LinearError::NotFinite`], [`LinearError::SampleTime`].
+    /// [`LinearError::Shape`] when the matrices do not fit, [`LinearError::NotFinite`],
+    /// [`LinearError::SampleTime`].
     pub fn new(
         a: DMatrix<f64>,
         b: DMatrix<f64>,
@@ -77,13 +79,14 @@ impl StateSpace {
         Ok(StateSpace { a, b, c, d, domain })
     }
 
-    /// A well-scaled realisation of a transfer function: a cascade of first- and second-order sections.
+    /// A well-scaled realisation of a transfer function: a cascade of first- and second-order
+    /// sections.
     ///
     /// A whole number of samples of dead time becomes that many poles at z = 0.
     ///
     /// # Errors
-    /// [`LinearError::Improper`]; [`LinearError::NotRational`] for a continuous system with dead time;
-    /// [`LinearError::TooManyDelayStates`].
+    /// [`LinearError::Improper`]; [`LinearError::NotRational`] for a continuous system with dead
+    /// time; [`LinearError::TooManyDelayStates`].
     pub fn from_transfer_function(system: &TransferFunction) -> Result<Self, LinearError> {
         realization::cascade(system)
     }
@@ -164,7 +167,8 @@ impl StateSpace {
         })
     }
 
-    /// Response from one input to one output at jw (or exp(jwT)), by solving (jw I - A) x = B; infinite at a pole.
+    /// Response from one input to one output at jw (or exp(jwT)), by solving (jw I - A) x = B;
+    /// infinite at a pole.
     ///
     /// # Errors
     /// [`LinearError::NoSuchPort`].
@@ -185,9 +189,11 @@ impl StateSpace {
         Ok(channel.responses(point)[(0, 0)])
     }
 
-    /// C (s I - A)^-1 B + D for all channels at any s (or z); infinite entries where s is an eigenvalue of A.
+    /// C (s I - A)^-1 B + D for all channels at any s (or z); infinite entries where s is an
+    /// eigenvalue of A.
     ///
-    /// The solution is refined in twice the working precision: the result is that of the matrices as they stand.
+    /// The solution is refined in twice the working precision: the result is that of the matrices
+    /// as they stand.
     pub fn responses(&self, s: Complex64) -> DMatrix<Complex64> {
         let resolvent = Resolvent::new(&self.a, s);
         let mut values =
@@ -203,9 +209,9 @@ impl StateSpace {
         values
     }
 
-    /// The transfer function from one input to one output: poles from A, zeros from the system pencil, gain from the
-    /// first Markov parameter that is not zero. Modes that cancel are kept as common factors
-    /// ([`TransferFunction::without_common_factors`] removes them).
+    /// The transfer function from one input to one output: poles from A, zeros from the system
+    /// pencil, gain from the first Markov parameter that is not zero. Modes that cancel are kept as
+    /// common factors ([`TransferFunction::without_common_factors`] removes them).
     ///
     /// # Errors
     /// [`LinearError::NoSuchPort`], [`LinearError::EigenvaluesNotConverged`].

@@ -1,4 +1,5 @@
-//! The block-triangular structure that the zeros of a matrix give it, and solutions that respect it.
+//! The block-triangular structure that the zeros of a matrix give it, and solutions that respect
+//! it.
 
 use nalgebra::{DMatrix, DVector, Dyn, LU, linalg::balancing::balance_parlett_reinsch};
 use num_complex::Complex64;
@@ -6,7 +7,8 @@ use num_complex::Complex64;
 use super::double_double::ComplexDoubleDouble;
 use crate::portable::magnitude;
 
-/// The sets of states that all influence each other, ordered so that each is influenced by earlier ones only.
+/// The sets of states that all influence each other, ordered so that each is influenced by earlier
+/// ones only.
 pub(crate) fn irreducible_blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
     let order = matrix.nrows();
     let mut depends = DMatrix::from_fn(order, order, |i, j| i == j || matrix[(i, j)] != 0.0);
@@ -39,8 +41,9 @@ pub(crate) fn irreducible_blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
 /// The squares of larger entries leave the range of numbers.
 const BALANCED_MAXIMUM: f64 = 1e140;
 
-/// Scales states so that rows and columns have like norms (Parlett and Reinsch 1969); the units, powers of two. A matrix with entries
-/// whose squares leave the range of numbers, on which the iteration would not end, is left as it is.
+/// Scales states so that rows and columns have like norms (Parlett and Reinsch 1969); the units,
+/// powers of two. A matrix with entries whose squares leave the range of numbers, on which the
+/// iteration would not end, is left as it is.
 pub(crate) fn balance(matrix: &mut DMatrix<f64>) -> DVector<f64> {
     if matrix.iter().all(|entry| entry.abs() <= BALANCED_MAXIMUM) {
         balance_parlett_reinsch(matrix)
@@ -52,10 +55,12 @@ pub(crate) fn balance(matrix: &mut DMatrix<f64>) -> DVector<f64> {
 /// A column of numbers in twice the working precision.
 pub(crate) type WideVector = Vec<ComplexDoubleDouble>;
 
-/// (s I - A)^-1 at one point, block by block, so that a slow mode is not mixed with a fast one that it only feeds.
+/// (s I - A)^-1 at one point, block by block, so that a slow mode is not mixed with a fast one that
+/// it only feeds.
 ///
-/// Each block is balanced and factored in working precision; its solutions are refined with residuals in twice the
-/// working precision, so that what is lost by the condition of A is regained.
+/// Each block is balanced and factored in working precision; its solutions are refined with
+/// residuals in twice the working precision, so that what is lost by the condition of A is
+/// regained.
 pub(crate) struct Resolvent<'a> {
     matrix: &'a DMatrix<f64>,
     s: Complex64,

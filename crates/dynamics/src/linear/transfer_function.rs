@@ -11,10 +11,11 @@ use crate::portable::{self, exp_complex};
 /// P(s) = k (s - z_1) (s - z_2) ... / ((s - p_1) (s - p_2) ...) exp(-s tau)
 /// ```
 ///
-/// In [`TimeDomain::Discrete`] the variable is z and the dead time, a whole number of samples, is z^(-tau/T). The gain k
-/// is the leading coefficient, not the gain at zero frequency ([`TransferFunction::dc_gain`]). Zeros and poles are
-/// sorted by magnitude in exact conjugate pairs. Common factors are kept until
-/// [`TransferFunction::without_common_factors`] is asked to cancel them.
+/// In [`TimeDomain::Discrete`] the variable is z and the dead time, a whole number of samples, is
+/// z^(-tau/T). The gain k is the leading coefficient, not the gain at zero frequency
+/// ([`TransferFunction::dc_gain`]). Zeros and poles are sorted by magnitude in exact conjugate
+/// pairs. Common factors are kept until [`TransferFunction::without_common_factors`] is asked to
+/// cancel them.
 ///
 /// # Example
 /// ```
@@ -42,8 +43,9 @@ impl TransferFunction {
     /// A continuous system from its leading coefficient, zeros and poles (rad/s).
     ///
     /// # Errors
-    /// [`LinearError::MissingConjugate`] when complex factors do not come in conjugate pairs (partners may differ by
-    /// 1e-12 of their magnitude and are averaged), [`LinearError::NotFinite`].
+    /// [`LinearError::MissingConjugate`] when complex factors do not come in conjugate pairs
+    /// (partners may differ by 1e-12 of their magnitude and are averaged),
+    /// [`LinearError::NotFinite`].
     pub fn from_factors(
         gain: f64,
         zeros: Vec<Complex64>,
@@ -93,8 +95,8 @@ impl TransferFunction {
     /// The same system with this dead time in s, in place of the one it had.
     ///
     /// # Errors
-    /// [`LinearError::DeadTime`] when negative or not finite; [`LinearError::FractionalDeadTime`] in a sampled system
-    /// when it is not a whole number of samples.
+    /// [`LinearError::DeadTime`] when negative or not finite; [`LinearError::FractionalDeadTime`]
+    /// in a sampled system when it is not a whole number of samples.
     pub fn with_dead_time(mut self, dead_time_s: f64) -> Result<Self, LinearError> {
         if !(dead_time_s.is_finite() && dead_time_s >= 0.0) {
             return Err(LinearError::DeadTime { dead_time_s });
@@ -112,7 +114,8 @@ impl TransferFunction {
     /// The same factors read as a system in this time domain.
     ///
     /// # Errors
-    /// [`LinearError::SampleTime`], and [`LinearError::FractionalDeadTime`] when the dead time does not fit.
+    /// [`LinearError::SampleTime`], and [`LinearError::FractionalDeadTime`] when the dead time does
+    /// not fit.
     pub fn in_domain(mut self, domain: TimeDomain) -> Result<Self, LinearError> {
         if let TimeDomain::Discrete { sample_time_s } = domain
             && !(sample_time_s.is_finite() && sample_time_s > 0.0)
@@ -201,7 +204,8 @@ impl TransferFunction {
         }
     }
 
-    /// The rational part at s; zeros and poles are taken in turn, so that the product stays in range.
+    /// The rational part at s; zeros and poles are taken in turn, so that the product stays in
+    /// range.
     pub(crate) fn evaluate_rational(&self, s: Complex64) -> Complex64 {
         if !s.is_finite() {
             return self.at_infinity();
@@ -253,9 +257,9 @@ impl TransferFunction {
         self.poles.iter().all(|&pole| is_stable_pole(pole, self.domain))
     }
 
-    /// The system without the poles and zeros that lie within `relative_tolerance` of each other (relative to the pole's
-    /// magnitude): real ones with real ones, complex pairs with complex pairs. What is left has the same response to
-    /// about that tolerance.
+    /// The system without the poles and zeros that lie within `relative_tolerance` of each other
+    /// (relative to the pole's magnitude): real ones with real ones, complex pairs with complex
+    /// pairs. What is left has the same response to about that tolerance.
     pub fn without_common_factors(&self, relative_tolerance: f64) -> Self {
         // each pair by its upper member
         let upper =

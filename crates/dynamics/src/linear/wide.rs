@@ -1,5 +1,5 @@
-//! Matrices and columns in twice the working precision, a few numbers at a time: with the instructions of the processor at hand where the
-//! caller is compiled for them.
+//! Matrices and columns in twice the working precision, a few numbers at a time: with the
+//! instructions of the processor at hand where the caller is compiled for them.
 
 use super::double_double::{ComplexDoubleDouble, DoubleDouble};
 
@@ -182,7 +182,8 @@ impl WideColumn {
 mod tests {
     use super::*;
 
-    /// Products a few numbers at a time are those of the definition, number by number, to the last bit; zeros beside them change nothing.
+    /// Products a few numbers at a time are those of the definition, number by number, to the last
+    /// bit; padding with zeros changes nothing.
     #[test]
     fn products_are_those_of_their_definition() {
         let entry = |i: usize, j: usize| {

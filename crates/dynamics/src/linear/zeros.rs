@@ -5,10 +5,11 @@
 //!                                [   C        D ]
 //! ```
 //!
-//! Without feedthrough, the output y = C x = 0 ties one state to the others; that state is eliminated, and what drives
-//! it becomes the new feedthrough, until one is not zero. Then the zeros are eigenvalues of A - B C/D, and are brought to
-//! full accuracy on the response itself. How many zeros there are depends on which numbers count as zero, so the result
-//! is compared with the response, and the answer that agrees is taken.
+//! Without feedthrough, the output y = C x = 0 ties one state to the others; that state is
+//! eliminated, and what drives it becomes the new feedthrough, until one is not zero. Then the
+//! zeros are eigenvalues of A - B C/D, and are brought to full accuracy on the response itself. How
+//! many zeros there are depends on which numbers count as zero, so the result is compared with the
+//! response, and the answer that agrees is taken.
 
 mod elimination;
 
@@ -20,14 +21,16 @@ use super::structure::{Resolvent, product, widened};
 use super::{LinearError, StateSpace, TransferFunction};
 use crate::portable::{exp, ln, magnitude};
 
-/// Roundings of the inputs that may make the result of a cancellation count as zero, in the order in which they are
-/// tried: many (matrices are often the result of a computation), a few, none. The first that agrees has the fewest zeros.
+/// Roundings of the inputs that may make the result of a cancellation count as zero, in the order
+/// in which they are tried: many (matrices are often the result of a computation), a few, none. The
+/// first that agrees has the fewest zeros.
 const ROUNDINGS: [f64; 4] = [1e4, 1e2, 4.0, 0.0];
 
 /// Agreement of the factors with the response at which no further attempt is made.
 const AGREEMENT: f64 = 1e-11;
 
-/// Gain (leading coefficient) and zeros of a system with one input and one output, whose poles are known.
+/// Gain (leading coefficient) and zeros of a system with one input and one output, whose poles are
+/// known.
 pub(crate) fn of_channel(
     system: &StateSpace,
     poles: &[Complex64],
@@ -109,7 +112,8 @@ fn deviation(system: &StateSpace, factors: &(f64, Vec<Complex64>), poles: &[Comp
     test_points(poles).into_iter().filter_map(at).fold(0.0, f64::max)
 }
 
-/// The gain that makes the factors agree with the response at a point of the real axis among the poles. (The leading coefficient itself is only as good as what was neglected as zero above it.)
+/// The gain that makes the factors agree with the response at a point of the real axis among the
+/// poles. (The leading coefficient itself is only as good as what was neglected as zero above it.)
 fn matched_gain(system: &StateSpace, zeros: &[Complex64], poles: &[Complex64]) -> Option<f64> {
     let logarithms = || poles.iter().map(|root| magnitude(*root)).filter(|size| *size > 0.0).map(ln);
     let centre = exp(logarithms().sum::<f64>() / logarithms().count().max(1) as f64);

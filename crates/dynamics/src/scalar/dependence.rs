@@ -2,8 +2,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Lanes, Scalar};
 
-/// Which variables a number depends on, and nothing of its value: an equation evaluated with it tells which of its
-/// derivatives can differ from zero anywhere.
+/// Which variables a number depends on, and nothing of its value: an equation evaluated with it
+/// tells which of its derivatives can differ from zero anywhere.
 ///
 /// Both sides of a choice count. Variables are counted from 0 to [`Dependence::CAPACITY`] - 1.
 ///
@@ -22,7 +22,8 @@ impl Dependence {
     /// How many variables there can be.
     pub const CAPACITY: usize = 256;
 
-    /// The variable with this index; one of [`Dependence::CAPACITY`] or more is taken for a constant.
+    /// The variable with this index; one of [`Dependence::CAPACITY`] or more is taken for a
+    /// constant.
     pub fn on(index: usize) -> Self {
         let mut bits = [0; 4];
         if let Some(word) = bits.get_mut(index / 64) {

@@ -2,7 +2,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Lanes, LocalFunction, Scalar};
 
-/// A number and its gradient with respect to N variables: exact first derivatives of a model equation.
+/// A number and its gradient with respect to N variables: exact first derivatives of a model
+/// equation.
 ///
 /// ```text
 /// (u, u') (v, v') = (u v, u' v + u v')                  forward-mode differentiation
@@ -35,7 +36,8 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
         Dual { value, gradient: [S::from(0.0); N] }
     }
 
-    /// The variable with this index, at this value. An index of N or more belongs to no variable: a constant.
+    /// The variable with this index, at this value. An index of N or more belongs to no variable: a
+    /// constant.
     pub fn variable(value: S, index: usize) -> Self {
         let mut gradient = [S::from(0.0); N];
         if let Some(slot) = gradient.get_mut(index) {
@@ -228,7 +230,8 @@ impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
 mod tests {
     use super::*;
 
-    /// A function that is taken apart from its variables has the derivatives of the same text over all of them.
+    /// A function that is taken apart from its variables has the derivatives of the same text over
+    /// all of them.
     #[test]
     fn a_local_function_has_the_derivatives_of_its_text() {
         struct Text(f64);

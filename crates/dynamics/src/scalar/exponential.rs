@@ -6,7 +6,8 @@
 /// e^x = 2^k e^r,     k = round(x/ln 2),   r = x - k ln 2 in two parts,   |r| <= ln(2)/2,   e^r by its series
 /// ```
 ///
-/// Only additions, multiplications and shifts of the bits: the same result on every machine and in every lane.
+/// Only additions, multiplications and shifts of the bits: the same result on every machine and in
+/// every lane.
 #[inline(always)]
 pub(super) fn exponential(x: f64) -> f64 {
     /// Added to a number below 2^51 it leaves the nearest integer in the last bits.

@@ -3,10 +3,12 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::Scalar;
 use crate::portable;
 
-/// All numbers between two ends: an equation evaluated with it encloses every value that it takes while its variables run through theirs.
+/// All numbers between two ends: an equation evaluated with it encloses every value that it takes
+/// while its variables run through theirs.
 ///
-/// Ends are rounded outwards, and not at all where the result is exact. What is not defined everywhere (a quotient by an interval that
-/// holds zero, the logarithm of one that reaches below) is enclosed by the whole axis. A choice that is not decided takes both sides.
+/// Ends are rounded outwards, and not at all where the result is exact. What is not defined
+/// everywhere (a quotient by an interval that holds zero, the logarithm of one that reaches below)
+/// is enclosed by the whole axis. A choice that is not decided takes both sides.
 ///
 /// # Example
 /// ```
@@ -51,7 +53,8 @@ impl Interval {
         self.low < 0.0 && self.high > 0.0
     }
 
-    /// The square, which is not negative; a product of the interval with itself would not know that both factors are the same.
+    /// The square, which is not negative; a product of the interval with itself would not know that
+    /// both factors are the same.
     pub fn square(self) -> Interval {
         let square = self * self;
         let least = if self.low <= 0.0 && self.high >= 0.0 { 0.0 } else { square.low.max(0.0) };

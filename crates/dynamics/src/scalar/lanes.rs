@@ -4,10 +4,11 @@ use super::Scalar;
 use super::exponential::exponential;
 use crate::portable;
 
-/// L numbers side by side, every operation on all of them at once: the same equation for L machines.
+/// L numbers side by side, every operation on all of them at once: the same equation for L
+/// machines.
 ///
-/// A lane's result has the same bits as the plain number's: each operation is the plain one, lane by lane, and the
-/// compiler makes vector instructions of it.
+/// A lane's result has the same bits as the plain number's: each operation is the plain one, lane
+/// by lane, and the compiler makes vector instructions of it.
 ///
 /// # Example
 /// ```

@@ -13,18 +13,21 @@ use crate::scalar::Scalar;
 /// on hold     u is an input, held between samples;                   inputs u, r and those of the plant; states of plant, F
 /// ```
 ///
-/// In a loop, the plant's disturbance d (a load's velocity) may be fed forward. A limited command stops the integral part as the
-/// controller's [`AntiWindup`] says: clamping holds the states of G while the error drives the command further out, back
-/// calculation drives them with the error that would have given the limited command. Clamping takes hold over the first
-/// ten-thousandth beyond the limit: a hold at once would let the command slide along its limit, held and let go without end.
+/// In a loop, the plant's disturbance d (a load's velocity) may be fed forward. A limited command
+/// stops the integral part as the controller's [`AntiWindup`] says: clamping holds the states of G
+/// while the error drives the command further out, back calculation drives them with the error that
+/// would have given the limited command. Clamping takes hold over the first ten-thousandth beyond
+/// the limit: a hold at once would let the command slide along its limit, held and let go without
+/// end.
 ///
-/// On hold, F is the prefilter that stays continuous before a sampled controller; one where that is sampled too.
+/// On hold, F is the prefilter that stays continuous before a sampled controller; one where that is
+/// sampled too.
 ///
 /// Both are one type, so that whatever simulates a plant is compiled once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandedPlant<P> {
     plant: P,
-    /// On hold there is none.
+    /// Absent behind a hold.
     law: Option<Law>,
     prefilter: Realization,
 }
@@ -69,11 +72,13 @@ impl Law {
 }
 
 impl<P> CommandedPlant<P> {
-    /// This plant under this controller, which acts continuously, the disturbance fed forward with this gain.
+    /// This plant under this controller, which acts continuously, the disturbance fed forward with
+    /// this gain.
     ///
     /// # Errors
-    /// [`LinearError::WrongDomain`] for a sampled controller; [`LinearError::Improper`]; [`LinearError::NotRational`] for a
-    /// compensator with dead time; [`LinearError::NoFeedthrough`] for back calculation through a strictly proper compensator,
+    /// [`LinearError::WrongDomain`] for a sampled controller; [`LinearError::Improper`];
+    /// [`LinearError::NotRational`] for a compensator with dead time;
+    /// [`LinearError::NoFeedthrough`] for back calculation through a strictly proper compensator,
     /// whose command no error can bring to its limit at once.
     pub fn in_loop(plant: P, controller: &Controller, feed_forward: f64) -> Result<Self, LinearError> {
         let function = controller.feedback.transfer_function()?;
@@ -91,7 +96,7 @@ impl<P> CommandedPlant<P> {
         Ok(CommandedPlant { plant, law: Some(law), prefilter })
     }
 
-    /// This plant behind a hold, the reference behind this prefilter.
+    /// This plant with its command held constant, and the reference filtered by this prefilter.
     ///
     /// # Errors
     /// As [`CommandedPlant::in_loop`].
@@ -109,13 +114,14 @@ impl<P> CommandedPlant<P> {
         &mut self.plant
     }
 
-    /// How many inputs come before those of the plant: the reference; on hold the command and the reference.
+    /// How many inputs come before those of the plant: the reference; on hold the command and the
+    /// reference.
     #[inline(always)]
     pub fn leading_inputs(&self) -> usize {
         if self.law.is_some() { 1 } else { 2 }
     }
 
-    /// Limit of the command's magnitude, in its unit; infinite where there is none.
+    /// Limit of the command's magnitude, in its unit; infinite if unlimited.
     pub fn limit(&self) -> f64 {
         self.law.as_ref().map_or(f64::INFINITY, |law| law.limit)
     }
@@ -136,8 +142,8 @@ impl<P> CommandedPlant<P> {
         self.law.as_ref().map_or(0, |law| law.feedback.states)
     }
 
-    /// States of G and F, in this order, that hold a command while reference and measurement stand still: where none do, those
-    /// that come nearest. On hold those of F.
+    /// States of G and F, in this order, that hold a command while reference and measurement stand
+    /// still: where none do, those that come nearest. On hold those of F.
     ///
     /// # Example
     /// An integrator holds any command while there is no error.
@@ -177,7 +183,8 @@ impl<P> CommandedPlant<P> {
         &inputs[leading..leading + self.plant.inputs()]
     }
 
-    /// Command before and after its limit, error, and reference behind the prefilter, for states and inputs of the whole.
+    /// Command before and after its limit, error, and reference after the prefilter, for all states
+    /// and inputs.
     #[inline(always)]
     pub fn signals<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> LoopSignals<T>
     where
@@ -239,7 +246,7 @@ impl<P> CommandedPlant<P> {
         of_feedback.zip(integral).map(|(state, part)| state * part).sum()
     }
 
-    /// The command as it comes to the plant: behind the delay.
+    /// The command as it reaches the plant: after the delay.
     pub fn arriving_command(&self, state: &[f64], inputs: &[f64]) -> f64
     where
         P: Plant<f64>,
@@ -248,7 +255,7 @@ impl<P> CommandedPlant<P> {
         delayed.unwrap_or_else(|| self.signals::<f64, f64>(state, inputs).command)
     }
 
-    /// What a sampled controller reads: reference behind the prefilter, and measurement.
+    /// What a sampled controller reads: reference after the prefilter, and measurement.
     pub fn sampled<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; 2]
     where
         P: Plant<S>,

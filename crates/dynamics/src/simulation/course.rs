@@ -1,15 +1,15 @@
-//! What a system is driven by, and what comes out.
+//! Inputs, observers, settings and outcome of a simulation.
 
 use super::{Method, Profile, Stretch};
 
-/// How long a system is driven, by what, and how often it is looked at.
+/// Duration, inputs and output step of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputSchedule {
     /// From time zero, in s; positive.
     pub duration_s: f64,
     /// Time between rows of the result in s; positive.
     pub output_step_s: f64,
-    /// One for each input of the system, in order; delayed waves follow by themselves.
+    /// One for each input of the system, in order, delayed waves excluded.
     pub inputs: Vec<Input>,
 }
 
@@ -20,11 +20,11 @@ pub enum Input {
     Value(Profile),
     /// Its first derivative.
     Rate(Profile),
-    /// What the sampler last commanded; before, what it holds at first.
+    /// The last command of the sampler; before its first one, [`Sampler::held`].
     Command,
 }
 
-/// What acts once a sample: a digital controller with its converters.
+/// Acts once per sample: a digital controller with its converters.
 pub trait Sampler {
     /// Time between samples in s; positive. The first is at time zero.
     fn sample_time_s(&self) -> f64;
@@ -41,26 +41,26 @@ pub trait Sampler {
     fn command(&mut self, time_s: f64, state: &[f64], inputs: &[f64]) -> f64;
 }
 
-/// What is looked at on the way.
+/// Receives the results during a simulation.
 pub trait Observer {
-    /// Indices of the states it wants, in the order it wants them.
+    /// Indices of the states it needs, in the order in which it needs them.
     fn wanted(&self) -> &[usize];
 
-    /// Whether it looks at the row of this number, counted from zero.
+    /// Whether it needs the row with this index, counted from zero.
     fn wants_row(&self, _row: u64) -> bool {
         true
     }
 
-    /// Called at each row of the result that it wants, with those states and all inputs, beginning with time zero. At a break it sees the
-    /// inputs as they are from then on.
+    /// Called at each row of the result that it wants, with those states and all inputs, beginning
+    /// with time zero. At a break it sees the inputs as they are from then on.
     fn observe(&mut self, time_s: f64, states: &[f64], inputs: &[f64]);
 
-    /// Whether it looks at the inputs; otherwise it is given none.
+    /// Whether it needs the inputs; if not, the list of inputs is empty.
     fn wants_inputs(&self) -> bool {
         true
     }
 
-    /// What it is shown beside the rows.
+    /// Whether it needs the steps in addition to the rows.
     fn attention(&self) -> Attention {
         Attention::Rows
     }
@@ -68,8 +68,8 @@ pub trait Observer {
     /// Called with each step that was taken, after its rows, where it pays attention to steps.
     fn follow(&mut self, _stretch: &Stretch<'_>) {}
 
-    /// Whether it wants to know a step from sample to sample more exactly between its ends than by the cubic that it is shown,
-    /// and not yet told to follow.
+    /// Asked before [`Observer::follow`]: whether it needs the solution within a step from sample
+    /// to sample more accurately than by a cubic.
     fn looks_closer(&self, _stretch: &Stretch<'_>) -> bool {
         false
     }
@@ -135,28 +135,30 @@ impl<O: Observer + ?Sized> Observer for Box<O> {
     }
 }
 
-/// How closely an observer follows.
+/// What an observer needs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Attention {
     /// Rows alone: how often there are rows may decide how a step is made.
     #[default]
     Rows,
-    /// Every step as a whole. Between samples a machine may go by known matrices; [`Observer::looks_closer`] is asked of each
-    /// such step.
+    /// Every step as a whole. Between samples a machine may go by known matrices;
+    /// [`Observer::looks_closer`] is asked of each such step.
     Steps,
-    /// Every step as a whole and every row, so that rows decide nothing: no step is made by known matrices.
+    /// Every step as a whole and every row, so that rows decide nothing: no step is made by known
+    /// matrices.
     Everything,
 }
 
-/// How exactly, and how much work at most.
+/// Tolerance, limit of the work and method of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Largest error of a step as it is estimated, relative to the state plus its scale. Above 0 and below 1.
+    /// Largest error of a step as it is estimated, relative to the state plus its scale. Above 0
+    /// and below 1.
     ///
-    /// Where a rate has a kink within the step, as friction has at a standstill, one step in a hundred is off by ten times as
-    /// much and more.
+    /// Where a rate has a kink within the step, as friction has at a standstill, one step in a
+    /// hundred is off by ten times as much and more.
     pub tolerance: f64,
-    /// Steps, rejected ones included, after which it ends.
+    /// Largest number of steps, rejected ones included.
     pub maximum_steps: u64,
     /// How steps are made.
     pub method: Method,
@@ -171,9 +173,9 @@ impl Default for Settings {
 /// How a simulation ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Status {
-    /// At the end of its course.
+    /// At the end of its duration.
     Completed,
-    /// By whoever watched it.
+    /// By its watch.
     Cancelled {
         /// When, in s of simulated time.
         time_s: f64,
@@ -188,8 +190,8 @@ pub enum Status {
         /// When, in s of simulated time.
         time_s: f64,
     },
-    /// It took more steps than it was allowed, and the last of them were short because a mode grows: its oscillation would take
-    /// more steps than there are.
+    /// It took more steps than it was allowed, and the last of them were short because a mode
+    /// grows: its oscillation would take more steps than there are.
     UnresolvedOscillation {
         /// When, in s of simulated time.
         time_s: f64,
@@ -216,7 +218,7 @@ pub struct Event {
     pub rising: bool,
 }
 
-/// What it cost.
+/// Steps and evaluations of a simulation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Accepted steps.
@@ -227,20 +229,20 @@ pub struct Work {
     pub evaluations: u64,
 }
 
-/// What came of one simulation, beside what its observer saw.
+/// The outcome of one simulation, apart from what its observer received.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// How it ended.
     pub status: Status,
-    /// What happened on the way, in the order of time.
+    /// Events, in order of time.
     pub events: Vec<Event>,
-    /// What it cost.
+    /// Steps and evaluations of a simulation.
     pub work: Work,
     /// State at the end.
     pub end: Vec<f64>,
 }
 
-/// Why a system is not driven at all.
+/// Why a simulation did not start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimulationError {
     /// A count does not fit the system.
@@ -253,7 +255,7 @@ pub enum SimulationError {
         /// How many there should be.
         expected: usize,
     },
-    /// A time or a tolerance that is none.
+    /// A time or a tolerance is invalid.
     #[error("{what} is {value}, but must be {requirement}")]
     Setting {
         /// Which.
@@ -271,7 +273,7 @@ pub enum SimulationError {
         /// Its value.
         value: f64,
     },
-    /// Lanes on a processor whose vector instructions they want.
+    /// Lanes need vector instructions that the processor lacks.
     #[error(
         "machines cannot be driven side by side on this processor: it lacks the vector instructions AVX2 and FMA"
     )]

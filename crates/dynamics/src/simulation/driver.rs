@@ -55,8 +55,8 @@ struct Between<S> {
     waves: Vec<S>,
 }
 
-/// Drives every machine of a queue to its end. A lane that is done takes the next machine; each has its own time, step and
-/// breaks, and its outcome does not depend on its neighbours.
+/// Drives every machine of a queue to its end. A lane that is done takes the next machine; each has
+/// its own time, step and breaks, and its outcome does not depend on its neighbours.
 ///
 /// # Errors
 /// [`SimulationError`] when a task does not fit the system.
@@ -190,12 +190,14 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         Ok(())
     }
 
-    /// Tries one step in every lane: where its matrices are known by them, where that is not good enough by the method.
+    /// Tries one step in every lane: where its matrices are known by them, where that is not good
+    /// enough by the method.
     fn step(&mut self, system: &dyn Kernel<S>) {
         for lane in 0..S::COUNT {
             self.prepare(lane);
         }
-        // A lane that goes by its matrices now stands, after this step, where the method has not linearised it.
+        // A lane that goes by its matrices now stands, after this step, where the method has not
+        // linearised it.
         let mut fresh = std::mem::take(&mut self.fresh);
         self.choose_propagated();
         if self.watch_propagated(system, fresh) {
@@ -351,7 +353,8 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
     }
 
-    /// Shows the observer of a lane every row before the end of the step, and the step itself if it wants to be.
+    /// Shows the observer of a lane every row before the end of the step, and the step itself if it
+    /// wants to be.
     fn observe(&mut self, lane: usize) {
         let Some(slot) = &self.slots[lane] else { return };
         let follows = slot.passage.attention != Attention::Rows;

@@ -10,7 +10,8 @@ const DIRECTIONS: usize = 4;
 /// Newton steps, and halvings of each.
 const STEPS: usize = 100;
 const HALVINGS: usize = 40;
-/// Singular values below this are zero: a direction in which nothing is decided, along which the guess is kept.
+/// Singular values below this are zero: a direction in which nothing is decided, along which the
+/// guess is kept.
 const SINGULAR: f64 = 1e-11;
 /// How far off, in scales, a state may be where it stands still.
 const TOLERANCE: f64 = 1e-8;
@@ -41,15 +42,16 @@ pub enum EquilibriumError {
     },
 }
 
-/// The state in which a system stands still under inputs that do, and the waves under way in its delays, in one vector: by damped
-/// Newton steps from a guess of both.
+/// The state in which a system stands still under inputs that do, and the waves under way in its
+/// delays, in one vector: by damped Newton steps from a guess of both.
 ///
 /// ```text
 /// f(y, w, z) = 0,    z = g(y, w, z)        y states, w inputs, z the waves, which arrive as they were sent
 /// ```
 ///
-/// The Jacobian is exact. What these equations leave open (a load before its wall, the share of equal waves) stays as it was guessed, and
-/// so do the states in `kept`: memories such as the bristles of friction, which stand still anywhere.
+/// The Jacobian is exact. What these equations leave open (a load before its wall, the share of
+/// equal waves) stays as it was guessed, and so do the states in `kept`: memories such as the
+/// bristles of friction, which stand still anywhere.
 ///
 /// # Errors
 /// [`EquilibriumError`]; what the system cannot do within its equations is not found.

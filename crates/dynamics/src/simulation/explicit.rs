@@ -45,9 +45,10 @@ pub(super) const AMPLITUDE_LOST: AmplitudeLost = AmplitudeLost { factor: 1.0 / 3
 /// k_i = f(y + h sum a_ij k_j, t + c_i h),        y(t + h) = y + h sum b_i k_i,        error: h sum (b_i - b*_i) k_i
 /// ```
 ///
-/// Order 5 with an embedded solution of order 4; continuous extension of order 4. Its step is bounded by the fastest mode,
-/// h |lambda| < 3.3: the independent check of the implicit method where nothing is stiff. Source: Dormand and Prince
-/// (1980), Journal of Computational and Applied Mathematics 6, 19; extension: Shampine (1986), Mathematics of Computation 46, 135.
+/// Order 5 with an embedded solution of order 4; continuous extension of order 4. Its step is
+/// bounded by the fastest mode, h |lambda| < 3.3: the independent check of the implicit method
+/// where nothing is stiff. Source: Dormand and Prince (1980), Journal of Computational and Applied
+/// Mathematics 6, 19; extension: Shampine (1986), Mathematics of Computation 46, 135.
 #[derive(Clone, Debug)]
 pub(super) struct DormandPrince<S> {
     /// k_i, stage by stage.
@@ -77,8 +78,8 @@ impl<S: Lane> DormandPrince<S> {
         system.rates(state, &inputs.stages[0], &mut self.rates[..state.len()]);
     }
 
-    /// One step of length h from here, [`DormandPrince::begin`] having been called here; the error of each lane in units of
-    /// the tolerance.
+    /// One step of length h from here, [`DormandPrince::begin`] having been called here; the error
+    /// of each lane in units of the tolerance.
     pub(super) fn attempt(
         &mut self,
         system: &dyn Kernel<S>,

@@ -1,7 +1,8 @@
-//! Modes that grow: how long a step may be that shows them grow.
+//! Limits the step length so that growing modes are resolved.
 //!
-//! An L-stable method damps what it steps over. A mode that decays is none the worse for it; one that grows would be calmed, and
-//! no estimate of an error sees it while its amplitude is small. So each step is measured by the modes of its own Jacobian.
+//! An L-stable method damps the modes that are fast against its step. This does no harm to a
+//! decaying mode, but it would suppress a growing one, and no error estimate detects this while the
+//! amplitude is small. So each step is limited by the modes of its own Jacobian.
 
 use nalgebra::DMatrix;
 
@@ -10,7 +11,8 @@ use super::rosenbrock::Rosenbrock;
 use crate::linear::working_eigenvalues;
 use crate::portable;
 
-/// Where friction acts: the one part of the damping that may change its sign from one step to the next.
+/// Where friction acts: the one part of the damping that may change its sign from one step to the
+/// next.
 ///
 /// ```text
 /// d(omega) = -df/dv - Re((df/dz) (dg/dv)/(i omega - dg/dz)),    f = dv/dt, g = dz/dt          v velocity, z its memory
@@ -23,7 +25,7 @@ pub struct Sliding {
     pub memory: Option<usize>,
 }
 
-/// A mode that grows, and the longest step that shows it.
+/// A growing mode, and the longest step that resolves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Growing {
     pub(super) step_s: f64,
@@ -33,7 +35,7 @@ pub(super) struct Growing {
     pub(super) growth_per_s: f64,
 }
 
-/// What a step of angle theta takes from the amplitude of a mode that neither grows nor decays.
+/// Numerical damping of an undamped mode in a step of angle theta.
 ///
 /// ```text
 /// ln |R(i theta)| = -c theta^p
@@ -46,24 +48,29 @@ pub(super) struct AmplitudeLost {
     pub(super) power: u32,
 }
 
-/// Part by which the growth of a resolved mode may be off.
+/// Allowed relative error of the growth of a resolved mode.
 const GROWTH_ERROR: f64 = 0.02;
-/// No mode that grows turns by more than this in a step, in rad: beyond, the amplitude lost follows no power.
+/// Largest angle of a growing mode in a step, in rad: beyond it, the numerical damping does not
+/// follow a power law.
 const LARGEST_ANGLE: f64 = 2.0;
-/// So many times as long as the step before it no step is, where a mode grows: what may be longer is not computed.
+/// While a mode grows, no step is longer than this multiple of the previous one; limits beyond it
+/// are not computed.
 const FAR: f64 = 2.0;
 /// Modes above this part of the fastest are about as fast.
 const FAST: f64 = 0.25;
 /// Slower growth than this part of its frequency is rounding.
 const LEAST_GROWTH: f64 = 1e-10;
-/// Turning by less in a step, in rad, no mode's growth is off by more than 3e-6 of its frequency, whatever its damping.
+/// Turning by less in a step, in rad, no mode's growth is off by more than 3e-6 of its frequency,
+/// whatever its damping.
 const SMALL_ANGLE: f64 = 0.8;
-/// A step that is longer by no more than this is shortened to the small angle rather than looked into: it costs less.
+/// A step that is longer by no more than this is shortened to the small angle rather than looked
+/// into: it costs less.
 const NEARLY: f64 = 1.25;
-/// Below this part of what it was, friction is looked at again: modes have come up that were not there.
+/// When the damping of friction falls below this fraction of its last value, the modes are computed
+/// again.
 const FALLEN: f64 = 0.02;
-/// Where waves come back late the Jacobian does not tell whether a mode decays: one that decays by less than this part of its
-/// frequency is taken to grow by the other.
+/// Where waves come back late the Jacobian does not tell whether a mode decays: one that decays by
+/// less than this part of its frequency is taken to grow by the other.
 const UNTOLD: [f64; 2] = [0.05, 1e-3];
 /// More growth than this, as a logarithm, ends in what no linear mode tells.
 const MOST_GROWN: f64 = 20.0;
@@ -73,11 +80,13 @@ const LEAST_FOLLOWED: f64 = 1e-3;
 const LEAST_INTERVAL: u64 = 256;
 /// Part of that while a mode grows.
 const WHILE_GROWING: u64 = 8;
-/// Part of a change of the growth that a step misses by matrices found before it, over the square of the angle it turns in rad.
+/// Part of a change of the growth that a step misses by matrices found before it, over the square
+/// of the angle it turns in rad.
 const MISSED: f64 = 0.08;
-/// Smaller errors of the growth, in 1/s, are none for matrices found before.
+/// Smaller errors of the growth, in 1/s, do not require new matrices.
 const LEAST_CHANGE: f64 = 0.1;
-/// Parts of its growth to which that of the least stable mode may fall, or its decay, before it is looked at again.
+/// Parts of its growth to which that of the least stable mode may fall, or its decay, before it is
+/// looked at again.
 const LEFT: [f64; 2] = [0.25, 0.5];
 
 #[derive(Clone, Copy, Debug)]
@@ -87,8 +96,8 @@ struct Mode {
 }
 
 impl Mode {
-    /// The longest step that shows this mode, with this growth, to [`GROWTH_ERROR`], or [`FAR`] such steps as are taken where that is
-    /// shorter; `None` where it does not grow.
+    /// The longest step that shows this mode, with this growth, to [`GROWTH_ERROR`], or [`FAR`]
+    /// such steps as are taken where that is shorter; `None` where it does not grow.
     ///
     /// ```text
     /// c theta^p <= e zeta theta,        theta = h |lambda|, zeta = Re lambda/|lambda|
@@ -110,9 +119,10 @@ impl Mode {
 
 /// What is known of the modes of the machine in one lane.
 ///
-/// Eigenvalues cost several steps, so they are found when they may have changed: every so many steps for what changes slowly, and
-/// when the damping of friction changes its sign or falls to a part of what it was, or may have turned growth into decay. In between it
-/// shifts all modes as it would the one that has all its kinetic energy in the velocity: by half of its own change.
+/// Eigenvalues cost several steps, so they are computed only when they may have changed: at fixed
+/// numbers of steps for slow changes, and when the damping of friction changes its sign or falls to
+/// a part of what it was, or may have turned growth into decay. In between it shifts all modes as
+/// it would the one that has all its kinetic energy in the velocity: by half of its own change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrowthWatch {
     /// States that influence each other, set by set: their modes are found apart.
@@ -130,7 +140,8 @@ pub(super) struct GrowthWatch {
     most: f64,
     /// Largest magnitude of those, in rad/s.
     fastest: f64,
-    /// The step in which the fastest turns by the small angle, in s; zero where no mode oscillates, so that no step counts as small.
+    /// The step in which the fastest turns by the small angle, in s; zero where no mode oscillates,
+    /// so that no step counts as small.
     small_s: f64,
     /// Largest growth of those that are about as fast, in 1/s.
     growth: f64,
@@ -164,14 +175,14 @@ impl GrowthWatch {
         GrowthWatch { own: place(velocity, velocity), memory, interval, ..watch }
     }
 
-    /// Forgets everything: another machine is in the lane.
+    /// Resets everything for another machine in the lane.
     pub(super) fn forget(&mut self) {
         self.age = None;
         (self.before, self.grown) = (None, 0.0);
     }
 
-    /// The mode that bounds a step of this length, so many steps after it was last asked for, from the Jacobian at its start;
-    /// `None` where none does.
+    /// The mode that limits a step of this length, from the Jacobian at its start, `steps` steps
+    /// after the last call; `None` where none does.
     pub(super) fn bound<S: Lane>(
         &mut self,
         time_s: f64,
@@ -202,8 +213,8 @@ impl GrowthWatch {
         bounds.min_by(|one, other| one.step_s.total_cmp(&other.step_s))
     }
 
-    /// Takes note of how the least stable mode has grown since it was last asked for: what has grown is there until it has decayed by as
-    /// much.
+    /// Takes note of how the least stable mode has grown since it was last asked for: what has
+    /// grown is there until it has decayed by as much.
     fn follow(&mut self, time_s: f64, growth_per_s: f64) {
         let (before_s, before) = self.before.replace((time_s, growth_per_s)).unwrap_or((time_s, 0.0));
         if time_s > before_s {
@@ -237,8 +248,9 @@ impl GrowthWatch {
         }
     }
 
-    /// Whether friction's damping has moved so far from another value that a step of this length by matrices found there is off: of the
-    /// growth that the change makes, a step by such matrices misses a part that rises with the angle it turns.
+    /// Whether friction's damping has moved so far from another value that a step of this length by
+    /// matrices found there is off: of the growth that the change makes, a step by such matrices
+    /// misses a part that rises with the angle it turns.
     pub(super) fn has_left<S: Lane>(
         &self,
         other: f64,
@@ -301,7 +313,8 @@ impl GrowthWatch {
         Mode { growth: if unsure { mode.growth.max(growth) } else { mode.growth }, ..mode }
     }
 
-    /// The mode that asks for the shortest step, if friction has added so much to the growth of each.
+    /// The mode that asks for the shortest step, if friction has added so much to the growth of
+    /// each.
     fn shortest(&self, added: f64, taken_s: f64) -> Option<Growing> {
         if self.most + added <= 0.0 {
             return None;

@@ -33,7 +33,8 @@ impl History {
         self.delay_s
     }
 
-    /// Adds the wave sent over a step, given at [`NODES`], and forgets what arrived before the step's end.
+    /// Adds the wave sent over a step, given at [`NODES`], and forgets what arrived before the
+    /// step's end.
     pub(super) fn send(&mut self, start_s: f64, length_s: f64, values: [f64; 5]) {
         let arrived = start_s + length_s - self.delay_s;
         while self.pieces.front().is_some_and(|piece| piece.start_s + piece.length_s < arrived - length_s) {
@@ -42,8 +43,8 @@ impl History {
         self.pieces.push_back(Piece { start_s, length_s, coefficients: Quartic::through(values).0 });
     }
 
-    /// What arrives at this time, and its slope. Where the wave jumps it is that of the side on which `beside_s` lies, within
-    /// what rounding does to a time and a delay.
+    /// What arrives at this time, and its slope. Where the wave jumps it is that of the side on
+    /// which `beside_s` lies, within what rounding does to a time and a delay.
     pub(super) fn arriving(&self, time_s: f64, beside_s: f64) -> [f64; 2] {
         let sent = time_s - self.delay_s;
         let rounding = 8.0 * f64::EPSILON * time_s;

@@ -23,8 +23,9 @@ pub(super) struct Trial<'t, S> {
     pub(super) tolerance: f64,
 }
 
-/// A [`System`] with the parts of the methods that evaluate its equations, compiled for the vector instructions of the processor. All
-/// else of a driver knows a system by this trait alone, and is compiled once for all systems.
+/// A [`System`] with the parts of the methods that evaluate its equations, compiled for the vector
+/// instructions of the processor. All else of a driver knows a system by this trait alone, and is
+/// compiled once for all systems.
 pub(super) trait Kernel<S: Lane> {
     /// As [`System::states`].
     fn states(&self) -> usize;
@@ -118,8 +119,8 @@ where
     }
 }
 
-/// [`Rosenbrock::linearize`] with the vector instructions that there are. A closure would not do: the call of a closure is a
-/// function of its own, and compiled without them.
+/// [`Rosenbrock::linearize`] with the vector instructions that there are. A closure would not do:
+/// the call of a closure is a function of its own, and compiled without them.
 struct Linearization<'m, S, E> {
     method: &'m mut Rosenbrock<S>,
     system: &'m E,

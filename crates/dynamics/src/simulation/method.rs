@@ -1,4 +1,4 @@
-//! The methods that a system can be driven by, behind one interface.
+//! The integration methods, with one interface.
 
 use super::Lane;
 use super::explicit::{self, DormandPrince};
@@ -7,8 +7,8 @@ use super::kernel::{Kernel, Trial};
 use super::passage::Passage;
 use super::rosenbrock::{self, Rosenbrock};
 
-/// Where in a step the equations are asked how far its course is off: late, since a step that is shortened for a kink comes to
-/// end shortly behind it.
+/// Where in a step the equations are asked how far its course is off: late, since a step that is
+/// shortened for a kink comes to end shortly after it.
 pub(super) const LOOKED_AT: f64 = 0.75;
 
 /// How steps are made.
@@ -17,7 +17,8 @@ pub enum Method {
     /// L-stable, linearly implicit, of order 5: for stiff systems. Rodas5P, Steinebach (2023).
     #[default]
     Rosenbrock,
-    /// Explicit, of order 5: an independent check where no mode is much faster than what is looked at. Dormand and Prince (1980).
+    /// Explicit, of order 5: an independent check where no mode is much faster than what is looked
+    /// at. Dormand and Prince (1980).
     DormandPrince,
 }
 
@@ -87,8 +88,9 @@ impl<S: Lane> Stepper<S> {
         system.linearize(method, state, inputs);
     }
 
-    /// One step of length h from where [`Stepper::linearize`] was called; the error of each lane in units of the tolerance.
-    /// Above one, or not a number, the step is to be tried again with a shorter one.
+    /// One step of length h from where [`Stepper::linearize`] was called; the error of each lane in
+    /// units of the tolerance. Above one, or not a number, the step is to be tried again with a
+    /// shorter one.
     pub(super) fn attempt(
         &mut self,
         system: &dyn Kernel<S>,
@@ -104,19 +106,20 @@ impl<S: Lane> Stepper<S> {
         }
     }
 
-    /// Whether a step may be further off than the error at its end tells. Never for the explicit method, whose steps are too
-    /// short for that.
+    /// Whether a step may be further off than the error at its end tells. Never for the explicit
+    /// method, whose steps are too short for that.
     ///
-    /// Where a state is bound stiffly, what lies between the ends is. And a step that was shortened until its error let it
-    /// pass may end where the error is blind: where a rate has a kink, as friction has at a standstill, that is so for
-    /// some places of the kink within the step, which steps made shorter one after the other find.
+    /// Where a state is bound stiffly, what lies between the ends is. And a step that was shortened
+    /// until its error let it pass may end where the error is blind: where a rate has a kink, as
+    /// friction has at a standstill, that is so for some places of the kink within the step, which
+    /// steps made shorter one after the other find.
     pub(super) fn doubts(&self, lane: usize, passage: &Passage<'_>) -> bool {
         let Some(method) = self.linearized() else { return false };
         passage.rejected || (passage.looked_into() && method.binds_stiffly(lane, passage.step_s))
     }
 
-    /// How far what lies between the ends of the step just attempted is off, for the inputs at [`LOOKED_AT`], in units of
-    /// the tolerance.
+    /// How far what lies between the ends of the step just attempted is off, for the inputs at
+    /// [`LOOKED_AT`], in units of the tolerance.
     pub(super) fn error_between(
         &mut self,
         system: &dyn Kernel<S>,

@@ -1,4 +1,5 @@
-//! One machine's way through time: where it stands, how far the next step may go, what breaks ahead.
+//! One machine's way through time: where it stands, how far the next step may go, what breaks
+//! ahead.
 
 use std::collections::VecDeque;
 
@@ -11,7 +12,8 @@ use crate::portable;
 const GROWTH: [f64; 2] = [0.1, 6.0];
 /// What is kept of the step that the error would allow.
 const SAFETY: f64 = 0.9;
-/// A break's waves are met by restarts this many times; by then they have faded. What jumps still is smeared over a step.
+/// A break's waves are met by restarts this many times; by then they have faded. What jumps still
+/// is smeared over a step.
 const ECHOES: u8 = 12;
 
 /// An input between two breaks.
@@ -143,7 +145,8 @@ impl<'a> Passage<'a> {
         };
     }
 
-    /// Takes note of the mode that bounds the step; whether the step being tried is too long for it.
+    /// Takes note of the mode that bounds the step; whether the step being tried is too long for
+    /// it.
     pub(super) fn limit(&mut self, growing: Option<Growing>) -> bool {
         self.growing = growing;
         growing.is_some_and(|growing| growing.step_s < self.step_s * (1.0 - 1e-9))
@@ -192,7 +195,8 @@ impl<'a> Passage<'a> {
         self.inputs_at(time_s, inputs);
     }
 
-    /// Inputs at a time up to the next break, waves included: at a break as they are within the step that is being tried.
+    /// Inputs at a time up to the next break, waves included: at a break as they are within the
+    /// step that is being tried.
     #[inline]
     pub(super) fn inputs_at(&self, time_s: f64, inputs: &mut [f64]) {
         for (place, segment) in inputs.iter_mut().zip(&self.segments) {
@@ -238,7 +242,8 @@ impl<'a> Passage<'a> {
     pub(super) fn judge(&mut self, error: f64) -> bool {
         let taken = error <= 1.0;
         let factor = if error.is_finite() {
-            // A proportional-integral controller of the step (Gustafsson 1991): error^(-3/16) before^(1/16).
+            // A proportional-integral controller of the step (Gustafsson 1991): error^(-3/16)
+            // before^(1/16).
             let (eighth, before) =
                 (error.max(1e-8).sqrt().sqrt().sqrt(), self.before.sqrt().sqrt().sqrt().sqrt());
             let damped = if taken { before } else { 1.0 };
@@ -345,7 +350,8 @@ impl<'a> Passage<'a> {
         for history in &self.histories {
             let arrival = time_s + history.delay_s();
             if arrival < self.course.duration_s {
-                // Waves that travel the same way in another order arrive together, but for rounding.
+                // Waves that travel the same way in another order arrive together, but for
+                // rounding.
                 let rounding = 4.0 * f64::EPSILON * arrival;
                 let place = self.breaks.partition_point(|&(time, _)| time < arrival - rounding);
                 match self.breaks.get_mut(place) {
@@ -359,7 +365,8 @@ impl<'a> Passage<'a> {
     }
 }
 
-/// The latest time in s that is this one but for rounding: 17 times 0.7 ms and 11.9 ms are one time.
+/// The latest time in s that is this one but for rounding: 17 times 0.7 ms and 11.9 ms are one
+/// time.
 pub(super) fn later(time_s: f64) -> f64 {
     time_s * (1.0 + 4.0 * f64::EPSILON)
 }

@@ -40,8 +40,9 @@ impl Pattern {
     }
 }
 
-/// Greedy colouring in the order of the states: each takes the least colour that none of its neighbours has. Two states
-/// are neighbours when a rate depends on both. Source: Curtis, Powell and Reid (1974).
+/// Greedy colouring in the order of the states: each takes the least colour that none of its
+/// neighbours has. Two states are neighbours when a rate depends on both. Source: Curtis, Powell
+/// and Reid (1974).
 fn coloured(rows: &[Vec<usize>], states: usize) -> Vec<usize> {
     let mut colours: Vec<usize> = Vec::with_capacity(states);
     for state in 0..states {

@@ -10,14 +10,15 @@ pub use piece::{Moment, Piece};
 
 use piece::Shape;
 
-/// A known function of time w(t), in whatever unit its user gives it: smooth pieces, one after the other.
+/// A known function of time w(t), in whatever unit its user gives it: smooth pieces, one after the
+/// other.
 ///
 /// ```text
 /// w(t) = p_k(t)     for b_k <= t < b_{k+1},      b_0 = -inf          p_k smooth, b_1, b_2 ... the breaks
 /// ```
 ///
-/// At a break the new piece holds already. Whoever integrates across a break asks for the [`Piece`] of each side: a piece is
-/// an analytic function that can be evaluated beyond its ends.
+/// At a break the new piece holds already. Whoever integrates across a break asks for the [`Piece`]
+/// of each side: a piece is an analytic function that can be evaluated beyond its ends.
 ///
 /// # Example
 /// A load that moves by 5 mm in 0.1 s, three seconds after the start
@@ -36,7 +37,7 @@ pub struct Profile {
     later: Vec<(f64, Piece)>,
 }
 
-/// Why there is no such function of time.
+/// The function of time is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ProfileError {
     /// A number outside the range in which the function has a meaning.
@@ -79,10 +80,11 @@ impl Profile {
         Profile { first: Piece::new(Shape::Constant { value }), later: Vec::new() }
     }
 
-    /// Piecewise constant: `initial`, and from each time on the value beside it.
+    /// Piecewise constant: `initial` at first, and from each time on the value paired with it.
     ///
     /// # Errors
-    /// [`ProfileError::TimeOrder`] unless the times rise strictly, [`ProfileError::OutOfRange`] for a value that is not finite.
+    /// [`ProfileError::TimeOrder`] unless the times rise strictly, [`ProfileError::OutOfRange`] for
+    /// a value that is not finite.
     ///
     /// # Example
     /// ```
@@ -101,7 +103,8 @@ impl Profile {
         Ok(Profile { later: steps.iter().map(piece).collect(), ..Profile::constant(initial) })
     }
 
-    /// From zero to `distance` within `duration_s`, with velocity and acceleration zero at both ends.
+    /// From zero to `distance` within `duration_s`, with velocity and acceleration zero at both
+    /// ends.
     ///
     /// ```text
     /// w = d (10 s^3 - 15 s^4 + 6 s^5),     s = (t - t_0)/D in [0, 1];      greatest rate 15/8 d/D at s = 1/2
@@ -153,7 +156,8 @@ impl Profile {
     /// ```
     ///
     /// # Errors
-    /// [`ProfileError::OutOfRange`] unless the time constant is positive and all numbers are finite.
+    /// [`ProfileError::OutOfRange`] unless the time constant is positive and all numbers are
+    /// finite.
     pub fn first_order(start_s: f64, time_constant_s: f64, distance: f64) -> Result<Profile, ProfileError> {
         finite("the start of a first-order step", start_s)?;
         positive("the time constant of a first-order step", time_constant_s)?;
@@ -192,7 +196,8 @@ impl Profile {
     /// ```
     ///
     /// # Errors
-    /// [`ProfileError::OutOfRange`] unless duration and frequencies are positive and all numbers are finite.
+    /// [`ProfileError::OutOfRange`] unless duration and frequencies are positive and all numbers
+    /// are finite.
     pub fn chirp(
         start_s: f64,
         duration_s: f64,
@@ -217,7 +222,8 @@ impl Profile {
         Ok(Profile::from_rest(&[(start_s, sine), (end_s, end)]))
     }
 
-    /// Through measured points by a shape-preserving cubic, held before the first and after the last; each point is a break.
+    /// Through measured points by a shape-preserving cubic, held before the first and after the
+    /// last; each point is a break.
     ///
     /// ```text
     /// h_k = t_{k+1} - t_k,   s_k = (w_{k+1} - w_k)/h_k
@@ -225,14 +231,17 @@ impl Profile {
     /// m_k = 3 (h_{k-1} + h_k)/((2 h_k + h_{k-1})/s_{k-1} + (h_k + 2 h_{k-1})/s_k)   otherwise
     /// ```
     ///
-    /// with w(t_k) = w_k and w'(t_k) = m_k at both ends of each cubic. The velocity is continuous between first and last point,
-    /// and no motion beyond the measured values is made up: between two points the curve stays between them. (Straight
-    /// lines would make the velocity jump at each point, an ordinary spline would overshoot.) At the first and the
-    /// last point the slope is the three-point one of the two nearest intervals, limited to keep the shape. Source: Fritsch
-    /// and Butland 1984, a method for constructing local monotone piecewise cubic interpolants.
+    /// with w(t_k) = w_k and w'(t_k) = m_k at both ends of each cubic. The velocity is continuous
+    /// between first and last point, and no motion beyond the measured values is made up: between
+    /// two points the curve stays between them. (Straight lines would make the velocity jump at
+    /// each point, an ordinary spline would overshoot.) At the first and the last point the slope
+    /// is the three-point one of the two nearest intervals, limited to keep the shape. Source:
+    /// Fritsch and Butland 1984, a method for constructing local monotone piecewise cubic
+    /// interpolants.
     ///
     /// # Errors
-    /// [`ProfileError::Count`], [`ProfileError::TimeOrder`], [`ProfileError::OutOfRange`] for a value that is not finite.
+    /// [`ProfileError::Count`], [`ProfileError::TimeOrder`], [`ProfileError::OutOfRange`] for a
+    /// value that is not finite.
     ///
     /// # Example
     /// ```
@@ -300,7 +309,7 @@ impl Profile {
         self.last_of(self.later.partition_point(|(start_s, _)| *start_s <= time_s))
     }
 
-    /// The last piece of so many that have begun.
+    /// The last of the pieces that have begun, given their number.
     fn last_of(&self, begun: usize) -> &Piece {
         begun.checked_sub(1).and_then(|last| self.later.get(last)).map_or(&self.first, |(_, piece)| piece)
     }
@@ -310,7 +319,8 @@ impl Profile {
         self.later.iter().map(|(start_s, _)| *start_s).collect()
     }
 
-    /// The longest step that cannot pass over a swing unseen, in s: a quarter of the shortest period; none without a swing.
+    /// The longest step that cannot pass over a swing unseen, in s: a quarter of the shortest
+    /// period; none without a swing.
     ///
     /// # Example
     /// ```

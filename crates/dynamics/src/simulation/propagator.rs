@@ -1,5 +1,5 @@
-//! Steps of one and the same length, taken with matrices found once: how a machine that is nearly linear for a while gets
-//! from sample to sample.
+//! Steps of one and the same length, taken with matrices found once: how a machine that is nearly
+//! linear for a while gets from sample to sample.
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -15,9 +15,9 @@ use super::{Lane, System};
 /// y(t + h) = y_1 + 2 h phi_3(h J) r,    error: the last term
 /// ```
 ///
-/// Order 3 while J is the Jacobian at y_0, and exact for linear equations with inputs that stand still whatever the step;
-/// a J found earlier adds to r what it has changed by. Source: the method exprb32 of Hochbruck and Ostermann (2010),
-/// Exponential integrators, Acta Numerica 19.
+/// Order 3 while J is the Jacobian at y_0, and exact for linear equations with inputs that stand
+/// still whatever the step; a J found earlier adds to r what it has changed by. Source: the method
+/// exprb32 of Hochbruck and Ostermann (2010), Exponential integrators, Acta Numerica 19.
 #[derive(Clone, Debug)]
 pub(super) struct Propagator<S> {
     states: usize,
@@ -27,7 +27,7 @@ pub(super) struct Propagator<S> {
     third: Square<S>,
     /// Damping of friction where each lane's matrices were found.
     pub(super) friction: Vec<f64>,
-    /// The step of each lane in s; not a number where there is none.
+    /// The step of each lane in s; NaN for a lane without a step.
     step_s: Vec<f64>,
     /// State, rates at both ends, remainder, difference.
     pub(super) end: Vec<S>,
@@ -38,7 +38,8 @@ pub(super) struct Propagator<S> {
     age: Vec<u32>,
 }
 
-/// A lane's matrices are found again after this many steps at the earliest: it costs as much as several steps without.
+/// A lane's matrices are found again after this many steps at the earliest: it costs as much as
+/// several steps without.
 const LEAST_AGE: u32 = 8;
 
 /// Steps of this relative difference are one.
@@ -103,7 +104,8 @@ impl<S: Lane> Propagator<S> {
         self.age[lane] = 0;
     }
 
-    /// The step from a state with inputs that stand still; the error of each lane in units of the tolerance.
+    /// The step from a state with inputs that stand still; the error of each lane in units of the
+    /// tolerance.
     #[inline(always)]
     pub(super) fn step<E: System<S>>(&mut self, system: &E, trial: Trial<'_, S>, inputs: &[S]) -> S {
         let Trial { state, scales, tolerance, .. } = trial;
@@ -206,7 +208,8 @@ mod tests {
         first_and_third(matrix)
     }
 
-    /// One eigenvalue at a time: (e^z - 1)/z and (e^z - 1 - z - z^2/2)/z^3, and a nilpotent matrix, whose series ends.
+    /// One eigenvalue at a time: (e^z - 1)/z and (e^z - 1 - z - z^2/2)/z^3, and a nilpotent matrix,
+    /// whose series ends.
     #[test]
     fn the_functions_agree_with_their_closed_forms() {
         for z in [-40.0, -3.0, -0.7, 0.9, 5.0] {

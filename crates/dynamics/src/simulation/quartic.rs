@@ -77,7 +77,8 @@ impl Quartic {
         c1 + part * (2.0 * c2 + part * (3.0 * c3 + part * 4.0 * c4))
     }
 
-    /// Its coefficients over Bernstein's polynomials, between the least and the greatest of which it stays.
+    /// Its coefficients over Bernstein's polynomials, between the least and the greatest of which
+    /// it stays.
     #[inline]
     fn hull(&self) -> [f64; 5] {
         let [c0, c1, c2, c3, c4] = self.0;
@@ -158,7 +159,8 @@ impl Quartic {
         gauss(span, |part| self.at(part) * self.at(part))
     }
 
-    /// The mean of its square between two parts of the step, of a signal that is held within plus and minus a limit.
+    /// The mean of its square between two parts of the step, of a signal that is held within plus
+    /// and minus a limit.
     pub fn mean_square_within(&self, limit: f64, [from, until]: [f64; 2]) -> f64 {
         let [low, high] = self.bounds();
         if -limit <= low && high <= limit {
@@ -188,7 +190,8 @@ impl Quartic {
         turning.into_iter().filter(move |part| from < *part && *part < until).chain(std::iter::once(until))
     }
 
-    /// Where it crosses a level between two parts on either side of it, between which it rises or falls.
+    /// Where it crosses a level between two parts on either side of it, between which it rises or
+    /// falls.
     fn crossing(&self, level: f64, [mut one, mut other]: [f64; 2]) -> f64 {
         let above = self.at(one) >= level;
         for _ in 0..HALVINGS {
@@ -202,7 +205,8 @@ impl Quartic {
         other
     }
 
-    /// Where its slope vanishes within the step, in order: between the places where its curvature does.
+    /// Where its slope vanishes within the step, in order: between the places where its curvature
+    /// does.
     fn turning_points(&self) -> Vec<f64> {
         let [_, _, c2, c3, c4] = self.0;
         let mut ends = vec![0.0];

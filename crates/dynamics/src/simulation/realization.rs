@@ -48,7 +48,8 @@ impl Realization {
         })
     }
 
-    /// Magnitudes of the states that make an output of this magnitude, directly or through the states they drive.
+    /// Magnitudes of the states that make an output of this magnitude, directly or through the
+    /// states they drive.
     pub(super) fn scales<S: Scalar>(&self, output: S) -> Vec<S> {
         let mut parts = vec![f64::INFINITY; self.states];
         for &(column, value) in &self.taps {
@@ -92,7 +93,8 @@ impl Realization {
         }
     }
 
-    /// States that stand still under an input and, where it is stated, give an output; the nearest to that where none do.
+    /// States that stand still under an input and, where it is stated, give an output; the nearest
+    /// to that where none do.
     ///
     /// ```text
     /// A x = -B e,    C x = y - D e        each equation over the largest number of its row, least squares

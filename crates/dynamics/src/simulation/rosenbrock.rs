@@ -23,7 +23,8 @@ const STIFF: f64 = 1e3;
 /// gamma, on the diagonal of every stage.
 const GAMMA: f64 = 0.21193756319429014;
 
-/// a_ij: what the stages before add to the state of stages 2 to 6; the last two stages each add the increment before them.
+/// a_ij: what the stages before add to the state of stages 2 to 6; the last two stages each add the
+/// increment before them.
 const A2: [f64; 1] = [3.0];
 const A3: [f64; 2] = [2.849394379747939, 0.45842242204463923];
 const A4: [f64; 3] = [-6.954028509809101, 2.489845061869568, -10.358996098473584];
@@ -98,7 +99,8 @@ const EXTENSION: [[f64; STAGES]; 3] = [
     ],
 ];
 
-/// On the imaginary axis, ln |R(i theta)| = -c theta^8 + ...: below by a fifth at 0.5 rad, above by a third at 1.5 rad.
+/// On the imaginary axis, ln |R(i theta)| = -c theta^8 + ...: below by a fifth at 0.5 rad, above by
+/// a third at 1.5 rad.
 pub(super) const AMPLITUDE_LOST: AmplitudeLost = AmplitudeLost { factor: 1.2e-5, power: 8 };
 
 /// Where an entry of the Jacobian is found.
@@ -112,7 +114,8 @@ struct Found {
     entry: usize,
 }
 
-/// States are combined in groups of four: whole vectors for the machine. The last group is filled up with zeros.
+/// States are combined in groups of four: whole vectors for the machine. The last group is filled
+/// up with zeros.
 type Group<S> = [S; 4];
 
 /// The method with its memory, for a system of one pattern.
@@ -122,8 +125,8 @@ type Group<S> = [S; 4];
 /// y(t + h) = y + sum b_i u_i,        error: u_8
 /// ```
 ///
-/// Order 5 with an embedded solution of order 4, both L-stable, stiffly accurate; continuous extension of order 4.
-/// Source: Rodas5P, Steinebach (2023), BIT Numerical Mathematics 63, 27.
+/// Order 5 with an embedded solution of order 4, both L-stable, stiffly accurate; continuous
+/// extension of order 4. Source: Rodas5P, Steinebach (2023), BIT Numerical Mathematics 63, 27.
 #[derive(Clone, Debug)]
 pub(super) struct Rosenbrock<S> {
     pattern: Pattern,
@@ -221,7 +224,8 @@ impl<S: Lane> Rosenbrock<S> {
                 }
             }
             if time_here {
-                // Where nothing moves, nothing is asked: an infinite derivative there means no slope.
+                // Where nothing moves, nothing is asked: an infinite derivative there means no
+                // slope.
                 let zero = S::from(0.0);
                 let moving = inputs.slopes.iter().fold(zero, |sum, slope| sum + slope.abs());
                 for (slope, rate) in self.slopes.iter_mut().zip(&self.seeded_rates) {
@@ -238,8 +242,9 @@ impl<S: Lane> Rosenbrock<S> {
         }
     }
 
-    /// One step of length h from here, [`Rosenbrock::linearize`] having been called here; the error of each lane in
-    /// units of the tolerance. Above one, or not a number, the step is to be tried again with a shorter one.
+    /// One step of length h from here, [`Rosenbrock::linearize`] having been called here; the error
+    /// of each lane in units of the tolerance. Above one, or not a number, the step is to be tried
+    /// again with a shorter one.
     #[inline(always)]
     pub(super) fn attempt<E: System<S>>(
         &mut self,
@@ -276,19 +281,22 @@ impl<S: Lane> Rosenbrock<S> {
         S::select(S::from(0.0).less_than(kept), error, S::from(f64::INFINITY))
     }
 
-    /// Whether a state of this lane would come to rest within a small part of the step, if the others stood still.
+    /// Whether a state of this lane would come to rest within a small part of the step, if the
+    /// others stood still.
     pub(super) fn binds_stiffly(&self, lane: usize, step_s: f64) -> bool {
         self.fastest.lane(lane) * step_s < -STIFF
     }
 
-    /// How far the continuous extension is off at theta = [`LOOKED_AT`] of the step just attempted, in units of the tolerance,
-    /// for the inputs there: the remainder of the equations, brought to the state as a stage's increment is.
+    /// How far the continuous extension is off at theta = [`LOOKED_AT`] of the step just attempted,
+    /// in units of the tolerance, for the inputs there: the remainder of the equations, brought to
+    /// the state as a stage's increment is.
     ///
     /// ```text
     /// (1/(h gamma) - J) e = f(y(theta), w(theta)) - y'(theta)
     /// ```
     ///
-    /// Where a state is bound stiffly to others or to an input the error at the end says nothing of what lies between.
+    /// Where a state is bound stiffly to others or to an input the error at the end says nothing of
+    /// what lies between.
     #[inline(always)]
     pub(super) fn error_between<E: System<S>>(&mut self, system: &E, trial: Trial<'_, S>, inputs: &[S]) -> S {
         let Trial { state, step, scales, tolerance } = trial;
@@ -378,7 +386,8 @@ impl<S: Lane> Rosenbrock<S> {
         irreducible_blocks(&pattern)
     }
 
-    /// Where the entry in a row and a column of the Jacobian is held; `None` where it is zero whatever the state.
+    /// Where the entry in a row and a column of the Jacobian is held; `None` where it is zero
+    /// whatever the state.
     pub(super) fn place(&self, row: usize, column: usize) -> Option<usize> {
         let before: usize = self.pattern.rows.iter().take(row).map(Vec::len).sum();
         let place = self.pattern.rows.get(row)?.iter().position(|&other| other == column)?;

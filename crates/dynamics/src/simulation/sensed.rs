@@ -11,7 +11,8 @@ use crate::scalar::Scalar;
 /// dx/dt = A x + B y,    m(t) = C x(t - d) + D y(t - d)         y what the plant gives, m what the controller sees
 /// ```
 ///
-/// States are those of the plant and then those of the sensor. A sensor of one without dead time adds nothing.
+/// States are those of the plant and then those of the sensor. A sensor of one without dead time
+/// adds nothing.
 ///
 /// # Example
 /// ```

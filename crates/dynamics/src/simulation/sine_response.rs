@@ -1,4 +1,4 @@
-//! What a system answers to a sine, once it has settled: the fundamental and what lies above it.
+//! The settled response of a system to a sine: the fundamental and the harmonics.
 
 use std::cell::Cell;
 
@@ -11,10 +11,10 @@ use crate::portable;
 
 /// Rows of a period: harmonics up to the thirtieth do not meet one another.
 const ROWS: usize = 64;
-/// Harmonics that are told.
+/// Number of harmonics that are computed.
 const HARMONICS: usize = 20;
 
-/// How long a sine is watched.
+/// For how long the response to a sine is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SinePlan {
     /// Of the sine, rad/s.
@@ -23,17 +23,19 @@ pub struct SinePlan {
     pub window_periods: u32,
     /// Most windows; at least two.
     pub most_windows: u32,
-    /// It has settled when the fundamental of a window differs from that of the one before by this much of it, or less.
+    /// It has settled when the fundamental of a window differs from that of the one before by this
+    /// much of it, or less.
     pub change: f64,
 }
 
-/// What came of a sine.
+/// The response to a sine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SineResponse {
-    /// Complex amplitude Y of the fundamental over the last window, y = y_0 + Im(Y e^(j w t)) + harmonics; not a number where no window
-    /// was seen to its end.
+    /// Complex amplitude Y of the fundamental over the last window, y = y_0 + Im(Y e^(j w t)) +
+    /// harmonics; not a number where no window was seen to its end.
     pub fundamental: Complex64,
-    /// Root of the sum of squares of the harmonics from the second to the twentieth, over the fundamental.
+    /// Root of the sum of squares of the harmonics from the second to the twentieth, over the
+    /// fundamental.
     pub distortion: f64,
     /// Whether it settled within its windows.
     pub settled: bool,
@@ -49,18 +51,21 @@ pub struct SineResponse {
     pub ended: Option<Status>,
 }
 
-/// Drives a system from a state (and the waves under way behind it) by inputs of which one is a sine that begins at time zero, until
-/// the fundamental of an output has settled. The output is read off states and inputs.
+/// Drives a system from a state (and the waves under way behind it) by inputs of which one is a
+/// sine that begins at time zero, until the fundamental of an output has settled. The output is
+/// read off states and inputs.
 ///
 /// ```text
 /// Y = (2 j/N) sum over a window of (y - trend) e^(-j w t)         N rows, 64 a period, whole periods
 /// ```
 ///
-/// The trend is the straight line between the ends of the window: what still drifts slowly leaves nothing in the fundamental to
-/// first order. `watch` is told the simulated time after each step; where it answers false, it ends there.
+/// The trend is the straight line between the ends of the window: what still drifts slowly leaves
+/// nothing in the fundamental to first order. `watch` is called with the simulated time after each
+/// step; if it returns false, the simulation stops.
 ///
 /// # Errors
-/// [`SimulationError`] when start, inputs or settings do not fit the system, or the plan is none.
+/// [`SimulationError`] when start, inputs or settings do not fit the system, or the plan is
+/// invalid.
 ///
 /// # Example
 /// What cubes a sine of amplitude a has the fundamental 3/4 a^3 and the third harmonic a^3/4.
@@ -206,7 +211,8 @@ impl Observer for Windows<'_> {
 }
 
 impl Windows<'_> {
-    /// Takes the trend to the value after the window off: of the ramp r, the sum of r z^r over whole periods is N/(z - 1).
+    /// Takes the trend to the value after the window off: of the ramp r, the sum of r z^r over
+    /// whole periods is N/(z - 1).
     fn end_window(&mut self, last: f64, rows: f64) {
         let mut squares = 0.0;
         let mut fundamental = Complex64::ZERO;

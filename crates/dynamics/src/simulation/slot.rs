@@ -44,7 +44,8 @@ impl<O: Observer> Slot<'_, O> {
         self.observer.looks_closer(&Stretch { passage: &self.passage, states: quartics })
     }
 
-    /// Shows the observer every row before the end of the step, from the states it wants over the step.
+    /// Shows the observer every row before the end of the step, from the states it wants over the
+    /// step.
     #[inline]
     pub(super) fn observe(&mut self, wanted: &[Extension<f64>]) {
         let Slot { passage, observer, states, inputs, .. } = self;

@@ -1,4 +1,4 @@
-//! What a system does under small sines about a rest: of its exact derivatives.
+//! Response of a system to small sines about an equilibrium, from its exact derivatives.
 
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -7,14 +7,16 @@ use super::System;
 use crate::portable;
 use crate::scalar::Dual;
 
-/// Complex amplitudes of all states under sines on the inputs about a state of rest; `None` where these determine none.
+/// Complex amplitudes of all states under sines on the inputs about an equilibrium; `None` where
+/// the equations have no unique solution.
 ///
 /// ```text
 /// j w X = A X + B U + E W,     W = e^(-j w d) (C X + D U + H W)         y = y_0 + Im(X e^(j w t)), u = u_0 + Im(U e^(j w t))
 /// ```
 ///
-/// A, B, E are the derivatives of the rates with respect to states, inputs and the waves that arrive, C, D, H those of what is sent
-/// into the delays d. `inputs` are all inputs at rest, `drive` the amplitudes of those before the waves; what it lacks is zero.
+/// A, B, E are the derivatives of the rates with respect to states, inputs and the waves that
+/// arrive, C, D, H those of what is sent into the delays d. `inputs` are all inputs at rest,
+/// `drive` the amplitudes of those before the waves; what it lacks is zero.
 ///
 /// # Example
 /// A tank of time constant 0.5 s
@@ -58,7 +60,8 @@ pub fn small_signal<E: System<f64>>(
         (0..states + own + waves).map(|place| column(system, state, inputs, place, waves)).collect();
     let late = delays.iter().map(|delay| Complex64::new(0.0, -frequency_rad_per_s * delay));
     let late: Vec<Complex64> = late.map(portable::exp_complex).collect();
-    // unknowns are the states and then the waves, each over its scale, as real part and imaginary part
+    // unknowns are the states and then the waves, each over its scale, as real part and imaginary
+    // part
     let unknowns = states + waves;
     let mut scales = system.scales();
     scales.resize(unknowns, 1.0);

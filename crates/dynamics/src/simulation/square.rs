@@ -2,7 +2,8 @@
 
 use super::Lane;
 
-/// A square matrix column by column, each column in groups of four rows, the last filled up with zeros.
+/// A square matrix column by column, each column in groups of four rows, the last filled up with
+/// zeros.
 ///
 /// ```text
 /// A x = sum over j of a_j x_j          a_j the columns: four sums at once, where a row by row each sum waits for itself

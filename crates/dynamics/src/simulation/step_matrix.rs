@@ -10,7 +10,8 @@ struct Update {
     source: u32,
 }
 
-/// Two terms of a substitution: `vector[state] -= value * vector[other]` for both; rows of more terms take several.
+/// Two terms of a substitution: `vector[state] -= value * vector[other]` for both; rows of more
+/// terms take several.
 #[derive(Clone, Copy, Debug)]
 struct Terms<S> {
     values: [S; 2],
@@ -32,7 +33,7 @@ pub(super) type Column<S> = [S; COLUMN];
 /// As many states as a [`Dependence`](crate::scalar::Dependence) tells apart.
 pub(super) const COLUMN: usize = 256;
 
-/// Systems of so many states or fewer are solved by their inverse.
+/// Systems with at most this number of states are solved by their inverse.
 const SMALL: usize = 16;
 
 /// A small matrix by rows, each in groups of four.
@@ -44,7 +45,8 @@ type Rows<S> = [[[S; 4]; SMALL / 4]; SMALL];
 /// W^-T = L^-T D^-1 U^-T         row by row: what each entry of a right-hand side adds to the solution
 /// ```
 ///
-/// Its product with a vector is a sum of vectors, where a substitution waits for each state before it finds the next.
+/// Its product with a vector is a sum of vectors, where a substitution waits for each state before
+/// it finds the next.
 #[derive(Clone, Debug)]
 struct Inverse<S> {
     /// Through U^T, then through L^T.
@@ -66,7 +68,8 @@ impl<S: Lane> Inverse<S> {
         }
     }
 
-    /// Of so many groups of columns: sums of a number of terms that the compiler knows stay in registers.
+    /// With the number of groups of columns known at compile time, so that the sums stay in
+    /// registers.
     #[inline(always)]
     fn find_groups<const GROUPS: usize>(&mut self, entries: &[S], inverses: &[S]) {
         let (zero, one) = (S::from(0.0), S::from(1.0));
@@ -142,7 +145,7 @@ impl<S: Lane> Triangle<S> {
         }
     }
 
-    /// The same in every column of a matrix, given by rows of so many groups.
+    /// The same for every column of a matrix that is given by rows of this number of groups.
     #[inline(always)]
     #[allow(clippy::needless_range_loop, reason = "three rows of one matrix, of which one is changed")]
     fn substitute_rows<const GROUPS: usize>(&self, rows: &mut Rows<S>) {
@@ -171,7 +174,8 @@ impl<S: Lane> Triangle<S> {
     }
 }
 
-/// Elimination of one state: its place on the diagonal, the entries below and beside it, what they update.
+/// Elimination of one state: its place on the diagonal, the entries below and beside it, what they
+/// update.
 #[derive(Clone, Debug)]
 struct Pivot {
     state: usize,
@@ -187,8 +191,9 @@ struct Pivot {
 /// W = I/(h gamma) - J = L D U        L and U with ones on the diagonal; pivots on the diagonal, in an order that fills in least (Markowitz 1957)
 /// ```
 ///
-/// The order is that of the pattern and not of the values, so that lanes share it and no step searches for pivots. As the
-/// step h falls W tends to a multiple of the identity: a pivot that lost its digits asks for a shorter step.
+/// The order is that of the pattern and not of the values, so that lanes share it and no step
+/// searches for pivots. As the step h falls W tends to a multiple of the identity: a pivot that
+/// lost its digits asks for a shorter step.
 #[derive(Clone, Debug)]
 pub(super) struct StepMatrix<S> {
     values: Vec<S>,
@@ -209,7 +214,8 @@ pub(super) struct StepMatrix<S> {
 const LOST_DIGITS: f64 = 1e-10;
 
 impl<S: Lane> StepMatrix<S> {
-    /// For matrices with these columns in each row, the diagonal besides; of no more rows than a [`Column`] has.
+    /// For matrices with these columns in each row, the diagonal besides; of no more rows than a
+    /// [`Column`] has.
     pub(super) fn new(rows: &[Vec<usize>]) -> StepMatrix<S> {
         let count = rows.len();
         let mut filled: Vec<Vec<bool>> = vec![vec![false; count]; count];
@@ -316,8 +322,8 @@ impl<S: Lane> StepMatrix<S> {
     }
 }
 
-/// The order in which states are eliminated, each time the one whose elimination touches the fewest entries; entries that
-/// fill in are marked.
+/// The order in which states are eliminated, each time the one whose elimination touches the fewest
+/// entries; entries that fill in are marked.
 fn order_of_elimination(filled: &mut [Vec<bool>]) -> Vec<usize> {
     let count = filled.len();
     let mut left: Vec<usize> = (0..count).collect();
@@ -364,7 +370,8 @@ fn pivots(order: &[usize], filled: &[Vec<bool>], place: &[Vec<u32>]) -> Vec<Pivo
     pivots
 }
 
-/// Forward substitution through L, backward through U; where the entry of a row and a column is held.
+/// Forward substitution through L, backward through U; where the entry of a row and a column is
+/// held.
 fn substitutions<S: Lane>(
     order: &[usize],
     filled: &[Vec<bool>],
@@ -391,7 +398,8 @@ mod tests {
     use super::*;
     use crate::scalar::Lanes;
 
-    /// An arrow with a band: fill-in, several pivots with nothing below, and numbers from a small recurrence.
+    /// An arrow with a band: fill-in, several pivots with nothing below, and numbers from a small
+    /// recurrence.
     #[test]
     fn solves_as_a_dense_factorisation_does() {
         for count in [1, 9, 15, 16, 17, 30] {

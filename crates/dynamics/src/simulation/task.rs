@@ -1,35 +1,35 @@
-//! Machines to be driven: where they come from, and whether they fit.
+//! Simulation tasks: where they come from, and whether they fit the system.
 
 use super::course::{Observer, Outcome, Sampler, SimulationError};
 use super::kernel::Kernel;
 use super::{InputSchedule, Lane};
 
-/// One machine to be driven.
+/// One simulation.
 pub struct Task<'a, O> {
-    /// State at time zero; behind it, if told, the wave that each delay was sent until then. Untold, it is what the start sends
-    /// while nothing arrives.
+    /// State at time zero, followed, if given, by the wave that entered each delay before. If not
+    /// given, each wave is what the start sends while nothing arrives.
     pub start: Vec<f64>,
     /// What it is driven by.
     pub course: &'a InputSchedule,
     /// A digital controller, if one commands it.
     pub sampler: Option<Box<dyn Sampler + 'a>>,
-    /// Who looks at it.
+    /// What receives the results.
     pub observer: O,
 }
 
-/// Where machines come from, and where their outcomes go.
+/// Supplies simulations and takes their outcomes.
 pub trait Queue<'a, E> {
-    /// Who looks at each machine.
+    /// What receives the results of each machine.
     type Observer: Observer;
 
-    /// The next machine: its parameters put into this lane of the system, and what is to be done with it. `None` when there
-    /// are no more.
+    /// The next machine: its parameters put into this lane of the system, and what is to be done
+    /// with it. `None` when there are no more.
     fn next(&mut self, system: &mut E, lane: usize) -> Option<Task<'a, Self::Observer>>;
 
-    /// Takes back what came of the machine in this lane.
+    /// Takes the outcome of the simulation in this lane.
     fn done(&mut self, lane: usize, outcome: Outcome, observer: Self::Observer);
 
-    /// Asked once a step with the simulated time of a lane: false ends everything.
+    /// Called once per step with the simulated time of a lane; false stops all lanes.
     fn goes_on(&mut self, lane: usize, time_s: f64) -> bool;
 }
 

@@ -1,4 +1,4 @@
-//! One system driven through one course, every state recorded.
+//! Simulation of one system under one input schedule, with every state recorded.
 
 use super::driver::drive;
 use super::task::{Queue, Task};
@@ -15,10 +15,10 @@ pub struct Trajectory {
     pub inputs: Vec<Vec<f64>>,
 }
 
-/// What came of a simulation.
+/// The result of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulated {
-    /// What was seen on the way, up to where it ended.
+    /// The rows up to the end of the simulation.
     pub trajectory: Trajectory,
     /// How it ended, what happened and what it cost.
     pub outcome: Outcome,
@@ -64,14 +64,16 @@ impl<'a, E, O: Observer> Queue<'a, E> for Single<'a, '_, O> {
     }
 }
 
-/// Drives one system through its task, and gives back its observer, which took from each row what it wanted: nothing else is
-/// kept. `watch` is told the simulated time after each step; when it answers false the simulation ends there.
+/// Simulates one system as its task says, and returns its observer, which recorded what it wanted
+/// of each row: nothing else is kept. `watch` is called with the simulated time after each step; if
+/// it returns false, the simulation stops.
 ///
 /// # Errors
 /// As [`simulate`].
 ///
 /// # Example
-/// The largest force of a spring of 8 N/m whose end is drawn out at 2 m/s for 3 s, without its course.
+/// The largest force of a spring of 8 N/m whose end is drawn out at 2 m/s for 3 s, without its
+/// course.
 /// ```
 /// use phea_dynamics::scalar::Scalar;
 /// use phea_dynamics::simulation::{InputSchedule, Observer, Settings, System, Task, drive_one};
@@ -117,11 +119,13 @@ pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
     queue.result.ok_or(SimulationError::Count { what: "results", found: 0, expected: 1 })
 }
 
-/// Drives a system from a state at time zero (and the waves under way behind it, if told) through a course. `watch` is told the simulated time after each step; when it
-/// answers false the simulation ends there.
+/// Simulates a system from its state at time zero (followed by the waves in transit, if given)
+/// under an input schedule. `watch` is called with the simulated time after each step; if it
+/// returns false, the simulation stops.
 ///
 /// # Errors
-/// [`SimulationError`] when start, course or settings do not fit the system. What goes wrong on the way is in the status.
+/// [`SimulationError`] when start, input schedule or settings do not fit the system. A failure
+/// during the simulation is in the status.
 ///
 /// # Example
 /// A mass of 2 kg on a spring of 8 N/m, pulled by 1 m and let go

@@ -6,8 +6,9 @@ use crate::scalar::Lanes;
 
 /// A scalar whose kernels are compiled for the vector instructions of the processor.
 ///
-/// One number has a second copy of each kernel, for processors without. Lanes have none where a processor may have vector
-/// instructions (x86-64): several machines side by side gain nothing without, and this copy alone took most of the time of a build.
+/// One number has a second copy of each kernel, for processors without. Lanes have none where a
+/// processor may have vector instructions (x86-64): several machines side by side gain nothing
+/// without, and this copy alone took most of the time of a build.
 pub trait Vectorized: Copy {
     /// Does the work; `None` where the processor lacks the instructions that these scalars want.
     fn vectorized<W: WithSimd>(work: W) -> Option<W::Output>;
@@ -44,7 +45,8 @@ impl WithSimd for Nothing {
     fn with_simd<V: pulp::Simd>(self, _: V) {}
 }
 
-/// Whether this processor can drive machines side by side; where it cannot, [`super::drive`] refuses lanes.
+/// Whether this processor can drive machines side by side; where it cannot, [`super::drive`]
+/// refuses lanes.
 ///
 /// # Example
 /// ```

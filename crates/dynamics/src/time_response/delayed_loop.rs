@@ -11,12 +11,13 @@ use crate::linear::{Discretization, LinearError, StateSpace, TransferFunction};
 /// y = W(e(t - T)),    e = F r - H y                    W the forward path without its dead time T
 /// ```
 ///
-/// The forward path is held over short steps that divide T: about `steps` of them over `duration_s`, at least one to T. What is lost is of first order in
-/// the step. A dead time of the sensor is taken to whole steps.
+/// The forward path is held over short steps that divide T: about `steps` of them over
+/// `duration_s`, at least one to T. What is lost is of first order in the step. A dead time of the
+/// sensor is taken to whole steps.
 ///
 /// # Errors
-/// [`LinearError::DeadTime`] without dead time in the forward path (close that loop exactly, by `feedback`), those of the
-/// zero-order hold, and those of [`step_response`] for the prefilter.
+/// [`LinearError::DeadTime`] without dead time in the forward path (close that loop exactly, by
+/// `feedback`), those of the zero-order hold, and those of [`step_response`] for the prefilter.
 ///
 /// # Example
 /// e^(-s)/s closed with gain 1/2: nothing for 1 s, then a ramp, then a parabola from 2 s on
@@ -69,7 +70,8 @@ pub fn delayed_loop_step(
     Ok((times, outputs))
 }
 
-/// Steps that are taken at most, where the dead time is much shorter than the time that is asked for.
+/// Steps that are taken at most, where the dead time is much shorter than the time that is asked
+/// for.
 const STEPS_MAXIMUM: f64 = 1e6;
 
 /// A sampled system with one input and one output, and its state.

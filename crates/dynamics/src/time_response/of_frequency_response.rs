@@ -2,16 +2,18 @@ use std::f64::consts::PI;
 
 use crate::portable::{cos, sin};
 
-/// Unit step response of a stable system that is known by its frequency response alone, at 0, h, 2 h, ...
+/// Unit step response of a stable system that is known by its frequency response alone, at 0, h, 2
+/// h, ...
 ///
 /// ```text
 /// g(t) = (2/pi) integral of Re T(j w) cos(w t) over w = 0 .. infinity,     y(t) = integral of g
 /// sampled:  g(k) = (2 h/pi) integral of Re T cos(w k h) over w = 0 .. pi/h,   g(0) half of that,   y(k) = sum of g
 /// ```
 ///
-/// `real_parts` are increasing frequencies in rad/s with Re T there, straight between two of them, constant below the first and zero
-/// beyond the last; `step_s` is h in s, which must be short against whatever the response does. The integral over frequency is exact,
-/// that over time is Simpson's.
+/// `real_parts` are increasing frequencies in rad/s with Re T there, straight between two of them,
+/// constant below the first and zero beyond the last; `step_s` is h in s, which must be short
+/// against whatever the response does. The integral over frequency is exact, that over time is
+/// Simpson's.
 ///
 /// # Example
 /// A lag of 0.1 s
@@ -80,8 +82,9 @@ mod tests {
     use super::*;
     use crate::portable::{exp, exp_complex};
 
-    /// A resonance of 20 rad/s behind a dead time of 30 ms: its closed form, late. Straight lines over 0.1 rad/s miss it by up to 8e-5, and
-    /// the corner with which it begins costs Simpson 400 h^2/12 = 3e-5.
+    /// A resonance of 20 rad/s behind a dead time of 30 ms: its closed form, late. Straight lines
+    /// over 0.1 rad/s miss it by up to 8e-5, and the corner with which it begins costs Simpson 400
+    /// h^2/12 = 3e-5.
     #[test]
     fn a_resonance_behind_dead_time() {
         let (own, damping, late) = (20.0_f64, 0.1_f64, 0.03);

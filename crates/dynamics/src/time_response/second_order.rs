@@ -1,4 +1,5 @@
-//! The second-order model behind a specification in the time domain, thesis (3.5) to (3.13), corrected.
+//! The second-order model behind a specification in the time domain, thesis (3.5) to (3.13),
+//! corrected.
 
 use std::f64::consts::PI;
 
@@ -37,7 +38,8 @@ pub struct SecondOrder {
 /// t_s = factor / (xi w_n)          thesis (3.10) to (3.13)
 /// ```
 ///
-/// Rules follow the envelope and ignore where the response crosses it; [`SecondOrder::settling_time_s`] is exact.
+/// Rules follow the envelope and ignore where the response crosses it;
+/// [`SecondOrder::settling_time_s`] is exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SettlingRule {
     /// 3 for 5 percent, thesis (3.10).
@@ -48,7 +50,8 @@ pub enum SettlingRule {
     OnePercent,
     /// 5 for 1 percent as printed in thesis (3.12); its envelope is at 0.67 percent by then.
     OnePercentThesis,
-    /// Critically damped, 2 percent: 5.834, the solution of (1 + x) exp(-x) = 0.02. Thesis (3.13) prints 6.
+    /// Critically damped, 2 percent: 5.834, the solution of (1 + x) exp(-x) = 0.02. Thesis (3.13)
+    /// prints 6.
     CriticallyDampedTwoPercent,
 }
 
@@ -75,7 +78,8 @@ impl SettlingRule {
 }
 
 impl SecondOrder {
-    /// A system with this undamped natural frequency (positive) and damping ratio (zero or positive).
+    /// A system with this undamped natural frequency (positive) and damping ratio (zero or
+    /// positive).
     ///
     /// # Errors
     /// [`TimeResponseError::OutOfRange`].
@@ -91,8 +95,8 @@ impl SecondOrder {
         Ok(SecondOrder { natural_frequency_rad_per_s, damping_ratio })
     }
 
-    /// The system with this overshoot (percent, from 0 up to but not 100) that stays within `band_percent` from
-    /// `settling_time_s` on, exactly.
+    /// The system with this overshoot (percent, from 0 up to but not 100) that stays within
+    /// `band_percent` from `settling_time_s` on, exactly.
     ///
     /// # Errors
     /// [`TimeResponseError::OutOfRange`].
@@ -132,7 +136,7 @@ impl SecondOrder {
         self.damping_ratio
     }
 
-    /// Damped natural frequency w_d = w_n sqrt(1 - xi^2), rad/s; none from critical damping on.
+    /// Damped natural frequency w_d = w_n sqrt(1 - xi^2), rad/s; `None` from critical damping on.
     pub(crate) fn damped_frequency_rad_per_s(&self) -> Option<f64> {
         let ratio = self.damping_ratio;
         (ratio < 1.0).then(|| self.natural_frequency_rad_per_s * ((1.0 - ratio) * (1.0 + ratio)).sqrt())
@@ -153,7 +157,8 @@ impl SecondOrder {
         self.damped_frequency_rad_per_s().map(|damped| (PI - atan2(damped, sigma)) / damped)
     }
 
-    /// Largest overshoot, 100 exp(-pi sigma/w_d) percent, thesis (3.8); zero from critical damping on.
+    /// Largest overshoot, 100 exp(-pi sigma/w_d) percent, thesis (3.8); zero from critical damping
+    /// on.
     pub fn overshoot_percent(&self) -> f64 {
         let ratio = self.damping_ratio;
         if ratio >= 1.0 {
@@ -162,11 +167,11 @@ impl SecondOrder {
         100.0 * exp(-PI * ratio / ((1.0 - ratio) * (1.0 + ratio)).sqrt())
     }
 
-    /// The exact time after which the step response stays within plus or minus `band_percent`, s; none without
-    /// damping, when it never does.
+    /// The exact time after which the step response stays within plus or minus `band_percent`, s;
+    /// none without damping, when it never does.
     ///
-    /// The deviation has its extremes exp(-k pi sigma/w_d) at k pi/w_d; the last one outside the band is followed by
-    /// the crossing, found by bisection.
+    /// The deviation has its extremes exp(-k pi sigma/w_d) at k pi/w_d; the last one outside the
+    /// band is followed by the crossing, found by bisection.
     ///
     /// # Errors
     /// [`TimeResponseError::OutOfRange`] when the band is not between 0 and 100 percent.
@@ -230,7 +235,8 @@ impl SecondOrder {
         TransferFunction::assembled(natural * natural, Vec::new(), poles, TimeDomain::Continuous)
     }
 
-    /// 1 - y(t) = exp(-sigma t) (cos w_d t + sigma/w_d sin w_d t), continued beyond critical damping.
+    /// 1 - y(t) = exp(-sigma t) (cos w_d t + sigma/w_d sin w_d t), continued beyond critical
+    /// damping.
     fn deviation(&self, time: f64) -> f64 {
         let sigma = self.damping_ratio * self.natural_frequency_rad_per_s;
         if let Some(damped) = self.damped_frequency_rad_per_s() {

@@ -33,8 +33,8 @@ impl Signal {
     /// A signal through these samples; times in s, strictly rising.
     ///
     /// # Errors
-    /// [`TimeResponseError::Count`], [`TimeResponseError::TimeOrder`], [`TimeResponseError::OutOfRange`] for a value
-    /// that is not finite.
+    /// [`TimeResponseError::Count`], [`TimeResponseError::TimeOrder`],
+    /// [`TimeResponseError::OutOfRange`] for a value that is not finite.
     pub fn new(
         times_s: Vec<f64>,
         values: Vec<f64>,

@@ -31,12 +31,12 @@ pub fn step_response(system: &TransferFunction, times_s: &[f64]) -> Result<Vec<f
 
 /// Response of a transfer function, from rest at time zero, to a signal; dead time is exact.
 ///
-/// The system is realised as a cascade of small sections. A sampled system takes the signal at its sample instants and
-/// keeps its output between them.
+/// The system is realised as a cascade of small sections. A sampled system takes the signal at its
+/// sample instants and keeps its output between them.
 ///
 /// # Errors
-/// [`TimeResponseError::TimeOrder`] when the times fall or are negative; [`TimeResponseError::Linear`] for an improper
-/// system.
+/// [`TimeResponseError::TimeOrder`] when the times fall or are negative;
+/// [`TimeResponseError::Linear`] for an improper system.
 pub fn forced_response(
     system: &TransferFunction,
     input: &Signal,
@@ -50,8 +50,8 @@ pub fn forced_response(
     Ok(outputs.iter().map(|output| output.iter().sum()).collect())
 }
 
-/// Outputs of a state-space system at these times: one vector a time, from the given state at time zero, with one
-/// signal for each input. Exact between the signals' samples.
+/// Outputs of a state-space system at these times: one vector a time, from the given state at time
+/// zero, with one signal for each input. Exact between the signals' samples.
 ///
 /// # Errors
 /// [`TimeResponseError::Count`] when the number of signals or states does not fit;
@@ -86,7 +86,8 @@ pub fn forced_response_of_states(
     })
 }
 
-/// Runs from event to event (output times and samples of the inputs), between which each input is one straight piece.
+/// Runs from event to event (output times and samples of the inputs), between which each input is
+/// one straight piece.
 fn continuous(
     system: &StateSpace,
     initial_state: &DVector<f64>,
@@ -103,7 +104,8 @@ fn continuous(
     let mut state = initial_state.clone();
     // what rounding took from the state in the last step; without it long runs of short steps drift
     let mut carried = DVector::zeros(system.order());
-    // `reached` follows the lengths of the steps taken, `now` the times asked for: they differ by rounding only
+    // `reached` follows the lengths of the steps taken, `now` the times asked for: they differ by
+    // rounding only
     let (mut now, mut reached) = (0.0, DoubleDouble::ZERO);
     let mut outputs = Vec::with_capacity(times_s.len());
     let mut wanted = times_s.iter().copied().peekable();

@@ -19,7 +19,8 @@ impl StepBaseline {
         StepBaseline { step_time_s: 0.0, initial_value: 0.0, final_value: 1.0 }
     }
 
-    /// From zero to this value at time zero, as the final value of a unit step response is the gain at zero frequency.
+    /// From zero to this value at time zero, as the final value of a unit step response is the gain
+    /// at zero frequency.
     pub fn to_value(final_value: f64) -> Self {
         StepBaseline { step_time_s: 0.0, initial_value: 0.0, final_value }
     }
@@ -50,7 +51,8 @@ impl Settling {
     }
 }
 
-/// Metrics of a step response. All times count from the step; crossings are interpolated between samples.
+/// Metrics of a step response. All times count from the step; crossings are interpolated between
+/// samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepMetrics {
     /// From 10 to 90 percent of the step, s; none if it never gets there.
@@ -75,8 +77,9 @@ pub struct StepMetrics {
 ///
 /// # Errors
 /// [`TimeResponseError::Count`] when times and values differ in number or none is after the step,
-/// [`TimeResponseError::TimeOrder`], [`TimeResponseError::NoStep`], [`TimeResponseError::OutOfRange`] for a band that is
-/// not between 0 and 100 percent or a value that is not finite.
+/// [`TimeResponseError::TimeOrder`], [`TimeResponseError::NoStep`],
+/// [`TimeResponseError::OutOfRange`] for a band that is not between 0 and 100 percent or a value
+/// that is not finite.
 ///
 /// # Example
 /// ```
@@ -178,7 +181,8 @@ fn first_reach(samples: &[(f64, f64)], level: f64) -> Option<f64> {
     }
 }
 
-/// When the last sample outside the band crosses into it, interpolated; none when the last sample is outside.
+/// When the last sample outside the band crosses into it, interpolated; none when the last sample
+/// is outside.
 fn settling_time(samples: &[(f64, f64)], band: f64) -> Option<f64> {
     // a deviation that equals the band up to rounding is inside
     let outside = |sample: &(f64, f64)| (sample.1 - 1.0).abs() > band * (1.0 + 1e-12);

@@ -14,8 +14,8 @@ use crate::setup::Setup;
 /// Part of a derived value by which it may lie outside of bounds that are printed to three digits.
 const ROUNDED: f64 = 0.01;
 
-/// The project without its uncertainty, and what of it the box does not contain. `None` where the box
-/// contains the rig, or nothing is known of a rig.
+/// The project without its uncertainty, and what of it the box does not contain. `None` where the
+/// box contains the rig, or nothing is known of a rig.
 pub fn outside(setup: &Setup<'_>) -> Option<(Project, String)> {
     let (project, rig) = (setup.project, setup.rig().ok()?);
     let beyond = |one: &&ResolvedParameter| {

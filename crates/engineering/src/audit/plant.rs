@@ -26,7 +26,8 @@ enum NamedValue {
 }
 
 impl PlantNames {
-    /// Names of the parameters of an uncertain plant, with the dimension of those that are numbers of the project or of its linear model.
+    /// Names of the parameters of an uncertain plant, with the dimension of those that are numbers
+    /// of the project or of its linear model.
     pub fn of_parameters<'a>(project: &Project, names: impl Iterator<Item = &'a str>) -> PlantNames {
         let known = project.dimensions();
         let dimension = |name: &str| known.get(name).copied().unwrap_or(&RATIO);
@@ -62,7 +63,8 @@ impl PlantNames {
         if parts.is_empty() { "the nominal plant".to_string() } else { parts.join(", ") }
     }
 
-    /// The values of a plant one by one, as the columns of a table; in the order of [`PlantNames::headings`].
+    /// The values of a plant one by one, as the columns of a table; in the order of
+    /// [`PlantNames::headings`].
     pub fn cells(&self, plant: &PlantPoint) -> Vec<String> {
         match self.numbers(plant) {
             Some(numbers) => numbers.map(|(_, dimension, value)| display(value, dimension, 4)).collect(),

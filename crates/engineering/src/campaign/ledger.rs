@@ -60,7 +60,7 @@ impl Shard {
         }
     }
 
-    /// Its runs, of so many.
+    /// Its runs, of this number in total.
     pub fn runs_of(&self, runs: u64) -> Range<u64> {
         let share = |number: u64| (u128::from(runs) * u128::from(number) / u128::from(self.of)) as u64;
         share(self.number - 1)..share(self.number)
@@ -76,7 +76,8 @@ impl Shard {
         format!("runs{}", self.part())
     }
 
-    /// What tells its files from those of other parts: nothing, or `-2-of-4`, numbers of one length.
+    /// What tells its files from those of other parts: nothing, or `-2-of-4`, numbers of one
+    /// length.
     pub fn part(&self) -> String {
         let Shard { number, of } = *self;
         let digits = of.to_string().len();
@@ -84,7 +85,7 @@ impl Shard {
     }
 }
 
-/// Where the rows of a campaign are kept while it runs: a text that grows at its end.
+/// Stores the rows of a campaign while it runs: a text that grows at its end.
 pub trait RowStore {
     /// All of it.
     ///
@@ -92,7 +93,7 @@ pub trait RowStore {
     /// Why it cannot be read.
     fn kept(&mut self) -> Result<String, String>;
 
-    /// Keeps so many bytes from its beginning and drops the rest.
+    /// Keeps this number of bytes from its beginning and drops the rest.
     ///
     /// # Errors
     /// Why it cannot be cut.
@@ -104,7 +105,8 @@ pub trait RowStore {
     /// Why it cannot be written.
     fn append(&mut self, text: &str) -> Result<(), String>;
 
-    /// Rows that wait for one before them, as they were kept by [`RowStore::keep_ahead`]; whatever else is there is passed over.
+    /// Rows that wait for one before them, as they were kept by [`RowStore::keep_ahead`]; whatever
+    /// else is there is passed over.
     ///
     /// # Errors
     /// Why they cannot be read.
@@ -112,7 +114,8 @@ pub trait RowStore {
         Ok(String::new())
     }
 
-    /// Keeps rows that wait for one before them, so that they are not driven again after an end in between. A ledger may keep none.
+    /// Keeps rows that wait for one before them, so that they are not driven again after an end in
+    /// between. A ledger may keep none.
     ///
     /// # Errors
     /// Why they cannot be written.
@@ -147,7 +150,8 @@ impl RowStore for Nowhere {
     }
 }
 
-/// Drives what is missing of a campaign, and gives all rows there are: fewer than asked for where it was stopped.
+/// Drives what is missing of a campaign, and gives all rows there are: fewer than asked for where
+/// it was stopped.
 ///
 /// # Errors
 /// [`CampaignError`] where the ledger holds another campaign or cannot be written.
@@ -190,7 +194,8 @@ pub fn campaign(
     Ok(rows)
 }
 
-/// Rows of these runs that were done before others: a line that is not as it was written is driven again.
+/// Rows of these runs that were done before others: a line that is not as it was written is driven
+/// again.
 fn ahead(
     plan: &Plan,
     missing: &Range<u64>,
@@ -218,7 +223,8 @@ fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, Campa
     Ok(row)
 }
 
-/// The rows that are kept already; whatever was torn at the end is dropped, and an empty ledger is begun.
+/// The rows that are kept already; whatever was torn at the end is dropped, and an empty ledger is
+/// begun.
 fn resumed(plan: &Plan, wanted: Wanted, ledger: &mut dyn RowStore) -> Result<Vec<Row>, CampaignError> {
     let runs = wanted.shard.runs_of(wanted.runs);
     let text = ledger.kept().map_err(CampaignError::RowStore)?;

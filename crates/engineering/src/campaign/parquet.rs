@@ -11,7 +11,7 @@ use parquet::schema::types::{Type, TypePtr};
 
 use super::row::{Columns, Row, RowOutcome, meaningful};
 
-/// Rows of a group, whose columns are laid out beside the rows while it is written.
+/// Rows of a group; its columns are held in memory while it is written.
 const GROUP: usize = 10_000;
 
 /// The table of these rows.

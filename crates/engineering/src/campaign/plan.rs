@@ -15,7 +15,8 @@ use crate::setup::Setup;
 use crate::simulate::{Bench, Driven, SimulateError, Window, driven};
 use crate::source::Source;
 
-/// Most times at which the bands of the force are given over the whole scenario, and as many more around what begins its windows.
+/// Most times at which the bands of the force are given over the whole scenario, and as many more
+/// around what begins its windows.
 const BAND_TIMES: usize = 125;
 /// How long after what begins a window the force is looked at more often, s.
 const EVENT_S: f64 = 0.5;
@@ -24,7 +25,8 @@ const MARK_LENGTH: usize = 16;
 /// Of seeds of the noise that a sampled controller sees, which are drawn too.
 const SEEDS: f64 = 4e9;
 
-/// A Monte Carlo campaign of the nonlinear machine: a scenario of a project, and what of it is drawn for each run.
+/// A Monte Carlo campaign of the nonlinear machine: a scenario of a project, and what of it is
+/// drawn for each run.
 ///
 /// # Example
 /// Every run follows from seed and index.
@@ -212,7 +214,8 @@ impl Plan {
         settings
     }
 
-    /// The gain of a feed-forward that the project leaves to be derived: the drawn machine must not change the controller.
+    /// The gain of a feed-forward that the project leaves to be derived: the drawn machine must not
+    /// change the controller.
     fn feed_forward(&self) -> Option<String> {
         if self.is_open_loop() {
             return None;
@@ -270,7 +273,8 @@ fn plain(time_s: f64) -> f64 {
 /// Tables of the project that may be written as arrays.
 const EDGES: [&str; 2] = ["valve.flow_coefficients", "valve.leakage_coefficients"];
 
-/// What everything follows from: project with settings and catalogue in it, the files it names, seed, and version.
+/// What everything follows from: project with settings and catalogue in it, the files it names,
+/// seed, and version.
 fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) -> String {
     let mut hash = Sha256::new();
     hash.update(print(project));

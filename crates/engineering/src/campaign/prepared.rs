@@ -31,7 +31,7 @@ pub(super) struct Prepared {
 /// Makes the machine of a draw.
 ///
 /// # Errors
-/// Why there is none, as a row.
+/// The row that states why the run cannot start.
 pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
     let refused = |reason: String, lumps| {
         let (run, values) = (draw.run, draw.values.clone());

@@ -19,7 +19,8 @@ use crate::simulate::SimulateError;
 
 use super::CampaignError;
 
-/// Machines that a thread makes before it forgets them: its lanes run empty at the end of so many runs.
+/// Machines that a thread builds before it discards them: its lanes run empty after this number of
+/// runs.
 pub(super) const MACHINES: usize = 256;
 
 /// What all threads share.
@@ -74,7 +75,8 @@ pub(super) struct Finished {
 /// Takes each run when it is done.
 pub(super) type Give<'g> = &'g mut dyn FnMut(Finished);
 
-/// Drives runs one by one, until there are none or so many were. It is what lanes are held to.
+/// Simulates runs one by one, until none are left or this number is done. Simulations in lanes must
+/// agree with it.
 ///
 /// # Errors
 /// As [`in_lanes`].
@@ -83,9 +85,10 @@ pub(super) fn one_by_one(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Re
     driven(shared, (most, give), |batch| phea_machine::one_by_one(&bench.control, batch, &bench.settings))
 }
 
-/// Drives so many runs at most in lanes; those that were stopped are not given. Under a sampled controller they are driven one by
-/// one: from sample to sample a machine goes by its own matrices, and where one has to leave them its neighbours wait. Lanes have
-/// the same bits there, and take as long. So are all on a processor without the vector instructions that lanes want.
+/// Simulates at most this number of runs in lanes; runs that were stopped are not returned. Under a
+/// sampled controller they are driven one by one: from sample to sample a machine goes by its own
+/// matrices, and where one has to leave them its neighbours wait. Lanes have the same bits there,
+/// and take as long. So are all on a processor without the vector instructions that lanes want.
 ///
 /// # Errors
 /// A start or course that does not fit the machine.

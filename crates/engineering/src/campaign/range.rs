@@ -93,7 +93,8 @@ mod tests {
         VariedRange { path: "a".to_string(), distribution, minimum, maximum, key: key(&RATIO, Range::ANY) }
     }
 
-    /// Mean and variance of each distribution over a hundred thousand draws, within five standard errors.
+    /// Mean and variance of each distribution over a hundred thousand draws, within five standard
+    /// errors.
     #[test]
     fn draws_have_the_moments_of_their_distribution() {
         // ORIGIN: analytic, width 2: 2^2/12, (2/4)^2, 2^2/24; of ln a in [0, ln 100]: (ln 100)^2/12

@@ -113,7 +113,7 @@ impl Row {
     }
 }
 
-/// The metrics of a window, absent where there is none.
+/// The metrics of a window; absent if the window does not exist.
 pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; METRIC_NAMES.len()] {
     [
         metrics.overshoot_percent.ok(),

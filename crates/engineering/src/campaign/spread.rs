@@ -3,12 +3,12 @@
 /// Shares of the runs below each quantile, percent.
 pub const QUANTILES: [u8; 5] = [5, 25, 50, 75, 95];
 
-/// How a number is spread over the runs that have one.
+/// Distribution of a number over the runs that have one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// Runs that have one.
     pub count: usize,
-    /// Runs that were driven and have none.
+    /// Runs that were simulated and do not have one.
     pub missing: usize,
     /// [`QUANTILES`], between two runs on a straight line.
     pub quantiles: [f64; 5],

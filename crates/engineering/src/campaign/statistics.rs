@@ -1,4 +1,5 @@
-//! What all runs of a campaign say together: counts, quantiles, bands over time, and the worst of them.
+//! What all runs of a campaign say together: counts, quantiles, bands over time, and the worst of
+//! them.
 
 use super::plan::Plan;
 use super::row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS, meaningful};

@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// The runs that nobody has taken yet.
+/// The runs that no thread has taken yet.
 pub(super) struct Supply {
     pub(super) runs: Range<u64>,
     /// Those among them whose rows are there already.
     pub(super) known: BTreeSet<u64>,
-    /// Threads that drive nothing.
+    /// Idle threads.
     pub(super) idle: usize,
 }
 
@@ -22,8 +22,9 @@ impl Supply {
         (self.runs.end - self.runs.start).saturating_sub(self.known.len() as u64)
     }
 
-    /// The next run for a thread that drives so many, and `works` where it has taken one. The last runs are left to threads that
-    /// drive none: a lane costs little beside others, but a thread of its own is quicker.
+    /// The next run for a thread that simulates this number of runs; sets `works` if it takes one.
+    /// The last runs are left to threads that are idle: a further lane costs little, but a thread
+    /// of its own is quicker.
     pub(super) fn take(&mut self, driving: usize, works: &mut bool) -> Option<u64> {
         let left = self.left();
         if left == 0 || (driving > 0 && left <= self.idle as u64) {
@@ -46,7 +47,8 @@ mod tests {
         Supply { runs: 0..runs, known: BTreeSet::new(), idle }
     }
 
-    /// As many runs as threads: each thread drives one, though the first could take all into its lanes.
+    /// As many runs as threads: each thread drives one, though the first could take all into its
+    /// lanes.
     #[test]
     fn every_thread_drives_before_lanes_are_filled() {
         let (mut supply, mut works) = (supply(6, 3), [false; 3]);

@@ -10,12 +10,13 @@ use super::plan::Plan;
 use super::queue::{Finished, MACHINES, Shared, in_lanes, one_by_one};
 use super::{CampaignError, Row};
 
-/// How long rows are collected before they are told, and whoever watches is asked again: a round.
+/// How long rows are collected before they are reported and the watch is called again: a round.
 const ROUND: Duration = Duration::from_millis(20);
-/// Rounds until a row that waits for those before it is told: about a second.
+/// Rounds until a row that waits for earlier ones is reported: about a second.
 const LATE: u32 = 50;
-/// Rounds of a run beyond which it is driven alone: in lanes four take little more than twice as long as one, but nothing of
-/// them is there before, and some four seconds of work may be lost at any time.
+/// Rounds of a run beyond which it is driven alone: in lanes four take little more than twice as
+/// long as one, but nothing of them is there before, and some four seconds of work may be lost at
+/// any time.
 const LONG: u64 = 85;
 
 /// How a campaign is computed; its rows do not depend on it.
@@ -34,7 +35,7 @@ impl Default for Effort {
     }
 }
 
-/// What whoever asked for a campaign is told.
+/// What the caller of a campaign is notified of.
 pub(super) enum News {
     /// So many runs of those that were asked for are done.
     Done(u64),
@@ -44,7 +45,7 @@ pub(super) enum News {
     Ahead(Vec<Row>),
 }
 
-/// Takes what is told; everything ends soon where the answer is `false`.
+/// Takes a notification; the campaign stops soon after the answer `false`.
 pub(super) type Tell<'t> = &'t mut dyn FnMut(News) -> Result<bool, CampaignError>;
 
 /// Which runs are driven.
@@ -56,12 +57,12 @@ pub(super) struct Asked {
     pub(super) forces: bool,
 }
 
-/// Drives runs and tells of them, rows in the order of the runs; where the answer is `false`, everything ends soon and the rows
-/// so far are all there will be. Each thread drives a run as soon as there is one for it, and takes more into its lanes where
-/// there are more than threads.
+/// Drives runs and tells of them, rows in the order of the runs; where the answer is `false`,
+/// everything ends soon and the rows so far are all there will be. Each thread drives a run as soon
+/// as there is one for it, and takes more into its lanes where there are more than threads.
 ///
 /// # Errors
-/// [`CampaignError`] where a run does not fit the machine, or whoever is told fails.
+/// [`CampaignError`] where a run does not fit the machine, or a notification fails.
 pub(super) fn run(plan: &Plan, asked: Asked, effort: Effort, tell: Tell<'_>) -> Result<(), CampaignError> {
     let threads = effort.threads.max(1);
     let Asked { runs, known, forces } = asked;
@@ -85,8 +86,8 @@ pub(super) fn run(plan: &Plan, asked: Asked, effort: Effort, tell: Tell<'_>) -> 
 
 type Message = Result<Finished, CampaignError>;
 
-/// One thread, as long as there are runs. It drives one alone, and where that was not long as many in lanes as it keeps machines;
-/// then one alone again.
+/// One thread, as long as there are runs. It drives one alone, and where that was not long as many
+/// in lanes as it keeps machines; then one alone again.
 fn work(shared: &Shared<'_>, effort: Effort, sender: &mpsc::Sender<Message>) {
     // where nobody listens any more, everything is stopped too
     let mut give = |finished| drop(sender.send(Ok(finished)));
@@ -112,7 +113,7 @@ struct Waiting {
     finished: Finished,
     /// How often rows were collected since.
     rounds: u32,
-    /// Whether it was told that it waits.
+    /// Whether its waiting was reported.
     told: bool,
 }
 
@@ -186,7 +187,8 @@ impl Plan {
         Ok(rows.into_iter().map(|one| one.row).collect())
     }
 
-    /// Force in N at each row of the scenario, of runs in their order; empty for one that was refused.
+    /// Force in N at each row of the scenario, of runs in their order; empty for one that was
+    /// refused.
     ///
     /// # Errors
     /// [`CampaignError`] where a run does not fit the machine.

@@ -1,4 +1,5 @@
-//! The servovalve's part of the list: its edges as declared or from the data sheet, flow gains, slopes.
+//! The servovalve's part of the list: its edges as declared or from the data sheet, flow gains,
+//! slopes.
 
 use phea_hydraulics::servovalve::{
     Direction, flow_coefficient_from_rating, leakage_coefficient_from_rating, velocity_gain,

@@ -7,8 +7,8 @@ use crate::audit::{margin_words, verdict_words};
 use crate::quantity::DisplayUnit;
 use crate::quantity::significant;
 
-/// Name and value of everything that a controller is compared by: verdicts first, then size, then margins. The same names for
-/// every controller of a project.
+/// Name and value of everything that a controller is compared by: verdicts first, then size, then
+/// margins. The same names for every controller of a project.
 pub fn compared(side: &AuditedController) -> Vec<(String, String)> {
     let mut rows = vec![("verdict".to_string(), verdict_words(side.view.audit.verdict).to_string())];
     rows.extend(side.view.audit.specifications.iter().enumerate().map(|(index, finding)| {
@@ -59,7 +59,8 @@ fn high_frequency_words(side: &AuditedController) -> String {
     }
 }
 
-/// The least change of phase that reaches -1; a stable loop with several crossovers may be nearest to it in lead.
+/// The least change of phase that reaches -1; a stable loop with several crossovers may be nearest
+/// to it in lead.
 fn phase_words(side: &AuditedController, phase_deg: f64) -> String {
     match side.view.audit.stability.verdict {
         Verdict::Met if phase_deg < 0.0 => format!("{}, of lead", limited(-phase_deg, "deg")),

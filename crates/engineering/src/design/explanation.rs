@@ -10,7 +10,7 @@ use phea_qft::verification::PlantPoint;
 pub struct Explanation {
     /// For an engineer.
     pub sentence: String,
-    /// Whether no controller whatever keeps to the specifications because of it.
+    /// Whether it means that no controller satisfies the specifications.
     pub is_impossible: bool,
     /// rad/s, where it happens.
     pub frequency_rad_per_s: Option<f64>,

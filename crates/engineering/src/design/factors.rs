@@ -75,7 +75,7 @@ fn pairs(roots: &[Complex64]) -> Vec<[f64; 2]> {
     roots.iter().map(|root| [root.re + 0.0, root.im + 0.0]).collect()
 }
 
-/// `0.001 (s + 8) / (s (s^2 + 20 s + 200))`, its numbers with so many digits.
+/// `0.001 (s + 8) / (s (s^2 + 20 s + 200))`, its numbers with this number of digits.
 pub fn factored(function: &TransferFunction, digits: usize) -> String {
     let name = variable(function).name();
     let gain = display(function.gain(), &RATIO, digits);

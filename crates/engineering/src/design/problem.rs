@@ -33,7 +33,8 @@ pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem
 /// How a design is made: by `[design]`, or its defaults; `seed` in place of the project's.
 ///
 /// # Errors
-/// [`ProcedureError`] for a prefilter that is no transfer function, or a nominal plant that cannot be sampled.
+/// [`ProcedureError`] for a prefilter that is no transfer function, or a nominal plant that cannot
+/// be sampled.
 pub fn design_options(
     setup: &Setup<'_>,
     given: &RobustProblem,
@@ -65,7 +66,8 @@ fn count(number: u32) -> usize {
     usize::try_from(number).unwrap_or(usize::MAX)
 }
 
-/// A prefilter is designed for tracking alone, and never in place of one that stands beside a controller without a law.
+/// A prefilter is designed for tracking alone, and never in place of one that stands beside a
+/// controller without a law.
 fn prefilter_choice(
     setup: &Setup<'_>,
     given: &RobustProblem,

@@ -1,5 +1,5 @@
-//! What follows where the machine contradicts a design: the plant that does is taken in, and the design goes on with it, or it is said what
-//! cannot be had.
+//! What follows where the machine contradicts a design: the plant that does is taken in, and the
+//! design goes on with it, or it is said what cannot be had.
 //!
 //! ```text
 //! trial contradicts -> the plant of that machine, its lines in motion -> audit of the loop with it
@@ -27,7 +27,8 @@ use phea_dynamics::watch::{Watch, part};
 /// What became of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RepairStatus {
-    /// The controller now satisfies every specification over the family, and with the plant that was taken in.
+    /// The controller now satisfies every specification over the family, and with the plant that
+    /// was taken in.
     Met,
     /// No controller that was tried does; one does with every limit this much wider.
     Infeasible {
@@ -57,9 +58,11 @@ pub struct Repair {
     pub before: Option<ProjectAudit>,
     /// The same in the loop that was found; `None` where none was.
     pub after: Option<ProjectAudit>,
-    /// The loop that was found with the waves in every plant of the family; `None` where none was, or nothing is known of them.
+    /// The loop that was found with the waves in every plant of the family; `None` where none was,
+    /// or nothing is known of them.
     pub whole: Option<ProjectAudit>,
-    /// Where it is met, the first design; otherwise the controller that comes nearest, where there is one.
+    /// Where it is met, the first design; otherwise the controller that comes nearest, where there
+    /// is one.
     pub other: Option<Box<ProjectDesign>>,
     /// What was done and what cannot be had, for an engineer.
     pub sentences: Vec<String>,
@@ -183,7 +186,8 @@ fn alone_in_loop(plant: &UncertainPlant, design: &ProjectDesign) -> RobustProble
     }
 }
 
-/// The loop of a design with waves in every plant of its family, of which one was taken in; `None` where there is no such family.
+/// The loop of a design with waves in every plant of its family, of which one was taken in; `None`
+/// where there is no such family.
 fn family_with_waves(
     (source, setup): (&dyn Source, &Setup<'_>),
     found: &ProjectDesign,
@@ -196,7 +200,8 @@ fn family_with_waves(
     audit_problem(&problem, watch).map(Some)
 }
 
-/// The design gone on with the plant among those that it serves, tried on the machine; `None` where no controller was found.
+/// The design gone on with the plant among those that it serves, tried on the machine; `None` where
+/// no controller was found.
 fn designed_again(
     (source, setup): (&dyn Source, &Setup<'_>),
     run: DesignRun,

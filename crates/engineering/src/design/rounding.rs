@@ -9,7 +9,7 @@ use crate::quantity::significant;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
-/// What the converters do, or why that cannot be told.
+/// The effect of the converters, or why it cannot be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rounding {
     effects: Result<RoundingEffects, String>,
@@ -46,7 +46,7 @@ impl Rounding {
         rows.into_iter().filter_map(|(of, on, effect)| Some((of, on, effect?))).collect()
     }
 
-    /// What the converters do; or why that cannot be told.
+    /// The effect of the converters, or why it cannot be computed.
     pub fn effects(&self) -> Result<&RoundingEffects, &str> {
         self.effects.as_ref().map_err(String::as_str)
     }

@@ -23,14 +23,15 @@ pub struct AuditedController {
     pub figures: LoopFigures,
 }
 
-/// What controllers are compared by, beside their verdicts.
+/// The numbers by which controllers are compared, in addition to their verdicts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopFigures {
     /// Poles of the controller: of the continuous law where there is one, even in a sampled loop.
     pub order: usize,
     /// Poles less zeros of the same.
     pub relative_degree: i64,
-    /// lim s^r G(s) for that relative degree r, of the continuous law where there is one; of a law in z |G| at pi/T; dB.
+    /// lim s^r G(s) for that relative degree r, of the continuous law where there is one; of a law
+    /// in z |G| at pi/T; dB.
     pub high_frequency_gain_db: f64,
     /// Poles of the prefilter, likewise.
     pub prefilter_order: usize,
@@ -51,7 +52,7 @@ pub struct NominalMargins {
     pub gain_reduction_db: f64,
     /// Degrees.
     pub phase_margin_deg: f64,
-    /// The highest frequency at which |L| = 1, rad/s; zero where there is none.
+    /// The highest frequency at which |L| = 1, rad/s; zero if |L| never is 1.
     pub crossover_rad_per_s: f64,
 }
 
@@ -113,7 +114,8 @@ fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalMargins>, Li
     }))
 }
 
-/// P H of the nominal plant with the delay of the loop, in z where it samples; `None` for one without polynomials.
+/// P H of the nominal plant with the delay of the loop, in z where it samples; `None` for one
+/// without polynomials.
 fn nominal_plant(problem: &RobustProblem) -> Result<Option<TransferFunction>, LinearError> {
     Ok(match problem.nominal()? {
         Some(Member::Continuous { plant, sensor, .. }) => {

@@ -14,7 +14,8 @@ pub(super) fn uncertain_plant(
     parameters: Vec<UncertainParameter>,
 ) -> Result<UncertainPlant, FamilyError> {
     let names: Vec<String> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
-    // A trial with numbers finds every error of the text before the recording, which cannot fail, begins.
+    // A trial with numbers finds every error of the text before the recording, which cannot fail,
+    // begins.
     let nominal: Vec<f64> = parameters.iter().map(|parameter| parameter.nominal).collect();
     coefficients(plant, &names, &nominal).map_err(FamilyError::Formula)?;
     Ok(UncertainPlant::record(parameters, |values| {

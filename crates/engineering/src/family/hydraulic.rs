@@ -1,7 +1,9 @@
-//! The uncertain plant of an actuator: the linear plant of its rig over parameters of the linear model and over numbers of the project.
+//! The uncertain plant of an actuator: the linear plant of its rig over parameters of the linear
+//! model and over numbers of the project.
 //!
-//! There is one chain from the project to the plant, and it is that of [`Rig`]: here it runs over recorded numbers. Pressures that an
-//! uncertain number moves are recorded with it, see [`phea_hydraulics::operating_point::Balance::settle`].
+//! There is one chain from the project to the plant, and it is that of [`Rig`]: here it runs over
+//! recorded numbers. Pressures that an uncertain number moves are recorded with it, see
+//! [`phea_hydraulics::operating_point::Balance::settle`].
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
@@ -47,7 +49,8 @@ pub(super) fn uncertain_plant(
     }
 }
 
-/// The plant of one member behind lines in motion, or with what is fed forward late; `None` where both lines are lumped and nothing is.
+/// The plant of one member behind lines in motion, or with what is fed forward late; `None` where
+/// both lines are lumped and nothing is.
 ///
 /// # Errors
 /// A line that its model does not fit.
@@ -121,7 +124,8 @@ impl Open<'_> {
         (position, steady, Balance::of(components))
     }
 
-    /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed forward is that of the declared rig.
+    /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed
+    /// forward is that of the declared rig.
     fn plant<S: Scalar>(&self, values: &[S], moved: bool, equal: Equal) -> (RigAtPoint<S>, LinearPlant<S>) {
         let place = self.place(values, moved);
         let numbers = Numbers::open(self.names, values);
@@ -138,7 +142,8 @@ impl Open<'_> {
         (place, LinearPlant { load_velocity_feed_forward, ..plant })
     }
 
-    /// The rig with these values; its pressures are those of the declared rig where nothing moves them.
+    /// The rig with these values; its pressures are those of the declared rig where nothing moves
+    /// them.
     pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> RigAtPoint<S> {
         let numbers = Numbers::open(self.names, values);
         let components = components(self.declared, &numbers);

@@ -1,4 +1,5 @@
-//! The family of a rig whose lines move, or whose load's velocity is fed forward late: plants without polynomials over the same box.
+//! The family of a rig whose lines move, or whose load's velocity is fed forward late: plants
+//! without polynomials over the same box.
 //!
 //! ```text
 //! parameters -> PlantInMotion, at every point of the box -> UncertainPlant -> the members that are looked at
@@ -61,7 +62,8 @@ impl Moving {
 }
 
 impl RespondingPlants for Moving {
-    /// No plant where a line does not fit its model, or something would give energy: how many poles grow is not known there.
+    /// No plant where a line does not fit its model, or something would give energy: how many poles
+    /// grow is not known there.
     fn at(&self, values: &[f64]) -> Option<Arc<dyn RespondingPlant>> {
         let plant = self.plant(values).ok()??;
         plant.is_passive().then(|| Arc::new(plant) as Arc<dyn RespondingPlant>)
@@ -77,7 +79,8 @@ fn corners(lumped: &UncertainFamily) -> Result<Vec<Vec<f64>>, FamilyError> {
     })
 }
 
-/// The nominal plant, and as many of the others as are looked at beside the corners, spread over all.
+/// The nominal plant, and as many of the others as are examined in addition to the corners, spread
+/// over all.
 fn members(lumped: &UncertainFamily, corners: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let all = lumped.members();
     if lumped.extent() == Extent::Members {

@@ -5,7 +5,8 @@
 //! frequency_hz, magnitude_db, phase_deg
 //! 0.5,          -12.1,        -91.2
 //! ```
-//! A row for each frequency, columns separated by commas and named in the first row that is no comment; the unit belongs to the name.
+//! A row for each frequency, columns separated by commas and named in the first row that is no
+//! comment; the unit belongs to the name.
 
 mod column;
 pub mod table;

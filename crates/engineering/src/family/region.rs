@@ -10,14 +10,16 @@ use crate::rig::{Numbers, components};
 /// Path of the number that a pump limits.
 const PATH: &str = "operating_point.velocity";
 
-/// The uncertain numbers, the velocity of `[family.operating_region]` cut to what the pump can give at the declared numbers.
+/// The uncertain numbers, the velocity of `[family.operating_region]` cut to what the pump can give
+/// at the declared numbers.
 ///
 /// ```text
 /// -(q_pump - q_tare)/A_B <= v <= (q_pump - q_tare)/A_A          the chamber that supply fills; leakage is left aside
 /// ```
 ///
 /// # Errors
-/// [`FamilyError::Region`] if nothing of the range is left, or the nominal velocity is not within it.
+/// [`FamilyError::Region`] if nothing of the range is left, or the nominal velocity is not within
+/// it.
 pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, FamilyError> {
     let mut numbers = project.uncertain_numbers();
     let region = project.family.as_ref().and_then(|family| family.operating_region.as_ref());
@@ -39,7 +41,8 @@ pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, FamilyEr
     Ok(numbers)
 }
 
-/// The least and the greatest velocity in m/s that the pump can give; `None` where no flow is declared.
+/// The least and the greatest velocity in m/s that the pump can give; `None` where no flow is
+/// declared.
 pub(super) fn limits(project: &Project) -> Option<[f64; 2]> {
     let declared = project.actuator.as_ref()?;
     let components = components(declared, &Numbers::declared());

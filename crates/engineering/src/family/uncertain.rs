@@ -1,4 +1,5 @@
-//! The box of a project's uncertain numbers, the coordinates that span it, and the plants looked at.
+//! The box of a project's uncertain numbers, the coordinates that span it, and the plants looked
+//! at.
 
 use std::collections::BTreeSet;
 
@@ -9,9 +10,11 @@ use super::FamilyError;
 use super::region::within_reach;
 use crate::project::{Case, Project, Spacing, Uncertain};
 
-/// The uncertain parameters: those of `[uncertainty]`, then those that only explicit cases give values to.
+/// The uncertain parameters: those of `[uncertainty]`, then those that only explicit cases give
+/// values to.
 ///
-/// What `[linear]` sets outright goes before the nominal of `[uncertainty]`, as everywhere, and that before the first case.
+/// What `[linear]` sets outright goes before the nominal of `[uncertainty]`, as everywhere, and
+/// that before the first case.
 pub(super) fn parameters(project: &Project) -> Result<Vec<UncertainParameter>, FamilyError> {
     let numbers = within_reach(project)?;
     let declared = numbers.iter().map(|uncertain| UncertainParameter {
@@ -102,8 +105,8 @@ fn member(case: &Case, plant: &UncertainPlant) -> Vec<f64> {
     plant.parameters().iter().map(value).collect()
 }
 
-/// One coordinate for each correlated group, and one for every other parameter that has a range, in the order of the
-/// parameters.
+/// One coordinate for each correlated group, and one for every other parameter that has a range, in
+/// the order of the parameters.
 fn coordinates(project: &Project, plant: &UncertainPlant) -> Vec<Coordinate> {
     let groups = project.family.as_ref().map_or(&[][..], |family| &family.correlation);
     let group_of =

@@ -1,4 +1,5 @@
-//! The operating points of a family: recorded with what moves them, checked at its plants, and the box of linear parameters that they visit.
+//! The operating points of a family: recorded with what moves them, checked at its plants, and the
+//! box of linear parameters that they visit.
 
 use std::collections::BTreeSet;
 
@@ -73,7 +74,8 @@ impl Visited {
         Ok(Visited { rig, names, moved, equal: Equal { one_pressure, edges }, movers, settled })
     }
 
-    /// What is wrong at a plant; nothing where its recorded pressures are those of its operating point.
+    /// What is wrong at a plant; nothing where its recorded pressures are those of its operating
+    /// point.
     fn problem(&self, open: &Open<'_>, values: &[f64]) -> Option<String> {
         let (position, steady, balance) = open.balance(values);
         let results = self.settled.evaluate(values);
@@ -116,7 +118,8 @@ impl Visited {
         named.join(", ")
     }
 
-    /// The plants of a family, and the corners of its box, that differ in what moves the operating point.
+    /// The plants of a family, and the corners of its box, that differ in what moves the operating
+    /// point.
     fn places(&self, family: &UncertainFamily) -> Vec<Vec<f64>> {
         let moves = |parameters: &[usize]| parameters.iter().any(|index| self.movers.contains(index));
         let axes: Vec<usize> = (0..family.coordinates().len())
@@ -143,7 +146,8 @@ impl Visited {
     }
 }
 
-/// Looks at every plant of the family, and at every corner of its box, whether the recorded pressures are those of its operating point.
+/// Looks at every plant of the family, and at every corner of its box, whether the recorded
+/// pressures are those of its operating point.
 ///
 /// # Errors
 /// [`FamilyError::OperatingPoint`] with the first where they are not, and why.
@@ -163,7 +167,8 @@ pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), F
     Ok(())
 }
 
-/// Both ends of a box and points within it: multiples of the golden ratio fill the unit interval evenly.
+/// Both ends of a box and points within it: multiples of the golden ratio fill the unit interval
+/// evenly.
 fn within(parameters: &[UncertainParameter]) -> Vec<Vec<f64>> {
     let mut share = 0.0_f64;
     let at = |parameter: &UncertainParameter, share: f64| {

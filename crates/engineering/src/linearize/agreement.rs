@@ -18,7 +18,8 @@ pub struct Agreement {
     pub model: &'static str,
     /// Its equation.
     pub equation: &'static str,
-    /// Bands in rad/s in which it is, by rising frequency, as the grid of frequencies resolves them.
+    /// Bands in rad/s in which it is, by rising frequency, as the grid of frequencies resolves
+    /// them.
     pub bands_rad_per_s: Vec<[f64; 2]>,
 }
 
@@ -30,8 +31,8 @@ const REDUCTIONS: [[&str; 2]; 4] = [
     ["first order", "6.13"],
 ];
 
-/// Where the reductions, in this order, are the plant on a grid of frequencies in rad/s; before them, where lines move, the plant with
-/// lumped lines.
+/// Where the reductions, in this order, are the plant on a grid of frequencies in rad/s; before
+/// them, where lines move, the plant with lumped lines.
 pub(super) fn agreement(
     rig: &Rig,
     grid: &[f64],
@@ -48,7 +49,8 @@ pub(super) fn agreement(
     lines.into_iter().chain(of_reductions).collect()
 }
 
-/// The bands of a grid in which two responses differ by no more than that; a single frequency is none.
+/// The bands of a grid in which two responses differ by no more than that; a single frequency is
+/// none.
 fn bands(grid: &[f64], plant: impl Fn(f64) -> Complex64, model: &TransferFunction) -> Vec<[f64; 2]> {
     let mut bands: Vec<[f64; 2]> = Vec::new();
     let mut inside = false;

@@ -51,8 +51,9 @@ pub struct Sweep {
     pub si: &'static str,
     /// Whether the values are evenly spaced by ratio.
     pub by_ratio: bool,
-    /// Whether the plant that every verdict is of follows the key. Where the project states the parameters of the linear model it
-    /// may not: then everything told of poles is of the derived parameters.
+    /// Whether the plant that every verdict is of follows the key. Where the project states the
+    /// parameters of the linear model it may not: then everything told of poles is of the derived
+    /// parameters.
     pub plant_follows: bool,
     /// What no verdict on the linear loop counts of the project.
     pub caveats: Vec<Caveat>,
@@ -78,15 +79,16 @@ pub struct Swept {
     pub poles: Vec<Complex64>,
     /// The least damped of them with a resonance.
     pub resonance: Option<Complex64>,
-    /// Up to which force over reference stays within 3 dB of its value towards zero frequency, rad/s; or why not.
+    /// Up to which force over reference stays within 3 dB of its value towards zero frequency,
+    /// rad/s; or why not.
     pub bandwidth_rad_per_s: Result<f64, &'static str>,
 }
 
 /// Sweeps a number of a project.
 ///
 /// # Errors
-/// [`ProcedureError::Option`] for a key, a range or a number of points that is none, [`ProcedureError::Catalogue`] for a project that one of the
-/// values makes wrong.
+/// [`ProcedureError::Option`] for a key, a range or a number of points that is none,
+/// [`ProcedureError::Catalogue`] for a project that one of the values makes wrong.
 pub fn sweep(
     source: &dyn Source,
     loaded: &Loaded,

@@ -17,7 +17,8 @@ use crate::project::{
     NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
 };
 
-/// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: taken where a project states none.
+/// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: taken where a project states
+/// none.
 pub(super) const KINEMATIC_VISCOSITY: f64 = 46e-6;
 
 /// The declared rig as the components of `phea_hydraulics`.
@@ -177,8 +178,8 @@ impl<S: Scalar> Expansion<S> {
         Expansion { measured, at: pressure, slope }
     }
 
-    /// The declared point and the slope from there, or the slope from zero, m3/m; a point without a pressure is taken as that of
-    /// the working pressure.
+    /// The declared point and the slope from there, or the slope from zero, m3/m; a point without a
+    /// pressure is taken as that of the working pressure.
     fn at(self, pressure: S, working_pressure: S) -> S {
         match self.measured {
             Some(measured) => measured + self.slope * (pressure - self.at.unwrap_or(working_pressure)),

@@ -7,9 +7,11 @@ use super::Rig;
 use crate::project::{Load, Project, SpecificationKind};
 
 impl Rig {
-    /// The same rig, with the velocity of its load fed forward. Where the command follows at once it is in `plant` and `in_motion`; where it
-    /// is late and the load yields there are no polynomials of it, and it is in `in_motion` alone, which lumped lines have then too. What is
-    /// sampled is no part of the plant, nor what is late on the path of a prescribed motion: the loop has it.
+    /// The same rig, with the velocity of its load fed forward. Where the command follows at once
+    /// it is in `plant` and `in_motion`; where it is late and the load yields there are no
+    /// polynomials of it, and it is in `in_motion` alone, which lumped lines have then too. What is
+    /// sampled is no part of the plant, nor what is late on the path of a prescribed motion: the
+    /// loop has it.
     ///
     /// # Example
     /// Beside a prescribed load only the path of its motion changes.
@@ -38,7 +40,8 @@ impl Rig {
     }
 }
 
-/// The load's velocity on the command, as the linear loop counts it: a gain in V s/m, and where it is.
+/// The load's velocity on the command, as the linear loop counts it: a gain in V s/m, and where it
+/// is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FedForward {
     /// In the plant: at once, or late by a delay in s where the load yields.
@@ -87,8 +90,8 @@ impl FedForward {
     }
 }
 
-/// The plant without polynomials that the loop sees: with these lines in motion, or with its lumped ones where a load that yields is fed
-/// forward late; `None` where there are polynomials.
+/// The plant without polynomials that the loop sees: with these lines in motion, or with its lumped
+/// ones where a load that yields is fed forward late; `None` where there are polynomials.
 pub fn as_response(
     fed: Option<FedForward>,
     moving: Option<PlantInMotion>,
@@ -104,8 +107,8 @@ pub fn limits_load_motion(project: &Project) -> bool {
     project.specifications.iter().any(|specification| specification.kind == SpecificationKind::LoadMotion)
 }
 
-/// Gain of the load's velocity on the command in V s/m, zero where nothing is fed forward; the area over the flow gain holds the flow that
-/// the motion takes.
+/// Gain of the load's velocity on the command in V s/m, zero where nothing is fed forward; the area
+/// over the flow gain holds the flow that the motion takes.
 pub fn feed_forward(project: &Project, linear: &LinearParameters) -> f64 {
     let declared = project.controller.as_ref().and_then(|controller| controller.load_velocity_feed_forward);
     declared.map_or(0.0, |declared| declared.gain.unwrap_or(linear.useful_area / linear.flow_gain))

@@ -38,7 +38,8 @@ pub fn in_motion(
     }))
 }
 
-/// A hose of one stiffening: what a member of a family has for it is its own, and need not lie in the declared interval.
+/// A hose of one stiffening: what a member of a family has for it is its own, and need not lie in
+/// the declared interval.
 fn stiffened_alike(line: Line) -> Line {
     match line {
         Line::Hose { mut hose, length } => {
@@ -59,8 +60,8 @@ fn without_volume(mut line: Line) -> Line {
     line
 }
 
-/// These lines as the project says that they move, filled with a fluid at a mean pressure in Pa; `None` where both are lumped, and
-/// nothing of them moves.
+/// These lines as the project says that they move, filled with a fluid at a mean pressure in Pa;
+/// `None` where both are lumped, and nothing of them moves.
 ///
 /// # Errors
 /// A line that its model does not fit.
@@ -109,7 +110,8 @@ fn segmented(declared: &LineSegments) -> LineModel {
     }
 }
 
-/// What is not stated is assumed, but for what follows from the rest: a braid at its neutral angle, and the catalogue's expansion.
+/// What is not stated is assumed, but for what follows from the rest: a braid at its neutral angle,
+/// and the catalogue's expansion.
 fn braided_wall(declared: &LineWall, hose: &Hose) -> BraidedWall {
     let assumed = BraidedWall::assumed(hose, Member::Nominal);
     let axial_compliance = declared.axial_compliance.unwrap_or(assumed.axial_compliance);

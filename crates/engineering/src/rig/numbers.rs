@@ -1,14 +1,15 @@
 use phea_dynamics::scalar::Scalar;
 
-/// The numbers of a project at their paths: as they are declared, but for those that are open. Every plant of a family asks for all of
-/// them, so that paths are compared part by part and never written.
+/// The numbers of a project at their paths: as they are declared, but for those that are open.
+/// Every plant of a family asks for all of them, so that paths are compared part by part and never
+/// written.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbers<'a, S = f64> {
     names: &'a [String],
     values: &'a [S],
     /// `a` or `b` inside of a line, whose keys are then without their table.
     side: Option<&'static str>,
-    /// The tables that keys are in, one within the other; the empty ones are none.
+    /// The nested tables of a key; empty names are ignored.
     tables: [&'static str; 2],
 }
 

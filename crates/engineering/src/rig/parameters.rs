@@ -13,7 +13,7 @@ pub enum ParameterOrigin {
     Derived,
 }
 
-/// A parameter of the linear model with its derived value beside the one that holds, SI.
+/// A parameter of the linear model: its derived value and the value in use, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedParameter {
     /// Its key in `[linear]` and `[uncertainty]`.

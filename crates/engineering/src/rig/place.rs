@@ -1,4 +1,5 @@
-//! Where the linear model is taken: what the project states of the operating point, over any scalar.
+//! Where the linear model is taken: what the project states of the operating point, over any
+//! scalar.
 
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::operating_point::{Load, Steady};
@@ -6,8 +7,9 @@ use phea_hydraulics::operating_point::{Load, Steady};
 use super::numbers::Numbers;
 use crate::project::{self, Project};
 
-/// The position in m and what is known of the pressures. Null blocks the piston; a command moves it, with no load pressure where none is
-/// declared, thesis (4.18); a velocity has no load where none is declared.
+/// The position in m and what is known of the pressures. Null blocks the piston; a command moves
+/// it, with no load pressure where none is declared, thesis (4.18); a velocity has no load where
+/// none is declared.
 pub fn place<S: Scalar>(project: &Project, stroke: S, numbers: &Numbers<'_, S>) -> (S, Steady<S>) {
     let declared = project.resolved_operating_point();
     let numbers = numbers.within("operating_point");

@@ -1,4 +1,5 @@
-//! The linear plant of a rig: at its operating point, with its load and its leakage, and with what the project states of it.
+//! The linear plant of a rig: at its operating point, with its load and its leakage, and with what
+//! the project states of it.
 
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::linear::LinearParameters;
@@ -40,8 +41,9 @@ impl<S: Scalar> YieldingLoad<S> {
     }
 }
 
-/// The load at a force on it in N; `None` where its motion is prescribed. A wall is touched where the force presses on it, or where
-/// there is no gap. Hunt and Crossley's damping K c d of a wall pressed by d = F/K is c F.
+/// The load at a force on it in N; `None` where its motion is prescribed. A wall is touched where
+/// the force presses on it, or where there is no gap. Hunt and Crossley's damping K c d of a wall
+/// pressed by d = F/K is c F.
 pub fn yielding_load<S: Scalar>(
     declared: &project::Load,
     numbers: &Numbers<'_, S>,
@@ -71,7 +73,8 @@ pub fn yielding_load<S: Scalar>(
     }
 }
 
-/// Whether the project states a parameter of the linear model that speaks of one load pressure; `uncertain` are names of its numbers.
+/// Whether the project states a parameter of the linear model that speaks of one load pressure;
+/// `uncertain` are names of its numbers.
 pub fn states_one_pressure(parameters: &[ResolvedParameter], uncertain: &[String]) -> bool {
     let speaks = |name: &str| OF_LOAD_PRESSURE.contains(&name);
     let stated = |one: &ResolvedParameter| one.origin != ParameterOrigin::Derived && speaks(one.name);
@@ -89,7 +92,8 @@ pub fn sides<S: Scalar>(chambers: &TwoPressureLinearParameters<S>) -> [[S; 2]; 3
     [chambers.areas, chambers.compliances, [flow_pressure_a, flow_pressure_b]]
 }
 
-/// The parameters of the fifth-order model as these chambers have them, each stated one in its place, in their order.
+/// The parameters of the fifth-order model as these chambers have them, each stated one in its
+/// place, in their order.
 pub fn linear<'n, S: Scalar>(
     chambers: &TwoPressureLinearParameters<S>,
     stated: impl Iterator<Item = (&'n str, S)>,
@@ -125,8 +129,8 @@ pub fn plant<S: Scalar>(
     LinearPlant::of_two_pressures(&stated, leakage, load)
 }
 
-/// The same plant at a supply that yields. Where a stated number makes the valve of one load pressure another than its parts are, what
-/// it takes from the supply is another alike.
+/// The same plant at a supply that yields. Where a stated number makes the valve of one load
+/// pressure another than its parts are, what it takes from the supply is another alike.
 pub fn with_supply<S: Scalar>(
     plant: LinearPlant<S>,
     supply: YieldingSupply<S>,

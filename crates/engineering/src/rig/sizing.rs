@@ -9,7 +9,8 @@ use crate::quantity::significant;
 use crate::setup::Setup;
 use crate::sizing::{HoseOption, SizingProblem};
 
-/// Recommended oil velocity of pressure lines, m/s (Rabie 2009, quoted in Ledezma 2019, section 6.3.1.1).
+/// Recommended oil velocity of pressure lines, m/s (Rabie 2009, quoted in Ledezma 2019, section
+/// 6.3.1.1).
 const OIL_VELOCITY: [f64; 2] = [2.1, 4.6];
 /// Least practical gain, V/N (Ledezma 2019, section 6.3.2, step j).
 const MINIMUM_GAIN: f64 = 1e-4;
@@ -52,7 +53,8 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     if hoses.is_empty() {
         return Err(SizingError::NoHose);
     }
-    // The valve at null, unless [linear] sets it outright; the nominal of [uncertainty] belongs to the controller's plant.
+    // The valve at null, unless [linear] sets it outright; the nominal of [uncertainty] belongs to
+    // the controller's plant.
     let outright = |name: &str, derived: f64| project.linear.get(name).unwrap_or(derived);
     let leakage = rig.parameters.iter().find(|parameter| parameter.name == "flow_pressure_coefficient");
     Ok(SizingProblem {
@@ -88,7 +90,8 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     })
 }
 
-/// s, and where it comes from: a first-order response enters a band of b percent after ln(100/b) time constants.
+/// s, and where it comes from: a first-order response enters a band of b percent after ln(100/b)
+/// time constants.
 fn time_constant(speed: Speed) -> (f64, String) {
     match speed {
         Speed::TimeConstant(time) => (time, "stated".to_string()),
@@ -116,7 +119,8 @@ fn maximum_flow(actuator: &project::Actuator) -> Result<(f64, String), SizingErr
     }
 }
 
-/// The hoses of the catalogue, with what the project says of one by the same name; its own hose if it has no name.
+/// The hoses of the catalogue, with what the project says of one by the same name; its own hose if
+/// it has no name.
 fn hoses(actuator: &project::Actuator, catalogue: &Catalogue) -> Vec<HoseOption> {
     let line = &actuator.line.a;
     let pressures = ExpansionPressures::of(actuator.supply.pressure, actuator.supply.tank_pressure);

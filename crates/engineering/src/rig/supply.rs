@@ -29,7 +29,8 @@ pub fn power_unit<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_,
     })
 }
 
-/// Where a limited pump settles with valve and chambers, the balance being that of the stated supply; `None` of a constant pressure.
+/// Where a limited pump settles with valve and chambers, the balance being that of the stated
+/// supply; `None` of a constant pressure.
 pub fn settled_supply<S: Scalar>(
     declared: &project::Actuator,
     numbers: &Numbers<'_, S>,

@@ -26,7 +26,8 @@ pub enum Change {
     Disable,
     /// `N=M`: element N to place M.
     Move,
-    /// `[N=]KIND [with KEY VALUE] through POINT at FREQUENCY`: an element solved for, added or in place of N.
+    /// `[N=]KIND [with KEY VALUE] through POINT at FREQUENCY`: an element solved for, added or in
+    /// place of N.
     Pass,
 }
 

@@ -1,4 +1,5 @@
-//! The elements written back into the file they came from: they are replaced, and every other byte stays.
+//! The elements written back into the file they came from: they are replaced, and every other byte
+//! stays.
 
 mod array;
 mod section;
@@ -34,7 +35,8 @@ struct Draft<'a> {
     elements: &'a [Element],
 }
 
-/// The bytes of the project file with these elements; settings of the command line beside them are not written.
+/// The bytes of the project file with these elements; settings of the command line beside them are
+/// not written.
 pub(super) fn saved(
     source: &dyn Source,
     loaded: &Loaded,
@@ -146,8 +148,8 @@ impl Draft<'_> {
 }
 
 impl Written<'_> {
-    /// Its text, from `start`, where it is this element already or becomes it by its `enabled` alone: that is changed where it is written, or
-    /// comes behind the other keys.
+    /// Its text, from `start`, where it is this element already or becomes it by its `enabled`
+    /// alone: that is changed where it is written, or comes behind the other keys.
     fn text_as(&self, element: &Element, text: &str, start: usize, behind: (usize, &str)) -> Option<String> {
         let own = self.element.as_ref()?;
         if own == element {
@@ -172,7 +174,8 @@ impl Written<'_> {
     }
 }
 
-/// For each element the one of the file that it is: equal ones in order, then those that differ in `enabled` alone.
+/// For each element the one of the file that it is: equal ones in order, then those that differ in
+/// `enabled` alone.
 fn matched(elements: &[Element], written: &[Written<'_>]) -> Vec<Option<usize>> {
     let mut free: Vec<usize> = (0..written.len()).collect();
     let mut found = vec![None; elements.len()];

@@ -38,7 +38,7 @@ const SOLVED: [(&str, Pattern); 10] = [
     ("notch", Pattern::NotchHere { pole_damping_ratio: NOTCH_DAMPING }),
 ];
 
-/// Reads a wish; `None` where it is none, and the findings say why.
+/// Reads a request; `None` where it is invalid, with the reason in the findings.
 pub(super) fn read<'a>(whole: &Piece<'a>, findings: &mut Findings) -> Option<Wish<'a>> {
     let Some([head, place]) = whole.split("through") else {
         return whole.refuse(findings, "it does not say `through` which point", EXAMPLE);

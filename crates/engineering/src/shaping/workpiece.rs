@@ -8,7 +8,8 @@ use super::Shaped;
 use crate::control::{self, ControlError};
 use crate::project::{self, ElementKind, Project, RationalFunction, Transfer};
 
-/// The elements of a project, and every element that was ever named, so that none loses the form in which it was written.
+/// The elements of a project, and every element that was ever named, so that none loses the form in
+/// which it was written.
 pub(super) struct Workpiece<'a> {
     project: &'a Project,
     shaped: Shaped,
@@ -66,7 +67,8 @@ impl<'a> Workpiece<'a> {
         Ok(Stage { element, enabled })
     }
 
-    /// The elements as the project file has them: each in the form in which it was named, new ones in that of their kind.
+    /// The elements as the project file has them: each in the form in which it was named, new ones
+    /// in that of their kind.
     pub(super) fn declared(&self, compensator: &Compensator) -> Vec<project::Element> {
         let mut free: Vec<&(Element, project::Element)> = self.known.iter().collect();
         let declared = |stage: &Stage| {

@@ -1,4 +1,5 @@
-//! What all scenarios of a project share: the machine as its controller sees it, and the controller as it is deployed.
+//! What all scenarios of a project share: the machine as its controller sees it, and the controller
+//! as it is deployed.
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
@@ -28,7 +29,8 @@ pub struct Bench {
     pub settings: Settings,
     /// From the load's velocity to the command, V s/m; zero where nothing is fed forward.
     pub feed_forward: f64,
-    /// Pressures in Pa up to which the expansions of hoses A and B were measured, where they are stated.
+    /// Pressures in Pa up to which the expansions of hoses A and B were measured, where they are
+    /// stated.
     pub expansion_stated_at: [Option<f64>; 2],
     /// What the force sensor survives, N, where it is stated.
     pub force_capacity_n: Option<f64>,
@@ -43,7 +45,8 @@ impl Bench {
         Bench::closed(setup, false)
     }
 
-    /// What a scenario of the project is driven on: open loop where it states a command, with a force from outside where it states one.
+    /// What a scenario of the project is driven on: open loop where it states a command, with a
+    /// force from outside where it states one.
     ///
     /// # Errors
     /// As [`Bench::new`]; an open loop needs no controller.
@@ -81,7 +84,8 @@ impl Bench {
         })
     }
 
-    /// The machine alone, for a command that is stated: limits, samples and delays of a controller do not act on it.
+    /// The machine alone, for a command that is stated: limits, samples and delays of a controller
+    /// do not act on it.
     fn open(setup: &Setup<'_>, external_force: bool) -> Result<Bench, SimulateError> {
         let project = setup.project;
         let (rig, sensed) = rig_and_machine(setup, external_force)?;
@@ -110,7 +114,7 @@ impl Bench {
     }
 }
 
-/// The rig, and its machine behind its sensor.
+/// The rig, and its machine with its sensor.
 fn rig_and_machine(setup: &Setup<'_>, external_force: bool) -> Result<(Rig, Sensed<Machine>), SimulateError> {
     let rig = setup.rig()?;
     let options = MachineOptions { external_force, ..options(setup.project, &rig.actuator)? };
@@ -164,7 +168,8 @@ fn sampled(
     })
 }
 
-/// The prefilter, taken out of a sampled controller where the project lets it act between samples too.
+/// The prefilter, taken out of a sampled controller where the project lets it act between samples
+/// too.
 fn between_samples(
     project: &Project,
     controller: &mut Controller,

@@ -1,4 +1,5 @@
-//! A second run at a tenth of the tolerance: how far it differs from the first is an estimate of the first one's error.
+//! A second run at a tenth of the tolerance: how far it differs from the first is an estimate of
+//! the first one's error.
 
 use phea_hydraulics::machine::SIGNALS;
 
@@ -17,7 +18,7 @@ pub(super) const LARGEST_PART: f64 = 1e-3;
 const COMMAND: &str = "control_v";
 const NOT_COMPARED: &str = "one of the two runs has none";
 
-/// How far a run at a tenth of the tolerance differs from the one that is told.
+/// Difference between the reported run and a run at a tenth of the tolerance.
 ///
 /// ```text
 /// d = max over t of |F_h(t) - F_h/10(t)|,      part = d/max(|F_h|, |F_h/10|, |F_ref|)
@@ -81,7 +82,8 @@ impl Check {
     }
 }
 
-/// As [`simulate_into`], and each scenario a second time at a tenth of the tolerance: its [`ScenarioRun::check`] is told.
+/// As [`simulate_into`], and each scenario a second time at a tenth of the tolerance, which fills
+/// [`ScenarioRun::check`].
 ///
 /// # Errors
 /// As [`simulate_into`].

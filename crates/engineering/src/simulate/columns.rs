@@ -4,11 +4,13 @@ use phea_hydraulics::machine::SIGNALS;
 
 use super::record::{Look, Record};
 
-/// Names of what the control loop tells of itself beside reference and command, in the order of [`Record::of_loop`].
+/// Names of the signals of the control loop other than reference and command, in the order of
+/// [`Record::of_loop`].
 ///
-/// `command_v` is the command as it comes to the valve, behind the delay of the loop; `unlimited_control_v` what the controller
-/// would give out without its limit; `integral_v` the part of the command that the controller's integral part holds;
-/// `measurement_n` the force as the controller measures it, behind the sensor.
+/// `command_v` is the command as it reaches the valve, after the delay of the loop;
+/// `unlimited_control_v` what the controller would give out without its limit; `integral_v` the
+/// part of the command that the controller's integral part holds; `measurement_n` the force as the
+/// controller measures it, after the sensor.
 pub const LOOP_SIGNALS: [&str; 4] = ["command_v", "unlimited_control_v", "integral_v", "measurement_n"];
 
 /// Where the numbers of a column come from.
@@ -58,7 +60,8 @@ const EXTERNAL_FORCE: &str = "external_force_n";
 pub(super) struct Columns(Vec<(&'static str, Source)>);
 
 impl Columns {
-    /// Those that have stayed, then those that came later, the last one for the force from outside where the load is `pushed`.
+    /// Those that have stayed, then those that came later, the last one for the force from outside
+    /// where the load is `pushed`.
     pub(super) fn new(pushed: bool) -> Columns {
         let later = SIGNALS.iter().chain(&LOOP_SIGNALS).filter(|name| !FIRST.contains(name));
         let pushed = pushed.then_some(&EXTERNAL_FORCE);
@@ -70,7 +73,8 @@ impl Columns {
         self.0.iter().map(|(name, _)| *name).collect()
     }
 
-    /// The numbers of a row, in place of those of the last; what an open loop does not have is not a number.
+    /// The numbers of a row, in place of those of the last; what an open loop does not have is not
+    /// a number.
     pub(super) fn read(&self, look: &Look, values: &mut Vec<f64>) {
         values.clear();
         values.extend(self.0.iter().map(|(_, source)| source.of(look)));
@@ -78,7 +82,7 @@ impl Columns {
 }
 
 impl Source {
-    /// Of a column; `None` for a name that is none.
+    /// Of a column; `None` for an unknown name.
     pub(super) fn named(name: &str) -> Option<Source> {
         source(name)
     }
@@ -96,7 +100,7 @@ impl Source {
     }
 }
 
-/// A column over time; empty for a name that is none.
+/// A column over time; empty for an unknown name.
 pub(super) fn signal(record: &Record, name: &str) -> Vec<f64> {
     match source(name) {
         Some(Source::Time) => record.times_s.clone(),

@@ -6,7 +6,7 @@ use crate::setup::Setup;
 use crate::source::Source;
 use phea_dynamics::watch::{Progress, Watch};
 
-/// Projects with what came of their scenarios.
+/// Projects with the results of their scenarios.
 #[derive(Debug)]
 pub struct Comparison<'a> {
     /// In the order they were named; one that was stopped is the last.

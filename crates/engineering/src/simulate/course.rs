@@ -24,7 +24,8 @@ pub struct PreparedScenario {
     pub ground: Profile,
     /// On the load from outside in N, where the machine has that input.
     pub external_force: Option<Profile>,
-    /// States of the machine, its sensor and all that is continuous in its controller, and the waves under way.
+    /// States of the machine, its sensor and all that is continuous in its controller, and the
+    /// waves under way.
     pub start: Vec<f64>,
     /// How a sampled controller begins.
     pub waking: Waking,
@@ -49,7 +50,7 @@ pub struct Driven {
 }
 
 impl PreparedScenario {
-    /// What drives the machine beside its command.
+    /// The inputs of the machine other than its command.
     pub fn machine_inputs(&self) -> Vec<Input> {
         let ground = [Input::Value(self.ground.clone()), Input::Rate(self.ground.clone())];
         ground.into_iter().chain(self.external_force.clone().map(Input::Value)).collect()
@@ -158,8 +159,8 @@ fn motion(
     })
 }
 
-/// Where the search for a rest begins: the machine at the position of its operating point under the force of the reference, or without force where there is
-/// no such operating point.
+/// Where the search for a rest begins: the machine at the position of its operating point under the
+/// force of the reference, or without force where there is no such operating point.
 fn near_rest(bench: &Bench, scenario: &Scenario, reference_n: f64) -> Result<Beginning, SimulateError> {
     let position = bench.rig.point.position;
     let near = |force: f64| -> Result<Beginning, SimulateError> {
@@ -190,8 +191,8 @@ fn stated_start(stated: &project::Start) -> Start {
     }
 }
 
-/// States of the loop with its machine there, and the waves under way. Controller and sensor hold the machine at a reference in N; without
-/// one they begin at zero, as all that is not stated.
+/// States of the loop with its machine there, and the waves under way. Controller and sensor hold
+/// the machine at a reference in N; without one they begin at zero, as all that is not stated.
 fn loop_start(bench: &Bench, beginning: &Beginning, held_at: Option<f64>) -> Vec<f64> {
     let mut start = beginning.state.clone();
     let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
@@ -213,7 +214,8 @@ fn loop_start(bench: &Bench, beginning: &Beginning, held_at: Option<f64>) -> Vec
     start
 }
 
-/// One for whatever begins in reference, command and force from outside, and for the motion of the load, each until the next.
+/// One for whatever begins in reference, command and force from outside, and for the motion of the
+/// load, each until the next.
 fn windows(scenario: &Scenario, [reference, command, external]: [&Profile; 3]) -> Vec<Window> {
     let end_s = scenario.duration;
     let window = |cause: Cause, start_s: f64| Window { cause, start_s, end_s };

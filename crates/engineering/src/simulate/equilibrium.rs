@@ -14,7 +14,8 @@ pub(super) struct Rested {
     pub(super) ground_m: f64,
 }
 
-/// The rest of the loop under what stands still, with the piston where the guess has it: the rates that are simulated, all zero.
+/// The rest of the loop under what stands still, with the piston where the guess has it: the rates
+/// that are simulated, all zero.
 pub(super) fn rest(
     bench: &Bench,
     guess: &[f64],

@@ -1,4 +1,5 @@
-//! Limits of the rig that a run goes beyond. Nothing is clamped by them: the machine has no such limits, the rig has.
+//! Limits of the rig that a run goes beyond. Nothing is clamped by them: the machine has no such
+//! limits, the rig has.
 
 use super::{Bench, Record};
 use crate::quantity::{DisplayUnit, FORCE, VOLTAGE, display};
@@ -18,12 +19,13 @@ pub struct Exceeded {
     pub first_time_s: f64,
 }
 
-/// What a rig cannot do, or does not survive.
+/// Limits of a rig: what it cannot reach, or what damages it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
     /// `force_sensor.capacity`, in both directions.
     SensorCapacity,
-    /// The force at which the piston stalls, A_A p_S - A_B p_T one way and A_B p_S - A_A p_T the other: no reference beyond it is reached.
+    /// The force at which the piston stalls, A_A p_S - A_B p_T one way and A_B p_S - A_A p_T the
+    /// other: no reference beyond it is reached.
     StallForce,
     /// The voltage of full opening, where no `saturation` keeps the command within it.
     NominalVoltage,

@@ -30,7 +30,8 @@ pub struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// A table with its head, and a last column for the force from outside where the load is `pushed`.
+    /// A table with its head, and a last column for the force from outside where the load is
+    /// `pushed`.
     pub(super) fn begin(
         (destination, name): (&'a dyn Destination, &str),
         format: TableFormat,

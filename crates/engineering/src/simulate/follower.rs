@@ -1,4 +1,5 @@
-//! Follows a run from step to step, so that what is measured of its windows is that of the solution, wherever rows fall.
+//! Follows a run from step to step, so that what is measured of its windows is that of the
+//! solution, wherever rows fall.
 
 use std::cell::RefCell;
 
@@ -9,15 +10,16 @@ use super::sum::Sum;
 use super::tally::{Command, Passed, Tally};
 use super::{Metrics, Window};
 
-/// Parts of a step over each of which an input that is no polynomial is followed by one of degree four: a sine over a quarter of its
-/// period, the longest step there is, to 3e-7 of its amplitude.
+/// Parts of a step over each of which an input that is no polynomial is followed by one of degree
+/// four: a sine over a quarter of its period, the longest step there is, to 3e-7 of its amplitude.
 const PARTS: u32 = 4;
 /// Ends that are one but for rounding, in steps.
 const SAME: f64 = 1e-9;
 
 /// Where the command comes from.
 pub(super) enum Commanded<'a> {
-    /// A continuous controller, which wants this and is held within this limit in V; or what is stated in an open loop.
+    /// A continuous controller, which wants this and is held within this limit in V; or what is
+    /// stated in an open loop.
     Continuously(Sum, f64),
     /// What a sampled controller gave out last.
     Sampled(&'a RefCell<Samples>),
@@ -37,7 +39,8 @@ pub struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    /// Of a loop with so many inputs, in windows in the order of their starts; the band of settling times in percent.
+    /// Of a loop with this number of inputs, in windows in the order of their starts; the band of
+    /// settling times in percent.
     pub(super) fn new(
         force: Sum,
         commanded: Commanded<'a>,
@@ -144,8 +147,8 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Whether a step from sample to sample may hold an extreme that counts, or leave a band: then it is to be known more exactly
-    /// than by a cubic.
+    /// Whether a step from sample to sample may hold an extreme that counts, or leave a band: then
+    /// it is to be known more exactly than by a cubic.
     pub fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
         let (start_s, end_s) = (stretch.start_s(), stretch.end_s());
         let open = |tally: &&Tally| tally.window.start_s < end_s && tally.window.end_s > start_s;
@@ -332,7 +335,8 @@ mod tests {
         assert!(never.disturbance_peak_n.is_err() && never.control_rms_v.is_err());
     }
 
-    /// A reference that moves as no polynomial does: the largest difference from a force that stands still.
+    /// A reference that moves as no polynomial does: the largest difference from a force that
+    /// stands still.
     #[test]
     fn a_moving_reference_is_followed_within_each_step() {
         let swing = Swing { frequency: 5.0, damping: 1.0 };

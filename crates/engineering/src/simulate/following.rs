@@ -11,8 +11,8 @@ use super::follower::{Commanded, Follower};
 use super::sums;
 
 impl<'a> Follower<'a> {
-    /// Of the loop of a bench whose observer wants these states, in windows in the order of their starts; the band of settling times
-    /// in percent.
+    /// Of the loop of a bench whose observer wants these states, in windows in the order of their
+    /// starts; the band of settling times in percent.
     pub fn of(
         bench: &Bench,
         wanted: &[usize],

@@ -1,4 +1,5 @@
-//! The frequency response of the nonlinear machine, measured with sines as on a test bench, beside the linear plant.
+//! The frequency response of the nonlinear machine, measured with sines as on a test bench, and
+//! compared with the linear plant.
 
 mod closed_loop;
 mod open_loop;
@@ -16,7 +17,8 @@ use crate::rig::Rig;
 use crate::setup::Setup;
 use phea_dynamics::watch::{Progress, Watch};
 
-/// Part of the nominal voltage, and of what the supply can push with, that a sine has where nothing is asked for.
+/// Part of the nominal voltage, and of what the supply can push with, that a sine has where nothing
+/// is asked for.
 const USUAL_AMPLITUDE: f64 = 0.01;
 /// Usual number of frequencies, the first, and the last over the natural frequency of the valve.
 const POINTS: usize = 28;
@@ -28,10 +30,12 @@ const LAST_OVER_VALVE: f64 = 3.0;
 pub struct FrequencyRequest {
     /// rad/s; none: 28 from 0.1 rad/s to three times the natural frequency of the valve.
     pub frequencies_rad_per_s: Vec<f64>,
-    /// Amplitude of the command of the open loop, V; absent: at each frequency a hundredth of the nominal voltage, or what makes a
-    /// hundredth of the force that the supply can push with, if that is less.
+    /// Amplitude of the command of the open loop, V; absent: at each frequency a hundredth of the
+    /// nominal voltage, or what makes a hundredth of the force that the supply can push with, if
+    /// that is less.
     pub command_amplitude_v: Option<f64>,
-    /// Amplitude of the reference of the closed loop, N; absent: a hundredth of the force that the supply can push with.
+    /// Amplitude of the reference of the closed loop, N; absent: a hundredth of the force that the
+    /// supply can push with.
     pub reference_amplitude_n: Option<f64>,
 }
 
@@ -46,7 +50,7 @@ pub struct FrequencyResponse {
     pub command_v: f64,
     /// From command to force, N/V.
     pub open_loop: Response,
-    /// From reference to force; or why there is none.
+    /// From reference to force; or why it is absent.
     pub closed_loop: Result<Response, String>,
     /// Whether the watch stopped it.
     pub stopped: bool,
@@ -61,7 +65,8 @@ pub struct Response {
     pub curve_rad_per_s: Vec<f64>,
     /// The linear plant, or the loop it closes, at these.
     pub linear_plant: Vec<Complex64>,
-    /// The machine's own exact derivatives at its rest, at these; empty where they are no linear system.
+    /// The machine's own exact derivatives at its rest, at these; empty where they are no linear
+    /// system.
     pub linearised_machine: Vec<Complex64>,
 }
 
@@ -85,11 +90,12 @@ impl FrequencyResponse {
     }
 }
 
-/// Measures the machine of a project around its operating point: open from command to force, and closed from reference to force
-/// where the project gives a controller. Scenarios are not run.
+/// Measures the machine of a project around its operating point: open from command to force, and
+/// closed from reference to force where the project gives a controller. Scenarios are not run.
 ///
 /// # Errors
-/// [`SimulateError`] if the project describes no machine, or one that does not rest at the operating point.
+/// [`SimulateError`] if the project describes no machine, or one that does not rest at the
+/// operating point.
 pub fn frequency_response(
     setup: &Setup<'_>,
     request: &FrequencyRequest,

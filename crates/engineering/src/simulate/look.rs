@@ -1,4 +1,5 @@
-//! What is seen of a run on the way: each look goes into the table, each step into the metrics, and a course is kept for figures.
+//! What is seen of a run on the way: each look goes into the table, each step into the metrics, and
+//! a course is kept for figures.
 
 use std::cell::{Cell, RefCell};
 

@@ -4,8 +4,8 @@
 //! NRMSE = sqrt(mean (m - s)^2)/(max m - min m)           m measured, s simulated, over the rows within the scenario
 //! ```
 //!
-//! The simulation is looked at every quarter of a millisecond or more often (a scenario beyond 100 s less often, which is told) and taken
-//! on a straight line between two looks.
+//! The simulation is looked at every quarter of a millisecond or more often (a scenario beyond 100
+//! s less often, which is told) and taken on a straight line between two looks.
 
 use super::Look;
 use super::columns::Source;
@@ -31,7 +31,7 @@ pub(super) struct Measurement {
     values: Vec<f64>,
 }
 
-/// A measured signal beside the simulated one.
+/// A measured signal and the simulated one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
     /// Of the measurement.
@@ -213,7 +213,7 @@ fn named(name: &str, table: &Table<'_>, findings: &mut Findings) -> Option<usize
 }
 
 impl Column<'_> {
-    /// SI; a gap is told like any other text that is no number.
+    /// SI; a gap is reported like any other text that is not a number.
     fn value(&self, row: &[Cell<'_>], findings: &mut Findings) -> Option<f64> {
         let cell = row.get(self.index)?;
         let bare = cell.text.parse::<f64>().is_ok_and(f64::is_finite);

@@ -1,4 +1,5 @@
-//! What is measured of a run: one window for each step of the reference and for the motion of the load.
+//! What is measured of a run: one window for each step of the reference and for the motion of the
+//! load.
 
 /// Part of a run that is looked at by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,10 +69,11 @@ impl Cause {
     }
 }
 
-/// A number, or why there is none.
+/// A number, or why it is absent.
 pub type Measured = Result<f64, &'static str>;
 
-/// What is measured of a window: of the solution itself over each step of the integration, wherever rows fall.
+/// What is measured of a window: of the solution itself over each step of the integration, wherever
+/// rows fall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metrics {
     /// How far the force exceeds the new reference, percent of the step.
@@ -80,9 +82,11 @@ pub struct Metrics {
     pub rise_time_s: Measured,
     /// From the start of the window until the force stays within the band around the reference, s.
     pub settling_time_s: Measured,
-    /// The band of the settling time: percent of the step, or of the reference that a load motion disturbs.
+    /// The band of the settling time: percent of the step, or of the reference that a load motion
+    /// disturbs.
     pub settling_band_percent: f64,
-    /// Largest difference of force and reference while the load moves, or is pushed from outside, and after, N.
+    /// Largest difference of force and reference while the load moves, or is pushed from outside,
+    /// and after, N.
     pub disturbance_peak_n: Measured,
     /// Largest difference of force and reference while the reference moves, N.
     pub tracking_error_peak_n: Measured,

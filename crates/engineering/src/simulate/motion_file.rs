@@ -5,8 +5,8 @@
 //! 0.000,  0.00
 //! 0.010,  0.02
 //! ```
-//! Rows in the order of time. A motion is counted from the first row, and starts where the load is; a signal has the values of the
-//! file, from its first row on.
+//! Rows in the order of time. A motion is counted from the first row, and starts where the load is;
+//! a signal has the values of the file, from its first row on.
 
 use phea_dynamics::simulation::{Profile, ProfileError};
 

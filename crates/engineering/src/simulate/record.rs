@@ -14,7 +14,7 @@ pub struct Look {
     pub time_s: f64,
     /// N; at a step, as it is from then on. `None` in an open loop.
     pub reference_n: Option<f64>,
-    /// N, behind the prefilter. `None` in an open loop.
+    /// N, after the prefilter. `None` in an open loop.
     pub filtered_reference_n: Option<f64>,
     /// V, what the controller gives out, or what is commanded in an open loop.
     pub control_v: f64,
@@ -22,19 +22,20 @@ pub struct Look {
     pub external_force_n: Option<f64>,
     /// What the machine tells of itself, in the order of [`SIGNALS`].
     pub signals: [f64; SIGNALS.len()],
-    /// What the control loop tells of itself, in the order of [`LOOP_SIGNALS`]; in an open loop what is commanded, and nothing that integrates.
+    /// What the control loop tells of itself, in the order of [`LOOP_SIGNALS`]; in an open loop
+    /// what is commanded, and nothing that integrates.
     pub of_loop: [f64; LOOP_SIGNALS.len()],
 }
 
-/// The machine and its controller over time: every look, or of a long run every second, fourth, eighth and so on, so that no
-/// more than a hundred thousand are held.
+/// The machine and its controller over time: every look, or of a long run every second, fourth,
+/// eighth and so on, so that no more than a hundred thousand are held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// s.
     pub times_s: Vec<f64>,
     /// N; at a step, as it is from then on. None in an open loop.
     pub reference_n: Vec<f64>,
-    /// N, behind the prefilter. None in an open loop.
+    /// N, after the prefilter. Empty in an open loop.
     pub filtered_reference_n: Vec<f64>,
     /// V, what the controller gives out, or what is commanded in an open loop.
     pub control_v: Vec<f64>,
@@ -64,7 +65,7 @@ impl Default for Record {
 }
 
 impl Record {
-    /// A column of the table over time; empty for a name that is none.
+    /// A column of the table over time; empty for an unknown name.
     pub fn signal(&self, name: &str) -> Vec<f64> {
         columns::signal(self, name)
     }

@@ -17,7 +17,8 @@ use super::saved::{self, SavedState};
 use super::{Check, SimulateError, Table, Window};
 use crate::project::Scenario;
 
-/// Longest time between two looks at the machine, of which figures are drawn: 1 ms would cut the peaks of a ringing load cell.
+/// Longest time between two looks at the machine, of which figures are drawn: 1 ms would cut the
+/// peaks of a ringing load cell.
 const LONGEST_LOOK_S: f64 = 0.25e-3;
 /// Most looks where the project asks for fewer rows.
 const MOST_LOOKS: f64 = 400_000.0;
@@ -47,7 +48,7 @@ pub struct ScenarioRun {
     pub outside_model_s: Option<f64>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
-    /// What was measured, beside what was simulated.
+    /// The measured signals and the simulated ones.
     pub measured: Vec<Overlay>,
     /// How far a run at a tenth of the tolerance differs; `None` where nobody asked.
     pub check: Option<Check>,
@@ -139,7 +140,8 @@ impl Stopped {
     }
 }
 
-/// Runs a scenario, its rows into a table where there is one; `watch` is told the simulated time now and then.
+/// Runs a scenario and writes its rows into a table, if one is given; `watch` is called with the
+/// simulated time at intervals.
 pub(super) fn run(
     bench: &Bench,
     scenario: &Scenario,
@@ -224,7 +226,8 @@ fn found(bench: &Bench, course: &PreparedScenario, outcome: &Outcome, samples: &
     found
 }
 
-/// When a chamber first cavitates or has no volume, or the piston leaves a stroke that nothing limits.
+/// When a chamber first cavitates or has no volume, or the piston leaves a stroke that nothing
+/// limits.
 fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
     let outside = |kind: &str| match kind {
         "cavitation_a" | "cavitation_b" | "empty_a" | "empty_b" => true,
@@ -248,10 +251,12 @@ fn looks_per_row(scenario: &Scenario) -> usize {
     wanted.min((MOST_LOOKS / rows).floor().max(1.0)) as usize
 }
 
-/// What an [`Occurrence`] is called while the command is at its limit, beside the names of what a machine tells of itself.
+/// What an [`Occurrence`] is called while the command is at its limit, beside the names of what a
+/// machine tells of itself.
 pub const COMMAND_LIMIT: &str = "command_limit";
 
-/// Inputs at time zero: those before the machine's, its ground, the force from outside, and the waves under way.
+/// Inputs at time zero: those before the machine's, its ground, the force from outside, and the
+/// waves under way.
 fn inputs_at_start(course: &PreparedScenario, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
     first.extend([course.ground.value(0.0), course.ground.rate(0.0)]);
     first.extend(course.external_force.as_ref().map(|force| force.value(0.0)));
@@ -260,8 +265,8 @@ fn inputs_at_start(course: &PreparedScenario, mut first: Vec<f64>, control: &Con
     first
 }
 
-/// What there is from the start, and every change of an indicator. Those of the machine are positive while all is well, that of
-/// the command's limit while it is reached.
+/// What there is from the start, and every change of an indicator. Those of the machine are
+/// positive while all is well, that of the command's limit while it is reached.
 pub fn occurrences(control: &Control, start: &[f64], first: &[f64], events: &[Event]) -> Vec<Occurrence> {
     let kind = |index: usize| INDICATORS.get(index).copied().unwrap_or(COMMAND_LIMIT);
     let begins = |index: usize, positive: bool| positive != (index < INDICATORS.len());

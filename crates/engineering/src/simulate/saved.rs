@@ -10,9 +10,10 @@
 //! spool_v = 0.125
 //! ```
 //!
-//! Every state of machine, sensor, controller and prefilter is there by its name, and where the load's ground stands; of a sampled controller
-//! what it remembers, the command that is held and where its random numbers are. What is under way in a delay is no number: such an end
-//! is not saved.
+//! Every state of machine, sensor, controller and prefilter is there by its name, and where the
+//! load's ground stands; of a sampled controller what it remembers, the command that is held and
+//! where its random numbers are. What is under way in a delay is no number: such an end is not
+//! saved.
 
 use std::fmt::Write as _;
 

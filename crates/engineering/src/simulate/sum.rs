@@ -2,7 +2,8 @@
 
 use phea_dynamics::simulation::{Quartic, Stretch};
 
-/// What is added up for a signal: places among the states that an observer wants, and inputs, each with its weight.
+/// What is added up for a signal: places among the states that an observer wants, and inputs, each
+/// with its weight.
 ///
 /// ```text
 /// s = sum of a_i y_i + sum of b_j w_j

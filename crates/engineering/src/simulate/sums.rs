@@ -24,7 +24,8 @@ pub(super) fn force(bench: &Bench, wanted: &[usize]) -> Sum {
     Sum::of(wanted, bench.control.size(), force)
 }
 
-/// What a continuous controller wants before the limit, or what is stated in an open loop; nothing of a sampled one.
+/// What a continuous controller wants before the limit, or what is stated in an open loop; nothing
+/// of a sampled one.
 pub(super) fn command(bench: &Bench, wanted: &[usize]) -> Sum {
     match &bench.control {
         Control::Continuous(closed) => {

@@ -51,7 +51,8 @@ pub(super) struct Tally {
     extremes: [f64; 2],
     /// Largest difference of force and reference, N.
     tracking_error: f64,
-    /// The reference so far, where it stood still, N; whether it moved, and whether it did in the last part.
+    /// The reference so far, where it stood still, N; whether it moved, and whether it did in the
+    /// last part.
     reference: Option<f64>,
     moves: bool,
     moves_late: bool,
@@ -69,7 +70,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Nothing yet; with the reference at the end of the window in N, none in an open loop.
+    /// Nothing yet; with the reference at the end of the window in N; `None` in an open loop.
     pub(super) fn new(window: Window, band_percent: f64, last_reference: Option<f64>) -> Tally {
         let height = match window.cause {
             Cause::ReferenceStep { from_n, to_n } => to_n - from_n,
@@ -201,7 +202,8 @@ impl Tally {
         }
     }
 
-    /// Whether a step whose force is known by a cubic alone may hold an extreme that counts, or leave the band.
+    /// Whether a step whose force is known by a cubic alone may hold an extreme that counts, or
+    /// leave the band.
     pub(super) fn looks_closer(&self, force: &Quartic, reference: Option<f64>) -> bool {
         let reference = reference.map(Quartic::constant);
         let [low, high] = self.deviation(force, reference.as_ref()).bounds();

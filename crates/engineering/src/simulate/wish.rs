@@ -1,14 +1,15 @@
-//! What was wished of the force in time, and whether a step of the machine keeps to it.
+//! The required step response of the force, and whether a step of the machine satisfies it.
 
 use super::metrics::NOT_SETTLED;
 use super::{Cause, Metrics, Window};
 use crate::quantity::significant;
 use crate::specification::CheckedWish;
 
-/// Percent of the wish by which a number may miss it and still count: what is told has three digits.
+/// Tolerance in percent of the required value: printed numbers have three digits.
 const ROUNDED: f64 = 1e-6;
 
-/// Wishes of the first tracking specification that has any: the overshoot of its upper limit, the settling time of its lower one.
+/// Wishes of the first tracking specification that has any: the overshoot of its upper limit, the
+/// settling time of its lower one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wish {
     /// Most overshoot, percent of the step.
@@ -24,7 +25,8 @@ pub struct Wish {
 pub struct Held {
     /// What the step does.
     pub words: String,
-    /// Whether it is as was wished; `None` where the two are not of the same band, or the run ended before.
+    /// Whether it is as was wished; `None` where the two are not of the same band, or the run ended
+    /// before.
     pub kept: Option<bool>,
 }
 
@@ -55,7 +57,8 @@ impl Wish {
         self.settling_time_s.map(|time_s| format!("settled within {} % in {time_s} s", self.band_percent))
     }
 
-    /// The overshoot of a step beside its wish; `None` where nothing was wished of it or the window is of no step.
+    /// The overshoot of a step and the required value; `None` where none is required or the window
+    /// contains no step.
     pub fn overshoot(&self, metrics: &Metrics) -> Option<Held> {
         let most = self.overshoot_percent?;
         let reached = metrics.overshoot_percent.ok()?;
@@ -63,7 +66,7 @@ impl Wish {
         Some(Held { words: format!("{} %", significant(reached, 3)), kept: Some(kept) })
     }
 
-    /// The settling time of a step beside its wish, likewise.
+    /// The settling time of a step and the required value, likewise.
     pub fn settling(&self, metrics: &Metrics) -> Option<Held> {
         let most = self.settling_time_s?;
         metrics.overshoot_percent.ok()?;
@@ -81,8 +84,8 @@ impl Wish {
         }
     }
 
-    /// Lines of times in s and forces in N that the force should not cross after each step of these windows that begins within a span: above it, and below it once it
-    /// should have settled.
+    /// Lines of times in s and forces in N that the force should not cross after each step of these
+    /// windows that begins within a span: above it, and below it once it should have settled.
     pub fn lines<'a>(
         &self,
         windows: impl Iterator<Item = &'a Window>,

@@ -44,16 +44,19 @@ pub(super) fn verdict(problem: &SizingProblem, bore: f64) -> BoreVerdict {
     }
 }
 
-/// Bores at the highest and at the lowest recommended velocity, m: D = sqrt(4 q/(pi v)), thesis (6.17).
+/// Bores at the highest and at the lowest recommended velocity, m: D = sqrt(4 q/(pi v)), thesis
+/// (6.17).
 pub(super) fn range(problem: &SizingProblem) -> [f64; 2] {
     let [slowest, fastest] = problem.oil_velocity;
     [fastest, slowest].map(|velocity| (4.0 * problem.maximum_flow / (PI * velocity)).sqrt())
 }
 
-/// Recommended oil velocity of return and suction lines, m/s (Rabie 2009, quoted in Ledezma 2019, section 6.3.1.1).
+/// Recommended oil velocity of return and suction lines, m/s (Rabie 2009, quoted in Ledezma 2019,
+/// section 6.3.1.1).
 const LOW_PRESSURE_VELOCITY: [f64; 2] = [0.6, 1.2];
 
-/// Bores of the lines without pressure: a return line carries more than the valve takes where the areas differ.
+/// Bores of the lines without pressure: a return line carries more than the valve takes where the
+/// areas differ.
 fn low_pressure_lines(problem: &SizingProblem) -> Decision {
     let [slowest, fastest] = LOW_PRESSURE_VELOCITY;
     let areas = [problem.cylinder.area_a, problem.cylinder.area_b];

@@ -72,8 +72,9 @@ fn at_gain(
     Branch { by_gain: true, model, steps, length_m: step.length_m, stiffness, gain_v_per_n: gain }
 }
 
-/// Steps f to j: the gain starts at the largest and is halved until the hose is acceptably short or the gain at its floor;
-/// then the largest gain whose hose is acceptable lies between the last two trials and is found by bisection.
+/// Steps f to j: the gain starts at the largest and is halved until the hose is acceptably short or
+/// the gain at its floor; then the largest gain whose hose is acceptable lies between the last two
+/// trials and is found by bisection.
 fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -> Branch {
     let trial = |gain| gain_step(problem, option, model, gain);
     let fits = |step: &GainStep| step.length_m <= problem.available_length();
@@ -107,7 +108,8 @@ fn largest_gain(mut fitting: f64, mut too_large: f64, fits: impl Fn(f64) -> bool
     fitting
 }
 
-/// The same hose cut to the next multiple of the increment that is still acceptable, with the gain for that length.
+/// The same hose cut to the next multiple of the increment that is still acceptable, with the gain
+/// for that length.
 fn commercial(problem: &SizingProblem, option: &HoseOption, exact: Branch) -> Branch {
     let sound = exact.length_m > 0.0 && exact.length_m <= problem.available_length();
     let Some(increment) = problem.length_increment.filter(|_| sound) else { return exact };

@@ -7,19 +7,19 @@ use super::branch::Branch;
 use super::{BoreVerdict, HoseOption, SizingProblem, bore};
 use crate::quantity::{DisplayUnit, significant};
 
-/// How much a finding weighs.
+/// The consequence of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
     /// The candidate is not accepted.
     Rejects,
-    /// The candidate stands, but look.
+    /// The candidate is accepted with a warning.
     Warns,
 }
 
 /// One reason for or against a candidate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// How much it weighs.
+    /// Its consequence.
     pub severity: Severity,
     /// The reason, with its numbers.
     pub text: String,
@@ -38,7 +38,8 @@ pub struct Candidate {
     pub surge_pressure_pa: f64,
     /// Closed-loop time constant at the least and at the greatest stiffness over the stroke, s.
     pub time_constant_s: [f64; 2],
-    /// Steady-state gain K_SS at the null flow-pressure coefficient, and at its largest where stated.
+    /// Steady-state gain K_SS at the null flow-pressure coefficient, and at its largest where
+    /// stated.
     pub steady_state_gain: [f64; 2],
     /// Reasons, those that reject first.
     pub findings: Vec<Finding>,
@@ -56,7 +57,8 @@ impl Candidate {
     }
 }
 
-/// Step i or m and the checks a hose must pass besides: velocity, stock, pressure with surge, bending, settling.
+/// Step i or m and the further checks that a hose must pass: velocity, stock, pressure with surge,
+/// bending, settling.
 pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branch) -> Candidate {
     let oil_velocity_m_per_s = bore::oil_velocity(problem, option.hose.bore);
     let surge_pressure_pa = surge_pressure(problem, option, oil_velocity_m_per_s);

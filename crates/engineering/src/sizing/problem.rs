@@ -15,7 +15,8 @@ pub struct SizingProblem {
     pub cylinder: Cylinder,
     /// Leakage across the piston, which K_c of the linear model counts, m3/(s Pa).
     pub internal_leakage: f64,
-    /// Parameters of the linear model, K_c with the leakage across the piston; the hydraulic stiffness is what is looked for, its value is not used.
+    /// Parameters of the linear model, K_c with the leakage across the piston; the hydraulic
+    /// stiffness is what is looked for, its value is not used.
     pub linear: LinearParameters,
     /// Bulk modulus of the fluid beta_0, Pa.
     pub fluid_modulus: f64,
@@ -49,7 +50,7 @@ pub struct SizingProblem {
     pub model: StiffnessModel,
     /// The hoses to choose from.
     pub hoses: Vec<HoseOption>,
-    /// Bores on the market beside those of the hoses, with their names, m.
+    /// Bores on the market other than those of the hoses, with their names, m.
     pub market_bores: Vec<(String, f64)>,
 }
 
@@ -67,8 +68,8 @@ pub struct HoseOption {
 }
 
 impl SizingProblem {
-    /// Hydraulic stiffness that gives the desired time constant under gain K_p, thesis (6.16), N/m; infinite at and below
-    /// the gain where not even a rigid transmission is stiff enough.
+    /// Hydraulic stiffness that gives the desired time constant under gain K_p, thesis (6.16), N/m;
+    /// infinite at and below the gain where not even a rigid transmission is stiff enough.
     pub fn stiffness_for_gain(&self, gain: f64) -> f64 {
         match required_stiffness(&self.linear, self.time_constant, gain) {
             RequiredStiffness::Stiffness(stiffness) => stiffness,
@@ -98,7 +99,8 @@ impl SizingProblem {
             .over_stroke()
     }
 
-    /// Length of each line when the stock is shared, or the longest acceptable one, whichever is shorter, m.
+    /// Length of each line when the stock is shared, or the longest acceptable one, whichever is
+    /// shorter, m.
     pub fn available_length(&self) -> f64 {
         let longest = self.hose_length[1];
         self.stock_length.map_or(longest, |stock| longest.min(stock / 2.0))

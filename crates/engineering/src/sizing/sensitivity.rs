@@ -4,7 +4,8 @@ use phea_hydraulics::stiffness::{LineLength, line_length_for_stiffness};
 use super::{Candidate, SizingProblem};
 use crate::quantity::DisplayUnit;
 
-/// What one uncertain number does to stiffness and length when it goes from low to high, all else nominal.
+/// What one uncertain number does to stiffness and length when it goes from low to high, all else
+/// nominal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Influence {
     /// What is varied, in words.
@@ -15,7 +16,8 @@ pub struct Influence {
     pub values: [f64; 3],
     /// Least stiffness over the stroke of the chosen length, N/m, at low, nominal and high.
     pub stiffness_n_per_m: [f64; 3],
-    /// Length that keeps the nominal stiffness, m, at low, nominal and high; zero where none is needed.
+    /// Length that keeps the nominal stiffness, m, at low, nominal and high; zero where none is
+    /// needed.
     pub length_m: [f64; 3],
 }
 
@@ -29,7 +31,8 @@ impl Influence {
 /// Relative variation of numbers for which no interval is stated.
 const ASSUMED_SPREAD: f64 = 0.1;
 
-/// Influence of dynamic stiffening (its interval), fluid bulk modulus and volumetric expansion (plus and minus 10 %).
+/// Influence of dynamic stiffening (its interval), fluid bulk modulus and volumetric expansion
+/// (plus and minus 10 %).
 pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influence> {
     let hose = candidate.option.hose;
     let Stiffening { nominal, minimum, maximum } = hose.dynamic_stiffening;

@@ -15,7 +15,7 @@ use super::SpecificationProblem;
 use crate::control::from_formulas;
 use crate::project::{self, MarginWish, Rational, ResponseRule, ResponseWish};
 
-/// What a key takes beside the forms that all take.
+/// What a key accepts in addition to the forms that all keys accept.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Takes {
     Neither,

@@ -1,4 +1,5 @@
-//! Specifications that the converters of a sampled controller make: how much of their rounding may reach force and command.
+//! Specifications that the converters of a sampled controller make: how much of their rounding may
+//! reach force and command.
 
 use phea_qft::specification::Specification;
 
@@ -7,7 +8,8 @@ use crate::setup::Setup;
 /// A specification and what it is called.
 pub(super) type Named = (Specification, &'static str);
 
-/// The specifications of `allowed_force_error` and `allowed_command_error`, with bounds at these frequencies, rad/s.
+/// The specifications of `allowed_force_error` and `allowed_command_error`, with bounds at these
+/// frequencies, rad/s.
 pub fn of_rounding(setup: &Setup<'_>, frequencies_rad_per_s: &[f64]) -> Vec<Named> {
     let Some(declared) = setup.project.controller.as_ref().and_then(|one| one.quantization.as_ref()) else {
         return vec![];

@@ -1,4 +1,5 @@
-//! The step response that the linear loop predicts: of polynomials, or of responses where lines move.
+//! The step response that the linear loop predicts: of polynomials, or of responses where lines
+//! move.
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! Which machines a verdict is tried on: the declared one, the worst plants of the audit made into rigs, and lumped lines with their waves.
+//! Which machines a verdict is tried on: the declared one, the worst plants of the audit made into
+//! rigs, and lumped lines with their waves.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -87,7 +88,8 @@ pub(super) fn rigs(
     (rigs, missing)
 }
 
-/// The same rig, its lumped lines as transmission lines; `None` where nothing of them is lumped or long.
+/// The same rig, its lumped lines as transmission lines; `None` where nothing of them is lumped or
+/// long.
 pub fn with_waves(project: &Project) -> Option<Project> {
     let mut other = project.clone();
     let line = &mut other.actuator.as_mut()?.line;
@@ -101,8 +103,8 @@ pub fn with_waves(project: &Project) -> Option<Project> {
     moved.then_some(other)
 }
 
-/// The rig with waves as it is: without uncertainty, and without the numbers that stand in the place of those that follow from it, which no
-/// machine has. `None` where it has no waves besides.
+/// The rig with waves as it is: without uncertainty, and without the numbers that stand in the
+/// place of those that follow from it, which no machine has. `None` where it has no further waves.
 pub fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
     let rig = setup.rig().ok()?;
     let mut alone = with_waves(setup.project)?;
@@ -114,7 +116,8 @@ pub fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
     Some(Project { uncertainty: vec![], family: None, linear: Linear::default(), operating_point, ..alone })
 }
 
-/// Where the slower line is a quarter of a wave long, rad/s: pi/(2 T), T the time that a wave takes through it.
+/// Where the slower line is a quarter of a wave long, rad/s: pi/(2 T), T the time that a wave takes
+/// through it.
 fn quarter_wave(rig: &Rig) -> Option<f64> {
     let components = rig.actuator.components();
     let delay =
@@ -124,8 +127,8 @@ fn quarter_wave(rig: &Rig) -> Option<f64> {
     (longest > 0.0).then(|| FRAC_PI_2 / longest)
 }
 
-/// A project whose rig has these parameters: numbers of the project and of its operating point at their places, those of the linear
-/// model by what they follow from.
+/// A project whose rig has these parameters: numbers of the project and of its operating point at
+/// their places, those of the linear model by what they follow from.
 fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Result<Project, String> {
     let project = setup.project;
     let is_linear = |name: &str| LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name);

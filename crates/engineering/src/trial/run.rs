@@ -19,7 +19,7 @@ use crate::simulate::{ScenarioRun, SimulateError, simulate_project};
 use crate::source::Source;
 use phea_dynamics::watch::Watch;
 
-/// How a machine does beside its linear loop, the better first.
+/// How a machine agrees with its linear loop, best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Agreement {
     /// It does what the linear loop predicts.
@@ -59,11 +59,12 @@ pub struct Run {
     pub status: &'static str,
     /// The reference, from and to, N.
     pub reference_n: [f64; 2],
-    /// What the linear loop predicts; `None` where it has no response in closed form, or grows without bound.
+    /// What the linear loop predicts; `None` where it has no response in closed form, or grows
+    /// without bound.
     pub linear: Option<Step>,
     /// What the machine does; `None` where it did not start.
     pub machine: Option<Step>,
-    /// The linear loop's response; empty where there is none.
+    /// The linear loop's response; empty if it is absent.
     pub linear_response: Response,
     /// The machine's; empty where it did not start.
     pub machine_response: Response,
@@ -73,7 +74,8 @@ pub struct Run {
     pub reason: String,
     /// Where the lines of a machine with waves begin to oscillate, rad/s; `None` of one without.
     pub quarter_wave_rad_per_s: Option<f64>,
-    /// What was met on the way, as an occurrence is called: the limit of the command, cavitation, an end stop.
+    /// What was met on the way, as an occurrence is called: the limit of the command, cavitation,
+    /// an end stop.
     pub met: Vec<&'static str>,
 }
 
@@ -258,7 +260,7 @@ fn met(driven: &ScenarioRun) -> Vec<&'static str> {
     driven.occurrences.iter().filter(|one| one.begins).map(|one| one.kind).collect()
 }
 
-/// `2.10 %`; what is less than a hundredth is none.
+/// `2.10 %`; values below a hundredth count as zero.
 pub fn percent_words(percent: f64) -> String {
     if percent < 0.01 { "0 %".to_string() } else { format!("{} %", significant(percent, 3)) }
 }
@@ -276,7 +278,8 @@ fn swing_words([low, high]: [f64; 2]) -> String {
     format!("at the end it swings between {} and {}", newton(low), newton(high))
 }
 
-/// The overshoot of a system of second order whose resonance reaches the least limit on |L/(1+L)|, percent; `None` without such a limit.
+/// The overshoot of a system of second order whose resonance reaches the least limit on |L/(1+L)|,
+/// percent; `None` without such a limit.
 ///
 /// ```text
 /// M = 1/(2 zeta sqrt(1 - zeta^2)),     overshoot = exp(-pi zeta/sqrt(1 - zeta^2))

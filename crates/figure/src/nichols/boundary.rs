@@ -6,11 +6,12 @@ use phea_qft::bound::Bound;
 /// Stands for a gain of zero or infinity, dB: outside of every chart.
 const FAR_DB: f64 = 1e3;
 
-/// A piece of the edge of a bound. What is forbidden lies on its right-hand side, seen along it on a chart with phase to the
-/// right and magnitude upwards.
+/// A piece of the edge of a bound. What is forbidden lies on its right-hand side, seen along it on
+/// a chart with phase to the right and magnitude upwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
-    /// (phase in degrees, magnitude in dB); a gain of zero or infinity as a magnitude of -1000 or 1000.
+    /// (phase in degrees, magnitude in dB); a gain of zero or infinity as a magnitude of -1000 or
+    /// 1000.
     pub points: Vec<(f64, f64)>,
     /// The last point joins the first: an island.
     pub closed: bool,
@@ -35,8 +36,9 @@ struct Link {
     via: Vec<(f64, f64)>,
 }
 
-/// The edges of a bound. Spans that overlap at neighbouring phases belong together; where one appears, ends, splits or joins,
-/// its tip is drawn as a parabola whose place follows from the last two phases.
+/// The edges of a bound. Spans that overlap at neighbouring phases belong together; where one
+/// appears, ends, splits or joins, its tip is drawn as a parabola whose place follows from the last
+/// two phases.
 ///
 /// # Example
 /// ```
@@ -89,8 +91,9 @@ fn columns(bound: &Bound) -> Vec<Column> {
     columns
 }
 
-/// Two neighbouring phases. The ends of spans are counted from the first phase on, the lower end of a span before its upper
-/// one. Along an edge upper ends lead to the right and lower ends to the left.
+/// Two neighbouring phases. The ends of spans are counted from the first phase on, the lower end of
+/// a span before its upper one. Along an edge upper ends lead to the right and lower ends to the
+/// left.
 struct Strip<'a> {
     columns: &'a [Column],
     first_ends: &'a [usize],
@@ -151,7 +154,8 @@ impl Strip<'_> {
         }
     }
 
-    /// Links the ends of spans that belong together: the outermost across, the others around the tips between them.
+    /// Links the ends of spans that belong together: the outermost across, the others around the
+    /// tips between them.
     fn join(&self, left: std::ops::Range<usize>, right: std::ops::Range<usize>, links: &mut [Option<Link>]) {
         let mut set = |from: usize, to: usize, via: Vec<(f64, f64)>| {
             if let Some(link) = links.get_mut(from) {
@@ -184,8 +188,9 @@ impl Strip<'_> {
         }
     }
 
-    /// The tip of a span or gap that is there at one phase and gone at the next. Its height shrinks with the square root of the
-    /// distance to the tip, so its square at two phases gives the place.
+    /// The tip of a span or gap that is there at one phase and gone at the next. Its height shrinks
+    /// with the square root of the distance to the tip, so its square at two phases gives the
+    /// place.
     fn tip(&self, at: usize, beyond: usize, which: usize, of: impl Fn(&Column) -> Vec<[f64; 2]>) -> Tip {
         let phase = |index: usize| self.column(index).map_or(0.0, |column| column.phase);
         let spans = |index: usize| self.column(index).map(&of).unwrap_or_default();
@@ -237,7 +242,8 @@ impl Tip {
     }
 }
 
-/// Follows the links: first the edges that begin somewhere, then those that return to their beginning.
+/// Follows the links: first the edges that begin somewhere, then those that return to their
+/// beginning.
 fn chained(ends: &[(f64, f64)], mut links: Vec<Option<Link>>) -> Vec<Boundary> {
     let mut is_reached = vec![false; ends.len()];
     for link in links.iter().flatten() {

@@ -64,7 +64,8 @@ impl<'a> Chart<'a> {
         chart
     }
 
-    /// Everything within the frame from back to front; labels in the order of their claim to a place.
+    /// Everything within the frame from back to front; labels in the order of their claim to a
+    /// place.
     pub(super) fn all_marks(&self) -> Vec<Mark> {
         let mut marks = self.contours();
         marks.extend(self.templates.iter().flat_map(PlacedTemplate::marks));
@@ -78,7 +79,8 @@ impl<'a> Chart<'a> {
         marks
     }
 
-    /// Holds marks, templates, violations, and of bounds what lies between -60 and 80 dB; of loops without marks likewise.
+    /// Holds marks, templates, violations, and of bounds what lies between -60 and 80 dB; of loops
+    /// without marks likewise.
     fn magnitude_axis(&self) -> Axis {
         let marked = self
             .marks
@@ -92,7 +94,8 @@ impl<'a> Chart<'a> {
         decibel_axis(&self.y.title, marked.chain(filled).chain(near).chain([-20.0, 20.0]))
     }
 
-    /// From -360 to 0 degrees, and on by quarter turns where a loop, a template or a violation that can be seen needs it.
+    /// From -360 to 0 degrees, and on by quarter turns where a loop, a template or a violation that
+    /// can be seen needs it.
     fn phase_axis(&self) -> Axis {
         let loops = self.loops.iter().flat_map(|one| one.points.iter().copied());
         let filled = self.templates.iter().flat_map(PlacedTemplate::extent);
@@ -217,7 +220,7 @@ impl<'a> Chart<'a> {
             .collect()
     }
 
-    /// One loop is ink; several are told apart by colour and dashes.
+    /// A single loop has the colour of text; several are distinguished by colour and dashes.
     fn loop_stroke(&self, index: usize) -> Stroke {
         let role = if self.loops.len() > 1 { series_role(index) } else { Role::Text };
         Stroke::solid(role, 2.4).dashed(series_dash(index))
@@ -359,7 +362,8 @@ fn shifted(points: &[(f64, f64)], shift: f64) -> Vec<(f64, f64)> {
     points.iter().map(|(phase, magnitude)| (phase + shift, *magnitude)).collect()
 }
 
-/// About twenty of the points to choose a label's place from, beginning at another part for another start.
+/// About twenty of the points to choose a label's place from, beginning at another part for another
+/// start.
 fn spread(points: &[(f64, f64)], start: usize) -> Vec<(f64, f64)> {
     const PLACES: usize = 20;
     let stride = points.len().div_ceil(PLACES).max(1);

@@ -5,7 +5,8 @@ use phea_dynamics::portable::{cos, log10, sin};
 /// Points of one half of a contour.
 const POINTS: i32 = 90;
 
-/// The contour |L/(1+L)| = M as (phase of L in degrees within [-360, 0], magnitude of L in dB); empty for no usable M.
+/// The contour |L/(1+L)| = M as (phase of L in degrees within [-360, 0], magnitude of L in dB);
+/// empty for no usable M.
 ///
 /// ```text
 /// (M^2 - 1) g^2 + 2 M^2 cos(phi) g + M^2 = 0,      L = g e^(j phi)           from |L|^2 = M^2 |1 + L|^2
@@ -49,7 +50,8 @@ pub fn magnitude_contour(contour_db: f64) -> Vec<(f64, f64)> {
             })
             .collect();
     }
-    // Once around: the phase swings about -180 degrees as the gain goes from the greater root to the lesser and back.
+    // Once around: the phase swings about -180 degrees as the gain goes from the greater root to
+    // the lesser and back.
     let widest = phea_dynamics::portable::acos((1.0 - 1.0 / square).sqrt());
     (0..=4 * POINTS)
         .map(|i| {

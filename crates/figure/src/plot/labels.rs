@@ -101,7 +101,7 @@ fn place(
 /// Farthest a text may stand from its point without a line.
 const BESIDE: f64 = 10.0;
 
-/// A text beside one of the points, or farther away at the end of a line.
+/// A text next to one of the points, or farther away at the end of a line.
 fn call_out(
     scene: &mut Scene,
     occupancy: &mut Occupancy,
@@ -143,7 +143,7 @@ fn beside(from: Point, to: Point) -> Point {
     point(from.x + MARKER / length * (to.x - from.x), from.y + MARKER / length * (to.y - from.y))
 }
 
-/// The eight directions from a point, beside it first.
+/// The eight directions from a point, sideways first.
 fn directions(at: Point, away: f64) -> [Hold; 8] {
     let (right, left) = (at.x + away, at.x - away);
     let slant = 0.75 * away;
@@ -164,7 +164,8 @@ fn rows(top: f64, bottom: f64) -> impl Iterator<Item = f64> {
     (0..count).map(move |index| top + 5.0 + ROW * index as f64)
 }
 
-/// Beside an upright line from the top down; above or below a lying line at its right end, its left end, its middle.
+/// Beside an upright line from the top down; above or below a lying line at its right end, its left
+/// end, its middle.
 fn beside_line(from: Point, to: Point, frame: Rectangle) -> Vec<Hold> {
     if from.x == to.x {
         return rows(frame.top, frame.bottom)
@@ -193,7 +194,8 @@ fn beside_line(from: Point, to: Point, frame: Rectangle) -> Vec<Hold> {
         .collect()
 }
 
-/// In the middle of an upright band from the top down, else beside it; in a lying band at its ends or its middle.
+/// In the middle of an upright band from the top down, else beside it; in a lying band at its ends
+/// or its middle.
 fn inside_band(area: Rectangle, direction: Direction, frame: Rectangle) -> Vec<Hold> {
     match direction {
         Direction::X => rows(frame.top, frame.bottom)
@@ -218,7 +220,8 @@ fn inside_band(area: Rectangle, direction: Direction, frame: Rectangle) -> Vec<H
     }
 }
 
-/// Around a point: the wanted side and its corners, the other sides, the other corners, then farther away.
+/// Around a point: the wanted side and its corners, the other sides, the other corners, then
+/// farther away.
 fn around(at: Point, side: Side) -> Vec<Hold> {
     const UP: [(f64, f64); 2] = [(1.0, -1.0), (-1.0, -1.0)];
     const DOWN: [(f64, f64); 2] = [(1.0, 1.0), (-1.0, 1.0)];

@@ -183,7 +183,8 @@ fn tick_labels(scene: &mut Scene, placed: &Placed<'_>, x_ticks: &[Tick], y_ticks
     }
 }
 
-/// Extends the axis that is too short for equal units, x at its lower end, y at both; other scales than linear are left alone.
+/// Extends the axis that is too short for equal units, x at its lower end, y at both; other scales
+/// than linear are left alone.
 pub(super) fn with_equal_aspect(plot: &Plot) -> Plot {
     let mut result = plot.clone();
     let width = right_edge(plot) - left_margin(plot);

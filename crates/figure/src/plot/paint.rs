@@ -120,7 +120,8 @@ pub(super) fn reference_line(placed: &Placed<'_>, direction: Direction, at: f64)
     }
 }
 
-/// Strokes at equal distances along a run of points, slanted backwards to its right-hand side, cut at the frame.
+/// Strokes at equal distances along a run of points, slanted backwards to its right-hand side, cut
+/// at the frame.
 fn fringe(run: &[Point], frame: &Rectangle) -> Vec<PathStep> {
     const SPACING: f64 = 11.0;
     const LENGTH: f64 = 4.5;

@@ -99,7 +99,8 @@ pub(super) fn working_lines(scene: &mut Scene, input: &SchematicInput) {
     }
 }
 
-/// The 4/3 servovalve: three positions, continuous between them, spring on one side and torque motor on the other.
+/// The 4/3 servovalve: three positions, continuous between them, spring on one side and torque
+/// motor on the other.
 pub(super) fn valve(scene: &mut Scene, input: &SchematicInput) {
     let left = VALVE.0 - 1.5 * SIDE;
     for index in 0..3 {

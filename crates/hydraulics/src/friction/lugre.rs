@@ -75,8 +75,8 @@ impl<S: Scalar> LuGre<S> {
 }
 
 impl LuGre {
-    /// What about this friction is impossible; empty if nothing is. Lack of passivity is no impossibility: see
-    /// [`LuGre::passivity`].
+    /// What about this friction is impossible; empty if nothing is. Lack of passivity is no
+    /// impossibility: see [`LuGre::passivity`].
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("bristle_stiffness", self.bristle_stiffness);

@@ -2,7 +2,8 @@ use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use super::{Friction, LuGre, Stribeck, StribeckShape};
 
-/// Friction as part of equations that are integrated: every variant is smooth enough, and knows its own shape.
+/// Friction as part of equations that are integrated: every variant is smooth enough, and knows its
+/// own shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MovingFriction<S = f64> {
     /// F = f_v v.
@@ -33,13 +34,13 @@ pub enum MovingFriction<S = f64> {
 pub struct FrictionForce<S> {
     /// Force in N that opposes the motion.
     pub force: S,
-    /// Rate dz/dt of the bristles in m/s; zero where there are none.
+    /// Rate dz/dt of the bristles in m/s; zero for a model without bristles.
     pub bristle_rate: S,
 }
 
 impl MovingFriction {
-    /// This friction, where it can be integrated: the static curve needs a velocity in m/s that smooths its jump, the others
-    /// leave it unused. `None` where that is missing.
+    /// This friction, where it can be integrated: the static curve needs a velocity in m/s that
+    /// smooths its jump, the others leave it unused. `None` where that is missing.
     pub fn new(friction: &Friction, regular_velocity: Option<f64>) -> Option<MovingFriction> {
         match *friction {
             Friction::Viscous { viscous } => Some(MovingFriction::Viscous { viscous }),
@@ -129,7 +130,8 @@ impl<S: Scalar> MovingFriction<S> {
         }
     }
 
-    /// Power in W that friction turns into heat: what the motion gives, less what the bristles' springs store.
+    /// Power in W that friction turns into heat: what the motion gives, less what the bristles'
+    /// springs store.
     ///
     /// ```text
     /// F v - sigma_0 z dz/dt = sigma_0^2 |v| z^2/g(v) + sigma_1 v dz/dt + sigma_2 v^2              LuGre

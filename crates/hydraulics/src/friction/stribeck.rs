@@ -22,7 +22,8 @@ pub struct Stribeck<S = f64> {
     pub viscous: S,
 }
 
-/// How the exponent of a [`Stribeck`] curve is evaluated: a power takes a logarithm and an exponential more than a square.
+/// How the exponent of a [`Stribeck`] curve is evaluated: a power takes a logarithm and an
+/// exponential more than a square.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StribeckShape {
     /// The exponent is 2: g(v) = F_C + (F_S - F_C) exp(-(v/v_S)^2).
@@ -44,14 +45,16 @@ impl<S: Scalar> Stribeck<S> {
         }
     }
 
-    /// The steady curve as a smooth function of the velocity, in N, for equations that are integrated.
+    /// The steady curve as a smooth function of the velocity, in N, for equations that are
+    /// integrated.
     ///
     /// ```text
     /// F(v) = g(v) v/sqrt(v^2 + v_r^2) + sigma_2 v
     /// ```
     ///
-    /// The sign of thesis (4.33) is replaced by a quotient that reaches 99 % of it at 7 v_r. What should stick under a force F
-    /// creeps instead, at about v_r F/F_S: hold a load with [`super::LuGre`].
+    /// The sign of thesis (4.33) is replaced by a quotient that reaches 99 % of it at 7 v_r. What
+    /// should stick under a force F creeps instead, at about v_r F/F_S: hold a load with
+    /// [`super::LuGre`].
     ///
     /// # Example
     /// ```
@@ -71,7 +74,8 @@ impl<S: Scalar> Stribeck<S> {
 
     /// g(v) in N: what the bristles carry when sliding steadily at v in m/s.
     pub fn sliding_force(&self, velocity: S) -> S {
-        // The least positive number stands for zero velocity, whose logarithm does not exist; its power is zero.
+        // The least positive number stands for zero velocity, whose logarithm does not exist; its
+        // power is zero.
         let least = S::from(f64::MIN_POSITIVE);
         let relative = (velocity / self.stribeck_velocity).abs().maximum(least);
         let power = (self.stribeck_exponent * relative.ln()).exp();

@@ -39,9 +39,11 @@ impl Asymptote {
     }
 }
 
-/// Frequency sqrt(K_H/M) in rad/s above which the piston's mass hides the added compliance from the load.
+/// Frequency sqrt(K_H/M) in rad/s above which the piston's mass hides the added compliance from the
+/// load.
 ///
-/// The load then moves the sensor's spring against a mass that no longer follows; making the fluid softer changes nothing.
+/// The load then moves the sensor's spring against a mass that no longer follows; making the fluid
+/// softer changes nothing.
 ///
 /// # Example
 /// For the thesis' hose
@@ -52,7 +54,8 @@ pub fn compliance_hidden_above(hydraulic_stiffness: f64, moving_mass: f64) -> f6
     (hydraulic_stiffness / moving_mass).sqrt()
 }
 
-/// Asymptotes of the driving-point impedance, lowest frequency first; without a controller the open loop's.
+/// Asymptotes of the driving-point impedance, lowest frequency first; without a controller the open
+/// loop's.
 ///
 /// ```text
 /// low frequency   open loop             (A^2 + f_v K_c)/K_c                          a damper
@@ -63,8 +66,9 @@ pub fn compliance_hidden_above(hydraulic_stiffness: f64, moving_mass: f64) -> f6
 /// limit           K_S/s                 above sqrt((K_H + K_S)/M): the piston stands still
 /// ```
 ///
-/// The thesis (6.2.2) takes the plateau for the limit. An asymptote that is the nearest nowhere is left out: the first
-/// without leakage or feedback, the plateau where the piston's mass comes before the spring.
+/// The thesis (6.2.2) takes the plateau for the limit. An asymptote that is the nearest nowhere is
+/// left out: the first without leakage or feedback, the plateau where the piston's mass comes
+/// before the spring.
 pub fn impedance_asymptotes(
     parameters: &LinearParameters,
     controller: Option<&TransferFunction>,
@@ -96,7 +100,8 @@ pub fn impedance_asymptotes(
     asymptotes
 }
 
-/// G(s) -> gain/s^integrators as s -> 0, for a continuous controller; differentiators count negatively.
+/// G(s) -> gain/s^integrators as s -> 0, for a continuous controller; differentiators count
+/// negatively.
 fn low_frequency_behaviour(controller: &TransferFunction) -> (f64, i32) {
     let origin = Complex64::new(0.0, 0.0);
     let split = |roots: &[Complex64]| {

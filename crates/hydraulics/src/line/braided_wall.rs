@@ -7,14 +7,16 @@ use crate::parameter::{ParameterError, Problems};
 /// area strain  = C_pp p + C_pF F         axial strain = A C_pF p + C_FF F         F the tension in the wall
 /// ```
 ///
-/// One C_pF for both, since the wall stores energy. A braided wall gets thinner when it is pulled: C_pF < 0.
+/// One C_pF for both, since the wall stores energy. A braided wall gets thinner when it is pulled:
+/// C_pF < 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BraidedWall {
     /// Mass of the wall per length m in kg/m.
     pub mass_per_length: f64,
     /// Area strain per pressure without tension C_pp in 1/Pa.
     pub pressure_compliance: f64,
-    /// Area strain per tension C_pF in 1/N; times the area of the bore the axial strain per pressure.
+    /// Area strain per tension C_pF in 1/N; times the area of the bore the axial strain per
+    /// pressure.
     pub coupling_compliance: f64,
     /// Axial strain per tension C_FF in 1/N.
     pub axial_compliance: f64,
@@ -34,13 +36,15 @@ impl BraidedWall {
     /// C_FF = 1/K_axial        C_pF = -C_FF        C_pp = 1/beta_free + A C_FF
     /// ```
     ///
-    /// Inextensible in the direction of its threads, such a wall does not change its length when closed and free ends stretch
-    /// it with F = p A (tan^2 of the braid angle is 2). So a catalogue's volumetric expansion, which is measured in that
-    /// way, is that of the hose between fixed ends too: 1/beta_free = C_pp + 2 A C_pF + A C_FF = C_pp - A C_pF^2/C_FF. The
-    /// tension at constant pressure pulls on the tube alone: K_axial = E_tube A_wall. How stiff the threads are follows from
-    /// the catalogue.
+    /// Inextensible in the direction of its threads, such a wall does not change its length when
+    /// closed and free ends stretch it with F = p A (tan^2 of the braid angle is 2). So a
+    /// catalogue's volumetric expansion, which is measured in that way, is that of the hose between
+    /// fixed ends too: 1/beta_free = C_pp + 2 A C_pF + A C_FF = C_pp - A C_pF^2/C_FF. The tension
+    /// at constant pressure pulls on the tube alone: K_axial = E_tube A_wall. How stiff the threads
+    /// are follows from the catalogue.
     ///
-    /// `axial_stiffness` K_axial in N per unit of strain, at the same rate of change as the member of the hose's stiffening.
+    /// `axial_stiffness` K_axial in N per unit of strain, at the same rate of change as the member
+    /// of the hose's stiffening.
     ///
     /// # Example
     /// Free ends do not move, and take up what the catalogue says.
@@ -58,8 +62,8 @@ impl BraidedWall {
         BraidedWall::of_hose(hose, member, axial_compliance, -axial_compliance, mass_per_length)
     }
 
-    /// The wall of these compliances in 1/N that swells as the catalogue says where its ends are closed and free, around the
-    /// bore that the hose has at the operating pressure.
+    /// The wall of these compliances in 1/N that swells as the catalogue says where its ends are
+    /// closed and free, around the bore that the hose has at the operating pressure.
     ///
     /// ```text
     /// C_pp = 1/beta_free - 2 A C_pF - A C_FF
@@ -86,8 +90,9 @@ impl BraidedWall {
         BraidedWall { mass_per_length, pressure_compliance, coupling_compliance, axial_compliance }
     }
 
-    /// An assumed wall for a half-inch thermoplastic hose, none of it from a data sheet: outer diameter 20.3 mm, 1150 kg/m3,
-    /// tube and cover of 50 MPa at rest, stiffening as the whole hose does, neutral braid.
+    /// An assumed wall for a half-inch thermoplastic hose, none of it from a data sheet: outer
+    /// diameter 20.3 mm, 1150 kg/m3, tube and cover of 50 MPa at rest, stiffening as the whole hose
+    /// does, neutral braid.
     ///
     /// # Example
     /// ```
@@ -102,7 +107,8 @@ impl BraidedWall {
         BraidedWall::neutral(hose, member, stiffness, WALL_DENSITY * area)
     }
 
-    /// What about this wall is impossible; empty if nothing is. Whether it stores positive energy depends on the fluid.
+    /// What about this wall is impossible; empty if nothing is. Whether it stores positive energy
+    /// depends on the fluid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("mass_per_length", self.mass_per_length);

@@ -6,7 +6,8 @@ use super::{Line, Member};
 use crate::fluid::Fluid;
 use crate::parameter::{ParameterError, Problems};
 
-/// The fluid column of a line: round, straight, of constant bore and modulus. Units: m, kg/m3, m2/s, Pa.
+/// The fluid column of a line: round, straight, of constant bore and modulus. Units: m, kg/m3,
+/// m2/s, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conduit<S = f64> {
     /// Length L in m.
@@ -30,14 +31,16 @@ pub enum LineError {
         /// All of them.
         problems: Vec<ParameterError>,
     },
-    /// Only its volume is known: it has no length and no bore to calculate inertia, friction or delay from.
+    /// Only its volume is known: it has no length and no bore to calculate inertia, friction or
+    /// delay from.
     #[error("a plain volume has neither length nor bore: only the lumped model fits it")]
     NoBore,
     /// Nothing travels along a line without length.
     #[error("a line without length carries no waves: use the lumped model")]
     NoLength,
-    /// Friction between the fluid and a light wall mixes the waves so much that the model in time would give energy at low
-    /// frequency: the resistance that makes up for the lags of its waves exceeds that of steady flow.
+    /// Friction between the fluid and a light wall mixes the waves so much that the model in time
+    /// would give energy at low frequency: the resistance that makes up for the lags of its waves
+    /// exceeds that of steady flow.
     #[error(
         "friction mixes the waves: their lags take {needed} Pa s/m3 at each end, steady flow gives {half_resistance}"
     )]
@@ -69,10 +72,12 @@ impl Conduit {
     /// The fluid column of a hose or pipe, with the fluid's modulus at a mean gauge pressure in Pa.
     ///
     /// # Errors
-    /// [`LineError::NoBore`] for a plain volume, [`LineError::NoLength`], and parameters outside physics.
+    /// [`LineError::NoBore`] for a plain volume, [`LineError::NoLength`], and parameters outside
+    /// physics.
     ///
     /// # Example
-    /// Pressure takes 2.80 ms along 1.5 m of the thesis' hose at 35 bar, and the compliance is that of the lumped line.
+    /// Pressure takes 2.80 ms along 1.5 m of the thesis' hose at 35 bar, and the compliance is that
+    /// of the lumped line.
     /// ```
     /// use phea_hydraulics::line::{Conduit, Member};
     /// use phea_hydraulics::reference_rig::{components, hose_line};
@@ -105,7 +110,8 @@ impl Conduit {
         conduit.check().map(|()| conduit)
     }
 
-    /// What about this conduit is impossible; empty if nothing is. A length of zero is possible here.
+    /// What about this conduit is impossible; empty if nothing is. A length of zero is possible
+    /// here.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.not_negative("length", self.length);

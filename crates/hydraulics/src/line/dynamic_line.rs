@@ -2,12 +2,12 @@ use phea_dynamics::scalar::Scalar;
 
 use super::{Content, Segments, TransmissionLine, TwoWaveLine};
 
-/// What a line does between its valve port and its chamber, as a machine holds it: states, and waves that it sends and that
-/// arrive later.
+/// What a line does between its valve port and its chamber, as a machine holds it: states, and
+/// waves that it sends and that arrive later.
 ///
-/// The valve gives its flow, the chamber its pressure; the line answers with its port's pressure and the flow into the
-/// chamber, and adds [`DynamicLine::chamber_compliance`] to the chamber. So no part of it is an algebraic loop. Units: Pa,
-/// m3/s, s.
+/// The valve gives its flow, the chamber its pressure; the line answers with its port's pressure
+/// and the flow into the chamber, and adds [`DynamicLine::chamber_compliance`] to the chamber. So
+/// no part of it is an algebraic loop. Units: Pa, m3/s, s.
 ///
 /// # Example
 /// A steady flow stays.
@@ -106,8 +106,8 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
-    /// Rates of all states; returns the flow into the chamber in m3/s. Slices as long as [`DynamicLine::states`] and
-    /// [`DynamicLine::delays`].
+    /// Rates of all states; returns the flow into the chamber in m3/s. Slices as long as
+    /// [`DynamicLine::states`] and [`DynamicLine::delays`].
     #[inline]
     pub fn rates<T: Scalar + From<S>>(
         &self,
@@ -128,7 +128,8 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
-    /// What the line holds; `None` with waves, much of whose content is under way and no part of its states.
+    /// What the line holds; `None` with waves, much of whose content is under way and no part of
+    /// its states.
     pub(crate) fn content<T: Scalar + From<S>>(
         &self,
         chamber_pressure: T,

@@ -10,10 +10,12 @@ use crate::parameter::{ParameterError, Problems};
 pub struct Hose<S = f64> {
     /// Bore D_ho in m.
     pub bore: S,
-    /// Volumetric expansion per length at the working pressure, E, in m3/m (ISO 6801): what the thesis' modulus refers to.
+    /// Volumetric expansion per length at the working pressure, E, in m3/m (ISO 6801): what the
+    /// thesis' modulus refers to.
     pub volumetric_expansion: S,
-    /// The same at the operating pressure, in m3/m: how much more oil a metre holds than its bore. Below zero only where the
-    /// straight line through a measured point of the catalogue misses the origin.
+    /// The same at the operating pressure, in m3/m: how much more oil a metre holds than its bore.
+    /// Below zero only where the straight line through a measured point of the catalogue misses the
+    /// origin.
     pub operating_expansion: S,
     /// Slope of the volumetric expansion over pressure, epsilon = dE/dp, in m3/(m Pa).
     pub expansion_slope: S,
@@ -21,8 +23,9 @@ pub struct Hose<S = f64> {
     pub dynamic_stiffening: Stiffening<S>,
 }
 
-/// Ratio r_beta of dynamic to static wall modulus as an interval: nylon braid 4 to 5 (Johnston et al. 2010), measured
-/// far above the frequencies of force control, so uncertain there. One at zero frequency.
+/// Ratio r_beta of dynamic to static wall modulus as an interval: nylon braid 4 to 5 (Johnston et
+/// al. 2010), measured far above the frequencies of force control, so uncertain there. One at zero
+/// frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stiffening<S = f64> {
     /// What a nominal calculation uses.
@@ -94,15 +97,16 @@ impl Hose {
 }
 
 impl<S: Scalar> Hose<S> {
-    /// Compliance of a metre by its sheet, in m2/Pa: what the wall gives, and the oil that the bore holds at the operating
-    /// pressure p.
+    /// Compliance of a metre by its sheet, in m2/Pa: what the wall gives, and the oil that the bore
+    /// holds at the operating pressure p.
     ///
     /// ```text
     /// dV/dp / L = epsilon/r_beta + (A_ho + E(p))/beta_0
     /// ```
     ///
-    /// The thesis refers beta_hoSS to the bore expanded at the working pressure (6.24) but multiplies it with the unexpanded
-    /// volume (6.25): of what the wall gives that leaves A_ho/(A_ho + E).
+    /// The thesis refers beta_hoSS to the bore expanded at the working pressure (6.24) but
+    /// multiplies it with the unexpanded volume (6.25): of what the wall gives that leaves
+    /// A_ho/(A_ho + E).
     ///
     /// # Example
     /// Eaton Synflex 3130-08 at 35 bar
@@ -116,8 +120,8 @@ impl<S: Scalar> Hose<S> {
         self.expansion_slope / self.dynamic_stiffening.member(member) + area / fluid_modulus
     }
 
-    /// The same hose with the bore that it has at the operating pressure, its expansion counted from there: its moduli refer
-    /// to the oil that it holds.
+    /// The same hose with the bore that it has at the operating pressure, its expansion counted
+    /// from there: its moduli refer to the oil that it holds.
     ///
     /// # Example
     /// ```

@@ -6,8 +6,9 @@ use num_complex::Complex64;
 /// W(tau) = sum over the zeros of J_2 of exp(-j_2n^2 tau)  ~  sum m_k exp(-n_k tau),    tau = nu t/R^2     Zielke (1968)
 /// ```
 ///
-/// Corners from the first squared zero upwards by factors of five; weights fitted to the friction factor, which they meet
-/// within 0.5 % for viscous frequencies w R^2/nu from 0.5 to 3e4 (W itself within 4.5 % for tau from 3e-4 to 0.05).
+/// Corners from the first squared zero upwards by factors of five; weights fitted to the friction
+/// factor, which they meet within 0.5 % for viscous frequencies w R^2/nu from 0.5 to 3e4 (W itself
+/// within 4.5 % for tau from 3e-4 to 0.05).
 // ORIGIN: recomputed by comparisons/recompute_lines.py
 pub(super) const UNSTEADY_FRICTION: [(f64, f64); 5] =
     [(26.3744, 1.122127), (131.872, 3.123206), (659.36, 6.431796), (3296.8, 12.243534), (16484.0, 68.188558)];
@@ -19,9 +20,10 @@ pub(super) const UNSTEADY_FRICTION: [(f64, f64); 5] =
 /// N -> 8 nu/(s R^2) + 4/3 for slow flow (Poiseuille),   N -> 1 + 2/z for fast flow (a boundary layer)
 /// ```
 ///
-/// Newtonian fluid, round rigid tube, small velocities: no turbulence. Evaluated by the continued fraction of the ratios of
-/// modified Bessel functions, from the far end inwards. Source: Zielke (1968), Journal of Basic Engineering 90(1).
-/// `viscous_frequency` must not be a negative real number.
+/// Newtonian fluid, round rigid tube, small velocities: no turbulence. Evaluated by the continued
+/// fraction of the ratios of modified Bessel functions, from the far end inwards. Source: Zielke
+/// (1968), Journal of Basic Engineering 90(1). `viscous_frequency` must not be a negative real
+/// number.
 ///
 /// # Example
 /// ```
@@ -34,7 +36,8 @@ pub(super) const UNSTEADY_FRICTION: [(f64, f64); 5] =
 /// ```
 pub fn friction_factor(viscous_frequency: Complex64) -> Complex64 {
     let z = phea_dynamics::portable::sqrt_complex(viscous_frequency);
-    // I_(n+1)/I_n = 1/(2 (n + 1)/z + I_(n+2)/I_(n+1)); terms beyond |z| die out faster than geometrically
+    // I_(n+1)/I_n = 1/(2 (n + 1)/z + I_(n+2)/I_(n+1)); terms beyond |z| die out faster than
+    // geometrically
     let magnitude = phea_dynamics::portable::magnitude(z);
     if magnitude > 2e3 {
         // two terms of the asymptotic series leave less than 1e-9
@@ -54,7 +57,8 @@ pub fn friction_factor(viscous_frequency: Complex64) -> Complex64 {
 mod tests {
     use super::*;
 
-    /// Zielke's weighting function: the first zeros of J_2 squared, and his expansion for short times.
+    /// Zielke's weighting function: the first zeros of J_2 squared, and his expansion for short
+    /// times.
     fn exact_weighting(tau: f64) -> f64 {
         // ORIGIN: Zielke (1968): zeros and coefficients of the expansion
         let zeros_squared = [26.3744, 70.8493, 135.0198, 218.9216, 322.5544];
@@ -76,7 +80,8 @@ mod tests {
             let error = fitted / exact_weighting(tau) - 1.0;
             assert!(error.abs() < tolerance, "W({tau}) is {error} off");
         }
-        // What is left of friction at long times adds a third to the inertia: 4 W integrated over tau.
+        // What is left of friction at long times adds a third to the inertia: 4 W integrated over
+        // tau.
         let inertia: f64 = UNSTEADY_FRICTION.iter().map(|(corner, weight)| 4.0 * weight / corner).sum();
         assert!((inertia - 1.0 / 3.0).abs() < 3e-3, "{inertia}");
     }

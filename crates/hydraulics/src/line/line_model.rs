@@ -7,7 +7,8 @@ use crate::fluid::Fluid;
 /// Which model a line gets in motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum LineModel {
-    /// One elastic capacity at the chamber. Fits every line, a plain volume and no line at all included.
+    /// One elastic capacity at the chamber. Fits every line, a plain volume and no line at all
+    /// included.
     #[default]
     Lumped,
     /// One capacity at the chamber whose wall creeps with this relaxation time in s. Hoses only.

@@ -9,7 +9,8 @@ use super::Conduit;
 /// p_1 = p_2, q_1 = q_2 into the line:  in_phase = p/q           p_1 = -p_2, q_1 = -q_2:  in_opposition = p/q
 /// ```
 ///
-/// In Pa s/m3. A line is passive where both have a real part that is not negative on the imaginary axis.
+/// In Pa s/m3. A line is passive where both have a real part that is not negative on the imaginary
+/// axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineResponse {
     /// Impedance with both ends in phase: how the line yields.
@@ -26,7 +27,8 @@ impl LineResponse {
         LineResponse { in_phase: impedance * coth, in_opposition: impedance / coth }
     }
 
-    /// The transfer matrix t with (p_1, q_1) = t (p_2, q_2), flows counted from end 1 to end 2; its determinant is 1.
+    /// The transfer matrix t with (p_1, q_1) = t (p_2, q_2), flows counted from end 1 to end 2; its
+    /// determinant is 1.
     ///
     /// # Example
     /// A short lossless line is a capacity between two inertances.
@@ -56,9 +58,9 @@ impl Conduit {
     /// Gamma = s T sqrt(N)      Z = Z_c sqrt(N)      p_1 = p_2 cosh Gamma + q_2 Z sinh Gamma
     /// ```
     ///
-    /// N = 1 without friction, 1 + 8 nu/(s R^2) with that of steady flow, [`super::friction_factor`] of
-    /// s/[`Conduit::viscous_rate`] for laminar flow. Source: D'Souza and Oldenburger (1964), Journal of Basic Engineering
-    /// 86(3).
+    /// N = 1 without friction, 1 + 8 nu/(s R^2) with that of steady flow,
+    /// [`super::friction_factor`] of s/[`Conduit::viscous_rate`] for laminar flow. Source: D'Souza
+    /// and Oldenburger (1964), Journal of Basic Engineering 86(3).
     pub fn response(&self, s: Complex64, factor: Complex64) -> LineResponse {
         let root = sqrt_complex(factor);
         LineResponse::of_wave(self.characteristic_impedance() * root, s * self.delay() * root)

@@ -26,7 +26,8 @@ pub enum PipeWall<S = f64> {
         poisson_ratio: S,
         /// How the pipe is held along its axis.
         anchoring: Anchoring,
-        /// Whether the stress varies over the wall (exact for any thickness) or is taken as even (D/e above 25).
+        /// Whether the stress varies over the wall (exact for any thickness) or is taken as even
+        /// (D/e above 25).
         thick: bool,
     },
 }
@@ -94,10 +95,12 @@ impl<S: Scalar> Pipe<S> {
 /// c_a = 1 - nu^2 (held throughout), 1 - nu/2 (held at one end), 1 (expansion joints)
 /// ```
 ///
-/// Source: Wylie and Streeter (1993), "Fluid Transients in Systems", chapter 2; the thick wall is Lamé's solution.
+/// Source: Wylie and Streeter (1993), "Fluid Transients in Systems", chapter 2; the thick wall is
+/// Lamé's solution.
 ///
 /// # Example
-/// A thick steel wall is what Lamé found: (dA/A)/p = 2/E ((b^2 + a^2)/(b^2 - a^2) + nu) for radii a and b
+/// A thick steel wall is what Lamé found: (dA/A)/p = 2/E ((b^2 + a^2)/(b^2 - a^2) + nu) for radii a
+/// and b
 /// ```
 /// use phea_hydraulics::line::{Anchoring, pipe_wall_compliance};
 /// let (a, b, e, nu) = (5e-3, 8e-3, 206e9, 0.3);

@@ -8,7 +8,8 @@ use phea_dynamics::scalar::Scalar;
 use super::laminar_friction::UNSTEADY_FRICTION;
 use super::{Conduit, LineError, StandardLinearSolid};
 
-/// A line cut into equal pi segments, each a plug of fluid between two half capacities; without segments, one capacity.
+/// A line cut into equal pi segments, each a plug of fluid between two half capacities; without
+/// segments, one capacity.
 ///
 /// ```text
 /// inside      (C/N) dp_j/dt = q_j - q_j+1 - r_j             valve end  (C/2N) dp_0/dt = q_valve - q_1 - r_0
@@ -17,10 +18,11 @@ use super::{Conduit, LineError, StandardLinearSolid};
 /// wall        r_j = C_r (p_j - w_j)/theta, dw_j/dt = (p_j - w_j)/theta        if the wall creeps
 /// ```
 ///
-/// p_N is the pressure of the chamber, which takes the last half capacity ([`Segments::chamber_compliance`]). Flows q count
-/// from valve to chamber. States, in this order: p_0 to p_N-1, q_1 to q_N, then w_0 to w_N, then u. Every element stores or
-/// dissipates, so the line is passive. Source: Merritt (1967) for the elements; Trikha (1975), Journal of Fluids Engineering
-/// 97(1), for friction as first-order lags.
+/// p_N is the pressure of the chamber, which takes the last half capacity
+/// ([`Segments::chamber_compliance`]). Flows q count from valve to chamber. States, in this order:
+/// p_0 to p_N-1, q_1 to q_N, then w_0 to w_N, then u. Every element stores or dissipates, so the
+/// line is passive. Source: Merritt (1967) for the elements; Trikha (1975), Journal of Fluids
+/// Engineering 97(1), for friction as first-order lags.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segments<S = f64> {
     count: usize,
@@ -48,7 +50,8 @@ struct Creep<S> {
 }
 
 impl Segments {
-    /// One elastic capacity of this compliance in m3/Pa, all of it at the chamber: the lumped line. Zero is no line.
+    /// One elastic capacity of this compliance in m3/Pa, all of it at the chamber: the lumped line.
+    /// Zero is no line.
     pub fn lumped(compliance: f64) -> Segments {
         Segments {
             count: 0,
@@ -91,8 +94,8 @@ impl Segments {
         })
     }
 
-    /// The same segments with a wall that creeps. The modulus of their conduit must be that of the fluid with the wall's
-    /// dynamic modulus: what creeps comes on top.
+    /// The same segments with a wall that creeps. The modulus of their conduit must be that of the
+    /// fluid with the wall's dynamic modulus: what creeps comes on top.
     ///
     /// # Errors
     /// A wall that is impossible.

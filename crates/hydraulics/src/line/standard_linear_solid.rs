@@ -4,14 +4,16 @@ use phea_dynamics::scalar::Scalar;
 use super::{Hose, Member};
 use crate::parameter::{ParameterError, Problems};
 
-/// A wall that creeps: a spring beside a spring in series with a damper (Zener). Units: Pa, s.
+/// A wall that creeps: a spring in parallel with a spring and damper in series (Zener). Units: Pa,
+/// s.
 ///
 /// ```text
 /// beta(s) = beta_static + (beta_dynamic - beta_static) tau s/(1 + tau s)
 /// ```
 ///
-/// At rest it is as soft as the catalogue says, worked fast as stiff as was measured at high frequency, and between it
-/// dissipates. One relaxation time is the least that joins both ends; measured hoses spread theirs over decades.
+/// At rest it is as soft as the catalogue says, worked fast as stiff as was measured at high
+/// frequency, and between it dissipates. One relaxation time is the least that joins both ends;
+/// measured hoses spread theirs over decades.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandardLinearSolid<S = f64> {
     /// Modulus at rest in Pa.
@@ -23,8 +25,8 @@ pub struct StandardLinearSolid<S = f64> {
 }
 
 impl StandardLinearSolid {
-    /// The wall of a hose: its modulus at rest, of the bore it has at the operating pressure, and r_beta times that at high
-    /// frequency.
+    /// The wall of a hose: its modulus at rest, of the bore it has at the operating pressure, and
+    /// r_beta times that at high frequency.
     ///
     /// # Example
     /// ```
@@ -77,7 +79,8 @@ impl<S: Scalar> StandardLinearSolid<S> {
         one / self.static_modulus - one / self.dynamic_modulus
     }
 
-    /// Time theta = tau beta_dynamic/beta_static in s in which the volume follows while the pressure is held.
+    /// Time theta = tau beta_dynamic/beta_static in s in which the volume follows while the
+    /// pressure is held.
     pub(crate) fn retardation_time(&self) -> S {
         self.relaxation_time * self.dynamic_modulus / self.static_modulus
     }

@@ -41,8 +41,8 @@ impl<A: Analytic> TransferMatrix<A> {
 }
 
 impl DynamicLine {
-    /// The line at s in rad/s, or over a set of such: its equations in time, transformed. The end that it adds to the chamber
-    /// ([`DynamicLine::chamber_compliance`]) belongs to the chamber.
+    /// The line at s in rad/s, or over a set of such: its equations in time, transformed. The end
+    /// that it adds to the chamber ([`DynamicLine::chamber_compliance`]) belongs to the chamber.
     ///
     /// # Example
     /// A lumped line has all of its compliance at the chamber, and does nothing else.
@@ -69,8 +69,8 @@ impl DynamicLine {
         }
     }
 
-    /// What fluid and wall yield at once, in m3/Pa, the end at the chamber included: the compliance of the lumped line. A wall that
-    /// creeps yields more later.
+    /// What fluid and wall yield at once, in m3/Pa, the end at the chamber included: the compliance
+    /// of the lumped line. A wall that creeps yields more later.
     pub fn elastic_compliance(&self) -> f64 {
         match self {
             DynamicLine::Segments(line) => line.elastic_compliance(),
@@ -95,7 +95,8 @@ impl DynamicLine {
         }
     }
 
-    /// The same line, fluid and wall stiffer by a factor: waves are faster by its root, inertia and steady friction stay.
+    /// The same line, fluid and wall stiffer by a factor: waves are faster by its root, inertia and
+    /// steady friction stay.
     pub fn stiffened(&self, factor: f64) -> DynamicLine {
         match self {
             DynamicLine::Segments(line) => DynamicLine::Segments(line.stiffened(factor)),

@@ -9,15 +9,17 @@ pub const END_SHARE: f64 = 0.01;
 pub type TransmissionLine<S = f64> = TravellingWaves<1, S>;
 
 impl TransmissionLine {
-    /// The transmission line of a conduit, `end_share` of whose compliance is a plain volume at each end.
+    /// The transmission line of a conduit, `end_share` of whose compliance is a plain volume at
+    /// each end.
     ///
     /// ```text
     /// C_end = f C      Z = Z_c/sqrt(1 - 2 f)      delay = T sqrt(1 - 2 f)
     /// ```
     ///
-    /// The end volumes keep the line off the valve's edges, which would make an algebraic loop, and leave a chamber at its
-    /// end stop something to work on. What is between them keeps all of the inertia and the resistance: compliance, inertance
-    /// and steady resistance of the whole are exact for any share, and the waves tend to the exact ones as it tends to zero.
+    /// The end volumes keep the line off the valve's edges, which would make an algebraic loop, and
+    /// leave a chamber at its end stop something to work on. What is between them keeps all of the
+    /// inertia and the resistance: compliance, inertance and steady resistance of the whole are
+    /// exact for any share, and the waves tend to the exact ones as it tends to zero.
     ///
     /// # Errors
     /// A conduit that is impossible, has no length or is overdamped; a share not between 0 and 1/2.

@@ -15,20 +15,23 @@ use super::attenuation::{CORNERS, GREATEST_DISSIPATION, TERMS, attenuation_weigh
 ///     dY_ik/dt = (b_k/T_i)(q - Y_ik),    dX_ik/dt = (b_k/T_i)(h_i - X_ik),    Q = Y_11
 /// ```
 ///
-/// With A_i(s) the attenuation of wave i that the weights a_ik and corners b_k/T_i stand for, this is
+/// With A_i(s) the attenuation of wave i that the weights a_ik and corners b_k/T_i stand for, this
+/// is
 ///
 /// ```text
 /// Z_i(s) = Z_i [1 + (1 - A_i)/(s T_i)],    c_i = e^(-s T_i) A_i(s) [c_i + 2 Z_i(s) q of the other end]
 /// ```
 ///
-/// the exact line where A_i = exp(sT_i - Gamma_i) and Z_i(s) = Z_i Gamma_i/(s T_i), of which the bracket is the first term
-/// of the logarithm: one set of weights gives attenuation and impedance. At rest it has the whole compliance of the line and
-/// its steady resistance. It is passive when R_0/2 is at least sum Z_i l_i^2/(1 + l_i), l_i = sum_k a_ik/b_k, and wave 1 has the
-/// shortest delay; a single wave always is. Structure after the transmission line method (Krus, Weddfelt and Palmberg 1994; Johnston 2012),
-/// weights and impedance our own.
+/// the exact line where A_i = exp(sT_i - Gamma_i) and Z_i(s) = Z_i Gamma_i/(s T_i), of which the
+/// bracket is the first term of the logarithm: one set of weights gives attenuation and impedance.
+/// At rest it has the whole compliance of the line and its steady resistance. It is passive when
+/// R_0/2 is at least sum Z_i l_i^2/(1 + l_i), l_i = sum_k a_ik/b_k, and wave 1 has the shortest
+/// delay; a single wave always is. Structure after the transmission line method (Krus, Weddfelt and
+/// Palmberg 1994; Johnston 2012), weights and impedance our own.
 ///
-/// States: the pressure of the valve's end volume, then for the valve end and the chamber end, for each wave, Y and X. Waves,
-/// sent or arriving: those of each i from the valve end to the chamber end, then those the other way.
+/// States: the pressure of the valve's end volume, then for the valve end and the chamber end, for
+/// each wave, Y and X. Waves, sent or arriving: those of each i from the valve end to the chamber
+/// end, then those the other way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TravellingWaves<const M: usize, S = f64> {
     waves: [Wave<S>; M],
@@ -65,8 +68,9 @@ impl<const M: usize> TravellingWaves<M> {
             };
             *wave = Wave { impedance: data.impedance, delay: data.delay, weights };
         }
-        // In phase and slow, a wave gives energy as a resistance -Z l^2/(1 + l) would, l = sum a_k/b_k, and never more than
-        // that over 1 + (wT)^2 (comparisons/recompute_lines.py): a greater resistance with the shortest lag makes up for all.
+        // In phase and slow, a wave gives energy as a resistance -Z l^2/(1 + l) would, l = sum
+        // a_k/b_k, and never more than that over 1 + (wT)^2 (comparisons/recompute_lines.py): a
+        // greater resistance with the shortest lag makes up for all.
         let half_resistance = resistance / 2.0;
         let needed = attenuated.iter().map(|wave| {
             let lag = wave.lagging(&[1.0; TERMS]);

@@ -21,10 +21,10 @@ pub type TwoWaveLine<S = f64> = TravellingWaves<2, S>;
 /// N_i = u/v = (lf - lambda_i)/(C_pF m)       N_1 N_2 = -rho A/m
 /// ```
 ///
-/// With the wall held at both ends (u = 0) v_1 = q/(A (1 - N_1/N_2)) and v_2 = q/(A (1 - N_2/N_1)), thesis (4.39) and (4.40)
-/// corrected: both waves see the same flow and their pressures add. So the hose is two lines in series at both ends, of
-/// impedances Z_i = rho c_i/(A (1 - N_i/N_j)), thesis (4.38), and that is how it is calculated. Friction acts between fluid
-/// and wall.
+/// With the wall held at both ends (u = 0) v_1 = q/(A (1 - N_1/N_2)) and v_2 = q/(A (1 - N_2/N_1)),
+/// thesis (4.39) and (4.40) corrected: both waves see the same flow and their pressures add. So the
+/// hose is two lines in series at both ends, of impedances Z_i = rho c_i/(A (1 - N_i/N_j)), thesis
+/// (4.38), and that is how it is calculated. Friction acts between fluid and wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoWaveHose {
     /// Length L in m.
@@ -50,13 +50,14 @@ pub struct HoseWave {
     pub modal_ratio: f64,
     /// Impedance rho c_i/(A (1 - N_i/N_j)) in Pa s/m3 of the line that stands for this wave.
     pub impedance: f64,
-    /// How much of the friction factor's excess N - 1 slows this wave: lambda_i grows by (N - 1) times this, to first order.
+    /// How much of the friction factor's excess N - 1 slows this wave: lambda_i grows by (N - 1)
+    /// times this, to first order.
     pub friction_share: f64,
 }
 
 impl TwoWaveHose {
-    /// A hose of this length filled with a fluid at a mean gauge pressure in Pa, with the bore of [`Hose::filled`]; `wall` for the
-    /// same `member`.
+    /// A hose of this length filled with a fluid at a mean gauge pressure in Pa, with the bore of
+    /// [`Hose::filled`]; `wall` for the same `member`.
     pub fn new(hose: &Hose, length: f64, fluid: &Fluid, pressure: f64, wall: BraidedWall) -> TwoWaveHose {
         TwoWaveHose {
             length,
@@ -160,8 +161,8 @@ impl TwoWaveHose {
         [wave(slower, faster), wave(faster, slower)]
     }
 
-    /// The exact hose, both ends of its wall held, at s in rad/s, for this factor of the fluid's inertia: 1 without
-    /// friction, [`super::friction_factor`] with it.
+    /// The exact hose, both ends of its wall held, at s in rad/s, for this factor of the fluid's
+    /// inertia: 1 without friction, [`super::friction_factor`] with it.
     pub fn response(&self, s: Complex64, factor: Complex64) -> LineResponse {
         let BraidedWall { mass_per_length, coupling_compliance, axial_compliance, .. } = self.wall;
         let area = self.area();
@@ -191,14 +192,15 @@ impl TwoWaveHose {
     /// The hose in time, `end_share` of its compliance at each end a plain volume as in
     /// [`super::TransmissionLine::of_conduit`].
     ///
-    /// The friction of wave i is that of a line with one wave whose dissipation number is nu T_i/R^2 times the square of
-    /// [`HoseWave::friction_share`]: right to the first order in the thickness of the boundary layer. How friction mixes the
-    /// waves is left out, so that the resonance of a wave in which the wall goes with the fluid, which friction then hardly
-    /// finds, comes out too sharp. The steady resistance is exact.
+    /// The friction of wave i is that of a line with one wave whose dissipation number is nu
+    /// T_i/R^2 times the square of [`HoseWave::friction_share`]: right to the first order in the
+    /// thickness of the boundary layer. How friction mixes the waves is left out, so that the
+    /// resonance of a wave in which the wall goes with the fluid, which friction then hardly finds,
+    /// comes out too sharp. The steady resistance is exact.
     ///
     /// # Errors
-    /// A hose that is impossible, has no length, is overdamped, or whose wall is so light that friction mixes its waves
-    /// ([`LineError::MixedByFriction`]); a share not between 0 and 1/2.
+    /// A hose that is impossible, has no length, is overdamped, or whose wall is so light that
+    /// friction mixes its waves ([`LineError::MixedByFriction`]); a share not between 0 and 1/2.
     pub fn in_time(&self, end_share: f64) -> Result<TwoWaveLine, LineError> {
         let problems = self.problems();
         if !problems.is_empty() {

@@ -39,8 +39,8 @@ pub struct Decomposition<S = f64> {
 /// e_0 = w_nv^2               e_1 = 2 xi_v w_nv
 /// ```
 ///
-/// The spool's factor is exact. The other two are first-order perturbations of the lossless piston between its springs:
-/// good while the hydraulic pole is slow against sqrt(d_0).
+/// The spool's factor is exact. The other two are first-order perturbations of the lossless piston
+/// between its springs: good while the hydraulic pole is slow against sqrt(d_0).
 pub fn decompose<S: Scalar>(
     parameters: &LinearParameters<S>,
     damping: MechanicalDamping,
@@ -124,14 +124,15 @@ pub fn decomposed_model(
 pub struct DecompositionError {
     /// Largest differences over the frequencies asked for.
     pub over_band: ResponseDifference,
-    /// Resonance of the piston between its springs, |p| of the decomposition's mechanical poles, in rad/s.
+    /// Resonance of the piston between its springs, |p| of the decomposition's mechanical poles, in
+    /// rad/s.
     pub resonance: f64,
     /// Largest differences within five half-widths of the resonance.
     pub at_resonance: ResponseDifference,
 }
 
-/// Largest differences of [`decomposed_model`] from the fifth-order model, over these frequencies in rad/s and around
-/// the piston's resonance (where a fixed grid would step over the peak).
+/// Largest differences of [`decomposed_model`] from the fifth-order model, over these frequencies
+/// in rad/s and around the piston's resonance (where a fixed grid would step over the peak).
 ///
 /// # Errors
 /// As [`linear_model`].

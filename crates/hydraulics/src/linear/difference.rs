@@ -14,7 +14,8 @@ pub struct ResponseDifference {
     pub phase_frequency: f64,
 }
 
-/// Largest magnitude and phase of `other/reference` over these frequencies in rad/s; zeros for no frequencies.
+/// Largest magnitude and phase of `other/reference` over these frequencies in rad/s; zeros for no
+/// frequencies.
 ///
 /// # Example
 /// ```
@@ -40,7 +41,8 @@ pub fn response_difference(
         let ratio = other(frequency) / reference(frequency);
         let magnitude_db = (20.0 * portable::log10(portable::magnitude(ratio))).abs();
         let phase_deg = portable::argument(ratio).to_degrees().abs();
-        // A ratio that is not a number is as large a difference as there is, and must not be passed over.
+        // A ratio that is not a number is as large a difference as there is, and must not be passed
+        // over.
         if magnitude_db > largest.magnitude_db || magnitude_db.is_nan() {
             (largest.magnitude_db, largest.magnitude_frequency) = (magnitude_db, frequency);
         }

@@ -7,7 +7,8 @@ use phea_dynamics::portable;
 pub struct ModeShare {
     /// The pole, of a pair the one with positive imaginary part, in rad/s.
     pub pole: Complex64,
-    /// Greatest amplitude of this mode in the step response over the final value: |residue/pole|, twice that for a pair.
+    /// Greatest amplitude of this mode in the step response over the final value: |residue/pole|,
+    /// twice that for a pair.
     pub step_share: f64,
     /// Decay rate of this mode over that of the slowest: how many times faster it is gone.
     pub decay_ratio: f64,
@@ -38,9 +39,9 @@ pub enum ShareAbsence {
 /// step_share_i = |r_i/(p_i G(0))|  (twice for a pair),      decay_ratio_i = Re p_i / max_k Re p_k
 /// ```
 ///
-/// A mode is dominant when its share is near one and the others' are near zero and their decay ratios are large. Shares of
-/// poles that coincide with another (to 1e-6), or of a system with a pole not left of the axis, do not exist and are not a
-/// number; `absence` says why.
+/// A mode is dominant when its share is near one and the others' are near zero and their decay
+/// ratios are large. Shares of poles that coincide with another (to 1e-6), or of a system with a
+/// pole not left of the axis, do not exist and are not a number; `absence` says why.
 ///
 /// # Example
 /// Over 1/((s + 1)(s + 100)) the slow pole carries 100/99 of the step and the fast one 1/99.
@@ -83,7 +84,8 @@ pub fn dominance(system: &TransferFunction) -> Vec<ModeShare> {
     modes
 }
 
-/// Distance relative to the pole within which two poles are one: numerical roots of a double pole lie that far apart.
+/// Distance relative to the pole within which two poles are one: numerical roots of a double pole
+/// lie that far apart.
 const COINCIDENCE: f64 = 1e-6;
 
 fn coincides(system: &TransferFunction, index: usize, pole: Complex64) -> bool {

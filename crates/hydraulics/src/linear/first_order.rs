@@ -16,7 +16,8 @@ pub fn first_order_model(parameters: &LinearParameters) -> Result<TransferFuncti
     TransferFunction::from_factors(factors.hydraulic_gain, Vec::new(), vec![factors.hydraulic_pole()])
 }
 
-/// Time constant tau_d in s of the first-order loop closed by a proportional controller of gain K_p in V/N.
+/// Time constant tau_d in s of the first-order loop closed by a proportional controller of gain K_p
+/// in V/N.
 ///
 /// ```text
 /// tau_d = A (K_H + K_S)/(K_H K_S (K_c/A + K_p K_qU))                  thesis (6.14), (6.15)
@@ -27,8 +28,8 @@ pub fn closed_loop_time_constant<S: Scalar>(parameters: &LinearParameters<S>, pr
     area / (parameters.equivalent_stiffness() * rate)
 }
 
-/// Steady-state gain K_SS of the loop closed by a proportional controller of gain K_p in V/N: below one, since leakage
-/// takes flow at any pressure.
+/// Steady-state gain K_SS of the loop closed by a proportional controller of gain K_p in V/N: below
+/// one, since leakage takes flow at any pressure.
 ///
 /// ```text
 /// K_SS = A K_p K_qU/(K_c + A K_p K_qU)                                 thesis (6.14), (6.15)
@@ -45,15 +46,16 @@ pub fn closed_loop_steady_state_gain<S: Scalar>(parameters: &LinearParameters<S>
 pub enum RequiredStiffness {
     /// This stiffness, in N/m.
     Stiffness(f64),
-    /// At this gain even a rigid transmission is slower than wanted: the gain must exceed `rigid_limit`.
+    /// At this gain even a rigid transmission is slower than wanted: the gain must exceed
+    /// `rigid_limit`.
     TooSlow {
         /// Gain at which the stiffness becomes infinite, in V/N.
         rigid_limit: f64,
     },
 }
 
-/// Hydraulic stiffness K_H for a wanted closed-loop time constant tau_d in s at a proportional gain K_p in V/N; the
-/// stiffness among the parameters is not used.
+/// Hydraulic stiffness K_H for a wanted closed-loop time constant tau_d in s at a proportional gain
+/// K_p in V/N; the stiffness among the parameters is not used.
 ///
 /// ```text
 /// K_H = K_S A^2/(K_S tau_d (K_c + A K_p K_qU) - A^2)                                              thesis (6.16)
@@ -101,7 +103,8 @@ pub fn proportional_gain<S: Scalar>(parameters: &LinearParameters<S>, time_const
     (needed - parameters.flow_pressure_coefficient / area) / parameters.flow_gain
 }
 
-/// Proportional gain in V/N at which (6.16) asks for an infinite stiffness: (6.27) with the sensor as the only spring.
+/// Proportional gain in V/N at which (6.16) asks for an infinite stiffness: (6.27) with the sensor
+/// as the only spring.
 ///
 /// ```text
 /// K_p = (A/(tau_d K_S) - K_c/A)/K_qU

@@ -14,7 +14,8 @@ pub(super) enum Kept {
     Force(f64),
 }
 
-/// What surplus flows in m3/s, the supply pressure in Pa, the spool in V and the force in N are measured by.
+/// What surplus flows in m3/s, the supply pressure in Pa, the spool in V and the force in N are
+/// measured by.
 const FLOW_SCALE: f64 = 1e-6;
 const PRESSURE_SCALE: f64 = 1e5;
 const FORCE_SCALE: f64 = 10.0;
@@ -26,8 +27,8 @@ const STEPS: usize = 60;
 type Unknowns = Vector4<f64>;
 
 impl Machine {
-    /// The state with those pressures, and that spool position, at which nothing flows that the piston does not take: by damped
-    /// Newton steps from where it is.
+    /// The state with those pressures, and that spool position, at which nothing flows that the
+    /// piston does not take: by damped Newton steps from where it is.
     ///
     /// ```text
     /// q_A(U, p_A + R_A Q_A, p_S) = Q_A = A_A v + q_i        q_B(...) = Q_B = -A_B v - q_i
@@ -94,7 +95,8 @@ impl Machine {
         (rows.map(|row| row.value()).into(), slopes)
     }
 
-    /// What the chambers take in steady motion, in m3/s: the piston's displacement and the leakage across it.
+    /// What the chambers take in steady motion, in m3/s: the piston's displacement and the leakage
+    /// across it.
     pub(super) fn steady_flows<T: Scalar + From<f64>>(&self, state: &MachineState<T>) -> [T; 2] {
         let leakage = self.leakage(state);
         [

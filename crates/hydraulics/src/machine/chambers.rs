@@ -5,8 +5,9 @@ use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
 use crate::line::{Line, Member};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance, compliance_at};
 
-/// Absolute pressure in Pa below which the modulus of fluid with air is that at this pressure. Far below any vapour pressure
-/// that is reported, it only keeps a trial step of an integrator a number.
+/// Absolute pressure in Pa below which the modulus of fluid with air is that at this pressure. Far
+/// below any vapour pressure that is reported, it only keeps a trial step of an integrator a
+/// number.
 const LEAST_ABSOLUTE_PRESSURE: f64 = 1.0;
 
 /// Compliance of both chambers with their lines as the machine moves.
@@ -24,8 +25,8 @@ pub enum Chambers<S = f64> {
 /// C_A(x, p) = (V_A + A_A x)/beta(p) + W_A + w_A x              and likewise C_B with L - x
 /// ```
 ///
-/// V holds fluid whose modulus is that of the mixture, W is what walls and stated moduli give. Units: Pa, 1, m, m3, m2, m3/Pa,
-/// m2/Pa.
+/// V holds fluid whose modulus is that of the mixture, W is what walls and stated moduli give.
+/// Units: Pa, 1, m, m3, m2, m3/Pa, m2/Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AeratedChambers<S = f64> {
     pub(super) bulk_modulus: S,
@@ -51,8 +52,8 @@ impl Chambers {
         Chambers::of(actuator.components(), member)
     }
 
-    /// The chambers with the compliance in m3/Pa that lines with dynamics of their own add to each; in the model `uniform` they
-    /// keep the modulus of their line.
+    /// The chambers with the compliance in m3/Pa that lines with dynamics of their own add to each;
+    /// in the model `uniform` they keep the modulus of their line.
     pub fn behind_lines(actuator: &Actuator, member: Member, [added_a, added_b]: [f64; 2]) -> Chambers {
         let components = *actuator.components();
         let [line_a, line_b] = [components.line_a, components.line_b].map(without_volume);

@@ -213,7 +213,8 @@ impl<S: Scalar> Machine<S> {
         self.layout.write(&state_rates, rates);
     }
 
-    /// Flows that leave the lines into the chambers, in m3/s; writes the rates of the lines' states.
+    /// Flows that leave the lines into the chambers, in m3/s; writes the rates of the lines'
+    /// states.
     #[inline(never)]
     fn through_lines<T: Scalar + From<S>>(
         &self,

@@ -7,11 +7,13 @@ use super::Machine;
 use super::equations::constant;
 use instant::Instant;
 
-/// Names of the accounts of oil, in the order of [`Ledger::oil`]. What a machine does not have is zero.
+/// Names of the accounts of oil, in the order of [`Ledger::oil`]. What a machine does not have is
+/// zero.
 pub const OIL_ACCOUNTS: [&str; 7] =
     ["chamber_a", "chamber_b", "line_a", "line_b", "supply", "accumulator", "rig"];
 
-/// Names of the accounts of energy, in the order of [`Ledger::energy`]. What a machine does not have is zero.
+/// Names of the accounts of energy, in the order of [`Ledger::energy`]. What a machine does not
+/// have is zero.
 pub const ENERGY_ACCOUNTS: [&str; 14] = [
     "chamber_a",
     "chamber_b",
@@ -35,14 +37,17 @@ pub const ENERGY_ACCOUNTS: [&str; 14] = [
 /// d(stored)/dt = inflow - lost
 /// ```
 ///
-/// Each of the three has its own formula, so that the sum over time is a check and not a definition.
+/// Each of the three has its own formula, so that the sum over time is a check and not a
+/// definition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Account<T> {
-    /// What the component holds: J, or m3 of oil, which is counted at zero gauge pressure but for the volumes of lines and gas.
+    /// What the component holds: J, or m3 of oil, which is counted at zero gauge pressure but for
+    /// the volumes of lines and gas.
     pub stored: T,
     /// What enters through its ports, in W or m3/s.
     pub inflow: T,
-    /// What it turns into heat, in W; of oil, what an equation in volumes does not hand on, in m3/s.
+    /// What it turns into heat, in W; of oil, what an equation in volumes does not hand on, in
+    /// m3/s.
     pub lost: T,
 }
 
@@ -65,7 +70,8 @@ fn total<T: Scalar>(accounts: &[Account<T>], of: fn(&Account<T>) -> T) -> T {
 }
 
 impl<S: Scalar> Machine<S> {
-    /// The accounts of oil and energy; `None` where waves travel along a line: what is under way is no part of states and inputs.
+    /// The accounts of oil and energy; `None` where waves travel along a line: what is under way is
+    /// no part of states and inputs.
     ///
     /// ```text
     ///               oil                        energy
@@ -74,15 +80,18 @@ impl<S: Scalar> Machine<S> {
     /// accumulator   V_0 - V_gas                gas at gauge pressure        enters as q and q p
     /// ```
     ///
-    /// rho is the density over that at zero gauge pressure and w the energy of compression per volume: exp(p/beta) and
-    /// beta (exp(p/beta) - 1 - p/beta) with a constant modulus; with entrained air integrals over the pressure, of which rho alone has a
-    /// closed form, and which are taken by a fixed rule of Gauss and Legendre. Without air a side's volume is its compliance times
-    /// the modulus of its chamber, so that a hose counts as the oil that would yield as much; with air it is the fluid's own, and
-    /// the oil that yielding walls take is added.
+    /// rho is the density over that at zero gauge pressure and w the energy of compression per
+    /// volume: exp(p/beta) and beta (exp(p/beta) - 1 - p/beta) with a constant modulus; with
+    /// entrained air integrals over the pressure, of which rho alone has a closed form, and which
+    /// are taken by a fixed rule of Gauss and Legendre. Without air a side's volume is its
+    /// compliance times the modulus of its chamber, so that a hose counts as the oil that would
+    /// yield as much; with air it is the fluid's own, and the oil that yielding walls take is
+    /// added.
     ///
-    /// Edges, lines and gas hand on volumes: what such an element takes at one density and gives at another is lost to the rig's account
-    /// of oil, q times the difference of both densities, at most p_S/beta of the flow where no air is. A supply that is constant holds
-    /// nothing, at the density of side A.
+    /// Edges, lines and gas hand on volumes: what such an element takes at one density and gives at
+    /// another is lost to the rig's account of oil, q times the difference of both densities, at
+    /// most p_S/beta of the flow where no air is. A supply that is constant holds nothing, at the
+    /// density of side A.
     pub fn ledger<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> Option<Ledger<T>> {
         let instant = self.instant(state, inputs)?;
         Some(Ledger { oil: self.oil(&instant), energy: self.energy(&instant) })
@@ -149,7 +158,8 @@ impl<S: Scalar> Machine<S> {
             end_stops,
             load,
         ];
-        // Only what crosses the rig's border: flow work and compression energy of the oil, the work of the force from outside, and that on the ground.
+        // Only what crosses the rig's border: flow work and compression energy of the oil, the work
+        // of the force from outside, and that on the ground.
         let carried = side_a.compression() * into_a
             + side_b.compression() * into_b
             + supply.line.compression() * supply.line_flow();

@@ -5,7 +5,8 @@ use crate::parameter::{ParameterError, Problems};
 
 /// What the force sensor pushes on. Units: kg, N/m, N s/m, m.
 ///
-/// Each has a ground, whose position x_0 in m and velocity v_0 in m/s are the two inputs of the machine.
+/// Each has a ground, whose position x_0 in m and velocity v_0 in m/s are the two inputs of the
+/// machine.
 ///
 /// ```text
 /// prescribed motion      x_L = x_0                                           thesis (4.45): the load does not yield
@@ -13,10 +14,12 @@ use crate::parameter::{ParameterError, Problems};
 /// wall                   m dv_L/dt = F_e + F_x - F_wall - c (v_L - v_0)            F_wall(d = x_L - x_0 - gap), see Contact
 /// ```
 ///
-/// F_x is a force from outside in N, positive in the direction of positive position; a machine that has it takes it as an input.
+/// F_x is a force from outside in N, positive in the direction of positive position; a machine that
+/// has it takes it as an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum LoadModel<S = f64> {
-    /// The load moves as its ground does. The sensor's stiffness is that in series with the environment.
+    /// The load moves as its ground does. The sensor's stiffness is that in series with the
+    /// environment.
     #[default]
     Prescribed,
     /// A mass on a spring. The sensor's stiffness is that of the load cell alone.
@@ -105,7 +108,8 @@ impl<S: Copy> LoadModel<S> {
 }
 
 impl<S: Scalar> LoadModel<S> {
-    /// The load's acceleration in m/s2 under the forces of sensor and outside together in N; zero for a prescribed motion, which yields to none.
+    /// The load's acceleration in m/s2 under the forces of sensor and outside together in N; zero
+    /// for a prescribed motion, which yields to none.
     #[inline(always)]
     pub fn acceleration(&self, pushing: S, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> S {
         let relative = relative(load, ground);
@@ -121,7 +125,8 @@ impl<S: Scalar> LoadModel<S> {
         }
     }
 
-    /// Energy in J that the load holds, what its ground takes from it in W, and what it turns into heat in W.
+    /// Energy in J that the load holds, what its ground takes from it in W, and what it turns into
+    /// heat in W.
     pub(super) fn powers(&self, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> [S; 3] {
         let (zero, half) = (S::from(0.0), S::from(0.5));
         let relative = relative(load, ground);

@@ -3,30 +3,37 @@ use crate::line::{DynamicLine, Member};
 use crate::parameter::{ParameterError, Problems};
 use crate::servovalve::SpoolImperfection;
 
-/// Absolute vapour pressure of mineral oil in Pa: a few pascals at working temperatures, nothing beside an atmosphere.
+/// Absolute vapour pressure of mineral oil in Pa: a few pascals at working temperatures, negligible
+/// against an atmosphere.
 pub const VAPOUR_PRESSURE_ABSOLUTE: f64 = 0.0;
 
-/// What a machine has beyond its actuator. The default adds nothing: a prescribed load on a constant supply.
+/// What a machine has beyond its actuator. The default adds nothing: a prescribed load on a
+/// constant supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
     /// Null bias, hysteresis, threshold and rate limit of the spool.
     pub spool: SpoolImperfection,
-    /// Drop p_S - p_T in Pa at which the valve's tare flow is stated; absent, that of the actuator's own supply.
+    /// Drop p_S - p_T in Pa at which the valve's tare flow is stated; absent, that of the
+    /// actuator's own supply.
     pub tare_reference_drop: Option<f64>,
-    /// Velocity in m/s that smooths the jump of a static friction curve; needed for such a curve alone.
+    /// Velocity in m/s that smooths the jump of a static friction curve; needed for such a curve
+    /// alone.
     pub friction_regular_velocity: Option<f64>,
     /// Where the supply pressure comes from.
     pub power_unit: PowerUnit,
     /// What the force sensor pushes on.
     pub load: LoadModel,
-    /// Whether a force from outside acts on the load, as an input of the machine; it needs a load that has a mass.
+    /// Whether a force from outside acts on the load, as an input of the machine; it needs a load
+    /// that has a mass.
     pub external_force: bool,
-    /// Pressure in Pa absolute below which a chamber is reported to cavitate. Fluid with entrained air expands before it boils
-    /// and comes to no vacuum: for it, state the pressure at which dissolved air comes out.
+    /// Pressure in Pa absolute below which a chamber is reported to cavitate. Fluid with entrained
+    /// air expands before it boils and comes to no vacuum: for it, state the pressure at which
+    /// dissolved air comes out.
     pub vapour_pressure_absolute: f64,
     /// Which member of the hoses' stiffening interval.
     pub member: Member,
-    /// Lines between valve and chambers with dynamics of their own, A first; absent, one pressure for a chamber with its line.
+    /// Lines between valve and chambers with dynamics of their own, A first; absent, one pressure
+    /// for a chamber with its line.
     pub lines: Option<[DynamicLine; 2]>,
 }
 
@@ -75,13 +82,15 @@ pub enum MachineError {
         /// All of them.
         problems: Vec<ParameterError>,
     },
-    /// A static friction curve has a jump, which no integrator can hold; it needs a velocity that smooths it, or bristles.
+    /// A static friction curve has a jump, which no integrator can hold; it needs a velocity that
+    /// smooths it, or bristles.
     #[error("static Stribeck friction jumps at standstill: state a regular velocity, or use LuGre friction")]
     StaticFriction,
     /// A force from outside on a load whose motion is prescribed: it would move nothing.
     #[error("a force from outside moves no load whose motion is prescribed: it needs one with a mass")]
     UnyieldingLoad,
-    /// Pressed into its end stop by the whole supply pressure, the piston would leave no fluid in the chamber.
+    /// Pressed into its end stop by the whole supply pressure, the piston would leave no fluid in
+    /// the chamber.
     #[error("pressed {penetration} m into its end stop, the piston leaves no fluid ({compliance} m3/Pa)")]
     ChamberVanishes {
         /// How far into the stop, in m.

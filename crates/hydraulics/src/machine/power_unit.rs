@@ -12,8 +12,9 @@ use crate::parameter::{ParameterError, Problems};
 ///                 C_S = V/beta + C_acc,    C_acc = (V_0/(n P)) (P_0/P)^(1/n) above the precharge, 0 below
 /// ```
 ///
-/// P and P_0 are absolute. The relief valve opens at the stated supply pressure less the override dp_o, so that an idle pump
-/// holds the stated pressure; its own motion is faster than the volume behind it and left out.
+/// P and P_0 are absolute. The relief valve opens at the stated supply pressure less the override
+/// dp_o, so that an idle pump holds the stated pressure; its own motion is faster than that of the
+/// volume after it and neglected.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PowerUnit<S = f64> {
     /// A pressure that nothing moves.
@@ -23,12 +24,14 @@ pub enum PowerUnit<S = f64> {
     PumpLimited(PumpLimited<S>),
 }
 
-/// A pump of fixed flow, a relief valve and what lies between them and the servovalve. Units: m3/s, Pa, m3.
+/// A pump of fixed flow, a relief valve and what lies between them and the servovalve. Units: m3/s,
+/// Pa, m3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PumpLimited<S = f64> {
     /// Flow of the pump in m3/s.
     pub pump_flow: S,
-    /// Rise of pressure dp_o in Pa over which the relief valve opens from nothing to the pump's whole flow.
+    /// Rise of pressure dp_o in Pa over which the relief valve opens from nothing to the pump's
+    /// whole flow.
     pub relief_override: S,
     /// Volume V of the supply line in m3.
     pub volume: S,
@@ -99,7 +102,8 @@ impl<S: Copy> PowerUnit<S> {
 }
 
 impl<S: Scalar> PumpLimited<S> {
-    /// Flow of the relief valve in m3/s at a supply pressure in Pa, where `stated` in Pa is held by the idle pump.
+    /// Flow of the relief valve in m3/s at a supply pressure in Pa, where `stated` in Pa is held by
+    /// the idle pump.
     ///
     /// # Example
     /// ```
@@ -133,7 +137,8 @@ impl<S: Scalar> PumpLimited<S> {
 }
 
 impl<S: Scalar> Accumulator<S> {
-    /// Compliance of the gas in m3/Pa at a pressure in Pa gauge; zero below the precharge, where the bladder fills the shell.
+    /// Compliance of the gas in m3/Pa at a pressure in Pa gauge; zero below the precharge, where
+    /// the bladder fills the shell.
     fn compliance(&self, pressure: S) -> S {
         let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let precharge = self.precharge_pressure + atmosphere;
@@ -194,8 +199,8 @@ mod tests {
         Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_exponent }
     }
 
-    /// Its oil grows by its compliance and its energy by the pressure times that, below the precharge not at all; either side of
-    /// where the quotient turns into its series.
+    /// Its oil grows by its compliance and its energy by the pressure times that, below the
+    /// precharge not at all; either side of where the quotient turns into its series.
     #[test]
     fn gas_takes_what_flows_in() {
         for index in [1.0, 1.0 + 1e-9, 1.02, 1.03, 1.4] {

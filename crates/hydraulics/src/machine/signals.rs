@@ -26,12 +26,12 @@ pub const SIGNALS: [&str; 19] = [
     "opening_v",
 ];
 
-/// Names of the state events of a machine, in the order of its indicators. Each indicator is positive in ordinary operation and
-/// negative while the event lasts.
+/// Names of the state events of a machine, in the order of its indicators. Each indicator is
+/// positive in ordinary operation and negative while the event lasts.
 ///
-/// `cavitation`: the chamber's pressure less vapour pressure in Pa. `end_stop`: the way left to that end in m. `empty`: the
-/// chamber's compliance in m3/Pa, which vanishes with its volume. `load_contact`: the way left to the wall in m.
-/// `supply_lost`: supply less tank pressure in Pa.
+/// `cavitation`: the chamber's pressure less vapour pressure in Pa. `end_stop`: the way left to
+/// that end in m. `empty`: the chamber's compliance in m3/Pa, which vanishes with its volume.
+/// `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank pressure in Pa.
 pub const INDICATORS: [&str; 8] = [
     "cavitation_a",
     "cavitation_b",
@@ -44,11 +44,13 @@ pub const INDICATORS: [&str; 8] = [
 ];
 
 impl<S: Scalar> Machine<S> {
-    /// The [`SIGNALS`] at a state and inputs. `spool_v` is the spool's position U, `opening_v` what the edges are opened by,
-    /// y = U - U_0 - z, less null bias and magnetic lag ([`crate::servovalve::SpoolImperfection`]); flows are those of the valve's
-    /// ports A and B into the lines. `port_pressure` is that of a line's end at the valve, `pressure` that of its end at the
-    /// chamber, which is the chamber's. `force_n` is what the rod pushes on the load with,
-    /// `hydraulic_force_n` what the chambers push the piston with; between them lie its friction, end stops and acceleration:
+    /// The [`SIGNALS`] at a state and inputs. `spool_v` is the spool's position U, `opening_v` what
+    /// the edges are opened by, y = U - U_0 - z, less null bias and magnetic lag
+    /// ([`crate::servovalve::SpoolImperfection`]); flows are those of the valve's ports A and B
+    /// into the lines. `port_pressure` is that of a line's end at the valve, `pressure` that of its
+    /// end at the chamber, which is the chamber's. `force_n` is what the rod pushes on the load
+    /// with, `hydraulic_force_n` what the chambers push the piston with; between them lie its
+    /// friction, end stops and acceleration:
     ///
     /// ```text
     /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end but F_fr      thesis (4.29)

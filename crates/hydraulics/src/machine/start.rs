@@ -6,7 +6,8 @@ use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
 use crate::operating_point::OperatingPoint;
 
-/// Values that a run starts from; what is not stated is zero, the supply's pressure as its power unit holds it.
+/// Values that a run starts from; what is not stated is zero, the supply's pressure as its power
+/// unit holds it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
     /// Piston position x in m.
@@ -32,7 +33,8 @@ pub struct Beginning {
     pub command: f64,
     /// Position in m and velocity in m/s of the load's ground: where a prescribed motion starts.
     pub inputs: [f64; 2],
-    /// The force on the load from outside in N, zero until then; `None` for a machine without that input.
+    /// The force on the load from outside in N, zero until then; `None` for a machine without that
+    /// input.
     pub external_force: Option<f64>,
     /// The waves that arrive from the lines until then, in Pa, as the machine's last inputs.
     pub waves: Vec<f64>,
@@ -51,11 +53,13 @@ const REST_TOLERANCE: f64 = 1e-4;
 const ROUNDED_FORCE: f64 = 1e-6;
 
 impl Machine {
-    /// The machine at stated values. Its load's ground lies where the stated force is held: at a spring's relaxed end, at a wall
-    /// that the load touches with this force, or at a wall its gap away where the force is zero.
+    /// The machine at stated values. Its load's ground lies where the stated force is held: at a
+    /// spring's relaxed end, at a wall that the load touches with this force, or at a wall its gap
+    /// away where the force is zero.
     ///
     /// # Errors
-    /// A position outside the stroke, a pressure below vacuum, a value that is not finite, a pull on a wall.
+    /// A position outside the stroke, a pressure below vacuum, a value that is not finite, a pull
+    /// on a wall.
     ///
     /// # Example
     /// ```
@@ -82,10 +86,12 @@ impl Machine {
         Ok(self.begin(&state, ground))
     }
 
-    /// The machine at rest, or in steady motion with its load, at an operating point of its actuator: its command is kept.
+    /// The machine at rest, or in steady motion with its load, at an operating point of its
+    /// actuator: its command is kept.
     ///
-    /// What the operating point leaves out (leakage across the piston, a pump that yields, lines that resist) moves the pressures
-    /// to where all flows balance, and the force is what they hold.
+    /// What the operating point leaves out (leakage across the piston, a pump that yields, lines
+    /// that resist) moves the pressures to where all flows balance, and the force is what they
+    /// hold.
     ///
     /// # Errors
     /// As [`Machine::start`]; no balance near the operating point.
@@ -93,7 +99,8 @@ impl Machine {
         self.settled(point, Kept::Spool)
     }
 
-    /// As [`Machine::rest`], but it is the force of the pressures that is kept, and the command that moves to where it is held.
+    /// As [`Machine::rest`], but it is the force of the pressures that is kept, and the command
+    /// that moves to where it is held.
     ///
     /// # Errors
     /// As [`Machine::rest`].
@@ -101,8 +108,8 @@ impl Machine {
         self.settled(point, Kept::Force(point.hydraulic_force))
     }
 
-    /// Places of the states that stand still at any value while all others do: memories of friction and magnetisation. At zero they
-    /// carry no force.
+    /// Places of the states that stand still at any value while all others do: memories of friction
+    /// and magnetisation. At zero they carry no force.
     ///
     /// # Example
     /// ```
@@ -143,7 +150,8 @@ impl Machine {
         if residual <= REST_TOLERANCE { Ok(beginning) } else { Err(MachineError::NoRest { residual }) }
     }
 
-    /// The state with its load held by this force in N at this piston position in m, and where its ground is.
+    /// The state with its load held by this force in N at this piston position in m, and where its
+    /// ground is.
     fn held(
         &self,
         state: &MachineState,

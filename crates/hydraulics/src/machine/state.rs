@@ -4,10 +4,12 @@ use phea_dynamics::simulation::Sliding;
 use super::{LoadMotion, Machine};
 use crate::servovalve::SpoolState;
 
-/// States of a machine, or their rates, by name. What a machine does not have is zero and takes no place in its vector.
+/// States of a machine, or their rates, by name. What a machine does not have is zero and takes no
+/// place in its vector.
 ///
-/// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection, velocity, and then what there
-/// is of bristles, load, supply, spool friction, magnetic lag. The states of lines, which have no names, follow.
+/// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection,
+/// velocity, and then what there is of bristles, load, supply, spool friction, magnetic lag. The
+/// states of lines, which have no names, follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineState<T = f64> {
     /// Position of the spool in V and what moves it; its two memories stand last in the vector.
@@ -22,8 +24,9 @@ pub struct MachineState<T = f64> {
     pub velocity: T,
     /// Deflection z of the bristles in m.
     pub bristle: T,
-    /// A load that moves by itself: its position from its ground, x_L - x_0, in m, and its velocity v_L in m/s. Errors are measured by
-    /// what moves its spring or its wall, not by how far it stands from the cylinder's end.
+    /// A load that moves by itself: its position from its ground, x_L - x_0, in m, and its velocity
+    /// v_L in m/s. Errors are measured by what moves its spring or its wall, not by how far it
+    /// stands from the cylinder's end.
     pub load: LoadMotion<T>,
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,
@@ -94,7 +97,8 @@ impl Layout {
         self.named + a + b
     }
 
-    /// Where friction acts: on the velocity, the sixth of the states that all machines have, and on the bristles behind it.
+    /// Where friction acts: on the velocity, the sixth of the states that all machines have, and on
+    /// the bristle deflection after it.
     pub(super) fn sliding(&self) -> Sliding {
         Sliding { velocity: 5, memory: self.bristle.then_some(6) }
     }
@@ -112,7 +116,7 @@ impl Layout {
         GROUND_INPUTS + usize::from(self.external_force)
     }
 
-    /// The force from outside in N, an input; `None` where there is none.
+    /// The external force in N, an input; `None` if the machine does not have this input.
     #[inline(always)]
     pub(super) fn external_force<T: Scalar>(&self, inputs: &[T]) -> Option<T> {
         let missing = T::from(f64::NAN);
@@ -125,7 +129,8 @@ impl Layout {
         self.lines != [0, 0]
     }
 
-    /// Places of the states that remember, and stand still wherever all else does: bristles and the friction and lag of the spool.
+    /// Places of the states that remember, and stand still wherever all else does: bristles and the
+    /// friction and lag of the spool.
     pub(super) fn memories(&self) -> Vec<usize> {
         let mut state = MachineState::<f64>::zero();
         (state.bristle, state.spool.spool_friction, state.spool.magnetic_lag) = (1.0, 1.0, 1.0);
@@ -214,7 +219,8 @@ impl Layout {
     }
 }
 
-/// Two parts of these lengths behind the first entries; nothing where there is not so much.
+/// Two consecutive slices of these lengths after the first entries; empty where the vector is too
+/// short.
 #[inline(always)]
 fn two_parts<T>(vector: &[T], behind: usize, [first, second]: [usize; 2]) -> [&[T]; 2] {
     let rest = vector.get(behind..).unwrap_or_default();
@@ -225,7 +231,8 @@ fn two_parts<T>(vector: &[T], behind: usize, [first, second]: [usize; 2]) -> [&[
 }
 
 impl Machine {
-    /// Names of all states with their units, in the order of the vector; those of a line are counted.
+    /// Names of all states with their units, in the order of the vector; those of a line are
+    /// counted.
     ///
     /// # Example
     /// ```
@@ -265,7 +272,8 @@ const NAMES: MachineState<&str> = MachineState {
 };
 
 impl<S: Scalar> Machine<S> {
-    /// A tenth of what the supply can push with, in N: the magnitude from which those of the states follow.
+    /// A tenth of what the supply can push with, in N: the magnitude from which those of the states
+    /// follow.
     pub(super) fn typical_force(&self) -> S {
         self.typical_pressure() * (self.cylinder.area_a + self.cylinder.area_b) / S::from(2.0)
     }
@@ -279,7 +287,8 @@ impl<S: Scalar> Machine<S> {
         self.valve.nominal_voltage / S::from(10.0)
     }
 
-    /// Typical magnitudes of the states, by which errors are measured: what the typical force and command make of each.
+    /// Typical magnitudes of the states, by which errors are measured: what the typical force and
+    /// command make of each.
     fn typical_state(&self) -> MachineState<S> {
         let (command, pressure, force) =
             (self.typical_command(), self.typical_pressure(), self.typical_force());

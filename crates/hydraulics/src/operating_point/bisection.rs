@@ -1,4 +1,5 @@
-/// Root of a falling function, sought outwards from a first bracket; `None` if it never changes sign or is not a number.
+/// Root of a falling function, sought outwards from a first bracket; `None` if it never changes
+/// sign or is not a number.
 pub(super) fn falling_root(function: impl Fn(f64) -> f64, lower: f64, upper: f64) -> Option<f64> {
     let width = upper - lower;
     let (mut lower, mut upper) = (lower, upper);
@@ -18,7 +19,8 @@ pub(super) fn falling_root(function: impl Fn(f64) -> f64, lower: f64, upper: f64
     None
 }
 
-/// Root of a falling function between two points where it is not negative and not positive, to the last bit.
+/// Root of a falling function between two points where it is not negative and not positive, to the
+/// last bit.
 pub(super) fn falling_root_within(
     function: impl Fn(f64) -> f64,
     mut lower: f64,
@@ -30,7 +32,8 @@ pub(super) fn falling_root_within(
     if function(upper) == 0.0 {
         return Some(upper);
     }
-    // Halving any interval of finite numbers ends within some two thousand steps, at neighbouring numbers.
+    // Halving any interval of finite numbers ends within some two thousand steps, at neighbouring
+    // numbers.
     loop {
         let middle = 0.5 * (lower + upper);
         let value = function(middle);

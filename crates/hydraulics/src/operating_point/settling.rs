@@ -1,8 +1,10 @@
-//! The balance of an operating point over any scalar: recorded, it is right over a whole box of parameters.
+//! The balance of an operating point over any scalar: recorded, it is right over a whole box of
+//! parameters.
 //!
-//! A `Scalar` never branches on a value, so nothing here stops early. Closed forms of plain square roots bracket the unknown,
-//! halvings of the bracket come near it from anywhere, and a fixed number of Newton steps on the regular equations of
-//! [`crate::servovalve`] does the rest; [`Balance::error`] measures what is left.
+//! A `Scalar` never branches on a value, so nothing here stops early. Closed forms of plain square
+//! roots bracket the unknown, halvings of the bracket come near it from anywhere, and a fixed
+//! number of Newton steps on the regular equations of [`crate::servovalve`] does the rest;
+//! [`Balance::error`] measures what is left.
 
 use phea_dynamics::scalar::Scalar;
 
@@ -16,7 +18,8 @@ use crate::servovalve::{
 pub enum Steady<S = f64> {
     /// Standstill at this spool command in V.
     Command(S),
-    /// Steady motion at a velocity in m/s under a load; the command that keeps it is found. Zero velocity is standstill.
+    /// Steady motion at a velocity in m/s under a load; the command that keeps it is found. Zero
+    /// velocity is standstill.
     Moving {
         /// Velocity v in m/s.
         velocity: S,
@@ -36,7 +39,8 @@ pub struct Settled<S = f64> {
     pub pressures: [S; 2],
 }
 
-/// Halvings of the spool's travel: to 4e-6 of it, where the leakage of the edges takes a hundredth to fall.
+/// Halvings of the spool's travel: to 4e-6 of it, where the leakage of the edges takes a hundredth
+/// to fall.
 const HALVINGS_OF_TRAVEL: usize = 18;
 /// Halvings of the load pressure that leakage across the piston leaves.
 const HALVINGS_OF_LEAKAGE: usize = 12;
@@ -170,7 +174,8 @@ impl<S: Scalar> Balance<S> {
         ]
     }
 
-    /// Both pressures by plain square roots, the leakage across the piston being that of a stated load pressure.
+    /// Both pressures by plain square roots, the leakage across the piston being that of a stated
+    /// load pressure.
     fn near(&self, [edges_a, edges_b]: &[[S; 2]; 2], velocity: S, load_pressure: S) -> [S; 2] {
         let across = self.leakage.map_or(S::from(0.0), |leakage| leakage * load_pressure);
         let [area_a, area_b] = self.areas;
@@ -180,7 +185,8 @@ impl<S: Scalar> Balance<S> {
         ]
     }
 
-    /// The pressure between an edge from supply and one to tank, of conductances a and b, that gives the flow Q into the chamber.
+    /// The pressure between an edge from supply and one to tank, of conductances a and b, that
+    /// gives the flow Q into the chamber.
     ///
     /// ```text
     /// a s(p_S - p) - b s(p - p_T) = Q,      s(d) = sign(d) sqrt|d|,      D = p_S - p_T
@@ -204,7 +210,8 @@ impl<S: Scalar> Balance<S> {
         S::select(is_above, self.supply.tank_pressure + above.squared(), not_above)
     }
 
-    /// What flows into each chamber beyond what the piston and the leakage across it take, and the leakage's conductance.
+    /// What flows into each chamber beyond what the piston and the leakage across it take, and the
+    /// leakage's conductance.
     fn surplus(&self, command: S, velocity: S, [pressure_a, pressure_b]: [S; 2]) -> ([S; 2], S) {
         let ChamberFlows { into_a, into_b } =
             chamber_flows(&self.valve, &self.supply, command, pressure_a, pressure_b);
@@ -247,8 +254,9 @@ impl<S: Scalar> Balance<S> {
 }
 
 impl Balance {
-    /// How far a settled point is from balance: one more Newton step, relative to the nominal voltage and to the supply's drop; NaN where
-    /// there is no balance. Where the balance is unique a small step is a small error, see [`Balance::is_unique`].
+    /// How far a settled point is from balance: one more Newton step, relative to the nominal
+    /// voltage and to the supply's drop; NaN where there is no balance. Where the balance is unique
+    /// a small step is a small error, see [`Balance::is_unique`].
     pub fn error(&self, steady: Steady, settled: &Settled) -> f64 {
         let drop = self.supply.pressure - self.supply.tank_pressure;
         let steps = match steady {
@@ -267,8 +275,9 @@ impl Balance {
 }
 
 impl Balance {
-    /// Whether the pressures are unique whatever is known: so they are without leakage across the piston, with equal areas, at a stated
-    /// command, and under a stated load pressure. Under a force, leakage across unequal areas may leave several.
+    /// Whether the pressures are unique whatever is known: so they are without leakage across the
+    /// piston, with equal areas, at a stated command, and under a stated load pressure. Under a
+    /// force, leakage across unequal areas may leave several.
     ///
     /// ```text
     /// dF/dU ~ A_A K_qA K_cB + A_B K_qB K_cA + G (A_A - A_B) (K_qA - K_qB)              may change its sign with much leakage
@@ -287,7 +296,7 @@ impl<S: Scalar> Hold<S> {
     }
 }
 
-/// Where a falling function crosses zero between two ends, after so many halvings of what is between them.
+/// Zero of a falling function between two ends, by bisection with this number of halvings.
 fn halved<S: Scalar>([mut low, mut high]: [S; 2], halvings: usize, falls: impl Fn(S) -> S) -> S {
     for _ in 0..halvings {
         let middle = S::from(0.5) * (low + high);

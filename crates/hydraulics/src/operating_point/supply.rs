@@ -21,15 +21,16 @@ pub struct SettledSupply<S = f64> {
 const ROUNDS: usize = 6;
 
 impl<S: Scalar> Balance<S> {
-    /// Where a limited pump settles, this balance having the pressure that it holds when idle; `tare_drop` in Pa is that at which the tare
-    /// flow is stated.
+    /// Where a limited pump settles, this balance having the pressure that it holds when idle;
+    /// `tare_drop` in Pa is that at which the tare flow is stated.
     ///
     /// ```text
     /// p_S = p_idle - dp_o q_S(p_S)/q_pump         down to p_idle - dp_o, where the relief valve is shut
     /// ```
     ///
-    /// Where the valve takes more than the pump gives, the pressure is told at which the relief valve shuts: what is missing comes from
-    /// the volume and the accumulator, so that this is no rest, and the pressure falls.
+    /// Where the valve draws more than the pump delivers, the result is the pressure at which the
+    /// relief valve closes: the rest of the flow comes from the volume and the accumulator, so that
+    /// this is not an equilibrium, and the pressure falls.
     ///
     /// # Example
     /// At null a pump of 10 L/min gives what leaks and the tare flow, 0.92 L/min in all.

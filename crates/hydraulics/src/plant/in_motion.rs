@@ -7,7 +7,8 @@ use super::supply::{Coupled, Over};
 use super::{Chamber, Chambers, LinearLoad, LinearPlant, YieldingSupply};
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
-/// The plant with lines that have dynamics of their own: what no quotient of polynomials is, but a response at every frequency.
+/// The plant with lines that have dynamics of their own: what no quotient of polynomials is, but a
+/// response at every frequency.
 ///
 /// ```text
 /// q_valve = K_q U_sp - K_c p_port                                              valve
@@ -16,8 +17,8 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 /// so each chamber of LinearPlant has   K_q/(d + K_c b)   for K_q   and   C s + (c + K_c a)/(d + K_c b)   for C s + K_c
 /// ```
 ///
-/// At every frequency it is the machine with these lines, for small motions. Where a stated number makes a chamber of the plant
-/// stiffer than its parts are, chamber and line are stiffened alike.
+/// At every frequency it is the machine with these lines, for small motions. Where a stated number
+/// makes a chamber of the plant stiffer than its parts are, chamber and line are stiffened alike.
 ///
 /// # Example
 /// Slow motion sees no waves.
@@ -63,7 +64,7 @@ pub struct BehindLines {
     pub lumped: [f64; 2],
 }
 
-/// A chamber behind its line.
+/// A chamber with its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Side {
     area: f64,
@@ -74,8 +75,8 @@ struct Side {
     line: DynamicLine,
 }
 
-/// A chamber with its line at s, everything times what the line passes: `passed` is d + K_c b, by which the valve's flow is less at the
-/// chamber than at a port held still.
+/// A chamber with its line at s, everything times what the line passes: `passed` is d + K_c b, by
+/// which the valve's flow is less at the chamber than at a port held still.
 struct AtChamber<A> {
     /// Flow per pascal at the chamber, times `passed`.
     admittance: A,
@@ -84,7 +85,8 @@ struct AtChamber<A> {
     impedance: A,
 }
 
-/// F_e (sensed - fed) = command U_C + ground X_0, `fed` being what the velocity of a load that yields feeds back.
+/// F_e (sensed - fed) = command U_C + ground X_0, `fed` being what the velocity of a load that
+/// yields feeds back.
 struct Paths<A> {
     command: A,
     ground: A,
@@ -107,8 +109,8 @@ impl PlantInMotion {
         PlantInMotion { lateness, ..self }
     }
 
-    /// The plant with its lumped lines as they are: for a load velocity that is fed forward late, of which there is no quotient of
-    /// polynomials.
+    /// The plant with its lumped lines as they are: for a load velocity that is fed forward late,
+    /// of which there is no quotient of polynomials.
     pub fn lumped(plant: &LinearPlant) -> PlantInMotion {
         let compliances = [0, 1].map(|side| plant.chambers.side(side).compliance);
         let none = DynamicLine::Segments(Segments::lumped(0.0));
@@ -132,7 +134,8 @@ impl PlantInMotion {
         PlantInMotion { plant: *plant, sides, alike, lateness: 0.0 }
     }
 
-    /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of [`LinearPlant::coefficients`].
+    /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of
+    /// [`LinearPlant::coefficients`].
     pub fn response<A: Analytic>(&self, s: A) -> [A; 2] {
         let Paths { command, ground, sensed, fed, .. } = self.paths(s);
         let divisor = sensed - fed;
@@ -181,7 +184,8 @@ impl PlantInMotion {
         }
     }
 
-    /// D, N_u and N_v at s, times what both lines pass, so that nothing is divided by what vanishes at a resonance.
+    /// D, N_u and N_v at s, times what both lines pass, so that nothing is divided by what vanishes
+    /// at a resonance.
     fn chambers<A: Analytic>(&self, s: A) -> Chambers<A> {
         let [one, other] = &self.sides;
         let line = one.line.transfer_matrix(s);
@@ -235,8 +239,9 @@ impl PlantInMotion {
         }
     }
 
-    /// Whether nothing in it but what is fed forward gives energy, so that without that none of its poles lies in the right half plane: its
-    /// lines are passive, and so are valve, leakage, friction and load where none of their coefficients is negative.
+    /// Whether nothing in it but what is fed forward gives energy, so that without that none of its
+    /// poles lies in the right half plane: its lines are passive, and so are valve, leakage,
+    /// friction and load where none of their coefficients is negative.
     pub fn is_passive(&self) -> bool {
         let load = match self.plant.load {
             LinearLoad::Prescribed => [0.0; 3],
@@ -256,7 +261,8 @@ impl PlantInMotion {
         own.into_iter().chain(load).chain(of_sides).chain(of_supply).all(|value| value >= 0.0)
     }
 
-    /// Where the slower line is a quarter of a wave long, pi/(2 T) in rad/s; `None` where no wave travels.
+    /// Where the slower line is a quarter of a wave long, pi/(2 T) in rad/s; `None` where no wave
+    /// travels.
     pub fn quarter_wave_rad_per_s(&self) -> Option<f64> {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
         let longest = delays.fold(0.0, f64::max);

@@ -16,8 +16,9 @@ use crate::servovalve::{Direction, supply_coefficients};
 /// G_S = q_pump/dp_o where the relief valve is open, 0 where it is shut; with it the slope of the tare flow
 /// ```
 ///
-/// These are [`crate::machine::PowerUnit`] differentiated. Where s_A and s_B are equal, and so are the chambers, the pressures of a
-/// symmetric cylinder rise and fall together with p_S, and the force does not see it.
+/// These are [`crate::machine::PowerUnit`] differentiated. Where s_A and s_B are equal, and so are
+/// the chambers, the pressures of a symmetric cylinder rise and fall together with p_S, and the
+/// force does not see it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct YieldingSupply<S = f64> {
     /// Compliance C_S of the supply line with its accumulator.
@@ -31,8 +32,8 @@ pub struct YieldingSupply<S = f64> {
 }
 
 impl<S: Scalar> YieldingSupply<S> {
-    /// That of a power unit where supply, valve and chambers settled; `stated` is the pressure in Pa that an idle pump holds, and
-    /// `tare_drop` the one in Pa at which the tare flow is stated.
+    /// That of a power unit where supply, valve and chambers settled; `stated` is the pressure in
+    /// Pa that an idle pump holds, and `tare_drop` the one in Pa at which the tare flow is stated.
     pub fn new(
         unit: &PumpLimited<S>,
         balance: &Balance<S>,
@@ -58,7 +59,8 @@ impl<S: Scalar> YieldingSupply<S> {
     }
 }
 
-/// What the pressures are found from: admittances of both chambers and of the supply, and how they are coupled.
+/// What the pressures are found from: admittances of both chambers and of the supply, and how they
+/// are coupled.
 pub(super) struct Coupled<T> {
     /// Of chamber A, chamber B and the supply, everything that is tied to it.
     pub(super) own: [T; 3],

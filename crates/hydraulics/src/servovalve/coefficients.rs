@@ -3,7 +3,8 @@ use phea_dynamics::scalar::Scalar;
 use super::{Openings, Servovalve, Supply};
 use crate::orifice::{regular_root, regular_root_slope};
 
-/// Which side of null is meant where the spool stands exactly at null, as other edges open on each side.
+/// Which side of null is meant where the spool stands exactly at null, as other edges open on each
+/// side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// U > 0: supply to A, B to tank.
@@ -14,7 +15,8 @@ pub enum Direction {
     Mean,
 }
 
-/// Derivatives of the flows of each chamber. Units: m3/(s V), m3/(s Pa). All positive in ordinary operation.
+/// Derivatives of the flows of each chamber. Units: m3/(s V), m3/(s Pa). All positive in ordinary
+/// operation.
 ///
 /// ```text
 /// dq_A = K_qA dU - K_cA dp_A        dq_B = -K_qB dU - K_cB dp_B
@@ -31,7 +33,8 @@ pub struct ChamberCoefficients<S = f64> {
     pub flow_pressure_b: S,
 }
 
-/// Derivatives of [`super::chamber_flows`] at any spool position and chamber pressures, for any edges.
+/// Derivatives of [`super::chamber_flows`] at any spool position and chamber pressures, for any
+/// edges.
 ///
 /// ```text
 /// K_qA =  (K_v3 u+' + K_vin3 sech') root(p_S - p_A) - (K_v4 u-' + K_vin4 sech') root(p_A - p_T)
@@ -40,8 +43,8 @@ pub struct ChamberCoefficients<S = f64> {
 /// K_cB =  (K_v5 u- + K_vin5 sech) root'(p_S - p_B) + (K_v6 u+ + K_vin6 sech) root'(p_B - p_T)
 /// ```
 ///
-/// with primes for d/dU and d/dp; sech' = -(lambda/U_n) sech tanh is the leakage's part, which thesis (4.21) leaves out.
-/// `direction` decides at U = 0 alone.
+/// with primes for d/dU and d/dp; sech' = -(lambda/U_n) sech tanh is the leakage's part, which
+/// thesis (4.21) leaves out. `direction` decides at U = 0 alone.
 pub fn chamber_coefficients<S: Scalar>(
     valve: &Servovalve<S>,
     supply: &Supply<S>,
@@ -132,7 +135,8 @@ fn opening_slopes<S: Scalar>(valve: &Servovalve<S>, spool: S, leakage: S, direct
     )
 }
 
-/// Flow gain K_qU and flow-pressure coefficient K_c of the control flow. Units: m3/(s V), m3/(s Pa).
+/// Flow gain K_qU and flow-pressure coefficient K_c of the control flow. Units: m3/(s V), m3/(s
+/// Pa).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlCoefficients<S = f64> {
     /// K_qU = dq_vC/dU.
@@ -141,7 +145,8 @@ pub struct ControlCoefficients<S = f64> {
     pub flow_pressure_coefficient: S,
 }
 
-/// Flow gain and flow-pressure coefficient of the control flow on a symmetric cylinder, at any U and load pressure p_L.
+/// Flow gain and flow-pressure coefficient of the control flow on a symmetric cylinder, at any U
+/// and load pressure p_L.
 ///
 /// ```text
 /// K_qU =  dq_vC/dU   = K_vp/U_n sqrt((p_S - p_T - s p_L)/2) + K_vinp sech' (...)          thesis (4.21), corrected
@@ -149,9 +154,9 @@ pub struct ControlCoefficients<S = f64> {
 ///                      + K_vinp sech/sqrt(8 (p_S - p_T + s p_L))                          thesis (4.22), corrected
 /// ```
 ///
-/// with s = sgn U. As thesis (4.18) has it, p_A and p_B are (p_S + p_T +- p_L)/2, which is where equal edges settle; the
-/// edges may be unequal, the control flow being the mean of both chambers (4.17): K_qU = (K_qA + K_qB)/2 and
-/// K_c = (K_cA + K_cB)/4.
+/// with s = sgn U. As thesis (4.18) has it, p_A and p_B are (p_S + p_T +- p_L)/2, which is where
+/// equal edges settle; the edges may be unequal, the control flow being the mean of both chambers
+/// (4.17): K_qU = (K_qA + K_qB)/2 and K_c = (K_cA + K_cB)/4.
 ///
 /// # Example
 /// The null coefficient of Table 6.3
@@ -183,7 +188,8 @@ pub fn control_coefficients<S: Scalar>(
     }
 }
 
-/// Steady piston speed per volt under a load, leakage neglected, in m/(s V); `None` where the supply cannot move the load.
+/// Steady piston speed per volt under a load, leakage neglected, in m/(s V); `None` where the
+/// supply cannot move the load.
 ///
 /// ```text
 /// extending:  A_A v = K_v3 u sqrt(p_S - p_A),  A_B v = K_v6 u sqrt(p_B - p_T),  A_A p_A - A_B p_B = F
@@ -191,9 +197,10 @@ pub fn control_coefficients<S: Scalar>(
 /// retracting: with edges 5 and 4, B and A exchanged and F reversed
 /// ```
 ///
-/// Both metering edges carry the piston's flow in series. For a symmetric cylinder A v/U is the flow gain that a no-load
-/// flow test finds; it differs from the mean of both chambers' slopes (4.17) when the edges are unequal. Areas A_A, A_B in
-/// m2, force on the load in N, positive when the rod pushes. `Direction::Mean` is the mean of both speeds.
+/// Both metering edges carry the piston's flow in series. For a symmetric cylinder A v/U is the
+/// flow gain that a no-load flow test finds; it differs from the mean of both chambers' slopes
+/// (4.17) when the edges are unequal. Areas A_A, A_B in m2, force on the load in N, positive when
+/// the rod pushes. `Direction::Mean` is the mean of both speeds.
 ///
 /// # Example
 /// The edges of Table 5.1 at 70 bar: 6.51e-5 m3/(s V) extending and 4.13e-5 retracting

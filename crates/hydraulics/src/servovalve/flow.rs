@@ -3,7 +3,8 @@ use phea_dynamics::scalar::Scalar;
 use super::{Edges, Servovalve, Supply};
 use crate::orifice;
 
-/// Relative openings of the edges that the spool moves, both 0 to 1, and the relative leakage it leaves.
+/// Relative openings of the edges that the spool moves, both 0 to 1, and the relative leakage it
+/// leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Openings<S> {
     /// Of edges 3 and 6, supply to A and B to tank: U/U_n where U > 0.
@@ -17,8 +18,8 @@ pub struct Openings<S> {
 impl<S: Scalar> Openings<S> {
     /// At spool position U_Csp in V.
     ///
-    /// The positive part is (U + |U|)/2 and the negative (|U| - U)/2, so that a derivative taken exactly at U = 0 is the
-    /// mean of the two one-sided ones.
+    /// The positive part is (U + |U|)/2 and the negative (|U| - U)/2, so that a derivative taken
+    /// exactly at U = 0 is the mean of the two one-sided ones.
     #[inline(always)]
     pub fn at(valve: &Servovalve<S>, spool: S) -> Openings<S> {
         let relative = spool / valve.nominal_voltage;
@@ -67,8 +68,9 @@ pub fn hyperbolic_secant<S: Scalar>(argument: S) -> S {
 /// q_v6 = (K_v6 u+ + K_vin6 sech(lambda u)) root(p_B - p_T)             thesis (4.5), (4.9)
 /// ```
 ///
-/// with u = U_Csp/U_Cn, its positive and negative parts u+ and u-, and the regular root of [`crate::orifice`]. The
-/// leakage's shape is that of thesis (4.14), here on each edge. `spool` in V, pressures in Pa.
+/// with u = U_Csp/U_Cn, its positive and negative parts u+ and u-, and the regular root of
+/// [`crate::orifice`]. The leakage's shape is that of thesis (4.14), here on each edge. `spool` in
+/// V, pressures in Pa.
 #[inline(always)]
 pub fn edge_flows<S: Scalar>(
     valve: &Servovalve<S>,
@@ -140,7 +142,8 @@ pub fn chamber_flows<S: Scalar>(
     ChamberFlows { into_a: edges.supply_to_a - edges.a_to_tank, into_b: edges.supply_to_b - edges.b_to_tank }
 }
 
-/// Control flow q_vC of a valve with equal edges on a symmetric cylinder, in m3/s, positive for U > 0.
+/// Control flow q_vC of a valve with equal edges on a symmetric cylinder, in m3/s, positive for U >
+/// 0.
 ///
 /// ```text
 /// q_vC = (q_A - q_B)/2   with  p_A, p_B = (p_S + p_T +- p_L)/2         thesis (4.17), (4.18)

@@ -3,10 +3,12 @@ use phea_dynamics::scalar::Scalar;
 use super::Servovalve;
 use crate::parameter::{ParameterError, Problems};
 
-/// How much stiffer than its own spring a sticking spool is: of a command within the threshold it follows 1/(1 + this).
+/// How much stiffer than its own spring a sticking spool is: of a command within the threshold it
+/// follows 1/(1 + this).
 const STICKING_STIFFNESS: f64 = 20.0;
 
-/// What real spools add to the second-order model. Units: V, V/s. [`SpoolImperfection::default`] adds nothing.
+/// What real spools add to the second-order model. Units: V, V/s. [`SpoolImperfection::default`]
+/// adds nothing.
 ///
 /// ```text
 /// u = U_C within -U_n and U_n                    the amplifier saturates
@@ -17,17 +19,19 @@ const STICKING_STIFFNESS: f64 = 20.0;
 /// y = U - U_0 - z                                where the edges are, U_0 the null bias
 /// ```
 ///
-/// Both memories are of Dahl (1976), "Solid friction damping of mechanical vibrations", AIAA Journal 14(12): independent
-/// of the rate, bounded by their half widths, and without a branch. Turned round far from null, y stands while the
-/// command covers the threshold, and is at last behind by the whole width (ISO 10770-1 on hysteresis and threshold).
+/// Both memories are of Dahl (1976), "Solid friction damping of mechanical vibrations", AIAA
+/// Journal 14(12): independent of the rate, bounded by their half widths, and without a branch.
+/// Turned round far from null, y stands while the command covers the threshold, and finally lags by
+/// the whole width (ISO 10770-1 on hysteresis and threshold).
 ///
-/// Measured on the valve of the thesis (section 5.2.1): null at 0.078 V rising and -0.05 V falling, so that the bias is
-/// 0.014 V and the width 0.128 V. The threshold in it is not told.
+/// Measured on the valve of the thesis (section 5.2.1): null at 0.078 V rising and -0.05 V falling,
+/// so that the bias is 0.014 V and the width 0.128 V. The source does not state the threshold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpoolImperfection<S = f64> {
     /// Spool position U_0 in V at which the valve is at null.
     pub null_bias: S,
-    /// Greatest difference of two commands in V that give the same opening over a slow full cycle, threshold included.
+    /// Greatest difference of two commands in V that give the same opening over a slow full cycle,
+    /// threshold included.
     pub hysteresis_width: Option<S>,
     /// Change of command in V that a reversal takes.
     pub threshold: Option<S>,
@@ -35,7 +39,8 @@ pub struct SpoolImperfection<S = f64> {
     pub rate_limit: Option<S>,
 }
 
-/// States of the spool, or their rates. Units: V, V/s; the memories are zero where the valve has none.
+/// States of the spool, or their rates. Units: V, V/s; the memories are zero where the valve has
+/// none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpoolState<S> {
     /// Spool position U in V.

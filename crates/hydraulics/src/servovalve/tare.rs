@@ -9,8 +9,9 @@ use crate::orifice::regular_root;
 /// q(p_S) = q_tare sqrt((p_S - p_T)/p_ref)          with the regular root of the edges: it returns with reversed pressures
 /// ```
 ///
-/// The first stage is two fixed orifices and two nozzles in turbulent flow (Merritt 1967, chapter 7), so its flow goes with
-/// the root of the drop. It runs from supply to tank and takes no part in the motion, but the pump delivers it.
+/// The first stage is two fixed orifices and two nozzles in turbulent flow (Merritt 1967, chapter
+/// 7), so its flow goes with the root of the drop. It runs from supply to tank and takes no part in
+/// the motion, but the pump delivers it.
 ///
 /// # Example
 /// ```

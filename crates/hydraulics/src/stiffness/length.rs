@@ -11,37 +11,41 @@ use crate::line::{Line, Member};
 pub enum LineLength {
     /// This length, in m, of each line.
     Length(f64),
-    /// The actuator is no stiffer than wanted with no line at all; its least stiffness then, in N/m.
+    /// The actuator is no stiffer than wanted with no line at all; its least stiffness then, in
+    /// N/m.
     NotNeeded {
         /// Least stiffness over the stroke with lines of no length, in N/m.
         stiffness_without_line: f64,
     },
-    /// No line of this kind softens the actuator so far (none at all reaches a stiffness of zero or less).
+    /// No line of this kind softens the actuator so far (none at all reaches a stiffness of zero or
+    /// less).
     OutOfReach,
 }
 
-/// Hose length L_ho of each line for a wanted least stiffness K_H, one modulus for hose and chamber, in m.
+/// Hose length L_ho of each line for a wanted least stiffness K_H, one modulus for hose and
+/// chamber, in m.
 ///
 /// ```text
 /// L_ho = 8 A^2 r_b beta_0 (pi D^2 + 4 E) / (pi D^2 K_H (4 eps beta_0 + r_b (pi D^2 + 4 E))) - 2 A L/(pi D^2)
 ///      = (4 beta_e A^2/K_H - A L) 2/(pi D^2)                                                   thesis (6.25)
 /// ```
 ///
-/// For a symmetric cylinder of area A and stroke L with a hose of bore D and effective modulus beta_e on each side. A
-/// negative length means that no hose is needed.
+/// For a symmetric cylinder of area A and stroke L with a hose of bore D and effective modulus
+/// beta_e on each side. A negative length means that no hose is needed.
 pub fn hose_length_uniform<S: Scalar>(stiffness: S, area: S, stroke: S, bore: S, effective_modulus: S) -> S {
     let needed = S::from(4.0) * effective_modulus * area.squared() / stiffness - area * stroke;
     needed * S::from(2.0 / PI) / bore.squared()
 }
 
-/// Hose length L_ho of each line for a wanted least stiffness K_H, the chamber keeping the fluid's modulus, in m.
+/// Hose length L_ho of each line for a wanted least stiffness K_H, the chamber keeping the fluid's
+/// modulus, in m.
 ///
 /// ```text
 /// L_ho = (2 A^2/K_H - A L/(2 beta_0)) / (epsilon/r_beta + (A_ho + E(p))/beta_0)      thesis (6.25), corrected
 /// ```
 ///
-/// For a symmetric cylinder, as [`hose_length_uniform`]; the divisor is [`crate::line::Hose::compliance_per_length`]; a negative
-/// length means that no hose is needed.
+/// For a symmetric cylinder, as [`hose_length_uniform`]; the divisor is
+/// [`crate::line::Hose::compliance_per_length`]; a negative length means that no hose is needed.
 ///
 /// # Example
 /// The thesis' 2.24e6 N/m takes 3.64 m of its hose and not 1.5 m.
@@ -62,7 +66,8 @@ pub fn hose_length_by_volume<S: Scalar>(
     needed / compliance_per_length
 }
 
-/// Least stiffness K_H over the stroke from the hose length of each line, one modulus for hose and chamber, in N/m.
+/// Least stiffness K_H over the stroke from the hose length of each line, one modulus for hose and
+/// chamber, in N/m.
 ///
 /// ```text
 /// K_H = 8 r_b beta_0 A^2 (pi D^2 + 4 E) / ((4 eps beta_0 + r_b (pi D^2 + 4 E)) (2 A L + pi D^2 L_ho))
@@ -79,12 +84,12 @@ pub fn stiffness_from_hose_length<S: Scalar>(
         / (S::from(2.0) * area * stroke + S::from(PI) * bore.squared() * length)
 }
 
-/// Length of both lines, each like `line`, that brings the least stiffness over the stroke to `stiffness` in N/m: either
-/// model, any cylinder.
+/// Length of both lines, each like `line`, that brings the least stiffness over the stroke to
+/// `stiffness` in N/m: either model, any cylinder.
 ///
-/// The length of a [`Line::Volume`] is its volume over the given one: a factor. Solved by bisection, since the least
-/// stiffness falls strictly as lines grow; agrees with [`hose_length_uniform`] and [`hose_length_by_volume`] where those
-/// apply.
+/// The length of a [`Line::Volume`] is its volume over the given one: a factor. Solved by
+/// bisection, since the least stiffness falls strictly as lines grow; agrees with
+/// [`hose_length_uniform`] and [`hose_length_by_volume`] where those apply.
 pub fn line_length_for_stiffness(
     model: StiffnessModel,
     fluid_modulus: f64,

@@ -22,11 +22,13 @@ impl ChamberCompliance<f64> {
     /// dK_H/dx = 0   <=>   A_A sqrt(slope_a)/C_A(x) = A_B sqrt(slope_b)/C_B(x)        (linear in x)
     /// ```
     ///
-    /// K_H is convex in x, so the greatest is at an end, and the least at the root if it lies inside the stroke and
-    /// at an end otherwise. With neither dead volume nor line the stiffness at the ends is infinite.
+    /// K_H is convex in x, so the greatest is at an end, and the least at the root if it lies
+    /// inside the stroke and at an end otherwise. With neither dead volume nor line the stiffness
+    /// at the ends is infinite.
     ///
     /// # Example
-    /// The big side is the softer: an asymmetric cylinder is softest on the rod's side of mid stroke.
+    /// The big side is the softer: an asymmetric cylinder is softest on the rod's side of mid
+    /// stroke.
     /// ```
     /// use phea_hydraulics::stiffness::ChamberCompliance;
     /// let steel = 1.0 / 1.45e9;
@@ -53,7 +55,8 @@ impl ChamberCompliance<f64> {
     }
 }
 
-/// Stiffness over the stroke for the softest, nominal and stiffest member of the hoses' stiffening interval.
+/// Stiffness over the stroke for the softest, nominal and stiffest member of the hoses' stiffening
+/// interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StiffeningRange {
     /// With the smallest r_beta.
@@ -64,7 +67,8 @@ pub struct StiffeningRange {
     pub maximum: StrokeStiffness,
 }
 
-/// Stiffness over the stroke for each member of the hoses' stiffening interval; all equal for pipes and volumes.
+/// Stiffness over the stroke for each member of the hoses' stiffening interval; all equal for pipes
+/// and volumes.
 pub fn stiffening_range(
     model: StiffnessModel,
     fluid_modulus: f64,
@@ -90,15 +94,16 @@ pub struct ModelDifference {
     pub minimum_ratio: f64,
     /// Greatest stiffness by volume over greatest stiffness uniform.
     pub maximum_ratio: f64,
-    /// Share of the fluid that is in the chambers and not in the lines (piston at the softest position): what
-    /// `uniform` gives the wrong modulus to.
+    /// Share of the fluid that is in the chambers and not in the lines (piston at the softest
+    /// position): what `uniform` gives the wrong modulus to.
     pub chamber_volume_share: f64,
-    /// Share of the compliance, by volume, that the lines provide there: what sizing the lines can change.
+    /// Share of the compliance, by volume, that the lines provide there: what sizing the lines can
+    /// change.
     pub line_compliance_share: f64,
 }
 
-/// Both stiffness models of the same cylinder and lines, and how far they are apart; the fluid's modulus on either side
-/// in Pa.
+/// Both stiffness models of the same cylinder and lines, and how far they are apart; the fluid's
+/// modulus on either side in Pa.
 ///
 /// # Example
 /// For 1.5 m of the thesis' hose the thesis' model is less than half as stiff as the truth.

@@ -9,8 +9,8 @@ use crate::operating_point::OperatingPoint;
 use crate::servovalve::{ChamberCoefficients, Direction, chamber_coefficients};
 use crate::stiffness::compliance_at;
 
-/// The two-pressure model linearised: everything its transfer functions depend on. Units: m2, m3/Pa, m3/(s V),
-/// m3/(s Pa), kg, N s/m, N/m, rad/s, 1.
+/// The two-pressure model linearised: everything its transfer functions depend on. Units: m2,
+/// m3/Pa, m3/(s V), m3/(s Pa), kg, N s/m, N/m, rad/s, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoPressureLinearParameters<S = f64> {
     /// Piston areas A_A and A_B.
@@ -31,10 +31,11 @@ pub struct TwoPressureLinearParameters<S = f64> {
     pub valve_damping_ratio: S,
 }
 
-/// Coefficients of the linearised model at an operating point; `direction` decides which edges open at null.
+/// Coefficients of the linearised model at an operating point; `direction` decides which edges open
+/// at null.
 ///
-/// The compliances are those of the position, held there: what else depends on the position is the net flow into the
-/// chambers, which vanishes at an equilibrium.
+/// The compliances are those of the position, held there: what else depends on the position is the
+/// net flow into the chambers, which vanishes at an equilibrium.
 pub fn two_pressure_linear_parameters<S: Scalar>(
     model: &TwoPressureModel<S>,
     point: &OperatingPoint<S>,
@@ -62,8 +63,8 @@ pub fn two_pressure_linear_parameters<S: Scalar>(
 
 /// The linearised model as state space.
 ///
-/// States as in [`super::TwoPressureState`]; inputs command U_C and load velocity v_L; outputs force F_e, p_A and p_B; all
-/// deviations from the operating point.
+/// States as in [`super::TwoPressureState`]; inputs command U_C and load velocity v_L; outputs
+/// force F_e, p_A and p_B; all deviations from the operating point.
 ///
 /// # Errors
 /// A coefficient that is not finite.
@@ -113,8 +114,9 @@ pub fn linearize(parameters: &TwoPressureLinearParameters) -> Result<StateSpace,
 ///       / (v ((M s^2 + f_v s + K_S) Y_A Y_B + s (A_A^2 Y_B + A_B^2 Y_A)))
 /// ```
 ///
-/// From the equations at the top of [`crate::two_pressure`]; sixth order. At mid stroke of a symmetric cylinder with equal
-/// edges Y_A = Y_B is a common factor, and what is left is thesis (6.7).
+/// From the equations at the top of [`crate::two_pressure`]; sixth order. At mid stroke of a
+/// symmetric cylinder with equal edges Y_A = Y_B is a common factor, and what is left is thesis
+/// (6.7).
 pub fn two_pressure_coefficients<S: Scalar>(
     parameters: &TwoPressureLinearParameters<S>,
 ) -> PlantCoefficients<S> {

@@ -14,9 +14,10 @@ use crate::servovalve::ChamberCoefficients;
 /// A_u^2/K_c = A_A^2/K_cA + A_B^2/K_cB        K_qU = (A_u/K_H) (A_A K_qA/C_A + A_B K_qB/C_B)
 /// ```
 ///
-/// K_H and K_qU make the force on fast commands and motions right, K_c the force on slow motions (the damper A_u^2/K_c).
-/// Three numbers cannot also keep the static gain from command to force; it is right when both chambers have the same
-/// corner frequency K_c/C. At mid stroke of a symmetric cylinder with equal edges the reduction is exact.
+/// K_H and K_qU make the force on fast commands and motions right, K_c the force on slow motions
+/// (the damper A_u^2/K_c). Three numbers cannot also keep the static gain from command to force; it
+/// is right when both chambers have the same corner frequency K_c/C. At mid stroke of a symmetric
+/// cylinder with equal edges the reduction is exact.
 pub fn reduce<S: Scalar>(parameters: &TwoPressureLinearParameters<S>) -> LinearParameters<S> {
     let [area_a, area_b] = parameters.areas;
     let [compliance_a, compliance_b] = parameters.compliances;

@@ -8,9 +8,11 @@ use super::super::{LinearError, Polynomial, roots};
 use super::Held;
 use crate::portable::{cos, magnitude, sin};
 
-/// Leading coefficients below this share of the largest are what is left of rounding in twice the working precision.
+/// Leading coefficients below this share of the largest are what is left of rounding in twice the
+/// working precision.
 const NEGLIGIBLE: f64 = 1e-26;
-/// Zeros nearer to the origin, or farther, count on the unit circle as if they were there, and keep their first guess.
+/// Zeros nearer to the origin, or farther, count on the unit circle as if they were there, and keep
+/// their first guess.
 const REFINED: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 /// By what share of itself the numerator may miss the response on the unit circle.
 const AGREEMENT: f64 = 1e-8;
@@ -26,8 +28,8 @@ struct Sample {
 }
 
 impl Held {
-    /// Leading coefficient and zeros of N, where `poles` are those of the plant as it is sampled; `None` where factors that agree with
-    /// the response were not found.
+    /// Leading coefficient and zeros of N, where `poles` are those of the plant as it is sampled;
+    /// `None` where factors that agree with the response were not found.
     ///
     /// # Errors
     /// Those of [`roots::guessed`].
@@ -58,7 +60,8 @@ impl Held {
         samples.peek().is_some() && samples.all(|sample| agrees(gain, zeros, &sample))
     }
 
-    /// Coefficients of N, highest power first, from its values at the roots of z^M = -1; and these values.
+    /// Coefficients of N, highest power first, from its values at the roots of z^M = -1; and these
+    /// values.
     fn interpolated(&self) -> Option<(Vec<DoubleDouble>, Vec<Sample>)> {
         let count = self.degree() + 1;
         let points = roots_of_unity(2 * count);
@@ -109,8 +112,8 @@ impl Held {
     }
 }
 
-/// The gain with which the zeros give the samples; the leading coefficient itself, unless the zero of a coefficient that is small beside
-/// the others has been found better than that coefficient.
+/// The gain with which the zeros give the samples; the leading coefficient itself, unless the zero
+/// of a coefficient that is small beside the others has been found better than that coefficient.
 fn matched(leading: f64, zeros: &[Complex64], samples: &[Sample]) -> f64 {
     let shape = |z: Complex64| zeros.iter().map(|zero| z - zero).product::<Complex64>();
     let shapes = samples.iter().map(|sample| (shape(sample.z), sample.numerator));

@@ -1,8 +1,10 @@
-//! Elimination of the states that a zero output ties to the others, until the input acts on the output directly.
+//! Elimination of the states that a zero output ties to the others, until the input acts on the
+//! output directly.
 //!
-//! Emami-Naeini and Van Dooren (1982) for one input and output, with elimination in place of reflections so that
-//! structural zeros stay exact. It runs in twice the working precision; whether a number in it counts as zero is judged
-//! by what rounding the inputs could change in it, which no change of units affects.
+//! Emami-Naeini and Van Dooren (1982) for one input and output, with elimination in place of
+//! reflections so that structural zeros stay exact. It runs in twice the working precision; whether
+//! a number in it counts as zero is judged by what rounding the inputs could change in it, which no
+//! change of units affects.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -10,8 +12,8 @@ use super::super::StateSpace;
 use super::super::double_double::DoubleDouble;
 use super::super::structure::balance;
 
-/// A number in twice the working precision, with what rounding every input by one unit could change in it: `scale`
-/// times the working precision, to first order.
+/// A number in twice the working precision, with what rounding every input by one unit could change
+/// in it: `scale` times the working precision, to first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Traced {
     value: DoubleDouble,
@@ -51,7 +53,8 @@ impl Traced {
     }
 }
 
-/// The leading coefficient, and the matrix whose eigenvalues are the zeros; none when the channel is zero everywhere.
+/// The leading coefficient, and the matrix whose eigenvalues are the zeros; none when the channel
+/// is zero everywhere.
 pub(super) fn reduce(system: &StateSpace, roundings: f64) -> (f64, Option<DMatrix<f64>>) {
     let mut balanced = system.a().clone();
     let units = balance(&mut balanced);
@@ -74,8 +77,9 @@ pub(super) fn reduce(system: &StateSpace, roundings: f64) -> (f64, Option<DMatri
 
 type System = (DMatrix<Traced>, DVector<Traced>, RowDVector<Traced>, Traced);
 
-/// Ties state k by C x = 0. With y' = c_k (x_k + sum m_j x_j) as a new state, m_j = c_j/c_k, the others obey
-/// x_i' = sum (a_ij - a_ik m_j) x_j + b_i u, and y'/c_k is driven by the new output row and feedthrough.
+/// Ties state k by C x = 0. With y' = c_k (x_k + sum m_j x_j) as a new state, m_j = c_j/c_k, the
+/// others obey x_i' = sum (a_ij - a_ik m_j) x_j + b_i u, and y'/c_k is driven by the new output row
+/// and feedthrough.
 fn eliminate(a: &DMatrix<Traced>, b: &DVector<Traced>, c: &RowDVector<Traced>, k: usize) -> System {
     let order = a.nrows();
     let kept: Vec<usize> = (0..order).filter(|&i| i != k).collect();

@@ -5,8 +5,8 @@ use crate::simulation::kernel::{Kernel, Trial};
 use crate::simulation::slot::Slot;
 use crate::simulation::{Attention, Lane, Observer};
 
-/// Largest error of a step with known matrices, in units of the tolerance: such errors have one sign for many samples and
-/// add up.
+/// Largest error of a step with known matrices, in units of the tolerance: such errors have one
+/// sign for many samples and add up.
 const PROPAGATED: f64 = 0.1;
 
 impl<S: Lane, O: Observer> Drive<'_, S, O> {
@@ -19,8 +19,9 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         }
     }
 
-    /// Asks now and then for the modes of lanes that go by their matrices. These are exact for a mode that grows as long as friction
-    /// feeds it as it did when they were found; where it does not they are found anew. Whether everything has been linearised for it.
+    /// Asks now and then for the modes of lanes that go by their matrices. These are exact for a
+    /// mode that grows as long as friction feeds it as it did when they were found; where it does
+    /// not they are found anew. Whether everything has been linearised for it.
     pub(super) fn watch_propagated(&mut self, system: &dyn Kernel<S>, fresh: bool) -> bool {
         let due = |slot: &Slot<'_, O>| slot.propagated && slot.is_due();
         if !self.slots.iter().flatten().any(due) {

@@ -74,7 +74,8 @@ fn inner_slope(before: Interval, after: Interval) -> f64 {
     (weight_before + weight_after) / (weight_before / steep_before + weight_after / steep_after)
 }
 
-/// The slope of the parabola through the three points nearest to an end, limited so that the shape is kept.
+/// The slope of the parabola through the three points nearest to an end, limited so that the shape
+/// is kept.
 fn end_slope(nearest: Interval, next: Interval) -> f64 {
     let [steep, steep_next] = [nearest.slope(), next.slope()];
     let parabola = ((2.0 * nearest.length_s + next.length_s) * steep - nearest.length_s * steep_next)

@@ -14,14 +14,16 @@ pub struct Harmonic {
     pub phase_rad: f64,
 }
 
-/// Phases in rad that keep the peak of a multisine low, for amplitudes in the order of rising frequency.
+/// Phases in rad that keep the peak of a multisine low, for amplitudes in the order of rising
+/// frequency.
 ///
 /// ```text
 /// phi_k = -2 pi sum over n < k of (k - n) p_n,      p_n = a_n^2/(sum of all a^2);      equal amplitudes: -pi k (k - 1)/N
 /// ```
 ///
-/// The first is zero, so that a single sine begins as a sine does. Meant for frequencies at equal distances. Source: Schroeder 1970, synthesis
-/// of low-peak-factor signals and binary sequences with low autocorrelation.
+/// The first is zero, so that a single sine begins as a sine does. Meant for frequencies at equal
+/// distances. Source: Schroeder 1970, synthesis of low-peak-factor signals and binary sequences
+/// with low autocorrelation.
 ///
 /// # Example
 /// Twenty equal sines: begun together they come to 14.8 times the amplitude of one, so to 6.0

@@ -3,7 +3,7 @@ use crate::portable;
 /// One smooth piece of a [`super::Profile`]: an analytic function, defined beyond its ends as well.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// What is added up beside the offset; a piece without any stands still.
+    /// The terms added to the offset; a piece without terms is constant.
     terms: Vec<Shape>,
     offset: f64,
 }
@@ -27,7 +27,8 @@ pub(super) enum Shape {
     Polynomial { origin_s: f64, span_s: f64, coefficients: [f64; 6] },
     /// d (1 - exp(-(t - origin)/tau)).
     Exponential { origin_s: f64, time_constant_s: f64, distance: f64 },
-    /// a sin(omega tau + r tau^2/2 + phi), tau = t - origin; the frequency omega + r tau holds up to the span.
+    /// a sin(omega tau + r tau^2/2 + phi), tau = t - origin; the frequency omega + r tau holds up
+    /// to the span.
     Sine {
         origin_s: f64,
         amplitude: f64,

@@ -127,7 +127,8 @@ fn frequency(rad_per_s: f64) -> String {
     format!("{} rad/s ({})", significant(rad_per_s, 3), DisplayUnit::HERTZ.text(rad_per_s, 3))
 }
 
-/// What would help: a line so short that its quarter wave lies beyond the crossover, a wall that damps, less bandwidth.
+/// What would help: a line so short that its quarter wave lies beyond the crossover, a wall that
+/// damps, less bandwidth.
 fn help(project: &Project, repair: &Repair, told: &ProjectDesign) -> String {
     let mut ways = Vec::new();
     let lines = project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);

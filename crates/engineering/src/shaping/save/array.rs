@@ -11,7 +11,7 @@ struct Row {
     /// Comments in lines of their own above it.
     above: Vec<String>,
     text: String,
-    /// The comment behind it, with the space before it.
+    /// The comment after it, with the space before the comment.
     behind: Option<String>,
 }
 
@@ -71,7 +71,7 @@ fn array(rows: Vec<Row>, foot: Vec<String>, several_lines: bool, newline: &str) 
     lines.join(newline)
 }
 
-/// The comments between two elements: that behind the first of them, and those above the second.
+/// The comments between two elements: the one after the first, and those above the second.
 fn comments(gap: &str, behind_another: bool) -> (Option<String>, Vec<String>) {
     let mut lines = gap.lines();
     let first = if behind_another { lines.next().and_then(comment) } else { None };

@@ -11,7 +11,8 @@ struct Section<'a> {
     text: String,
 }
 
-/// The tables with their elements changed: those that stay keep their text and the comments above them.
+/// The tables with their elements changed: those that stay keep their text and the comments above
+/// them.
 pub(super) fn rewritten(
     draft: &Draft<'_>,
     table: &Node,

@@ -21,13 +21,14 @@ use crate::setup::Setup;
 use crate::simulate::SimulateError;
 use crate::simulate::bench::Bench;
 
-/// Fewest samples of a period: a command that changes its sign at each has no other form than a square.
+/// Fewest samples of a period: a command that changes its sign at each has no other form than a
+/// square.
 const FEWEST_SAMPLES: f64 = 4.0;
 /// Part of what the supply can push with by which errors of the force are measured.
 const TYPICAL_PUSH: f64 = 0.1;
 
-/// Measures the response at these frequencies; ends before the first for which `goes_on` is false. The reason where there is no
-/// loop.
+/// Measures the response at these frequencies; ends before the first for which `goes_on` is false.
+/// The reason where there is no loop.
 pub(super) fn measured(
     setup: &Setup<'_>,
     rested: &Rested,
@@ -55,7 +56,8 @@ pub(super) fn measured(
     }
 }
 
-/// The reference at which the controller holds the force and the command of the rest: (F_0 + U_0/G(0))/F(0).
+/// The reference at which the controller holds the force and the command of the rest: (F_0 +
+/// U_0/G(0))/F(0).
 fn held_reference(rested: &Rested, given: &Controller) -> Result<f64, SimulateError> {
     let gain = given.feedback.transfer_function()?.dc_gain();
     let error = if rested.rest.command == 0.0 { 0.0 } else { rested.rest.command / gain };
@@ -139,7 +141,8 @@ impl Shared<'_> {
         self.response(points, frequencies, machine)
     }
 
-    /// At the nearest frequencies whose period is a whole number of samples, and without the noise of the sensor.
+    /// At the nearest frequencies whose period is a whole number of samples, and without the noise
+    /// of the sensor.
     fn sampled(
         &self,
         sampled: &Sampled,
@@ -187,20 +190,23 @@ impl Shared<'_> {
     }
 }
 
-/// The nearest frequency whose period is a whole number of samples; `None` for one with fewer than four a period.
+/// The nearest frequency whose period is a whole number of samples; `None` for one with fewer than
+/// four a period.
 fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
     let samples = (TAU / (frequency * sample_time_s)).round();
     (samples >= FEWEST_SAMPLES).then(|| TAU / (samples * sample_time_s))
 }
 
-/// The loop that the linear plant closes, from reference to force; with lines in motion that of their response.
+/// The loop that the linear plant closes, from reference to force; with lines in motion that of
+/// their response.
 ///
 /// ```text
 /// T = F G P e^(-s d)/(1 + G P H e^(-s d))
 /// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of what is between the samples.
 /// ```
 ///
-/// Where what is fed forward of a load that yields is fed back in samples, the command is more by P_z'/P_z, the plant in z with it and without.
+/// Where what is fed forward of a load that yields is fed back in samples, the command is more by
+/// P_z'/P_z, the plant in z with it and without.
 struct Model {
     /// As the loop sees it.
     rig: Rig,

@@ -27,7 +27,8 @@ pub struct ResponsePoint {
     pub frequency_rad_per_s: f64,
     /// Of the sine: V of the open loop, N of the closed one.
     pub amplitude: f64,
-    /// Fundamental of the force over the amplitude: N/V or 1; not a number where no window was seen to its end.
+    /// Fundamental of the force over the amplitude: N/V or 1; not a number where no window was seen
+    /// to its end.
     pub machine: Complex64,
     /// The machine's own exact derivatives at its rest; absent where they are no linear system.
     pub linearised_machine: Option<Complex64>,
@@ -50,26 +51,28 @@ pub struct ResponsePoint {
 }
 
 impl ResponsePoint {
-    /// Magnitude of the machine over that of a model in dB, and its phase less the model's in degrees, within half a turn.
+    /// Magnitude of the machine over that of a model in dB, and its phase less the model's in
+    /// degrees, within half a turn.
     pub fn differs(&self, model: Complex64) -> [f64; 2] {
         let quotient = self.machine / model;
         [20.0 * portable::log10(portable::magnitude(quotient)), portable::argument(quotient).to_degrees()]
     }
 }
 
-/// What is shaken, and from where.
+/// The rig that is excited, and its initial state.
 pub(super) struct Resting<'a> {
     pub(super) control: &'a Control,
-    /// Of all states, and behind them the waves under way.
+    /// Of all states, followed by the waves in transit.
     pub(super) start: &'a [f64],
-    /// Amplitudes of the states on the orbit of the linearised system, for an amplitude of one; empty where there is none.
+    /// Amplitudes of the states on the orbit of the linearised system, for an amplitude of one;
+    /// empty if unknown.
     pub(super) orbit: Vec<Complex64>,
     pub(super) inputs: Vec<Input>,
     pub(super) settings: Settings,
 }
 
-/// What a machine answers to a sine of this frequency and amplitude. It begins on the orbit that its derivatives have, so that
-/// only what they leave out has to settle.
+/// What a machine answers to a sine of this frequency and amplitude. It begins on the orbit that
+/// its derivatives have, so that only what they leave out has to settle.
 pub(super) fn respond(
     resting: Resting<'_>,
     sampler: Option<Box<dyn Sampler + '_>>,
@@ -98,14 +101,15 @@ pub(super) fn respond(
     answered.map_err(|error| SimulateError::Simulation { name: "frequency response".to_string(), error })
 }
 
-/// As fine as so small a sine needs: errors are measured by what is typical, which is larger than it.
+/// As fine as so small a sine needs: errors are measured by what is typical, which is larger than
+/// it.
 pub(super) fn finer(settings: Settings, amplitude_over_typical: f64) -> Settings {
     let [finest, coarsest] = TOLERANCE;
     let wanted = (coarsest * amplitude_over_typical).clamp(finest, coarsest);
     Settings { tolerance: settings.tolerance.min(wanted), ..settings }
 }
 
-/// The measured point beside its models.
+/// The measured point and its models.
 pub(super) fn point(
     [frequency_rad_per_s, amplitude]: [f64; 2],
     found: &SineResponse,

@@ -24,8 +24,8 @@ impl<S: Scalar> Segments<S> {
     /// friction   0               (4 m/n) I u^2/2      4 m (nu/R^2) I (q - u)^2     each lag an inertance beside a resistance
     /// ```
     ///
-    /// A line is linear and hands on volumes, so that these squares are exact. In steady flow plug and lags together hold 4/3 of
-    /// I q^2/2, the kinetic energy of Poiseuille's parabola.
+    /// A line is linear and hands on volumes, so that these squares are exact. In steady flow plug
+    /// and lags together hold 4/3 of I q^2/2, the kinetic energy of Poiseuille's parabola.
     pub(crate) fn content<T: Scalar + From<S>>(&self, chamber_pressure: T, state: &[T]) -> Content<T> {
         let (zero, half) = (<T as From<f64>>::from(0.0), <T as From<f64>>::from(0.5));
         let segments = <T as From<f64>>::from(self.count.max(1) as f64);
@@ -73,8 +73,8 @@ mod tests {
     use super::super::{Conduit, LaminarFriction};
     use super::*;
 
-    /// The kinetic energy of a parabolic profile, which the fitted lags were never told: half of rho times the integral of
-    /// v^2 is 4/3 of that of a plug.
+    /// The kinetic energy of a parabolic profile, which is not among the conditions of the fit:
+    /// half of rho times the integral of v^2 is 4/3 of that of a plug.
     #[test]
     fn steady_flow_has_the_energy_of_a_parabola() {
         let conduit = Conduit {

@@ -8,8 +8,9 @@ use crate::line::TransferMatrix;
 use crate::line::laminar_friction::UNSTEADY_FRICTION;
 
 impl Segments {
-    /// See [`crate::line::DynamicLine::transfer_matrix`]: N equal sections, each an impedance z along the line between two halves of an
-    /// admittance y across it, with the Chebyshev polynomials T_N and U_(N-1) by their roots:
+    /// See [`crate::line::DynamicLine::transfer_matrix`]: N equal sections, each an impedance z
+    /// along the line between two halves of an admittance y across it, with the Chebyshev
+    /// polynomials T_N and U_(N-1) by their roots:
     ///
     /// ```text
     /// x = 1 + z y/2:     a = d = T_N(x),   b = z U_(N-1)(x),   c = y (1 + z y/4) U_(N-1)(x)
@@ -28,7 +29,8 @@ impl Segments {
         let product = along * across;
         let one = A::from(1.0);
         let x = one + product.scaled(0.5);
-        // cos(j pi/(2 N)) by cos((j + 1) a) = 2 cos(a) cos(j a) - cos((j - 1) a): roots of T_N and U_(N-1) in turn
+        // cos(j pi/(2 N)) by cos((j + 1) a) = 2 cos(a) cos(j a) - cos((j - 1) a): roots of T_N and
+        // U_(N-1) in turn
         let first = cos(PI / (2.0 * sections));
         let (mut before, mut root) = (1.0, first);
         let (mut own, mut other) = (A::from(0.5), one);

@@ -17,7 +17,8 @@ struct WaveResponse<A> {
 }
 
 impl<const M: usize> TravellingWaves<M> {
-    /// See [`crate::line::DynamicLine::transfer_matrix`]. With E_i = e^(-s T_i) A_i(s) the waves see
+    /// See [`crate::line::DynamicLine::transfer_matrix`]. With E_i = e^(-s T_i) A_i(s) the waves
+    /// see
     ///
     /// ```text
     /// in phase        p/q = R_0/2 b_1/(b_1 + s T_1) + sum of Z_i(s) (1 + E_i)/(1 - E_i) = n/(s d)
@@ -26,8 +27,8 @@ impl<const M: usize> TravellingWaves<M> {
     /// a = d = (n e + s d m)/D,   b = 2 n m/D,   c = 2 s d e/D,      D = n e - s d m
     /// ```
     ///
-    /// Without friction and with one wave D is Z/T 4 e^(-sT): nothing else is divided by, so that a resonance of the line is an
-    /// ordinary point.
+    /// Without friction and with one wave D is Z/T 4 e^(-sT): nothing else is divided by, so that a
+    /// resonance of the line is an ordinary point.
     pub(in crate::line) fn transfer_matrix<A: Analytic>(&self, s: A) -> TransferMatrix<A> {
         let first = self.waves.first().map_or(0.0, |wave| wave.delay);
         let steady = A::from(self.half_resistance * CORNERS[0]) / (A::from(CORNERS[0]) + s.scaled(first));
@@ -90,7 +91,8 @@ impl<const M: usize> TravellingWaves<M> {
 }
 
 impl Wave<f64> {
-    /// With E = e^(-s T) A(s) and A(s) = 1 - s T times a sum of lags: (1 - E)/(s T) is the mean of e^(-s T), and that sum times e^(-s T).
+    /// With E = e^(-s T) A(s) and A(s) = 1 - s T times a sum of lags: (1 - E)/(s T) is the mean of
+    /// e^(-s T), and that sum times e^(-s T).
     fn response<A: Analytic>(&self, s: A) -> WaveResponse<A> {
         let angle = s.scaled(self.delay);
         let mut lags = A::from(0.0);

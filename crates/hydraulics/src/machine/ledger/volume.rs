@@ -13,7 +13,8 @@ use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 /// rho' = rho/beta(p),  (p + w)' = 1 + (p + w)/beta(p),  rho(0) = 1,  w(0) = 0,       p + w = rho integral of dp/rho
 /// ```
 ///
-/// All integrals are from zero gauge pressure. V is a volume of fluid, W what yields beside it.
+/// All integrals are from zero gauge pressure. V is the volume of fluid, W the yielding of
+/// everything else.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Volume<T> {
     /// V in m3.
@@ -41,10 +42,11 @@ pub(super) enum Law<T> {
 /// 1/beta(p) = s/beta_mixture(P) + k        1/rho = v(P)^s exp(-k p)        v = (1 - a) exp(-p/beta_0) + a (p_atm/P)^(1/n)
 /// ```
 ///
-/// v is the volume of the mixture over that at atmospheric pressure, whose tangent modulus is beta_mixture (so it holds down to 1 Pa
-/// absolute, below which the chambers keep their modulus); s is 1 where the chamber holds the mixture and 0 where its modulus
-/// is stated. No elementary function is the integral of rho, nor with k that of 1/rho; all are taken by Gauss and Legendre's rule of twelve
-/// points over ln P, exact to 1e-13 up to 70 bar and 1e-9 up to 700 bar.
+/// v is the volume of the mixture over that at atmospheric pressure, whose tangent modulus is
+/// beta_mixture (so it holds down to 1 Pa absolute, below which the chambers keep their modulus); s
+/// is 1 where the chamber holds the mixture and 0 where its modulus is stated. No elementary
+/// function is the integral of rho, nor with k that of 1/rho; all are taken by Gauss and Legendre's
+/// rule of twelve points over ln P, exact to 1e-13 up to 70 bar and 1e-9 up to 700 bar.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mixture<T> {
     bulk_modulus: T,
@@ -56,7 +58,8 @@ pub(super) struct Mixture<T> {
     wall: T,
 }
 
-/// Nodes and weights of the rule of Gauss and Legendre for 12 points from -1 to 1, the positive half.
+/// Nodes and weights of the rule of Gauss and Legendre for 12 points from -1 to 1, the positive
+/// half.
 // ORIGIN: analytic
 const GAUSS_LEGENDRE: [(f64, f64); 6] = [
     (0.1252334085114689, 0.2491470458134028),
@@ -68,9 +71,11 @@ const GAUSS_LEGENDRE: [(f64, f64); 6] = [
 ];
 
 impl<T: Scalar> Volume<T> {
-    /// A side of a cylinder of this piston area in m2 whose fluid carries air, its piston `travel` in m away from the end.
+    /// A side of a cylinder of this piston area in m2 whose fluid carries air, its piston `travel`
+    /// in m away from the end.
     ///
-    /// Of the constant compliance V/beta_mixture + W, what grows with V like the chamber does, k V, is part of its modulus.
+    /// Of the constant compliance V/beta_mixture + W, what grows with V like the chamber does, k V,
+    /// is part of its modulus.
     pub(super) fn aerated(
         chambers: &AeratedChambers<T>,
         side: &AeratedSide<T>,
@@ -169,7 +174,8 @@ impl<T: Scalar> Mixture<T> {
     }
 }
 
-/// Integral from zero gauge pressure to `pressure`, evenly in the logarithm of the absolute pressure.
+/// Integral from zero gauge pressure to `pressure`, evenly in the logarithm of the absolute
+/// pressure.
 fn integral<T: Scalar>(pressure: T, of: impl Fn(T) -> T) -> T {
     let atmosphere = T::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
     let half = T::from(0.5) * ((pressure + atmosphere) / atmosphere).ln();

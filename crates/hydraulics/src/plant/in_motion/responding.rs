@@ -39,7 +39,8 @@ impl RespondingPlant for PlantInMotion {
         })
     }
 
-    /// The rig at rest: lines pass flow through their steady resistance R, and have yielded all that they ever do.
+    /// The rig at rest: lines pass flow through their steady resistance R, and have yielded all
+    /// that they ever do.
     ///
     /// ```text
     /// p_port = p + R q,   q = K_q U - K_c p_port      so that q = K_q/(1 + K_c R) U - K_c/(1 + K_c R) p
@@ -74,8 +75,9 @@ impl RespondingPlant for PlantInMotion {
         LinearPlant { chambers, supply, ..self.plant }.coefficients()
     }
 
-    /// Nothing behind the valve gives energy, so that no more reaches the piston than a source with the conductance K_c can give, and the
-    /// piston moves no faster than its friction spends that:
+    /// Everything after the valve is passive, so that the piston receives at most what a source
+    /// with the conductance K_c can deliver, and the piston moves no faster than its friction
+    /// spends that:
     ///
     /// ```text
     /// f_v |v|^2 <= (K_qA^2/K_cA + K_qB^2/K_cB)/4 |U_sp|^2
@@ -83,8 +85,8 @@ impl RespondingPlant for PlantInMotion {
     /// |P(jw)| <= |v/U_sp| w_n^2/(w^2 - w_n^2) / (w/K_e - w/(M_L w^2 - K_L))       each factor falls from where it is positive
     /// ```
     ///
-    /// A supply that yields is a third port, `power_per_volt`. What a load that yields feeds forward multiplies this by
-    /// 1/(1 - K_x |P Y_L|) at most.
+    /// A supply that yields is a third port, `power_per_volt`. What a load that yields feeds
+    /// forward multiplies this by 1/(1 - K_x |P Y_L|) at most.
     fn roll_off(&self, frequency_rad_per_s: f64) -> Option<f64> {
         let friction = self.plant.viscous_friction;
         let w = frequency_rad_per_s;
@@ -165,8 +167,8 @@ impl RespondingPlant for PlantInMotion {
 }
 
 impl PlantInMotion {
-    /// Whether 1 less what is fed back cannot have turned around zero from one of these points to the other: a delay turns it as often as
-    /// the frequency says, which counts where it is large.
+    /// Whether 1 less what is fed back cannot have turned around zero from one of these points to
+    /// the other: a delay turns it as often as the frequency says, which counts where it is large.
     fn is_near(&self, [here, next]: [(f64, Complex64); 2]) -> bool {
         let turned = (next.0 - here.0) * self.lateness;
         let fed = [here, next].map(|(_, difference)| (difference - 1.0).norm_sqr());
@@ -174,7 +176,8 @@ impl PlantInMotion {
         next.0 < LARGE_STEP * here.0 && (turned < SMALL_TURN || is_small)
     }
 
-    /// The most power in W that can leave valve and supply for the square of a volt: their sources k less their conductances G,
+    /// The most power in W that can leave valve and supply for the square of a volt: their sources
+    /// k less their conductances G,
     ///
     /// ```text
     /// max over p of k.p - p.G p = k.G^-1 k/4,      p = (p_A, p_B, p_S),   k = (K_qA, -K_qB, -K_qS)
