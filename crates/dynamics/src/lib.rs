@@ -2,6 +2,14 @@
 //! linear systems, their frequency and time responses, controllers, and the uncertain plant that
 //! robust design works on.
 //!
+//! ```text
+//! parameters -> Expression -> UncertainPlant -> PlantMember                    the family
+//! StateSpace -> TransferFunction -> FrequencyResponse -> margins, passivity    linear analysis
+//! Element -> Compensator -> Controller -> SampledController                    the controller
+//! System + InputSchedule + Settings -> simulate -> Trajectory, Outcome         simulation
+//! Plant -> Sensed -> CommandedPlant -> System                                  the closed loop
+//! ```
+//!
 //! SI units inside, angles in radians, frequencies in rad/s, polynomials with the highest power
 //! first.
 

@@ -1,6 +1,12 @@
 //! The actuator as physics: servovalve, lines, cylinder, friction and force sensor, the equilibrium
 //! they settle at, and the linear models of the force they put on a load.
 //!
+//! ```text
+//! Components -> Actuator -> OperatingPoint -> LinearParameters -> LinearPlant -> LinearModel
+//!                  |                                               + lines -> PlantInMotion
+//!                  +-> Machine                                     the nonlinear equations
+//! ```
+//!
 //! Every equation is written once over [`phea_dynamics::scalar::Scalar`] and cites its number in
 //! Ledezma (2019), the thesis. Parameters are plain structs in SI units;
 //! [`actuator::Actuator::new`] is the one gate that refuses impossible ones. Signs: the piston
