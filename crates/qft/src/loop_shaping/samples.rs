@@ -195,7 +195,7 @@ impl Samples {
     }
 
     /// Judges tracking so from now on.
-    pub fn judge_tracking_by(&mut self, tracking: TrackingJudgement) {
+    pub(crate) fn judge_tracking_by(&mut self, tracking: TrackingJudgement) {
         self.tracking = tracking;
         self.demand_anew();
     }
@@ -262,7 +262,7 @@ impl Samples {
     }
 
     /// The frequencies at which every plant is looked at, increasing, rad/s.
-    pub fn grid_frequencies_rad_per_s(&self) -> Vec<f64> {
+    pub(crate) fn grid_frequencies_rad_per_s(&self) -> Vec<f64> {
         self.columns.iter().filter(|column| column.grid).map(|column| column.frequency).collect()
     }
 

@@ -168,11 +168,6 @@ impl Shaping {
         &self.samples
     }
 
-    /// The samples, for another structure.
-    pub fn into_samples(self) -> Samples {
-        self.samples
-    }
-
     /// Looks at these plants at this frequency too, and at every frequency of the grid if they are new; whether one of them was not looked
     /// at there before.
     ///
@@ -208,7 +203,7 @@ impl Shaping {
     }
 
     /// Judges the law of this loop in place of the one at x, whose objective it keeps: what rounded coefficients make of a controller.
-    pub fn judge_deployed(&mut self, x: &[f64], law: &Compensation) -> Judgement {
+    pub(crate) fn judge_deployed(&mut self, x: &[f64], law: &Compensation) -> Judgement {
         let response = |column: &Column| {
             let found = law.response(column.frequency);
             [found.feedback, found.prefilter]

@@ -67,5 +67,5 @@ fn fast_unstable_pole() {
     let Place::UnstablePole(pole) = constraint.place else { panic!("{found:?}") };
     assert!((pole.re - 4.2).abs() < 1e-9);
     assert!((relaxation_db - decibels(6.2 / 3.0)).abs() < 0.01);
-    assert!((constraint.crossover_rad_per_s.unwrap() - 2.236).abs() < 0.05, "{constraint:?}");
+    assert!((constraint.crossover_rad_per_s.unwrap() - 5_f64.sqrt()).abs() < 0.05, "{constraint:?}");
 }
