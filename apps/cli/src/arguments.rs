@@ -23,6 +23,12 @@ pub(crate) enum Command {
         /// Folder to create; it must be empty or absent
         folder: PathBuf,
     },
+    /// Print the JSON Schema of the project file, with which editors of TOML check it and complete its keys
+    Schema {
+        /// Write it into this folder, as phea.schema.json, instead of printing it
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
     /// Validate a project and print every derived quantity with its equation
     Check(Common),
     /// Size the hose over the catalogue, by gain and by length, with the reason for every decision

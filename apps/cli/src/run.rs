@@ -24,6 +24,7 @@ use crate::voice::{ProgressLine, complain, say};
 pub(crate) fn run(arguments: Arguments) -> ExitCode {
     let outcome = match arguments.command {
         Command::New { folder } => new(&folder),
+        Command::Schema { out } => schema(out.as_deref()),
         Command::Check(common) => on_project(&common, &Request::Check),
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }),
         Command::Linearize { common, sweep: None, .. } => on_project(&common, &Request::Linearize),
@@ -106,6 +107,19 @@ fn new(folder: &Path) -> Result<u8, Failure> {
     let file = OutputFile { name: "project.toml".to_string(), bytes: STARTER.as_bytes().to_vec() };
     let path = write_as(&folder.join(&file.name), &file).map_err(|message| Failure::not_written(&message))?;
     say(&format!("Wrote {}. Next: phea check {0}\n", path.display()))?;
+    Ok(DONE)
+}
+
+/// The schema of the project file, printed or written into a folder.
+fn schema(out: Option<&Path>) -> Result<u8, Failure> {
+    let file = command::schema();
+    match out {
+        Some(folder) => {
+            let written = write(folder, &[file]).map_err(|message| Failure::not_written(&message))?;
+            say(&written_sentence(&written))?;
+        }
+        None => say(&String::from_utf8_lossy(&file.bytes))?,
+    }
     Ok(DONE)
 }
 

@@ -210,7 +210,7 @@ impl ResponseWish {
         v.optional(k, &mut self.zero);
         let k = key("pole", &ANGULAR_FREQUENCY, "The pole added to `lower`.").positive();
         v.optional(k, &mut self.pole);
-        if *self != ResponseWish::default() {
+        if v.names_everything() || *self != ResponseWish::default() {
             let words = &[
                 ("exact", ResponseRule::Exact),
                 ("five_percent", ResponseRule::FivePercent),

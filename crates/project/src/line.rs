@@ -281,7 +281,8 @@ impl HoseExpansion {
             (None, Some(measured), Some(pressure)) => HoseExpansion::Measured { measured, pressure },
             _ => {
                 let what = "`volumetric_expansion` with `volumetric_expansion_pressure`, or `volumetric_expansion_slope`,";
-                v.lacks(&["volumetric_expansion_slope"], what);
+                let measured = &["volumetric_expansion", "volumetric_expansion_pressure"];
+                v.lacks(&[measured, &["volumetric_expansion_slope"]], what);
                 HoseExpansion::default()
             }
         };

@@ -93,7 +93,18 @@ impl Listing {
     }
 }
 
+/// The keys of a variant.
+pub(crate) fn keys_of<T: Variants>(variant: &T) -> Vec<&'static str> {
+    let mut listing = Listing::of_everything();
+    variant.clone().visit(&mut listing);
+    listing.outermost
+}
+
 impl Visitor for Listing {
+    fn names_everything(&self) -> bool {
+        self.everything
+    }
+
     fn quantity(&mut self, key: Key, field: &mut f64) {
         self.list(key, key.dimension.name, key.default.is_none());
         self.number(key, field);

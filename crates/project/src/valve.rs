@@ -205,12 +205,12 @@ impl Valve {
         v.way(&["null_leakage"], &mut leakage, NullLeakage::visit);
         self.flow = ValveCoefficients::of_parts(edges, rating).unwrap_or_else(|| {
             let what = "`flow_coefficients`, or `nominal_flow` with `nominal_pressure_drop`,";
-            v.lacks(&[flows.name, "nominal_flow"], what);
+            v.lacks(&[&[flows.name], &["nominal_flow"]], what);
             ValveCoefficients::default()
         });
         self.leakage = ValveCoefficients::of_parts(leaking_edges, leakage).unwrap_or_else(|| {
             let what = "`leakage_coefficients`, or `null_leakage` with `null_leakage_pressure`,";
-            v.lacks(&[leaks.name, "null_leakage"], what);
+            v.lacks(&[&[leaks.name], &["null_leakage"]], what);
             ValveCoefficients::default()
         });
     }

@@ -25,6 +25,10 @@ pub(crate) trait Variants: Clone {
 
 /// How a table's description is carried out.
 pub(crate) trait Visitor: Sized {
+    /// Whether keys are named that a reader asks for only beside others.
+    fn names_everything(&self) -> bool {
+        false
+    }
     /// A number; required unless the key has a default.
     fn quantity(&mut self, key: Key, field: &mut f64);
     /// A number that may be absent.
@@ -80,8 +84,8 @@ pub(crate) trait Visitor: Sized {
         field: &mut Option<T>,
         visit: impl Fn(&mut T, &mut Self),
     );
-    /// Nothing that is needed is there: a reader says what, unless one of these keys is written, and was refused.
-    fn lacks(&mut self, _keys: &[&str], _what: &str) {}
+    /// Nothing that is needed is there: a reader says what, unless all keys of one of these ways to state it are written, and were refused.
+    fn lacks(&mut self, _ways: &[&[&'static str]], _what: &str) {}
     /// A table or, shorter, an array of its values in the order of its keys.
     fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
     /// An array of tables.

@@ -7,3 +7,4 @@ mod malformed;
 mod mutation;
 mod plausible;
 mod reading;
+mod schema;

@@ -14,6 +14,16 @@ impl Exponents {
     /// The dimension of a pure number.
     pub const NONE: Exponents = Exponents([0; 5]);
 
+    /// Of the power `halves`/2; `None` where one of them would be no half.
+    pub(crate) fn to_halves(self, halves: i8) -> Option<Exponents> {
+        let mut exponents = [0; 5];
+        for (power, exponent) in exponents.iter_mut().zip(self.0) {
+            let scaled = i32::from(exponent) * i32::from(halves);
+            *power = if scaled % 2 == 0 { i8::try_from(scaled / 2).ok()? } else { return None };
+        }
+        Some(Exponents(exponents))
+    }
+
     /// In SI base units, such as `kg/(m.s^2)`; `1` for a pure number.
     pub(crate) fn in_base_units(self) -> String {
         let symbols = ["kg", "m", "s", "V", "rad"];

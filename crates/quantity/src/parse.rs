@@ -105,7 +105,7 @@ fn unitless(text: &str, number: &Number, dimension: &Dimension) -> Result<f64, Q
 }
 
 /// An angular frequency may also be written 1/s.
-fn accepts(dimension: &Dimension, found: Exponents) -> bool {
+pub(crate) fn accepts(dimension: &Dimension, found: Exponents) -> bool {
     let rotation = Exponents::whole(0, 0, -1, 0, 1);
     let per_second = Exponents::whole(0, 0, -1, 0, 0);
     found == dimension.exponents || (dimension.exponents == rotation && found == per_second)
@@ -227,11 +227,7 @@ impl Product {
 
     /// To the power of `halves`/2.
     fn power(&self, halves: i32) -> Option<Product> {
-        let mut exponents = [0; 5];
-        for (power, exponent) in exponents.iter_mut().zip(self.exponents.0) {
-            let scaled = i32::from(exponent) * halves;
-            *power = if scaled % 2 == 0 { i8::try_from(scaled / 2).ok()? } else { return None };
-        }
+        let exponents = self.exponents.to_halves(i8::try_from(halves).ok()?)?;
         let mut result = Product::default();
         let half = halves % 2 != 0;
         if half {
@@ -246,7 +242,7 @@ impl Product {
             let factor = if halves > 0 { self.clone() } else { self.inverse() };
             result = result.times(&factor)?;
         }
-        result.exponents = Exponents(exponents);
+        result.exponents = exponents;
         Some(result)
     }
 

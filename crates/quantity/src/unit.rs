@@ -12,7 +12,7 @@ pub(crate) struct Unit {
     pub(crate) denominator: u64,
     pub(crate) ten: i32,
     pub(crate) turns: i32,
-    prefixes: bool,
+    pub(crate) prefixes: bool,
 }
 
 const fn unit(names: &'static [&'static str], exponents: Exponents, numerator: u64, ten: i32) -> Unit {
@@ -99,6 +99,16 @@ const PREFIXES: [(&str, i32); 12] = [
     ("G", 9),
     ("T", 12),
 ];
+
+/// Every unit but the pure number, without its prefixes.
+pub(crate) fn all() -> impl Iterator<Item = &'static Unit> {
+    UNITS.iter().filter(|unit| unit.names != ["1"])
+}
+
+/// Every prefix, each one letter.
+pub(crate) fn prefixes() -> impl Iterator<Item = &'static str> {
+    PREFIXES.iter().map(|(prefix, _)| *prefix)
+}
 
 /// The unit of that name, with its prefix worked in.
 pub(crate) fn find(name: &str) -> Option<Unit> {

@@ -3,11 +3,13 @@
 mod campaign;
 mod linearize;
 mod refusal;
+mod schema;
 mod simulate;
 
 pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
 pub use phea_engineering::error::ProcedureError;
 pub use refusal::{error_json, failure_json, refusal_json};
+pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};
 
 use phea_qft::family::Family;

@@ -2,18 +2,11 @@
 
 use super::{Layer, Reader};
 use crate::key::Key;
-use crate::listing::Listing;
+use crate::listing::keys_of;
 use crate::text::{Found, Place};
 use crate::tree::{Node, Value};
 use crate::visitor::Variants;
 use phea_quantity::spelling::nearest;
-
-/// The keys of a variant.
-pub(super) fn keys_of<T: Variants>(variant: &T) -> Vec<&'static str> {
-    let mut listing = Listing::of_everything();
-    variant.clone().visit(&mut listing);
-    listing.outermost
-}
 
 /// Which variants have a key, as in `it belongs to model "creeping" or "segments"`.
 fn belongs_to<T: Variants>(key: Key, name: &str, all: &[T]) -> String {

@@ -1,11 +1,11 @@
 //! What each description of a table does when it is read.
 
-use super::choice::keys_of;
 use super::{Hit, Layer, Reader};
 use crate::Origin;
 use crate::catalogue::Kind;
 use crate::formula::Formula;
 use crate::key::Key;
+use crate::listing::keys_of;
 use crate::text::Found;
 use crate::tree::{Node, Value};
 use crate::visitor::{Form, Kinds, Named, Shape, Variants, Visitor};
@@ -255,8 +255,9 @@ impl Visitor for Reader<'_> {
         }
     }
 
-    fn lacks(&mut self, keys: &[&str], what: &str) {
-        if !self.takes_absent() && !self.is_lost() && !keys.iter().any(|name| self.is_there(name)) {
+    fn lacks(&mut self, ways: &[&[&'static str]], what: &str) {
+        let refused = ways.iter().any(|keys| keys.iter().all(|name| self.is_there(name)));
+        if !self.takes_absent() && !self.is_lost() && !refused {
             let message = format!("missing {what}{}", self.of_table());
             self.findings.push(Found::error(self.place(), message).consequence());
         }

@@ -1,0 +1,96 @@
+"""Holds the schema of the project file against the reader.
+
+    python comparisons/compare_schema.py
+
+The program `schema_cases` (`cargo build -p phea-project --example schema_cases`) prints the schema and what the reader says of every project of
+`examples/`, of the valid and the malformed ones of the tests, and of thousands of mutations. The schema must accept all that the reader accepts,
+and refuse every malformed project but those of `UNSEEN`, whose fault is none of structure.
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tomllib
+
+import jsonschema
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+# What a schema cannot see, and the malformed projects that have nothing else wrong with them.
+UNSEEN = {
+    "two numbers, or two tables, against each other": """
+        controller_conjugate design_improper family_case_outside friction_static_below_coulomb line_stiffening_order operating_point_outside
+        operating_region physics_rod_thicker physics_rods_thicker physics_tank_above_supply piston_area_unequal_rods scenario_rows
+        scenario_rows_together scenario_start scenario_times scenario_twice sizing_range_reversed specification_band_reversed
+        specification_frequencies_empty specification_frequencies_falling specification_limit_table uncertainty_both_sides
+        uncertainty_log_zero uncertainty_order uncertainty_points uncertainty_reversed uncertainty_twice_counted valve_closed
+        valve_hysteresis valve_leakage_below_tare plant_correlation family_opposed specification_load_motion plant_with_sizing
+        line_model_pipe line_model_volume plant_case_incomplete family_measured_empty family_measured_and_grid
+    """.split(),
+    "numbers that a double cannot hold, infinity, and none": """
+        number_huge_hexadecimal number_too_large quantity_infinite quantity_nan quantity_too_large quantity_too_small
+    """.split(),
+    "what a formula says": """
+        controller_discrete controller_domain controller_element_sampled controller_formula controller_mixed controller_power
+        controller_product controller_zero_denominator plant_delay_name plant_delay_negative plant_delay_variable plant_division
+        plant_parameter plant_zero prefilter_continuous prefilter_not_polynomial sensor_discrete sensor_parameter
+        specification_limit_formula specification_limit_name specification_limit_decibel specification_limit_negative plant_delay_unit
+    """.split(),
+    "names of the catalogue, of numbers and of parameters": """
+        line_unknown_hose valve_unknown_model uncertainty_unknown uncertainty_dimension campaign_linear campaign_whole_number
+    """.split(),
+    "one way out of several, and what belongs to it": """
+        campaign_forms controller_half controller_no_form controller_two_forms line_model_inherited line_model_keys line_two_kinds
+        line_without_length piston_areas_and_diameter piston_missing piston_twice sizing_both_times specification_frequencies_missing
+        specification_limit_empty specification_limit_missing specification_margin_delay specification_margin_kind
+        specification_margin_mixed specification_margin_numerator specification_response_given specification_response_kind
+        specification_response_parts specification_tracking
+    """.split(),
+}
+
+
+def cases():
+    """The schema, and every case."""
+    target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    program = os.environ.get("SCHEMA_CASES", target / "debug/examples/schema_cases")
+    corpora = ["examples", "crates/project/tests/valid", "crates/project/tests/malformed"]
+    paths = [path for folder in corpora for path in sorted((ROOT / folder).rglob("*.toml"))]
+    printed = subprocess.run([program, *paths], capture_output=True, check=True, text=True).stdout
+    schema, *cases = [json.loads(line) for line in printed.splitlines()]
+    return schema["schema"], cases
+
+
+def main():
+    schema, every = cases()
+    jsonschema.Draft7Validator.check_schema(schema)
+    validator = jsonschema.Draft7Validator(schema)
+    unseen = {name for names in UNSEEN.values() for name in names}
+    wrong, accepted, refused = [], 0, 0
+    for case in every:
+        try:
+            project = tomllib.loads(case["text"])
+        except tomllib.TOMLDecodeError:
+            continue
+        name = pathlib.Path(case["name"]).stem
+        fault = next(validator.iter_errors(project), None)
+        if case["accepted"]:
+            accepted += 1
+            if fault:
+                wrong.append(f"{case['name']}: the reader accepts it, the schema does not: {list(fault.absolute_path)} {fault.message[:200]}")
+        elif "/malformed/" in case["name"]:
+            refused += 1
+            if (fault is None) != (name in unseen):
+                said = "; ".join(case["errors"])
+                wrong.append(f"{name}: {'refused' if fault else 'accepted'} by the schema ({said})")
+    committed = ROOT / "book/src/phea.schema.json"
+    if json.loads(committed.read_text()) != schema:
+        wrong.append(f"{committed} is not the schema of the code")
+    print("\n".join(wrong))
+    print(f"{accepted} accepted projects, {refused} malformed ones, {len(unseen)} of them beyond a schema")
+    return 1 if wrong or accepted < 250 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

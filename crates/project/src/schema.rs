@@ -1,0 +1,62 @@
+//! The JSON Schema of the project file, for editors, made from the descriptions that read it.
+//!
+//! It is of draft 7, the newest that the editors of TOML check with. What only numbers or several tables together decide is left to the reader:
+//! the schema accepts every file that the reader accepts, and refuses what is wrong with its structure.
+
+mod quantity;
+mod table;
+mod writer;
+
+use serde_json::{Value, json};
+
+use super::{Actuator, Project};
+use quantity::definitions;
+use writer::Writer;
+
+/// The JSON Schema of the project file.
+///
+/// # Example
+/// ```
+/// let schema = phea_project::schema();
+/// let pressure = &schema["properties"]["supply"]["properties"]["pressure"];
+/// assert_eq!(pressure["exclusiveMinimum"], 0);
+/// assert!(pressure["description"].as_str().is_some_and(|text| text.contains("70 bar")));
+/// ```
+pub fn schema() -> Value {
+    let mut writer = Writer::default();
+    let mut project = Project::default();
+    let table = writer.table_of(|writer| {
+        project.visit_system(writer);
+        project.visit_wishes(writer);
+        what_is_described(writer);
+    });
+    let mut schema = table.object();
+    if let Value::Object(members) = &mut schema {
+        members.insert("$schema".to_string(), json!("http://json-schema.org/draft-07/schema#"));
+        members.insert("title".to_string(), json!("Project file of phea"));
+        members
+            .insert("description".to_string(), json!("A rig, or any other plant, and what is wanted of it."));
+        members.insert("definitions".to_string(), definitions());
+    }
+    schema
+}
+
+/// Either an actuator, all of it, or a plant, or measured ones.
+fn what_is_described(writer: &mut Writer) {
+    let measured =
+        json!({ "required": ["family"], "properties": { "family": { "required": ["measured"] } } });
+    let plant = json!({ "required": ["plant"] });
+    let actuator: Vec<&str> = Actuator::REQUIRED.iter().chain(&["load"]).copied().collect();
+    let other: Vec<&str> = actuator.iter().chain(&["plant", "uncertainty"]).copied().collect();
+    writer.rule(json!({
+        "if": measured,
+        "then": without(&other),
+        "else": { "if": plant, "then": without(&actuator), "else": { "required": Actuator::REQUIRED } },
+    }));
+}
+
+/// None of these keys.
+fn without(names: &[&str]) -> Value {
+    let refused = names.iter().map(|name| ((*name).to_string(), Value::Bool(false)));
+    json!({ "properties": refused.collect::<serde_json::Map<_, _>>() })
+}

@@ -1,0 +1,280 @@
+//! What each description of a table becomes in the schema.
+
+use serde_json::{Value, json};
+
+use super::quantity::{ANY, described, number, whole};
+use super::table::{Table, any_of};
+use crate::catalogue::Kind;
+use crate::formula::Formula;
+use crate::key::Key;
+use crate::listing::{Listing, keys_of};
+use crate::visitor::{Form, Kinds, Named, Shape, Variants, Visitor};
+use crate::{HoseProperties, Valve};
+
+/// Puts the schema together, table by table.
+#[derive(Default)]
+pub(super) struct Writer {
+    /// The tables that are open, the innermost last.
+    tables: Vec<Table>,
+    /// The form in which values that have several are described now.
+    form: Option<Form>,
+    /// Whether the present table has such a value.
+    has_forms: bool,
+}
+
+const FORMS: [Form; 3] = [Form::Number, Form::Text, Form::Table];
+
+impl Writer {
+    /// A table, described once for each form of its values.
+    pub(super) fn table_of(&mut self, mut visit: impl FnMut(&mut Self)) -> Table {
+        let outside = (self.form, self.has_forms);
+        self.tables.push(Table::default());
+        for form in FORMS {
+            (self.form, self.has_forms) = (Some(form), false);
+            visit(self);
+            if !self.has_forms {
+                break;
+            }
+        }
+        (self.form, self.has_forms) = outside;
+        self.tables.pop().unwrap_or_default()
+    }
+
+    fn described_by<T: Default>(&mut self, visit: impl Fn(&mut T, &mut Self)) -> Table {
+        self.table_of(|writer| visit(&mut T::default(), writer))
+    }
+
+    fn present(&mut self, change: impl FnOnce(&mut Table)) {
+        if let Some(table) = self.tables.last_mut() {
+            change(table);
+        }
+    }
+
+    pub(super) fn rule(&mut self, rule: Value) {
+        self.present(|table| table.rule(rule));
+    }
+
+    /// A key whose value is described in full by `schema`.
+    fn property(&mut self, key: Key, mut schema: Value, required: bool) {
+        if schema.get("description").is_none() {
+            schema["description"] = json!(key.doc);
+        }
+        self.present(|table| {
+            table.property(key.name, schema);
+            if required {
+                table.require(key.name);
+            }
+        });
+    }
+}
+
+/// A list, each of whose items is so.
+fn list(items: &Value) -> Value {
+    json!({ "type": "array", "items": items })
+}
+
+fn list_of_two(items: &Value) -> Value {
+    json!({ "type": "array", "items": items, "minItems": 2, "maxItems": 2 })
+}
+
+/// The keys that an entry of the catalogue may have.
+fn keys_of_entry(kind: Kind) -> Vec<&'static str> {
+    let mut listing = Listing::of_everything();
+    match kind {
+        Kind::Hose => HoseProperties::default().visit(&mut listing),
+        Kind::Valve => Valve::default().visit(&mut listing),
+    }
+    listing.outermost
+}
+
+impl Visitor for Writer {
+    fn names_everything(&self) -> bool {
+        true
+    }
+
+    fn quantity(&mut self, key: Key, _field: &mut f64) {
+        self.property(key, described(key, number(key)), key.default.is_none());
+    }
+
+    fn optional(&mut self, key: Key, _field: &mut Option<f64>) {
+        self.property(key, described(key, number(key)), false);
+    }
+
+    fn pair(&mut self, key: Key, _field: &mut Option<[f64; 2]>) {
+        self.property(key, described(key, list_of_two(&number(key))), false);
+    }
+
+    fn quantities(&mut self, key: Key, _field: &mut Vec<f64>, required: bool) {
+        self.property(key, described(key, list(&number(key))), required);
+    }
+
+    fn complexes(&mut self, key: Key, _field: &mut Vec<[f64; 2]>) {
+        let part = number(key);
+        self.property(key, list(&json!({ "anyOf": [part, list_of_two(&part)] })), false);
+    }
+
+    fn count(&mut self, key: Key, _field: &mut u32) {
+        self.property(key, described(key, whole(key)), key.default.is_none());
+    }
+
+    fn optional_count(&mut self, key: Key, _field: &mut Option<u32>) {
+        self.property(key, described(key, whole(key)), false);
+    }
+
+    fn flag(&mut self, key: Key, field: &mut bool) {
+        self.property(key, json!({ "type": "boolean", "default": *field }), false);
+    }
+
+    fn switch(&mut self, key: Key, _field: &mut bool) {
+        self.property(key, json!({ "type": "boolean", "default": true }), false);
+    }
+
+    fn text(&mut self, key: Key, _field: &mut Option<String>, required: bool) {
+        self.property(key, json!({ "type": "string" }), required);
+    }
+
+    fn texts(&mut self, key: Key, _field: &mut Vec<String>) {
+        self.property(key, list(&json!({ "type": "string" })), false);
+    }
+
+    fn choice<T: Copy + PartialEq>(
+        &mut self,
+        key: Key,
+        words: &'static [(&'static str, T)],
+        field: &mut T,
+        required: bool,
+    ) {
+        let all: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+        let mut schema = json!({ "enum": all });
+        let default = words.iter().find(|(_, value)| !required && value == field);
+        if let Some((word, _)) = default {
+            schema["default"] = json!(word);
+        }
+        self.property(key, schema, required);
+    }
+
+    fn variant<T: Variants>(&mut self, key: Key, field: &mut T, required: bool) {
+        let all = field.all();
+        let words: Vec<&str> = all.iter().map(T::word).collect();
+        let mut schema = json!({ "enum": words });
+        if !required {
+            schema["default"] = json!(field.word());
+        }
+        self.property(key, schema, required);
+        for one in &all {
+            self.present(Table::begin_condition);
+            one.clone().visit(self);
+            let own = keys_of(one);
+            for name in all.iter().filter(|_| T::STRICT).flat_map(keys_of) {
+                if !own.contains(&name) {
+                    self.present(|table| table.refuse(name));
+                }
+            }
+            let mut condition = json!({ "properties": { key.name: { "const": one.word() } } });
+            if required || one.word() != field.word() {
+                condition["required"] = json!([key.name]);
+            }
+            self.present(|table| table.end_condition(&condition));
+        }
+    }
+
+    fn formula(&mut self, key: Key, _shape: Shape, _field: &mut Option<Formula>, required: bool) {
+        self.property(key, json!({ "type": ["string", "number"] }), required);
+    }
+
+    fn catalogue(&mut self, key: Key, kind: Kind, _field: &mut Option<String>) {
+        self.present(|table| table.catalogue = Some((key.name, keys_of_entry(kind))));
+        self.property(key, json!({ "type": "string" }), false);
+    }
+
+    fn table<T: Default>(&mut self, key: Key, _field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
+        let table = self.described_by(visit);
+        self.property(key, table.object(), false);
+    }
+
+    fn needed_table<T: Default>(&mut self, key: Key, _field: &mut T, visit: impl Fn(&mut T, &mut Self)) {
+        let table = self.described_by(visit);
+        self.property(key, table.object(), true);
+    }
+
+    fn part<T: Default>(&mut self, _field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
+        visit(&mut T::default(), self);
+    }
+
+    fn way<T: Default>(
+        &mut self,
+        chosen_by: &'static [&'static str],
+        field: &mut Option<T>,
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        // as if nothing chose it, so that what is needed instead is said
+        *field = None;
+        self.present(Table::begin_condition);
+        visit(&mut T::default(), self);
+        self.present(|table| table.end_condition(&any_of(chosen_by)));
+    }
+
+    fn lacks(&mut self, ways: &[&[&'static str]], _what: &str) {
+        self.present(|table| table.require_one(ways));
+    }
+
+    fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
+        *field = None;
+        let table = self.described_by(visit);
+        self.property(key, json!({ "anyOf": [table.object(), table.array()] }), false);
+    }
+
+    fn tables<T: Default>(&mut self, key: Key, _field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
+        let table = self.described_by(visit);
+        self.property(key, list(&table.object()), false);
+    }
+
+    fn one_or_more<T: Default>(&mut self, key: Key, _field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
+        let table = self.described_by(visit).object();
+        self.property(key, json!({ "anyOf": [table, list(&table)] }), false);
+    }
+
+    fn dictionary<T: Default>(
+        &mut self,
+        key: Key,
+        _name_of: fn(&T) -> &str,
+        _field: &mut Vec<T>,
+        visit: impl Fn(&mut T, Named<'_>, &mut Self),
+    ) {
+        let named = Named { name: "NAME", key: Key { dimension: &ANY, ..key } };
+        let table = self.described_by(|value: &mut T, writer: &mut Self| visit(value, named, writer));
+        let object = table.object();
+        self.property(key, json!({ "type": "object", "additionalProperties": object }), false);
+    }
+
+    fn numbers(&mut self, key: Key, _field: &mut Vec<(String, f64)>) {
+        let value = number(Key { dimension: &ANY, ..key });
+        self.present(|table| table.others = value);
+    }
+
+    /// What a table lacks each of its sides may have, so that nothing is required where there is one.
+    fn sides<T: Default + Clone + PartialEq>(
+        &mut self,
+        keys: [Key; 2],
+        _kinds: &'static [Kinds],
+        _fields: &mut [T; 2],
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        let side = self.described_by(visit);
+        let names = keys.map(|key| key.name);
+        for key in keys {
+            self.property(key, side.loose(), false);
+        }
+        self.rule(json!({ "if": { "not": any_of(&names) }, "then": side.rules() }));
+        self.present(|table| {
+            for (name, forms) in side.into_properties() {
+                forms.into_iter().for_each(|form| table.property(name, form));
+            }
+        });
+    }
+
+    fn form(&mut self, _key: Key, field: Form) -> Form {
+        self.has_forms = true;
+        self.form.unwrap_or(field)
+    }
+}
