@@ -43,7 +43,7 @@ UNSEEN = {
     """.split(),
     "one way out of several, and what belongs to it": """
         campaign_forms controller_half controller_no_form controller_two_forms line_model_inherited line_model_keys line_two_kinds
-        line_without_length piston_areas_and_diameter piston_missing piston_twice sizing_both_times specification_frequencies_missing
+        line_without_length specification_frequencies_missing
         specification_limit_empty specification_limit_missing specification_margin_delay specification_margin_kind
         specification_margin_mixed specification_margin_numerator specification_response_given specification_response_kind
         specification_response_parts specification_tracking

@@ -92,10 +92,12 @@ impl Cylinder {
         v.optional(k.positive(), &mut self.piston_area);
         let k = key("piston_areas", &AREA, "Areas the pressure acts on in chamber A and in chamber B.");
         v.pair(k.positive(), &mut self.piston_areas);
+        v.one_of(&["piston_areas", "piston_diameter", "piston_area"], true);
         let k = key("rod_diameter", &LENGTH, "Diameter of the rod through both chambers.").not_negative();
         v.optional(k, &mut self.rod_diameter);
         let k = key("rod_diameters", &LENGTH, "Diameters of the rods in chamber A and in chamber B.");
         v.pair(k.not_negative(), &mut self.rod_diameters);
+        v.one_of(&["rod_diameter", "rod_diameters"], false);
         let k = key("stroke", &LENGTH, "Stroke; x = 0 is the end of chamber A.").positive();
         v.quantity(k, &mut self.stroke);
         let k = key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive();
@@ -104,6 +106,7 @@ impl Cylinder {
         v.optional(k.not_negative(), &mut self.dead_volume);
         let k = key("dead_volumes", &VOLUME, "Dead volumes of chamber A and of chamber B.").not_negative();
         v.pair(k, &mut self.dead_volumes);
+        v.one_of(&["dead_volume", "dead_volumes"], false);
         let k = key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage across the piston.");
         v.optional(k.positive(), &mut self.internal_leakage);
         let k = plain("end_stops", "What the piston meets at both ends; absent: nothing stops it there.");

@@ -1,4 +1,7 @@
 //! A project's text with another controller and prefilter in it, everything else byte for byte as it was.
+//!
+//! It rests on the tokens of `toml_parser`. The crate `toml_edit` (0.25) does not keep every byte: it drops all carriage returns, ends the last line
+//! where it had no end, and does not keep the order of dotted keys. Settings (`--set`) change the tree that was read, whose places errors name, and no text.
 
 mod statement;
 mod surgery;

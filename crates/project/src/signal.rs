@@ -239,6 +239,7 @@ impl Amplitudes {
         v.optional(size, &mut equal);
         let k = key("amplitudes", size.dimension, "Of each sine of a multisine.").positive();
         v.quantities(k, &mut each, false);
+        v.one_of(&["amplitude", "amplitudes"], true);
         *self = equal.map_or(Amplitudes::Each(each), Amplitudes::Equal);
     }
 }

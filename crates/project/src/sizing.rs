@@ -60,6 +60,7 @@ impl Speed {
         let k = key("time_constant", &TIME, "Time constant of the closed loop; or `settling_time`.");
         v.optional(k.positive(), &mut constant);
         v.way(&["settling_time"], &mut settling, Settling::visit);
+        v.one_of(&["time_constant", "settling_time"], true);
         *self = constant.map_or(Speed::Settling(settling.unwrap_or_default()), Speed::TimeConstant);
     }
 }

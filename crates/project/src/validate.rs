@@ -106,24 +106,6 @@ impl Check<'_, '_> {
         self.reader.findings.push(Found::error(place, message).consequence());
     }
 
-    /// Exactly one of two keys of a table must be there.
-    fn one_of(&mut self, path: &str, names: [&str; 2], present: [bool; 2]) {
-        let [first, second] = names;
-        let written = names.map(|name| self.declared(&format!("{path}.{name}")));
-        match [present[0] || written[0], present[1] || written[1]] {
-            [true, true] => {
-                let message = format!("both `{first}` and `{second}`: one says it all");
-                self.error(&format!("{path}.{second}"), message);
-            }
-            [false, false] if self.has_table(path) => {
-                let place = self.place(path);
-                let message = format!("missing `{first}` or `{second}` in [{path}]");
-                self.reader.findings.push(Found::error(place, message).consequence());
-            }
-            _ => {}
-        }
-    }
-
     /// Two numbers must be in order.
     fn ascending(&mut self, path: &str, pair: Option<[f64; 2]>) {
         if let Some([low, high]) = pair

@@ -86,6 +86,8 @@ pub(crate) trait Visitor: Sized {
     );
     /// Nothing that is needed is there: a reader says what, unless all keys of one of these ways to state it are written, and were refused.
     fn lacks(&mut self, _ways: &[&[&'static str]], _what: &str) {}
+    /// Of these keys of the present table at most one may be written, and one must be if `needed`.
+    fn one_of(&mut self, _keys: &'static [&'static str], _needed: bool) {}
     /// A table or, shorter, an array of its values in the order of its keys.
     fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
     /// An array of tables.

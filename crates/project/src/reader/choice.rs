@@ -82,6 +82,23 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Refuses every key that is written beside an earlier one, unless its value was refused already.
+    pub(super) fn at_most_one(&mut self, keys: &[&'static str]) {
+        let mut written = keys.iter().filter_map(|name| Some((*name, self.written(name)?)));
+        let Some((first, _)) = written.next() else { return };
+        for (name, place) in written.collect::<Vec<_>>() {
+            if !self.findings.has_error_within(place) {
+                let message = format!("both `{first}` and `{name}`: one says it all");
+                self.findings.push(Found::error(place, message));
+            }
+        }
+    }
+
+    /// Whether one of these keys is there, or none has to be.
+    pub(super) fn takes_absent_of(&mut self, keys: &[&'static str]) -> bool {
+        keys.iter().any(|name| self.is_there(name)) || self.takes_absent()
+    }
+
     /// Whether a key of the present table has a value, from itself or what it inherits.
     pub(super) fn is_there(&self, name: &str) -> bool {
         let layers = self.frames.last().map(|frame| frame.layers.as_slice()).unwrap_or_default();

@@ -263,6 +263,19 @@ impl Visitor for Reader<'_> {
         }
     }
 
+    fn one_of(&mut self, keys: &'static [&'static str], needed: bool) {
+        if self.looks_elsewhere() {
+            return;
+        }
+        self.at_most_one(keys);
+        if needed && !self.takes_absent_of(keys) {
+            let (last, others) = keys.split_last().map_or(("", keys), |(last, others)| (*last, others));
+            let others = others.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+            let message = format!("missing {others} or `{last}`{}", self.of_table());
+            self.findings.push(Found::error(self.place(), message).consequence());
+        }
+    }
+
     fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
         let Some(hit) = self.find(key) else { return };
         let path = self.path(key.name);

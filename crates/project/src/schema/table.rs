@@ -79,6 +79,13 @@ impl Table {
         self.rule(json!({ "anyOf": all }));
     }
 
+    /// One of several keys and no other of them; or none, unless one is needed.
+    pub(super) fn require_only_one(&mut self, names: &[&str], needed: bool) {
+        let each = names.iter().map(|name| json!({ "required": [name] }));
+        let none = (!needed).then(|| json!({ "not": any_of(names) }));
+        self.rule(json!({ "oneOf": each.chain(none).collect::<Vec<_>>() }));
+    }
+
     pub(super) fn refuse(&mut self, name: &'static str) {
         if let Some(block) = self.blocks.last_mut().filter(|block| !block.refused.contains(&name)) {
             block.refused.push(name);

@@ -218,6 +218,10 @@ impl Visitor for Writer {
         self.present(|table| table.require_one(ways));
     }
 
+    fn one_of(&mut self, keys: &'static [&'static str], needed: bool) {
+        self.present(|table| table.require_only_one(keys, needed));
+    }
+
     fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
         *field = None;
         let table = self.described_by(visit);

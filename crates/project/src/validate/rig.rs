@@ -53,14 +53,12 @@ fn valve(valve: &Valve, supply: &Supply, check: &mut Check<'_, '_>) {
 
 fn cylinder(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
     piston(cylinder, check);
-    let rods = [cylinder.rod_diameter.is_some(), cylinder.rod_diameters.is_some()];
     // an area has its rods subtracted already
     let by_area = cylinder.piston_area.is_some() || cylinder.piston_areas.is_some();
-    if !by_area || rods.contains(&true) {
-        check.one_of("cylinder", ["rod_diameter", "rod_diameters"], rods);
-    }
-    if cylinder.dead_volume.is_some() && cylinder.dead_volumes.is_some() {
-        check.error("cylinder.dead_volumes", "both `dead_volume` and `dead_volumes`: one says it all");
+    if !by_area
+        && !["rod_diameter", "rod_diameters"].iter().any(|name| check.declared(&format!("cylinder.{name}")))
+    {
+        check.missing("cylinder", "rod_diameter", "missing `rod_diameter` or `rod_diameters` in [cylinder]");
     }
     let too_thick = |piston: f64| cylinder.rod_diameters_m().iter().any(|rod| *rod >= piston);
     if cylinder.piston_diameter.is_some_and(too_thick) {
@@ -73,24 +71,8 @@ fn cylinder(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
     }
 }
 
-/// One of diameter, common area and two areas; one area does for a rod through both chambers only.
+/// One area does for a rod through both chambers only.
 fn piston(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
-    if cylinder.piston_areas.is_some() {
-        for (name, present) in [
-            ("piston_diameter", cylinder.piston_diameter.is_some()),
-            ("piston_area", cylinder.piston_area.is_some()),
-        ] {
-            if present {
-                check.error(
-                    &format!("cylinder.{name}"),
-                    format!("both `piston_areas` and `{name}`: one says it all"),
-                );
-            }
-        }
-        return;
-    }
-    let area = [cylinder.piston_diameter.is_some(), cylinder.piston_area.is_some()];
-    check.one_of("cylinder", ["piston_diameter", "piston_area"], area);
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
     if cylinder.piston_area.is_some() && rod_a != rod_b {
         let message = "with unequal rods `piston_area` is not the same in both chambers: give `piston_diameter`, or `piston_areas`";

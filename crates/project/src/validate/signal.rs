@@ -53,7 +53,6 @@ fn one_signal(signal: &Signal, unit: SignalUnit, path: &str, check: &mut Check<'
 }
 
 fn multisine(sines: &Multisine, path: &str, check: &mut Check<'_, '_>) {
-    check.one_of(path, ["amplitude", "amplitudes"], [false; 2]);
     check.increasing(&format!("{path}.frequencies"), &sines.frequencies);
     let count = sines.frequencies.len();
     if count > MOST_SINES {

@@ -39,7 +39,6 @@ pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut 
 }
 
 fn sizing(sizing: &Sizing, check: &mut Check<'_, '_>) {
-    check.one_of("sizing", ["time_constant", "settling_time"], [false; 2]);
     check.ascending("sizing.oil_velocity", sizing.oil_velocity);
     check.ascending("sizing.hose_length", sizing.hose_length);
     if let (Some(minimum), Some(maximum)) = (sizing.minimum_gain, sizing.maximum_gain)
