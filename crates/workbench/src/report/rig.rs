@@ -1,8 +1,7 @@
 //! The chapter on the rig: its circuit, drawn from the project, and what is declared.
 
-use maud::{Markup, html};
-
-use super::chapter::{Chapter, cell, place, table};
+use super::chapter::Chapter;
+use crate::document::{Document, Table};
 use crate::figure::{
     ControllerSymbol, Environment, Figure, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, Words,
     schematic,
@@ -12,12 +11,10 @@ use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, 
 use crate::rig::Rig;
 
 pub(super) fn chapter(project: &Project, actuator: &project::Actuator, rig: &Rig) -> Chapter {
-    let figures = vec![circuit(project, actuator)];
-    let body = html! {
-        (place(&figures[0]))
-        (facts(actuator, rig))
-    };
-    Chapter { anchor: "rig", title: "The rig", body, figures }
+    let mut out = Document::default();
+    out.figures([circuit(project, actuator)]);
+    out.table(facts(actuator, rig));
+    Chapter::of("rig", "The rig", out)
 }
 
 fn shown(value: f64, dimension: &Dimension) -> String {
@@ -164,7 +161,7 @@ fn polynomial(text: &str) -> String {
     if spaced.contains(['+', '-', ' ']) { format!("({spaced})") } else { spaced }
 }
 
-fn facts(actuator: &project::Actuator, rig: &Rig) -> Markup {
+fn facts(actuator: &project::Actuator, rig: &Rig) -> Table {
     let components = rig.actuator.components();
     let mut rows = vec![
         (
@@ -194,8 +191,7 @@ fn facts(actuator: &project::Actuator, rig: &Rig) -> Markup {
         rows.push(("line A", line(&actuator.line.a).rows.join(", ")));
         rows.push(("line B", line(&actuator.line.b).rows.join(", ")));
     }
-    let rows: Vec<Vec<Markup>> = rows.into_iter().map(|(name, text)| vec![cell(name), cell(text)]).collect();
-    table(&["component", "declared"], 9, &rows)
+    Table::new(["component", "declared"]).with(rows.into_iter().map(|(name, text)| [name.to_string(), text]))
 }
 
 fn valve_words(actuator: &project::Actuator) -> String {

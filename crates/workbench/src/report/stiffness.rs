@@ -1,11 +1,10 @@
 //! The chapter on stiffness over the stroke, Figure 6.4, in both models.
 
-use maud::html;
 use phea_hydraulics::line::Member;
 use phea_hydraulics::stiffness::StiffnessModel;
 
-use super::chapter::{Chapter, place};
-use crate::document::prose;
+use super::chapter::Chapter;
+use crate::document::Document;
 use crate::figure::{Figure, StiffnessCurve, StiffnessInput, Words, stiffness_over_stroke};
 use crate::linearize::{Linearization, stiffness_at, stiffness_sentence};
 use crate::rig::Rig;
@@ -15,17 +14,12 @@ use crate::sizing::model_name;
 const POSITIONS: u32 = 120;
 
 pub(super) fn chapter(rig: &Rig, linearization: &Linearization) -> Chapter {
-    let figures = vec![figure(rig)];
     let declared = model_name(rig.actuator.components().stiffness_model);
-    let body = html! {
-        p { (prose(&stiffness_sentence(&linearization.stiffness_models))) }
-        p {
-            "This project declares " code { (declared) } ". The thesis' tables are made with " code { "uniform" }
-            "; a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its sheet says, so " code { "by_volume" } " is what a rig will show."
-        }
-        (place(&figures[0]))
-    };
-    Chapter { anchor: "stiffness", title: "Stiffness over the stroke", body, figures }
+    let mut out = Document::default();
+    out.explanation(stiffness_sentence(&linearization.stiffness_models));
+    out.explanation(format!("This project declares `{declared}`. The thesis' tables are made with `uniform`; a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its sheet says, so `by_volume` is what a rig will show."));
+    out.figures([figure(rig)]);
+    Chapter::of("stiffness", "Stiffness over the stroke", out)
 }
 
 fn figure(rig: &Rig) -> Figure {
