@@ -2,9 +2,10 @@
 
     python comparisons/compare_schema.py
 
-The program `schema_cases` (`cargo build -p phea-project --example schema_cases`) prints the schema and what the reader says of every project of
-`examples/`, of the valid and the malformed ones of the tests, and of thousands of mutations. The schema must accept all that the reader accepts,
-and refuse every malformed project but those of `UNSEEN`, whose fault is none of structure.
+The program `schema_cases` of the package phea-project, or the one that the variable SCHEMA_CASES names, prints the schema
+and the reader's verdict on every project of `examples/`, on the valid and the malformed projects of the tests, and on
+thousands of mutations. The schema must accept all projects that the reader accepts, and refuse every malformed project
+except those of `UNSEEN`, which a schema cannot refuse.
 """
 
 import json
@@ -53,11 +54,11 @@ UNSEEN = {
 
 def cases():
     """The schema, and every case."""
-    target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
-    program = os.environ.get("SCHEMA_CASES", target / "debug/examples/schema_cases")
+    built = os.environ.get("SCHEMA_CASES")
+    command = [built] if built else ["cargo", "run", "--quiet", "-p", "phea-project", "--example", "schema_cases", "--"]
     corpora = ["examples", "crates/project/tests/valid", "crates/project/tests/malformed"]
     paths = [path for folder in corpora for path in sorted((ROOT / folder).rglob("*.toml"))]
-    printed = subprocess.run([program, *paths], capture_output=True, check=True, text=True).stdout
+    printed = subprocess.run([*command, *paths], cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True).stdout
     schema, *cases = [json.loads(line) for line in printed.splitlines()]
     return schema["schema"], cases
 

@@ -15,7 +15,7 @@ fn findings_read_as_sentences() {
         plant: plant.clone(),
         sensitivity: SharedLimit { specification: 0, limit: 0.3 },
         complementary: SharedLimit { specification: 1, limit: 0.5 },
-        relaxation_db: 20.0 * 1.25_f64.log10(),
+        relaxation_db: 1.9382, // 20 lg 1.25
     };
     let text = Explanation::of(&sum).sentence;
     assert!(text.contains("specifications 1 and 2") && text.contains("1.938 dB"), "{text}");
