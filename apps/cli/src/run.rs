@@ -256,9 +256,9 @@ fn written_sentence(written: &[PathBuf]) -> String {
     match written {
         [] => String::new(),
         [only] => format!("Wrote {}\n", only.display()),
-        [first, _] => format!("Wrote {} and one more file beside it\n", first.display()),
+        [first, _] => format!("Wrote {} and one more file next to it\n", first.display()),
         [first, more @ ..] => {
-            format!("Wrote {} and {} more files beside it\n", first.display(), more.len())
+            format!("Wrote {} and {} more files next to it\n", first.display(), more.len())
         }
     }
 }

@@ -102,7 +102,7 @@ impl Cylinder {
         v.quantity(k, &mut self.stroke);
         let k = key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive();
         v.quantity(k, &mut self.moving_mass);
-        let k = key("dead_volume", &VOLUME, "Volume of each chamber beside the swept volume and the line.");
+        let k = key("dead_volume", &VOLUME, "Volume of each chamber besides the swept volume and the line.");
         v.optional(k.not_negative(), &mut self.dead_volume);
         let k = key("dead_volumes", &VOLUME, "Dead volumes of chamber A and of chamber B.").not_negative();
         v.pair(k, &mut self.dead_volumes);

@@ -108,7 +108,7 @@ impl Design {
         v.count(k.not_negative().at_most(MAXIMUM_ORDER).or(3.0), &mut self.prefilter_maximum_order);
         let k = key("seed", &RATIO, "What the random starting points begin with.").not_negative();
         v.count(k.or(1.0), &mut self.seed);
-        let doc = "Delay beyond that of the loop which every plant must bear.";
+        let doc = "Delay beyond that of the loop that every plant must tolerate.";
         let k = key("minimum_delay_margin", &TIME, doc).not_negative().or(0.0);
         v.quantity(k, &mut self.minimum_delay_margin);
         v.pair(key("gain", &RATIO, "Least and greatest gain of `structure`."), &mut self.gain);

@@ -65,7 +65,7 @@ pub struct Case {
 
 impl Family {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.flag(plain("grid", "The grid of [uncertainty], beside other members."), &mut self.grid);
+        v.flag(plain("grid", "The grid of [uncertainty], in addition to other members."), &mut self.grid);
         v.flag(plain("vertices", "All corners of the box."), &mut self.vertices);
         v.table(plain("random", "Points of the box drawn at random."), &mut self.random, Random::visit);
         v.tables(plain("cases", "Plants by their parameters."), &mut self.cases, Case::visit);

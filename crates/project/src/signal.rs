@@ -174,7 +174,8 @@ impl Variants for Written {
                 v.quantity(key("at", &TIME, "When a step comes.").not_negative(), at);
                 v.quantity(level, value);
                 if self.unit.published {
-                    let doc = "Metrics somebody published of this step, for the report to set beside.";
+                    let doc =
+                        "Published metrics of this step, which the report prints next to the computed ones.";
                     v.table(plain("published", doc), published, Published::visit);
                 }
             }

@@ -253,7 +253,7 @@ impl Converter<'_> {
         let value: f64 = text.parse().unwrap_or(f64::NAN);
         let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
         if value == 0.0 && mantissa.contains(|c: char| c.is_ascii_digit() && c != '0') {
-            let message = "the number is too small to be told from zero";
+            let message = "the number is too small to be distinguished from zero";
             self.findings.push(Found::error(place, message));
         }
         self.check(value, place, infinite)

@@ -78,7 +78,7 @@ pub enum Irresolution {
     Linear(LinearError),
     /// A closed-loop pole lies so near the boundary of stability that rounding hides its side.
     #[error(
-        "a closed-loop pole near {} rad/s cannot be told from the boundary of stability",
+        "a closed-loop pole near {} rad/s cannot be distinguished from the boundary of stability",
         rounded(*frequency_rad_per_s)
     )]
     NearBoundary {
@@ -155,7 +155,7 @@ pub enum Irresolution {
     },
     /// What the loop does below the first measured point cannot be told from it.
     #[error(
-        "below {} rad/s, where the measurement begins, the loop's integrators cannot be told",
+        "below {} rad/s, where the measurement begins, the loop's integrators cannot be identified",
         rounded(*frequency_rad_per_s)
     )]
     LowEnd {

@@ -320,6 +320,6 @@ fn checks_read_as_sentences() {
     let kept = tracking_upper(&UPPER, ExtraRoot::None, Translation::Exact).unwrap().check.to_string();
     assert_eq!(
         kept,
-        "wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself keeps to it"
+        "wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself satisfies it"
     );
 }

@@ -196,7 +196,10 @@ impl Number {
         let value = finite(if self.negative { -magnitude } else { magnitude }, text)?;
         let nothing = self.digits.chars().all(|digit| digit == '0');
         if value == 0.0 && !nothing {
-            return Err(QuantityError::new("the number is too small to be told from zero", 0..text.len()));
+            return Err(QuantityError::new(
+                "the number is too small to be distinguished from zero",
+                0..text.len(),
+            ));
         }
         Ok(value)
     }

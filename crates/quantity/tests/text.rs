@@ -97,7 +97,7 @@ fn refusals_say_what_is_right() {
         Some("write the decimal sign as a point and no separators"),
     );
     refuse("1e400 bar", &PRESSURE, "the number is too large", None);
-    refuse("1e-400 bar", &PRESSURE, "the number is too small to be told from zero", None);
+    refuse("1e-400 bar", &PRESSURE, "the number is too small to be distinguished from zero", None);
     refuse("nan bar", &PRESSURE, "a quantity begins with a number", None);
     refuse(
         "1 m3/s.Pa",

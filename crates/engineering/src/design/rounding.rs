@@ -60,7 +60,7 @@ impl Rounding {
     pub fn sentences(&self) -> Vec<String> {
         let effects = match &self.effects {
             Ok(effects) => effects,
-            Err(reason) => return vec![format!("what the converters do cannot be told: {reason}")],
+            Err(reason) => return vec![format!("the effect of the converters is unknown: {reason}")],
         };
         let mut sentences: Vec<String> = self
             .each()

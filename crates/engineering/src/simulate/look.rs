@@ -80,6 +80,12 @@ impl<'a> Looking<'a> {
         }
     }
 
+    /// Allocates memory for this many looks at once.
+    pub(super) fn expecting(mut self, looks: f64) -> Looking<'a> {
+        self.record.reserve(looks as usize);
+        self
+    }
+
     /// What was seen, its table finished.
     ///
     /// # Errors

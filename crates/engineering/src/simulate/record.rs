@@ -70,6 +70,15 @@ impl Record {
         columns::signal(self, name)
     }
 
+    /// Allocates memory for this many looks at once, but for no more than are kept of a long run.
+    pub(super) fn reserve(&mut self, looks: usize) {
+        let looks = looks.min(MOST_KEPT + 1);
+        self.times_s.reserve(looks);
+        self.control_v.reserve(looks);
+        self.signals.reserve(looks);
+        self.of_loop.reserve(looks);
+    }
+
     /// Takes the look of this number, counted from zero, or leaves it out.
     pub(super) fn take(&mut self, number: u64, look: &Look) {
         if !number.is_multiple_of(self.looks_apart) {

@@ -167,8 +167,8 @@ pub(super) fn run(
     inputs.extend(course.machine_inputs());
     let drive = InputSchedule { duration_s: scenario.duration, output_step_s: look_s, inputs };
     let band = scenario.settling_band_percent;
-    let mut looking =
-        Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
+    let looking = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
+    let mut looking = looking.expecting(scenario.duration / look_s + 2.0);
     let sampler = match &bench.control {
         Control::Continuous(_) | Control::Open(_) => None,
         Control::Sampled(sampled) => {

@@ -188,7 +188,7 @@ fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<F
         None => warns(
             findings,
             format!(
-                "the catalogue gives no working pressure: the hose must bear {} bar with surge ({} bar supply)",
+                "the catalogue gives no working pressure: the hose must withstand {} bar with surge ({} bar supply)",
                 bar(peak),
                 bar(problem.supply_pressure)
             ),

@@ -68,7 +68,7 @@ fn part(part: &StructurePart, path: &str, check: &mut Check<'_, '_>) {
 /// An element that acts, in s as every factor is.
 fn fixed(element: &Element, path: &str, check: &mut Check<'_, '_>) {
     if !element.enabled {
-        check.error(&format!("{path}.enabled"), "a fixed factor acts; without acting it is none");
+        check.error(&format!("{path}.enabled"), "a fixed factor always acts and cannot be disabled");
     }
     if element.is_sampled() {
         check.error(path, "this element is in `z`, but factors of a structure are in `s`");

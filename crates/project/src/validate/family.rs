@@ -133,7 +133,7 @@ fn correlation(project: &Project, group: &Correlation, path: &str, check: &mut C
         check.error(path, "correlated parameters are two or more with the same number of points");
     }
     for name in group.opposed.iter().filter(|name| !group.parameters.contains(name)) {
-        check.error(&format!("{path}.opposed"), format!("`{name}` is none of this group's `parameters`"));
+        check.error(&format!("{path}.opposed"), format!("`{name}` is not among this group's `parameters`"));
     }
 }
 

@@ -69,7 +69,7 @@ pub(super) fn nobody_inherits(check: &mut Check<'_, '_>) {
         if let Some(entry) = line.node.get(name) {
             let message = format!("`{name}` has no effect: [line.a] and [line.b] choose a model each");
             let found = Found::error(entry.key_place, message);
-            check.reader.findings.push(found.help("write it beside the `model` it belongs to"));
+            check.reader.findings.push(found.help("write it next to the `model` that it belongs to"));
         }
     }
 }

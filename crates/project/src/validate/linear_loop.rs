@@ -45,7 +45,7 @@ fn continuous_prefilter(project: &Project, prefilter: &Prefilter, check: &mut Ch
     if is_discrete(&prefilter.transfer) {
         check.error("prefilter.continuous", "a prefilter in `z` cannot be continuous");
     } else if project.controller.as_ref().is_none_or(|controller| controller.sample_time.is_none()) {
-        check.warning("prefilter.continuous", "`continuous` has no effect beside a continuous controller");
+        check.warning("prefilter.continuous", "`continuous` has no effect with a continuous controller");
     }
 }
 
@@ -74,7 +74,7 @@ fn quantization(declared: &Quantization, sample_time: Option<f64>, check: &mut C
     ] {
         if allowed.is_some() && bits == 0 {
             let message = format!(
-                "`{name}` limits what the converter of the {converter} does, and there is none: state `{converter}_bits` and `{converter}_range`"
+                "`{name}` limits the converter of the {converter}, which is not declared: state `{converter}_bits` and `{converter}_range`"
             );
             check.error(&format!("{path}.{name}"), message);
         }

@@ -152,7 +152,7 @@ fn line(line: &Line, path: &str, check: &mut Check<'_, '_>) {
     let [length, stiffening] =
         ["length", "dynamic_stiffening"].map(|key| path == "line" && check.declared(&format!("line.{key}")));
     if length && matches!(line.component, Component::Volume(_)) {
-        check.warning("line.length", "`length` has no effect beside `volume`");
+        check.warning("line.length", "`length` has no effect together with `volume`");
     }
     if stiffening && line.hose().is_none() {
         check.warning("line.dynamic_stiffening", "`dynamic_stiffening` has no effect without a hose");

@@ -156,7 +156,7 @@ fn response(wish: &ResponseWish, name: &str, path: &str, check: &mut Check<'_, '
     refuse(foreign, &format!("belongs to `{other}`"), path, check);
     if let Some(function) = &wish.function {
         continuous(&[&function.numerator, &function.denominator], path, check);
-        let because = "has no meaning beside `numerator`, which is checked as it is";
+        let because = "has no meaning together with `numerator`, which is checked as it is";
         refuse(&["zero", "pole"], because, path, check);
         if wish.rule != ResponseRule::default() {
             refuse(&["rule"], because, path, check);

@@ -53,7 +53,8 @@ fn operating_point(project: &Project, actuator: &Actuator, check: &mut Check<'_,
     let known = project.resolved_operating_point();
     let moved = known.load_force.is_some() || known.velocity.is_some();
     if known.command.is_some() && moved {
-        let message = "a `command` has pressures of its own, thesis (4.18): no `load_force` and no `velocity` stands beside it";
+        let message =
+            "a `command` determines its pressures, thesis (4.18): remove `load_force` and `velocity`";
         check.error_with_help(
             "operating_point.command",
             message,
@@ -105,7 +106,7 @@ fn one_scenario(scenario: &Scenario, actuator: &Actuator, path: &str, check: &mu
         let stated = Start { file: None, ..start.clone() } != Start::default();
         if stated {
             let message = "a start from a `file` has every state already";
-            check.error_with_help(&format!("{path}.start.file"), message, "state nothing beside it");
+            check.error_with_help(&format!("{path}.start.file"), message, "state nothing else");
         }
     }
     let position = scenario.start.as_ref().and_then(|start| start.position);

@@ -77,7 +77,7 @@ impl Pattern {
             Pattern::RollOff { .. } => "a roll-off",
             Pattern::ProportionalIntegral => "a PI element",
             Pattern::NotchHere { .. } => "a notch at this frequency",
-            Pattern::NotchBeside { .. } => "a notch beside this frequency",
+            Pattern::NotchBeside { .. } => "a notch next to this frequency",
         }
     }
 

@@ -258,7 +258,7 @@ fn settings_sentence(loaded: &Loaded) -> String {
         return String::new();
     }
     format!(
-        "\nA project written by this design does not hold what was set beside it: --set {}\n",
+        "\nA project written by this design does not contain what was set on the command line: --set {}\n",
         others.join(" --set ")
     )
 }

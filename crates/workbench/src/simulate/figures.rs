@@ -284,7 +284,7 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
         controls: vec![of("command", &record.control_v)],
     };
     let title = format!("Step response: {}", cause_words(window));
-    let caption = "Measured force, reference before and behind the prefilter, and the command; the band is that of the settling time.";
+    let caption = "Measured force, reference before and after the prefilter, and the command; the band is that of the settling time.";
     Some(step_response(Words::new(format!("simulation-{number}-step-{event}"), title, caption), &input))
 }
 

@@ -62,7 +62,7 @@ pub(crate) fn close_ups(named: Named<'_>, number: usize) -> Vec<Figure> {
         let words = Words::new(
             format!("simulation-{number}-{name}-event-{}", index + 1),
             format!("Inside the machine, {name} controller: {}, {}", run.name, cause_words(window)),
-            "Voltages, pressures of both chambers, hydraulic beside measured force, measured force.",
+            "Voltages, pressures of both chambers, hydraulic and measured force, measured force.",
         );
         close_up(words, run, window, around(window, end))
     };

@@ -98,7 +98,7 @@ fn of_the_plants(finding: &Finding, f: &mut Formatter<'_>) -> Result {
         ),
         Finding::DelayMargin { pole_rad_per_s, demanded_s, greatest_s, .. } => write!(
             f,
-            "a plant with an unstable pole at {} rad/s bears less than {} s of delay whatever the controller: {} s are asked for",
+            "a plant with an unstable pole at {} rad/s tolerates less than {} s of delay with any controller: {} s are required",
             rounded(*pole_rad_per_s),
             rounded(*greatest_s),
             rounded(*demanded_s)

@@ -173,7 +173,7 @@ fn nearest(found: &ProjectDesign) -> Option<String> {
 /// A machine with waves that contradicts, though its plant keeps to everything in the loop.
 pub(super) fn stable_with_waves(run: &Run) -> String {
     format!(
-        "the linear loop satisfies every specification with waves in its plant too, and {} contradicts it all the same: that is none of the waves",
+        "the linear loop satisfies every specification with waves in its plant too, and {} contradicts it all the same: so the waves are not the cause",
         run.what
     )
 }

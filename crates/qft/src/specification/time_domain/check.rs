@@ -140,7 +140,7 @@ impl fmt::Display for WishCheck {
         }
         write!(formatter, ", settled within {settling_band_percent} % in {settling_time_s} s; ")?;
         if self.outcome() == WishOutcome::Met {
-            return formatter.write_str("the limit itself keeps to it");
+            return formatter.write_str("the limit itself satisfies it");
         }
         match self.reached.overshoot_percent {
             0.0 => formatter.write_str("the limit itself has no overshoot and ")?,
