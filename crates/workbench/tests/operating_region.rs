@@ -305,7 +305,7 @@ fn contradictions_are_refused() {
         (
             "",
             "[operating_point]\ncommand = 1\n[family.operating_region]\nload_force = [0, 1000]\n",
-            "stands beside it",
+            "determines its pressures",
         ),
         ("", "[operating_point]\nload_pressure = 1e5\nload_force = 100\n", "one says it all"),
         ("\"operating_point.load_force\" = { nominal = 0, minimum = 0, maximum = 1 }", force, "too"),
