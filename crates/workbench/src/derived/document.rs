@@ -33,7 +33,7 @@ pub(crate) fn document(derived: &[Derived]) -> Document {
 
 fn cells(quantity: &Derived) -> [Cell; 4] {
     [
-        Cell::Name(quantity.name.clone()),
+        Cell::Name { name: quantity.name.clone(), symbol: quantity.symbol.to_string() },
         quantity.value.map_or(Cell::Missing, |value| Cell::number(value, 5)),
         Cell::Unit(quantity.unit),
         Cell::Equation(quantity.equation.to_string()),

@@ -64,8 +64,8 @@ pub(crate) enum Cell {
     Text(String),
     /// A path or a name of a file or of a program.
     Code(String),
-    /// What a number is called for programs, such as `line.a.wave_speed`; the page says it in words.
-    Name(String),
+    /// What a number is called for programs, such as `line.a.wave_speed`; the page shows its symbol and says it in words.
+    Name { name: String, symbol: String },
     /// An equation or one of its symbols.
     Equation(String),
     /// A unit.
@@ -147,7 +147,7 @@ impl Cell {
     /// As a text, in which symbols and numbers are not set.
     pub(crate) fn text(&self) -> String {
         match self {
-            Cell::Text(text) | Cell::Code(text) | Cell::Name(text) => text.clone(),
+            Cell::Text(text) | Cell::Code(text) | Cell::Name { name: text, .. } => text.clone(),
             Cell::Status(_, cell) => cell.text(),
             Cell::Unit(unit) => unit.to_string(),
             // braces are what only typesetting needs

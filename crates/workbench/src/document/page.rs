@@ -6,7 +6,7 @@ use super::typeset::unit;
 use super::{Block, Cell, Document, Mark, Table, coded, prose, typeset};
 use crate::figure::Figure;
 
-/// Columns from which a table takes the whole width of the paper.
+/// Columns from which a table takes the whole width of the paper, as one with equations always does.
 const WIDE: usize = 5;
 
 impl Document {
@@ -47,7 +47,8 @@ impl Block {
 
 impl Table {
     fn markup(&self) -> Markup {
-        let wide = self.headings.len() >= WIDE;
+        let has_equations = self.rows().flatten().any(|cell| matches!(cell, Cell::Equation(_)));
+        let wide = self.headings.len() >= WIDE || has_equations;
         let numeric: Vec<bool> = (0..self.headings.len()).map(|column| self.is_numeric(column)).collect();
         let is_number = |column: usize| numeric.get(column).copied().unwrap_or_default();
         html! {
@@ -86,7 +87,7 @@ impl Cell {
         match self {
             Cell::Text(text) => coded(text),
             Cell::Code(text) => html! { code { (breakable(text)) } },
-            Cell::Name(name) => prose(&words(name)),
+            Cell::Name { name, symbol } => html! { span.symbol { (typeset(symbol)) } (prose(&words(name))) },
             Cell::Unit(text) => html! { span.unit { (unit(text)) } },
             Cell::Equation(equation) => typeset(equation),
             Cell::Status(mark, cell) => badge(*mark, &cell.text()),

@@ -8,8 +8,9 @@ use crate::quantity::DisplayUnit;
 /// What a trial says; with its figure where that has a name and a title.
 pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Document {
     let mut out = Document::default();
-    out.heading(format!("On the machine: {}", agreement_word(trial.agreement())));
-    let did = match trial.agreement() {
+    let agreement = trial.agreement();
+    out.verdict(agreement.into(), format!("On the machine: {}", agreement_word(agreement)), vec![]);
+    let did = match agreement {
         Agreement::Agrees => "agrees with the linear loop",
         Agreement::Differs => "differs from the linear loop",
         Agreement::Contradicts => "contradicts the verdict",
