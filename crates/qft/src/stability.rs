@@ -39,6 +39,7 @@ use crate::closed_loop::{Compensation, Member};
 use crate::verification::rounded;
 use characteristic::Characteristic;
 pub(crate) use characteristic::FeedbackPath;
+pub(crate) use measured::{is_stable as is_stable_by_points, points_with_sensor};
 use responding::Count;
 pub(crate) use responding::own_poles;
 

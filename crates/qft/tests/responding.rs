@@ -7,6 +7,7 @@ use std::sync::Arc;
 use num_complex::Complex64;
 use phea_dynamics::analytic::{Analytic, Disc, Jet};
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
+use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{exp, ln, magnitude};
 use phea_dynamics::random::share;
@@ -17,6 +18,7 @@ use phea_dynamics::uncertain_plant::{
 use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, FINE, Family, Spacing, UncertainFamily, tabulated, vertices};
+use phea_qft::loop_shaping::SampleStability;
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::stability::{Instability, MemberStability, StabilityStatus, member_stability};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict, audit_specifications};
@@ -137,6 +139,45 @@ fn poles_are_counted_as_those_of_the_polynomials() {
         }
     }
     assert!(found[0] > 100 && found[1] > 100 && found[2] > 1, "{found:?}");
+}
+
+/// A search counts the poles of a table of the plant, which it looks at to 3 %. Of every loop that such an error cannot turn over it says
+/// what the polynomials say, if the range of the plant shows the loop below its crossovers and above them; if not, it is sure of none that
+/// is unstable. What it says is also said of the same table where more than the count is asked for.
+#[test]
+fn a_search_counts_poles_as_those_of_the_polynomials() {
+    let mut state = 17;
+    let mut found = [0_usize; 2];
+    for _ in 0..600 {
+        let plant = hidden(&mut state);
+        let around = compensation(&mut state, plant.natural);
+        let shown = around.member(plant.shown()).unwrap();
+        let is_stable = member_stability(&shown, &around).status == StabilityStatus::Stable;
+        let asked =
+            |member| SampleStability::new(&around, vec![member]).is_stable(around.feedback()).unwrap();
+        let range = plant.range_rad_per_s();
+        let measured = around.measured(&tabulated(&plant, range, FINE));
+        let of_table = member_stability(&measured, &around).status == StabilityStatus::Stable;
+        assert_eq!(asked(measured), of_table, "{plant:?}");
+        let open = |frequency: f64| {
+            let response = shown.response(frequency).unwrap();
+            response.plant * response.sensor * around.feedback().at_frequency(frequency)
+        };
+        let distance = |&frequency: &f64| magnitude(1.0 + 1.0 / open(frequency));
+        let grid = logarithmic_grid(range[0] / 1e3, range[1], 4000).unwrap();
+        if grid.iter().map(distance).fold(1.0, f64::min) < 0.06 {
+            continue;
+        }
+        let integrates = !around.feedback().poles().is_empty();
+        let [below, above] = range.map(|frequency| magnitude(open(frequency)));
+        let own = asked(around.responding(Arc::new(plant)));
+        if above < 0.45 && (below > 30.0 || !integrates) {
+            assert_eq!(own, is_stable, "{plant:?}");
+            found[usize::from(is_stable)] += 1;
+        }
+        assert!(is_stable || !own, "{plant:?}");
+    }
+    assert!(found[0] > 100 && found[1] > 100, "{found:?}");
 }
 
 /// The table of a response is that response to 0.2 %, between its points too.

@@ -13,6 +13,7 @@ mod rounded_polynomial;
 
 use std::cell::OnceCell;
 
+use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::responding::RespondingPlant;
@@ -20,7 +21,8 @@ use phea_dynamics::responding::RespondingPlant;
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{COARSE, MeasuredPlant, points, table, tabulated};
 use crate::stability::{
-    FeedbackPath, Irresolution, StabilityStatus, member_stability, own_poles, poles_lie_below,
+    FeedbackPath, Irresolution, StabilityStatus, is_stable_by_points, member_stability, own_poles,
+    points_with_sensor, poles_lie_below,
 };
 use quotient::Quotient;
 use rounded_polynomial::{Hurwitz, RoundedPolynomial};
@@ -87,6 +89,8 @@ struct Plant {
     quotient: Option<Quotient>,
     /// With its dead time as a quotient, where it has one: for ranking only.
     approximation: Option<Quotient>,
+    /// Frequency in rad/s and P H of a measured plant, which a controller does not move.
+    with_sensor: Vec<(f64, Complex64)>,
 }
 
 /// The controller that is asked about.
@@ -119,7 +123,8 @@ impl SampleStability {
         let quotient = Quotient::of_member(&member);
         let approximation = if quotient.is_none() { Quotient::of_delayed_member(&member) } else { None };
         self.order.insert(0, self.plants.len());
-        self.plants.push(Plant { member, quotient, approximation });
+        let with_sensor = points_with_sensor(&member, &self.compensation);
+        self.plants.push(Plant { member, quotient, approximation, with_sensor });
     }
 
     /// A plant without polynomials, as far as the images of a sampled loop need it.
@@ -250,8 +255,8 @@ impl Question {
                 *undecided_tables += 1;
                 self.is_shown_stable(&plant.member)
             }
-            None if !matches!(plant.member, Member::Continuous { .. } | Member::Sampled { .. }) => {
-                self.is_shown_stable(&plant.member)
+            None if matches!(plant.member, Member::Measured { .. }) => {
+                is_stable_by_points(&plant.member, &plant.with_sensor, &self.compensation)
             }
             None => self.delayed_poles_lie_below(&plant.member, 0.0) == Ok(true),
         }

@@ -16,6 +16,8 @@ use crate::verification::between;
 
 /// Largest turn between two points, rad.
 const TURN_MAXIMUM: f64 = std::f64::consts::FRAC_PI_3;
+/// tan([`TURN_MAXIMUM`])
+const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// Points of a resolved response are no closer than this part of their frequency.
 const CLOSEST: f64 = 1e-9;
 /// |L| that is well below one.
@@ -56,6 +58,35 @@ pub(super) fn stability(member: &Member, compensation: &Compensation) -> MemberS
     }
 }
 
+/// P H of a measured plant at its points up to half the sampling rate, frequencies in rad/s: what stays as it is while controllers change.
+/// Of other plants there is none.
+pub(crate) fn points_with_sensor(member: &Member, compensation: &Compensation) -> Vec<(f64, Complex64)> {
+    let Member::Measured { plant, .. } = member else { return vec![] };
+    let highest = compensation.highest_frequency_rad_per_s();
+    let frequencies = plant.frequencies_rad_per_s.iter().take_while(|&&frequency| frequency <= highest);
+    let at = |&frequency: &f64| {
+        let response = member.response(frequency)?;
+        Some((frequency, response.plant * response.sensor))
+    };
+    frequencies.filter_map(at).collect()
+}
+
+/// Whether a measured plant is stable within its loop, given its [`points_with_sensor`]: the status of [`super::member_stability`] without
+/// what else is read from the points.
+pub(crate) fn is_stable(
+    member: &Member,
+    with_sensor: &[(f64, Complex64)],
+    compensation: &Compensation,
+) -> bool {
+    let Member::Measured { plant, sensor, .. } = member else { return false };
+    let feedback = compensation.feedback();
+    let points =
+        with_sensor.iter().map(|&(frequency, path)| (frequency, path * feedback.at_frequency(frequency)));
+    let mut open_loop = OpenLoop { member, compensation, around: Around::Output, points: Vec::new() };
+    open_loop.extend(points, plant.is_resolved);
+    open_loop.unstable_closed_loop_poles(plant.unstable_poles, sensor) == Ok(0)
+}
+
 impl<'a> OpenLoop<'a> {
     /// At these frequencies in rad/s; where the response is known between them, at as many more as 1 + L needs to turn little from each
     /// to the next.
@@ -66,16 +97,23 @@ impl<'a> OpenLoop<'a> {
         frequencies_rad_per_s: &[f64],
         is_known_between: bool,
     ) -> OpenLoop<'a> {
-        let mut open_loop = OpenLoop { member, compensation, around, points: Vec::new() };
         let highest = compensation.highest_frequency_rad_per_s();
-        for &frequency in frequencies_rad_per_s.iter().take_while(|&&frequency| frequency <= highest) {
-            let Some(value) = open_loop.at(frequency) else { continue };
-            if is_known_between {
-                open_loop.fill_up_to((frequency, value));
-            }
-            open_loop.points.push((frequency, value));
-        }
+        let frequencies = frequencies_rad_per_s.iter().take_while(|&&frequency| frequency <= highest);
+        let mut open_loop = OpenLoop { member, compensation, around, points: Vec::new() };
+        let points = frequencies.filter_map(|&frequency| Some((frequency, open_loop.at(frequency)?)));
+        let points: Vec<(f64, Complex64)> = points.collect();
+        open_loop.extend(points.into_iter(), is_known_between);
         open_loop
+    }
+
+    /// Takes these points in, with as many between them as 1 + L needs where the response is known there.
+    fn extend(&mut self, points: impl Iterator<Item = (f64, Complex64)>, is_known_between: bool) {
+        for point in points {
+            if is_known_between {
+                self.fill_up_to(point);
+            }
+            self.points.push(point);
+        }
     }
 
     /// What is known of a loop with so many unstable poles.
@@ -97,9 +135,9 @@ impl<'a> OpenLoop<'a> {
     fn fill_up_to(&mut self, end: (f64, Complex64)) {
         let mut ahead = vec![end];
         while let (Some(&next), Some(&last)) = (ahead.last(), self.points.last()) {
-            let near = next.0 - last.0 <= CLOSEST * next.0 || turn(last.1, next.1).abs() <= TURN_MAXIMUM;
+            let near = next.0 - last.0 <= CLOSEST * next.0 || turns_little(last.1, next.1);
             let middle = (last.0 * next.0).sqrt();
-            match self.at(middle).filter(|_| !near) {
+            match Some(middle).filter(|_| !near).and_then(|middle| self.at(middle)) {
                 Some(value) => ahead.push((middle, value)),
                 None => {
                     ahead.pop();
@@ -134,26 +172,23 @@ impl<'a> OpenLoop<'a> {
     /// Zeros of 1 + L outside of the stable region, of an L with so many poles there.
     pub(super) fn unstable_poles(&self, own: usize) -> Result<usize, Irresolution> {
         let &[first, second, ..] = self.points.as_slice() else { return Err(Irresolution::Points) };
-        let mut turned = turn_below(first, second)?;
+        let turned_below = turn_below(first, second)?;
+        let mut rounds = 0.0;
         for pair in self.points.windows(2) {
-            let &[(from, before), (to, after)] = pair else { continue };
-            let own = portable::argument((1.0 + after) / (1.0 + before));
-            let widest = turn(before, after);
-            if widest.is_nan() || widest > TURN_MAXIMUM {
-                return Err(Irresolution::Coarse {
-                    from_rad_per_s: from,
-                    to_rad_per_s: to,
-                    turn_deg: widest.to_degrees(),
-                });
+            let &[(from_rad_per_s, before), (to_rad_per_s, after)] = pair else { continue };
+            if !turns_little(before, after) {
+                let turn_deg = turn(before, after).to_degrees();
+                return Err(Irresolution::Coarse { from_rad_per_s, to_rad_per_s, turn_deg });
             }
-            turned += own;
+            rounds += rounds_begun(1.0 + before, 1.0 + after);
         }
         let &(frequency_rad_per_s, last) = self.points.last().ok_or(Irresolution::Points)?;
         let gain = portable::magnitude(last);
         if gain.is_nan() || gain > SMALL_GAIN {
             return Err(Irresolution::HighEnd { frequency_rad_per_s, gain });
         }
-        turned -= portable::argument(1.0 + last);
+        // from the first point to the last 1 + L turns by 2 pi rounds and the difference of the angles there, from the last on back to zero
+        let turned = turned_below - portable::argument(1.0 + first.1) + 2.0 * std::f64::consts::PI * rounds;
         let count = own as f64 - turned / std::f64::consts::PI;
         if (count - count.round()).abs() > 1e-6 || count.round() < 0.0 {
             return Err(Irresolution::Count { count });
@@ -213,6 +248,32 @@ impl<'a> OpenLoop<'a> {
             }
         }
         least
+    }
+}
+
+/// Whether [`turn`] is at most [`TURN_MAXIMUM`], by products alone.
+fn turns_little(before: Complex64, after: Complex64) -> bool {
+    let is_small = |value: Complex64| value.norm_sqr() <= SMALL_GAIN * SMALL_GAIN;
+    is_turned_little(1.0 + before, 1.0 + after)
+        && (is_small(before) && is_small(after) || is_turned_little(before, after))
+}
+
+/// Whether the angle between two numbers is at most [`TURN_MAXIMUM`]; not where one of them is zero or no number.
+///
+/// ```text
+/// |arg(b/a)| <= pi/3          where |Im(b a*)| <= sqrt(3) Re(b a*)
+/// ```
+fn is_turned_little(before: Complex64, after: Complex64) -> bool {
+    let product = after * before.conj();
+    product.re > 0.0 && product.im.abs() <= SQRT_3 * product.re && product.is_finite()
+}
+
+/// 1 where the argument of a number that turns by less than a right angle goes beyond pi, -1 where it goes back.
+fn rounds_begun(before: Complex64, after: Complex64) -> f64 {
+    match (before.im.is_sign_negative(), after.im.is_sign_negative()) {
+        (false, true) if after.re < 0.0 => 1.0,
+        (true, false) if after.re < 0.0 => -1.0,
+        _ => 0.0,
     }
 }
 
