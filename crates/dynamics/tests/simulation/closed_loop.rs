@@ -4,12 +4,10 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{
-    CommandedPlant, Input, Plant, Profile, Settings, Simulated, Status, simulate,
-};
+use phea_dynamics::simulation::{CommandedPlant, Input, Plant, Profile, Settings, Simulated, Status};
 use phea_dynamics::time_response::{Interpolation, Signal, forced_response};
 
-use super::laws::{course, distance, run};
+use super::laws::{course, distance, run, simulate};
 
 /// gain/((s - p_1)(s - p_2) ...): y_n' = p_n y_n + gain (u + d), y_k' = p_k y_k + y_(k+1); measured is y_1. The load d is
 /// an input, and told to a feed-forward.

@@ -1,9 +1,9 @@
 //! Two independent methods give one answer.
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Input, Method, Profile, Settings, Status, simulate};
+use phea_dynamics::simulation::{Input, Method, Profile, Settings, Status};
 
-use super::laws::{Law, Lawful, course, run_by, settings};
+use super::laws::{Law, Lawful, course, run_by, settings, simulate};
 
 /// A pendulum whose support is shaken: theta'' = -(9.81 + w) sin(theta) - theta'/10, sin by its series.
 #[derive(Clone)]

@@ -2,11 +2,9 @@
 
 use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{
-    Input, Method, Profile, Sampler, Settings, Sliding, Status, System, simulate,
-};
+use phea_dynamics::simulation::{Input, Method, Profile, Sampler, Settings, Sliding, Status, System};
 
-use super::laws::{Law, Lawful, course, settings};
+use super::laws::{Law, Lawful, course, settings, simulate};
 
 /// Two equal masses between three equal springs, each damped by the negative of a damper; positions x_1, x_2 and velocities over
 /// omega.

@@ -1,8 +1,10 @@
 //! Systems with known solutions, and how the tests drive them.
 
+use phea_dynamics::expression::{Expression, Recorded};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    Input, InputSchedule, Method, Settings, Simulated, Status, System, simulate,
+    self, Input, InputSchedule, Method, Sampler, Settings, Simulated, SimulationError, Sliding, Status,
+    System,
 };
 
 /// Rates without parameters of each lane, delays or indicators.
@@ -30,6 +32,95 @@ impl<L: Law> System<f64> for Lawful<L> {
     fn rates<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], rates: &mut [T]) {
         self.0.rates(y, w, rates);
     }
+}
+
+/// A system whose equations were recorded: the methods, which are compiled for each type of a system, are compiled once for all.
+#[derive(Clone)]
+struct Recording {
+    scales: Vec<f64>,
+    delays: Vec<f64>,
+    sliding: Option<Sliding>,
+    inputs: usize,
+    indicators: usize,
+    rates: Expression,
+    outgoing: Expression,
+    indicate: Expression,
+}
+
+impl Recording {
+    fn of<E: System<f64>>(system: &E) -> Recording {
+        let (states, inputs) = (system.states(), system.inputs());
+        let (delays, indicators) = (system.delays(), system.indicators());
+        Recording {
+            rates: recorded(states, inputs, states, |y, w, rates| system.rates(y, w, rates)),
+            outgoing: recorded(states, inputs, delays.len(), |y, w, waves| system.outgoing(y, w, waves)),
+            indicate: recorded(states, inputs, indicators, |y, w, found| system.indicate(y, w, found)),
+            scales: system.scales(),
+            sliding: system.sliding(),
+            inputs,
+            delays,
+            indicators,
+        }
+    }
+}
+
+/// So many functions of states and inputs.
+fn recorded<F>(states: usize, inputs: usize, results: usize, equations: F) -> Expression
+where
+    F: for<'tape> FnOnce(&[Recorded<'tape>], &[Recorded<'tape>], &mut [Recorded<'tape>]),
+{
+    Expression::record(&vec![""; states + inputs], |parameters| {
+        let mut found = vec![Recorded::from(f64::NAN); results];
+        let (states, inputs) = parameters.split_at(states);
+        equations(states, inputs, &mut found);
+        found
+    })
+}
+
+fn evaluate<T: Scalar>(expression: &Expression, y: &[T], w: &[T], results: &mut [T]) {
+    results.copy_from_slice(&expression.evaluate(&[y, w].concat()));
+}
+
+impl System<f64> for Recording {
+    fn states(&self) -> usize {
+        self.scales.len()
+    }
+    fn inputs(&self) -> usize {
+        self.inputs
+    }
+    fn scales(&self) -> Vec<f64> {
+        self.scales.clone()
+    }
+    fn rates<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], rates: &mut [T]) {
+        evaluate(&self.rates, y, w, rates);
+    }
+    fn delays(&self) -> Vec<f64> {
+        self.delays.clone()
+    }
+    fn outgoing<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], waves: &mut [T]) {
+        evaluate(&self.outgoing, y, w, waves);
+    }
+    fn indicators(&self) -> usize {
+        self.indicators
+    }
+    fn sliding(&self) -> Option<Sliding> {
+        self.sliding
+    }
+    fn indicate<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], indicators: &mut [T]) {
+        evaluate(&self.indicate, y, w, indicators);
+    }
+}
+
+/// As [`simulation::simulate`] does, from the system's equations as they are recorded.
+pub(crate) fn simulate<E: System<f64>>(
+    system: &E,
+    start: &[f64],
+    course: &InputSchedule,
+    sampler: Option<Box<dyn Sampler + '_>>,
+    settings: &Settings,
+    watch: &mut dyn FnMut(f64) -> bool,
+) -> Result<Simulated, SimulationError> {
+    simulation::simulate(&Recording::of(system), start, course, sampler, settings, watch)
 }
 
 /// y' = w

@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::linear::{Discretization, StateSpace, TimeDomain, TransferFunction};
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{CommandedPlant, Input, Method, Plant, Profile, Sampler, Status, simulate};
+use phea_dynamics::simulation::{CommandedPlant, Input, Method, Plant, Profile, Sampler, Status};
 
-use super::laws::{Integral, Lawful, course, settings};
+use super::laws::{Integral, Lawful, course, settings, simulate};
 
 /// A mass on a spring behind a lag, in units of `rate` rad/s: F = 3 x, times 1/rate.
 #[derive(Clone)]

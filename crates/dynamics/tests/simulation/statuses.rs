@@ -2,10 +2,10 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    Input, InputSchedule, Profile, Sampler, Settings, Simulated, SimulationError, Status, System, simulate,
+    Input, InputSchedule, Profile, Sampler, Settings, Simulated, SimulationError, Status, System,
 };
 
-use super::laws::{Integral, Law, Lawful, Oscillator, course};
+use super::laws::{Integral, Law, Lawful, Oscillator, course, simulate};
 
 /// y' = y^2,  y = 1/(1 - t)
 #[derive(Clone)]
