@@ -68,6 +68,7 @@ class Transfer:
             self.numerator = polynomial(table["numerator"], self.variable)
             self.denominator = polynomial(table["denominator"], self.variable)
 
+    @functools.cache
     def sampled(self, sample_time):
         """Numerator and denominator in z by s = 2/T (z - 1)/(z + 1)."""
         if self.variable == "z":
@@ -297,7 +298,7 @@ def held(a, b, c, d, sample_time, fraction):
     if fraction == 0.0:
         return full, whole, c, d
     late, new = step(sample_time - fraction)
-    old = late @ step(fraction)[1]
+    old = late @ (new if 2 * fraction == sample_time else step(fraction)[1])
     # x+ = full x + old u_before + new u; at the sample itself the plant still sees the older command
     state = np.block([[full, old], [np.zeros((1, order + 1))]])
     return state, np.vstack([new, [[1.0]]]), np.hstack([c, [[d]]]), 0.0
