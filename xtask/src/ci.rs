@@ -1,4 +1,4 @@
-//! The test command: stages one after the other, the time of each in a table at the end.
+//! The test command: stages one after the other, comparisons beside them, the time of each in a table at the end.
 //!
 //! A stage that fails does not stop the later ones, so that one run tells everything there is to mend.
 
@@ -47,7 +47,7 @@ type Stage = fn(&Path) -> Outcome;
 const STAGES: &[(&str, Stage)] = &[
     ("formatting", formatting),
     ("clippy", clippy),
-    ("tests", tests),
+    (TESTS, tests),
     ("doctests", doctests),
     ("stories", stories),
     ("rustdoc", rustdoc),
@@ -59,8 +59,11 @@ const STAGES: &[(&str, Stage)] = &[
     (SOAK, soak),
 ];
 
-/// The stage whose recomputations go on beside the others.
+/// The stage whose scripts go on beside the others.
 const COMPARISONS: &str = "comparisons";
+
+/// The stage that builds what the comparisons ask.
+const TESTS: &str = "tests";
 
 /// The stages that run only where they are named.
 const MUTATION: &str = "mutation";
@@ -89,7 +92,7 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
         [] => ![MUTATION, SOAK].contains(&name),
         _ => wanted.contains(&name),
     };
-    // A build often waits for one crate: the second processor recomputes meanwhile.
+    // A build often waits for one crate: the second processor compares meanwhile.
     let mut begun = chosen(COMPARISONS).then(|| comparisons::begin(root));
     let mut results = Vec::new();
     for (name, stage) in STAGES.iter().filter(|(name, _)| chosen(name)) {
@@ -97,13 +100,17 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
         let start = Instant::now();
         let outcome = match begun.take_if(|_| *name == COMPARISONS) {
             Some(begun) => comparisons::end(root, begun),
+            None if *name == TESTS => built_tests(root, begun.as_mut()),
             None => stage(root),
         };
         println!("==== {name}: {} {}", outcome.name(), outcome.remark());
         results.push((*name, outcome, start.elapsed()));
     }
-    let strict = std::env::var_os("CI").is_some_and(|value| !value.is_empty());
-    summary(&results, strict)
+    summary(&results, is_strict())
+}
+
+fn is_strict() -> bool {
+    std::env::var_os("CI").is_some_and(|value| !value.is_empty())
 }
 
 fn summary(results: &[(&str, Outcome, Duration)], strict: bool) -> bool {
@@ -125,6 +132,35 @@ fn summary(results: &[(&str, Outcome, Duration)], strict: bool) -> bool {
     failed == 0 && !(strict && skipped > 0)
 }
 
+/// The tests, and once they are built the comparisons that were begun.
+fn built_tests(root: &Path, begun: Option<&mut comparisons::Begun>) -> Outcome {
+    let built = build(root);
+    if let (Outcome::Passed, Some(begun)) = (&built, begun) {
+        begun.ask_phea();
+    }
+    match built {
+        Outcome::Passed => tests(root),
+        other => other,
+    }
+}
+
+/// Builds all tests and all that the comparisons ask.
+fn build(root: &Path) -> Outcome {
+    for_all(root, &["test", "--workspace", "--tests", "--examples", "--no-run"], &[])
+}
+
+/// What leaves out the package that links CVODE.
+const WITHOUT_PEERS: [&str; 2] = ["--exclude", "sundials"];
+
+/// The rigs that phea and CVODE solve both: a test of that package.
+const RIGS: &str = "random_rigs";
+
+/// One command of cargo for all packages; without the one that links CVODE where CVODE is missing.
+fn for_all(root: &Path, arguments: &[&str], of_tests: &[&str]) -> Outcome {
+    let peers: &[&str] = if tools::sundials().is_ok() { &[] } else { &WITHOUT_PEERS };
+    execute(root, "cargo", &[arguments, peers, of_tests].concat())
+}
+
 /// Runs one command in the root, its output shown.
 fn execute(root: &Path, program: &str, arguments: &[&str]) -> Outcome {
     execute_with(root, program, arguments, &[])
@@ -133,9 +169,13 @@ fn execute(root: &Path, program: &str, arguments: &[&str]) -> Outcome {
 fn execute_with(root: &Path, program: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Outcome {
     let line = format!("{program} {}", arguments.join(" "));
     println!("$ {line}");
-    let status =
-        Command::new(program).args(arguments).envs(variables.iter().copied()).current_dir(root).status();
-    match status {
+    let mut command = Command::new(program);
+    command.args(arguments).envs(variables.iter().copied()).current_dir(root);
+    if is_strict() {
+        // Nothing will be built a second time.
+        command.env("CARGO_INCREMENTAL", "0");
+    }
+    match command.status() {
         Ok(status) if status.success() => Outcome::Passed,
         Ok(status) => Outcome::Failed(format!("`{line}`: {status}")),
         Err(error) => Outcome::Failed(format!("`{line}`: {error}")),
@@ -158,17 +198,12 @@ fn clippy(root: &Path) -> Outcome {
 
 /// Unit and integration tests but for the stories, which are a stage of their own.
 fn tests(root: &Path) -> Outcome {
-    let but_stories = ["--", "--skip", STORIES];
-    execute(
-        root,
-        "cargo",
-        &[&["test", "--workspace", "--tests", "--no-fail-fast"], &but_stories[..]].concat(),
-    )
+    for_all(root, &["test", "--workspace", "--tests", "--no-fail-fast"], &["--", "--skip", STORIES])
 }
 
 /// The example stories, by the whole workspace, so that what was built for the other tests serves again.
 fn stories(root: &Path) -> Outcome {
-    execute(root, "cargo", &["test", "--workspace", "--test", "all", "--", STORIES])
+    for_all(root, &["test", "--workspace", "--test", "all"], &["--", STORIES])
 }
 
 /// Twenty times as many mutated projects as the tests read.
@@ -185,13 +220,17 @@ fn soak(root: &Path) -> Outcome {
 }
 
 fn doctests(root: &Path) -> Outcome {
-    execute(root, "cargo", &["test", "--workspace", "--doc", "--no-fail-fast"])
+    for_all(root, &["test", "--workspace", "--doc", "--no-fail-fast"], &[])
 }
 
-/// With the examples, whose dependencies switch on the features that clippy's did: what it read of other crates serves again.
+/// With the examples, whose dependencies switch on the features that clippy's did, and by clippy's compiler: what it read of all crates
+/// serves again.
 fn rustdoc(root: &Path) -> Outcome {
     let arguments = ["doc", "--workspace", "--no-deps", "--lib", "--bins", "--examples"];
-    execute_with(root, "cargo", &arguments, &[("RUSTDOCFLAGS", "-D warnings")])
+    let of_clippy = tools::clippy_variables();
+    let mut variables = vec![("RUSTDOCFLAGS", "-D warnings")];
+    variables.extend(of_clippy.iter().map(|(name, value)| (*name, value.as_str())));
+    execute_with(root, "cargo", &arguments, &variables)
 }
 
 fn tidy(root: &Path) -> Outcome {
@@ -209,14 +248,13 @@ fn wasm32(root: &Path) -> Outcome {
     execute(root, "cargo", &[&["check", "--target", TARGET][..], &packages].concat())
 }
 
-/// What is compared with CVODE: a package outside the workspace, because it links a library in C.
+/// Rigs that phea and CVODE solve both. The other tests of the package that links CVODE run with those of all packages.
 fn peers(root: &Path) -> Outcome {
     if let Err(missing) = tools::sundials() {
         println!("\n**** SKIPPED: {missing}\n**** nothing was compared with CVODE in this run\n");
         return Outcome::Skipped(missing);
     }
-    let manifest = "benches/peers/sundials/Cargo.toml";
-    execute(root, "cargo", &["test", "--manifest-path", manifest, "--target-dir", "target", "--no-fail-fast"])
+    execute(root, "cargo", &["test", "--workspace", "--test", RIGS])
 }
 
 #[cfg(test)]
@@ -235,6 +273,6 @@ mod tests {
 
     #[test]
     fn every_stage_that_is_special_is_one() {
-        assert!([COMPARISONS, MUTATION, SOAK].iter().all(|name| STAGE_NAMES.contains(name)));
+        assert!([COMPARISONS, TESTS, MUTATION, SOAK].iter().all(|name| STAGE_NAMES.contains(name)));
     }
 }

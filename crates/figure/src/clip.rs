@@ -18,6 +18,12 @@ use super::scene::{Point, Rectangle, point};
 /// assert_eq!(segment(point(-1.0, 2.0), point(2.0, 2.0), &frame), None);
 /// ```
 pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Point)> {
+    // Most segments of a picture lie beyond one side of a label.
+    let beyond_across = from.x.max(to.x) < frame.left || frame.right < from.x.min(to.x);
+    let beyond_upright = from.y.max(to.y) < frame.top || frame.bottom < from.y.min(to.y);
+    if beyond_across || beyond_upright {
+        return None;
+    }
     let (dx, dy) = (to.x - from.x, to.y - from.y);
     if !(dx.is_finite() && dy.is_finite() && from.x.is_finite() && from.y.is_finite()) {
         return None;
@@ -31,9 +37,6 @@ pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Poin
     ];
     let (mut enter, mut leave) = (Along { done: 0.0, left: 1.0 }, Along { done: 1.0, left: 0.0 });
     for (at_from, at_to) in sides {
-        if at_from < 0.0 && at_to < 0.0 {
-            return None;
-        }
         let crossing = Along { done: at_from / (at_from - at_to), left: at_to / (at_to - at_from) };
         if at_from < 0.0 && enter.is_before(crossing) {
             enter = crossing;

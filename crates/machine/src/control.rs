@@ -91,6 +91,21 @@ impl Control {
         System::<f64>::delays(self.commanded())
     }
 
+    /// Typical magnitude of each state, in its unit.
+    pub fn scales(&self) -> Vec<f64> {
+        System::<f64>::scales(self.commanded())
+    }
+
+    /// Rates of all states, per second: for another solver of the same equations.
+    pub fn rates(&self, state: &[f64], inputs: &[f64], rates: &mut [f64]) {
+        self.commanded().rates(state, inputs, rates);
+    }
+
+    /// What is sent into each delay.
+    pub fn outgoing(&self, state: &[f64], inputs: &[f64], waves: &mut [f64]) {
+        self.commanded().outgoing(state, inputs, waves);
+    }
+
     /// Indicators in a state: those of the machine are positive while all is well, that of the
     /// command's limit while it is reached.
     pub fn indicators(&self, state: &[f64], inputs: &[f64]) -> Vec<f64> {

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-use super::{Outcome, execute, execute_with, tools};
+use super::{Outcome, build, tools};
 use crate::repository::Repository;
 
 /// What the scripts that ask phea begin with.
@@ -12,56 +13,61 @@ const COMPARE: &str = "comparisons/compare_";
 
 const REQUIREMENTS: &str = "comparisons/requirements.txt";
 
-/// What was found beside the other stages: the Python, and each script that failed.
-type Recomputed = Result<(String, Vec<String>), String>;
+/// Each script that failed, or why none could be run.
+type Compared = Result<Vec<String>, String>;
 
-/// Recomputations that go on beside the other stages.
-pub(super) type Begun = JoinHandle<(String, Recomputed)>;
+/// Scripts that go on beside the other stages.
+pub(super) struct Begun {
+    /// What they print, and what came of them.
+    running: JoinHandle<(String, Compared)>,
+    /// Hears that phea is built.
+    waiting: Option<Sender<()>>,
+}
+
+impl Begun {
+    /// phea is built: the scripts that ask it may run.
+    pub(super) fn ask_phea(&mut self) {
+        if let Some(waiting) = self.waiting.take() {
+            // Where nobody listens any more, the end of the stage tells why.
+            waiting.send(()).ok();
+        }
+    }
+}
 
 /// Makes the environment, runs every comparison and every script that a golden number names as its origin.
 pub(super) fn run(root: &Path) -> Outcome {
     end(root, begin(root))
 }
 
-/// Begins with the scripts that ask nothing of phea: each runs on one core, its output kept until the end.
+/// Begins with the scripts that ask nothing of phea, and goes on with the others once [`Begun::ask_phea`] is called; their output is
+/// kept until the end.
 pub(super) fn begin(root: &Path) -> Begun {
     let root = root.to_path_buf();
-    std::thread::spawn(move || {
+    let (waiting, built) = channel();
+    let running = std::thread::spawn(move || {
         let mut told = String::new();
-        let recomputed = recompute(&root, &mut told);
-        (told, recomputed)
-    })
+        let compared = compare(&root, &mut told, &built);
+        (told, compared)
+    });
+    Begun { running, waiting: Some(waiting) }
 }
 
-/// Waits for what was begun, then runs the scripts that ask phea.
-pub(super) fn end(root: &Path, begun: Begun) -> Outcome {
-    let Ok((told, recomputed)) = begun.join() else {
-        return Outcome::Failed("the recomputations ended early".to_string());
+/// Waits for what was begun, phea being built first where no other stage did.
+pub(super) fn end(root: &Path, mut begun: Begun) -> Outcome {
+    let built = if begun.waiting.is_some() { build(root) } else { Outcome::Passed };
+    if matches!(built, Outcome::Passed) {
+        begun.ask_phea();
+    }
+    begun.waiting = None;
+    let Ok((told, compared)) = begun.running.join() else {
+        return Outcome::Failed("the comparisons ended early".to_string());
     };
     print!("{told}");
-    let (python, mut failed) = match recomputed {
-        Ok(found) => found,
-        Err(problem) => return Outcome::Failed(problem),
-    };
-    let asking: Vec<String> = match Repository::read(root) {
-        Ok(repository) => scripts(&repository).into_iter().filter(|script| asks_phea(script)).collect(),
-        Err(error) => return Outcome::Failed(format!("cannot read the repository: {error}")),
-    };
-    if asking.is_empty() {
-        return Outcome::Failed(format!("there is no {COMPARE}*.py"));
-    }
-    // As the tests are built, so that nothing is built again: what they run is what is compared.
-    let built = execute(root, "cargo", &["test", "--workspace", "--test", "all", "--examples", "--no-run"]);
-    let programs = target(root).join("debug");
-    let program = |name: &str| programs.join(name).to_string_lossy().into_owned();
-    let variables = [("PHEA", program("phea"))];
-    let variables = variables.each_ref().map(|(name, value)| (*name, value.as_str()));
-    let compare = |script: &String| execute_with(root, &python, &[script], &variables);
-    failed.extend(asking.into_iter().filter(|script| !matches!(compare(script), Outcome::Passed)));
-    match built {
-        Outcome::Passed if failed.is_empty() => Outcome::Passed,
-        Outcome::Passed => Outcome::Failed(failed.join(", ")),
-        other => other,
+    match (built, compared) {
+        (Outcome::Passed, Ok(failed)) if failed.is_empty() => Outcome::Passed,
+        (Outcome::Passed, Ok(failed)) => Outcome::Failed(failed.join(", ")),
+        (Outcome::Passed, Err(problem)) => Outcome::Failed(problem),
+        (other, _) => other,
     }
 }
 
@@ -73,30 +79,37 @@ fn asks_phea(script: &str) -> bool {
     script.starts_with(COMPARE)
 }
 
-fn recompute(root: &Path, told: &mut String) -> Recomputed {
+fn compare(root: &Path, told: &mut String, built: &Receiver<()>) -> Compared {
     let repository =
         Repository::read(root).map_err(|error| format!("cannot read the repository: {error}"))?;
     let python = environment(root, told)?.to_string_lossy().into_owned();
     if let Err(missing) = tools::sundials() {
         told.push_str(&format!("{missing}: nothing is recomputed with CVODE\n"));
     }
-    let mut failed = Vec::new();
-    for script in scripts(&repository).into_iter().filter(|script| !asks_phea(script)) {
-        if quietly(root, told, &python, &[&script]).is_err() {
-            failed.push(script);
-        }
+    let (asking, alone): (Vec<String>, Vec<String>) =
+        scripts(&repository).into_iter().partition(|script| asks_phea(script));
+    if asking.is_empty() {
+        return Err(format!("there is no {COMPARE}*.py"));
     }
-    Ok((python, failed))
+    let mut failed = alone;
+    failed.retain(|script| quietly(root, told, &python, &[script]).is_err());
+    built.recv().map_err(|_| "phea could not be built".to_string())?;
+    failed.extend(asking.into_iter().filter(|script| quietly(root, told, &python, &[script]).is_err()));
+    Ok(failed)
 }
 
 /// Runs one command in the root, what it prints kept.
 fn quietly(root: &Path, told: &mut String, program: &str, arguments: &[&str]) -> Result<(), String> {
     let line = format!("{program} {}", arguments.join(" "));
+    let programs = target(root).join("debug");
     // The libraries below NumPy would take every core for matrices of a few rows.
     let ran = Command::new(program)
         .args(arguments)
         .current_dir(root)
         .env("OPENBLAS_NUM_THREADS", "1")
+        .env("PHEA", programs.join("phea"))
+        .env("REFERENCE_SYSTEMS", programs.join("examples").join("reference_systems"))
+        .env("SCHEMA_CASES", programs.join("examples").join("schema_cases"))
         .stdin(Stdio::null())
         .output();
     let (output, ended) = match ran {

@@ -13,6 +13,19 @@ pub(super) fn component(name: &str, subcommand: &str) -> Result<(), String> {
     Err(format!("`cargo {subcommand}` is missing and `rustup component add {name}` did not bring it"))
 }
 
+/// With which other commands of cargo take what `cargo clippy -- -D warnings` read for their own, instead of reading all crates of
+/// the workspace once more; none where clippy's compiler does not lie beside the other.
+pub(super) fn clippy_variables() -> Vec<(&'static str, String)> {
+    let printed = Command::new("rustc").args(["--print", "sysroot"]).output();
+    let Ok(printed) = printed else { return Vec::new() };
+    let driver = Path::new(String::from_utf8_lossy(&printed.stdout).trim()).join("bin").join("clippy-driver");
+    if !driver.is_file() {
+        return Vec::new();
+    }
+    let arguments = ["-D", "warnings", ""].join("__CLIPPY_HACKERY__");
+    vec![("RUSTC_WORKSPACE_WRAPPER", driver.to_string_lossy().into_owned()), ("CLIPPY_ARGS", arguments)]
+}
+
 /// Sees to it that the standard library for this target is there; says what is missing where it cannot.
 pub(super) fn target(name: &str) -> Result<(), String> {
     if is_target_there(name) || (quietly("rustup", &["target", "add", name]) && is_target_there(name)) {

@@ -40,7 +40,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     ("apps/cli", &["phea-workbench"]),
     ("fuzz", &["phea-workbench"]),
-    ("benches/peers/sundials", &["phea-dynamics", "phea-hydraulics", "phea-workbench"]),
+    ("benches/peers/sundials", &["phea-dynamics", "phea-hydraulics", "phea-machine"]),
     ("xtask", &[]),
 ];
 

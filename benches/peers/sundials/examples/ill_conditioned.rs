@@ -1,6 +1,6 @@
 //! A rig whose peak hangs on a ringing of 1e-5 N that grows: by CVODE and by phea, at many tolerances.
 //!
-//!     cargo run --release --manifest-path benches/peers/sundials/Cargo.toml --example ill_conditioned -- 1e-9 1e-11
+//!     cargo run --release -p sundials --example ill_conditioned -- 1e-9 1e-11
 //!
 //! `examples/ybitu/pipe.toml` with its load moved by 20 mm in 2 s: the piston follows so slowly that its friction falls with the
 //! velocity and feeds the ringing on the load cell. For each tolerance it prints the peak of the force's deviation from 4 kN
@@ -10,7 +10,9 @@ use std::f64::consts::FRAC_PI_4;
 use std::time::Instant;
 
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element};
-use phea_dynamics::simulation::{CommandedPlant, InputSchedule, Input, Plant, Profile, Settings, System, simulate};
+use phea_dynamics::simulation::{
+    CommandedPlant, Input, InputSchedule, Plant, Profile, Settings, System, simulate,
+};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::machine::{Machine, MachineOptions, Start};

@@ -3,10 +3,52 @@
 use std::cell::RefCell;
 
 use phea_dynamics::random;
-use phea_dynamics::simulation::{InputSchedule, Input, Sampler, System};
+use phea_dynamics::simulation::{Input, InputSchedule, Sampler, System};
 
 use crate::waves::{Waves, integrate_delayed};
 use crate::{CvodeError, Method, integrate};
+
+/// What CVODE asks of a system: every [`System`] answers it, and what was compiled elsewhere may.
+pub trait Equations {
+    /// As [`System::states`].
+    fn states(&self) -> usize;
+    /// As [`System::inputs`].
+    fn inputs(&self) -> usize;
+    /// As [`System::scales`].
+    fn scales(&self) -> Vec<f64>;
+    /// As [`System::delays`].
+    fn delays(&self) -> Vec<f64>;
+    /// As [`System::rates`].
+    fn rates(&self, state: &[f64], inputs: &[f64], rates: &mut [f64]);
+    /// As [`System::outgoing`].
+    fn outgoing(&self, state: &[f64], inputs: &[f64], waves: &mut [f64]);
+}
+
+impl<E: System<f64>> Equations for E {
+    fn states(&self) -> usize {
+        System::states(self)
+    }
+
+    fn inputs(&self) -> usize {
+        System::inputs(self)
+    }
+
+    fn scales(&self) -> Vec<f64> {
+        System::scales(self)
+    }
+
+    fn delays(&self) -> Vec<f64> {
+        System::delays(self)
+    }
+
+    fn rates(&self, state: &[f64], inputs: &[f64], rates: &mut [f64]) {
+        System::rates(self, state, inputs, rates);
+    }
+
+    fn outgoing(&self, state: &[f64], inputs: &[f64], waves: &mut [f64]) {
+        System::outgoing(self, state, inputs, waves);
+    }
+}
 
 /// Small errors put into a solution on purpose, to see what becomes of them.
 ///
@@ -80,8 +122,8 @@ impl Following {
 /// assert!((rows[3][0] - 5.0 * (1.0 - (-2.0f64).exp())).abs() < 1e-8);
 /// # Ok::<(), sundials::CvodeError>(())
 /// ```
-pub fn follow<E: System<f64>>(
-    system: &E,
+pub fn follow(
+    system: &dyn Equations,
     start: &[f64],
     course: &InputSchedule,
     mut sampler: Option<&mut dyn Sampler>,
@@ -134,8 +176,8 @@ pub fn follow<E: System<f64>>(
 }
 
 /// The states at `times` where nothing is delayed.
-fn continued<E: System<f64>>(
-    system: &E,
+fn continued(
+    system: &dyn Equations,
     inputs_at: &dyn Fn(f64, &Waves, &mut [f64]),
     state: &[f64],
     times: &[f64],

@@ -8,7 +8,7 @@ mod interface;
 mod session;
 mod waves;
 
-pub use course::{Following, Kicks, follow};
+pub use course::{Equations, Following, Kicks, follow};
 use session::Session;
 
 /// How CVODE steps; both solve their implicit equations by Newton's method with a dense Jacobian of difference quotients.

@@ -3,10 +3,8 @@
 use std::cell::RefCell;
 use std::f64::consts::PI;
 
-use phea_dynamics::simulation::System;
-
 use crate::session::Session;
-use crate::{CvodeError, Following};
+use crate::{CvodeError, Equations, Following};
 
 /// Points in a piece of a wave, of a polynomial of one degree less.
 const POINTS: usize = 12;
@@ -110,8 +108,8 @@ fn interpolated(values: &[f64; POINTS], part: f64) -> f64 {
 /// The states at `times`, over which no input breaks; keeps what is sent meanwhile.
 ///
 /// `inputs_at` writes all inputs of a time, what arrives included.
-pub(crate) fn integrate_delayed<E: System<f64>>(
-    system: &E,
+pub(crate) fn integrate_delayed(
+    system: &dyn Equations,
     inputs_at: &dyn Fn(f64, &Waves, &mut [f64]),
     waves: &RefCell<Waves>,
     state: &[f64],

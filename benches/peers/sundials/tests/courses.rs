@@ -1,7 +1,7 @@
 //! phea's method and CVODE on the same equations, inputs and samples.
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{InputSchedule, Input, Profile, Sampler, Settings, Status, System, simulate};
+use phea_dynamics::simulation::{Input, InputSchedule, Profile, Sampler, Settings, Status, System, simulate};
 use sundials::{CvodeError, Following, Method, follow};
 
 /// y'' = mu (1 - y^2) y' - y + w1 + c w2, with a load's motion w1 and its velocity w2, and a command.

@@ -6,12 +6,14 @@ use std::process::Command;
 use std::time::Instant;
 
 use phea_dynamics::controller::{Compensator, Controller, ControllerState, Element, SampledController};
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{
-    CommandedPlant, InputSchedule, Input, Outcome, Plant, Sampler, Settings, Status, System, Work, simulate,
+    CommandedPlant, Input, InputSchedule, Observer, Outcome, Plant, Sampler, Sensed, Settings, Status, Task,
+    Work,
 };
-use phea_hydraulics::machine::{INDICATORS, Machine};
-use sundials::{CvodeError, Following, Kicks, Method, follow};
+use phea_hydraulics::machine::INDICATORS;
+use phea_machine::{Commanded, Control as Loop, Watcher};
+use sundials::{CvodeError, Equations, Following, Kicks, Method, follow};
 
 use crate::rig::{Control, OUTPUT_STEP_S, Rig};
 use crate::roughness::{Roughness, is_rough, roughest};
@@ -117,7 +119,7 @@ impl Ours {
 
 /// A controller in its computer, its prefilter before the converter.
 struct Digital<'a> {
-    held: &'a CommandedPlant<Machine>,
+    held: &'a Commanded,
     controller: SampledController,
     state: ControllerState,
     delay_s: f64,
@@ -138,39 +140,59 @@ impl Sampler for Digital<'_> {
     }
 }
 
-/// A system whose rates cease to be numbers after so many evaluations: how a run on CVODE is ended.
-struct Patient<'a, E> {
-    system: &'a E,
+/// phea's own loop, as compiled for its users, whose rates cease to be numbers after so many evaluations: how a run on CVODE is ended.
+struct Patient<'a> {
+    control: &'a Loop,
     left: Cell<u64>,
 }
 
-impl<E: System<f64>> System<f64> for Patient<'_, E> {
+impl Equations for Patient<'_> {
     fn states(&self) -> usize {
-        self.system.states()
+        self.control.size()[0]
     }
 
     fn inputs(&self) -> usize {
-        self.system.inputs()
+        self.control.size()[1]
     }
 
     fn scales(&self) -> Vec<f64> {
-        self.system.scales()
+        self.control.scales()
     }
 
     fn delays(&self) -> Vec<f64> {
-        self.system.delays()
+        self.control.delays()
     }
 
-    fn outgoing<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
-        self.system.outgoing(state, inputs, waves);
+    fn outgoing(&self, state: &[f64], inputs: &[f64], waves: &mut [f64]) {
+        self.control.outgoing(state, inputs, waves);
     }
 
-    fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
-        self.system.rates(state, inputs, rates);
+    fn rates(&self, state: &[f64], inputs: &[f64], rates: &mut [f64]) {
+        self.control.rates(state, inputs, rates);
         self.left.set(self.left.get().saturating_sub(1));
         if self.left.get() == 0 {
-            rates.fill(T::from(f64::NAN));
+            rates.fill(f64::NAN);
         }
+    }
+}
+
+/// All states of every row.
+struct Rows<'a> {
+    wanted: Vec<usize>,
+    states: &'a mut Vec<Vec<f64>>,
+}
+
+impl Observer for Rows<'_> {
+    fn wanted(&self) -> &[usize] {
+        &self.wanted
+    }
+
+    fn wants_inputs(&self) -> bool {
+        false
+    }
+
+    fn observe(&mut self, _time_s: f64, states: &[f64], _inputs: &[f64]) {
+        self.states.push(states.to_vec());
     }
 }
 
@@ -254,22 +276,26 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, timed: bool) -> Co
     let [value, rate] = [Input::Value, Input::Rate].map(|input| input(rig.ground.clone()));
     let reference = Input::Value(rig.reference.clone());
     let course = |inputs| InputSchedule { duration_s: rig.duration_s, output_step_s: OUTPUT_STEP_S, inputs };
+    let sensed =
+        Sensed::new(rig.machine, &TransferFunction::gain_only(1.0)).expect("a sensor without memory");
     let mut compared = match rig.control.sample_time_s {
         None => {
-            let closed = CommandedPlant::in_loop(rig.machine, &controller, 0.0).expect("a proper controller");
+            let closed = CommandedPlant::in_loop(sensed, &controller, 0.0).expect("a proper controller");
+            let closed = Loop::Continuous(Box::new(closed));
             let sampler = || None::<Box<dyn Sampler>>;
             judge(rig, &closed, &course(vec![reference, value, rate]), &sampler, timed)
         }
         Some(sample_time_s) => {
             let prefilter = controller.prefilter.transfer_function().expect("a prefilter");
-            let held = CommandedPlant::on_hold(rig.machine, &prefilter).expect("a proper prefilter");
+            let held = CommandedPlant::on_hold(sensed, &prefilter).expect("a proper prefilter");
+            let held = Loop::Open(Box::new(held));
             let digital = Controller { prefilter: Compensator::default(), ..controller };
             let digital = digital.sampled(sample_time_s).expect("a controller that can be sampled");
             let sampler = || {
                 let (controller, state) = (digital.clone(), digital.at_rest());
                 let delay_s = rig.control.delay_s;
                 let sampler: Box<dyn Sampler + '_> =
-                    Box::new(Digital { held: &held, controller, state, delay_s });
+                    Box::new(Digital { held: held.commanded(), controller, state, delay_s });
                 Some(sampler)
             };
             judge(rig, &held, &course(vec![Input::Command, reference, value, rate]), &sampler, false)
@@ -308,19 +334,19 @@ fn controller(control: &Control) -> Controller {
 type NewSampler<'a> = dyn Fn() -> Option<Box<dyn Sampler + 'a>> + 'a;
 
 /// The comparison, and the force that CVODE finds.
-fn judge<'a, E: System<f64> + Clone>(
+fn judge<'a>(
     rig: &Rig,
-    system: &'a E,
+    system: &'a Loop,
     course: &InputSchedule,
     sampler: &NewSampler<'a>,
     timed: bool,
 ) -> (Compared, Vec<f64>) {
     let mut start = rig.start.clone();
-    start.resize(system.states(), 0.0);
+    start.resize(system.size()[0], 0.0);
     start.extend(&rig.waves);
     let force = |states: &[Vec<f64>]| force_of(rig, states);
     let counted = |following: &Following| {
-        let patient = Patient { system, left: Cell::new(PATIENCE) };
+        let patient = Patient { control: system, left: Cell::new(PATIENCE) };
         let mut sampler = sampler();
         let sampler = sampler.as_deref_mut().map(|sampler| -> &mut dyn Sampler { sampler });
         let states = follow(&patient, &start, course, sampler, following)?;
@@ -329,11 +355,14 @@ fn judge<'a, E: System<f64> + Clone>(
     let by_cvode = |following: &Following| counted(following).map(|(states, _)| states);
     let by_phea = |tolerance: f64| {
         let settings = Settings { tolerance, maximum_steps: 2_000_000, ..Settings::default() };
+        let mut states = Vec::new();
+        let observer: Watcher<'_> =
+            Box::new(Rows { wanted: (0..system.size()[0]).collect(), states: &mut states });
+        let task = Task { start: start.clone(), course, sampler: sampler(), observer };
         let begun = Instant::now();
-        let run = simulate(system, &start, course, sampler(), &settings, &mut |_| true);
+        let outcome = system.drive(task, &settings, &mut |_| true);
         let seconds = begun.elapsed().as_secs_f64();
-        let run = run.expect("a course that fits");
-        (Ours::new(&run.outcome, seconds), force(&run.trajectory.states))
+        (Ours::new(&outcome.expect("a course that fits"), seconds), force(&states))
     };
     let runs = [JUDGED, TOLERANCE].map(by_phea);
     let mut compared = Compared::default();

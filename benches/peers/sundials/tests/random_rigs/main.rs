@@ -1,6 +1,6 @@
 //! Random rigs through phea and through CVODE: 100 of each family as a test, or as many as the first argument says.
 //!
-//!     cargo test --release --manifest-path benches/peers/sundials/Cargo.toml --test random_rigs -- 1000 timed
+//!     cargo test --release -p sundials --test random_rigs -- 1000 timed
 //!
 //! Two families: `any`, whose valve, lines, cylinder, friction, load, controller and its samples vary over decades, and `falling`,
 //! whose friction falls with the velocity where a slow load lets the piston go, so that it feeds the ringing on the load cell. One
