@@ -25,6 +25,14 @@ def polynomials(coefficients, s):
     return value
 
 
+def products(rows, others):
+    """The polynomial of each row times that of the other's row, or times the only one."""
+    found = np.zeros((len(rows), rows.shape[1] + others.shape[1] - 1), dtype=np.result_type(rows, others))
+    for shift, coefficient in enumerate(others.T):
+        found[:, shift : shift + rows.shape[1]] += coefficient[:, None] * rows
+    return found
+
+
 class Structure:
     """Factors in series: I integrator, Z and P real zero and pole, ZZ and PP pairs, each 1 at s = 0; and a gain.
 
@@ -163,8 +171,7 @@ class Problem:
     def roots(self, x):
         """Roots of 1 + L of every plant, by companion matrices on a scaled s."""
         over, under = self.feedback.polynomials(x)
-        rows = np.stack([np.convolve(row, under) for row in self.under])
-        numerators = np.stack([np.convolve(row, over) for row in self.over])
+        rows, numerators = products(self.under, under[None]), products(self.over, over[None])
         rows[:, rows.shape[1] - numerators.shape[1] :] += numerators
         order = rows.shape[1] - 1
         rows = rows * self.scale ** np.arange(order, -1, -1.0)

@@ -7,12 +7,13 @@ recompute_audit.py.
     python comparisons/recompute_design.py [CASE ...]
 """
 
+import functools
 import sys
 import time
 
 import numpy as np
 
-from loop_design import DISTANT, Plants, Problem, Structure, db, polynomials
+from loop_design import DISTANT, Plants, Problem, Structure, db, polynomials, products
 from loop_search import greatest_margin, in_conflict, least_gain, relaxation, search, worst_over_box
 
 AREA, MASS, SENSOR = np.pi / 4 * (0.05**2 - 0.022**2), 13.1, 2e7
@@ -38,8 +39,7 @@ def rig(parameters):
     one, compliance = np.ones_like(w), AREA**2 / stiffness
     spool = np.stack([one, 2 * damping * w, w**2], axis=1)
     piston = [MASS * compliance, MASS * leak + friction * compliance, friction * leak + SENSOR * compliance + AREA**2, SENSOR * leak]
-    under = np.stack([np.convolve(a, b) for a, b in zip(spool, np.stack(piston, axis=1))])
-    return (SENSOR * AREA * flow_gain * w**2)[:, None], under
+    return (SENSOR * AREA * flow_gain * w**2)[:, None], products(spool, np.stack(piston, axis=1))
 
 
 def modes(parameters, delay):
@@ -67,15 +67,12 @@ def held_rational(parameters, delay):
     """The same as a ratio of polynomials in w = 2/T (z - 1)/(z + 1)."""
     poles, now, before = modes(parameters, delay)
     half = SAMPLE_TIME / 2
-    up, down = np.array([half, 1.0]), np.array([-half, 1.0])
-    over, under = [], []
-    for z, a, b in zip(poles, now, before):
-        factors = [np.array([half * (1 + pole), 1 - pole]) for pole in z]
-        product = lambda chosen: np.array([1.0]) if not chosen else np.convolve(chosen[0], product(chosen[1:]))
-        under.append(np.convolve(product(factors), up).real)
-        terms = [np.convolve(product(factors[:i] + factors[i + 1 :]), a[i] * up + b[i] * down) for i in range(len(z))]
-        over.append(np.convolve(sum(terms), down).real)
-    return np.array(over), np.array(under)
+    up, down = np.array([[half, 1.0]]), np.array([[-half, 1.0]])
+    factors = [np.stack([half * (1 + pole), 1 - pole], axis=1) for pole in poles.T]
+    product = lambda chosen: functools.reduce(products, chosen, np.ones((len(poles), 1)))
+    columns = enumerate(zip(now.T[:, :, None], before.T[:, :, None]))
+    terms = [products(product(factors[:i] + factors[i + 1 :]), a * up + b * down) for i, (a, b) in columns]
+    return products(sum(terms), down).real, products(product(factors), up).real
 
 
 def rig_plants(box, delay=None):
