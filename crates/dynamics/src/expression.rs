@@ -51,6 +51,50 @@ impl Expression {
         &self.nodes
     }
 
+    /// Where the results stand among the operations.
+    pub fn results(&self) -> &[NodeIndex] {
+        &self.results
+    }
+
+    /// Operations that were recorded elsewhere; `None` where one refers to itself or to a later one, to a parameter that does not exist, or
+    /// where a result does not exist.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::expression::{Binary, Expression, Node};
+    /// let nodes = vec![Node::Parameter(0), Node::Binary(Binary::Add, 0, 0)];
+    /// let twice = Expression::from_nodes(vec!["x".into()], nodes.clone(), vec![1]);
+    /// assert_eq!(twice.map(|twice| twice.evaluate(&[2.0])), Some(vec![4.0]));
+    /// assert_eq!(Expression::from_nodes(vec![], nodes, vec![1]), None);
+    /// ```
+    pub fn from_nodes(
+        parameters: Vec<String>,
+        nodes: Vec<Node>,
+        results: Vec<NodeIndex>,
+    ) -> Option<Expression> {
+        let refers_back = nodes.iter().enumerate().all(|(index, node)| {
+            let known = !matches!(node, Node::Parameter(parameter) if *parameter >= parameters.len());
+            known && node.operands().into_iter().flatten().all(|operand| operand < index)
+        });
+        let found = results.iter().all(|result| *result < nodes.len());
+        (refers_back && found).then_some(Expression { parameters, nodes, results })
+    }
+
+    /// The same operations as far as the first results need them, and these results alone.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::expression::Expression;
+    /// let both = Expression::record(&["x"], |p| vec![p[0] + p[0], p[0].exp()]);
+    /// assert_eq!(both.first(1).nodes().len(), 2);
+    /// # use phea_dynamics::scalar::Scalar;
+    /// ```
+    pub fn first(&self, count: usize) -> Expression {
+        let results = self.results.iter().take(count).copied().collect();
+        let (nodes, results) = recording::needed(&self.nodes, results);
+        Expression { parameters: self.parameters.clone(), nodes, results }
+    }
+
     /// Whether any result is computed from the parameter with this index.
     ///
     /// # Example

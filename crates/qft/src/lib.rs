@@ -11,6 +11,7 @@ pub mod family;
 pub mod loop_shaping;
 pub mod manual_shaping;
 pub mod prefilter;
+pub mod proof;
 mod sampled;
 pub mod specification;
 pub mod stability;

@@ -12,6 +12,7 @@ mod fed_back;
 mod kernels;
 mod manual_shaping;
 mod prefilter;
+mod proof;
 mod quantisation;
 mod responding;
 mod rig;

@@ -10,4 +10,4 @@ mod given_frequency;
 mod plants;
 mod properties;
 mod reach;
-mod thesis;
+pub(crate) mod thesis;

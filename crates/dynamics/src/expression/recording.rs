@@ -64,7 +64,7 @@ where
 
 /// The nodes that some result is computed from, in their order, and where the results are among
 /// them.
-fn needed(nodes: &[Node], results: Vec<NodeIndex>) -> (Vec<Node>, Vec<NodeIndex>) {
+pub(super) fn needed(nodes: &[Node], results: Vec<NodeIndex>) -> (Vec<Node>, Vec<NodeIndex>) {
     let mut wanted = vec![false; nodes.len()];
     for &result in &results {
         wanted[result] = true;

@@ -1,0 +1,110 @@
+//! Proof: what an audit found by searching, shown for every plant of the box and every frequency of the band, as a certificate that a
+//! sceptic can check again.
+//!
+//! ```text
+//! loop and box -> polynomials in s and the variables -> control points -> tree of leaves -> certificate        the prover, not trusted
+//!                                                            certificate -> polynomials -> control points -> checked        the checker
+//! ```
+//!
+//! Every claim is |V(jw, p)| <= |U(jw, p)| with two polynomials, see the table of `claimed`. Over a box of plants and a panel of frequencies
+//! both are means of their control points, with the same weights. A leaf is shown by one direction d:
+//!
+//! ```text
+//! Re(conj(d) U_k) >= |d| |V_k| for every control point   ->   |V| <= |U| on the whole leaf
+//! ```
+//!
+//! A loop is stable where n + c, the numerator of 1 + L, has no zero on the imaginary axis nor at infinity for any plant of the box, and the
+//! roots of one plant lie to its left: roots move continuously, and none can cross.
+
+mod certificate;
+mod checker;
+mod claimed;
+mod direction;
+mod hurwitz;
+mod points;
+mod polynomial;
+mod prove;
+mod statement;
+mod supremum;
+mod walk;
+
+pub use certificate::{
+    Certificate, CertifiedParameter, CertifiedPlant, Claim, LEAF, Limited, Panel, Quotient, Side,
+};
+pub use checker::{Rejection, check};
+pub use prove::{ProofOptions, prove};
+pub use walk::Region;
+
+use crate::verification::WorstCase;
+
+/// What was shown of a loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proof {
+    /// All claims that hold; `None` where nothing can be stated of such a loop.
+    pub certificate: Option<Certificate>,
+    /// That every plant is stable.
+    pub stability: Standing,
+    /// That every specification is satisfied, in their order.
+    pub specifications: Vec<SpecificationProof>,
+}
+
+/// What was shown of a specification.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpecificationProof {
+    /// Whether it is satisfied by every plant, up to the tolerance.
+    pub standing: Standing,
+    /// The greatest ratio of closed loop to limit is not less than this, dB: it is reached somewhere.
+    pub least_db: Option<f64>,
+    /// It is not greater than this, dB.
+    pub most_db: Option<f64>,
+    /// Where the least is reached.
+    pub worst: Option<WorstCase>,
+}
+
+/// Whether a claim is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Standing {
+    /// For every plant and every frequency.
+    Proven,
+    /// At least one plant, at one frequency, contradicts it.
+    Refuted,
+    /// Neither.
+    NotProven(NotProven),
+}
+
+/// Why a claim is neither shown nor refuted.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotProven {
+    /// The plants were measured: between two of them nothing can be claimed.
+    Measured,
+    /// The plants are listed one by one, without a box.
+    Members,
+    /// The loop is sampled.
+    Sampled,
+    /// There is dead time in the loop.
+    DeadTime,
+    /// The load's velocity is fed forward.
+    RateFedForward,
+    /// Waves travel in the plant, which has no polynomials.
+    Waves,
+    /// The coefficients of the plant are not polynomials in its parameters.
+    NotPolynomial,
+    /// The box has too many variables.
+    TooManyVariables,
+    /// The limit is given as a table.
+    TableLimit,
+    /// There is no prefilter: the spread of a family is not a ratio at one plant.
+    Spread,
+    /// The loop is not shown to be stable, and closed loops mean nothing.
+    Unstable,
+    /// It is wrong in a larger box than that of the family, in which parameters that move together move each by itself.
+    LargerBox,
+    /// So many leaves did not suffice; this part remains.
+    Budget(Region),
+    /// The ratio grows without an end that was found.
+    Unbounded,
+    /// No plant of the box could be shown to be stable, nor unstable.
+    NoStableMember,
+    /// The checker, which rounds outwards, could not confirm what the prover found.
+    Rounding,
+}

@@ -1,0 +1,211 @@
+//! The direction that shows a leaf, or the axis across which it is better halved. Nothing here is trusted: the checker looks again.
+//!
+//! A direction at the angle phi shows the pair (U_k, V_k) where |phi - arg U_k| <= acos(|V_k|/|U_k|). All pairs are shown where these
+//! arcs have a point in common; where they have none, two of them tell across which axis they differ.
+
+use num_complex::Complex64;
+use phea_dynamics::portable;
+
+use super::points::{Pair, Points};
+
+/// What became of a leaf.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Leaf {
+    /// This direction shows it.
+    Shown([i16; 2]),
+    /// It is to be halved across this axis.
+    Halve(usize),
+    /// At this corner, a bit for each axis, |V| is greater than |U| by this ratio: the claim is wrong.
+    Wrong {
+        /// The lowest bit is that of the frequency.
+        corner: u64,
+        /// |V|/|U|
+        ratio: f64,
+    },
+}
+
+/// The greatest part of a direction.
+const FULL: f64 = 32767.0;
+/// What is kept for the rounding of the checker, of |V|^2.
+const ROOM: f64 = 1e-11;
+/// Below this length the mean of unit directions says nothing.
+const CLEAR: f64 = 0.05;
+
+/// Beyond this angle, rad, a point counts as turned away.
+const BEHIND: f64 = 2.0;
+
+/// Looks at one leaf.
+pub(crate) fn leaf(points: &Points<f64>) -> Leaf {
+    if let Some((corner, ratio)) = worst_corner(points) {
+        return Leaf::Wrong { corner, ratio };
+    }
+    let pairs = points.pairs();
+    let Some(middle) = mean_direction(pairs) else { return Leaf::Halve(most_varied(points)) };
+    let near = rounded(middle);
+    if shows(near, pairs) {
+        return Leaf::Shown(near);
+    }
+    if let Some(index) = turned_away(pairs, middle) {
+        return Leaf::Halve(back(points, index, middle));
+    }
+    let [mut low, mut high] = [(f64::NEG_INFINITY, 0), (f64::INFINITY, 0)];
+    for (index, pair) in pairs.iter().enumerate() {
+        let Some([from, to]) = arc(pair, middle) else { return Leaf::Halve(across(points, index)) };
+        if from > low.0 {
+            low = (from, index);
+        }
+        if to < high.0 {
+            high = (to, index);
+        }
+    }
+    let angle = 0.5 * (low.0 + high.0);
+    let direction = rounded(middle * portable::exp_complex(Complex64::new(0.0, angle)));
+    if low.0 < high.0 && shows(direction, pairs) {
+        return Leaf::Shown(direction);
+    }
+    Leaf::Halve(between(points, [low.1, high.1], middle))
+}
+
+/// The corner with the greatest |V|/|U| above one.
+fn worst_corner(points: &Points<f64>) -> Option<(u64, f64)> {
+    let wrong = corners(points).filter_map(|(corner, index)| {
+        let [ur, ui, vr, vi] = points.pairs()[index];
+        let (u, v) = (ur * ur + ui * ui, vr * vr + vi * vi);
+        (v > u).then(|| (corner, (v / u).sqrt()))
+    });
+    wrong.max_by(|(_, one), (_, other)| one.total_cmp(other))
+}
+
+/// The corners, a bit for each axis, and where they stand.
+fn corners(points: &Points<f64>) -> impl Iterator<Item = (u64, usize)> {
+    let steps: Vec<usize> =
+        (0..points.axes()).map(|axis| points.degree(axis) * points.stride(axis)).collect();
+    let idle = steps
+        .iter()
+        .enumerate()
+        .filter(|(_, step)| **step == 0)
+        .fold(0_u64, |bits, (axis, _)| bits | 1 << axis);
+    let all = 0..1_u64 << steps.len();
+    all.filter(move |corner| corner & idle == 0).map(move |corner| {
+        let moved = steps.iter().enumerate().filter(|(axis, _)| corner >> axis & 1 == 1);
+        (corner, moved.map(|(_, step)| step).sum())
+    })
+}
+
+fn mean_direction(pairs: &[Pair<f64>]) -> Option<Complex64> {
+    let sum: Complex64 = pairs.iter().map(|[re, im, ..]| unit(Complex64::new(*re, *im))).sum();
+    let length = portable::magnitude(sum);
+    (length > CLEAR * pairs.len() as f64).then(|| sum / length)
+}
+
+fn unit(value: Complex64) -> Complex64 {
+    let length = portable::magnitude(value);
+    if length > 0.0 { value / length } else { value }
+}
+
+fn rounded(direction: Complex64) -> [i16; 2] {
+    [direction.re, direction.im].map(|part| (part * FULL).round() as i16)
+}
+
+/// What the checker asks, with room for its rounding.
+fn shows(direction: [i16; 2], pairs: &[Pair<f64>]) -> bool {
+    let [a, b] = direction.map(f64::from);
+    let square = (a * a + b * b) * (1.0 + ROOM);
+    pairs.iter().all(|[ur, ui, vr, vi]| {
+        let along = a * ur + b * ui;
+        let room = ROOM * ((a * ur).abs() + (b * ui).abs());
+        let least = along - room;
+        least > 0.0 && least * least >= square * (vr * vr + vi * vi)
+    })
+}
+
+/// The arc of directions that show a pair, relative to this one; `None` where none does.
+fn arc([ur, ui, vr, vi]: &Pair<f64>, middle: Complex64) -> Option<[f64; 2]> {
+    let relative = Complex64::new(*ur, *ui) * middle.conj();
+    let ratio = portable::magnitude(Complex64::new(*vr, *vi)) / portable::magnitude(relative);
+    let angle = portable::argument(relative);
+    let half =
+        (ratio < 1.0).then(|| portable::argument(Complex64::new(ratio, (1.0 - ratio * ratio).sqrt())))?;
+    Some([angle - half, angle + half])
+}
+
+/// The point that is turned away most from a direction, where it stands behind: angles beyond are near to those on the other side.
+fn turned_away(pairs: &[Pair<f64>], middle: Complex64) -> Option<usize> {
+    let angles = pairs.iter().map(|pair| angle(pair, middle).abs()).enumerate();
+    let (index, greatest) = angles.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
+    (greatest > BEHIND).then_some(index)
+}
+
+/// Across the axis along which a point that is turned away comes back most.
+fn back(points: &Points<f64>, index: usize, middle: Complex64) -> usize {
+    let of = |index: usize| angle(&points.pairs()[index], middle).abs();
+    let gain = |axis: usize| {
+        let [own, last] = place(points, index, axis);
+        let stride = points.stride(axis);
+        let line = (0..=last).map(|other| of(index - own * stride + other * stride));
+        (last > 0).then(|| of(index) - line.fold(f64::INFINITY, f64::min))
+    };
+    greatest(points.axes(), gain).unwrap_or_else(|| most_varied(points))
+}
+
+/// Of U, relative to a direction.
+fn angle([ur, ui, ..]: &Pair<f64>, middle: Complex64) -> f64 {
+    portable::argument(Complex64::new(*ur, *ui) * middle.conj())
+}
+
+/// The place of a point along an axis, and the last place.
+fn place(points: &Points<f64>, index: usize, axis: usize) -> [usize; 2] {
+    let degree = points.degree(axis);
+    [index / points.stride(axis) % (degree + 1), degree]
+}
+
+/// Halving moves a point that is not at the end of an axis. Of these axes that along which its line bends most.
+fn across(points: &Points<f64>, index: usize) -> usize {
+    let bend = |axis: usize| {
+        let [own, last] = place(points, index, axis);
+        let inside = own > 0 && own < last;
+        let stride = points.stride(axis);
+        inside.then(|| {
+            let [before, here, next] = [index - stride, index, index + stride].map(|at| points.pairs()[at]);
+            [0, 1, 2, 3].map(|part| (before[part] - 2.0 * here[part] + next[part]).abs()).iter().sum()
+        })
+    };
+    greatest(points.axes(), bend).unwrap_or_else(|| most_varied(points))
+}
+
+/// Across the axis that brings two clashing arcs nearest to each other: one of the points is moved along it to the place of the other.
+fn between(points: &Points<f64>, [low, high]: [usize; 2], middle: Complex64) -> usize {
+    let arc_at = |index: usize| arc(&points.pairs()[index], middle);
+    let (Some([from, _]), Some([_, to])) = (arc_at(low), arc_at(high)) else { return most_varied(points) };
+    let gain = |axis: usize| {
+        let ([one, _], [other, _]) = (place(points, low, axis), place(points, high, axis));
+        let stride = points.stride(axis);
+        let moved = |index: usize, own: usize, there: usize| index - own * stride + there * stride;
+        (one != other).then(|| {
+            let lowered = arc_at(moved(low, one, other)).map_or(0.0, |[moved, _]| from - moved);
+            let raised = arc_at(moved(high, other, one)).map_or(0.0, |[_, moved]| moved - to);
+            lowered + raised
+        })
+    };
+    greatest(points.axes(), gain).unwrap_or_else(|| most_varied(points))
+}
+
+/// The axis along which U and V vary most, all lines together.
+fn most_varied(points: &Points<f64>) -> usize {
+    let variation = |axis: usize| {
+        let stride = points.stride(axis);
+        let pairs = points.pairs();
+        let steps = pairs.iter().enumerate().filter(|(index, _)| place(points, *index, axis)[0] > 0);
+        let sizes = steps.map(|(index, here)| {
+            let before = &pairs[index - stride];
+            here.iter().zip(before).map(|(one, other)| (one - other).abs()).sum::<f64>()
+        });
+        (points.degree(axis) > 0).then(|| sizes.sum())
+    };
+    greatest(points.axes(), variation).unwrap_or(0)
+}
+
+fn greatest(axes: usize, of: impl Fn(usize) -> Option<f64>) -> Option<usize> {
+    let found = (0..axes).filter_map(|axis| Some((axis, of(axis)?)));
+    found.max_by(|(_, one), (_, other)| one.total_cmp(other)).map(|(axis, _)| axis)
+}

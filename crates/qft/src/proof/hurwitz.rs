@@ -1,0 +1,61 @@
+//! On which side of the imaginary axis the roots of a polynomial lie, by the array of Routh in intervals.
+
+use phea_dynamics::scalar::Interval;
+
+use super::polynomial::InS;
+
+/// What is known of the roots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Roots {
+    /// All have negative real parts.
+    AllLeft,
+    /// At least one has not.
+    SomeNotLeft,
+    /// Rounding hides it.
+    Unknown,
+}
+
+/// Of a polynomial with numbers as coefficients.
+///
+/// Each entry of the first column is a quotient of two Hurwitz determinants: all have one sign if and only if all roots have negative
+/// real parts.
+pub(crate) fn roots_of(polynomial: &InS<Interval>) -> Roots {
+    let Some(degree) = polynomial.degree() else { return Roots::Unknown };
+    let number =
+        |power: usize| polynomial.0[power].terms().next().map_or(Interval::from(0.0), |(_, value)| value);
+    let leading = number(degree);
+    let Some(sign) = sign_of(leading) else { return Roots::Unknown };
+    let highest_first = (0..=degree).rev().map(|power| number(power) * Interval::from(sign));
+    let coefficients: Vec<Interval> = highest_first.collect();
+    // a stable polynomial has no coefficient of another sign, nor one that is missing
+    if coefficients.iter().any(|coefficient| coefficient.high() <= 0.0) {
+        return Roots::SomeNotLeft;
+    }
+    let take = |first: usize| coefficients.iter().skip(first).step_by(2).copied().collect::<Vec<_>>();
+    let (mut above, mut row) = (take(0), take(1));
+    for _ in 0..degree {
+        let (Some(&upper), Some(&pivot)) = (above.first(), row.first()) else { return Roots::Unknown };
+        if pivot.high() <= 0.0 {
+            return Roots::SomeNotLeft;
+        }
+        if pivot.low() <= 0.0 {
+            return Roots::Unknown;
+        }
+        let factor = upper / pivot;
+        let zero = Interval::from(0.0);
+        let under = |place: usize| row.get(place).copied().unwrap_or(zero);
+        let next =
+            above.iter().enumerate().skip(1).map(|(place, &value)| value - factor * under(place)).collect();
+        above = std::mem::replace(&mut row, next);
+    }
+    Roots::AllLeft
+}
+
+/// 1 or -1; `None` where it may be zero.
+fn sign_of(value: Interval) -> Option<f64> {
+    match (value.low() > 0.0, value.high() < 0.0) {
+        (true, _) => Some(1.0),
+        (_, true) => Some(-1.0),
+        _ => None,
+    }
+}

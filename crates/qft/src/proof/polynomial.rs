@@ -1,0 +1,195 @@
+//! Polynomials in the variables of a box, and polynomials in s that have them as coefficients.
+
+use std::collections::BTreeMap;
+
+use phea_dynamics::expression::{Binary, Expression, Node, Unary};
+use phea_dynamics::scalar::{Interval, Scalar};
+
+/// A number of a certificate: what it prints as in decimals is meant, of which binary numbers hold the nearest.
+pub(crate) trait Decimal: Scalar {
+    /// What holds the decimal number that this one prints as.
+    fn decimal(value: f64) -> Self;
+}
+
+impl Decimal for f64 {
+    fn decimal(value: f64) -> f64 {
+        value
+    }
+}
+
+/// Largest integer up to which all are binary numbers.
+const EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
+
+impl Decimal for Interval {
+    /// The shortest decimals that read back as a number are nearer to it than its neighbours are; an integer is exact.
+    fn decimal(value: f64) -> Interval {
+        if value == value.trunc() && value.abs() <= EXACT_INTEGER {
+            return Interval::from(value);
+        }
+        Interval::new(value.next_down(), value.next_up())
+    }
+}
+
+/// A polynomial in the variables of a box: its coefficients by the exponents of the variables.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Polynomial<S> {
+    terms: BTreeMap<Vec<u8>, S>,
+}
+
+impl<S: Decimal> Polynomial<S> {
+    /// A number.
+    pub(crate) fn constant(value: S) -> Polynomial<S> {
+        Polynomial { terms: BTreeMap::from([(vec![], value)]) }
+    }
+
+    /// Nothing: no term.
+    pub(crate) fn zero() -> Polynomial<S> {
+        Polynomial { terms: BTreeMap::new() }
+    }
+
+    /// `low + (high - low) t`, t being the variable with this index; what both ends share if there is none.
+    pub(crate) fn between(low: f64, high: f64, variable: Option<usize>) -> Polynomial<S> {
+        let mut out = Polynomial::constant(S::decimal(low));
+        if let Some(variable) = variable {
+            let mut exponents = vec![0; variable];
+            exponents.push(1);
+            out.terms.insert(exponents, S::decimal(high) - S::decimal(low));
+        }
+        out
+    }
+
+    /// Its terms: exponents, of which missing ones are zero, and coefficients.
+    pub(crate) fn terms(&self) -> impl Iterator<Item = (&[u8], S)> {
+        self.terms.iter().map(|(exponents, coefficient)| (exponents.as_slice(), *coefficient))
+    }
+
+    /// Whether it has no term. A sum of intervals that may vanish is not zero.
+    pub(crate) fn is_zero(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// The number that it is, if it depends on no variable.
+    fn as_constant(&self) -> Option<S> {
+        match self.terms.iter().next() {
+            None => Some(S::from(0.0)),
+            Some((exponents, value)) if self.terms.len() == 1 && exponents.is_empty() => Some(*value),
+            Some(_) => None,
+        }
+    }
+
+    fn scaled(&self, factor: S) -> Polynomial<S> {
+        let terms =
+            self.terms.iter().map(|(exponents, coefficient)| (exponents.clone(), *coefficient * factor));
+        Polynomial { terms: terms.collect() }
+    }
+
+    pub(crate) fn plus(&self, other: &Polynomial<S>) -> Polynomial<S> {
+        let mut out = self.clone();
+        for (exponents, coefficient) in &other.terms {
+            let slot = out.terms.entry(exponents.clone()).or_insert(S::from(0.0));
+            *slot = *slot + *coefficient;
+        }
+        out
+    }
+
+    pub(crate) fn times(&self, other: &Polynomial<S>) -> Polynomial<S> {
+        let mut out = Polynomial::zero();
+        for (one, a) in &self.terms {
+            for (another, b) in &other.terms {
+                let (longer, shorter) =
+                    if one.len() < another.len() { (another, one) } else { (one, another) };
+                let mut exponents = longer.clone();
+                for (slot, exponent) in exponents.iter_mut().zip(shorter) {
+                    *slot = slot.saturating_add(*exponent);
+                }
+                let slot = out.terms.entry(exponents).or_insert(S::from(0.0));
+                *slot = *slot + *a * *b;
+            }
+        }
+        out
+    }
+}
+
+/// The results of an expression as polynomials in the variables of a box, its parameters being such polynomials; `None` where it takes
+/// something else than sums, products and quotients by numbers.
+pub(crate) fn expanded<S: Decimal>(
+    expression: &Expression,
+    parameters: &[Polynomial<S>],
+) -> Option<Vec<Polynomial<S>>> {
+    let minus_one = S::from(-1.0);
+    let mut values: Vec<Option<Polynomial<S>>> = Vec::with_capacity(expression.nodes().len());
+    for node in expression.nodes() {
+        let of = |index: usize| values.get(index).and_then(Option::as_ref);
+        let value = match *node {
+            Node::Parameter(index) => parameters.get(index).cloned(),
+            Node::Constant(0.0) => Some(Polynomial::zero()),
+            Node::Constant(value) => Some(Polynomial::constant(S::decimal(value))),
+            Node::Unary(Unary::Negate, x) => of(x).map(|x| x.scaled(minus_one)),
+            Node::Binary(Binary::Add, x, y) => of(x).zip(of(y)).map(|(x, y)| x.plus(y)),
+            Node::Binary(Binary::Subtract, x, y) => {
+                of(x).zip(of(y)).map(|(x, y)| x.plus(&y.scaled(minus_one)))
+            }
+            Node::Binary(Binary::Multiply, x, y) => of(x).zip(of(y)).map(|(x, y)| x.times(y)),
+            Node::Binary(Binary::Divide, x, y) => of(x).zip(of(y)).and_then(|(x, y)| {
+                let divisor = y.as_constant()?;
+                Some(x.scaled(S::from(1.0) / divisor))
+            }),
+            Node::Unary(..) | Node::Select(..) => None,
+        };
+        values.push(value);
+    }
+    expression.results().iter().map(|&index| values.get(index).cloned().flatten()).collect()
+}
+
+/// A polynomial in s, the lowest power first.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct InS<S>(pub(crate) Vec<Polynomial<S>>);
+
+impl<S: Decimal> InS<S> {
+    /// With these numbers as coefficients, the highest power first.
+    pub(crate) fn of_decimals(coefficients: &[f64]) -> InS<S> {
+        let terms = coefficients.iter().rev().map(|&value| match value {
+            0.0 => Polynomial::zero(),
+            value => Polynomial::constant(S::decimal(value)),
+        });
+        InS(terms.collect())
+    }
+
+    pub(crate) fn plus(&self, other: &InS<S>) -> InS<S> {
+        let (longer, shorter) = if self.0.len() < other.0.len() { (other, self) } else { (self, other) };
+        let mut out = longer.clone();
+        for (slot, term) in out.0.iter_mut().zip(&shorter.0) {
+            *slot = slot.plus(term);
+        }
+        out
+    }
+
+    pub(crate) fn scaled(&self, factor: S) -> InS<S> {
+        InS(self.0.iter().map(|coefficient| coefficient.scaled(factor)).collect())
+    }
+
+    pub(crate) fn times(&self, other: &InS<S>) -> InS<S> {
+        let mut out = vec![Polynomial::zero(); (self.0.len() + other.0.len()).saturating_sub(1)];
+        for (index, a) in self.0.iter().enumerate() {
+            for (slot, b) in out.iter_mut().skip(index).zip(&other.0) {
+                *slot = slot.plus(&a.times(b));
+            }
+        }
+        InS(out)
+    }
+
+    /// Its degree; `None` where all its coefficients are zero.
+    pub(crate) fn degree(&self) -> Option<usize> {
+        self.0.iter().rposition(|coefficient| !coefficient.is_zero())
+    }
+
+    /// How often s divides it.
+    pub(crate) fn powers_of_s(&self) -> Option<usize> {
+        self.0.iter().position(|coefficient| !coefficient.is_zero())
+    }
+
+    /// Divided by so many s, which must divide it.
+    pub(crate) fn without_powers_of_s(&self, count: usize) -> InS<S> {
+        InS(self.0.iter().skip(count).cloned().collect())
+    }
+}

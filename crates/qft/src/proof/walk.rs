@@ -1,0 +1,132 @@
+//! The prover: halves boxes until every leaf is shown, in plain numbers. What it finds is for the checker to confirm.
+
+use phea_dynamics::watch::{Stopped, Watch, tell};
+
+use super::certificate::{LEAF, Panel};
+use super::direction::{Leaf, leaf};
+use super::points::{Points, Range};
+use super::polynomial::InS;
+
+/// What became of a claim.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Walk {
+    /// These panels show it.
+    Shown(Vec<Panel>),
+    /// It is wrong at this place: |V| is greater than |U| by this ratio.
+    Wrong { at: Place, ratio: f64 },
+    /// Too many leaves; this box is not shown.
+    Open(Region),
+}
+
+/// A plant, by its variables, and a frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) frequency_rad_per_s: f64,
+    pub(crate) member: Vec<f64>,
+}
+
+/// A part of the box and of the band.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// From and to, rad/s.
+    pub band_rad_per_s: [f64; 2],
+    /// From and to for each variable, within 0 to 1.
+    pub variables: Vec<[f64; 2]>,
+}
+
+/// How far a walk goes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Effort {
+    /// Leaves in all panels together at most.
+    pub(crate) leaves: usize,
+    /// Halvings on the way to a leaf at most.
+    pub(crate) depth: usize,
+}
+
+/// A box on its way: its control points, and from where to where it goes on each axis of its panel.
+struct Waiting {
+    points: Points<f64>,
+    sides: Vec<[f64; 2]>,
+    depth: usize,
+}
+
+const PROVING: &str = "proving";
+/// Leaves between two looks at the watch.
+const LOOK: usize = 64;
+
+/// Looks for trees that show |V| <= |U| over these ranges.
+pub(crate) fn walk(
+    [u, v]: &[InS<f64>; 2],
+    variables: usize,
+    ranges: &[Range],
+    effort: Effort,
+    watch: Watch<'_>,
+) -> Result<Walk, Stopped> {
+    let powers = Points::powers(u, v, variables);
+    let mut panels = Vec::with_capacity(ranges.len());
+    let mut leaves = 0;
+    for (done, range) in ranges.iter().enumerate() {
+        let mut tree = vec![];
+        let whole = powers.clone().over(*range);
+        let sides = vec![[0.0, 1.0]; whole.axes()];
+        let mut waiting = vec![Waiting { points: whole, sides, depth: 0 }];
+        while let Some(Waiting { points, sides, depth }) = waiting.pop() {
+            match leaf(&points) {
+                Leaf::Shown(direction) => {
+                    tree.push(LEAF);
+                    tree.extend(direction.iter().flat_map(|part| part.to_be_bytes()));
+                    leaves += 1;
+                    if leaves % LOOK == 0 {
+                        tell(watch, PROVING, done, ranges.len())?;
+                    }
+                }
+                Leaf::Wrong { corner, ratio } => {
+                    return Ok(Walk::Wrong { at: at(*range, &sides, corner), ratio });
+                }
+                Leaf::Halve(axis) if leaves < effort.leaves && depth < effort.depth => {
+                    tree.push(axis as u8);
+                    let [lower, upper] = points.halves(axis);
+                    let [low_sides, high_sides] = halved(&sides, axis);
+                    waiting.push(Waiting { points: upper, sides: high_sides, depth: depth + 1 });
+                    waiting.push(Waiting { points: lower, sides: low_sides, depth: depth + 1 });
+                }
+                Leaf::Halve(_) => return Ok(Walk::Open(region(*range, &sides))),
+            }
+        }
+        panels.push(Panel { from: range.from, to: range.to, tree });
+    }
+    Ok(Walk::Shown(panels))
+}
+
+fn halved(sides: &[[f64; 2]], axis: usize) -> [Vec<[f64; 2]>; 2] {
+    let [mut lower, mut upper] = [sides.to_vec(), sides.to_vec()];
+    let middle = 0.5 * (sides[axis][0] + sides[axis][1]);
+    lower[axis][1] = middle;
+    upper[axis][0] = middle;
+    [lower, upper]
+}
+
+/// The frequency at this share of a panel.
+fn frequency(range: Range, share: f64) -> f64 {
+    match range.to.is_finite() {
+        true => range.from + share * (range.to - range.from),
+        false => range.from / share,
+    }
+}
+
+fn at(range: Range, sides: &[[f64; 2]], corner: u64) -> Place {
+    let shares = sides
+        .iter()
+        .enumerate()
+        .map(|(axis, [low, high])| if corner >> axis & 1 == 1 { *high } else { *low });
+    let shares: Vec<f64> = shares.collect();
+    let (own, member) = shares.split_first().map_or((0.0, vec![]), |(own, others)| (*own, others.to_vec()));
+    Place { frequency_rad_per_s: frequency(range, own), member }
+}
+
+fn region(range: Range, sides: &[[f64; 2]]) -> Region {
+    let (own, others) =
+        sides.split_first().map_or(([0.0, 1.0], vec![]), |(own, others)| (*own, others.to_vec()));
+    let [one, other] = own.map(|share| frequency(range, share));
+    Region { band_rad_per_s: [one.min(other), one.max(other)], variables: others }
+}
