@@ -60,6 +60,20 @@ pub(crate) enum Command {
         /// Try the verdict on the nonlinear machine: a step of the rig, of its worst plants, and with waves in its lines
         #[arg(long)]
         on_machine: bool,
+        /// Prove or refute the verdict: for every plant of the box and every frequency of the band
+        #[arg(long)]
+        prove: bool,
+        /// The same, with the proof as a file that `phea check-certificate` checks again
+        #[arg(long, value_name = "FILE")]
+        certificate: Option<PathBuf>,
+    },
+    /// Check a certificate of `verify --certificate` again: every claim in it, with rounding outwards
+    CheckCertificate {
+        /// The certificate
+        file: PathBuf,
+        /// Print one JSON object on standard output and nothing else
+        #[arg(long)]
+        json: bool,
     },
     /// Shape the controller by hand: change its elements in the order given, see every margin at the design frequencies
     Shape {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use phea_workbench::answer::{Answer, OutputFile};
+use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate};
 use phea_workbench::command::{
     self, CampaignRequest, CommandError, FrequencyOptions, Request, SimulateRequest,
 };
@@ -16,7 +17,7 @@ use phea_workbench::source::Destination;
 
 use crate::arguments::{Arguments, Command, Common, Several};
 use crate::failure::{DONE, Failure, NO, WRONG_INPUT};
-use crate::file_system::FileSystem;
+use crate::file_system::{FileSystem, reason};
 use crate::interruption::Interruption;
 use crate::output::{Folder, write, write_as};
 use crate::voice::{ProgressLine, complain, say};
@@ -31,8 +32,15 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Linearize { common, sweep: Some(range), points } => {
             on_project(&common, &Request::LinearizeSwept(SweepRequest { range, points }))
         }
-        Command::Verify { common, on_machine: false } => on_project(&common, &Request::Verify),
-        Command::Verify { common, on_machine: true } => on_project(&common, &Request::VerifyOnMachine),
+        Command::Verify { common, on_machine, prove, certificate } => {
+            let request = match (prove || certificate.is_some(), on_machine) {
+                (true, on_machine) => Request::VerifyProven { on_machine },
+                (false, true) => Request::VerifyOnMachine,
+                (false, false) => Request::Verify,
+            };
+            on_project_saving(&common, &request, certificate.as_deref())
+        }
+        Command::CheckCertificate { file, json } => told(json, checked(&file)),
         Command::Shape { common, changes, prefilter, save } => {
             let shaped = if prefilter { Shaped::Prefilter } else { Shaped::Controller };
             on_project_saving(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())
@@ -123,11 +131,23 @@ fn schema(out: Option<&Path>) -> Result<u8, Failure> {
     Ok(DONE)
 }
 
+/// A certificate, checked again.
+fn checked(path: &Path) -> Result<(Answer, Vec<PathBuf>), Failure> {
+    let explain = |reason: String| {
+        let message = format!("{}: {reason}", path.display());
+        let json = command::failure_json(Some("check-certificate"), None, &message);
+        Failure::wrong_input(format!("error: {message}")).with_json(json)
+    };
+    let text = std::fs::read_to_string(path).map_err(|error| explain(reason(&error)))?;
+    let answer = check_certificate(&text).map_err(|error| explain(error.to_string()))?;
+    Ok((answer, vec![]))
+}
+
 fn on_project(common: &Common, request: &Request) -> Result<u8, Failure> {
     on_project_saving(common, request, None)
 }
 
-/// The same, the designed or shaped project written to a file of its own.
+/// The same, the designed or shaped project or the certificate written to a file of its own.
 fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, Failure> {
     told(common.json, answered(common, request, save))
 }
@@ -212,10 +232,10 @@ fn answered(
     let explain = |message: String| failed(request, &loaded, &message);
     let mut written = tables.map(Folder::into_begun).unwrap_or_default();
     written.extend(write_files(common, request, &answer).map_err(explain)?);
-    let project =
-        answer.files.iter().find(|file| [DESIGNED_PROJECT, SHAPED_PROJECT].contains(&file.name.as_str()));
-    if let (Some(path), Some(project)) = (save, project) {
-        written.insert(0, write_as(path, project).map_err(explain)?);
+    let saved = [DESIGNED_PROJECT, SHAPED_PROJECT, CERTIFICATE_FILE];
+    let saved = answer.files.iter().find(|file| saved.contains(&file.name.as_str()));
+    if let (Some(path), Some(saved)) = (save, saved) {
+        written.insert(0, write_as(path, saved).map_err(explain)?);
     }
     Ok((answer, written))
 }

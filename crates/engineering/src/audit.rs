@@ -3,19 +3,22 @@
 
 mod alone;
 mod plant;
+mod proven;
 mod words;
 pub(crate) use words::rounded;
 pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
 pub use alone::outside;
 pub use plant::{NamedPlant, PlantNames};
+pub use proven::{prove_audit, standing_word, why_not_proven};
 pub use words::{
-    closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words, margin_words, meaning,
-    stability_reason, stability_sentence, verdict_key, verdict_words, worst_at_design,
+    closed_loop_key, closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words,
+    margin_words, meaning, stability_reason, stability_sentence, verdict_key, verdict_words, worst_at_design,
 };
 
 use phea_dynamics::portable;
 use phea_qft::family::{Extent, Family};
+use phea_qft::proof::Proof;
 use phea_qft::verification::{
     Audit, AuditProblem, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Verdict,
 };
@@ -126,6 +129,8 @@ pub struct ProjectAudit {
     /// What the worst plant of each specification reaches, where that is a magnitude against a
     /// limit.
     pub reached: Vec<Option<Reached>>,
+    /// What was proven of it, where that was asked for.
+    pub proof: Option<Proof>,
 }
 
 /// A closed-loop magnitude and the limit that it comes nearest to, or leaves.
@@ -206,6 +211,7 @@ impl ProjectAudit {
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
             caveats,
+            proof: None,
         }
     }
 

@@ -1,11 +1,13 @@
 //! What is told of `audit`: text, JSON, files and figures.
 
 mod answer;
+mod certificate;
 mod document;
 
 pub use phea_engineering::audit::*;
 
 pub(crate) use answer::{Body, body};
 pub use answer::{files, json, json_on_machine};
+pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate, read_certificate};
 pub use document::text;
 pub(crate) use document::{basis, document, summary, text_on_machine};

@@ -17,7 +17,7 @@ use phea_qft::verification::Verdict;
 use serde::Serialize;
 
 use crate::answer::{self, Answer, OutputFile};
-use crate::audit::{self, audit_project, outside};
+use crate::audit::{self, audit_project, outside, prove_audit};
 use crate::campaign::Nowhere;
 use crate::caveat::caveats;
 use crate::derived::{self, derive};
@@ -60,6 +60,11 @@ pub enum Request {
     Verify,
     /// The same, tried on the nonlinear machine.
     VerifyOnMachine,
+    /// The audit with a proof, tried on the machine or not.
+    VerifyProven {
+        /// Whether it is.
+        on_machine: bool,
+    },
     /// Shaping by hand, elements changed in order.
     Shape {
         /// What is shaped.
@@ -97,7 +102,7 @@ impl Request {
             Request::Check => "check",
             Request::Size { .. } => "size",
             Request::Linearize | Request::LinearizeSwept(_) => "linearize",
-            Request::Verify | Request::VerifyOnMachine => "verify",
+            Request::Verify | Request::VerifyOnMachine | Request::VerifyProven { .. } => "verify",
             Request::Shape { .. } => "shape",
             Request::Design { .. } => "design",
             Request::Simulate | Request::SimulateAs(_) => "simulate",
@@ -207,8 +212,9 @@ pub fn answer_into(
         }
         Request::Linearize => linearize_answer(loaded),
         Request::LinearizeSwept(asked) => swept_answer(source, loaded, catalogues, asked),
-        Request::Verify => verify_answer(source, loaded, watch),
-        Request::VerifyOnMachine => verify_on_machine(source, loaded, watch),
+        Request::Verify => verify_answer(source, loaded, [false, false], watch),
+        Request::VerifyOnMachine => verify_answer(source, loaded, [false, true], watch),
+        Request::VerifyProven { on_machine } => verify_answer(source, loaded, [true, *on_machine], watch),
         Request::Shape { shaped, changes } => {
             let shaping = shape(source, loaded, *shaped, changes, watch)?;
             let (text, json) = (shaping::text(&shaping), shaping::json(loaded, &shaping));
@@ -314,28 +320,31 @@ fn size_answer(
     })
 }
 
-fn verify_answer(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
-    let view = audit_project(source, &Setup::new(&loaded.project)?, watch)?;
-    Ok(Answer {
-        text: audit::text(&view),
-        json: audit::json(loaded, &view),
-        files: audit::files(&view),
-        affirmative: view.audit.verdict == Verdict::Met,
-    })
-}
-
-fn verify_on_machine(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
+/// The audit of a given controller: with a proof, on the machine.
+fn verify_answer(
+    source: &dyn Source,
+    loaded: &Loaded,
+    [proven, on_machine]: [bool; 2],
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
     let setup = Setup::new(&loaded.project)?;
-    let view = audit_project(source, &setup, watch)?;
-    let problem = robust_problem(source, &setup)?;
-    let Some(trial) = tried(source, &setup, &problem, &view, watch)? else {
+    let mut view = audit_project(source, &setup, watch)?;
+    if proven {
+        prove_audit(&robust_problem(source, &setup)?, &mut view, watch)?;
+    }
+    let (files, is_met) = (audit::files(loaded, &view), view.audit.verdict == Verdict::Met);
+    if !on_machine {
+        let (text, json) = (audit::text(&view), audit::json(loaded, &view));
+        return Ok(Answer { text, json, files, affirmative: is_met });
+    }
+    let Some(trial) = tried(source, &setup, &robust_problem(source, &setup)?, &view, watch)? else {
         return Err(RigError::NoActuator.into());
     };
     Ok(Answer {
         text: audit::text_on_machine(&view, &trial),
         json: audit::json_on_machine(loaded, &view, &trial),
-        files: audit::files(&view),
-        affirmative: view.audit.verdict == Verdict::Met && trial.agreement() != Agreement::Contradicts,
+        files,
+        affirmative: is_met && trial.agreement() != Agreement::Contradicts,
     })
 }
 

@@ -181,7 +181,7 @@ fn robust_chapters(project: &Project, judged: &Judged) -> Result<Vec<Chapter>, C
 /// Bounds, margins and the designed project as files.
 fn robust_tables(loaded: &Loaded, judged: &Judged) -> Vec<OutputFile> {
     let mut tables = bounds::files(&judged.problem, &judged.bounds);
-    tables.extend(judged.given.iter().flat_map(crate::audit::files));
+    tables.extend(judged.given.iter().flat_map(|view| crate::audit::files(loaded, view)));
     tables.extend(judged.designed.iter().flat_map(|designed| designed.files(loaded)));
     tables
 }

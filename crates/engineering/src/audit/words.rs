@@ -1,6 +1,6 @@
 //! Verdicts, requirements and worst cases in words.
 
-use phea_qft::specification::Requirement;
+use phea_qft::specification::{ClosedLoop, Requirement};
 use phea_qft::verification::{
     ClosestApproach, Evidence, SpecificationFinding, StabilityFinding, StabilityMethod, StabilityReason,
     Verdict, WorstCase,
@@ -52,13 +52,18 @@ pub fn evidence_sentence(evidence: Evidence, one_plant: bool) -> &'static str {
 
 /// The word of a kind, as the project file spells it.
 pub fn kind_key(requirement: &Requirement) -> &'static str {
-    match requirement {
-        Requirement::RobustStability(_) => "robust_stability",
-        Requirement::Sensitivity(_) => "sensitivity",
-        Requirement::PlantInputDisturbance(_) => "plant_input_disturbance",
-        Requirement::ControlEffort(_) => "control_effort",
-        Requirement::LoadMotion(_) => "load_motion",
-        Requirement::Tracking { .. } => "tracking",
+    closed_loop_key(requirement.closed_loop())
+}
+
+/// The word of the kind that limits a closed loop.
+pub fn closed_loop_key(closed_loop: ClosedLoop) -> &'static str {
+    match closed_loop {
+        ClosedLoop::RobustStability => "robust_stability",
+        ClosedLoop::Sensitivity => "sensitivity",
+        ClosedLoop::PlantInputDisturbance => "plant_input_disturbance",
+        ClosedLoop::ControlEffort => "control_effort",
+        ClosedLoop::LoadMotion => "load_motion",
+        ClosedLoop::Tracking => "tracking",
     }
 }
 

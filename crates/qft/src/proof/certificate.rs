@@ -21,6 +21,18 @@ pub struct Certificate {
     pub claims: Vec<Claim>,
 }
 
+impl Certificate {
+    /// Leaves of all trees.
+    pub fn leaves(&self) -> usize {
+        let panels = self.claims.iter().flat_map(|claim| match claim {
+            Claim::Stable { panels, .. } | Claim::Limited { panels, .. } => panels.as_slice(),
+            Claim::Unstable { .. } | Claim::Reached { .. } => &[],
+        });
+        // a tree of n leaves has n - 1 halvings of one byte each
+        panels.map(|panel| (panel.tree.len() + 1) / 6).sum()
+    }
+}
+
 /// The plant of a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CertifiedPlant {

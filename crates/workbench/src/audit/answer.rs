@@ -1,9 +1,11 @@
+use phea_qft::proof::{Certificate, Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, Verdict, ViolatedBand, WorstCase};
 use serde::Serialize;
 
+use super::certificate::file as certificate_file;
 use super::{NamedPlant, PlantNames};
 use super::{ProjectAudit, Reached};
-use super::{evidence_key, kind_key, kind_words, stability_reason, verdict_key};
+use super::{evidence_key, kind_key, kind_words, stability_reason, verdict_key, why_not_proven};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 use crate::trial::{self, Trial};
@@ -17,6 +19,8 @@ pub(crate) struct Body<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     stable_reason: Option<String>,
     stability: StabilityRow,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    proof: Option<ProofRow>,
     delay_margin_s: Number,
     #[serde(skip_serializing_if = "Option::is_none")]
     delay_margin_s_reason: Option<&'static str>,
@@ -27,6 +31,31 @@ pub(crate) struct Body<'a> {
     timing: TimingRow,
     specifications: Vec<SpecificationRow<'a>>,
     warnings: Vec<&'a str>,
+}
+
+/// What was proven besides the specifications.
+#[derive(Serialize)]
+struct ProofRow {
+    stable: StandingRow,
+    leaves: usize,
+}
+
+/// Whether a claim is proven: false where it is refuted, `null` where it is neither.
+#[derive(Serialize)]
+struct StandingRow {
+    proven: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    proven_reason: Option<String>,
+}
+
+/// The same of a specification, with what encloses the greatest ratio of closed loop to limit.
+#[derive(Serialize)]
+struct SpecificationProofRow {
+    #[serde(flatten)]
+    standing: StandingRow,
+    enclosure_db: [Number; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    enclosure_db_reason: Option<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -71,6 +100,8 @@ struct SpecificationRow<'a> {
     reached: Option<ReachedRow>,
     #[serde(skip_serializing_if = "Option::is_none")]
     interior: Option<CaseRow>,
+    #[serde(flatten)]
+    proof: Option<SpecificationProofRow>,
     violations: Vec<ViolationRow>,
     at_design_frequencies: Vec<CaseRow>,
     remarks: Vec<&'a str>,
@@ -112,6 +143,7 @@ fn specification<'a>(
     name: &'a str,
     finding: &'a SpecificationFinding,
     reached: Option<Reached>,
+    proof: Option<SpecificationProofRow>,
 ) -> SpecificationRow<'a> {
     let worst = finding.worst.as_ref();
     let violation = |band: &ViolatedBand| ViolationRow {
@@ -131,10 +163,33 @@ fn specification<'a>(
         reached: reached
             .map(|Reached { magnitude, limit, .. }| ReachedRow { magnitude, limit: Number(limit) }),
         interior: finding.interior.as_ref().map(|worst| case(names, worst)),
+        proof,
         violations: finding.violations.iter().map(violation).collect(),
         at_design_frequencies: finding.at_design_frequencies.iter().map(|worst| case(names, worst)).collect(),
         remarks: finding.remarks.iter().map(String::as_str).collect(),
     }
+}
+
+fn standing(view: &ProjectAudit, proof: &Proof, standing: &Standing) -> StandingRow {
+    StandingRow {
+        proven: match standing {
+            Standing::Proven => Some(true),
+            Standing::Refuted => Some(false),
+            Standing::NotProven(_) => None,
+        },
+        proven_reason: why_not_proven(view, proof, standing),
+    }
+}
+
+fn specification_proof(view: &ProjectAudit, index: usize) -> Option<SpecificationProofRow> {
+    let proof = view.proof.as_ref()?;
+    let own = proof.specifications.get(index)?;
+    let ends = [own.least_db, own.most_db];
+    Some(SpecificationProofRow {
+        standing: standing(view, proof, &own.standing),
+        enclosure_db: ends.map(|end| Number(end.unwrap_or(f64::NAN))),
+        enclosure_db_reason: ends.contains(&None).then_some("it was not found; see proven_reason"),
+    })
 }
 
 /// The JSON object of `verify`.
@@ -176,6 +231,10 @@ pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
             plant: names.named(&stability.plant),
             reason: stability_reason(stability),
         },
+        proof: view.proof.as_ref().map(|proof| ProofRow {
+            stable: standing(view, proof, &proof.stability),
+            leaves: proof.certificate.as_ref().map_or(0, Certificate::leaves),
+        }),
         delay_margin_s: Number(margin.map_or(f64::NAN, |margin| margin.delay_s)),
         delay_margin_s_reason: margin
             .is_none()
@@ -196,19 +255,24 @@ pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
             .iter()
             .zip(&view.reached)
             .zip(&view.specification_names)
-            .map(|((finding, reached), name)| specification(names, name, finding, *reached))
+            .enumerate()
+            .map(|(index, ((finding, reached), name))| {
+                specification(names, name, finding, *reached, specification_proof(view, index))
+            })
             .collect(),
         warnings: view.caveats.iter().map(|caveat| caveat.sentence.as_str()).collect(),
     }
 }
 
-/// The family's worst margins over frequency as a table for other programs.
-pub fn files(view: &ProjectAudit) -> Vec<OutputFile> {
+/// The family's worst margins over frequency as a table for other programs, and the certificate of what was proven.
+pub fn files(loaded: &Loaded, view: &ProjectAudit) -> Vec<OutputFile> {
     let mut csv = String::from("specification,kind,frequency_rad_per_s,worst_margin_db\n");
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         for (frequency, margin) in &finding.envelope {
             csv.push_str(&format!("{index},{},{frequency},{margin}\n", kind_key(&finding.requirement)));
         }
     }
-    vec![OutputFile { name: "margins.csv".to_string(), bytes: csv.into_bytes() }]
+    let margins = OutputFile { name: "margins.csv".to_string(), bytes: csv.into_bytes() };
+    let certificate = view.proof.as_ref().and_then(|proof| proof.certificate.as_ref());
+    std::iter::once(margins).chain(certificate.map(|own| certificate_file(loaded, own))).collect()
 }

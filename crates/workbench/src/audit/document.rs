@@ -1,14 +1,15 @@
 //! What an audit says to people.
 
+use phea_qft::proof::Standing;
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use super::ProjectAudit;
 use super::{
-    closed_loop_symbol, evidence_sentence, finding_sentence, place_words, stability_sentence, verdict_words,
-    worst_at_design,
+    closed_loop_symbol, evidence_sentence, finding_sentence, place_words, stability_sentence, standing_word,
+    verdict_words, why_not_proven, worst_at_design,
 };
 use crate::answer::significant;
-use crate::document::{Cell, Document, Table};
+use crate::document::{Cell, Document, Mark, Table};
 use crate::figure::Figure;
 use crate::quantity::DisplayUnit;
 use crate::trial::{self, Trial};
@@ -31,6 +32,7 @@ pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
     let mut out = Document::default();
     out.verdict(verdict.into(), format!("Verdict: {}", verdict_words(verdict)), summary(view));
     out.section("Specifications", specifications(view));
+    proof(view, &mut out);
     out.section("Worst plants", plants(view));
     out.section("Where it is violated", violations(view));
     out.figures_below("Closed loops of the family", figures);
@@ -104,6 +106,39 @@ fn specifications(view: &ProjectAudit) -> Table {
         }
     }
     rows
+}
+
+/// What was proven: a row for each claim, and why a claim is not.
+fn proof(view: &ProjectAudit, out: &mut Document) {
+    let Some(proof) = &view.proof else { return };
+    let mut rows = Table::new(["claim", "standing", "closed loop over limit, at least dB", "at most dB"]);
+    let word = |standing: &Standing| Cell::from(standing_word(standing)).marked(mark_of(standing));
+    rows.row(["every plant is stable".into(), word(&proof.stability), Cell::Missing, Cell::Missing]);
+    for (index, own) in proof.specifications.iter().enumerate() {
+        let [least, most] = [own.least_db, own.most_db].map(|end| end.map(Cell::margin).into());
+        rows.row([view.numbered(index).into(), word(&own.standing), least, most]);
+    }
+    out.section("What is proven", rows);
+    let named =
+        proof.specifications.iter().enumerate().map(|(index, own)| (view.numbered(index), &own.standing));
+    let all = std::iter::once(("stability".to_string(), &proof.stability)).chain(named);
+    let reasons = all.filter_map(|(name, standing)| Some((name, why_not_proven(view, proof, standing)?)));
+    let mut told: Vec<(String, Vec<String>)> = vec![];
+    for (name, reason) in reasons {
+        match told.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, names)) => names.push(name),
+            None => told.push((reason, vec![name])),
+        }
+    }
+    out.sentences(told.into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))));
+}
+
+fn mark_of(standing: &Standing) -> Mark {
+    match standing {
+        Standing::Proven => Mark::Good,
+        Standing::Refuted => Mark::Bad,
+        Standing::NotProven(_) => Mark::Note,
+    }
 }
 
 /// The worst plant of each specification, a column each.

@@ -58,7 +58,7 @@ pub fn stage_files(
         files.push(file("prefilter_band.csv", band));
     }
     files.push(file("verification.json", audit::json(loaded, &side.view)));
-    files.extend(audit::files(&side.view));
+    files.extend(audit::files(loaded, &side.view));
     files.push(file("rounds.csv", rounds(view)));
     Ok(files)
 }

@@ -1,0 +1,131 @@
+//! What an audit found by searching, proven or refuted: the verdict then rests on that.
+
+use phea_dynamics::watch::Watch;
+use phea_qft::proof::{NotProven, Proof, ProofOptions, Standing, prove};
+use phea_qft::verification::{Evidence, Verdict};
+
+use super::{ProjectAudit, asked, rounded};
+use crate::error::ProcedureError;
+use crate::robust::RobustProblem;
+
+/// Proves or refutes stability and every specification of an audit. What is neither is `not_proven`, whatever the search found, but for a
+/// violation, which it has shown by a plant and a frequency.
+///
+/// # Errors
+/// [`ProcedureError::Stopped`] where the watcher stops it.
+pub fn prove_audit(
+    problem: &RobustProblem,
+    view: &mut ProjectAudit,
+    watch: Watch<'_>,
+) -> Result<(), ProcedureError> {
+    let proof = prove(&asked(problem, &problem.family), &view.audit, ProofOptions::default(), watch)?;
+    let audit = &mut view.audit;
+    let stability = &mut audit.stability;
+    (stability.verdict, stability.evidence) = judged(&proof.stability, stability.verdict, stability.evidence);
+    for (finding, found) in audit.specifications.iter_mut().zip(&proof.specifications) {
+        if found.standing == Standing::Refuted && finding.verdict != Verdict::Violated {
+            finding.worst.clone_from(&found.worst);
+        }
+        (finding.verdict, finding.evidence) = judged(&found.standing, finding.verdict, finding.evidence);
+    }
+    let all = || {
+        let own = [(audit.stability.verdict, audit.stability.evidence)].into_iter();
+        own.chain(audit.specifications.iter().map(|finding| (finding.verdict, finding.evidence)))
+    };
+    let worst = all().map(|(verdict, _)| rank(verdict)).min();
+    let searched = audit.verdict;
+    audit.verdict = match worst {
+        Some(0) => Verdict::Violated,
+        Some(1) => Verdict::NotProven,
+        // what is declared and not counted
+        _ if searched == Verdict::NotProven => Verdict::NotProven,
+        _ => Verdict::Met,
+    };
+    let deciding = all().filter(|(verdict, _)| audit.verdict == Verdict::Met || *verdict == audit.verdict);
+    let evidence = match audit.verdict {
+        // one violation that is shown is enough
+        Verdict::Violated => deciding.map(|(_, evidence)| evidence).max(),
+        Verdict::Met | Verdict::NotProven => deciding.map(|(_, evidence)| evidence).min(),
+    };
+    audit.evidence = evidence.unwrap_or(Evidence::Search);
+    view.proof = Some(proof);
+    Ok(())
+}
+
+fn rank(verdict: Verdict) -> usize {
+    match verdict {
+        Verdict::Violated => 0,
+        Verdict::NotProven => 1,
+        Verdict::Met => 2,
+    }
+}
+
+/// What a claim comes to with the search and with the proof.
+fn judged(standing: &Standing, searched: Verdict, evidence: Evidence) -> (Verdict, Evidence) {
+    match standing {
+        Standing::Proven => (Verdict::Met, Evidence::Proof),
+        Standing::Refuted => (Verdict::Violated, Evidence::Proof),
+        Standing::NotProven(_) if searched == Verdict::Violated => (searched, evidence),
+        Standing::NotProven(_) => (Verdict::NotProven, evidence),
+    }
+}
+
+/// What became of a claim, in a word.
+pub fn standing_word(standing: &Standing) -> &'static str {
+    match standing {
+        Standing::Proven => "proven",
+        Standing::Refuted => "refuted",
+        Standing::NotProven(_) => "not proven",
+    }
+}
+
+/// Why a claim is neither proven nor refuted, in a sentence without its end; `None` where it is.
+pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -> Option<String> {
+    let Standing::NotProven(reason) = standing else { return None };
+    Some(match reason {
+        NotProven::Measured => {
+            "the plants were measured, and between two of them nothing can be claimed".into()
+        }
+        NotProven::Members => "the plants are listed one by one and do not span a box".into(),
+        NotProven::Sampled => "the loop is sampled, which the prover does not yet cover".into(),
+        NotProven::DeadTime => "there is dead time in the loop, which the prover does not yet cover".into(),
+        NotProven::RateFedForward => {
+            "the load's velocity is fed forward, which the prover does not yet cover".into()
+        }
+        NotProven::Waves => "waves travel in the lines, so that the plant has no polynomials".into(),
+        NotProven::NotPolynomial => {
+            "the coefficients of the plant are not polynomials in the uncertain numbers".into()
+        }
+        NotProven::TooManyVariables => "the box has too many uncertain numbers".into(),
+        NotProven::TableLimit => "its limit is given as a table, which the prover does not yet cover".into(),
+        NotProven::Spread => "there is no prefilter, and a spread is not the ratio of one plant".into(),
+        NotProven::Unstable => "the loop is not proven to be stable".into(),
+        NotProven::LargerBox => {
+            "numbers that move together were let move each by itself, and in that larger box it is wrong"
+                .into()
+        }
+        NotProven::Unbounded => "the ratio grows without an end that was found".into(),
+        NotProven::NoStableMember => "no plant could be shown to be stable, nor unstable".into(),
+        NotProven::Rounding => "the checker, which rounds outwards, could not confirm it".into(),
+        NotProven::Budget(region) => {
+            let [from, to] = region.band_rad_per_s.map(rounded);
+            format!(
+                "too many boxes: between {from} and {to} rad/s it remains open{}",
+                part_of(view, proof, region)
+            )
+        }
+    })
+}
+
+/// The part of the box that remains, as far as it is smaller than the box.
+fn part_of(view: &ProjectAudit, proof: &Proof, region: &phea_qft::proof::Region) -> String {
+    let Some(certificate) = &proof.certificate else { return String::new() };
+    let sides = certificate.plant.parameters.iter().enumerate().filter_map(|(index, one)| {
+        let [from, to] = *region.variables.get(one.variable?)?;
+        let value = |share: f64| one.low + (one.high - one.low) * share;
+        let name = view.names.headings().get(index)?.to_string();
+        (from > 0.0 || to < 1.0).then(|| format!("{name} from {:.4e} to {:.4e}", value(from), value(to)))
+    });
+    let sides: Vec<String> = sides.collect();
+    if sides.is_empty() { String::new() } else { format!(", for {}", sides.join(", ")) }
+}
