@@ -19,8 +19,10 @@
 mod certificate;
 mod checker;
 mod claimed;
+mod dead_time;
 mod direction;
 mod hurwitz;
+mod panels;
 mod points;
 mod polynomial;
 mod prove;
@@ -29,7 +31,8 @@ mod supremum;
 mod walk;
 
 pub use certificate::{
-    Certificate, CertifiedParameter, CertifiedPlant, Claim, LEAF, Limited, Panel, Quotient, Side,
+    Certificate, CertifiedPlant, Claim, LEAF, Late, Limited, Member, Panel, Quotient, Segment, Side,
+    StableBox,
 };
 pub use checker::{Rejection, check};
 pub use prove::{ProofOptions, prove};
@@ -77,11 +80,9 @@ pub enum Standing {
 pub enum NotProven {
     /// The plants were measured: between two of them nothing can be claimed.
     Measured,
-    /// The plants are listed one by one, without a box.
-    Members,
     /// The loop is sampled.
     Sampled,
-    /// There is dead time in the loop.
+    /// Dead time turns too far below the frequencies at which the loop has no gain, or stands within controller, prefilter or sensor.
     DeadTime,
     /// The load's velocity is fed forward.
     RateFedForward,

@@ -86,9 +86,10 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
         NotProven::Measured => {
             "the plants were measured, and between two of them nothing can be claimed".into()
         }
-        NotProven::Members => "the plants are listed one by one and do not span a box".into(),
         NotProven::Sampled => "the loop is sampled, which the prover does not yet cover".into(),
-        NotProven::DeadTime => "there is dead time in the loop, which the prover does not yet cover".into(),
+        NotProven::DeadTime => {
+            "dead time turns further than the prover follows it, or stands within the controller".into()
+        }
         NotProven::RateFedForward => {
             "the load's velocity is fed forward, which the prover does not yet cover".into()
         }
@@ -120,10 +121,10 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
 /// The part of the box that remains, as far as it is smaller than the box.
 fn part_of(view: &ProjectAudit, proof: &Proof, region: &phea_qft::proof::Region) -> String {
     let Some(certificate) = &proof.certificate else { return String::new() };
-    let sides = certificate.plant.parameters.iter().enumerate().filter_map(|(index, one)| {
+    let segments = certificate.plant.boxes.get(region.of_box).into_iter().flatten();
+    let sides = segments.zip(view.names.headings()).filter_map(|(one, name)| {
         let [from, to] = *region.variables.get(one.variable?)?;
         let value = |share: f64| one.low + (one.high - one.low) * share;
-        let name = view.names.headings().get(index)?.to_string();
         (from > 0.0 || to < 1.0).then(|| format!("{name} from {:.4e} to {:.4e}", value(from), value(to)))
     });
     let sides: Vec<String> = sides.collect();

@@ -24,39 +24,63 @@ pub struct Certificate {
 impl Certificate {
     /// Leaves of all trees.
     pub fn leaves(&self) -> usize {
-        let panels = self.claims.iter().flat_map(|claim| match claim {
-            Claim::Stable { panels, .. } | Claim::Limited { panels, .. } => panels.as_slice(),
-            Claim::Unstable { .. } | Claim::Reached { .. } => &[],
-        });
-        // a tree of n leaves has n - 1 halvings of one byte each
-        panels.map(|panel| (panel.tree.len() + 1) / 6).sum()
+        let of_claim = |claim: &Claim| -> usize {
+            match claim {
+                Claim::Stable(boxes) => {
+                    boxes.iter().flat_map(|one| one.panels.iter().chain(&one.delays)).map(Panel::leaves).sum()
+                }
+                Claim::Limited { boxes, .. } => boxes.iter().flatten().map(Panel::leaves).sum(),
+                Claim::Unstable(_) | Claim::Reached { .. } => 0,
+            }
+        };
+        self.claims.iter().map(of_claim).sum()
     }
 }
 
-/// The plant of a box.
+/// The plant of a family: a union of boxes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CertifiedPlant {
-    /// Its parameters.
-    pub parameters: Vec<CertifiedParameter>,
-    /// Number of variables t in [0, 1] that span the box.
+    /// Names of its parameters.
+    pub parameters: Vec<String>,
+    /// Number of variables t in [0, 1] that span each box.
     pub variables: usize,
-    /// Coefficients of P, and of Pd where there is one, in the order of `lengths`.
+    /// For each box how its parameters depend on the variables, in the order of `parameters`.
+    pub boxes: Vec<Vec<Segment>>,
+    /// Coefficients of P, of Pd where there is one, and the dead time of the plant where it has one.
     pub coefficients: Expression,
     /// Numbers of coefficients, highest power first: numerator and denominator of P, the same of Pd.
     pub lengths: Vec<usize>,
+    /// Whether the dead time of the plant stands behind the coefficients.
+    pub has_dead_time: bool,
+    /// Dead time of the loop besides, s.
+    pub delay_s: f64,
+    /// Terms of the series that stands for dead time.
+    pub dead_time_terms: usize,
 }
 
-/// A parameter: `low + (high - low) t` of the variable with this index.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CertifiedParameter {
-    /// Its name.
-    pub name: String,
+/// A parameter in a box: `low + (high - low) t` of the variable with this index.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
     /// Its value where the variable is 0.
     pub low: f64,
     /// Its value where the variable is 1.
     pub high: f64,
     /// Which variable moves it; `None` where it is `low` always.
     pub variable: Option<usize>,
+}
+
+impl Segment {
+    /// A value that nothing moves.
+    pub fn fixed(value: f64) -> Segment {
+        Segment { low: value, high: value, variable: None }
+    }
+}
+
+impl CertifiedPlant {
+    /// Whether there is dead time in the loop.
+    pub fn is_late(&self) -> bool {
+        self.has_dead_time || self.delay_s != 0.0
+    }
 }
 
 /// A quotient of polynomials in s, highest power first.
@@ -78,27 +102,21 @@ impl Quotient {
 /// One claim.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Claim {
-    /// All poles of the loop with every plant, and of the prefilter, have negative real parts: at these variables they have, and on the
-    /// way to every other plant none crosses the boundary of stability.
-    Stable {
-        /// Variables of one plant.
-        member: Vec<f64>,
-        /// From zero to infinity without a gap.
-        panels: Vec<Panel>,
-    },
+    /// All poles of the loop with every plant, and of the prefilter, have negative real parts.
+    Stable(
+        /// Of each box.
+        Vec<StableBox>,
+    ),
     /// The plant of these variables has a pole without negative real part in the loop.
-    Unstable {
-        /// Its variables.
-        member: Vec<f64>,
-    },
+    Unstable(Member),
     /// A closed loop is within `ratio` times its limit.
     Limited {
         /// What is limited.
         limited: Limited,
         /// The greatest ratio.
         ratio: f64,
-        /// Over the band without a gap.
-        panels: Vec<Panel>,
+        /// For each box, over the band without a gap.
+        boxes: Vec<Vec<Panel>>,
     },
     /// A closed loop is at least `ratio` times its limit somewhere.
     Reached {
@@ -109,8 +127,28 @@ pub enum Claim {
         /// Where, rad/s.
         frequency_rad_per_s: f64,
         /// With which plant.
-        member: Vec<f64>,
+        member: Member,
     },
+}
+
+/// Why every plant of a box is stable: one is, and on the way to every other plant none of its poles crosses the boundary of stability.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StableBox {
+    /// Variables of a plant that is stable without dead time.
+    pub member: Vec<f64>,
+    /// From zero to infinity without a gap: no pole on the boundary, for every plant of the box.
+    pub panels: Vec<Panel>,
+    /// The same for this plant alone, while its dead time grows from zero to what it is; empty without dead time.
+    pub delays: Vec<Panel>,
+}
+
+/// A plant of a family.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Member {
+    /// Index of the box.
+    pub of_box: usize,
+    /// Its variables, each within 0 to 1.
+    pub variables: Vec<f64>,
 }
 
 /// A closed loop with its limit.
@@ -142,10 +180,32 @@ pub struct Panel {
     pub from: f64,
     /// rad/s; may be infinite.
     pub to: f64,
+    /// How dead time is taken.
+    pub late: Late,
     /// In order: an axis across which the box is halved, 0 being that of the frequency, then the lower half, then the upper one; or
     /// [`LEAF`] with the direction that shows the claim there, two numbers of 16 bits, the greater byte first.
     pub tree: Vec<u8>,
 }
 
+/// How dead time E = e^(-j w tau) is taken over a panel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Late {
+    /// There is none.
+    Not,
+    /// It turns about this angle, rad: about half way between the least and the greatest frequency times dead time.
+    Turns(f64),
+    /// As any number of magnitude one: what it multiplies is less than the rest.
+    Less,
+    /// The same where what it multiplies is more than the rest.
+    More,
+}
+
 /// Stands before the direction of a leaf.
 pub const LEAF: u8 = 255;
+
+impl Panel {
+    /// Number of leaves: of n, n - 1 halvings of a byte each stand before them.
+    fn leaves(&self) -> usize {
+        (self.tree.len() + 1) / 6
+    }
+}

@@ -1,21 +1,24 @@
 //! The checker: whether a certificate proves what it claims. It trusts nobody, and rounds outwards wherever it rounds.
 //!
 //! ```text
-//! leaf with direction (a, b):   a Re U_k + b Im U_k > 0   and   (a Re U_k + b Im U_k)^2 >= (a^2 + b^2) |V_k|^2   for every control point
+//! leaf with direction (a, b):   x_k = a Re U_k + b Im U_k - (|a| + |b|) e_k > 0,   x_k^2 >= (a^2 + b^2) |V_k|^2      for every control point
 //! ```
 //!
-//! Re(conj(d) U) - |d| |V| is concave in (U, V): where it is not negative at the control points, it is not between them.
+//! Re(conj(d) U) - |d| (|V| + e) is concave in (U, V, e): where it is not negative at the control points, it is not between them.
 
-use phea_dynamics::scalar::Interval;
+use phea_dynamics::scalar::{Interval, Scalar};
 
-use super::certificate::{Certificate, Claim, LEAF, Limited, Panel};
-use super::claimed::Loop;
+use super::certificate::{Certificate, Claim, LEAF, Late, Limited, Member, Panel, Segment, StableBox};
+use super::claimed::{Claimed, Loop};
+use super::dead_time::ends;
 use super::hurwitz::{Roots, roots_of};
-use super::points::{Pair, Points, Range};
-use super::polynomial::InS;
+use super::points::{Point, Points, Range};
 
 /// Halvings on the way to a leaf at most: no proof needs as many.
 const DEPTH_MAXIMUM: usize = 256;
+
+/// Terms of the series of dead time at most.
+const DEAD_TIME_TERMS_MAXIMUM: usize = 24;
 
 /// Why a certificate is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -26,9 +29,18 @@ pub enum Rejection {
     /// A number that is not finite, a band without width, a ratio or frequency that is negative.
     #[error("{0} is not a number that it can be")]
     Number(&'static str),
+    /// Another number of boxes than the family has.
+    #[error("it does not speak of every box of the family")]
+    Boxes,
+    /// More control points than a claim has.
+    #[error("a claim has too many control points")]
+    TooLarge,
     /// Panels with a gap, or short of an end.
     #[error("the panels do not cover the band: there is a gap at {0} rad/s")]
     Gap(f64),
+    /// Dead time taken where there is none, or not as it can be on such a panel.
+    #[error("dead time is not taken as it is on the panel from {0} rad/s")]
+    Late(f64),
     /// A tree that ends too early or too late, or halves an axis that does not exist.
     #[error("the tree of the panel from {0} rad/s is not well formed")]
     Tree(f64),
@@ -65,59 +77,86 @@ pub fn check(certificate: &Certificate) -> Result<(), (usize, Rejection)> {
 /// [`Rejection`].
 pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<(), Rejection> {
     check_numbers(certificate)?;
+    let variables = certificate.plant.variables;
     match claim {
-        Claim::Stable { member, panels } => {
-            check_member(certificate, member)?;
-            let at = Loop::at(certificate, member).ok_or(Rejection::NoSuchLoop)?;
-            let [of_loop, of_prefilter] = [&at.characteristic(), at.prefilter_denominator()].map(roots_of);
-            if of_loop != Roots::AllLeft || of_prefilter != Roots::AllLeft {
-                return Err(Rejection::Poles);
+        Claim::Stable(boxes) => {
+            check_boxes(certificate, boxes.len())?;
+            for (of_box, one) in boxes.iter().enumerate() {
+                let member = Member { of_box, variables: one.member.clone() };
+                check_stable_box(certificate, &member, one)?;
             }
-            let u = Loop::over_box(certificate).ok_or(Rejection::NoSuchLoop)?.characteristic();
-            check_panels(&u, &InS(vec![]), certificate.plant.variables, [0.0, f64::INFINITY], panels)
+            Ok(())
         }
-        Claim::Unstable { member } => {
-            check_member(certificate, member)?;
-            let at = Loop::at(certificate, member).ok_or(Rejection::NoSuchLoop)?;
-            let found = [&at.characteristic(), at.prefilter_denominator()].map(roots_of);
-            if found.contains(&Roots::SomeNotLeft) { Ok(()) } else { Err(Rejection::Poles) }
+        Claim::Unstable(member) => {
+            let at = at(certificate, member)?;
+            let found = [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of);
+            let is_shown = found[1] == Roots::SomeNotLeft
+                || (found[0] == Roots::SomeNotLeft && !certificate.plant.is_late());
+            if is_shown { Ok(()) } else { Err(Rejection::Poles) }
         }
-        Claim::Limited { limited, ratio, panels } => {
+        Claim::Limited { limited, ratio, boxes } => {
             check_ratio(limited, *ratio)?;
-            let around = Loop::over_box(certificate).ok_or(Rejection::NoSuchLoop)?;
-            let [u, v] = around.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
-            check_panels(&u, &v, certificate.plant.variables, limited.band_rad_per_s, panels)
+            check_boxes(certificate, boxes.len())?;
+            for (of_box, panels) in boxes.iter().enumerate() {
+                let around = Loop::over_box(certificate, of_box).ok_or(Rejection::NoSuchLoop)?;
+                let claimed = around.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
+                check_panels(&claimed, variables, limited.band_rad_per_s, panels)?;
+            }
+            Ok(())
         }
         Claim::Reached { limited, ratio, frequency_rad_per_s, member } => {
             check_ratio(limited, *ratio)?;
-            check_member(certificate, member)?;
             let [from, to] = limited.band_rad_per_s;
             if !(from <= *frequency_rad_per_s && *frequency_rad_per_s <= to) {
                 return Err(Rejection::Number("a frequency"));
             }
-            let at = Loop::at(certificate, member).ok_or(Rejection::NoSuchLoop)?;
-            let [u, v] = at.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
-            if reaches(&u, &v, *frequency_rad_per_s) { Ok(()) } else { Err(Rejection::Point) }
+            let claimed = at(certificate, member)?.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
+            if reaches(&claimed, *frequency_rad_per_s) { Ok(()) } else { Err(Rejection::Point) }
         }
     }
 }
 
-/// The parameters are finite and moved by variables that exist, so that the box is a box.
-fn check_numbers(certificate: &Certificate) -> Result<(), Rejection> {
-    let plant = &certificate.plant;
-    let sound = plant.parameters.iter().all(|one| {
-        let moved = one.variable.is_none_or(|variable| variable < plant.variables);
-        one.low.is_finite() && one.high.is_finite() && moved
-    });
-    if sound { Ok(()) } else { Err(Rejection::Number("an end of a parameter")) }
+fn check_stable_box(certificate: &Certificate, member: &Member, one: &StableBox) -> Result<(), Rejection> {
+    const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
+    let at = at(certificate, member)?;
+    if [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of) != [Roots::AllLeft; 2] {
+        return Err(Rejection::Poles);
+    }
+    if certificate.plant.is_late() {
+        check_panels(&at.stability_while_delayed(), 1, WHOLE, &one.delays)?;
+    }
+    let around = Loop::over_box(certificate, member.of_box).ok_or(Rejection::NoSuchLoop)?;
+    check_panels(&around.stability(), certificate.plant.variables, WHOLE, &one.panels)
 }
 
-fn check_member(certificate: &Certificate, member: &[f64]) -> Result<(), Rejection> {
-    let within = member.iter().all(|share| (0.0..=1.0).contains(share));
-    match within && member.len() == certificate.plant.variables {
-        true => Ok(()),
-        false => Err(Rejection::Number("a variable of a plant")),
+/// The loop of one plant, which belongs to the family.
+fn at(certificate: &Certificate, member: &Member) -> Result<Loop<Interval>, Rejection> {
+    let within = member.variables.iter().all(|share| (0.0..=1.0).contains(share));
+    if !within || member.variables.len() != certificate.plant.variables {
+        return Err(Rejection::Number("a variable of a plant"));
     }
+    Loop::at(certificate, member).ok_or(Rejection::NoSuchLoop)
+}
+
+/// The parameters are finite and moved by variables that exist, so that every box is a box; nothing is late by less than nothing.
+fn check_numbers(certificate: &Certificate) -> Result<(), Rejection> {
+    let plant = &certificate.plant;
+    let is_box = |one: &Vec<Segment>| {
+        one.len() == plant.parameters.len()
+            && one.iter().all(|one| {
+                let moved = one.variable.is_none_or(|variable| variable < plant.variables);
+                one.low.is_finite() && one.high.is_finite() && moved
+            })
+    };
+    let in_time = plant.delay_s >= 0.0 && (1..=DEAD_TIME_TERMS_MAXIMUM).contains(&plant.dead_time_terms);
+    match plant.boxes.iter().all(is_box) && !plant.boxes.is_empty() && in_time {
+        true => Ok(()),
+        false => Err(Rejection::Number("an end of a parameter")),
+    }
+}
+
+fn check_boxes(certificate: &Certificate, shown: usize) -> Result<(), Rejection> {
+    if shown == certificate.plant.boxes.len() { Ok(()) } else { Err(Rejection::Boxes) }
 }
 
 fn check_ratio(limited: &Limited, ratio: f64) -> Result<(), Rejection> {
@@ -129,19 +168,33 @@ fn check_ratio(limited: &Limited, ratio: f64) -> Result<(), Rejection> {
 }
 
 fn check_panels(
-    u: &InS<Interval>,
-    v: &InS<Interval>,
+    claimed: &Claimed<Interval>,
     variables: usize,
     [from, to]: [f64; 2],
     panels: &[Panel],
 ) -> Result<(), Rejection> {
+    if ends(&claimed.dead_time)[0].low() < 0.0 {
+        return Err(Rejection::Number("a dead time"));
+    }
     let mut reached = from;
-    let powers = Points::powers(u, v, variables);
     for panel in panels {
-        if panel.from != reached || panel.to.is_nan() || panel.to <= panel.from {
+        let is_panel = panel.from == reached && panel.to > panel.from;
+        if !is_panel || (panel.to.is_infinite() && panel.from == 0.0) {
             return Err(Rejection::Gap(reached));
         }
-        check_tree(powers.clone().over(Range { from: panel.from, to: panel.to }), panel)?;
+        let is_late = !claimed.dead_time.value.is_zero();
+        let fits = match panel.late {
+            Late::Not => !is_late,
+            Late::Less => is_late,
+            Late::More => is_late && panel.to.is_finite(),
+            Late::Turns(angle) => is_late && panel.to.is_finite() && angle.is_finite(),
+        };
+        if !fits {
+            return Err(Rejection::Late(panel.from));
+        }
+        let range = Range { from: panel.from, to: panel.to, late: panel.late };
+        let whole = Points::over(claimed, variables, range).ok_or(Rejection::TooLarge)?;
+        check_tree(whole, panel)?;
         reached = panel.to;
     }
     if reached == to { Ok(()) } else { Err(Rejection::Gap(reached)) }
@@ -159,7 +212,7 @@ fn check_tree(whole: Points<Interval>, panel: &Panel) -> Result<(), Rejection> {
                 leaf += 1;
                 let mut number = || Some(f64::from(i16::from_be_bytes([bytes.next()?, bytes.next()?])));
                 let direction = number().zip(number()).ok_or(malformed.clone())?;
-                if !shows([direction.0, direction.1], points.pairs()) {
+                if !shows([direction.0, direction.1], points.points()) {
                     return Err(Rejection::Leaf { leaf, from: panel.from });
                 }
             }
@@ -174,25 +227,32 @@ fn check_tree(whole: Points<Interval>, panel: &Panel) -> Result<(), Rejection> {
 }
 
 /// Whether |V| <= |U| and U is not zero on the whole leaf, shown by this direction.
-fn shows([a, b]: [f64; 2], pairs: &[Pair<Interval>]) -> bool {
+fn shows([a, b]: [f64; 2], points: &[Point<Interval>]) -> bool {
     let of = Interval::from;
     let square = of(a).square() + of(b).square();
-    pairs.iter().all(|[ur, ui, vr, vi]| {
-        let along = of(a) * *ur + of(b) * *ui;
-        let least = along.low();
+    let length = of(a.abs() + b.abs());
+    points.iter().all(|[ur, ui, vr, vi, rest]| {
+        let least = (of(a) * *ur + of(b) * *ui - length * *rest).low();
         least > 0.0 && of(least).square().low() >= (square * (vr.square() + vi.square())).high()
     })
 }
 
-/// Whether |V| >= |U| at a frequency, or in the limit towards infinity; U and V have numbers as coefficients.
-fn reaches(u: &InS<Interval>, v: &InS<Interval>, frequency_rad_per_s: f64) -> bool {
-    let powers = Points::powers(u, v, 0);
+/// Whether |V| >= |U| at a frequency, or in the limit towards infinity, where dead time must not matter; coefficients are numbers.
+fn reaches(claimed: &Claimed<Interval>, frequency_rad_per_s: f64) -> bool {
     // the first control point over a panel is the value where it begins
     let range = match frequency_rad_per_s.is_finite() {
-        true => Range { from: frequency_rad_per_s, to: frequency_rad_per_s },
-        false => Range { from: 1.0, to: f64::INFINITY },
+        true => {
+            let dead_time = ends(&claimed.dead_time)[0];
+            let angle = 0.5 * frequency_rad_per_s * (dead_time.low() + dead_time.high());
+            let late = if claimed.dead_time.value.is_zero() { Late::Not } else { Late::Turns(angle) };
+            Range { from: frequency_rad_per_s, to: frequency_rad_per_s, late }
+        }
+        false if claimed.dead_time.value.is_zero() => Range { from: 1.0, to: f64::INFINITY, late: Late::Not },
+        false => Range { from: 1.0, to: f64::INFINITY, late: Late::Less },
     };
-    let points = powers.over(range);
-    let (Some([ur, ui, vr, vi]), true) = (points.pairs().first(), points.axes() == 1) else { return false };
-    (vr.square() + vi.square()).low() >= (ur.square() + ui.square()).high()
+    let Some(points) = Points::over(claimed, 0, range) else { return false };
+    let Some([ur, ui, vr, vi, rest]) = points.points().first() else { return false };
+    // a remainder makes |U| greater and |V| less by at most so much
+    let [u, v] = [(ur.square() + ui.square()).sqrt() + *rest, (vr.square() + vi.square()).sqrt() - *rest];
+    v.low() >= u.high()
 }

@@ -1,23 +1,22 @@
 //! A claim as two polynomials: |V| <= |U| on the whole boundary of stability and for all plants, or U without a zero there.
 //!
 //! ```text
-//! P = N/D, G = Gn/Gd, H = Hn/Hd, F = Fn/Fd, limit W = Wn/Wd, c = D Gd Hd, n = N Gn Hn, ratio r
+//! P = N/D E, E = e^(-s tau), G = Gn/Gd, H = Hn/Hd, F = Fn/Fd, limit W = Wn/Wd, c = D Gd Hd, n = N Gn Hn, ratio r
 //!
-//! stable           U = n + c                     V = 0
-//! |L S| <= r W     U = r Wn (n + c)              V = Wd n
-//! |S| <= r W       U = r Wn (n + c)              V = Wd c
-//! |P S| <= r W     U = r Wn (n + c)              V = Wd N Gd Hd
-//! |G S| <= r W     U = r Wn (n + c)              V = Wd Gn D Hd
-//! |Pd S| <= r W    U = r Wn (n + c) Dd           V = Wd Nd c          of one denominator: V = Wd Nd Gd Hd, U without Dd
-//! |F T| <= r W     U = r Wn (n + c) Fd           V = Wd Fn N Gn Hd
-//! |F T| >= W/r     U = r Wd Fn N Gn Hd           V = Wn Fd (n + c)
+//! stable           U = n E + c                     V = 0
+//! |L S| <= r W     U = r Wn (n E + c)              V = Wd n
+//! |S| <= r W       U = r Wn (n E + c)              V = Wd c
+//! |P S| <= r W     U = r Wn (n E + c)              V = Wd N Gd Hd
+//! |G S| <= r W     U = r Wn (n E + c)              V = Wd Gn D Hd
+//! |Pd S| <= r W    U = r Wn (n E + c) Dd           V = Wd Nd c          of one denominator: V = Wd Nd Gd Hd, U without Dd
+//! |F T| <= r W     U = r Wn (n E + c) Fd           V = Wd Fn N Gn Hd
+//! |F T| >= W/r     U = r Wd Fn N Gn Hd             V = Wn Fd (n E + c)
 //! ```
 //!
-//! Powers of s that divide both are dropped.
+//! |E| = 1 on the boundary of stability, so that it is dropped where it is a factor. Powers of s that divide both are dropped.
 
-use phea_dynamics::uncertain_plant::RationalCoefficients;
-
-use super::certificate::{Certificate, CertifiedPlant, Limited, Quotient, Side};
+use super::certificate::{Certificate, Limited, Member, Quotient, Segment, Side};
+use super::dead_time::DeadTime;
 use super::polynomial::{Decimal, InS, Polynomial, expanded};
 use crate::specification::ClosedLoop;
 
@@ -32,47 +31,85 @@ pub(crate) struct Loop<S> {
     feedback: [InS<S>; 2],
     prefilter: [InS<S>; 2],
     sensor: [InS<S>; 2],
+    dead_time: DeadTime<S>,
 }
 
 fn quotient<S: Decimal>(quotient: &Quotient) -> [InS<S>; 2] {
     [&quotient.numerator, &quotient.denominator].map(|coefficients| InS::of_decimals(coefficients))
 }
 
-/// The values of the parameters over the whole box.
-fn over_box<S: Decimal>(plant: &CertifiedPlant) -> Vec<Polynomial<S>> {
-    let parameters = plant.parameters.iter();
-    parameters.map(|one| Polynomial::between(one.low, one.high, one.variable)).collect()
-}
-
 /// The values of the parameters at one plant.
-pub(crate) fn at_member<S: Decimal>(plant: &CertifiedPlant, member: &[f64]) -> Vec<Polynomial<S>> {
-    let value = |one: &super::certificate::CertifiedParameter| {
+fn at_member<S: Decimal>(segments: &[Segment], variables: &[f64]) -> Vec<Polynomial<S>> {
+    let value = |one: &Segment| {
         let low = S::decimal(one.low);
-        let share = one.variable.and_then(|variable| member.get(variable));
+        let share = one.variable.and_then(|variable| variables.get(variable));
         share.map_or(low, |share| low + (S::decimal(one.high) - low) * S::decimal(*share))
     };
-    plant.parameters.iter().map(|one| Polynomial::constant(value(one))).collect()
+    segments.iter().map(|one| Polynomial::constant(value(one))).collect()
+}
+
+/// U and V, each a part without dead time and one that E multiplies, at first as far as they depend on it.
+#[derive(Clone, Debug)]
+pub(crate) struct Claimed<S> {
+    pub(crate) u: [InS<S>; 2],
+    pub(crate) v: [InS<S>; 2],
+    /// tau; nothing where there is none.
+    pub(crate) dead_time: DeadTime<S>,
+}
+
+impl<S: Decimal> Claimed<S> {
+    fn of(u: [InS<S>; 2], v: [InS<S>; 2], dead_time: &DeadTime<S>) -> Claimed<S> {
+        let all = u.iter().chain(&v);
+        let common = all.filter_map(InS::powers_of_s).min().unwrap_or(0);
+        let without = |of: [InS<S>; 2]| of.map(|one| one.without_powers_of_s(common));
+        Claimed { u: without(u), v: without(v), dead_time: dead_time.clone() }.joined()
+    }
+
+    /// With E = 1 where there is no dead time.
+    fn joined(mut self) -> Claimed<S> {
+        if self.dead_time.value.is_zero() {
+            for one in [&mut self.u, &mut self.v] {
+                *one = [one[0].plus(&one[1]), InS(vec![])];
+            }
+        }
+        self
+    }
+
+    /// With U multiplied by a number.
+    pub(crate) fn raised(&self, ratio: S) -> Claimed<S> {
+        Claimed { u: [0, 1].map(|part| self.u[part].scaled(ratio)), ..self.clone() }
+    }
 }
 
 impl<S: Decimal> Loop<S> {
-    /// Over the whole box; `None` where the plant is not polynomial.
-    pub(crate) fn over_box(certificate: &Certificate) -> Option<Loop<S>> {
-        Loop::of(certificate, &over_box(&certificate.plant))
+    /// Over a whole box; `None` where the plant is not polynomial, or there is no such box.
+    pub(crate) fn over_box(certificate: &Certificate, of_box: usize) -> Option<Loop<S>> {
+        let segments = certificate.plant.boxes.get(of_box)?.iter();
+        let values: Vec<_> =
+            segments.map(|one| Polynomial::between(one.low, one.high, one.variable)).collect();
+        Loop::of(certificate, &values)
     }
 
     /// With one plant.
-    pub(crate) fn at(certificate: &Certificate, member: &[f64]) -> Option<Loop<S>> {
-        Loop::of(certificate, &at_member(&certificate.plant, member))
+    pub(crate) fn at(certificate: &Certificate, member: &Member) -> Option<Loop<S>> {
+        let segments = certificate.plant.boxes.get(member.of_box)?;
+        Loop::of(certificate, &at_member(segments, &member.variables))
     }
 
     fn of(certificate: &Certificate, parameters: &[Polynomial<S>]) -> Option<Loop<S>> {
         let plant = &certificate.plant;
         let mut left = expanded(&plant.coefficients, parameters)?.into_iter();
-        let mut parts = plant.lengths.iter().map(|&length| {
+        let mut parts = vec![];
+        for &length in &plant.lengths {
             let mut highest_first: Vec<Polynomial<S>> = left.by_ref().take(length).collect();
             highest_first.reverse();
-            InS(highest_first)
-        });
+            parts.push(InS(highest_first));
+        }
+        let mut dead_time = Polynomial::number(plant.delay_s);
+        if plant.has_dead_time {
+            dead_time = dead_time.plus(&left.next()?);
+        }
+        let mut parts = parts.into_iter();
         let (numerator, denominator) = (parts.next()?, parts.next()?);
         let results = plant.coefficients.results();
         let of_part = |part: usize| {
@@ -90,14 +127,31 @@ impl<S: Decimal> Loop<S> {
             feedback: quotient(&certificate.feedback),
             prefilter: quotient(&certificate.prefilter),
             sensor: quotient(&certificate.sensor),
+            dead_time: DeadTime { value: dead_time, terms: plant.dead_time_terms },
         })
     }
 
-    /// n + c
-    pub(crate) fn characteristic(&self) -> InS<S> {
+    /// c and n.
+    fn open(&self) -> [InS<S>; 2] {
         let [[gn, gd], [hn, hd]] = [&self.feedback, &self.sensor];
-        let closed = self.numerator.times(gn).times(hn);
-        closed.plus(&self.denominator.times(gd).times(hd))
+        [self.denominator.times(gd).times(hd), self.numerator.times(gn).times(hn)]
+    }
+
+    /// n + c, as without dead time.
+    pub(crate) fn without_dead_time(&self) -> InS<S> {
+        let [c, n] = self.open();
+        c.plus(&n)
+    }
+
+    /// That no pole stands on the boundary of stability.
+    pub(crate) fn stability(&self) -> Claimed<S> {
+        Claimed { u: self.open(), v: [InS(vec![]), InS(vec![])], dead_time: self.dead_time.clone() }.joined()
+    }
+
+    /// The same of one plant while its dead time grows from nothing, by the first variable.
+    pub(crate) fn stability_while_delayed(&self) -> Claimed<S> {
+        let value = self.dead_time.value.times(&Polynomial::between(0.0, 1.0, Some(0)));
+        Claimed { dead_time: DeadTime { value, ..self.dead_time }, ..self.stability() }
     }
 
     /// The denominator of the prefilter.
@@ -105,17 +159,16 @@ impl<S: Decimal> Loop<S> {
         &self.prefilter[1]
     }
 
-    /// U and V; `None` of a plant without the path that is limited.
-    pub(crate) fn claimed(&self, limited: &Limited, ratio: f64) -> Option<[InS<S>; 2]> {
-        let [[gn, gd], [fn_, fd], [hn, hd]] = [&self.feedback, &self.prefilter, &self.sensor];
+    /// A limit as a claim; `None` of a plant without the path that is limited.
+    pub(crate) fn claimed(&self, limited: &Limited, ratio: f64) -> Option<Claimed<S>> {
+        let [[gn, gd], [fn_, fd], [_, hd]] = [&self.feedback, &self.prefilter, &self.sensor];
         let [wn, wd] = quotient(&limited.limit);
         let ratio = InS(vec![Polynomial::constant(S::decimal(ratio))]);
         let (n, d) = (&self.numerator, &self.denominator);
-        let characteristic = self.characteristic();
-        // what stands over n + c
+        // what stands over n E + c, and what besides under it
         let (over, beside) = match limited.closed_loop {
-            ClosedLoop::RobustStability => (n.times(gn).times(hn), None),
-            ClosedLoop::Sensitivity => (d.times(gd).times(hd), None),
+            ClosedLoop::RobustStability => (self.open()[1].clone(), None),
+            ClosedLoop::Sensitivity => (self.open()[0].clone(), None),
             ClosedLoop::PlantInputDisturbance => (n.times(gd).times(hd), None),
             ClosedLoop::ControlEffort => (gn.times(d).times(hd), None),
             ClosedLoop::LoadMotion => {
@@ -127,21 +180,12 @@ impl<S: Decimal> Loop<S> {
             }
             ClosedLoop::Tracking => (fn_.times(n).times(gn).times(hd), Some(fd)),
         };
-        let under = beside.map_or(characteristic.clone(), |beside| characteristic.times(beside));
+        let under = self.open().map(|part| beside.map_or(part.clone(), |beside| part.times(beside)));
+        let alone = |one: InS<S>| [one, InS(vec![])];
         let [u, v] = match limited.side {
-            Side::Upper => [ratio.times(&wn).times(&under), wd.times(&over)],
-            Side::Lower => [ratio.times(&wd).times(&over), wn.times(&under)],
+            Side::Upper => [under.map(|part| ratio.times(&wn).times(&part)), alone(wd.times(&over))],
+            Side::Lower => [alone(ratio.times(&wd).times(&over)), under.map(|part| wn.times(&part))],
         };
-        let common = u.powers_of_s().min(v.powers_of_s()).unwrap_or(0);
-        Some([u, v].map(|one| one.without_powers_of_s(common)))
+        Some(Claimed::of(u, v, &self.dead_time))
     }
-}
-
-/// The lengths of what an uncertain plant records, and which of its results they are.
-pub(crate) fn lengths<S>(
-    command: &RationalCoefficients<S>,
-    disturbance: Option<&RationalCoefficients<S>>,
-) -> Vec<usize> {
-    let of = |one: &RationalCoefficients<S>| [one.numerator.len(), one.denominator.len()];
-    of(command).into_iter().chain(disturbance.map(of).into_iter().flatten()).collect()
 }

@@ -6,7 +6,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::points::{Pair, Points};
+use super::points::{Point, Points};
 
 /// What became of a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +39,7 @@ pub(crate) fn leaf(points: &Points<f64>) -> Leaf {
     if let Some((corner, ratio)) = worst_corner(points) {
         return Leaf::Wrong { corner, ratio };
     }
-    let pairs = points.pairs();
+    let pairs = points.points();
     let Some(middle) = mean_direction(pairs) else { return Leaf::Halve(most_varied(points)) };
     let near = rounded(middle);
     if shows(near, pairs) {
@@ -69,8 +69,10 @@ pub(crate) fn leaf(points: &Points<f64>) -> Leaf {
 /// The corner with the greatest |V|/|U| above one.
 fn worst_corner(points: &Points<f64>) -> Option<(u64, f64)> {
     let wrong = corners(points).filter_map(|(corner, index)| {
-        let [ur, ui, vr, vi] = points.pairs()[index];
-        let (u, v) = (ur * ur + ui * ui, vr * vr + vi * vi);
+        let [ur, ui, vr, vi, rest] = points.points()[index];
+        // beyond what dead time leaves over
+        let u = (ur * ur + ui * ui).sqrt() + 2.0 * rest;
+        let (u, v) = (u * u, vr * vr + vi * vi);
         (v > u).then(|| (corner, (v / u).sqrt()))
     });
     wrong.max_by(|(_, one), (_, other)| one.total_cmp(other))
@@ -92,7 +94,7 @@ fn corners(points: &Points<f64>) -> impl Iterator<Item = (u64, usize)> {
     })
 }
 
-fn mean_direction(pairs: &[Pair<f64>]) -> Option<Complex64> {
+fn mean_direction(pairs: &[Point<f64>]) -> Option<Complex64> {
     let sum: Complex64 = pairs.iter().map(|[re, im, ..]| unit(Complex64::new(*re, *im))).sum();
     let length = portable::magnitude(sum);
     (length > CLEAR * pairs.len() as f64).then(|| sum / length)
@@ -108,21 +110,20 @@ fn rounded(direction: Complex64) -> [i16; 2] {
 }
 
 /// What the checker asks, with room for its rounding.
-fn shows(direction: [i16; 2], pairs: &[Pair<f64>]) -> bool {
+fn shows(direction: [i16; 2], pairs: &[Point<f64>]) -> bool {
     let [a, b] = direction.map(f64::from);
     let square = (a * a + b * b) * (1.0 + ROOM);
-    pairs.iter().all(|[ur, ui, vr, vi]| {
-        let along = a * ur + b * ui;
+    pairs.iter().all(|[ur, ui, vr, vi, rest]| {
         let room = ROOM * ((a * ur).abs() + (b * ui).abs());
-        let least = along - room;
+        let least = a * ur + b * ui - (a.abs() + b.abs()) * rest - room;
         least > 0.0 && least * least >= square * (vr * vr + vi * vi)
     })
 }
 
 /// The arc of directions that show a pair, relative to this one; `None` where none does.
-fn arc([ur, ui, vr, vi]: &Pair<f64>, middle: Complex64) -> Option<[f64; 2]> {
+fn arc([ur, ui, vr, vi, rest]: &Point<f64>, middle: Complex64) -> Option<[f64; 2]> {
     let relative = Complex64::new(*ur, *ui) * middle.conj();
-    let ratio = portable::magnitude(Complex64::new(*vr, *vi)) / portable::magnitude(relative);
+    let ratio = (portable::magnitude(Complex64::new(*vr, *vi)) + rest) / portable::magnitude(relative);
     let angle = portable::argument(relative);
     let half =
         (ratio < 1.0).then(|| portable::argument(Complex64::new(ratio, (1.0 - ratio * ratio).sqrt())))?;
@@ -130,7 +131,7 @@ fn arc([ur, ui, vr, vi]: &Pair<f64>, middle: Complex64) -> Option<[f64; 2]> {
 }
 
 /// The point that is turned away most from a direction, where it stands behind: angles beyond are near to those on the other side.
-fn turned_away(pairs: &[Pair<f64>], middle: Complex64) -> Option<usize> {
+fn turned_away(pairs: &[Point<f64>], middle: Complex64) -> Option<usize> {
     let angles = pairs.iter().map(|pair| angle(pair, middle).abs()).enumerate();
     let (index, greatest) = angles.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
     (greatest > BEHIND).then_some(index)
@@ -138,7 +139,7 @@ fn turned_away(pairs: &[Pair<f64>], middle: Complex64) -> Option<usize> {
 
 /// Across the axis along which a point that is turned away comes back most.
 fn back(points: &Points<f64>, index: usize, middle: Complex64) -> usize {
-    let of = |index: usize| angle(&points.pairs()[index], middle).abs();
+    let of = |index: usize| angle(&points.points()[index], middle).abs();
     let gain = |axis: usize| {
         let [own, last] = place(points, index, axis);
         let stride = points.stride(axis);
@@ -149,7 +150,7 @@ fn back(points: &Points<f64>, index: usize, middle: Complex64) -> usize {
 }
 
 /// Of U, relative to a direction.
-fn angle([ur, ui, ..]: &Pair<f64>, middle: Complex64) -> f64 {
+fn angle([ur, ui, ..]: &Point<f64>, middle: Complex64) -> f64 {
     portable::argument(Complex64::new(*ur, *ui) * middle.conj())
 }
 
@@ -166,8 +167,8 @@ fn across(points: &Points<f64>, index: usize) -> usize {
         let inside = own > 0 && own < last;
         let stride = points.stride(axis);
         inside.then(|| {
-            let [before, here, next] = [index - stride, index, index + stride].map(|at| points.pairs()[at]);
-            [0, 1, 2, 3].map(|part| (before[part] - 2.0 * here[part] + next[part]).abs()).iter().sum()
+            let [before, here, next] = [index - stride, index, index + stride].map(|at| points.points()[at]);
+            (0..before.len()).map(|part| (before[part] - 2.0 * here[part] + next[part]).abs()).sum()
         })
     };
     greatest(points.axes(), bend).unwrap_or_else(|| most_varied(points))
@@ -175,7 +176,7 @@ fn across(points: &Points<f64>, index: usize) -> usize {
 
 /// Across the axis that brings two clashing arcs nearest to each other: one of the points is moved along it to the place of the other.
 fn between(points: &Points<f64>, [low, high]: [usize; 2], middle: Complex64) -> usize {
-    let arc_at = |index: usize| arc(&points.pairs()[index], middle);
+    let arc_at = |index: usize| arc(&points.points()[index], middle);
     let (Some([from, _]), Some([_, to])) = (arc_at(low), arc_at(high)) else { return most_varied(points) };
     let gain = |axis: usize| {
         let ([one, _], [other, _]) = (place(points, low, axis), place(points, high, axis));
@@ -194,7 +195,7 @@ fn between(points: &Points<f64>, [low, high]: [usize; 2], middle: Complex64) -> 
 fn most_varied(points: &Points<f64>) -> usize {
     let variation = |axis: usize| {
         let stride = points.stride(axis);
-        let pairs = points.pairs();
+        let pairs = points.points();
         let steps = pairs.iter().enumerate().filter(|(index, _)| place(points, *index, axis)[0] > 0);
         let sizes = steps.map(|(index, here)| {
             let before = &pairs[index - stride];

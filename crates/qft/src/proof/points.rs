@@ -1,55 +1,97 @@
-//! Control points: what two complex polynomials over a box and a panel of frequencies are spanned by, in the basis of Bernstein.
+//! Control points: what U and V are spanned by over a box and a panel of frequencies, in the basis of Bernstein.
 //!
 //! ```text
 //! U = sum over k of U_k B_k(t),     B_k >= 0,   sum over k of B_k = 1        t in [0, 1]^n
 //! ```
 //!
-//! Every pair (U, V) on the box is a mean of the pairs (U_k, V_k), with the same weights for both.
+//! Every pair (U, V) on the box is a mean of the pairs (U_k, V_k), with the same weights for both. What dead time leaves over has the
+//! magnitude e, at most the same mean of e_k.
 
-use super::polynomial::{Decimal, InS};
+use super::certificate::Late;
+use super::claimed::Claimed;
+use super::dead_time::{InFrequency, remainder, turned};
+use super::polynomial::{Decimal, InS, Polynomial};
 
-/// Real and imaginary part of U, the same of V.
-pub(crate) type Pair<S> = [S; 4];
+/// Real and imaginary part of U, the same of V, and e.
+pub(crate) type Point<S> = [S; 5];
 
-/// A panel of frequencies, rad/s; it may end at infinity.
+/// A panel of frequencies, rad/s, and how dead time is taken over it; it may end at infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Range {
     pub(crate) from: f64,
     pub(crate) to: f64,
+    pub(crate) late: Late,
 }
 
-/// Pairs of coefficients over all axes, that of the frequency first, the last axis running fastest.
+/// Coefficients over all axes, that of the frequency first, the last axis running fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Points<S> {
     degrees: Vec<usize>,
-    values: Vec<Pair<S>>,
+    values: Vec<Point<S>>,
 }
 
+/// Control points at most: more are no claim that anybody makes.
+const POINTS_MAXIMUM: usize = 1 << 21;
+
 impl<S: Decimal> Points<S> {
-    /// U and V as powers of the frequency and of the variables, s being j times the frequency.
-    pub(crate) fn powers(u: &InS<S>, v: &InS<S>, variables: usize) -> Points<S> {
-        let mut degrees = vec![0; variables + 1];
-        degrees[0] = u.degree().max(v.degree()).unwrap_or(0);
-        for (exponents, _) in [u, v].iter().flat_map(|one| &one.0).flat_map(|one| one.terms()) {
-            for (degree, exponent) in degrees.iter_mut().skip(1).zip(exponents) {
-                *degree = (*degree).max(usize::from(*exponent));
+    /// The control points of a claim over a panel and the whole box; `None` where they are too many.
+    pub(crate) fn over(claimed: &Claimed<S>, variables: usize, range: Range) -> Option<Points<S>> {
+        let Claimed { u, v, dead_time } = claimed;
+        let is_finite = range.to.is_finite();
+        let part = |one: &InS<S>| match is_finite {
+            true => InFrequency::of(one).along(range.from, range.to),
+            false => InFrequency::of(one),
+        };
+        let [parts_u, parts_v] = [u, v].map(|one| [part(&one[0]), part(&one[1])]);
+        let ([own_u, late_u], [own_v, late_v]) = (&parts_u, &parts_v);
+        let (whole, rest, remains) = match range.late {
+            Late::Not => ([own_u.clone(), own_v.clone()], [late_u, late_v], S::from(0.0)),
+            Late::Less => ([own_u.clone(), own_v.clone()], [late_u, late_v], S::from(1.0)),
+            Late::More => ([late_u.clone(), late_v.clone()], [own_u, own_v], S::from(1.0)),
+            Late::Turns(angle) => {
+                let turned = turned(dead_time, range, angle);
+                let whole = [own_u.plus(&late_u.times(&turned)), own_v.plus(&late_v.times(&turned))];
+                (whole, [late_u, late_v], remainder(dead_time, range, angle))
             }
+        };
+        let all = [&whole[0], &whole[1], own_u, own_v, late_u, late_v];
+        let mut points = Points::powers([&whole[0], &whole[1]], &all, variables)?;
+        points.bring_to(range);
+        if range.late == Late::Not {
+            return Some(points);
         }
-        let count = degrees.iter().map(|degree| degree + 1).product();
-        let mut out = Points { degrees, values: vec![[S::from(0.0); 4]; count] };
-        for (place, polynomial) in [u, v].into_iter().enumerate() {
-            for (power, coefficient) in polynomial.0.iter().enumerate() {
-                // j^0 = 1, j, -1, -j
-                let (part, sign) = (power % 2, if power % 4 < 2 { 1.0 } else { -1.0 });
-                for (exponents, value) in coefficient.terms() {
-                    let index = out.index(power, exponents);
-                    if let Some(slot) = out.values.get_mut(index) {
-                        slot[2 * place + part] = value * S::from(sign);
+        let mut left = Points::powers(rest, &all, variables)?;
+        left.bring_to(range);
+        for (point, left) in points.values.iter_mut().zip(&left.values) {
+            point[4] = remains * (left[0].abs() + left[1].abs() + left[2].abs() + left[3].abs());
+        }
+        Some(points)
+    }
+
+    /// U and V as powers of the frequency and of the variables, in the degrees that all of these have.
+    fn powers(pair: [&InFrequency<S>; 2], all: &[&InFrequency<S>], variables: usize) -> Option<Points<S>> {
+        let mut degrees = vec![0; variables + 1];
+        for one in pair.iter().chain(all) {
+            one.raise_degrees(&mut degrees);
+        }
+        let count = degrees.iter().try_fold(1_usize, |count, degree| count.checked_mul(degree + 1))?;
+        if count > POINTS_MAXIMUM {
+            return None;
+        }
+        let mut out = Points { degrees, values: vec![[S::from(0.0); 5]; count] };
+        for (place, one) in pair.into_iter().enumerate() {
+            for (part, polynomials) in one.parts().into_iter().enumerate() {
+                for (power, coefficient) in polynomials.iter().enumerate() {
+                    for (exponents, value) in coefficient.terms() {
+                        let index = out.index(power, exponents);
+                        if let Some(slot) = out.values.get_mut(index) {
+                            slot[2 * place + part] = value;
+                        }
                     }
                 }
             }
         }
-        out
+        Some(out)
     }
 
     fn index(&self, power: usize, exponents: &[u8]) -> usize {
@@ -59,20 +101,15 @@ impl<S: Decimal> Points<S> {
         digits.zip(&self.degrees).fold(0, |index, (digit, degree)| index * (degree + 1) + digit)
     }
 
-    /// The control points over a panel and the whole box, of what [`Points::powers`] gave. Towards infinity both are divided by the same power
-    /// of the frequency, and its inverse is the variable.
-    pub(crate) fn over(mut self, range: Range) -> Points<S> {
-        let one = S::from(1.0);
-        if range.to.is_finite() {
-            self.substitute(0, S::decimal(range.from), S::decimal(range.to));
-        } else {
+    /// From powers to control points. Towards infinity both are divided by the same power of the frequency, and its inverse is the variable.
+    fn bring_to(&mut self, range: Range) {
+        if range.to.is_infinite() {
             self.reverse_frequency();
-            self.substitute(0, S::from(0.0), one / S::decimal(range.from));
+            self.scale_frequency(S::from(1.0) / S::decimal(range.from));
         }
         for axis in 0..self.degrees.len() {
             self.to_bernstein(axis);
         }
-        self
     }
 
     /// Number of axes, that of the frequency included.
@@ -84,7 +121,7 @@ impl<S: Decimal> Points<S> {
         self.degrees[axis]
     }
 
-    pub(crate) fn pairs(&self) -> &[Pair<S>] {
+    pub(crate) fn points(&self) -> &[Point<S>] {
         &self.values
     }
 
@@ -96,37 +133,29 @@ impl<S: Decimal> Points<S> {
     /// Both halves of the box across an axis, by the rule of de Casteljau.
     pub(crate) fn halves(mut self, axis: usize) -> [Points<S>; 2] {
         let degree = self.degrees[axis];
+        let stride = self.stride(axis);
+        let block = stride * (degree + 1);
         let half = S::from(0.5);
         let mut low = self.clone();
         for step in 1..=degree {
             self.for_lines(axis, |line, at| {
                 for place in 0..=degree - step {
                     let (one, next) = (line[at(place)], line[at(place + 1)]);
-                    line[at(place)] = [0, 1, 2, 3].map(|part| (one[part] + next[part]) * half);
+                    line[at(place)] = [0, 1, 2, 3, 4].map(|part| (one[part] + next[part]) * half);
                 }
             });
-            let stride = self.stride(axis);
-            let block = stride * (degree + 1);
-            for start in (0..self.values.len()).step_by(block) {
-                let (to, from) = (start + step * stride, start);
+            for from in (0..self.values.len()).step_by(block) {
+                let to = from + step * stride;
                 low.values[to..to + stride].copy_from_slice(&self.values[from..from + stride]);
             }
         }
         [low, self]
     }
 
-    /// x -> low + (high - low) t in powers of the variable of an axis.
-    fn substitute(&mut self, axis: usize, low: S, high: S) {
-        let degree = self.degrees[axis];
-        let width = high - low;
-        self.for_lines(axis, |line, at| {
-            // Horner's rule, the highest coefficients first: shifted, then scaled
-            for step in 0..degree {
-                for place in (step..degree).rev() {
-                    let (here, next) = (line[at(place)], line[at(place + 1)]);
-                    line[at(place)] = [0, 1, 2, 3].map(|part| here[part] + low * next[part]);
-                }
-            }
+    /// x -> width x in powers of the variable of the frequency.
+    fn scale_frequency(&mut self, width: S) {
+        let degree = self.degrees[0];
+        self.for_lines(0, |line, at| {
             let mut factor = S::from(1.0);
             for place in 1..=degree {
                 factor = factor * width;
@@ -157,14 +186,14 @@ impl<S: Decimal> Points<S> {
             for step in 0..degree {
                 for place in (step + 1..=degree).rev() {
                     let (before, here) = (line[at(place - 1)], line[at(place)]);
-                    line[at(place)] = [0, 1, 2, 3].map(|part| here[part] + before[part]);
+                    line[at(place)] = [0, 1, 2, 3, 4].map(|part| here[part] + before[part]);
                 }
             }
         });
     }
 
     /// Every line of points along an axis: the values, and where the point of a place stands.
-    fn for_lines(&mut self, axis: usize, mut of_line: impl FnMut(&mut [Pair<S>], &dyn Fn(usize) -> usize)) {
+    fn for_lines(&mut self, axis: usize, mut of_line: impl FnMut(&mut [Point<S>], &dyn Fn(usize) -> usize)) {
         let stride = self.stride(axis);
         let block = stride * (self.degrees[axis] + 1);
         for start in (0..self.values.len()).step_by(block) {
@@ -172,5 +201,21 @@ impl<S: Decimal> Points<S> {
                 of_line(&mut self.values, &|place| offset + place * stride);
             }
         }
+    }
+}
+
+impl<S: Decimal> InFrequency<S> {
+    /// s = j w: j^0 = 1, j, -1, -j.
+    fn of(of: &InS<S>) -> InFrequency<S> {
+        let part = |own: usize| {
+            let signed =
+                of.0.iter().enumerate().map(|(power, coefficient)| match (power % 2 == own, power % 4 < 2) {
+                    (false, _) => Polynomial::zero(),
+                    (true, true) => coefficient.clone(),
+                    (true, false) => coefficient.scaled(S::from(-1.0)),
+                });
+            InS(signed.collect())
+        };
+        InFrequency { real: part(0), imaginary: part(1) }
     }
 }

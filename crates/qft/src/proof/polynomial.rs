@@ -3,17 +3,26 @@
 use std::collections::BTreeMap;
 
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
+use phea_dynamics::portable;
 use phea_dynamics::scalar::{Interval, Scalar};
+
+use super::dead_time::enclosed_cosine_and_sine;
 
 /// A number of a certificate: what it prints as in decimals is meant, of which binary numbers hold the nearest.
 pub(crate) trait Decimal: Scalar {
     /// What holds the decimal number that this one prints as.
     fn decimal(value: f64) -> Self;
+    /// What holds the cosine and the sine of the angle that this number prints as, rad.
+    fn cosine_and_sine(angle: f64) -> [Self; 2];
 }
 
 impl Decimal for f64 {
     fn decimal(value: f64) -> f64 {
         value
+    }
+
+    fn cosine_and_sine(angle: f64) -> [f64; 2] {
+        [portable::cos(angle), portable::sin(angle)]
     }
 }
 
@@ -28,6 +37,10 @@ impl Decimal for Interval {
         }
         Interval::new(value.next_down(), value.next_up())
     }
+
+    fn cosine_and_sine(angle: f64) -> [Interval; 2] {
+        enclosed_cosine_and_sine(angle, f64::cosine_and_sine(angle))
+    }
 }
 
 /// A polynomial in the variables of a box: its coefficients by the exponents of the variables.
@@ -40,6 +53,11 @@ impl<S: Decimal> Polynomial<S> {
     /// A number.
     pub(crate) fn constant(value: S) -> Polynomial<S> {
         Polynomial { terms: BTreeMap::from([(vec![], value)]) }
+    }
+
+    /// A decimal number; zero has no term.
+    pub(crate) fn number(value: f64) -> Polynomial<S> {
+        if value == 0.0 { Polynomial::zero() } else { Polynomial::constant(S::decimal(value)) }
     }
 
     /// Nothing: no term.
@@ -77,7 +95,7 @@ impl<S: Decimal> Polynomial<S> {
         }
     }
 
-    fn scaled(&self, factor: S) -> Polynomial<S> {
+    pub(crate) fn scaled(&self, factor: S) -> Polynomial<S> {
         let terms =
             self.terms.iter().map(|(exponents, coefficient)| (exponents.clone(), *coefficient * factor));
         Polynomial { terms: terms.collect() }
@@ -122,8 +140,7 @@ pub(crate) fn expanded<S: Decimal>(
         let of = |index: usize| values.get(index).and_then(Option::as_ref);
         let value = match *node {
             Node::Parameter(index) => parameters.get(index).cloned(),
-            Node::Constant(0.0) => Some(Polynomial::zero()),
-            Node::Constant(value) => Some(Polynomial::constant(S::decimal(value))),
+            Node::Constant(value) => Some(Polynomial::number(value)),
             Node::Unary(Unary::Negate, x) => of(x).map(|x| x.scaled(minus_one)),
             Node::Binary(Binary::Add, x, y) => of(x).zip(of(y)).map(|(x, y)| x.plus(y)),
             Node::Binary(Binary::Subtract, x, y) => {
@@ -148,11 +165,7 @@ pub(crate) struct InS<S>(pub(crate) Vec<Polynomial<S>>);
 impl<S: Decimal> InS<S> {
     /// With these numbers as coefficients, the highest power first.
     pub(crate) fn of_decimals(coefficients: &[f64]) -> InS<S> {
-        let terms = coefficients.iter().rev().map(|&value| match value {
-            0.0 => Polynomial::zero(),
-            value => Polynomial::constant(S::decimal(value)),
-        });
-        InS(terms.collect())
+        InS(coefficients.iter().rev().map(|&value| Polynomial::number(value)).collect())
     }
 
     pub(crate) fn plus(&self, other: &InS<S>) -> InS<S> {

@@ -3,15 +3,16 @@
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, part};
 
-use super::certificate::{Certificate, Claim, Limited, Side};
+use super::certificate::{Certificate, Claim, Limited, Member, Panel, Side, StableBox};
 use super::checker::check_claim;
-use super::claimed::Loop;
+use super::claimed::{Claimed, Loop};
 use super::hurwitz::{Roots, roots_of};
-use super::polynomial::InS;
-use super::statement::{Stated, limit, stated, values_at, variables_of};
-use super::supremum::{Enclosed, Wanted, enclose, ranges};
-use super::walk::{Effort, Place, Walk, walk};
+use super::panels::walk_band;
+use super::statement::{Stated, limit, member_of, stated, values_of};
+use super::supremum::{Enclosed, Place, Wanted, corners, enclose};
+use super::walk::{Effort, Region, Walk};
 use super::{NotProven, Proof, SpecificationProof, Standing};
+use crate::family::Family;
 use crate::specification::{Limit, Specification};
 use crate::verification::{
     Audit, AuditProblem, PlantPoint, SpecificationFinding, TrackingJudgement, WorstCase,
@@ -35,8 +36,8 @@ impl Default for ProofOptions {
 
 /// Halvings on the way to a leaf at most.
 const DEPTH_MAXIMUM: usize = 120;
-/// Corners of the box among which a stable plant is looked for.
-const CORNERS_MAXIMUM: usize = 64;
+/// From the lowest to the highest frequency.
+const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 
 /// Proves or refutes what an audit found.
 ///
@@ -52,7 +53,7 @@ pub fn prove(
         Ok(stated) => stated,
         Err(reason) => return Ok(nothing(problem, reason)),
     };
-    if Loop::<f64>::over_box(&certificate).is_none() {
+    if Loop::<f64>::over_box(&certificate, 0).is_none() {
         return Ok(nothing(problem, NotProven::NotPolynomial));
     }
     let effort = Effort { leaves: options.leaves_maximum, depth: DEPTH_MAXIMUM };
@@ -109,46 +110,78 @@ impl Prover<'_> {
     }
 
     fn stability(&mut self, audit: &Audit, watch: Watch<'_>) -> Result<Standing, Stopped> {
+        let mut boxes = vec![];
+        let worst = self.member(&audit.stability.plant);
+        for of_box in 0..self.certificate.plant.boxes.len() {
+            let nominal = match self.problem.family {
+                Family::Uncertain(family) => member_of(&self.certificate.plant, &family.plant().nominal()),
+                Family::Measured(_) => None,
+            };
+            let named = nominal.into_iter().chain(worst.clone()).filter(|member| member.of_box == of_box);
+            let members: Vec<Member> = named.chain(corners(&self.certificate, of_box)).collect();
+            match self.stable_box(&members, watch)? {
+                Ok(stable) => boxes.push(stable),
+                Err(standing) => return Ok(standing),
+            }
+        }
+        Ok(match self.keeps(Claim::Stable(boxes)) {
+            true => Standing::Proven,
+            false => Standing::NotProven(NotProven::Rounding),
+        })
+    }
+
+    /// One box, in which one of these plants is stable.
+    fn stable_box(
+        &mut self,
+        members: &[Member],
+        watch: Watch<'_>,
+    ) -> Result<Result<StableBox, Standing>, Stopped> {
         let mut stable = None;
-        for member in self.members(audit) {
-            let Some(at) = Loop::at(&self.certificate, &member) else { continue };
-            let roots = [&at.characteristic(), at.prefilter_denominator()].map(roots_of);
-            if roots.contains(&Roots::SomeNotLeft) && self.keeps(Claim::Unstable { member: member.clone() }) {
-                return Ok(self.refuted());
+        for member in members {
+            let Some(at) = Loop::at(&self.certificate, member) else { continue };
+            let roots = [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of);
+            if roots.contains(&Roots::SomeNotLeft) && self.keeps(Claim::Unstable(member.clone())) {
+                return Ok(Err(self.refuted()));
             }
             if stable.is_none() && roots == [Roots::AllLeft; 2] {
                 stable = Some(member);
             }
         }
-        let Some(member) = stable else { return Ok(Standing::NotProven(NotProven::NoStableMember)) };
-        let Some(around) = Loop::<f64>::over_box(&self.certificate) else {
-            return Ok(Standing::NotProven(NotProven::NotPolynomial));
+        let not_proven = |reason| Ok(Err(Standing::NotProven(reason)));
+        let Some(member) = stable else { return not_proven(NotProven::NoStableMember) };
+        let around = Loop::<f64>::over_box(&self.certificate, member.of_box);
+        let (Some(around), Some(at)) = (around, Loop::<f64>::at(&self.certificate, member)) else {
+            return not_proven(NotProven::NotPolynomial);
         };
-        let u = around.characteristic();
-        let ranges = ranges([0.0, f64::INFINITY], &[&u]);
-        let found = walk(&[u, InS(vec![])], self.certificate.plant.variables, &ranges, self.effort, watch)?;
-        Ok(match found {
-            Walk::Shown(panels) => match self.keeps(Claim::Stable { member, panels }) {
-                true => Standing::Proven,
-                false => Standing::NotProven(NotProven::Rounding),
-            },
-            Walk::Open(region) => Standing::NotProven(NotProven::Budget(region)),
-            Walk::Wrong { .. } => Standing::NotProven(NotProven::Rounding),
-        })
+        let variables = self.certificate.plant.variables;
+        let panels = match self.never_zero(&around.stability(), variables, member.of_box, watch)? {
+            Ok(panels) => panels,
+            Err(reason) => return not_proven(reason),
+        };
+        let mut delays = vec![];
+        if self.certificate.plant.is_late() {
+            delays = match self.never_zero(&at.stability_while_delayed(), 1, member.of_box, watch)? {
+                Ok(panels) => panels,
+                Err(reason) => return not_proven(reason),
+            };
+        }
+        Ok(Ok(StableBox { member: member.variables.clone(), panels, delays }))
     }
 
-    /// Plants of which one may be unstable, and one will be stable: the nominal one first.
-    fn members(&self, audit: &Audit) -> Vec<Vec<f64>> {
-        let plant = &self.certificate.plant;
-        let mut members = vec![];
-        if let crate::family::Family::Uncertain(family) = self.problem.family {
-            members.push(variables_of(plant, &family.plant().nominal()));
-        }
-        members.extend(self.place(&audit.stability.plant, 0.0).map(|place| place.member));
-        let corners = (0..1_usize << plant.variables).take(CORNERS_MAXIMUM);
-        members
-            .extend(corners.map(|bits| (0..plant.variables).map(|axis| (bits >> axis & 1) as f64).collect()));
-        members
+    /// Trees that show that U is not zero at any frequency.
+    fn never_zero(
+        &self,
+        claimed: &Claimed<f64>,
+        variables: usize,
+        of_box: usize,
+        watch: Watch<'_>,
+    ) -> Result<Result<Vec<Panel>, NotProven>, Stopped> {
+        Ok(match walk_band(claimed, variables, WHOLE, self.effort, watch)? {
+            Walk::Shown(panels) => Ok(panels),
+            Walk::Open(region) => Err(NotProven::Budget(Region { of_box, ..region })),
+            Walk::Wrong { .. } => Err(NotProven::Rounding),
+            Walk::TooLarge => Err(NotProven::TooManyVariables),
+        })
     }
 
     fn specification(
@@ -208,8 +241,8 @@ impl Prover<'_> {
         };
         let is_reached = self.keeps(reached);
         let mut rounding = false;
-        let most_db = most.and_then(|(ratio, panels)| {
-            let claim = Claim::Limited { limited: limited.clone(), ratio, panels };
+        let most_db = most.and_then(|(ratio, boxes)| {
+            let claim = Claim::Limited { limited: limited.clone(), ratio, boxes };
             rounding = !self.keeps(claim);
             (!rounding).then(|| db(ratio))
         });
@@ -220,7 +253,7 @@ impl Prover<'_> {
             _ if rounding => Standing::NotProven(NotProven::Rounding),
             _ => Standing::NotProven(open.map_or(NotProven::Unbounded, NotProven::Budget)),
         };
-        let values = values_at(&self.certificate.plant, &at.member);
+        let values = values_of(&self.certificate.plant, &at.member);
         let worst = is_reached.then(|| WorstCase {
             margin_db: -db(least),
             frequency_rad_per_s: at.frequency_rad_per_s,
@@ -239,8 +272,12 @@ impl Prover<'_> {
     }
 
     fn place(&self, plant: &PlantPoint, frequency_rad_per_s: f64) -> Option<Place> {
+        Some(Place { frequency_rad_per_s, member: self.member(plant)? })
+    }
+
+    fn member(&self, plant: &PlantPoint) -> Option<Member> {
         let PlantPoint::Parameters(values) = plant else { return None };
-        Some(Place { frequency_rad_per_s, member: variables_of(&self.certificate.plant, values) })
+        member_of(&self.certificate.plant, values)
     }
 }
 

@@ -2,11 +2,10 @@
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::scalar::Interval;
-use phea_dynamics::uncertain_plant::UncertainParameter;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter};
 
 use super::NotProven;
-use super::certificate::{Certificate, CertifiedParameter, CertifiedPlant, Quotient};
-use super::claimed::lengths;
+use super::certificate::{Certificate, CertifiedPlant, Member, Quotient, Segment};
 use crate::closed_loop::Compensation;
 use crate::family::{Coordinate, Extent, Family, Spacing, UncertainFamily};
 use crate::specification::Limit;
@@ -14,7 +13,10 @@ use crate::specification::Limit;
 /// Variables at most: a box has two to this power corners.
 const VARIABLES_MAXIMUM: usize = 12;
 
-/// The loop, and whether its box is that of the family or a larger one.
+/// Terms of the series that stands for dead time: over a panel it turns by one radian to either side, so that 2e-9 remains.
+const DEAD_TIME_TERMS: usize = 12;
+
+/// The loop, and whether its boxes are those of the family or larger ones.
 pub(super) struct Stated {
     /// Without a claim.
     pub(super) certificate: Certificate,
@@ -31,25 +33,33 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Sta
     if compensation.rate_feed_forward() != 0.0 {
         return Err(NotProven::RateFedForward);
     }
-    let (parameters, variables, larger) = parameters(family)?;
-    let plant = family.plant();
-    let expression = plant.expression().ok_or(NotProven::Waves)?;
-    let of_box: Vec<Interval> = parameters.iter().map(|one| Interval::new(one.low, one.high)).collect();
-    let enclosed = plant.enclosures(&of_box).ok_or(NotProven::Waves)?;
-    let dead_time = enclosed.dead_time_s + Interval::from(compensation.delay_s());
-    if dead_time != Interval::from(0.0) {
-        return Err(NotProven::DeadTime);
-    }
-    let lengths = lengths(&enclosed.command, enclosed.disturbance.as_ref());
+    let parts = [compensation.feedback(), compensation.prefilter(), compensation.sensor()];
+    let expression = family.plant().expression().ok_or(NotProven::Waves)?;
+    let (boxes, variables, larger) = boxes(family)?;
+    let ends = family.plant().parameters().iter();
+    let all: Vec<Interval> = ends.map(|one| Interval::new(one.minimum, one.maximum)).collect();
+    let enclosed = family.plant().enclosures(&all).ok_or(NotProven::Waves)?;
+    let has_dead_time = enclosed.dead_time_s != Interval::from(0.0);
+    let lengths = lengths(&enclosed);
+    let count = lengths.iter().sum::<usize>() + usize::from(has_dead_time);
     let plant = CertifiedPlant {
-        parameters,
+        parameters: family.plant().parameters().iter().map(|one| one.name.clone()).collect(),
         variables,
-        coefficients: expression.first(lengths.iter().sum()),
+        boxes,
+        coefficients: expression.first(count),
         lengths,
+        has_dead_time,
+        // that of the prefilter changes no magnitude
+        delay_s: compensation.delay_s() + parts[0].dead_time_s() + parts[2].dead_time_s(),
+        dead_time_terms: DEAD_TIME_TERMS,
     };
-    let [feedback, prefilter, sensor] =
-        [compensation.feedback(), compensation.prefilter(), compensation.sensor()].map(quotient);
+    let [feedback, prefilter, sensor] = parts.map(quotient);
     Ok(Stated { certificate: Certificate { plant, feedback, prefilter, sensor, claims: vec![] }, larger })
+}
+
+fn lengths<S>(plant: &PlantCoefficients<S>) -> Vec<usize> {
+    let of = |one: &RationalCoefficients<S>| [one.numerator.len(), one.denominator.len()];
+    of(&plant.command).into_iter().chain(plant.disturbance.as_ref().map(of).into_iter().flatten()).collect()
 }
 
 fn quotient(function: &TransferFunction) -> Quotient {
@@ -69,42 +79,31 @@ pub(super) fn limit(limit: &Limit) -> Option<Quotient> {
     }
 }
 
-fn parameters(family: &UncertainFamily) -> Result<(Vec<CertifiedParameter>, usize, bool), NotProven> {
-    let own = family.plant().parameters();
-    let fixed = |values: &[f64]| -> Vec<CertifiedParameter> {
-        let fixed = |(one, value): (&UncertainParameter, &f64)| CertifiedParameter {
-            name: one.name.clone(),
-            low: *value,
-            high: *value,
-            variable: None,
-        };
-        own.iter().zip(values).map(fixed).collect()
-    };
-    let mut parameters = fixed(&family.plant().nominal());
-    match (family.extent(), family.members()) {
-        (Extent::Members, [only]) => return Ok((fixed(only), 0, false)),
-        (Extent::Members, _) => return Err(NotProven::Members),
-        (Extent::Box, _) => {}
+/// The boxes of a family, the number of variables, and whether they are larger than the family.
+fn boxes(family: &UncertainFamily) -> Result<(Vec<Vec<Segment>>, usize, bool), NotProven> {
+    let fixed = |values: &[f64]| -> Vec<Segment> { values.iter().copied().map(Segment::fixed).collect() };
+    if family.extent() == Extent::Members {
+        return Ok((family.members().iter().map(|values| fixed(values)).collect(), 0, false));
     }
+    let own = family.plant().parameters();
+    let mut segments = fixed(&family.plant().nominal());
     let (mut variables, mut larger) = (0, false);
     for coordinate in family.coordinates() {
         let together = moves_straight(coordinate);
         larger |= !together;
-        let first = variables;
         for (position, &index) in coordinate.parameters.iter().enumerate() {
-            let ends = &own[index];
-            let is_opposed = coordinate.opposed.contains(&index);
-            let [low, high] =
-                if is_opposed { [ends.maximum, ends.minimum] } else { [ends.minimum, ends.maximum] };
-            let variable = if together { first } else { first + position };
-            let moved = ends.minimum < ends.maximum;
-            let name = ends.name.clone();
-            parameters[index] = CertifiedParameter { name, low, high, variable: moved.then_some(variable) };
+            let UncertainParameter { minimum, maximum, .. } = own[index];
+            let [low, high] = match coordinate.opposed.contains(&index) {
+                true => [maximum, minimum],
+                false => [minimum, maximum],
+            };
+            let variable = if together { variables } else { variables + position };
+            segments[index] = Segment { low, high, variable: (minimum < maximum).then_some(variable) };
         }
         variables += if together { 1 } else { coordinate.parameters.len() };
     }
     match variables <= VARIABLES_MAXIMUM {
-        true => Ok((parameters, variables, larger)),
+        true => Ok((vec![segments], variables, larger)),
         false => Err(NotProven::TooManyVariables),
     }
 }
@@ -114,27 +113,31 @@ fn moves_straight(coordinate: &Coordinate) -> bool {
     coordinate.parameters.len() == 1 || coordinate.spacing.iter().all(|spacing| *spacing == Spacing::Linear)
 }
 
-/// The variables at which the parameters have these values, each within 0 to 1.
-pub(super) fn variables_of(plant: &CertifiedPlant, values: &[f64]) -> Vec<f64> {
+/// The plant of a family with these values: of listed plants that which has them, of a box the one nearest to them.
+pub(super) fn member_of(plant: &CertifiedPlant, values: &[f64]) -> Option<Member> {
+    let is_listed = |one: &Vec<Segment>| one.iter().zip(values).all(|(segment, value)| segment.low == *value);
+    let of_box = match plant.boxes.as_slice() {
+        [_] => 0,
+        boxes => boxes.iter().position(is_listed)?,
+    };
     let mut variables = vec![0.0; plant.variables];
-    for (one, value) in plant.parameters.iter().zip(values) {
-        let slot = one.variable.and_then(|variable| variables.get_mut(variable));
-        if let Some(slot) = slot {
+    for (one, value) in plant.boxes.get(of_box)?.iter().zip(values) {
+        if let Some(slot) = one.variable.and_then(|variable| variables.get_mut(variable)) {
             *slot = ((value - one.low) / (one.high - one.low)).clamp(0.0, 1.0);
         }
     }
-    variables
+    Some(Member { of_box, variables })
 }
 
-/// The values of the parameters at these variables.
-pub(super) fn values_at(plant: &CertifiedPlant, variables: &[f64]) -> Vec<f64> {
-    let value = |one: &CertifiedParameter| {
-        let share = one.variable.and_then(|variable| variables.get(variable)).copied();
+/// The values of the parameters of a plant.
+pub(super) fn values_of(plant: &CertifiedPlant, member: &Member) -> Vec<f64> {
+    let value = |one: &Segment| {
+        let share = one.variable.and_then(|variable| member.variables.get(variable)).copied();
         match share {
             None | Some(0.0) => one.low,
             Some(1.0) => one.high,
             Some(share) => one.low + (one.high - one.low) * share,
         }
     };
-    plant.parameters.iter().map(value).collect()
+    plant.boxes.get(member.of_box).into_iter().flatten().map(value).collect()
 }

@@ -1,31 +1,35 @@
 //! The supremum of a ratio, enclosed: from below by points, from above by trees.
 
-use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch};
 
-use super::certificate::{Certificate, Limited, Panel};
-use super::claimed::Loop;
+use super::certificate::{Certificate, Late, Limited, Member, Panel};
+use super::claimed::{Claimed, Loop};
+use super::panels::{frequencies, walk_band};
 use super::points::{Points, Range};
-use super::polynomial::InS;
-use super::walk::{Effort, Place, Region, Walk, walk};
+use super::walk::{Effort, Region, Walk};
 
-/// Points of a decade at which plants are looked at before anything is shown.
-const POINTS_PER_DECADE: usize = 24;
-/// Corners of the box that are looked at there.
+/// Corners of a box that are looked at before anything is shown.
 const CORNERS_MAXIMUM: usize = 64;
 /// How often a tree may be begun anew because the supremum turned out to be greater.
 const RAISES_MAXIMUM: usize = 48;
 /// What a ratio that is reached is lowered by, so that rounding does not hide it.
 const ROUNDED: f64 = 1e-9;
 
+/// A plant and a frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Place {
+    pub(super) frequency_rad_per_s: f64,
+    pub(super) member: Member,
+}
+
 /// What was found of a supremum.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Enclosed {
-    /// The greatest ratio that was seen, and where.
+    /// A ratio that is reached, and where.
     pub(super) least: f64,
     pub(super) at: Place,
     /// A ratio that is not exceeded, with what shows it.
-    pub(super) most: Option<(f64, Vec<Panel>)>,
+    pub(super) most: Option<(f64, Vec<Vec<Panel>>)>,
     /// What remained where there is none.
     pub(super) open: Option<Region>,
 }
@@ -42,7 +46,7 @@ pub(super) struct Wanted {
     pub(super) only_points: bool,
 }
 
-/// Encloses the supremum of the ratio of a closed loop to its limit.
+/// Encloses the supremum of the ratio of a closed loop to its limit; `None` of a loop without that path.
 pub(super) fn enclose(
     certificate: &Certificate,
     limited: &Limited,
@@ -50,32 +54,30 @@ pub(super) fn enclose(
     wanted: Wanted,
     watch: Watch<'_>,
 ) -> Result<Option<Enclosed>, Stopped> {
-    let Some(around) = Loop::<f64>::over_box(certificate) else { return Ok(None) };
-    let Some([u, v]) = around.claimed(limited, 1.0) else { return Ok(None) };
-    let ranges = ranges(limited.band_rad_per_s, &[&u, &v]);
-    let Some((mut least, mut at)) = seen(certificate, limited, hints, &ranges) else { return Ok(None) };
-    let mut open = None;
-    let mut most = None;
+    let boxes = 0..certificate.plant.boxes.len();
+    let claims = boxes.map(|of_box| Loop::<f64>::over_box(certificate, of_box)?.claimed(limited, 1.0));
+    let Some(claims) = claims.collect::<Option<Vec<Claimed<f64>>>>() else { return Ok(None) };
+    let Some(mut found) = seen(certificate, limited, &claims, hints) else { return Ok(None) };
     for _ in 0..RAISES_MAXIMUM {
         if wanted.only_points {
             break;
         }
-        let near = least * wanted.width;
-        let ratio = rounded(if least <= wanted.decisive { near.min(wanted.decisive) } else { near });
-        let scaled = [u.scaled(ratio), v.clone()];
-        match walk(&scaled, certificate.plant.variables, &ranges, wanted.effort, watch)? {
-            Walk::Shown(panels) => {
-                most = Some((ratio, panels));
+        let near = found.least * wanted.width;
+        let ratio = rounded(if found.least <= wanted.decisive { near.min(wanted.decisive) } else { near });
+        match walk_boxes(certificate, limited, (&claims, ratio), wanted.effort, watch)? {
+            Boxes::Shown(panels) => {
+                found.most = Some((ratio, panels));
                 break;
             }
-            Walk::Wrong { at: place, ratio: by } => (least, at) = (ratio * by, place),
-            Walk::Open(region) => {
-                open = Some(region);
+            Boxes::Wrong { at, ratio: by } => (found.least, found.at) = (ratio * by, at),
+            Boxes::Open(region) => {
+                found.open = region;
                 break;
             }
         }
     }
-    Ok(Some(Enclosed { least: least * (1.0 - ROUNDED), at, most, open }))
+    found.least *= 1.0 - ROUNDED;
+    Ok(Some(found))
 }
 
 /// A number of few digits.
@@ -83,92 +85,94 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.7e}").parse().unwrap_or(value)
 }
 
-/// The panels of a band: its decades, and what lies below and beyond them.
-pub(super) fn ranges([from, to]: [f64; 2], of: &[&InS<f64>]) -> Vec<Range> {
-    let mut bends = of.iter().flat_map(|one| bends(one));
-    let first = bends.next().unwrap_or(1.0);
-    let [lowest, highest] = bends.fold([first, first], |[low, high], bend| [low.min(bend), high.max(bend)]);
-    let decade = |value: f64| portable::log10(value);
-    let (begin, end) = (decade(lowest).floor() as i32, decade(highest).ceil() as i32);
-    let inner = (begin..=end.max(begin)).filter_map(|power| format!("1e{power}").parse::<f64>().ok());
-    let mut ends: Vec<f64> = inner.filter(|inner| from < *inner && *inner < to).collect();
-    // a panel to infinity begins above zero
-    if ends.is_empty() && from == 0.0 && to.is_infinite() {
-        ends.push(1.0);
-    }
-    ends.insert(0, from);
-    ends.push(to);
-    ends.windows(2).map(|pair| Range { from: pair[0], to: pair[1] }).collect()
+/// What became of a claim in all boxes.
+enum Boxes {
+    Shown(Vec<Vec<Panel>>),
+    Wrong { at: Place, ratio: f64 },
+    Open(Option<Region>),
 }
 
-/// About where the magnitudes of the terms of a polynomial are equal, in the middle of the box.
-fn bends(of: &InS<f64>) -> Vec<f64> {
-    let sizes: Vec<(usize, f64)> = of
-        .0
-        .iter()
-        .enumerate()
-        .map(|(power, coefficient)| (power, coefficient.terms().map(|(_, value)| value).sum::<f64>().abs()))
-        .filter(|(_, size)| *size > 0.0)
-        .collect();
-    let between = sizes.windows(2).map(|pair| {
-        let [(one, low), (other, high)] = [pair[0], pair[1]];
-        portable::exp(portable::ln(low / high) / (other - one) as f64)
-    });
-    between.filter(|bend| bend.is_finite() && *bend > 0.0).collect()
+fn walk_boxes(
+    certificate: &Certificate,
+    limited: &Limited,
+    (claims, ratio): (&[Claimed<f64>], f64),
+    effort: Effort,
+    watch: Watch<'_>,
+) -> Result<Boxes, Stopped> {
+    let mut shown = Vec::with_capacity(claims.len());
+    for (of_box, claim) in claims.iter().enumerate() {
+        match walk_band(
+            &claim.raised(ratio),
+            certificate.plant.variables,
+            limited.band_rad_per_s,
+            effort,
+            watch,
+        )? {
+            Walk::Shown(panels) => shown.push(panels),
+            Walk::Wrong { at, ratio } => {
+                let member = Member { of_box, variables: at.variables };
+                return Ok(Boxes::Wrong {
+                    at: Place { frequency_rad_per_s: at.frequency_rad_per_s, member },
+                    ratio,
+                });
+            }
+            Walk::Open(region) => return Ok(Boxes::Open(Some(Region { of_box, ..region }))),
+            Walk::TooLarge => return Ok(Boxes::Open(None)),
+        }
+    }
+    Ok(Boxes::Shown(shown))
 }
 
 /// The greatest ratio at points: hints, and corners over the band.
 fn seen(
     certificate: &Certificate,
     limited: &Limited,
+    claims: &[Claimed<f64>],
     hints: &[Place],
-    ranges: &[Range],
-) -> Option<(f64, Place)> {
-    let variables = certificate.plant.variables;
-    let corners = (0..1_usize << variables.min(16)).take(CORNERS_MAXIMUM);
-    let corner = |bits: usize| (0..variables).map(|axis| (bits >> axis & 1) as f64).collect::<Vec<f64>>();
-    let mut members: Vec<Vec<f64>> = hints.iter().map(|hint| hint.member.clone()).collect();
-    members.extend(corners.map(corner));
+) -> Option<Enclosed> {
+    let mut members: Vec<Member> = hints.iter().map(|hint| hint.member.clone()).collect();
+    members.extend((0..claims.len()).flat_map(|of_box| corners(certificate, of_box)));
     members.dedup();
-    let grid: Vec<f64> = ranges.iter().flat_map(frequencies).collect();
     let own = hints.iter().map(|hint| hint.frequency_rad_per_s);
-    let frequencies: Vec<f64> = own.chain(grid).filter(|one| within(*one, limited.band_rad_per_s)).collect();
-    let mut best: Option<(f64, Place)> = None;
+    let [from, to] = limited.band_rad_per_s;
+    let all = own.chain(frequencies(limited.band_rad_per_s, claims.first()?));
+    let frequencies: Vec<f64> = all.filter(|one| from <= *one && *one <= to).collect();
+    let mut best: Option<Enclosed> = None;
     for member in members {
-        let [u, v] = Loop::<f64>::at(certificate, &member)?.claimed(limited, 1.0)?;
-        for &frequency in &frequencies {
-            let ratio = ratio_at(&u, &v, frequency);
-            if ratio.is_finite() && best.as_ref().is_none_or(|(known, _)| ratio > *known) {
-                best = Some((ratio, Place { frequency_rad_per_s: frequency, member: member.clone() }));
+        let claimed = Loop::<f64>::at(certificate, &member)?.claimed(limited, 1.0)?;
+        for &frequency_rad_per_s in &frequencies {
+            let ratio = ratio_at(&claimed, frequency_rad_per_s);
+            if ratio.is_finite() && best.as_ref().is_none_or(|known| ratio > known.least) {
+                let at = Place { frequency_rad_per_s, member: member.clone() };
+                best = Some(Enclosed { least: ratio, at, most: None, open: None });
             }
         }
     }
-    best
+    best.filter(|found| found.least > 0.0)
 }
 
-fn within(frequency: f64, [from, to]: [f64; 2]) -> bool {
-    from <= frequency && frequency <= to
+/// Corners of a box.
+pub(super) fn corners(certificate: &Certificate, of_box: usize) -> impl Iterator<Item = Member> {
+    let variables = certificate.plant.variables;
+    (0..1_usize << variables).take(CORNERS_MAXIMUM).map(move |bits| Member {
+        of_box,
+        variables: (0..variables).map(|axis| (bits >> axis & 1) as f64).collect(),
+    })
 }
 
-fn frequencies(range: &Range) -> Vec<f64> {
-    let [low, high] = match (range.from > 0.0, range.to.is_finite()) {
-        (true, true) => [range.from, range.to],
-        (true, false) => [range.from, 100.0 * range.from],
-        (false, _) => [0.01 * range.to.min(100.0), range.to.min(100.0)],
+/// |V|/|U| at a frequency; towards infinity only where dead time does not matter.
+fn ratio_at(claimed: &Claimed<f64>, frequency_rad_per_s: f64) -> f64 {
+    let is_late = !claimed.dead_time.value.is_zero();
+    let late = match (is_late, frequency_rad_per_s.is_finite()) {
+        (false, _) => Late::Not,
+        (true, false) => Late::Less,
+        (true, true) => Late::Turns(frequency_rad_per_s * super::dead_time::ends(&claimed.dead_time)[0]),
     };
-    let steps = (portable::log10(high / low) * POINTS_PER_DECADE as f64).ceil().max(1.0);
-    let inner =
-        (0..=steps as usize).map(|step| low * portable::exp(portable::ln(high / low) * step as f64 / steps));
-    std::iter::once(range.from).chain(inner).chain(std::iter::once(range.to)).collect()
-}
-
-/// |V|/|U| at a frequency.
-fn ratio_at(u: &InS<f64>, v: &InS<f64>, frequency_rad_per_s: f64) -> f64 {
     let range = match frequency_rad_per_s.is_finite() {
-        true => Range { from: frequency_rad_per_s, to: frequency_rad_per_s },
-        false => Range { from: 1.0, to: f64::INFINITY },
+        true => Range { from: frequency_rad_per_s, to: frequency_rad_per_s, late },
+        false => Range { from: 1.0, to: f64::INFINITY, late },
     };
-    let points = Points::powers(u, v, 0).over(range);
-    let Some([ur, ui, vr, vi]) = points.pairs().first() else { return f64::NAN };
-    ((vr * vr + vi * vi) / (ur * ur + ui * ui)).sqrt()
+    let Some(points) = Points::over(claimed, 0, range) else { return f64::NAN };
+    let Some([ur, ui, vr, vi, rest]) = points.points().first() else { return f64::NAN };
+    ((vr * vr + vi * vi).sqrt() - rest) / ((ur * ur + ui * ui).sqrt() + rest)
 }

@@ -3,31 +3,35 @@
 use phea_dynamics::watch::{Stopped, Watch, tell};
 
 use super::certificate::{LEAF, Panel};
+use super::claimed::Claimed;
 use super::direction::{Leaf, leaf};
 use super::points::{Points, Range};
-use super::polynomial::InS;
 
-/// What became of a claim.
+/// What became of a claim over a band.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Walk {
     /// These panels show it.
     Shown(Vec<Panel>),
     /// It is wrong at this place: |V| is greater than |U| by this ratio.
-    Wrong { at: Place, ratio: f64 },
+    Wrong { at: Shares, ratio: f64 },
     /// Too many leaves; this box is not shown.
     Open(Region),
+    /// Too many control points.
+    TooLarge,
 }
 
-/// A plant, by its variables, and a frequency.
+/// A frequency, and a plant by its variables.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct Shares {
     pub(crate) frequency_rad_per_s: f64,
-    pub(crate) member: Vec<f64>,
+    pub(crate) variables: Vec<f64>,
 }
 
 /// A part of the box and of the band.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
+    /// Index of the box.
+    pub of_box: usize,
     /// From and to, rad/s.
     pub band_rad_per_s: [f64; 2],
     /// From and to for each variable, within 0 to 1.
@@ -37,7 +41,7 @@ pub struct Region {
 /// How far a walk goes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
-    /// Leaves in all panels together at most.
+    /// Leaves of a panel at most.
     pub(crate) leaves: usize,
     /// Halvings on the way to a leaf at most.
     pub(crate) depth: usize,
@@ -54,48 +58,40 @@ const PROVING: &str = "proving";
 /// Leaves between two looks at the watch.
 const LOOK: usize = 64;
 
-/// Looks for trees that show |V| <= |U| over these ranges.
+/// Looks for a tree that shows |V| <= |U| over one panel: it alone, where it is shown.
 pub(crate) fn walk(
-    [u, v]: &[InS<f64>; 2],
+    claimed: &Claimed<f64>,
     variables: usize,
-    ranges: &[Range],
+    range: Range,
     effort: Effort,
     watch: Watch<'_>,
 ) -> Result<Walk, Stopped> {
-    let powers = Points::powers(u, v, variables);
-    let mut panels = Vec::with_capacity(ranges.len());
-    let mut leaves = 0;
-    for (done, range) in ranges.iter().enumerate() {
-        let mut tree = vec![];
-        let whole = powers.clone().over(*range);
-        let sides = vec![[0.0, 1.0]; whole.axes()];
-        let mut waiting = vec![Waiting { points: whole, sides, depth: 0 }];
-        while let Some(Waiting { points, sides, depth }) = waiting.pop() {
-            match leaf(&points) {
-                Leaf::Shown(direction) => {
-                    tree.push(LEAF);
-                    tree.extend(direction.iter().flat_map(|part| part.to_be_bytes()));
-                    leaves += 1;
-                    if leaves % LOOK == 0 {
-                        tell(watch, PROVING, done, ranges.len())?;
-                    }
+    let Some(whole) = Points::over(claimed, variables, range) else { return Ok(Walk::TooLarge) };
+    let sides = vec![[0.0, 1.0]; whole.axes()];
+    let mut waiting = vec![Waiting { points: whole, sides, depth: 0 }];
+    let (mut tree, mut leaves) = (vec![], 0);
+    while let Some(Waiting { points, sides, depth }) = waiting.pop() {
+        match leaf(&points) {
+            Leaf::Shown(direction) => {
+                tree.push(LEAF);
+                tree.extend(direction.iter().flat_map(|part| part.to_be_bytes()));
+                leaves += 1;
+                if leaves % LOOK == 0 {
+                    tell(watch, PROVING, leaves, effort.leaves)?;
                 }
-                Leaf::Wrong { corner, ratio } => {
-                    return Ok(Walk::Wrong { at: at(*range, &sides, corner), ratio });
-                }
-                Leaf::Halve(axis) if leaves < effort.leaves && depth < effort.depth => {
-                    tree.push(axis as u8);
-                    let [lower, upper] = points.halves(axis);
-                    let [low_sides, high_sides] = halved(&sides, axis);
-                    waiting.push(Waiting { points: upper, sides: high_sides, depth: depth + 1 });
-                    waiting.push(Waiting { points: lower, sides: low_sides, depth: depth + 1 });
-                }
-                Leaf::Halve(_) => return Ok(Walk::Open(region(*range, &sides))),
             }
+            Leaf::Wrong { corner, ratio } => return Ok(Walk::Wrong { at: at(range, &sides, corner), ratio }),
+            Leaf::Halve(axis) if leaves + waiting.len() < effort.leaves && depth < effort.depth => {
+                tree.push(axis as u8);
+                let [lower, upper] = points.halves(axis);
+                let [low_sides, high_sides] = halved(&sides, axis);
+                waiting.push(Waiting { points: upper, sides: high_sides, depth: depth + 1 });
+                waiting.push(Waiting { points: lower, sides: low_sides, depth: depth + 1 });
+            }
+            Leaf::Halve(_) => return Ok(Walk::Open(region(range, &sides))),
         }
-        panels.push(Panel { from: range.from, to: range.to, tree });
     }
-    Ok(Walk::Shown(panels))
+    Ok(Walk::Shown(vec![Panel { from: range.from, to: range.to, late: range.late, tree }]))
 }
 
 fn halved(sides: &[[f64; 2]], axis: usize) -> [Vec<[f64; 2]>; 2] {
@@ -114,19 +110,20 @@ fn frequency(range: Range, share: f64) -> f64 {
     }
 }
 
-fn at(range: Range, sides: &[[f64; 2]], corner: u64) -> Place {
+fn at(range: Range, sides: &[[f64; 2]], corner: u64) -> Shares {
     let shares = sides
         .iter()
         .enumerate()
         .map(|(axis, [low, high])| if corner >> axis & 1 == 1 { *high } else { *low });
     let shares: Vec<f64> = shares.collect();
-    let (own, member) = shares.split_first().map_or((0.0, vec![]), |(own, others)| (*own, others.to_vec()));
-    Place { frequency_rad_per_s: frequency(range, own), member }
+    let (own, variables) =
+        shares.split_first().map_or((0.0, vec![]), |(own, others)| (*own, others.to_vec()));
+    Shares { frequency_rad_per_s: frequency(range, own), variables }
 }
 
 fn region(range: Range, sides: &[[f64; 2]]) -> Region {
     let (own, others) =
         sides.split_first().map_or(([0.0, 1.0], vec![]), |(own, others)| (*own, others.to_vec()));
     let [one, other] = own.map(|share| frequency(range, share));
-    Region { band_rad_per_s: [one.min(other), one.max(other)], variables: others }
+    Region { of_box: 0, band_rad_per_s: [one.min(other), one.max(other)], variables: others }
 }

@@ -2,7 +2,8 @@
 
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
 use phea_qft::proof::{
-    Certificate, CertifiedParameter, CertifiedPlant, Claim, Limited, Panel, Quotient, Rejection, Side, check,
+    Certificate, CertifiedPlant, Claim, Late, Limited, Member, Panel, Quotient, Rejection, Segment, Side,
+    StableBox, check,
 };
 use phea_qft::specification::ClosedLoop;
 use serde::{Deserialize, Serialize};
@@ -27,21 +28,23 @@ struct File {
     project_sha256: String,
     settings: Vec<String>,
     variables: usize,
-    parameters: Vec<Parameter>,
+    parameters: Vec<String>,
+    /// For each box, for each parameter: low, high and the variable.
+    boxes: Vec<Vec<(f64, f64, Option<usize>)>>,
     operations: Vec<Operation>,
     plant: Plant,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    delay: f64,
+    /// Of the series that stands for dead time.
+    terms: usize,
     feedback: Rational,
     prefilter: Rational,
     sensor: Rational,
     claims: Vec<Stated>,
 }
 
-#[derive(Serialize, Deserialize)]
-struct Parameter {
-    name: String,
-    low: f64,
-    high: f64,
-    variable: Option<usize>,
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// One recorded operation: its name, then what it acts on.
@@ -60,6 +63,8 @@ struct Plant {
     disturbance_numerator: Option<Vec<usize>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     disturbance_denominator: Option<Vec<usize>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    dead_time: Option<usize>,
 }
 
 #[derive(Clone, Serialize, Deserialize)]
@@ -72,10 +77,11 @@ struct Rational {
 #[serde(tag = "claim", rename_all = "snake_case", deny_unknown_fields)]
 enum Stated {
     Stable {
-        member: Vec<f64>,
-        panels: Vec<Cover>,
+        boxes: Vec<StatedBox>,
     },
     Unstable {
+        #[serde(rename = "box")]
+        of_box: usize,
         member: Vec<f64>,
     },
     Limited {
@@ -84,7 +90,7 @@ enum Stated {
         limit: Rational,
         band: [End; 2],
         ratio: f64,
-        panels: Vec<Cover>,
+        boxes: Vec<Vec<Cover>>,
     },
     Reached {
         closed_loop: String,
@@ -93,8 +99,19 @@ enum Stated {
         band: [End; 2],
         ratio: f64,
         frequency: End,
+        #[serde(rename = "box")]
+        of_box: usize,
         member: Vec<f64>,
     },
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StatedBox {
+    member: Vec<f64>,
+    panels: Vec<Cover>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    delays: Vec<Cover>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -102,7 +119,17 @@ enum Stated {
 struct Cover {
     from: End,
     to: End,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    late: Option<Lateness>,
     tree: String,
+}
+
+/// The angle around which dead time turns, or a word.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Lateness {
+    Turns(f64),
+    Any(String),
 }
 
 /// A frequency in rad/s, or "inf".
@@ -149,14 +176,22 @@ pub(crate) fn file(loaded: &Loaded, certificate: &Certificate) -> OutputFile {
         project_sha256: loaded.sha256.clone(),
         settings: loaded.settings.clone(),
         variables: plant.variables,
-        parameters: plant.parameters.iter().map(Parameter::from).collect(),
+        parameters: plant.parameters.clone(),
+        boxes: plant
+            .boxes
+            .iter()
+            .map(|one| one.iter().map(|Segment { low, high, variable }| (*low, *high, *variable)).collect())
+            .collect(),
         operations: plant.coefficients.nodes().iter().filter_map(Operation::of).collect(),
         plant: Plant {
             numerator: parts.next().unwrap_or_default(),
             denominator: parts.next().unwrap_or_default(),
             disturbance_numerator: parts.next(),
             disturbance_denominator: parts.next(),
+            dead_time: plant.has_dead_time.then(|| plant.coefficients.results().last().copied().unwrap_or(0)),
         },
+        delay: plant.delay_s,
+        terms: plant.dead_time_terms,
         feedback: (&certificate.feedback).into(),
         prefilter: (&certificate.prefilter).into(),
         sensor: (&certificate.sensor).into(),
@@ -181,16 +216,29 @@ pub fn read_certificate(text: &str) -> Result<Certificate, CertificateError> {
 
 fn certificate(file: File) -> Result<Certificate, CertificateError> {
     let nodes = file.operations.iter().map(Operation::node).collect::<Result<Vec<Node>, _>>()?;
-    let Plant { numerator, denominator, disturbance_numerator, disturbance_denominator } = file.plant;
+    let Plant { numerator, denominator, disturbance_numerator, disturbance_denominator, dead_time } =
+        file.plant;
     let mut parts = vec![numerator, denominator];
     parts.extend(disturbance_numerator.zip(disturbance_denominator).into_iter().flat_map(|(n, d)| [n, d]));
-    let names = file.parameters.iter().map(|one| one.name.clone()).collect();
     let lengths = parts.iter().map(Vec::len).collect();
-    let coefficients = Expression::from_nodes(names, nodes, parts.concat())
+    let mut results = parts.concat();
+    results.extend(dead_time);
+    let coefficients = Expression::from_nodes(file.parameters.clone(), nodes, results)
         .ok_or_else(|| meaning("an operation acts on what does not stand before it"))?;
-    let parameters = file.parameters.into_iter().map(CertifiedParameter::from).collect();
+    let segments = |one: Vec<(f64, f64, Option<usize>)>| {
+        one.into_iter().map(|(low, high, variable)| Segment { low, high, variable }).collect()
+    };
     Ok(Certificate {
-        plant: CertifiedPlant { parameters, variables: file.variables, coefficients, lengths },
+        plant: CertifiedPlant {
+            parameters: file.parameters,
+            variables: file.variables,
+            boxes: file.boxes.into_iter().map(segments).collect(),
+            coefficients,
+            lengths,
+            has_dead_time: dead_time.is_some(),
+            delay_s: file.delay,
+            dead_time_terms: file.terms,
+        },
         feedback: file.feedback.into(),
         prefilter: file.prefilter.into(),
         sensor: file.sensor.into(),
@@ -270,8 +318,8 @@ fn sentence(claim: &Claim) -> String {
         Side::Lower => format!("lower limit over {}", closed_loop_key(limited.closed_loop)),
     };
     match claim {
-        Claim::Stable { .. } => "every plant of the box is stable in the loop".to_string(),
-        Claim::Unstable { .. } => "a plant of the box is not stable in the loop".to_string(),
+        Claim::Stable(_) => "every plant of the box is stable in the loop".to_string(),
+        Claim::Unstable(_) => "a plant of the box is not stable in the loop".to_string(),
         Claim::Limited { limited, ratio, .. } => {
             format!(
                 "{} is at most {} for every plant and every frequency of the band",
@@ -326,18 +374,6 @@ impl Operation {
     }
 }
 
-impl From<&CertifiedParameter> for Parameter {
-    fn from(one: &CertifiedParameter) -> Parameter {
-        Parameter { name: one.name.clone(), low: one.low, high: one.high, variable: one.variable }
-    }
-}
-
-impl From<Parameter> for CertifiedParameter {
-    fn from(one: Parameter) -> CertifiedParameter {
-        CertifiedParameter { name: one.name, low: one.low, high: one.high, variable: one.variable }
-    }
-}
-
 impl From<&Quotient> for Rational {
     fn from(one: &Quotient) -> Rational {
         Rational { numerator: one.numerator.clone(), denominator: one.denominator.clone() }
@@ -366,11 +402,31 @@ impl End {
     }
 }
 
+fn lateness(late: Late) -> Option<Lateness> {
+    match late {
+        Late::Not => None,
+        Late::Turns(angle) => Some(Lateness::Turns(angle)),
+        Late::Less => Some(Lateness::Any("less".to_string())),
+        Late::More => Some(Lateness::Any("more".to_string())),
+    }
+}
+
+fn late(lateness: Option<Lateness>) -> Result<Late, CertificateError> {
+    match lateness {
+        None => Ok(Late::Not),
+        Some(Lateness::Turns(angle)) => Ok(Late::Turns(angle)),
+        Some(Lateness::Any(word)) if word == "less" => Ok(Late::Less),
+        Some(Lateness::Any(word)) if word == "more" => Ok(Late::More),
+        Some(Lateness::Any(word)) => Err(meaning(format!("`{word}` does not say how dead time is taken"))),
+    }
+}
+
 fn covers(panels: &[Panel]) -> Vec<Cover> {
     let hexadecimal = |tree: &[u8]| tree.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
     let cover = |panel: &Panel| Cover {
         from: panel.from.into(),
         to: panel.to.into(),
+        late: lateness(panel.late),
         tree: hexadecimal(&panel.tree),
     };
     panels.iter().map(cover).collect()
@@ -384,7 +440,8 @@ fn panels(covers: Vec<Cover>) -> Result<Vec<Panel>, CertificateError> {
         Ok(digits.chunks(2).map(|pair| (16 * pair[0] + pair[1]) as u8).collect())
     };
     let panel = |cover: Cover| {
-        Ok(Panel { from: cover.from.value()?, to: cover.to.value()?, tree: bytes(&cover.tree)? })
+        let (from, to) = (cover.from.value()?, cover.to.value()?);
+        Ok(Panel { from, to, late: late(cover.late)?, tree: bytes(&cover.tree)? })
     };
     covers.into_iter().map(panel).collect()
 }
@@ -432,18 +489,27 @@ impl From<&Claim> for Stated {
             (key, side_key(limited.side), Rational::from(&limited.limit), band)
         };
         match claim {
-            Claim::Stable { member, panels } => {
-                Stated::Stable { member: member.clone(), panels: covers(panels) }
+            Claim::Stable(boxes) => {
+                let stated = |one: &StableBox| StatedBox {
+                    member: one.member.clone(),
+                    panels: covers(&one.panels),
+                    delays: covers(&one.delays),
+                };
+                Stated::Stable { boxes: boxes.iter().map(stated).collect() }
             }
-            Claim::Unstable { member } => Stated::Unstable { member: member.clone() },
-            Claim::Limited { limited, ratio, panels } => {
+            Claim::Unstable(member) => {
+                Stated::Unstable { of_box: member.of_box, member: member.variables.clone() }
+            }
+            Claim::Limited { limited, ratio, boxes } => {
                 let (closed_loop, side, limit, band) = of(limited);
-                Stated::Limited { closed_loop, side, limit, band, ratio: *ratio, panels: covers(panels) }
+                let boxes = boxes.iter().map(|panels| covers(panels)).collect();
+                Stated::Limited { closed_loop, side, limit, band, ratio: *ratio, boxes }
             }
             Claim::Reached { limited, ratio, frequency_rad_per_s, member } => {
                 let (closed_loop, side, limit, band) = of(limited);
-                let (frequency, member) = (End::from(*frequency_rad_per_s), member.clone());
-                Stated::Reached { closed_loop, side, limit, band, ratio: *ratio, frequency, member }
+                let (frequency, of_box) = (End::from(*frequency_rad_per_s), member.of_box);
+                let member = member.variables.clone();
+                Stated::Reached { closed_loop, side, limit, band, ratio: *ratio, frequency, of_box, member }
             }
         }
     }
@@ -454,19 +520,27 @@ impl TryFrom<Stated> for Claim {
 
     fn try_from(stated: Stated) -> Result<Claim, CertificateError> {
         Ok(match stated {
-            Stated::Stable { member, panels: covers } => Claim::Stable { member, panels: panels(covers)? },
-            Stated::Unstable { member } => Claim::Unstable { member },
-            Stated::Limited { closed_loop, side, limit, band, ratio, panels: covers } => Claim::Limited {
+            Stated::Stable { boxes } => {
+                let stable = |one: StatedBox| {
+                    let (panels, delays) = (panels(one.panels)?, panels(one.delays)?);
+                    Ok(StableBox { member: one.member, panels, delays })
+                };
+                Claim::Stable(boxes.into_iter().map(stable).collect::<Result<_, CertificateError>>()?)
+            }
+            Stated::Unstable { of_box, member } => Claim::Unstable(Member { of_box, variables: member }),
+            Stated::Limited { closed_loop, side, limit, band, ratio, boxes } => Claim::Limited {
                 limited: limited(&closed_loop, &side, limit, &band)?,
                 ratio,
-                panels: panels(covers)?,
+                boxes: boxes.into_iter().map(panels).collect::<Result<_, _>>()?,
             },
-            Stated::Reached { closed_loop, side, limit, band, ratio, frequency, member } => Claim::Reached {
-                limited: limited(&closed_loop, &side, limit, &band)?,
-                ratio,
-                frequency_rad_per_s: frequency.value()?,
-                member,
-            },
+            Stated::Reached { closed_loop, side, limit, band, ratio, frequency, of_box, member } => {
+                Claim::Reached {
+                    limited: limited(&closed_loop, &side, limit, &band)?,
+                    ratio,
+                    frequency_rad_per_s: frequency.value()?,
+                    member: Member { of_box, variables: member },
+                }
+            }
         })
     }
 }

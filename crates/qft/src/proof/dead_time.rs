@@ -1,0 +1,127 @@
+//! Dead time over a panel of frequencies: a polynomial, and a remainder.
+//!
+//! ```text
+//! e^(-j w tau) = e^(-j a) e^(-j d),   d = w tau - a,   e^(-j d) = sum over k < 6 of (-j d)^k/k! + r,   |r| <= |d|^6/6!
+//! ```
+
+use phea_dynamics::scalar::Interval;
+
+use super::points::Range;
+use super::polynomial::{Decimal, InS, Polynomial};
+
+/// A dead time, and how many terms of the series are taken.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct DeadTime<S> {
+    /// s
+    pub(super) value: Polynomial<S>,
+    /// m
+    pub(super) terms: usize,
+}
+
+/// A complex polynomial in the frequency, the lowest power first.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct InFrequency<S> {
+    pub(super) real: InS<S>,
+    pub(super) imaginary: InS<S>,
+}
+
+impl<S: Decimal> InFrequency<S> {
+    pub(super) fn parts(&self) -> [&[Polynomial<S>]; 2] {
+        [&self.real.0, &self.imaginary.0]
+    }
+
+    pub(super) fn plus(&self, other: &InFrequency<S>) -> InFrequency<S> {
+        InFrequency { real: self.real.plus(&other.real), imaginary: self.imaginary.plus(&other.imaginary) }
+    }
+
+    pub(super) fn times(&self, other: &InFrequency<S>) -> InFrequency<S> {
+        let minus = S::from(-1.0);
+        InFrequency {
+            real: self.real.times(&other.real).plus(&self.imaginary.times(&other.imaginary).scaled(minus)),
+            imaginary: self.real.times(&other.imaginary).plus(&self.imaginary.times(&other.real)),
+        }
+    }
+
+    /// In powers of x, the frequency being `from + (to - from) x`: shifted, then scaled.
+    pub(super) fn along(&self, from: f64, to: f64) -> InFrequency<S> {
+        let (low, width) = (S::decimal(from), S::decimal(to) - S::decimal(from));
+        let one = |of: &InS<S>| {
+            let mut terms = of.0.clone();
+            let degree = terms.len().saturating_sub(1);
+            for step in 0..degree {
+                for place in (step..degree).rev() {
+                    terms[place] = terms[place].plus(&terms[place + 1].scaled(low));
+                }
+            }
+            let mut factor = S::from(1.0);
+            for term in &mut terms {
+                *term = term.scaled(factor);
+                factor = factor * width;
+            }
+            InS(terms)
+        };
+        InFrequency { real: one(&self.real), imaginary: one(&self.imaginary) }
+    }
+
+    /// Raises the degrees of the axes to those that it has.
+    pub(super) fn raise_degrees(&self, degrees: &mut [usize]) {
+        for one in [&self.real, &self.imaginary] {
+            degrees[0] = degrees[0].max(one.degree().unwrap_or(0));
+            for (exponents, _) in one.0.iter().flat_map(Polynomial::terms) {
+                for (degree, exponent) in degrees.iter_mut().skip(1).zip(exponents) {
+                    *degree = (*degree).max(usize::from(*exponent));
+                }
+            }
+        }
+    }
+}
+
+/// e^(-j w tau) over a finite panel, without the remainder, in powers of x as of [`InFrequency::along`].
+pub(super) fn turned<S: Decimal>(dead_time: &DeadTime<S>, range: Range, angle: f64) -> InFrequency<S> {
+    let Range { from, to, .. } = range;
+    let by = |frequency: S| dead_time.value.scaled(frequency);
+    let begin = by(S::decimal(from)).plus(&Polynomial::number(-angle));
+    let turn = InS(vec![begin, by(S::decimal(to) - S::decimal(from))]);
+    let mut sums = [InS(vec![]), InS(vec![])];
+    let mut term = InS(vec![Polynomial::number(1.0)]);
+    for power in 0..dead_time.terms {
+        // (-j)^k: 1, -j, -1, j
+        let sign = if (power + 1) % 4 < 2 { 1.0 } else { -1.0 };
+        sums[power % 2] = sums[power % 2].plus(&term.scaled(S::from(sign)));
+        term = term.times(&turn).scaled(S::from(1.0) / S::from((power + 1) as f64));
+    }
+    let [real, imaginary] = sums;
+    let [cosine, sine] = S::cosine_and_sine(angle).map(|value| InS(vec![Polynomial::constant(value)]));
+    let start = InFrequency { real: cosine, imaginary: sine.scaled(S::from(-1.0)) };
+    start.times(&InFrequency { real, imaginary })
+}
+
+/// The greatest magnitude of the remainder on a finite panel.
+pub(super) fn remainder<S: Decimal>(dead_time: &DeadTime<S>, range: Range, angle: f64) -> S {
+    let [least, most] = ends(dead_time);
+    let angle = S::decimal(angle);
+    let beyond = (S::decimal(range.to) * most - angle).abs();
+    let before = (S::decimal(range.from) * least - angle).abs();
+    let turn = beyond.maximum(before);
+    (1..=dead_time.terms).fold(S::from(1.0), |product, k| product * turn / S::from(k as f64))
+}
+
+/// The least and the greatest dead time of a box, from the terms one by one.
+pub(super) fn ends<S: Decimal>(dead_time: &DeadTime<S>) -> [S; 2] {
+    let zero = S::from(0.0);
+    dead_time.value.terms().fold([zero; 2], |[least, most], (exponents, value)| {
+        match exponents.iter().all(|exponent| *exponent == 0) {
+            true => [least + value, most + value],
+            false => [least + value.minimum(zero), most + value.maximum(zero)],
+        }
+    })
+}
+
+/// What the cosine and the sine of an angle are known to, in units of one and of the angle.
+const TRIGONOMETRIC_ERROR: f64 = 4.0 * f64::EPSILON;
+
+/// The cosine and the sine of a decimal angle: the functions of the library are good to less than the error that is taken here.
+pub(super) fn enclosed_cosine_and_sine(angle: f64, value: [f64; 2]) -> [Interval; 2] {
+    let error = TRIGONOMETRIC_ERROR * (1.0 + angle.abs());
+    value.map(|value| Interval::new((value - error).next_down(), (value + error).next_up()))
+}

@@ -1,0 +1,153 @@
+//! The panels of a band: its decades, and what lies below and beyond them. With dead time a panel is one over which it turns little, or one
+//! where how far it turns does not matter.
+
+use phea_dynamics::portable;
+use phea_dynamics::watch::{Stopped, Watch};
+
+use super::certificate::Late;
+use super::claimed::Claimed;
+use super::dead_time::ends;
+use super::points::Range;
+use super::polynomial::{InS, Polynomial};
+use super::walk::{Effort, Walk, walk};
+
+/// Points of a decade at which plants are looked at.
+const POINTS_PER_DECADE: f64 = 24.0;
+/// By how much dead time turns over a panel at most, to either side of its middle, rad.
+const TURN: f64 = 1.0;
+/// A panel is parted no more where its ends are nearer than by this ratio.
+const NARROWEST: f64 = 1.02;
+/// How far it is tried whether dead time matters.
+const TRIAL: Effort = Effort { leaves: 40, depth: 24 };
+
+/// Looks for trees that show |V| <= |U| over a band.
+pub(super) fn walk_band(
+    claimed: &Claimed<f64>,
+    variables: usize,
+    band: [f64; 2],
+    effort: Effort,
+    watch: Watch<'_>,
+) -> Result<Walk, Stopped> {
+    let decades = decades(band, claimed);
+    // the lowest last: it is taken first
+    let mut waiting: Vec<[f64; 2]> = decades.windows(2).map(|pair| [pair[0], pair[1]]).rev().collect();
+    let mut shown = vec![];
+    while let Some([from, to]) = waiting.pop() {
+        let mut over = |late: Late, effort: Effort| {
+            walk(claimed, variables, Range { from, to, late }, effort, &mut *watch)
+        };
+        let found = match ends(&claimed.dead_time) {
+            [_, 0.0] => over(Late::Not, effort)?,
+            _ if to.is_infinite() => over(Late::Less, effort)?,
+            dead_times => match any(&mut over)? {
+                Some(found) => found,
+                None => {
+                    let turn = angles([from, to], dead_times);
+                    match parted([from, to], turn) {
+                        Some(middle) => {
+                            waiting.extend([[middle, to], [from, middle]]);
+                            continue;
+                        }
+                        None => over(Late::Turns(rounded(0.5 * (turn[0] + turn[1]))), effort)?,
+                    }
+                }
+            },
+        };
+        match found {
+            Walk::Shown(panels) => shown.extend(panels),
+            other => return Ok(other),
+        }
+    }
+    Ok(Walk::Shown(shown))
+}
+
+/// Whether it is shown, or wrong, however far dead time turns.
+fn any(over: &mut impl FnMut(Late, Effort) -> Result<Walk, Stopped>) -> Result<Option<Walk>, Stopped> {
+    for late in [Late::Less, Late::More] {
+        let found = over(late, TRIAL)?;
+        if matches!(found, Walk::Shown(_) | Walk::Wrong { .. }) {
+            return Ok(Some(found));
+        }
+    }
+    Ok(None)
+}
+
+/// From where to where frequency times dead time goes.
+fn angles([from, to]: [f64; 2], [least, most]: [f64; 2]) -> [f64; 2] {
+    [from * least, to * most]
+}
+
+/// Where a panel is parted, over which dead time turns too far; `None` where it does not, or where parting helps no more.
+fn parted([from, to]: [f64; 2], [begin, end]: [f64; 2]) -> Option<f64> {
+    let middle = if from > 0.0 { rounded((from * to).sqrt()) } else { rounded(0.1 * to) };
+    let turns_little = end - begin <= 2.0 * TURN;
+    let is_narrow = from > 0.0 && to / from < NARROWEST;
+    (!turns_little && !is_narrow && from < middle && middle < to).then_some(middle)
+}
+
+/// A number of few digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
+}
+
+/// The ends of the panels without dead time.
+fn decades([from, to]: [f64; 2], claimed: &Claimed<f64>) -> Vec<f64> {
+    let mut bends = claimed.u.iter().chain(&claimed.v).flat_map(bends).chain(beyond(claimed));
+    let first = bends.next().unwrap_or(1.0);
+    let [lowest, highest] = bends.fold([first, first], |[low, high], bend| [low.min(bend), high.max(bend)]);
+    let [begin, end] = [portable::log10(lowest).floor() as i32, portable::log10(highest).ceil() as i32];
+    let inner = (begin..=end.max(begin)).filter_map(|power| format!("1e{power}").parse::<f64>().ok());
+    let mut ends: Vec<f64> = inner.filter(|inner| from < *inner && *inner < to).collect();
+    // a panel to infinity begins above zero
+    if ends.is_empty() && from == 0.0 && to.is_infinite() {
+        ends.push(1.0);
+    }
+    ends.insert(0, from);
+    ends.push(to);
+    ends
+}
+
+/// By how much what is late is less than what is not where a panel to infinity begins.
+const LESS: f64 = 10.0;
+
+/// Beyond this frequency what is late has lost its weight.
+fn beyond(claimed: &Claimed<f64>) -> Option<f64> {
+    let leading = |of: &InS<f64>| {
+        let degree = of.degree()?;
+        Some((degree as f64, of.0[degree].terms().map(|(_, value)| value).sum::<f64>().abs()))
+    };
+    let of = if claimed.u[1].degree().is_some() { &claimed.u } else { &claimed.v };
+    let ((own, fast), (late, slow)) = (leading(&of[0])?, leading(&of[1])?);
+    (own > late).then(|| portable::pow(LESS * slow / fast, 1.0 / (own - late)))
+}
+
+/// About where the magnitudes of the terms of a polynomial are equal, at the end of the box where all variables are one.
+fn bends(of: &InS<f64>) -> Vec<f64> {
+    let size = |(power, coefficient): (usize, &Polynomial<f64>)| {
+        (power, coefficient.terms().map(|(_, value)| value).sum::<f64>().abs())
+    };
+    let sizes: Vec<(usize, f64)> =
+        of.0.iter().enumerate().map(size).filter(|(_, size)| *size > 0.0).collect();
+    let between = sizes.windows(2).map(|pair| {
+        let [(one, low), (other, high)] = [pair[0], pair[1]];
+        portable::exp(portable::ln(low / high) / (other - one) as f64)
+    });
+    between.filter(|bend| bend.is_finite() && *bend > 0.0).collect()
+}
+
+/// Frequencies at which plants are looked at: the ends of the panels, and points in each decade.
+pub(super) fn frequencies(band: [f64; 2], claimed: &Claimed<f64>) -> Vec<f64> {
+    let ends = decades(band, claimed);
+    let inner = ends.windows(2).flat_map(|pair| {
+        let [low, high] = match (pair[0] > 0.0, pair[1].is_finite()) {
+            (true, true) => [pair[0], pair[1]],
+            (true, false) => [pair[0], 100.0 * pair[0]],
+            (false, true) => [0.01 * pair[1], pair[1]],
+            (false, false) => [0.01, 100.0],
+        };
+        let steps = (portable::log10(high / low) * POINTS_PER_DECADE).ceil().max(1.0);
+        (0..=steps as usize)
+            .map(move |step| low * portable::exp(portable::ln(high / low) * step as f64 / steps))
+    });
+    inner.chain(ends.iter().copied()).collect()
+}
