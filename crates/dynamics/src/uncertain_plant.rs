@@ -224,6 +224,30 @@ impl UncertainPlant {
         self.parameters.iter().map(|parameter| parameter.nominal).collect()
     }
 
+    /// The same plant with other nominal values, each brought within its bounds.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+    /// let gain = UncertainParameter { name: "k".into(), nominal: 2.0, minimum: 1.0, maximum: 3.0 };
+    /// let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+    ///     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+    ///     disturbance: None,
+    ///     dead_time_s: 0.0.into(),
+    ///     rate: None,
+    /// })?;
+    /// assert_eq!(plant.with_nominal(&[9.0]).nominal(), vec![3.0]);
+    /// # Ok::<(), phea_dynamics::uncertain_plant::UncertainPlantError>(())
+    /// ```
+    #[must_use]
+    pub fn with_nominal(&self, values: &[f64]) -> UncertainPlant {
+        let mut other = self.clone();
+        for (parameter, value) in other.parameters.iter_mut().zip(values) {
+            parameter.nominal = value.max(parameter.minimum).min(parameter.maximum);
+        }
+        other
+    }
+
     /// The member at these parameter values; `None` where no plant exists. A rational plant exists
     /// for all values.
     pub fn member(&self, values: &[f64]) -> Option<PlantMember> {

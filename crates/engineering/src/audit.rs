@@ -10,7 +10,7 @@ pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
 pub use alone::outside;
 pub use plant::{NamedPlant, PlantNames};
-pub use proven::{prove_audit, standing_word, why_not_proven};
+pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use words::{
     closed_loop_key, closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words,
     margin_words, meaning, stability_reason, stability_sentence, verdict_key, verdict_words, worst_at_design,

@@ -5,6 +5,7 @@ mod comparison;
 mod explanation;
 mod factors;
 mod problem;
+mod proven;
 mod repair;
 mod rounding;
 mod side;
@@ -43,6 +44,9 @@ pub const DESIGNED_PROJECT: &str = "designed.toml";
 /// Name of the file with the project under the controller that comes nearest to what the machine
 /// asks for and cannot be had.
 pub const NEAREST_PROJECT: &str = "nearest.toml";
+
+/// Name of the file with what was proven of the designed controller.
+pub const DESIGNED_CERTIFICATE: &str = "designed_certificate.json";
 
 /// Why nothing is designed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -229,11 +233,16 @@ fn designed(
     let options = design_options(setup, &given, seed)?;
     let mut outcome = phea_qft::design::design(&problem, &options, watch).map_err(DesignError::from)?;
     outcome.conclude().map_err(DesignError::from)?;
+    let (DesignRun { problem, outcome }, proven) =
+        proven::proven((setup, &given), DesignRun { problem, outcome }, &options, watch)?;
     let stopped = outcome.stopped;
     let explanations = outcome.findings.iter().map(Explanation::of).collect::<Vec<_>>();
     match outcome.design.clone() {
         Some(design) => {
-            let told = ProjectDesign::new(setup, &given, &problem, design, options)?;
+            let mut told = ProjectDesign::new(setup, &given, &problem, design, options)?;
+            if let Some(view) = proven {
+                told.designed.view = view;
+            }
             let continuous =
                 if stopped { None } else { continuous_as_sampled(setup, &problem, &told, watch)? };
             let trial = if stopped { None } else { tried_design(source, project, &told, watch)? };

@@ -8,6 +8,7 @@ pub use phea_engineering::audit::*;
 
 pub(crate) use answer::{Body, body};
 pub use answer::{files, json, json_on_machine};
+pub(crate) use certificate::certificate_of;
 pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate, read_certificate};
 pub use document::text;
-pub(crate) use document::{basis, document, summary, text_on_machine};
+pub(crate) use document::{basis, document, proven, summary, text_on_machine};

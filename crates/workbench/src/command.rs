@@ -17,7 +17,7 @@ use phea_qft::verification::Verdict;
 use serde::Serialize;
 
 use crate::answer::{self, Answer, OutputFile};
-use crate::audit::{self, audit_project, outside, prove_audit};
+use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, outside, prove_audit};
 use crate::campaign::Nowhere;
 use crate::caveat::caveats;
 use crate::derived::{self, derive};
@@ -332,7 +332,9 @@ fn verify_answer(
     if proven {
         prove_audit(&robust_problem(source, &setup)?, &mut view, watch)?;
     }
-    let (files, is_met) = (audit::files(loaded, &view), view.audit.verdict == Verdict::Met);
+    let mut files = audit::files(&view);
+    files.extend(certificate_of(loaded, &view, CERTIFICATE_FILE));
+    let is_met = view.audit.verdict == Verdict::Met;
     if !on_machine {
         let (text, json) = (audit::text(&view), audit::json(loaded, &view));
         return Ok(Answer { text, json, files, affirmative: is_met });

@@ -15,6 +15,7 @@ mod load_motion;
 mod models;
 mod opening;
 mod page;
+mod proven;
 mod provenance;
 mod response;
 mod rig;
@@ -34,7 +35,7 @@ pub use opening::{Decided, Decision};
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use crate::answer::{OutputFile, significant};
-use crate::audit::{ProjectAudit, verdict_words};
+use crate::audit::{CERTIFICATE_FILE, ProjectAudit, certificate_of, verdict_words};
 use crate::command::{CommandError, Watch};
 use crate::derived::{self, derive};
 use crate::figure::{Figure, FigureError};
@@ -175,13 +176,16 @@ fn robust_chapters(project: &Project, judged: &Judged) -> Result<Vec<Chapter>, C
     if let Some(designed) = &judged.designed {
         chapters.push(designed.chapter()?);
     }
+    chapters.extend(proven::chapter(project, judged));
     Ok(chapters)
 }
 
 /// Bounds, margins and the designed project as files.
 fn robust_tables(loaded: &Loaded, judged: &Judged) -> Vec<OutputFile> {
     let mut tables = bounds::files(&judged.problem, &judged.bounds);
-    tables.extend(judged.given.iter().flat_map(|view| crate::audit::files(loaded, view)));
+    tables.extend(judged.given.iter().flat_map(crate::audit::files));
+    let certificate = |view| certificate_of(loaded, view, CERTIFICATE_FILE);
+    tables.extend(judged.given.iter().filter_map(certificate));
     tables.extend(judged.designed.iter().flat_map(|designed| designed.files(loaded)));
     tables
 }

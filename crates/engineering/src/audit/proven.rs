@@ -19,8 +19,38 @@ pub fn prove_audit(
     watch: Watch<'_>,
 ) -> Result<(), ProcedureError> {
     let proof = prove(&asked(problem, &problem.family), &view.audit, ProofOptions::default(), watch)?;
+    rest_on(view, proof, Verdict::NotProven);
+    Ok(())
+}
+
+/// The same of an audit that nobody asked to be proven: what is neither proven nor refuted is what the search found, and less is tried.
+///
+/// # Errors
+/// [`ProcedureError::Stopped`] where the watcher stops it.
+pub fn try_to_prove(
+    problem: &RobustProblem,
+    view: &mut ProjectAudit,
+    watch: Watch<'_>,
+) -> Result<(), ProcedureError> {
+    let options = ProofOptions { leaves_maximum: TRIED_LEAVES, ..ProofOptions::default() };
+    let proof = prove(&asked(problem, &problem.family), &view.audit, options, watch)?;
+    rest_on(view, proof, Verdict::Met);
+    Ok(())
+}
+
+/// Leaves of a panel where nobody asked for a proof.
+const TRIED_LEAVES: usize = 10_000;
+
+/// Rests the verdict on a proof; `unproven` is what an audit that is met becomes where nothing is proven.
+fn rest_on(view: &mut ProjectAudit, proof: Proof, unproven: Verdict) {
     let audit = &mut view.audit;
     let stability = &mut audit.stability;
+    let judged = |standing: &Standing, searched: Verdict, evidence: Evidence| match standing {
+        Standing::Proven => (Verdict::Met, Evidence::Proof),
+        Standing::Refuted => (Verdict::Violated, Evidence::Proof),
+        Standing::NotProven(_) if searched == Verdict::Met => (unproven, evidence),
+        Standing::NotProven(_) => (searched, evidence),
+    };
     (stability.verdict, stability.evidence) = judged(&proof.stability, stability.verdict, stability.evidence);
     for (finding, found) in audit.specifications.iter_mut().zip(&proof.specifications) {
         if found.standing == Standing::Refuted && finding.verdict != Verdict::Violated {
@@ -33,23 +63,22 @@ pub fn prove_audit(
         own.chain(audit.specifications.iter().map(|finding| (finding.verdict, finding.evidence)))
     };
     let worst = all().map(|(verdict, _)| rank(verdict)).min();
-    let searched = audit.verdict;
     audit.verdict = match worst {
         Some(0) => Verdict::Violated,
         Some(1) => Verdict::NotProven,
         // what is declared and not counted
-        _ if searched == Verdict::NotProven => Verdict::NotProven,
+        _ if audit.verdict == Verdict::NotProven => Verdict::NotProven,
         _ => Verdict::Met,
     };
-    let deciding = all().filter(|(verdict, _)| audit.verdict == Verdict::Met || *verdict == audit.verdict);
-    let evidence = match audit.verdict {
+    let verdict = audit.verdict;
+    let deciding = all().filter(|(own, _)| verdict == Verdict::Met || *own == verdict);
+    let evidence = match verdict {
         // one violation that is shown is enough
         Verdict::Violated => deciding.map(|(_, evidence)| evidence).max(),
         Verdict::Met | Verdict::NotProven => deciding.map(|(_, evidence)| evidence).min(),
     };
-    audit.evidence = evidence.unwrap_or(Evidence::Search);
+    audit.evidence = evidence.unwrap_or(audit.evidence);
     view.proof = Some(proof);
-    Ok(())
 }
 
 fn rank(verdict: Verdict) -> usize {
@@ -57,16 +86,6 @@ fn rank(verdict: Verdict) -> usize {
         Verdict::Violated => 0,
         Verdict::NotProven => 1,
         Verdict::Met => 2,
-    }
-}
-
-/// What a claim comes to with the search and with the proof.
-fn judged(standing: &Standing, searched: Verdict, evidence: Evidence) -> (Verdict, Evidence) {
-    match standing {
-        Standing::Proven => (Verdict::Met, Evidence::Proof),
-        Standing::Refuted => (Verdict::Violated, Evidence::Proof),
-        Standing::NotProven(_) if searched == Verdict::Violated => (searched, evidence),
-        Standing::NotProven(_) => (Verdict::NotProven, evidence),
     }
 }
 

@@ -15,7 +15,7 @@ use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::verification::Verdict;
 
 use super::{DesignError, DesignRun, ProjectDesign, tried_design};
-use crate::audit::{ProjectAudit, audit_problem};
+use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
 use crate::error::ProcedureError;
 use crate::family::family;
 use crate::robust::RobustProblem;
@@ -105,7 +105,7 @@ pub(super) fn repaired(
         Err(ProcedureError::Stopped) => Repair::without(RepairStatus::Stopped),
         other => other?,
     };
-    let design = match repair.other.take() {
+    let mut design = match repair.other.take() {
         Some(found) if repair.status == RepairStatus::Met => {
             let (published, continuous) = (told.published.clone(), told.continuous.clone());
             let explanations = told.explanations.clone();
@@ -119,6 +119,9 @@ pub(super) fn repaired(
     };
     if let (RepairStatus::Met, Some(run)) = (repair.status, contradicting_waves(&design)) {
         repair.sentences.push(words::stable_with_waves(run));
+    }
+    if design.designed.view.proof.is_none() {
+        try_to_prove(&design.designed.problem, &mut design.designed.view, watch)?;
     }
     let runs = design.trial.iter().flat_map(|trial| &trial.runs);
     repair.sentences.extend(words::left(runs));

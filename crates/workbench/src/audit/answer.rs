@@ -2,7 +2,6 @@ use phea_qft::proof::{Certificate, Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, Verdict, ViolatedBand, WorstCase};
 use serde::Serialize;
 
-use super::certificate::file as certificate_file;
 use super::{NamedPlant, PlantNames};
 use super::{ProjectAudit, Reached};
 use super::{evidence_key, kind_key, kind_words, stability_reason, verdict_key, why_not_proven};
@@ -264,15 +263,13 @@ pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
     }
 }
 
-/// The family's worst margins over frequency as a table for other programs, and the certificate of what was proven.
-pub fn files(loaded: &Loaded, view: &ProjectAudit) -> Vec<OutputFile> {
+/// The family's worst margins over frequency as a table for other programs.
+pub fn files(view: &ProjectAudit) -> Vec<OutputFile> {
     let mut csv = String::from("specification,kind,frequency_rad_per_s,worst_margin_db\n");
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         for (frequency, margin) in &finding.envelope {
             csv.push_str(&format!("{index},{},{frequency},{margin}\n", kind_key(&finding.requirement)));
         }
     }
-    let margins = OutputFile { name: "margins.csv".to_string(), bytes: csv.into_bytes() };
-    let certificate = view.proof.as_ref().and_then(|proof| proof.certificate.as_ref());
-    std::iter::once(margins).chain(certificate.map(|own| certificate_file(loaded, own))).collect()
+    vec![OutputFile { name: "margins.csv".to_string(), bytes: csv.into_bytes() }]
 }

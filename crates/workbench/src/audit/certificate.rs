@@ -8,7 +8,7 @@ use phea_qft::proof::{
 use phea_qft::specification::ClosedLoop;
 use serde::{Deserialize, Serialize};
 
-use super::closed_loop_key;
+use super::{ProjectAudit, closed_loop_key};
 use crate::answer::{Answer, OutputFile};
 use crate::project::Loaded;
 
@@ -163,8 +163,14 @@ fn meaning(text: impl Into<String>) -> CertificateError {
     CertificateError::Meaning(text.into())
 }
 
+/// The file of what was proven of an audit, with this name; `None` where nothing was.
+pub(crate) fn certificate_of(loaded: &Loaded, view: &ProjectAudit, name: &str) -> Option<OutputFile> {
+    let certificate = view.proof.as_ref()?.certificate.as_ref()?;
+    Some(OutputFile { name: name.to_string(), ..file(loaded, certificate) })
+}
+
 /// The file of a certificate.
-pub(crate) fn file(loaded: &Loaded, certificate: &Certificate) -> OutputFile {
+fn file(loaded: &Loaded, certificate: &Certificate) -> OutputFile {
     let plant = &certificate.plant;
     let mut results = plant.coefficients.results().iter().copied();
     let mut parts = plant.lengths.iter().map(|&length| results.by_ref().take(length).collect::<Vec<usize>>());

@@ -1,6 +1,6 @@
 //! What an audit says to people.
 
-use phea_qft::proof::Standing;
+use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use super::ProjectAudit;
@@ -16,12 +16,18 @@ use crate::trial::{self, Trial};
 
 /// The tables and sentences of `verify` for people.
 pub fn text(view: &ProjectAudit) -> String {
-    document(view, vec![]).text()
+    with_proof(view).text()
+}
+
+fn with_proof(view: &ProjectAudit) -> Document {
+    let mut out = document(view, vec![]);
+    out.append(proven(view, "What is proven"));
+    out
 }
 
 /// The same with what the machine did.
 pub(crate) fn text_on_machine(view: &ProjectAudit, tried: &Trial) -> String {
-    let mut out = document(view, vec![]);
+    let mut out = with_proof(view);
     out.append(trial::document(tried, None));
     out.text()
 }
@@ -32,7 +38,6 @@ pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
     let mut out = Document::default();
     out.verdict(verdict.into(), format!("Verdict: {}", verdict_words(verdict)), summary(view));
     out.section("Specifications", specifications(view));
-    proof(view, &mut out);
     out.section("Worst plants", plants(view));
     out.section("Where it is violated", violations(view));
     out.figures_below("Closed loops of the family", figures);
@@ -108,9 +113,10 @@ fn specifications(view: &ProjectAudit) -> Table {
     rows
 }
 
-/// What was proven: a row for each claim, and why a claim is not.
-fn proof(view: &ProjectAudit, out: &mut Document) {
-    let Some(proof) = &view.proof else { return };
+/// What was proven: a row for each claim, and why a claim is not; nothing where no proof was asked for.
+pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
+    let mut out = Document::default();
+    let Some(proof) = &view.proof else { return out };
     let mut rows = Table::new(["claim", "standing", "closed loop over limit, at least dB", "at most dB"]);
     let word = |standing: &Standing| Cell::from(standing_word(standing)).marked(mark_of(standing));
     rows.row(["every plant is stable".into(), word(&proof.stability), Cell::Missing, Cell::Missing]);
@@ -118,19 +124,25 @@ fn proof(view: &ProjectAudit, out: &mut Document) {
         let [least, most] = [own.least_db, own.most_db].map(|end| end.map(Cell::margin).into());
         rows.row([view.numbered(index).into(), word(&own.standing), least, most]);
     }
-    out.section("What is proven", rows);
+    out.section(title, rows);
+    out.sentences(not_proven(view, proof));
+    out
+}
+
+/// Why claims are neither proven nor refuted, each reason once.
+fn not_proven(view: &ProjectAudit, proof: &Proof) -> Vec<String> {
     let named =
         proof.specifications.iter().enumerate().map(|(index, own)| (view.numbered(index), &own.standing));
     let all = std::iter::once(("stability".to_string(), &proof.stability)).chain(named);
-    let reasons = all.filter_map(|(name, standing)| Some((name, why_not_proven(view, proof, standing)?)));
     let mut told: Vec<(String, Vec<String>)> = vec![];
-    for (name, reason) in reasons {
+    for (name, standing) in all {
+        let Some(reason) = why_not_proven(view, proof, standing) else { continue };
         match told.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, names)) => names.push(name),
             None => told.push((reason, vec![name])),
         }
     }
-    out.sentences(told.into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))));
+    told.into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
 }
 
 fn mark_of(standing: &Standing) -> Mark {

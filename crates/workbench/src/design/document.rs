@@ -45,6 +45,7 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
     out.append(costs(view));
     out.heading("Audit of the designed controller");
     out.append(audit::document(&view.designed.view, vec![]));
+    out.append(audit::proven(&view.designed.view, "What is proven of the designed controller"));
     out.preformatted(settings_sentence(loaded));
     Ok(out.text())
 }

@@ -10,9 +10,9 @@ use phea_qft::specification::Requirement;
 
 use super::Factors;
 use super::{AuditedController, ProjectDesign, Repair};
-use super::{DESIGNED_PROJECT, NEAREST_PROJECT, structure_words};
+use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT, structure_words};
 use crate::answer::OutputFile;
-use crate::audit;
+use crate::audit::{self, certificate_of};
 use crate::command::{CommandError, Watch};
 use crate::project::{Loaded, with_laws};
 use crate::report::bound_files;
@@ -30,7 +30,8 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
         let bytes = with_laws(&loaded.bytes, &loaded.settings, controller, prefilter);
         Some(OutputFile { name: name.to_string(), bytes })
     };
-    named.into_iter().filter_map(file).collect()
+    let certificate = certificate_of(loaded, &view.designed.view, DESIGNED_CERTIFICATE);
+    named.into_iter().filter_map(file).chain(certificate).collect()
 }
 
 /// Every stage; a design that was stopped has no templates and bounds, which take their time.
@@ -58,7 +59,7 @@ pub fn stage_files(
         files.push(file("prefilter_band.csv", band));
     }
     files.push(file("verification.json", audit::json(loaded, &side.view)));
-    files.extend(audit::files(loaded, &side.view));
+    files.extend(audit::files(&side.view));
     files.push(file("rounds.csv", rounds(view)));
     Ok(files)
 }

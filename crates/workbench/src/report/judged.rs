@@ -1,7 +1,7 @@
 //! The verdicts of a report: the audit of the given controller, the design, and what the machine did with both.
 
 use super::design::{self, Designed};
-use crate::audit::{ProjectAudit, audit_problem};
+use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
 use crate::command::{CommandError, Watch};
 use crate::design::ProjectDesign;
 use crate::robust::{DesignFrequency, RobustProblem, robust_problem};
@@ -38,7 +38,11 @@ pub(super) fn judged(
     }
     let problem = robust_problem(source, setup)?;
     let given = match problem.has_controller {
-        true => Some(audit_problem(&problem, watch)?),
+        true => {
+            let mut view = audit_problem(&problem, watch)?;
+            try_to_prove(&problem, &mut view, watch)?;
+            Some(view)
+        }
         false => None,
     };
     let bounds = problem.at_design_frequencies(watch)?;

@@ -53,9 +53,9 @@ fn not_proven(project: &Project) -> &'static str {
     let law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
     match (law && !project.specifications.is_empty(), project.actuator.is_some()) {
         (true, true) => {
-            "The audit searched for the worst plant and frequency of the linear models; a search is no proof. What the nonlinear machine does is shown for the steps and scenarios that were driven, and for no others."
+            "What is not proven of the linear models was searched for, and a search is no proof. What the nonlinear machine does is shown for the steps and scenarios that were driven, and for no others."
         }
-        (true, false) => "The audit searched for the worst plant and frequency; a search is no proof.",
+        (true, false) => "What is not proven was searched for, and a search is no proof.",
         (false, true) => {
             "This report computes nominal linear models and a sizing. It does not say that a controller holds for every plant of the declared uncertainty; what the nonlinear machine does is shown for the scenarios that were driven, and for no others."
         }
@@ -63,7 +63,8 @@ fn not_proven(project: &Project) -> &'static str {
     }
 }
 
-fn assumptions(project: &Project) -> Vec<String> {
+/// What the models take for granted.
+pub(super) fn assumptions(project: &Project) -> Vec<String> {
     if project.actuator.is_none() {
         return vec![
             "The plant is what the project states: a transfer function in its whole box, or measured responses."

@@ -1,0 +1,52 @@
+//! What was designed, proven: where the proof refutes what the search called met, the plants that do are taken in, and the design goes on.
+
+use phea_dynamics::uncertain_plant::UncertainPlant;
+use phea_dynamics::watch::Watch;
+use phea_qft::design::{DesignOptions, design_again};
+use phea_qft::family::Family;
+use phea_qft::proof::Standing;
+use phea_qft::verification::{PlantPoint, Verdict};
+
+use super::{AuditedController, DesignError, DesignRun, ProjectDesign};
+use crate::audit::{ProjectAudit, try_to_prove};
+use crate::error::ProcedureError;
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+
+/// How often a design goes on with plants that refute it.
+const REFUTATIONS_MAXIMUM: usize = 4;
+
+/// The design, and its audit with the proof; `None` where nothing was found, or the watch stopped it.
+pub(super) fn proven(
+    (setup, given): (&Setup<'_>, &RobustProblem),
+    mut run: DesignRun,
+    options: &DesignOptions,
+    watch: Watch<'_>,
+) -> Result<(DesignRun, Option<ProjectAudit>), ProcedureError> {
+    for round in 0..=REFUTATIONS_MAXIMUM {
+        let Some(design) = run.outcome.design.clone().filter(|_| !run.outcome.stopped) else { break };
+        let was_met = design.audit.verdict == Verdict::Met;
+        let mut designed = ProjectDesign::new(setup, given, &run.problem, design, options.clone())?.designed;
+        try_to_prove(&designed.problem, &mut designed.view, watch)?;
+        let refuting = if was_met { refuting(&designed) } else { vec![] };
+        if refuting.is_empty() || round == REFUTATIONS_MAXIMUM {
+            return Ok((run, Some(designed.view)));
+        }
+        run.problem.beside.extend(refuting);
+        run.outcome = design_again(&run.problem, options, run.outcome, watch).map_err(DesignError::from)?;
+        run.outcome.conclude().map_err(DesignError::from)?;
+    }
+    Ok((run, None))
+}
+
+/// The plants that refute what a search called met.
+fn refuting(designed: &AuditedController) -> Vec<UncertainPlant> {
+    let Family::Uncertain(family) = &designed.problem.family else { return vec![] };
+    let proofs = designed.view.proof.iter().flat_map(|proof| &proof.specifications);
+    let refuted = proofs.filter(|own| own.standing == Standing::Refuted);
+    let points = refuted.filter_map(|own| match &own.worst.as_ref()?.plant {
+        PlantPoint::Parameters(values) => Some(family.plant().with_nominal(values)),
+        PlantPoint::Measured(_) | PlantPoint::Beside(_) => None,
+    });
+    points.collect()
+}
