@@ -1,27 +1,362 @@
-//! Proofs and refutations of published loops.
+//! Proofs against what is known: published numbers, random problems that must not contradict them, certificates that were tampered with.
 #![cfg(test)]
 
+use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
+use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::random::{share, stream};
+use phea_dynamics::uncertain_plant::{
+    PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
+};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
-use phea_qft::proof::{ProofOptions, prove};
-use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
+use phea_qft::closed_loop::Compensation;
+use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
+use phea_qft::proof::{Certificate, Claim, Late, Panel, Proof, ProofOptions, Standing, check, prove};
+use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::stability::{StabilityStatus, member_stability};
+use phea_qft::verification::{
+    Audit, AuditProblem, Evidence, PlantPoint, SpecificationFinding, StabilityFinding, StabilityReason,
+    TOLERANCE_DB, TrackingJudgement, Verdict,
+};
 
 use crate::verification::thesis::{thesis_family, thesis_loop, thesis_specifications};
 
-#[test]
-fn published() {
-    let (family, compensation, specifications) =
-        (thesis_family([2; 6]), thesis_loop(0.0), thesis_specifications());
-    let problem = AuditProblem {
-        family: &family,
-        compensation: &compensation,
-        specifications: &specifications,
-        tracking: TrackingJudgement::Magnitude,
-        tolerance_db: TOLERANCE_DB,
-    };
+fn problem<'a>(
+    family: &'a Family,
+    compensation: &'a Compensation,
+    specifications: &'a [Specification],
+) -> AuditProblem<'a> {
+    let tracking = TrackingJudgement::Magnitude;
+    AuditProblem { family, compensation, specifications, tracking, tolerance_db: TOLERANCE_DB }
+}
+
+fn thesis(delay_s: f64) -> Proof {
+    let (family, compensation) = (thesis_family([2; 6]), thesis_loop(delay_s));
+    let specifications = thesis_specifications();
+    let problem = problem(&family, &compensation, &specifications);
     let found = audit(&problem, &mut unwatched).unwrap();
-    let start = std::time::Instant::now();
+    prove(&problem, &found, ProofOptions::default(), &mut unwatched).unwrap()
+}
+
+/// The published controller is stable with every plant, and violates each specification by what is known; no enclosure is wider than 0.1 dB.
+// ORIGIN: recomputed by comparisons/recompute_audit.py
+#[test]
+fn the_published_controller_is_refuted() {
+    let proof = thesis(0.0);
+    assert_eq!(proof.stability, Standing::Proven);
+    for (own, truth) in proof.specifications.iter().zip([19.2224, 8.1863, 6.0768]) {
+        assert_eq!(own.standing, Standing::Refuted);
+        let (least, most) = (own.least_db.unwrap(), own.most_db.unwrap());
+        assert!(
+            least <= truth + 1e-4 && truth - 1e-4 <= most && most - least < 0.1,
+            "{least} {truth} {most}"
+        );
+    }
+    let certificate = proof.certificate.unwrap();
+    assert_eq!(check(&certificate), Ok(()));
+    assert!(certificate.leaves() < 200, "{}", certificate.leaves());
+}
+
+/// With 1 ms of delay the lightly damped piston no longer rings with the loop: |T| reaches 1.134 of the 1.3 that are allowed.
+// ORIGIN: recomputed by comparisons/recompute_audit.py
+#[test]
+fn delay_belongs_to_what_is_proven() {
+    let proof = thesis(0.001);
+    assert_eq!(proof.stability, Standing::Proven);
+    let [stability, sensitivity, tracking] = &proof.specifications[..] else { panic!("three") };
+    assert_eq!(stability.standing, Standing::Proven);
+    let peak = 1.3 * phea_dynamics::portable::pow(10.0, stability.least_db.unwrap() / 20.0);
+    assert!((peak - 1.134).abs() < 2e-3, "{peak}");
+    assert_eq!([&sensitivity.standing, &tracking.standing], [&Standing::Refuted; 2]);
+    assert_eq!(check(&proof.certificate.unwrap()), Ok(()));
+}
+
+/// A random problem: a plant of two or three poles over a box, under a controller with as many.
+struct RandomProblem {
+    family: Family,
+    compensation: Compensation,
+    specifications: Vec<Specification>,
+}
+
+fn between(state: &mut u64, low: f64, high: f64) -> f64 {
+    low * phea_dynamics::portable::pow(high / low, share(state))
+}
+
+fn random_problem(seed: u64) -> RandomProblem {
+    let state = &mut stream(20, seed);
+    let variables = 1 + (share(state) * 4.0) as usize;
+    let parameters: Vec<UncertainParameter> = (0..4)
+        .map(|index| {
+            let nominal = between(state, 0.3, 3.0);
+            let spread = if index < variables { 1.0 + 0.6 * share(state) } else { 1.0 };
+            UncertainParameter {
+                name: format!("p{index}"),
+                nominal,
+                minimum: nominal / spread,
+                maximum: nominal * spread,
+            }
+        })
+        .collect();
+    let delay = if share(state) < 0.4 { 0.15 * share(state) } else { 0.0 };
+    let is_late_by_a_parameter = share(state) < 0.2;
+    let plant = UncertainPlant::record(parameters, |p| {
+        let (gain, pole, frequency, damping) = (p[0], p[1], p[2], p[3]);
+        let resonance = [1.0.into(), damping * frequency, frequency * frequency];
+        let denominator =
+            vec![resonance[0], resonance[1] + pole, resonance[2] + resonance[1] * pole, resonance[2] * pole];
+        PlantCoefficients {
+            command: RationalCoefficients {
+                numerator: vec![gain, gain * frequency],
+                denominator: denominator.clone(),
+            },
+            disturbance: Some(RationalCoefficients { numerator: vec![pole, 1.0.into()], denominator }),
+            dead_time_s: if is_late_by_a_parameter { gain * 0.02.into() } else { 0.0.into() },
+            rate: None,
+        }
+    });
+    let coordinate = |index| Coordinate {
+        parameters: vec![index],
+        opposed: vec![],
+        spacing: vec![Spacing::Linear],
+        points: 2,
+    };
+    let coordinates: Vec<Coordinate> = (0..variables).map(coordinate).collect();
+    let plant = plant.unwrap();
+    let members = vertices(&plant, &coordinates).unwrap();
+    let family = Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap());
+    let rational = |numerator: Vec<f64>, denominator: Vec<f64>| {
+        TransferFunction::from_polynomials(&Polynomial::new(numerator), &Polynomial::new(denominator))
+            .unwrap()
+    };
+    let gain = between(state, 0.1, 1.5);
+    let law = rational(vec![gain, gain * between(state, 0.1, 1.0)], vec![1.0, 0.0]);
+    let low_pass = rational(vec![1.0], vec![0.25, 1.0, 1.0]);
+    let controller = Controller {
+        feedback: Compensator::new(vec![Element::General(law)]),
+        prefilter: Compensator::new(vec![Element::General(low_pass)]),
+        timing: Timing { delay_s: delay, ..Timing::default() },
+        ..Controller::default()
+    };
+    let sensor = rational(vec![40.0], vec![1.0, 40.0]);
+    let compensation = Compensation::new(&controller, sensor).unwrap();
+    let whole = [0.0, f64::INFINITY];
+    let specification = |requirement, band| Specification {
+        requirement,
+        frequencies_rad_per_s: vec![1.0],
+        band_rad_per_s: band,
+    };
+    let lag = |height: f64| Limit::Rational(rational(vec![height], vec![1.0, 1.0]));
+    let specifications = vec![
+        specification(Requirement::RobustStability(Limit::Constant(1.5)), whole),
+        specification(Requirement::Sensitivity(Limit::Constant(1.8)), whole),
+        specification(Requirement::PlantInputDisturbance(Limit::Constant(3.0)), [0.1, 20.0]),
+        specification(Requirement::ControlEffort(Limit::Constant(2.0)), [0.2, 30.0]),
+        specification(Requirement::LoadMotion(Limit::Constant(6.0)), whole),
+        specification(Requirement::Tracking { lower: lag(0.1), upper: Limit::Constant(1.5) }, [0.0, 2.0]),
+    ];
+    RandomProblem { family, compensation, specifications }
+}
+
+/// An audit that has looked at nothing: the prover has to find everything itself.
+fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
+    let finding = |specification: &Specification| SpecificationFinding {
+        requirement: specification.requirement.clone(),
+        verdict: Verdict::NotProven,
+        evidence: Evidence::Grid,
+        worst: None,
+        interior: None,
+        violations: vec![],
+        at_design_frequencies: vec![],
+        envelope: vec![],
+        remarks: vec![],
+    };
+    Audit {
+        verdict: Verdict::NotProven,
+        evidence: Evidence::Grid,
+        tolerance_db: TOLERANCE_DB,
+        stability: StabilityFinding {
+            verdict: Verdict::NotProven,
+            evidence: Evidence::Grid,
+            largest_real_part: None,
+            plant: PlantPoint::Parameters(nominal),
+            closest_approach: None,
+            reason: StabilityReason::UnstablePrefilter,
+        },
+        delay_margin: None,
+        specifications: problem.specifications.iter().map(finding).collect(),
+    }
+}
+
+/// How often something was shown: (stable, unstable, limited from above), over so many problems with so many points of each.
+fn sound(problems: std::ops::Range<u64>, points: usize) -> [usize; 3] {
+    let mut shown = [0; 3];
+    for seed in problems {
+        let random = random_problem(seed);
+        let Family::Uncertain(family) = &random.family else { panic!("a box") };
+        let plant = family.plant();
+        let asked = problem(&random.family, &random.compensation, &random.specifications);
+        let options = ProofOptions { leaves_maximum: 4000, ..ProofOptions::default() };
+        let proof = prove(&asked, &blind(&random, plant.nominal()), options, &mut unwatched).unwrap();
+        let certificate = proof.certificate.as_ref().unwrap();
+        assert_eq!(check(certificate), Ok(()), "seed {seed}");
+        let state = &mut stream(21, seed);
+        for point in 0..points {
+            // a third of the points stand at corners
+            let mut coordinate = || match point % 3 {
+                0 => share(state).round(),
+                _ => share(state),
+            };
+            let shares: Vec<f64> = family.coordinates().iter().map(|_| coordinate()).collect();
+            let values = family.values(&shares);
+            let frequency = between(state, 0.003, 300.0);
+            never_contradicted(&random, &proof, &values, frequency, seed);
+            if point % 25 == 0 && matches!(proof.stability, Standing::Proven) {
+                let member = random.compensation.member_of(plant, &values).unwrap();
+                let found = member_stability(&member, &random.compensation).status;
+                assert!(!matches!(found, StabilityStatus::Unstable(_)), "seed {seed}: {values:?} {found:?}");
+            }
+        }
+        shown[0] += usize::from(proof.stability == Standing::Proven);
+        shown[1] += usize::from(proof.stability == Standing::Refuted);
+        shown[2] += proof.specifications.iter().filter(|own| own.most_db.is_some()).count();
+    }
+    shown
+}
+
+fn never_contradicted(random: &RandomProblem, proof: &Proof, values: &[f64], frequency: f64, seed: u64) {
+    let Family::Uncertain(family) = &random.family else { panic!("a box") };
+    let plant = random.compensation.response_of(family.plant(), values, frequency).unwrap();
+    let law = random.compensation.response(frequency);
+    let response = phea_qft::specification::LoopResponse {
+        plant: plant.plant,
+        load_motion: plant.load_motion,
+        controller: law.feedback,
+        prefilter: law.prefilter,
+        sensor: plant.sensor,
+    };
+    for (specification, own) in random.specifications.iter().zip(&proof.specifications) {
+        let [from, to] = specification.band_rad_per_s;
+        let Some(most_db) = own.most_db.filter(|_| from <= frequency && frequency <= to) else { continue };
+        let margin_db = specification.margin_db(&response, frequency).unwrap();
+        assert!(
+            -margin_db <= most_db + 1e-7,
+            "seed {seed}: {:?} at {values:?}, {frequency} rad/s: {} over {most_db}",
+            specification.requirement,
+            -margin_db
+        );
+    }
+}
+
+/// 200 random problems, 500 random plants and frequencies of each: nothing contradicts what was shown of them.
+#[test]
+fn no_plant_contradicts_a_proof() {
+    let [stable, unstable, limited] = sound(0..200, 500);
+    assert!(stable > 100 && unstable > 5 && limited > 500, "{stable} {unstable} {limited}");
+}
+
+/// The same with 10 million points, in a release build: `cargo test --release -p phea-qft -- --ignored proof`.
+#[test]
+#[ignore = "takes minutes; run before a release"]
+fn no_plant_of_ten_million_contradicts_a_proof() {
+    sound(1000..1400, 25_000);
+}
+
+/// What is true of the proof of the published loop is true of none that says more.
+#[test]
+fn a_certificate_that_was_tampered_with_is_rejected() {
+    let genuine = thesis(0.0).certificate.unwrap();
+    let altered = |change: &dyn Fn(&mut Certificate)| {
+        let mut other = genuine.clone();
+        change(&mut other);
+        check(&other).is_err()
+    };
+    // a greater mass of the piston's ratio: every limit that is shown is lowered below what is reached
+    for (index, claim) in genuine.claims.iter().enumerate() {
+        if let Claim::Limited { ratio, .. } = claim {
+            let lowered = ratio / 1.01;
+            assert!(altered(&|other| {
+                if let Claim::Limited { ratio, .. } = &mut other.claims[index] {
+                    *ratio = lowered;
+                }
+            }));
+        }
+        if let Claim::Reached { ratio, .. } = claim {
+            let raised = ratio * 1.001;
+            assert!(altered(&|other| {
+                if let Claim::Reached { ratio, .. } = &mut other.claims[index] {
+                    *ratio = raised;
+                }
+            }));
+        }
+    }
+    // a box three times as wide, in which the leak is greater and the loop slower
+    assert!(altered(&|other| other.plant.boxes[0][2].high *= 3.0));
+    assert!(altered(&|other| other.plant.boxes[0][0].low /= 10.0));
+    // another controller
+    assert!(altered(&|other| other.feedback.numerator[1] *= 2.0));
+    let each_panel = |certificate: &mut Certificate, change: &dyn Fn(&mut Vec<Panel>)| {
+        for claim in &mut certificate.claims {
+            match claim {
+                Claim::Stable(boxes) => boxes.iter_mut().for_each(|one| change(&mut one.panels)),
+                Claim::Limited { boxes, .. } => boxes.iter_mut().for_each(change),
+                Claim::Unstable(_) | Claim::Reached { .. } => {}
+            }
+        }
+    };
+    // a gap, a tree that ends, a direction that is turned around, dead time where there is none
+    assert!(altered(&|other| each_panel(other, &|panels| drop(panels.remove(1)))));
+    assert!(altered(&|other| each_panel(other, &|panels| panels[0].tree.truncate(4))));
+    assert!(altered(&|other| each_panel(other, &|panels| {
+        let tree = &mut panels[0].tree;
+        let at = tree.len() - 4;
+        (tree[at], tree[at + 2]) = (tree[at] ^ 0x80, tree[at + 2] ^ 0x80);
+    })));
+    assert!(altered(&|other| each_panel(other, &|panels| panels[0].late = Late::Less)));
+}
+
+/// What a controller without a prefilter, or a sampled one, does is said not to be proven, with the reason.
+#[test]
+fn what_is_not_covered_is_not_proven() {
+    let (family, specifications) = (thesis_family([2; 6]), thesis_specifications());
+    let timing = Timing { sample_time_s: Some(0.001), ..Timing::default() };
+    let law = Element::ProportionalIntegral { proportional_gain: 0.001, integral_gain: 0.008 };
+    let controller = Controller { feedback: Compensator::new(vec![law]), timing, ..Controller::default() };
+    let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
+    let problem = problem(&family, &compensation, &specifications);
+    let found = audit(&problem, &mut unwatched).unwrap();
     let proof = prove(&problem, &found, ProofOptions::default(), &mut unwatched).unwrap();
-    println!("{:?} {:?} {:#?}", start.elapsed(), proof.stability, proof.specifications);
-    println!("{} leaves", proof.certificate.unwrap().leaves());
+    assert_eq!(proof.certificate, None);
+    assert!(matches!(proof.stability, Standing::NotProven(phea_qft::proof::NotProven::Sampled)));
+    assert_eq!(proof.specifications.len(), 3);
+}
+
+/// |U| of a leaf is that of the loop: the enclosure of a single plant at a single peak is the closed form.
+// ORIGIN: analytic, |T| of w^2/(s^2 + 2 d w s + w^2) is greatest 1/(2 d sqrt(1 - d^2))
+#[test]
+fn the_peak_of_a_second_order_loop_is_enclosed() {
+    let (w, d) = (3.0, 0.2);
+    let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {
+        command: RationalCoefficients {
+            numerator: vec![(w * w).into()],
+            denominator: vec![1.0.into(), (2.0 * d * w).into(), 0.0.into()],
+        },
+        disturbance: None,
+        dead_time_s: 0.0.into(),
+        rate: None,
+    });
+    let family = Family::Uncertain(UncertainFamily::of_nominal(plant.unwrap()));
+    let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap();
+    let specifications = [Specification {
+        requirement: Requirement::RobustStability(Limit::Constant(1.0)),
+        frequencies_rad_per_s: vec![1.0],
+        band_rad_per_s: [0.0, f64::INFINITY],
+    }];
+    let problem = problem(&family, &compensation, &specifications);
+    let found = audit(&problem, &mut unwatched).unwrap();
+    let options = ProofOptions { width_db: 0.002, ..ProofOptions::default() };
+    let proof = prove(&problem, &found, options, &mut unwatched).unwrap();
+    let peak_db = 20.0 * phea_dynamics::portable::log10(1.0 / (2.0 * d * (1.0_f64 - d * d).sqrt()));
+    let own = &proof.specifications[0];
+    assert!(own.least_db.unwrap() <= peak_db + 1e-9 && peak_db <= own.most_db.unwrap());
+    assert!(own.most_db.unwrap() - own.least_db.unwrap() < 0.0021);
 }

@@ -117,7 +117,7 @@ fn specifications(view: &ProjectAudit) -> Table {
 pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
     let mut out = Document::default();
     let Some(proof) = &view.proof else { return out };
-    let mut rows = Table::new(["claim", "standing", "closed loop over limit, at least dB", "at most dB"]);
+    let mut rows = Table::new(["claim", "standing", "closed loop over limit, at least", "at most"]);
     let word = |standing: &Standing| Cell::from(standing_word(standing)).marked(mark_of(standing));
     rows.row(["every plant is stable".into(), word(&proof.stability), Cell::Missing, Cell::Missing]);
     for (index, own) in proof.specifications.iter().enumerate() {
