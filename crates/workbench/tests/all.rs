@@ -23,6 +23,7 @@ mod lines_in_motion;
 mod noise;
 mod number_table;
 mod operating_region;
+mod proof;
 mod repair;
 mod report_design;
 mod report_opening;

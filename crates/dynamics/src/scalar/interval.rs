@@ -176,6 +176,16 @@ impl Scalar for Interval {
     /// `None` where it holds for some of the numbers only.
     type Mask = Option<bool>;
 
+    fn times(self, factor: f64) -> Self {
+        let ends = [product(self.low, factor), product(self.high, factor)];
+        if ends.iter().flatten().any(|end| end.value.is_nan()) {
+            return Interval::WHOLE;
+        }
+        let [[one_down, one_up], [other_down, other_up]] = ends;
+        let (low, high) = if factor >= 0.0 { (one_down, other_up) } else { (other_down, one_up) };
+        Interval { low: low.down(), high: high.up() }
+    }
+
     fn sqrt(self) -> Self {
         if self.low < 0.0 {
             return Interval::WHOLE;
@@ -244,6 +254,8 @@ mod tests {
         assert_eq!((x * Interval::from(0.1)).low(), 0.0);
         assert_eq!((x / Interval::from(0.1)).low(), 0.0);
         assert_eq!(Interval::new(-0.3, 0.1).square().low(), 0.0);
+        assert_eq!(Interval::new(-1.0, 2.0).times(-3.0), Interval::new(-6.0, 3.0));
+        assert!(x.times(0.1) == x * Interval::from(0.1) && x.times(-0.1) == x * Interval::from(-0.1));
         assert_eq!(Interval::from(0.25) + Interval::from(0.5), Interval::from(0.75));
         assert_eq!(Interval::new(1.0, 2.0) - Interval::new(f64::NAN, 0.0), Interval::WHOLE);
         // ORIGIN: analytic. The double nearest to 0.1 is more than a tenth, ten times it rounds to one.

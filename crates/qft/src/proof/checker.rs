@@ -13,6 +13,7 @@ use super::claimed::{Claimed, Loop};
 use super::dead_time::ends;
 use super::hurwitz::{Roots, roots_of};
 use super::points::{Point, Points, Range};
+use super::polynomial::VARIABLES_MAXIMUM;
 
 /// Halvings on the way to a leaf at most: no proof needs as many.
 const DEPTH_MAXIMUM: usize = 256;
@@ -67,8 +68,8 @@ pub enum Rejection {
 pub fn check(certificate: &Certificate) -> Result<(), (usize, Rejection)> {
     let claims = certificate.claims.iter().enumerate();
     claims
-        .map(|(index, claim)| check_claim(certificate, claim).map_err(|rejection| (index + 1, rejection)))
-        .collect()
+        .map(|(index, claim)| (index + 1, check_claim(certificate, claim)))
+        .try_for_each(|(number, checked)| checked.map_err(|rejection| (number, rejection)))
 }
 
 /// Checks one claim.
@@ -149,7 +150,8 @@ fn check_numbers(certificate: &Certificate) -> Result<(), Rejection> {
             })
     };
     let in_time = plant.delay_s >= 0.0 && (1..=DEAD_TIME_TERMS_MAXIMUM).contains(&plant.dead_time_terms);
-    match plant.boxes.iter().all(is_box) && !plant.boxes.is_empty() && in_time {
+    let in_bounds = plant.variables <= VARIABLES_MAXIMUM && !plant.boxes.is_empty();
+    match plant.boxes.iter().all(is_box) && in_bounds && in_time {
         true => Ok(()),
         false => Err(Rejection::Number("an end of a parameter")),
     }
@@ -229,11 +231,11 @@ fn check_tree(whole: Points<Interval>, panel: &Panel) -> Result<(), Rejection> {
 /// Whether |V| <= |U| and U is not zero on the whole leaf, shown by this direction.
 fn shows([a, b]: [f64; 2], points: &[Point<Interval>]) -> bool {
     let of = Interval::from;
-    let square = of(a).square() + of(b).square();
-    let length = of(a.abs() + b.abs());
+    // integers of 16 bits: both are exact
+    let (square, length) = (a * a + b * b, a.abs() + b.abs());
     points.iter().all(|[ur, ui, vr, vi, rest]| {
-        let least = (of(a) * *ur + of(b) * *ui - length * *rest).low();
-        least > 0.0 && of(least).square().low() >= (square * (vr.square() + vi.square())).high()
+        let least = (ur.times(a) + ui.times(b) - rest.times(length)).low();
+        least > 0.0 && of(least).square().low() >= (vr.square() + vi.square()).times(square).high()
     })
 }
 

@@ -108,7 +108,7 @@ impl<S: Decimal> Points<S> {
             self.scale_frequency(S::from(1.0) / S::decimal(range.from));
         }
         for axis in 0..self.degrees.len() {
-            self.to_bernstein(axis);
+            self.bring_to_bernstein(axis);
         }
     }
 
@@ -135,13 +135,12 @@ impl<S: Decimal> Points<S> {
         let degree = self.degrees[axis];
         let stride = self.stride(axis);
         let block = stride * (degree + 1);
-        let half = S::from(0.5);
         let mut low = self.clone();
         for step in 1..=degree {
             self.for_lines(axis, |line, at| {
                 for place in 0..=degree - step {
                     let (one, next) = (line[at(place)], line[at(place + 1)]);
-                    line[at(place)] = [0, 1, 2, 3, 4].map(|part| (one[part] + next[part]) * half);
+                    line[at(place)] = [0, 1, 2, 3, 4].map(|part| (one[part] + next[part]).times(0.5));
                 }
             });
             for from in (0..self.values.len()).step_by(block) {
@@ -174,7 +173,7 @@ impl<S: Decimal> Points<S> {
     }
 
     /// b_k = sum over i <= k of C(k, i)/C(n, i) a_i: divided by C(n, i), then summed up n times.
-    fn to_bernstein(&mut self, axis: usize) {
+    fn bring_to_bernstein(&mut self, axis: usize) {
         let degree = self.degrees[axis];
         self.for_lines(axis, |line, at| {
             let mut binomial = 1.0;

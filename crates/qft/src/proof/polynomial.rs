@@ -1,7 +1,5 @@
 //! Polynomials in the variables of a box, and polynomials in s that have them as coefficients.
 
-use std::collections::BTreeMap;
-
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
 use phea_dynamics::portable;
 use phea_dynamics::scalar::{Interval, Scalar};
@@ -43,16 +41,24 @@ impl Decimal for Interval {
     }
 }
 
-/// A polynomial in the variables of a box: its coefficients by the exponents of the variables.
+/// Variables of a box at most.
+pub(crate) const VARIABLES_MAXIMUM: usize = 12;
+/// The greatest exponent of a variable in a coefficient of a plant: products of two such polynomials keep within a byte.
+const EXPONENT_MAXIMUM: u8 = 60;
+
+/// Exponents of the variables.
+type Exponents = [u8; VARIABLES_MAXIMUM];
+
+/// A polynomial in the variables of a box: exponents in increasing order, each with its coefficient.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Polynomial<S> {
-    terms: BTreeMap<Vec<u8>, S>,
+    terms: Vec<(Exponents, S)>,
 }
 
 impl<S: Decimal> Polynomial<S> {
     /// A number.
     pub(crate) fn constant(value: S) -> Polynomial<S> {
-        Polynomial { terms: BTreeMap::from([(vec![], value)]) }
+        Polynomial { terms: vec![([0; VARIABLES_MAXIMUM], value)] }
     }
 
     /// A decimal number; zero has no term.
@@ -62,21 +68,21 @@ impl<S: Decimal> Polynomial<S> {
 
     /// Nothing: no term.
     pub(crate) fn zero() -> Polynomial<S> {
-        Polynomial { terms: BTreeMap::new() }
+        Polynomial { terms: vec![] }
     }
 
-    /// `low + (high - low) t`, t being the variable with this index; what both ends share if there is none.
+    /// `low + (high - low) t`, t being the variable with this index; `low` if there is none.
     pub(crate) fn between(low: f64, high: f64, variable: Option<usize>) -> Polynomial<S> {
         let mut out = Polynomial::constant(S::decimal(low));
-        if let Some(variable) = variable {
-            let mut exponents = vec![0; variable];
-            exponents.push(1);
-            out.terms.insert(exponents, S::decimal(high) - S::decimal(low));
+        let mut exponents = [0; VARIABLES_MAXIMUM];
+        if let Some(slot) = variable.and_then(|variable| exponents.get_mut(variable)) {
+            *slot = 1;
+            out.terms.push((exponents, S::decimal(high) - S::decimal(low)));
         }
         out
     }
 
-    /// Its terms: exponents, of which missing ones are zero, and coefficients.
+    /// Its terms: exponents and coefficients.
     pub(crate) fn terms(&self) -> impl Iterator<Item = (&[u8], S)> {
         self.terms.iter().map(|(exponents, coefficient)| (exponents.as_slice(), *coefficient))
     }
@@ -88,43 +94,52 @@ impl<S: Decimal> Polynomial<S> {
 
     /// The number that it is, if it depends on no variable.
     fn as_constant(&self) -> Option<S> {
-        match self.terms.iter().next() {
-            None => Some(S::from(0.0)),
-            Some((exponents, value)) if self.terms.len() == 1 && exponents.is_empty() => Some(*value),
-            Some(_) => None,
+        match self.terms.as_slice() {
+            [] => Some(S::from(0.0)),
+            [(exponents, value)] if exponents.iter().all(|exponent| *exponent == 0) => Some(*value),
+            _ => None,
         }
     }
 
     pub(crate) fn scaled(&self, factor: S) -> Polynomial<S> {
-        let terms =
-            self.terms.iter().map(|(exponents, coefficient)| (exponents.clone(), *coefficient * factor));
+        let terms = self.terms.iter().map(|(exponents, coefficient)| (*exponents, *coefficient * factor));
         Polynomial { terms: terms.collect() }
     }
 
     pub(crate) fn plus(&self, other: &Polynomial<S>) -> Polynomial<S> {
-        let mut out = self.clone();
-        for (exponents, coefficient) in &other.terms {
-            let slot = out.terms.entry(exponents.clone()).or_insert(S::from(0.0));
-            *slot = *slot + *coefficient;
-        }
-        out
+        Polynomial::collected(self.terms.iter().chain(&other.terms).copied().collect())
     }
 
     pub(crate) fn times(&self, other: &Polynomial<S>) -> Polynomial<S> {
-        let mut out = Polynomial::zero();
-        for (one, a) in &self.terms {
-            for (another, b) in &other.terms {
-                let (longer, shorter) =
-                    if one.len() < another.len() { (another, one) } else { (one, another) };
-                let mut exponents = longer.clone();
-                for (slot, exponent) in exponents.iter_mut().zip(shorter) {
+        let products = self.terms.iter().flat_map(|(one, a)| {
+            other.terms.iter().map(|(another, b)| {
+                let mut exponents = *one;
+                for (slot, exponent) in exponents.iter_mut().zip(another) {
                     *slot = slot.saturating_add(*exponent);
                 }
-                let slot = out.terms.entry(exponents).or_insert(S::from(0.0));
-                *slot = *slot + *a * *b;
+                (exponents, *a * *b)
+            })
+        });
+        Polynomial::collected(products.collect())
+    }
+
+    /// Terms in any order, those with the same exponents added up in it.
+    fn collected(mut terms: Vec<(Exponents, S)>) -> Polynomial<S> {
+        terms.sort_by_key(|(exponents, _)| *exponents);
+        terms.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            if same {
+                kept.1 = kept.1 + next.1;
             }
-        }
-        out
+            same
+        });
+        Polynomial { terms }
+    }
+
+    /// Itself, unless an exponent is too great.
+    fn within_bounds(self) -> Option<Polynomial<S>> {
+        let fits = self.terms.iter().flat_map(|(exponents, _)| exponents).all(|one| *one <= EXPONENT_MAXIMUM);
+        fits.then_some(self)
     }
 }
 
@@ -146,7 +161,9 @@ pub(crate) fn expanded<S: Decimal>(
             Node::Binary(Binary::Subtract, x, y) => {
                 of(x).zip(of(y)).map(|(x, y)| x.plus(&y.scaled(minus_one)))
             }
-            Node::Binary(Binary::Multiply, x, y) => of(x).zip(of(y)).map(|(x, y)| x.times(y)),
+            Node::Binary(Binary::Multiply, x, y) => {
+                of(x).zip(of(y)).and_then(|(x, y)| x.times(y).within_bounds())
+            }
             Node::Binary(Binary::Divide, x, y) => of(x).zip(of(y)).and_then(|(x, y)| {
                 let divisor = y.as_constant()?;
                 Some(x.scaled(S::from(1.0) / divisor))

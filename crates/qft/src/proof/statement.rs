@@ -6,12 +6,10 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, Un
 
 use super::NotProven;
 use super::certificate::{Certificate, CertifiedPlant, Member, Quotient, Segment};
+use super::polynomial::VARIABLES_MAXIMUM;
 use crate::closed_loop::Compensation;
 use crate::family::{Coordinate, Extent, Family, Spacing, UncertainFamily};
 use crate::specification::Limit;
-
-/// Variables at most: a box has two to this power corners.
-const VARIABLES_MAXIMUM: usize = 12;
 
 /// Terms of the series that stands for dead time: over a panel it turns by one radian to either side, so that 2e-9 remains.
 const DEAD_TIME_TERMS: usize = 12;

@@ -1,11 +1,13 @@
 //! The supremum of a ratio, enclosed: from below by points, from above by trees.
 
+use num_complex::Complex64;
+use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch};
 
-use super::certificate::{Certificate, Late, Limited, Member, Panel};
+use super::certificate::{Certificate, Limited, Member, Panel};
 use super::claimed::{Claimed, Loop};
 use super::panels::{frequencies, walk_band};
-use super::points::{Points, Range};
+use super::polynomial::{InS, Polynomial};
 use super::walk::{Effort, Region, Walk};
 
 /// Corners of a box that are looked at before anything is shown.
@@ -160,19 +162,28 @@ pub(super) fn corners(certificate: &Certificate, of_box: usize) -> impl Iterator
     })
 }
 
-/// |V|/|U| at a frequency; towards infinity only where dead time does not matter.
+/// |V|/|U| at a frequency; towards infinity the limit, where dead time does not matter there.
 fn ratio_at(claimed: &Claimed<f64>, frequency_rad_per_s: f64) -> f64 {
-    let is_late = !claimed.dead_time.value.is_zero();
-    let late = match (is_late, frequency_rad_per_s.is_finite()) {
-        (false, _) => Late::Not,
-        (true, false) => Late::Less,
-        (true, true) => Late::Turns(frequency_rad_per_s * super::dead_time::ends(&claimed.dead_time)[0]),
+    let angle = frequency_rad_per_s * super::dead_time::ends(&claimed.dead_time)[0];
+    let turned = portable::exp_complex(Complex64::new(0.0, -angle));
+    let degree = claimed.u.iter().chain(&claimed.v).filter_map(InS::degree).max().unwrap_or(0);
+    let value = |[own, late]: &[InS<f64>; 2]| match frequency_rad_per_s.is_finite() {
+        true => at_frequency(own, frequency_rad_per_s) + at_frequency(late, frequency_rad_per_s) * turned,
+        false => {
+            let leading = |of: &InS<f64>| of.0.get(degree).map_or(0.0, number);
+            // dead time turns what it multiplies without end
+            Complex64::new(if leading(late) == 0.0 { leading(own) } else { f64::NAN }, 0.0)
+        }
     };
-    let range = match frequency_rad_per_s.is_finite() {
-        true => Range { from: frequency_rad_per_s, to: frequency_rad_per_s, late },
-        false => Range { from: 1.0, to: f64::INFINITY, late },
-    };
-    let Some(points) = Points::over(claimed, 0, range) else { return f64::NAN };
-    let Some([ur, ui, vr, vi, rest]) = points.points().first() else { return f64::NAN };
-    ((vr * vr + vi * vi).sqrt() - rest) / ((ur * ur + ui * ui).sqrt() + rest)
+    portable::magnitude(value(&claimed.v)) / portable::magnitude(value(&claimed.u))
+}
+
+/// The number that a polynomial is which depends on no variable.
+fn number(of: &Polynomial<f64>) -> f64 {
+    of.terms().map(|(_, value)| value).sum()
+}
+
+fn at_frequency(of: &InS<f64>, frequency_rad_per_s: f64) -> Complex64 {
+    let s = Complex64::new(0.0, frequency_rad_per_s);
+    of.0.iter().rev().fold(Complex64::new(0.0, 0.0), |sum, coefficient| sum * s + number(coefficient))
 }

@@ -1,0 +1,227 @@
+//! The layout of the file: what it holds, word by word, and the certificate that it means.
+
+mod claims;
+
+use phea_dynamics::expression::{Binary, Expression, Node, Unary};
+use phea_qft::proof::{Certificate, CertifiedPlant, Claim, Quotient, Segment};
+use serde::{Deserialize, Serialize};
+
+use crate::project::Loaded;
+use claims::Stated;
+
+/// What the file begins with.
+const FORMAT: &str = "phea-certificate";
+/// Of the layout.
+const VERSION: u32 = 1;
+
+#[derive(Serialize, Deserialize)]
+pub(super) struct File {
+    format: String,
+    version: u32,
+    phea: String,
+    pub(super) title: String,
+    pub(super) project_sha256: String,
+    settings: Vec<String>,
+    variables: usize,
+    parameters: Vec<String>,
+    /// For each box, for each parameter: low, high and the variable.
+    boxes: Vec<Vec<(f64, f64, Option<usize>)>>,
+    operations: Vec<Operation>,
+    plant: Plant,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    delay: f64,
+    /// Of the series that stands for dead time.
+    terms: usize,
+    feedback: Rational,
+    prefilter: Rational,
+    sensor: Rational,
+    claims: Vec<Stated>,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+/// One recorded operation: its name, then what it acts on.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Operation {
+    Number((String, f64)),
+    Two((String, usize, usize)),
+}
+
+#[derive(Serialize, Deserialize)]
+struct Plant {
+    numerator: Vec<usize>,
+    denominator: Vec<usize>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    disturbance_numerator: Option<Vec<usize>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    disturbance_denominator: Option<Vec<usize>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    dead_time: Option<usize>,
+}
+
+#[derive(Clone, Serialize, Deserialize)]
+struct Rational {
+    numerator: Vec<f64>,
+    denominator: Vec<f64>,
+}
+
+/// Why a file is no certificate.
+#[derive(Debug, thiserror::Error)]
+pub enum CertificateError {
+    /// No JSON of this layout.
+    #[error("not a certificate: {0}")]
+    Layout(#[from] serde_json::Error),
+    /// Another format or version.
+    #[error("this is `{format}` version {version}; `{FORMAT}` version {VERSION} is known")]
+    Version {
+        /// What it says it is.
+        format: String,
+        /// Its version.
+        version: u32,
+    },
+    /// A word, a place or a number that means nothing.
+    #[error("{0}")]
+    Meaning(String),
+}
+
+fn meaning(text: impl Into<String>) -> CertificateError {
+    CertificateError::Meaning(text.into())
+}
+
+impl File {
+    pub(super) fn of(loaded: &Loaded, certificate: &Certificate) -> File {
+        let plant = &certificate.plant;
+        let mut results = plant.coefficients.results().iter().copied();
+        let mut parts =
+            plant.lengths.iter().map(|&length| results.by_ref().take(length).collect::<Vec<usize>>());
+        File {
+            format: FORMAT.to_string(),
+            version: VERSION,
+            phea: env!("CARGO_PKG_VERSION").to_string(),
+            title: loaded.project.title.clone(),
+            project_sha256: loaded.sha256.clone(),
+            settings: loaded.settings.clone(),
+            variables: plant.variables,
+            parameters: plant.parameters.clone(),
+            boxes: plant
+                .boxes
+                .iter()
+                .map(|one| {
+                    one.iter().map(|Segment { low, high, variable }| (*low, *high, *variable)).collect()
+                })
+                .collect(),
+            operations: plant.coefficients.nodes().iter().filter_map(Operation::of).collect(),
+            plant: Plant {
+                numerator: parts.next().unwrap_or_default(),
+                denominator: parts.next().unwrap_or_default(),
+                disturbance_numerator: parts.next(),
+                disturbance_denominator: parts.next(),
+                dead_time: plant
+                    .has_dead_time
+                    .then(|| plant.coefficients.results().last().copied().unwrap_or(0)),
+            },
+            delay: plant.delay_s,
+            terms: plant.dead_time_terms,
+            feedback: (&certificate.feedback).into(),
+            prefilter: (&certificate.prefilter).into(),
+            sensor: (&certificate.sensor).into(),
+            claims: certificate.claims.iter().map(Stated::from).collect(),
+        }
+    }
+
+    pub(super) fn read(text: &str) -> Result<File, CertificateError> {
+        let file: File = serde_json::from_str(text)?;
+        match file.format == FORMAT && file.version == VERSION {
+            true => Ok(file),
+            false => Err(CertificateError::Version { format: file.format, version: file.version }),
+        }
+    }
+
+    pub(super) fn certificate(self) -> Result<Certificate, CertificateError> {
+        let file = self;
+        let nodes = file.operations.iter().map(Operation::node).collect::<Result<Vec<Node>, _>>()?;
+        let Plant { numerator, denominator, disturbance_numerator, disturbance_denominator, dead_time } =
+            file.plant;
+        let mut parts = vec![numerator, denominator];
+        parts
+            .extend(disturbance_numerator.zip(disturbance_denominator).into_iter().flat_map(|(n, d)| [n, d]));
+        let lengths = parts.iter().map(Vec::len).collect();
+        let mut results = parts.concat();
+        results.extend(dead_time);
+        let coefficients = Expression::from_nodes(file.parameters.clone(), nodes, results)
+            .ok_or_else(|| meaning("an operation acts on what does not stand before it"))?;
+        let segments = |one: Vec<(f64, f64, Option<usize>)>| {
+            one.into_iter().map(|(low, high, variable)| Segment { low, high, variable }).collect()
+        };
+        Ok(Certificate {
+            plant: CertifiedPlant {
+                parameters: file.parameters,
+                variables: file.variables,
+                boxes: file.boxes.into_iter().map(segments).collect(),
+                coefficients,
+                lengths,
+                has_dead_time: dead_time.is_some(),
+                delay_s: file.delay,
+                dead_time_terms: file.terms,
+            },
+            feedback: file.feedback.into(),
+            prefilter: file.prefilter.into(),
+            sensor: file.sensor.into(),
+            claims: file.claims.into_iter().map(Claim::try_from).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+impl Operation {
+    fn of(node: &Node) -> Option<Operation> {
+        let one = |name: &str, value: f64| Some(Operation::Number((name.to_string(), value)));
+        let two = |name: &str, x: usize, y: usize| Some(Operation::Two((name.to_string(), x, y)));
+        match *node {
+            Node::Parameter(index) => one("parameter", index as f64),
+            Node::Constant(value) => one("number", value),
+            Node::Unary(Unary::Negate, x) => one("negate", x as f64),
+            Node::Binary(Binary::Add, x, y) => two("add", x, y),
+            Node::Binary(Binary::Subtract, x, y) => two("subtract", x, y),
+            Node::Binary(Binary::Multiply, x, y) => two("multiply", x, y),
+            Node::Binary(Binary::Divide, x, y) => two("divide", x, y),
+            Node::Unary(..) | Node::Select(..) => None,
+        }
+    }
+
+    fn node(&self) -> Result<Node, CertificateError> {
+        let index = |value: f64| match value >= 0.0 && value == value.trunc() && value < 1e9 {
+            true => Ok(value as usize),
+            false => Err(meaning(format!("{value} is not the place of an operation"))),
+        };
+        match self {
+            Operation::Number((name, value)) => match name.as_str() {
+                "parameter" => Ok(Node::Parameter(index(*value)?)),
+                "number" => Ok(Node::Constant(*value)),
+                "negate" => Ok(Node::Unary(Unary::Negate, index(*value)?)),
+                _ => Err(meaning(format!("`{name}` is not an operation on one number"))),
+            },
+            Operation::Two((name, x, y)) => match name.as_str() {
+                "add" => Ok(Node::Binary(Binary::Add, *x, *y)),
+                "subtract" => Ok(Node::Binary(Binary::Subtract, *x, *y)),
+                "multiply" => Ok(Node::Binary(Binary::Multiply, *x, *y)),
+                "divide" => Ok(Node::Binary(Binary::Divide, *x, *y)),
+                _ => Err(meaning(format!("`{name}` is not an operation on two numbers"))),
+            },
+        }
+    }
+}
+
+impl From<&Quotient> for Rational {
+    fn from(one: &Quotient) -> Rational {
+        Rational { numerator: one.numerator.clone(), denominator: one.denominator.clone() }
+    }
+}
+
+impl From<Rational> for Quotient {
+    fn from(one: Rational) -> Quotient {
+        Quotient { numerator: one.numerator, denominator: one.denominator }
+    }
+}

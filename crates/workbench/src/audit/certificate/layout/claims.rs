@@ -1,0 +1,234 @@
+//! The claims of a certificate and their panels, as the file has them.
+
+use phea_qft::proof::{Claim, Late, Limited, Member, Panel, Side, StableBox};
+use phea_qft::specification::ClosedLoop;
+use serde::{Deserialize, Serialize};
+
+use super::{CertificateError, Rational, meaning};
+use crate::audit::closed_loop_key;
+
+#[derive(Serialize, Deserialize)]
+#[serde(tag = "claim", rename_all = "snake_case", deny_unknown_fields)]
+pub(super) enum Stated {
+    Stable {
+        boxes: Vec<StatedBox>,
+    },
+    Unstable {
+        #[serde(rename = "box")]
+        of_box: usize,
+        member: Vec<f64>,
+    },
+    Limited {
+        closed_loop: String,
+        side: String,
+        limit: Rational,
+        band: [End; 2],
+        ratio: f64,
+        boxes: Vec<Vec<Cover>>,
+    },
+    Reached {
+        closed_loop: String,
+        side: String,
+        limit: Rational,
+        band: [End; 2],
+        ratio: f64,
+        frequency: End,
+        #[serde(rename = "box")]
+        of_box: usize,
+        member: Vec<f64>,
+    },
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StatedBox {
+    member: Vec<f64>,
+    panels: Vec<Cover>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    delays: Vec<Cover>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Cover {
+    from: End,
+    to: End,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    late: Option<Lateness>,
+    tree: String,
+}
+
+/// The angle around which dead time turns, or a word.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Lateness {
+    Turns(f64),
+    Any(String),
+}
+
+/// A frequency in rad/s, or "inf".
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+pub(super) enum End {
+    Finite(f64),
+    Infinite(String),
+}
+
+impl From<f64> for End {
+    fn from(value: f64) -> End {
+        if value.is_finite() { End::Finite(value) } else { End::Infinite("inf".to_string()) }
+    }
+}
+
+impl End {
+    fn value(&self) -> Result<f64, CertificateError> {
+        match self {
+            End::Finite(value) => Ok(*value),
+            End::Infinite(word) if word == "inf" => Ok(f64::INFINITY),
+            End::Infinite(word) => Err(meaning(format!("`{word}` is not a frequency"))),
+        }
+    }
+}
+
+fn lateness(late: Late) -> Option<Lateness> {
+    match late {
+        Late::Not => None,
+        Late::Turns(angle) => Some(Lateness::Turns(angle)),
+        Late::Less => Some(Lateness::Any("less".to_string())),
+        Late::More => Some(Lateness::Any("more".to_string())),
+    }
+}
+
+fn late(lateness: Option<Lateness>) -> Result<Late, CertificateError> {
+    match lateness {
+        None => Ok(Late::Not),
+        Some(Lateness::Turns(angle)) => Ok(Late::Turns(angle)),
+        Some(Lateness::Any(word)) if word == "less" => Ok(Late::Less),
+        Some(Lateness::Any(word)) if word == "more" => Ok(Late::More),
+        Some(Lateness::Any(word)) => Err(meaning(format!("`{word}` does not say how dead time is taken"))),
+    }
+}
+
+fn covers(panels: &[Panel]) -> Vec<Cover> {
+    let hexadecimal = |tree: &[u8]| tree.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+    let cover = |panel: &Panel| Cover {
+        from: panel.from.into(),
+        to: panel.to.into(),
+        late: lateness(panel.late),
+        tree: hexadecimal(&panel.tree),
+    };
+    panels.iter().map(cover).collect()
+}
+
+fn panels(covers: Vec<Cover>) -> Result<Vec<Panel>, CertificateError> {
+    let bytes = |text: &str| -> Result<Vec<u8>, CertificateError> {
+        let digits = text.chars().map(|digit| digit.to_digit(16)).collect::<Option<Vec<u32>>>();
+        let digits = digits.filter(|digits| digits.len() % 2 == 0);
+        let digits = digits.ok_or_else(|| meaning("a tree is written in pairs of hexadecimal digits"))?;
+        Ok(digits.chunks(2).map(|pair| (16 * pair[0] + pair[1]) as u8).collect())
+    };
+    let panel = |cover: Cover| {
+        let (from, to) = (cover.from.value()?, cover.to.value()?);
+        Ok(Panel { from, to, late: late(cover.late)?, tree: bytes(&cover.tree)? })
+    };
+    covers.into_iter().map(panel).collect()
+}
+
+fn side_key(side: Side) -> String {
+    match side {
+        Side::Upper => "upper",
+        Side::Lower => "lower",
+    }
+    .to_string()
+}
+
+fn limited(
+    closed_loop: &str,
+    side: &str,
+    limit: Rational,
+    band: &[End; 2],
+) -> Result<Limited, CertificateError> {
+    let known = [
+        ClosedLoop::RobustStability,
+        ClosedLoop::Sensitivity,
+        ClosedLoop::PlantInputDisturbance,
+        ClosedLoop::ControlEffort,
+        ClosedLoop::LoadMotion,
+        ClosedLoop::Tracking,
+    ];
+    let found = known.into_iter().find(|one| closed_loop_key(*one) == closed_loop);
+    Ok(Limited {
+        closed_loop: found.ok_or_else(|| meaning(format!("`{closed_loop}` is not a closed loop")))?,
+        side: match side {
+            "upper" => Side::Upper,
+            "lower" => Side::Lower,
+            _ => return Err(meaning(format!("`{side}` is not a side of a limit"))),
+        },
+        limit: limit.into(),
+        band_rad_per_s: [band[0].value()?, band[1].value()?],
+    })
+}
+
+impl From<&Claim> for Stated {
+    fn from(claim: &Claim) -> Stated {
+        let of = |limited: &Limited| {
+            let key = closed_loop_key(limited.closed_loop).to_string();
+            let band = limited.band_rad_per_s.map(End::from);
+            (key, side_key(limited.side), Rational::from(&limited.limit), band)
+        };
+        match claim {
+            Claim::Stable(boxes) => {
+                let stated = |one: &StableBox| StatedBox {
+                    member: one.member.clone(),
+                    panels: covers(&one.panels),
+                    delays: covers(&one.delays),
+                };
+                Stated::Stable { boxes: boxes.iter().map(stated).collect() }
+            }
+            Claim::Unstable(member) => {
+                Stated::Unstable { of_box: member.of_box, member: member.variables.clone() }
+            }
+            Claim::Limited { limited, ratio, boxes } => {
+                let (closed_loop, side, limit, band) = of(limited);
+                let boxes = boxes.iter().map(|panels| covers(panels)).collect();
+                Stated::Limited { closed_loop, side, limit, band, ratio: *ratio, boxes }
+            }
+            Claim::Reached { limited, ratio, frequency_rad_per_s, member } => {
+                let (closed_loop, side, limit, band) = of(limited);
+                let (frequency, of_box) = (End::from(*frequency_rad_per_s), member.of_box);
+                let member = member.variables.clone();
+                Stated::Reached { closed_loop, side, limit, band, ratio: *ratio, frequency, of_box, member }
+            }
+        }
+    }
+}
+
+impl TryFrom<Stated> for Claim {
+    type Error = CertificateError;
+
+    fn try_from(stated: Stated) -> Result<Claim, CertificateError> {
+        Ok(match stated {
+            Stated::Stable { boxes } => {
+                let stable = |one: StatedBox| {
+                    let (panels, delays) = (panels(one.panels)?, panels(one.delays)?);
+                    Ok(StableBox { member: one.member, panels, delays })
+                };
+                Claim::Stable(boxes.into_iter().map(stable).collect::<Result<_, CertificateError>>()?)
+            }
+            Stated::Unstable { of_box, member } => Claim::Unstable(Member { of_box, variables: member }),
+            Stated::Limited { closed_loop, side, limit, band, ratio, boxes } => Claim::Limited {
+                limited: limited(&closed_loop, &side, limit, &band)?,
+                ratio,
+                boxes: boxes.into_iter().map(panels).collect::<Result<_, _>>()?,
+            },
+            Stated::Reached { closed_loop, side, limit, band, ratio, frequency, of_box, member } => {
+                Claim::Reached {
+                    limited: limited(&closed_loop, &side, limit, &band)?,
+                    ratio,
+                    frequency_rad_per_s: frequency.value()?,
+                    member: Member { of_box, variables: member },
+                }
+            }
+        })
+    }
+}
