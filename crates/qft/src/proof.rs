@@ -82,8 +82,6 @@ pub enum NotProven {
     Measured,
     /// The loop is sampled.
     Sampled,
-    /// Dead time turns too far below the frequencies at which the loop has no gain, or stands within controller, prefilter or sensor.
-    DeadTime,
     /// The load's velocity is fed forward.
     RateFedForward,
     /// Waves travel in the plant, which has no polynomials.

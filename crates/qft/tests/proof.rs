@@ -364,3 +364,60 @@ fn the_peak_of_a_second_order_loop_is_enclosed() {
     assert!(own.least_db.unwrap() <= peak_db + 1e-9 && peak_db <= own.most_db.unwrap());
     assert!(own.most_db.unwrap() - own.least_db.unwrap() < 0.0021);
 }
+
+/// Where parameters move together, a nominal plant beside their line belongs to the family all the same.
+#[test]
+fn a_plant_beside_the_box_is_in_the_proof() {
+    let parameter =
+        |name: &str, nominal| UncertainParameter { name: name.into(), nominal, minimum: 1.0, maximum: 2.0 };
+    let plant =
+        UncertainPlant::record(vec![parameter("a", 1.0), parameter("b", 2.0)], |p| PlantCoefficients {
+            // the gain is one where both are equal, and nominally 3
+            command: RationalCoefficients {
+                numerator: vec![p[1] + p[1] - p[0]],
+                denominator: vec![p[0], 0.0.into()],
+            },
+            disturbance: None,
+            dead_time_s: 0.0.into(),
+            rate: None,
+        });
+    let spacing = vec![Spacing::Linear; 2];
+    let together = Coordinate { parameters: vec![0, 1], opposed: vec![], spacing, points: 2 };
+    let family = UncertainFamily::new(plant.unwrap(), vec![together], vec![], Extent::Box).unwrap();
+    let family = Family::Uncertain(family);
+    let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap();
+    // |P S| = |g/(j w + g)| at w = 1: 1/sqrt 2 on the line, 3/sqrt 10 beside it
+    let specifications = [Specification {
+        requirement: Requirement::PlantInputDisturbance(Limit::Constant(0.8)),
+        frequencies_rad_per_s: vec![1.0],
+        band_rad_per_s: [1.0, 10.0],
+    }];
+    let problem = problem(&family, &compensation, &specifications);
+    let found = audit(&problem, &mut unwatched).unwrap();
+    let proof = prove(&problem, &found, ProofOptions::default(), &mut unwatched).unwrap();
+    assert_eq!(proof.specifications[0].standing, Standing::Refuted);
+    let reached = 0.8 * phea_dynamics::portable::pow(10.0, proof.specifications[0].least_db.unwrap() / 20.0);
+    assert!((reached - 3.0 / 10.0_f64.sqrt()).abs() < 1e-6, "{reached}");
+    assert_eq!(proof.certificate.unwrap().plant.boxes.len(), 2);
+}
+
+/// What a checker computes with must not run over: powers beyond a byte, binomials beyond a double, division by nothing.
+#[test]
+fn a_certificate_that_overflows_is_rejected() {
+    let genuine = thesis(0.0).certificate.unwrap();
+    let rejects = |change: &dyn Fn(&mut Certificate)| {
+        let mut other = genuine.clone();
+        change(&mut other);
+        check(&other).is_err()
+    };
+    assert!(rejects(&|other| other.prefilter.denominator = vec![0.0]));
+    assert!(rejects(&|other| other.claims.clear()));
+    assert!(rejects(&|other| {
+        if let Some(Claim::Limited { limited, .. }) =
+            other.claims.iter_mut().find(|claim| matches!(claim, Claim::Limited { .. }))
+        {
+            limited.limit.numerator = vec![1.0; 1100];
+            limited.limit.denominator = vec![1.0; 1100];
+        }
+    }));
+}

@@ -101,8 +101,8 @@ fn product(a: f64, b: f64) -> [Rounded; 2] {
     }
     let value = a * b;
     let error = a.mul_add(b, -value);
-    // below the range of numbers the error is lost as well
-    if value.abs() < f64::MIN_POSITIVE / f64::EPSILON {
+    // near the least numbers the error is lost as well
+    if value.abs() < 16.0 * f64::MIN_POSITIVE / f64::EPSILON {
         return [Rounded { value, error: -1.0 }, Rounded { value, error: 1.0 }];
     }
     [Rounded { value, error }; 2]
@@ -165,9 +165,13 @@ impl Div for Interval {
         let exact = |quotient: f64| quotient == 0.0 && self.low == 0.0 && self.high == 0.0;
         let low = quotients.iter().copied().fold(f64::INFINITY, f64::min);
         let high = quotients.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        // where the signs of both are known, zero is an end whatever underflows
+        let (positive, negative) = (other.low > 0.0, other.high < 0.0);
+        let not_below = positive && self.low >= 0.0 || negative && self.high <= 0.0;
+        let not_above = positive && self.high <= 0.0 || negative && self.low >= 0.0;
         Interval::new(
-            if exact(low) || low == 0.0 && self.low >= 0.0 { low } else { low.next_down() },
-            if exact(high) || high == 0.0 && self.high <= 0.0 { high } else { high.next_up() },
+            if exact(low) || low == 0.0 && not_below { low } else { low.next_down() },
+            if exact(high) || high == 0.0 && not_above { high } else { high.next_up() },
         )
     }
 }
@@ -254,6 +258,8 @@ mod tests {
         assert_eq!((x * Interval::from(0.1)).low(), 0.0);
         assert_eq!((x / Interval::from(0.1)).low(), 0.0);
         assert_eq!(Interval::new(-0.3, 0.1).square().low(), 0.0);
+        let underflows = Interval::new(0.0, 1e-320) / Interval::new(-1e10, -1e9);
+        assert!(underflows.low() < 0.0 && underflows.high() == 0.0);
         assert_eq!(Interval::new(-1.0, 2.0).times(-3.0), Interval::new(-6.0, 3.0));
         assert!(x.times(0.1) == x * Interval::from(0.1) && x.times(-0.1) == x * Interval::from(-0.1));
         assert_eq!(Interval::from(0.25) + Interval::from(0.5), Interval::from(0.75));

@@ -46,6 +46,8 @@ fn rest_on(view: &mut ProjectAudit, proof: Proof, unproven: Verdict) {
     let audit = &mut view.audit;
     let stability = &mut audit.stability;
     let judged = |standing: &Standing, searched: Verdict, evidence: Evidence| match standing {
+        // a violation that the search has shown by a plant and a frequency stands
+        Standing::Proven if searched == Verdict::Violated => (searched, evidence),
         Standing::Proven => (Verdict::Met, Evidence::Proof),
         Standing::Refuted => (Verdict::Violated, Evidence::Proof),
         Standing::NotProven(_) if searched == Verdict::Met => (unproven, evidence),
@@ -106,9 +108,6 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
             "the plants were measured, and between two of them nothing can be claimed".into()
         }
         NotProven::Sampled => "the loop is sampled, which the prover does not yet cover".into(),
-        NotProven::DeadTime => {
-            "dead time turns further than the prover follows it, or stands within the controller".into()
-        }
         NotProven::RateFedForward => {
             "the load's velocity is fed forward, which the prover does not yet cover".into()
         }

@@ -37,8 +37,11 @@ pub fn evidence_key(evidence: Evidence) -> &'static str {
 }
 
 /// What a verdict rests on, in a sentence.
-pub fn evidence_sentence(evidence: Evidence, one_plant: bool) -> &'static str {
+pub fn evidence_sentence(evidence: Evidence, verdict: Verdict, one_plant: bool) -> &'static str {
     match evidence {
+        Evidence::Proof if verdict == Verdict::Violated => {
+            "Refuted by a plant of the box and a frequency of the band, which can be checked again."
+        }
         Evidence::Search if one_plant => {
             "The plant was looked at over the whole band, between the frequencies of any grid too; a search is no proof."
         }

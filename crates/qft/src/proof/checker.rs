@@ -30,6 +30,9 @@ pub enum Rejection {
     /// A number that is not finite, a band without width, a ratio or frequency that is negative.
     #[error("{0} is not a number that it can be")]
     Number(&'static str),
+    /// A certificate of nothing.
+    #[error("the certificate makes no claim")]
+    NoClaim,
     /// Another number of boxes than the family has.
     #[error("it does not speak of every box of the family")]
     Boxes,
@@ -61,11 +64,14 @@ pub enum Rejection {
     Point,
 }
 
-/// Checks every claim.
+/// Checks every claim, of which there must be one.
 ///
 /// # Errors
 /// [`Rejection`] with the number of the claim, from 1, that is not shown.
 pub fn check(certificate: &Certificate) -> Result<(), (usize, Rejection)> {
+    if certificate.claims.is_empty() {
+        return Err((1, Rejection::NoClaim));
+    }
     let claims = certificate.claims.iter().enumerate();
     claims
         .map(|(index, claim)| (index + 1, check_claim(certificate, claim)))
@@ -99,7 +105,7 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
             check_ratio(limited, *ratio)?;
             check_boxes(certificate, boxes.len())?;
             for (of_box, panels) in boxes.iter().enumerate() {
-                let around = Loop::over_box(certificate, of_box).ok_or(Rejection::NoSuchLoop)?;
+                let around = sound(Loop::over_box(certificate, of_box))?;
                 let claimed = around.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
                 check_panels(&claimed, variables, limited.band_rad_per_s, panels)?;
             }
@@ -126,7 +132,7 @@ fn check_stable_box(certificate: &Certificate, member: &Member, one: &StableBox)
     if certificate.plant.is_late() {
         check_panels(&at.stability_while_delayed(), 1, WHOLE, &one.delays)?;
     }
-    let around = Loop::over_box(certificate, member.of_box).ok_or(Rejection::NoSuchLoop)?;
+    let around = sound(Loop::over_box(certificate, member.of_box))?;
     check_panels(&around.stability(), certificate.plant.variables, WHOLE, &one.panels)
 }
 
@@ -136,7 +142,11 @@ fn at(certificate: &Certificate, member: &Member) -> Result<Loop<Interval>, Reje
     if !within || member.variables.len() != certificate.plant.variables {
         return Err(Rejection::Number("a variable of a plant"));
     }
-    Loop::at(certificate, member).ok_or(Rejection::NoSuchLoop)
+    sound(Loop::at(certificate, member))
+}
+
+fn sound(around: Option<Loop<Interval>>) -> Result<Loop<Interval>, Rejection> {
+    around.filter(Loop::has_denominators).ok_or(Rejection::NoSuchLoop)
 }
 
 /// The parameters are finite and moved by variables that exist, so that every box is a box; nothing is late by less than nothing.
@@ -163,7 +173,10 @@ fn check_boxes(certificate: &Certificate, shown: usize) -> Result<(), Rejection>
 
 fn check_ratio(limited: &Limited, ratio: f64) -> Result<(), Rejection> {
     let [from, to] = limited.band_rad_per_s;
-    match ratio.is_finite() && ratio > 0.0 && from >= 0.0 && from < to {
+    let has_limit = [&limited.limit.numerator, &limited.limit.denominator]
+        .iter()
+        .all(|coefficients| coefficients.iter().any(|coefficient| *coefficient != 0.0));
+    match ratio.is_finite() && ratio > 0.0 && from >= 0.0 && from < to && has_limit {
         true => Ok(()),
         false => Err(Rejection::Number("a ratio or the end of a band")),
     }
@@ -256,5 +269,5 @@ fn reaches(claimed: &Claimed<Interval>, frequency_rad_per_s: f64) -> bool {
     let Some([ur, ui, vr, vi, rest]) = points.points().first() else { return false };
     // a remainder makes |U| greater and |V| less by at most so much
     let [u, v] = [(ur.square() + ui.square()).sqrt() + *rest, (vr.square() + vi.square()).sqrt() - *rest];
-    v.low() >= u.high()
+    v.low() > 0.0 && v.low() >= u.high()
 }

@@ -20,6 +20,9 @@ use super::dead_time::DeadTime;
 use super::polynomial::{Decimal, InS, Polynomial, expanded};
 use crate::specification::ClosedLoop;
 
+/// The greatest exponent of a variable in a dead time, of which powers are taken.
+const DEAD_TIME_EXPONENT_MAXIMUM: u8 = 4;
+
 /// A loop in polynomials of s, over the box or at one plant.
 #[derive(Clone, Debug)]
 pub(crate) struct Loop<S> {
@@ -107,7 +110,7 @@ impl<S: Decimal> Loop<S> {
         }
         let mut dead_time = Polynomial::number(plant.delay_s);
         if plant.has_dead_time {
-            dead_time = dead_time.plus(&left.next()?);
+            dead_time = dead_time.plus(&left.next()?).up_to(DEAD_TIME_EXPONENT_MAXIMUM)?;
         }
         let mut parts = parts.into_iter();
         let (numerator, denominator) = (parts.next()?, parts.next()?);
@@ -129,6 +132,13 @@ impl<S: Decimal> Loop<S> {
             sensor: quotient(&certificate.sensor),
             dead_time: DeadTime { value: dead_time, terms: plant.dead_time_terms },
         })
+    }
+
+    /// Whether nothing is divided by zero.
+    pub(crate) fn has_denominators(&self) -> bool {
+        let quotients = [&self.feedback, &self.prefilter, &self.sensor].map(|[_, under]| under);
+        let own = self.disturbance.iter().map(|[_, under]| under).chain([&self.denominator]);
+        quotients.into_iter().chain(own).all(|under| under.degree().is_some())
     }
 
     /// c and n.

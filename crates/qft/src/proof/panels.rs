@@ -37,7 +37,7 @@ pub(super) fn walk_band(
             walk(claimed, variables, Range { from, to, late }, effort, &mut *watch)
         };
         let found = match ends(&claimed.dead_time) {
-            [_, 0.0] => over(Late::Not, effort)?,
+            _ if claimed.dead_time.value.is_zero() => over(Late::Not, effort)?,
             _ if to.is_infinite() => over(Late::Less, effort)?,
             dead_times => match any(&mut over)? {
                 Some(found) => found,

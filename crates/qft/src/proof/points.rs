@@ -176,11 +176,11 @@ impl<S: Decimal> Points<S> {
     fn bring_to_bernstein(&mut self, axis: usize) {
         let degree = self.degrees[axis];
         self.for_lines(axis, |line, at| {
-            let mut binomial = 1.0;
+            let mut binomial = S::from(1.0);
             for place in 0..=degree {
-                let share = S::from(1.0) / S::from(binomial);
+                let share = S::from(1.0) / binomial;
                 line[at(place)] = line[at(place)].map(|part| part * share);
-                binomial = binomial * (degree - place) as f64 / (place + 1) as f64;
+                binomial = binomial.times((degree - place) as f64) / S::from((place + 1) as f64);
             }
             for step in 0..degree {
                 for place in (step + 1..=degree).rev() {

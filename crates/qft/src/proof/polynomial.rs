@@ -24,16 +24,10 @@ impl Decimal for f64 {
     }
 }
 
-/// Largest integer up to which all are binary numbers.
-const EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
-
 impl Decimal for Interval {
-    /// The shortest decimals that read back as a number are nearer to it than its neighbours are; an integer is exact.
+    /// Decimals that read as a number are nearer to it than its neighbours are; zero is zero.
     fn decimal(value: f64) -> Interval {
-        if value == value.trunc() && value.abs() <= EXACT_INTEGER {
-            return Interval::from(value);
-        }
-        Interval::new(value.next_down(), value.next_up())
+        if value == 0.0 { Interval::from(0.0) } else { Interval::new(value.next_down(), value.next_up()) }
     }
 
     fn cosine_and_sine(angle: f64) -> [Interval; 2] {
@@ -114,10 +108,14 @@ impl<S: Decimal> Polynomial<S> {
         let products = self.terms.iter().flat_map(|(one, a)| {
             other.terms.iter().map(|(another, b)| {
                 let mut exponents = *one;
+                let mut fits = true;
                 for (slot, exponent) in exponents.iter_mut().zip(another) {
+                    fits &= slot.checked_add(*exponent).is_some();
                     *slot = slot.saturating_add(*exponent);
                 }
-                (exponents, *a * *b)
+                // a power that has no place is no power of this polynomial: nothing is known of the sum
+                let product = if fits { *a * *b } else { S::from(f64::NAN) };
+                (exponents, product)
             })
         });
         Polynomial::collected(products.collect())
@@ -136,9 +134,9 @@ impl<S: Decimal> Polynomial<S> {
         Polynomial { terms }
     }
 
-    /// Itself, unless an exponent is too great.
-    fn within_bounds(self) -> Option<Polynomial<S>> {
-        let fits = self.terms.iter().flat_map(|(exponents, _)| exponents).all(|one| *one <= EXPONENT_MAXIMUM);
+    /// Itself, unless an exponent is greater than this.
+    pub(crate) fn up_to(self, greatest: u8) -> Option<Polynomial<S>> {
+        let fits = self.terms.iter().flat_map(|(exponents, _)| exponents).all(|one| *one <= greatest);
         fits.then_some(self)
     }
 }
@@ -162,7 +160,7 @@ pub(crate) fn expanded<S: Decimal>(
                 of(x).zip(of(y)).map(|(x, y)| x.plus(&y.scaled(minus_one)))
             }
             Node::Binary(Binary::Multiply, x, y) => {
-                of(x).zip(of(y)).and_then(|(x, y)| x.times(y).within_bounds())
+                of(x).zip(of(y)).and_then(|(x, y)| x.times(y).up_to(EXPONENT_MAXIMUM))
             }
             Node::Binary(Binary::Divide, x, y) => of(x).zip(of(y)).and_then(|(x, y)| {
                 let divisor = y.as_constant()?;

@@ -254,6 +254,8 @@ impl Prover<'_> {
             _ => Standing::NotProven(open.map_or(NotProven::Unbounded, NotProven::Budget)),
         };
         let values = values_of(&self.certificate.plant, &at.member);
+        // a plant of a larger box need not be one of the family
+        let is_reached = is_reached && !self.larger;
         let worst = is_reached.then(|| WorstCase {
             margin_db: -db(least),
             frequency_rad_per_s: at.frequency_rad_per_s,

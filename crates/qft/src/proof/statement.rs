@@ -101,9 +101,29 @@ fn boxes(family: &UncertainFamily) -> Result<(Vec<Vec<Segment>>, usize, bool), N
         variables += if together { 1 } else { coordinate.parameters.len() };
     }
     match variables <= VARIABLES_MAXIMUM {
-        true => Ok((vec![segments], variables, larger)),
+        true => {
+            let beside = family.members().iter().filter(|values| !is_within(&segments, variables, values));
+            let beside: Vec<Vec<Segment>> = beside.map(|values| fixed(values)).collect();
+            Ok((std::iter::once(segments).chain(beside).collect(), variables, larger))
+        }
         false => Err(NotProven::TooManyVariables),
     }
+}
+
+/// By how much a plant may stand beside the box through rounding, in parts of the range of a parameter.
+const BESIDE: f64 = 1e-9;
+
+/// Whether a plant of a family belongs to the box, which one that is named need not do where parameters move together.
+fn is_within(segments: &[Segment], variables: usize, values: &[f64]) -> bool {
+    let mut shares = vec![None; variables];
+    segments.iter().zip(values).all(|(one, value)| match one.variable.and_then(|own| shares.get_mut(own)) {
+        None => one.low == *value,
+        Some(slot) => {
+            let own = (value - one.low) / (one.high - one.low);
+            let known: f64 = *slot.get_or_insert(own);
+            (own - known).abs() <= BESIDE && (-BESIDE..=1.0 + BESIDE).contains(&own)
+        }
+    })
 }
 
 /// Whether the parameters of a coordinate move along a straight line, as one alone always does.
@@ -111,12 +131,15 @@ fn moves_straight(coordinate: &Coordinate) -> bool {
     coordinate.parameters.len() == 1 || coordinate.spacing.iter().all(|spacing| *spacing == Spacing::Linear)
 }
 
-/// The plant of a family with these values: of listed plants that which has them, of a box the one nearest to them.
+/// The plant of a family with these values: of plants that are listed the one that has them, else that of the first box nearest to them.
 pub(super) fn member_of(plant: &CertifiedPlant, values: &[f64]) -> Option<Member> {
-    let is_listed = |one: &Vec<Segment>| one.iter().zip(values).all(|(segment, value)| segment.low == *value);
-    let of_box = match plant.boxes.as_slice() {
-        [_] => 0,
-        boxes => boxes.iter().position(is_listed)?,
+    let is_listed = |one: &Vec<Segment>| {
+        one.iter().zip(values).all(|(segment, value)| segment.variable.is_none() && segment.low == *value)
+    };
+    let of_box = match plant.boxes.iter().position(is_listed) {
+        Some(listed) => listed,
+        None if plant.variables > 0 => 0,
+        None => return None,
     };
     let mut variables = vec![0.0; plant.variables];
     for (one, value) in plant.boxes.get(of_box)?.iter().zip(values) {

@@ -204,7 +204,7 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
     let mut sentences = vec![
         view.family_sentence(),
         view.loop_sentence(),
-        evidence_sentence(audit.evidence, view.names.headings().is_empty()).to_string(),
+        evidence_sentence(audit.evidence, audit.verdict, view.names.headings().is_empty()).to_string(),
         format!("A margin of -{} dB still counts as met.", significant(audit.tolerance_db, 1)),
     ];
     sentences.extend(remarks(view));

@@ -15,6 +15,7 @@ const FORMAT: &str = "phea-certificate";
 const VERSION: u32 = 1;
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct File {
     format: String,
     version: u32,
@@ -51,6 +52,7 @@ enum Operation {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Plant {
     numerator: Vec<usize>,
     denominator: Vec<usize>,
@@ -63,6 +65,7 @@ struct Plant {
 }
 
 #[derive(Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Rational {
     numerator: Vec<f64>,
     denominator: Vec<f64>,
@@ -89,6 +92,18 @@ pub enum CertificateError {
 
 fn meaning(text: impl Into<String>) -> CertificateError {
     CertificateError::Meaning(text.into())
+}
+
+/// A number of the text that is not zero and would be read as zero.
+fn vanishing(text: &str) -> Option<&str> {
+    // between quotation marks stand words
+    let outside = text.split('"').step_by(2);
+    let mut tokens = outside.flat_map(|part| part.split(|sign: char| "[]{}:, \n\r\t".contains(sign)));
+    tokens.find(|token| {
+        let digits = token.split(['e', 'E']).next().unwrap_or_default();
+        let is_zero = token.parse::<f64>().is_ok_and(|value| value == 0.0);
+        is_zero && digits.contains(|digit: char| ('1'..='9').contains(&digit))
+    })
 }
 
 impl File {
@@ -134,6 +149,12 @@ impl File {
 
     pub(super) fn read(text: &str) -> Result<File, CertificateError> {
         let file: File = serde_json::from_str(text)?;
+        if let Some(number) = vanishing(text) {
+            return Err(meaning(format!("`{number}` is less than any number that can be computed with")));
+        }
+        if file.plant.disturbance_numerator.is_some() != file.plant.disturbance_denominator.is_some() {
+            return Err(meaning("the disturbance has a numerator or a denominator alone"));
+        }
         match file.format == FORMAT && file.version == VERSION {
             true => Ok(file),
             false => Err(CertificateError::Version { format: file.format, version: file.version }),
