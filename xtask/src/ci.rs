@@ -144,9 +144,9 @@ fn built_tests(root: &Path, begun: Option<&mut comparisons::Begun>) -> Outcome {
     }
 }
 
-/// Builds all tests and all that the comparisons ask.
+/// Builds all tests, and the programs and examples that the comparisons ask: those only where no kind of target is named.
 fn build(root: &Path) -> Outcome {
-    for_all(root, &["test", "--workspace", "--tests", "--examples", "--no-run"], &[])
+    for_all(root, &["test", "--workspace", "--no-run"], &[])
 }
 
 /// What leaves out the package that links CVODE.
