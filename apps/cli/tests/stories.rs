@@ -3,6 +3,7 @@
 //! Each story has a folder of its own, with a copy of the example projects in it, so that what a command writes disturbs
 //! neither the repository nor another story. `phea` in a story is the binary that was just built.
 
+use std::env;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -15,11 +16,20 @@ fn stories() {
     assert!(stories.len() >= 10, "{stories:?}");
     let cases = trycmd::TestCases::new();
     cases.register_bin("phea", trycmd::schema::Bin::Path(env!("CARGO_BIN_EXE_phea").into()));
+    // one story changes a digit of a file
+    if let Some(sed) = program("sed") {
+        cases.register_bin("sed", trycmd::schema::Bin::Path(sed));
+    }
     cases.env("NO_COLOR", "1");
     cases.env("PHEA_PROGRESS", "never");
     for story in stories {
         cases.case(story);
     }
+}
+
+/// Where a program of the system stands.
+fn program(name: &str) -> Option<PathBuf> {
+    env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(name)).find(|path| path.is_file())
 }
 
 /// Every story with the folder it runs in: `NAME.in` is what it starts from, `NAME.out` makes it run in a copy of that.
