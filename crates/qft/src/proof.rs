@@ -16,23 +16,30 @@
 //! A loop is stable where n + c, the numerator of 1 + L, has no zero on the imaginary axis nor at infinity for any plant of the box, and the
 //! roots of one plant lie to its left: roots move continuously, and none can cross.
 
+mod bounds;
 mod certificate;
 mod checker;
 mod claimed;
+mod count;
 mod dead_time;
 mod direction;
 mod hurwitz;
+mod images;
+mod over_panel;
 mod panels;
+mod part;
+mod patch;
 mod points;
 mod polynomial;
 mod prove;
+mod sampling;
 mod statement;
 mod supremum;
 mod walk;
 
 pub use certificate::{
-    Certificate, CertifiedPlant, Claim, LEAF, Late, Limited, Member, Panel, Quotient, Segment, Side,
-    StableBox,
+    Bound, Certificate, CertifiedPlant, Claim, Count, LEAF, Late, Law, Limited, Member, Panel, Quotient,
+    Sampling, Sections, Segment, Side, StableBox,
 };
 pub use checker::{Rejection, check};
 pub use prove::{ProofOptions, prove};
@@ -80,8 +87,10 @@ pub enum Standing {
 pub enum NotProven {
     /// The plants were measured: between two of them nothing can be claimed.
     Measured,
-    /// The loop is sampled.
-    Sampled,
+    /// The loop is sampled, and no bound was found on the images of the plant: its response does not fall with the frequency, or too late.
+    Images,
+    /// The band lies beyond half of the sampling frequency.
+    BeyondSampling,
     /// The load's velocity is fed forward.
     RateFedForward,
     /// Waves travel in the plant, which has no polynomials.

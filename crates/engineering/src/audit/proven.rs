@@ -107,7 +107,10 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
         NotProven::Measured => {
             "the plants were measured, and between two of them nothing can be claimed".into()
         }
-        NotProven::Sampled => "the loop is sampled, which the prover does not yet cover".into(),
+        NotProven::Images => {
+            "the loop is sampled, and the response of the plant could not be bounded beyond the images".into()
+        }
+        NotProven::BeyondSampling => "its band lies beyond half of the sampling frequency".into(),
         NotProven::RateFedForward => {
             "the load's velocity is fed forward, which the prover does not yet cover".into()
         }

@@ -12,11 +12,13 @@ pub struct Certificate {
     /// The plant, as recorded operations on its parameters.
     pub plant: CertifiedPlant,
     /// G.
-    pub feedback: Quotient,
+    pub feedback: Law,
     /// F.
-    pub prefilter: Quotient,
+    pub prefilter: Law,
     /// H.
     pub sensor: Quotient,
+    /// How the loop samples, where it does.
+    pub sampling: Option<Sampling>,
     /// What is claimed.
     pub claims: Vec<Claim>,
 }
@@ -30,7 +32,7 @@ impl Certificate {
                     boxes.iter().flat_map(|one| one.panels.iter().chain(&one.delays)).map(Panel::leaves).sum()
                 }
                 Claim::Limited { boxes, .. } => boxes.iter().flatten().map(Panel::leaves).sum(),
-                Claim::Unstable(_) | Claim::Reached { .. } => 0,
+                Claim::Unstable { .. } | Claim::Reached { .. } => 0,
             }
         };
         self.claims.iter().map(of_claim).sum()
@@ -97,6 +99,31 @@ impl Quotient {
     pub fn constant(value: f64) -> Quotient {
         Quotient { numerator: vec![value], denominator: vec![1.0] }
     }
+
+    /// Whether it is the number one.
+    pub fn is_one(&self) -> bool {
+        *self == Quotient::constant(1.0)
+    }
+}
+
+/// A controller or prefilter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// In s.
+    Continuous(Quotient),
+    /// In z.
+    Sampled(Sections),
+}
+
+/// A product of quotients of polynomials in z - 1, of degree two at most, highest power first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sections {
+    /// What multiplies them.
+    pub gain: f64,
+    /// Numerators.
+    pub numerator: Vec<Vec<f64>>,
+    /// Denominators.
+    pub denominator: Vec<Vec<f64>>,
 }
 
 /// One claim.
@@ -107,8 +134,13 @@ pub enum Claim {
         /// Of each box.
         Vec<StableBox>,
     ),
-    /// The plant of these variables has a pole without negative real part in the loop.
-    Unstable(Member),
+    /// With this plant the loop has a pole on the boundary of stability or beyond it.
+    Unstable {
+        /// The plant.
+        member: Member,
+        /// Of a sampled loop.
+        count: Option<Count>,
+    },
     /// A closed loop is within `ratio` times its limit.
     Limited {
         /// What is limited.
@@ -138,8 +170,41 @@ pub struct StableBox {
     pub member: Vec<f64>,
     /// From zero to infinity without a gap: no pole on the boundary, for every plant of the box.
     pub panels: Vec<Panel>,
-    /// The same for this plant alone, while its dead time grows from zero to what it is; empty without dead time.
+    /// The same for this plant alone, while its dead time grows from zero to what it is; empty without dead time and of a sampled loop.
     pub delays: Vec<Panel>,
+    /// Of a sampled loop, which needs no way from a loop without dead time.
+    pub count: Option<Count>,
+}
+
+/// How many poles of a sampled loop lie outside of the unit circle with one plant, from how often its characteristic function turns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Count {
+    /// The characteristic function f along the unit circle, up to pi/T.
+    pub characteristic: Vec<Panel>,
+    /// The denominator of plant and sensor without its zeros at s = 0, up to pi/T.
+    pub denominator: Vec<Panel>,
+    /// The same from there to infinity.
+    pub beyond: Vec<Panel>,
+}
+
+/// How a loop samples: the plant behind a zero-order hold, its response that of its images at w + 2 pi k/T together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sampling {
+    /// T, s.
+    pub sample_time_s: f64,
+    /// So many images to either side are taken one by one.
+    pub images: usize,
+    /// For each box a bound on the others: of the plant with its sensor and, where that is not one, of the plant alone.
+    pub bounds: Vec<Vec<Bound>>,
+}
+
+/// |P(jw)| <= `ratio`/w^m from a frequency below those of all images that are not taken one by one, m being the relative degree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bound {
+    /// In the units of P and rad/s.
+    pub ratio: f64,
+    /// From there to infinity.
+    pub panels: Vec<Panel>,
 }
 
 /// A plant of a family.

@@ -8,12 +8,16 @@
 
 use phea_dynamics::scalar::{Interval, Scalar};
 
-use super::certificate::{Certificate, Claim, LEAF, Late, Limited, Member, Panel, Segment, StableBox};
+use super::certificate::{Certificate, Claim, Count, LEAF, Late, Limited, Member, Panel, Segment, StableBox};
 use super::claimed::{Claimed, Loop};
+use super::count::poles_outside;
 use super::dead_time::ends;
 use super::hurwitz::{Roots, roots_of};
-use super::points::{Point, Points, Range};
+use super::images::Images;
+use super::patch::{Patch, at_point};
+use super::points::{Point, Range};
 use super::polynomial::VARIABLES_MAXIMUM;
+use super::sampling::{check_bounds, check_sampling, pi_over_t, poles_of_law, prefilter_is_stable};
 
 /// Halvings on the way to a leaf at most: no proof needs as many.
 const DEPTH_MAXIMUM: usize = 256;
@@ -42,6 +46,9 @@ pub enum Rejection {
     /// Panels with a gap, or short of an end.
     #[error("the panels do not cover the band: there is a gap at {0} rad/s")]
     Gap(f64),
+    /// A panel beyond the frequencies at which a sampled loop is known.
+    #[error("a panel reaches to {0} rad/s, beyond half of the sampling frequency")]
+    Beyond(f64),
     /// Dead time taken where there is none, or not as it can be on such a panel.
     #[error("dead time is not taken as it is on the panel from {0} rad/s")]
     Late(f64),
@@ -84,6 +91,7 @@ pub fn check(certificate: &Certificate) -> Result<(), (usize, Rejection)> {
 /// [`Rejection`].
 pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<(), Rejection> {
     check_numbers(certificate)?;
+    check_sampling(certificate)?;
     let variables = certificate.plant.variables;
     match claim {
         Claim::Stable(boxes) => {
@@ -94,18 +102,13 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
             }
             Ok(())
         }
-        Claim::Unstable(member) => {
-            let at = at(certificate, member)?;
-            let found = [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of);
-            let is_shown = found[1] == Roots::SomeNotLeft
-                || (found[0] == Roots::SomeNotLeft && !certificate.plant.is_late());
-            if is_shown { Ok(()) } else { Err(Rejection::Poles) }
-        }
+        Claim::Unstable { member, count } => check_unstable(certificate, member, count.as_ref()),
         Claim::Limited { limited, ratio, boxes } => {
             check_ratio(limited, *ratio)?;
             check_boxes(certificate, boxes.len())?;
             for (of_box, panels) in boxes.iter().enumerate() {
                 let around = sound(Loop::over_box(certificate, of_box))?;
+                check_bounds(certificate, of_box, &around)?;
                 let claimed = around.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
                 check_panels(&claimed, variables, limited.band_rad_per_s, panels)?;
             }
@@ -117,6 +120,7 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
             if !(from <= *frequency_rad_per_s && *frequency_rad_per_s <= to) {
                 return Err(Rejection::Number("a frequency"));
             }
+            check_bounds_of(certificate, member.of_box)?;
             let claimed = at(certificate, member)?.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
             if reaches(&claimed, *frequency_rad_per_s) { Ok(()) } else { Err(Rejection::Point) }
         }
@@ -124,16 +128,72 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
 }
 
 fn check_stable_box(certificate: &Certificate, member: &Member, one: &StableBox) -> Result<(), Rejection> {
-    const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
+    let whole = stability_band(certificate);
     let at = at(certificate, member)?;
-    if [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of) != [Roots::AllLeft; 2] {
-        return Err(Rejection::Poles);
-    }
-    if certificate.plant.is_late() {
-        check_panels(&at.stability_while_delayed(), 1, WHOLE, &one.delays)?;
-    }
     let around = sound(Loop::over_box(certificate, member.of_box))?;
-    check_panels(&around.stability(), certificate.plant.variables, WHOLE, &one.panels)
+    check_bounds(certificate, member.of_box, &around)?;
+    match (&certificate.sampling, &one.count) {
+        (None, None) => {
+            if [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of) != [Roots::AllLeft; 2] {
+                return Err(Rejection::Poles);
+            }
+            if certificate.plant.is_late() {
+                check_panels(&at.stability_while_delayed(), 1, whole, &one.delays)?;
+            }
+        }
+        (Some(_), Some(count)) => {
+            let outside = counted(certificate, &at, count)?;
+            if outside != 0 || !prefilter_is_stable(certificate, &at) {
+                return Err(Rejection::Poles);
+            }
+        }
+        _ => return Err(Rejection::Poles),
+    }
+    check_panels(&around.stability(), certificate.plant.variables, whole, &one.panels)
+}
+
+/// From zero to infinity, or to pi/T.
+fn stability_band(certificate: &Certificate) -> [f64; 2] {
+    [0.0, if certificate.sampling.is_some() { f64::MAX } else { f64::INFINITY }]
+}
+
+/// Poles of a sampled loop outside of the unit circle with one plant.
+fn counted(certificate: &Certificate, at: &Loop<Interval>, count: &Count) -> Result<usize, Rejection> {
+    let pi_over_t = pi_over_t(certificate).ok_or(Rejection::Poles)?;
+    let (denominator, _) = at.denominator_claimed();
+    check_panels(&at.stability(), 0, stability_band(certificate), &count.characteristic)?;
+    let end = count.denominator.last().map_or(0.0, |panel| panel.to);
+    check_panels(&denominator, 0, [0.0, end], &count.denominator)?;
+    check_panels(&denominator, 0, [end, f64::INFINITY], &count.beyond)?;
+    let controller_poles = poles_of_law(&certificate.feedback);
+    poles_outside(at, controller_poles, count, pi_over_t).ok_or(Rejection::Poles)
+}
+
+fn check_unstable(
+    certificate: &Certificate,
+    member: &Member,
+    count: Option<&Count>,
+) -> Result<(), Rejection> {
+    let at = at(certificate, member)?;
+    let is_shown = match count {
+        None if certificate.sampling.is_some() => false,
+        None => {
+            let found = [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of);
+            found[1] == Roots::SomeNotLeft || (found[0] == Roots::SomeNotLeft && !certificate.plant.is_late())
+        }
+        Some(count) => {
+            check_bounds_of(certificate, member.of_box)?;
+            counted(certificate, &at, count)? > 0
+        }
+    };
+    if is_shown { Ok(()) } else { Err(Rejection::Poles) }
+}
+
+fn check_bounds_of(certificate: &Certificate, of_box: usize) -> Result<(), Rejection> {
+    if certificate.sampling.is_none() {
+        return Ok(());
+    }
+    check_bounds(certificate, of_box, &sound(Loop::over_box(certificate, of_box))?)
 }
 
 /// The loop of one plant, which belongs to the family.
@@ -182,7 +242,7 @@ fn check_ratio(limited: &Limited, ratio: f64) -> Result<(), Rejection> {
     }
 }
 
-fn check_panels(
+pub(super) fn check_panels(
     claimed: &Claimed<Interval>,
     variables: usize,
     [from, to]: [f64; 2],
@@ -192,6 +252,8 @@ fn check_panels(
         return Err(Rejection::Number("a dead time"));
     }
     let mut reached = from;
+    // the circle ends there, and the images are enclosed little beyond it
+    let circle = claimed.images.as_ref().map(Images::band_ends);
     for panel in panels {
         let is_panel = panel.from == reached && panel.to > panel.from;
         if !is_panel || (panel.to.is_infinite() && panel.from == 0.0) {
@@ -207,32 +269,36 @@ fn check_panels(
         if !fits {
             return Err(Rejection::Late(panel.from));
         }
+        if circle.is_some_and(|[_, greatest]| panel.to > greatest) {
+            return Err(Rejection::Beyond(panel.to));
+        }
         let range = Range { from: panel.from, to: panel.to, late: panel.late };
-        let whole = Points::over(claimed, variables, range).ok_or(Rejection::TooLarge)?;
+        let whole = Patch::over(claimed, variables, range).ok_or(Rejection::TooLarge)?;
         check_tree(whole, panel)?;
         reached = panel.to;
     }
-    if reached == to { Ok(()) } else { Err(Rejection::Gap(reached)) }
+    let is_covered = reached == to || (reached < to && circle.is_some_and(|[least, _]| reached >= least));
+    if is_covered { Ok(()) } else { Err(Rejection::Gap(reached)) }
 }
 
 /// Walks the tree; what is still to be walked waits in a list, the next one last.
-fn check_tree(whole: Points<Interval>, panel: &Panel) -> Result<(), Rejection> {
+fn check_tree(whole: Patch<Interval>, panel: &Panel) -> Result<(), Rejection> {
     let malformed = Rejection::Tree(panel.from);
     let mut bytes = panel.tree.iter().copied();
     let mut waiting = vec![whole];
     let mut leaf = 0;
-    while let Some(points) = waiting.pop() {
+    while let Some(patch) = waiting.pop() {
         match bytes.next() {
             Some(LEAF) => {
                 leaf += 1;
                 let mut number = || Some(f64::from(i16::from_be_bytes([bytes.next()?, bytes.next()?])));
                 let direction = number().zip(number()).ok_or(malformed.clone())?;
-                if !shows([direction.0, direction.1], points.points()) {
+                if !shows([direction.0, direction.1], patch.points().points()) {
                     return Err(Rejection::Leaf { leaf, from: panel.from });
                 }
             }
-            Some(axis) if usize::from(axis) < points.axes() && waiting.len() < DEPTH_MAXIMUM => {
-                let [lower, upper] = points.halves(usize::from(axis));
+            Some(axis) if usize::from(axis) < patch.axes() && waiting.len() < DEPTH_MAXIMUM => {
+                let [lower, upper] = patch.halves(usize::from(axis));
                 waiting.extend([upper, lower]);
             }
             _ => return Err(malformed),
@@ -254,20 +320,8 @@ fn shows([a, b]: [f64; 2], points: &[Point<Interval>]) -> bool {
 
 /// Whether |V| >= |U| at a frequency, or in the limit towards infinity, where dead time must not matter; coefficients are numbers.
 fn reaches(claimed: &Claimed<Interval>, frequency_rad_per_s: f64) -> bool {
-    // the first control point over a panel is the value where it begins
-    let range = match frequency_rad_per_s.is_finite() {
-        true => {
-            let dead_time = ends(&claimed.dead_time)[0];
-            let angle = 0.5 * frequency_rad_per_s * (dead_time.low() + dead_time.high());
-            let late = if claimed.dead_time.value.is_zero() { Late::Not } else { Late::Turns(angle) };
-            Range { from: frequency_rad_per_s, to: frequency_rad_per_s, late }
-        }
-        false if claimed.dead_time.value.is_zero() => Range { from: 1.0, to: f64::INFINITY, late: Late::Not },
-        false => Range { from: 1.0, to: f64::INFINITY, late: Late::Less },
-    };
-    let Some(points) = Points::over(claimed, 0, range) else { return false };
-    let Some([ur, ui, vr, vi, rest]) = points.points().first() else { return false };
-    // a remainder makes |U| greater and |V| less by at most so much
-    let [u, v] = [(ur.square() + ui.square()).sqrt() + *rest, (vr.square() + vi.square()).sqrt() - *rest];
-    v.low() > 0.0 && v.low() >= u.high()
+    if claimed.images.as_ref().is_some_and(|images| frequency_rad_per_s > images.band_ends()[0]) {
+        return false;
+    }
+    at_point(claimed, frequency_rad_per_s).is_some_and(|[u, v]| v.low() > 0.0 && v.low() >= u.high())
 }

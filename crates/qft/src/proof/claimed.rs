@@ -14,31 +14,42 @@
 //! ```
 //!
 //! |E| = 1 on the boundary of stability, so that it is dropped where it is a factor. Powers of s that divide both are dropped.
+//!
+//! In a sampled loop G and F are functions of z, and P is the plant behind its hold, the sum of its images:
+//!
+//! ```text
+//! P = hold E (N/D + R),   R = sum over k != 0 of w/w_k e^(-j (w_k - w) tau) N/D(j w_k),   w_k = w + 2 pi k/T
+//! ```
+//!
+//! with R' for N Hn/(D Hd). To N belongs hold, and to N E what R' D or, of the plant alone, R D adds: `images`.
 
-use super::certificate::{Certificate, Limited, Member, Quotient, Segment, Side};
+use super::certificate::{Certificate, Limited, Member, Segment, Side};
 use super::dead_time::DeadTime;
+use super::images::{Images, Which};
+use super::over_panel::{Complex, product, sum};
+use super::part::{OfSamples, Part, law, number, quotient};
 use super::polynomial::{Decimal, InS, Polynomial, expanded};
 use crate::specification::ClosedLoop;
 
 /// The greatest exponent of a variable in a dead time, of which powers are taken.
 const DEAD_TIME_EXPONENT_MAXIMUM: u8 = 4;
 
-/// A loop in polynomials of s, over the box or at one plant.
+/// By how much the panels of a sampled loop reach beyond pi/T, in parts of that.
+const BEYOND: f64 = 1e-9;
+
+/// A loop in polynomials of s and functions of the samples, over the box or at one plant.
 #[derive(Clone, Debug)]
 pub(crate) struct Loop<S> {
-    numerator: InS<S>,
-    denominator: InS<S>,
-    disturbance: Option<[InS<S>; 2]>,
+    numerator: Part<S>,
+    denominator: Part<S>,
+    disturbance: Option<[Part<S>; 2]>,
     /// Whether P and Pd have one denominator: the same operations.
     has_one_denominator: bool,
-    feedback: [InS<S>; 2],
-    prefilter: [InS<S>; 2],
-    sensor: [InS<S>; 2],
+    feedback: [Part<S>; 2],
+    prefilter: [Part<S>; 2],
+    sensor: [Part<S>; 2],
     dead_time: DeadTime<S>,
-}
-
-fn quotient<S: Decimal>(quotient: &Quotient) -> [InS<S>; 2] {
-    [&quotient.numerator, &quotient.denominator].map(|coefficients| InS::of_decimals(coefficients))
+    images: Option<Images<S>>,
 }
 
 /// The values of the parameters at one plant.
@@ -51,28 +62,56 @@ fn at_member<S: Decimal>(segments: &[Segment], variables: &[f64]) -> Vec<Polynom
     segments.iter().map(|one| Polynomial::constant(value(one))).collect()
 }
 
-/// U and V, each a part without dead time and one that E multiplies, at first as far as they depend on it.
+/// A sum of parts.
+pub(crate) type Sum<S> = Vec<Part<S>>;
+
+/// U and V, each what is without dead time, what E multiplies, and what E and the images of the plant multiply.
 #[derive(Clone, Debug)]
 pub(crate) struct Claimed<S> {
-    pub(crate) u: [InS<S>; 2],
-    pub(crate) v: [InS<S>; 2],
-    /// tau; nothing where there is none.
+    pub(crate) u: [Sum<S>; 3],
+    pub(crate) v: [Sum<S>; 3],
+    /// tau; nothing where there is none, and without the constant part that is in the functions of the samples.
     pub(crate) dead_time: DeadTime<S>,
+    pub(crate) images: Option<Images<S>>,
+    /// Which images those of U and of V are.
+    pub(crate) which: [Which; 2],
+}
+
+/// What is without dead time, what E multiplies, and what the images multiply.
+type Three<S> = [Sum<S>; 3];
+
+fn alone<S>(one: Part<S>) -> Three<S> {
+    [vec![one], vec![], vec![]]
+}
+
+fn each<S: Decimal>(of: Three<S>, change: impl Fn(&Part<S>) -> Part<S>) -> Three<S> {
+    of.map(|sum| sum.iter().map(&change).collect())
 }
 
 impl<S: Decimal> Claimed<S> {
-    fn of(u: [InS<S>; 2], v: [InS<S>; 2], dead_time: &DeadTime<S>) -> Claimed<S> {
-        let all = u.iter().chain(&v);
-        let common = all.filter_map(InS::powers_of_s).min().unwrap_or(0);
-        let without = |of: [InS<S>; 2]| of.map(|one| one.without_powers_of_s(common));
-        Claimed { u: without(u), v: without(v), dead_time: dead_time.clone() }.joined()
+    /// Of two polynomials.
+    pub(super) fn polynomials(u: InS<S>, v: InS<S>) -> Claimed<S> {
+        let alone = |of| alone(Part::of(of));
+        let dead_time = DeadTime { value: Polynomial::zero(), terms: 1 };
+        Claimed { u: alone(u), v: alone(v), dead_time, images: None, which: [Which::WithSensor; 2] }
+    }
+
+    /// Powers of s that divide all are dropped.
+    fn without_powers_of_s(self) -> Claimed<S> {
+        let all = self.u.iter().chain(&self.v).flatten();
+        let common = all.filter_map(|part| part.of_s.powers_of_s()).min().unwrap_or(0);
+        let without = |of: Three<S>| {
+            each(of, |part| Part { of_s: part.of_s.without_powers_of_s(common), ..part.clone() })
+        };
+        Claimed { u: without(self.u), v: without(self.v), ..self }
     }
 
     /// With E = 1 where there is no dead time.
     fn joined(mut self) -> Claimed<S> {
         if self.dead_time.value.is_zero() {
             for one in [&mut self.u, &mut self.v] {
-                *one = [one[0].plus(&one[1]), InS(vec![])];
+                let late = std::mem::take(&mut one[1]);
+                one[0] = added(std::mem::take(&mut one[0]), late);
             }
         }
         self
@@ -80,8 +119,88 @@ impl<S: Decimal> Claimed<S> {
 
     /// With U multiplied by a number.
     pub(crate) fn raised(&self, ratio: S) -> Claimed<S> {
-        Claimed { u: [0, 1].map(|part| self.u[part].scaled(ratio)), ..self.clone() }
+        Claimed { u: each(self.u.clone(), |part| part.scaled(ratio)), ..self.clone() }
     }
+
+    /// U at a frequency, of a loop with numbers as coefficients.
+    pub(super) fn value_of_u(&self, frequency: S) -> Option<Complex<S>> {
+        self.value(&self.u, self.which[0], frequency)
+    }
+
+    /// V at a frequency, of a loop with numbers as coefficients.
+    pub(super) fn value_of_v(&self, frequency: S) -> Option<Complex<S>> {
+        self.value(&self.v, self.which[1], frequency)
+    }
+
+    fn value(&self, [own, late, imaged]: &Three<S>, which: Which, frequency: S) -> Option<Complex<S>> {
+        let values = |parts: &[Part<S>]| {
+            let each = parts.iter().map(|part| part.value(frequency, self.sample_time_s()));
+            each.fold([S::from(0.0); 2], sum)
+        };
+        let mut behind = values(late);
+        if !imaged.is_empty() {
+            behind = sum(behind, product(self.images.as_ref()?.at(which, frequency)?, values(imaged)));
+        }
+        if !self.dead_time.value.is_zero() {
+            let [cosine, sine] = S::cosine_and_sine(frequency * self.dead_time.value.as_constant()?);
+            behind = product([cosine, -sine], behind);
+        }
+        Some(sum(values(own), behind))
+    }
+
+    /// The part of a band in which the loop has a response.
+    pub(super) fn band(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        [from, self.images.as_ref().map_or(to, |images| to.min(images.band_ends()[0]))]
+    }
+
+    /// What panels cover for that: a little more where a sampled loop ends, at pi/T.
+    pub(super) fn band_covered(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let [_, end] = self.band([from, to]);
+        let beyond = end * (1.0 + BEYOND);
+        let is_cut = self.images.is_some() && end < to;
+        [from, if is_cut { format!("{beyond:.9e}").parse().unwrap_or(beyond) } else { to }]
+    }
+
+    /// The direction of U, a polynomial with numbers as coefficients, towards infinity.
+    pub(super) fn direction_at_infinity(&self) -> Option<Complex<S>> {
+        let of = &self.u[0].first()?.of_s;
+        let degree = of.degree()?;
+        let (leading, zero) = (number(of.0.get(degree)?), S::from(0.0));
+        Some(match degree % 4 {
+            0 => [leading, zero],
+            1 => [zero, leading],
+            2 => [-leading, zero],
+            _ => [zero, -leading],
+        })
+    }
+
+    /// Polynomials in s of all parts.
+    pub(crate) fn of_s(&self) -> impl Iterator<Item = &InS<S>> {
+        self.u.iter().chain(&self.v).flatten().map(|part| &part.of_s)
+    }
+
+    /// The frequency times this is how far its functions of the samples turn, about, s.
+    pub(crate) fn turn_s(&self) -> f64 {
+        let late = self.u.iter().chain(&self.v).flatten().flat_map(|part| &part.of_samples);
+        let late = late.map(|one| if let OfSamples::Late(time_s) = one { time_s.middle() } else { 0.0 });
+        self.sample_time_s().middle() + late.fold(0.0, f64::max)
+    }
+
+    /// 0 where nothing is sampled, s.
+    pub(crate) fn sample_time_s(&self) -> S {
+        self.images.as_ref().map_or(S::from(0.0), |images| images.sample_time_s)
+    }
+}
+
+/// One sum, parts with the same functions of the samples added up.
+fn added<S: Decimal>(mut sum: Sum<S>, other: Sum<S>) -> Sum<S> {
+    for part in other {
+        match sum.iter_mut().find(|known| known.of_samples == part.of_samples) {
+            Some(known) => known.of_s = known.of_s.plus(&part.of_s),
+            None => sum.push(part),
+        }
+    }
+    sum
 }
 
 impl<S: Decimal> Loop<S> {
@@ -90,27 +209,33 @@ impl<S: Decimal> Loop<S> {
         let segments = certificate.plant.boxes.get(of_box)?.iter();
         let values: Vec<_> =
             segments.map(|one| Polynomial::between(one.low, one.high, one.variable)).collect();
-        Loop::of(certificate, &values)
+        Loop::of(certificate, of_box, &values)
     }
 
     /// With one plant.
     pub(crate) fn at(certificate: &Certificate, member: &Member) -> Option<Loop<S>> {
         let segments = certificate.plant.boxes.get(member.of_box)?;
-        Loop::of(certificate, &at_member(segments, &member.variables))
+        Loop::of(certificate, member.of_box, &at_member(segments, &member.variables))
     }
 
-    fn of(certificate: &Certificate, parameters: &[Polynomial<S>]) -> Option<Loop<S>> {
+    fn of(certificate: &Certificate, of_box: usize, parameters: &[Polynomial<S>]) -> Option<Loop<S>> {
         let plant = &certificate.plant;
         let mut left = expanded(&plant.coefficients, parameters)?.into_iter();
         let mut parts = vec![];
         for &length in &plant.lengths {
             let mut highest_first: Vec<Polynomial<S>> = left.by_ref().take(length).collect();
             highest_first.reverse();
-            parts.push(InS(highest_first));
+            parts.push(Part::of(InS(highest_first)));
         }
+        let sampling = certificate.sampling.as_ref();
         let mut dead_time = Polynomial::number(plant.delay_s);
         if plant.has_dead_time {
             dead_time = dead_time.plus(&left.next()?).up_to(DEAD_TIME_EXPONENT_MAXIMUM)?;
+        }
+        // what is constant is a function of the samples, where there are any
+        let late = dead_time.as_constant().filter(|_| sampling.is_some());
+        if late.is_some() {
+            dead_time = Polynomial::zero();
         }
         let mut parts = parts.into_iter();
         let (numerator, denominator) = (parts.next()?, parts.next()?);
@@ -119,43 +244,82 @@ impl<S: Decimal> Loop<S> {
             let before: usize = plant.lengths.iter().take(part).sum();
             results.iter().skip(before).take(plant.lengths.get(part).copied().unwrap_or(0))
         };
+        let sample_time_s = sampling.map(|sampling| sampling.sample_time_s);
+        let sensor = quotient(&certificate.sensor);
+        let of_plant = [&numerator.of_s, &denominator.of_s];
+        let images = match sampling {
+            Some(sampling) => Some(Images::of(sampling, of_box, late, of_plant, &certificate.sensor)?),
+            None => None,
+        };
+        let mut held = numerator;
+        if sampling.is_some() {
+            held.of_samples = std::iter::once(OfSamples::Hold).chain(late.map(OfSamples::Late)).collect();
+        }
         Some(Loop {
-            numerator,
+            numerator: held,
             denominator,
             has_one_denominator: of_part(1).eq(of_part(3)),
             disturbance: parts
                 .next()
                 .zip(parts.next())
                 .map(|(numerator, denominator)| [numerator, denominator]),
-            feedback: quotient(&certificate.feedback),
-            prefilter: quotient(&certificate.prefilter),
-            sensor: quotient(&certificate.sensor),
+            feedback: law(&certificate.feedback, sample_time_s),
+            prefilter: law(&certificate.prefilter, sample_time_s),
+            sensor: sensor.map(Part::of),
             dead_time: DeadTime { value: dead_time, terms: plant.dead_time_terms },
+            images,
         })
+    }
+
+    pub(super) fn images(&self) -> Option<&Images<S>> {
+        self.images.as_ref()
     }
 
     /// Whether nothing is divided by zero.
     pub(crate) fn has_denominators(&self) -> bool {
         let quotients = [&self.feedback, &self.prefilter, &self.sensor].map(|[_, under]| under);
         let own = self.disturbance.iter().map(|[_, under]| under).chain([&self.denominator]);
-        quotients.into_iter().chain(own).all(|under| under.degree().is_some())
+        quotients.into_iter().chain(own).all(|under| under.of_s.degree().is_some())
+    }
+
+    /// That D Hd without its zeros at s = 0 is not zero on the imaginary axis, and how many those are.
+    pub(crate) fn denominator_claimed(&self) -> (Claimed<S>, usize) {
+        let whole = self.denominator.of_s.times(&self.sensor[1].of_s);
+        let zeros = whole.powers_of_s().unwrap_or(0);
+        (Claimed::polynomials(whole.without_powers_of_s(zeros), InS(vec![])), zeros)
     }
 
     /// c and n.
-    fn open(&self) -> [InS<S>; 2] {
+    fn open(&self) -> [Part<S>; 2] {
         let [[gn, gd], [hn, hd]] = [&self.feedback, &self.sensor];
         [self.denominator.times(gd).times(hd), self.numerator.times(gn).times(hn)]
+    }
+
+    /// What the images multiply in place of n: with N Hn as D Hd.
+    fn image(&self) -> Part<S> {
+        let hold = Part { of_s: self.denominator.of_s.clone(), ..self.numerator.clone() };
+        hold.times(&self.feedback[0]).times(&self.sensor[1])
+    }
+
+    /// n E + c, with its images.
+    fn characteristic(&self) -> Three<S> {
+        let [c, n] = self.open();
+        [vec![c], vec![n], self.images.iter().map(|_| self.image()).collect()]
     }
 
     /// n + c, as without dead time.
     pub(crate) fn without_dead_time(&self) -> InS<S> {
         let [c, n] = self.open();
-        c.plus(&n)
+        c.of_s.plus(&n.of_s)
+    }
+
+    fn claim(&self, u: Three<S>, v: Three<S>, which: [Which; 2]) -> Claimed<S> {
+        Claimed { u, v, dead_time: self.dead_time.clone(), images: self.images.clone(), which }
     }
 
     /// That no pole stands on the boundary of stability.
     pub(crate) fn stability(&self) -> Claimed<S> {
-        Claimed { u: self.open(), v: [InS(vec![]), InS(vec![])], dead_time: self.dead_time.clone() }.joined()
+        self.claim(self.characteristic(), Default::default(), [Which::WithSensor; 2]).joined()
     }
 
     /// The same of one plant while its dead time grows from nothing, by the first variable.
@@ -164,38 +328,60 @@ impl<S: Decimal> Loop<S> {
         Claimed { dead_time: DeadTime { value, ..self.dead_time }, ..self.stability() }
     }
 
-    /// The denominator of the prefilter.
+    /// The denominator of the prefilter, where that is one in s.
     pub(crate) fn prefilter_denominator(&self) -> &InS<S> {
-        &self.prefilter[1]
+        &self.prefilter[1].of_s
     }
 
     /// A limit as a claim; `None` of a plant without the path that is limited.
     pub(crate) fn claimed(&self, limited: &Limited, ratio: f64) -> Option<Claimed<S>> {
         let [[gn, gd], [fn_, fd], [_, hd]] = [&self.feedback, &self.prefilter, &self.sensor];
-        let [wn, wd] = quotient(&limited.limit);
-        let ratio = InS(vec![Polynomial::constant(S::decimal(ratio))]);
-        let (n, d) = (&self.numerator, &self.denominator);
+        let [wn, wd] = quotient(&limited.limit).map(Part::of);
+        let ratio = S::decimal(ratio);
+        let d = &self.denominator;
+        // the plant alone, and its images
+        let plant = || {
+            let own = self.numerator.times(hd);
+            let image = Part { of_s: d.of_s.clone(), ..self.numerator.clone() }.times(hd);
+            [vec![], vec![own], self.images.iter().map(|_| image.clone()).collect()]
+        };
         // what stands over n E + c, and what besides under it
-        let (over, beside) = match limited.closed_loop {
-            ClosedLoop::RobustStability => (self.open()[1].clone(), None),
-            ClosedLoop::Sensitivity => (self.open()[0].clone(), None),
-            ClosedLoop::PlantInputDisturbance => (n.times(gd).times(hd), None),
-            ClosedLoop::ControlEffort => (gn.times(d).times(hd), None),
+        let (over, beside, which) = match limited.closed_loop {
+            ClosedLoop::RobustStability => {
+                let [_, n, images] = self.characteristic();
+                ([vec![], n, images], None, Which::WithSensor)
+            }
+            ClosedLoop::Sensitivity => (alone(self.open()[0].clone()), None, Which::WithSensor),
+            ClosedLoop::PlantInputDisturbance => (each(plant(), |one| one.times(gd)), None, Which::Alone),
+            ClosedLoop::ControlEffort => (alone(gn.times(d).times(hd)), None, Which::WithSensor),
             ClosedLoop::LoadMotion => {
                 let [own, under] = self.disturbance.as_ref()?;
-                match self.has_one_denominator {
+                let (over, under) = match self.has_one_denominator {
                     true => (own.times(gd).times(hd), None),
                     false => (own.times(d).times(gd).times(hd), Some(under)),
-                }
+                };
+                (alone(over), under, Which::WithSensor)
             }
-            ClosedLoop::Tracking => (fn_.times(n).times(gn).times(hd), Some(fd)),
+            ClosedLoop::Tracking => (each(plant(), |one| fn_.times(one).times(gn)), Some(fd), Which::Alone),
         };
-        let under = self.open().map(|part| beside.map_or(part.clone(), |beside| part.times(beside)));
-        let alone = |one: InS<S>| [one, InS(vec![])];
-        let [u, v] = match limited.side {
-            Side::Upper => [under.map(|part| ratio.times(&wn).times(&part)), alone(wd.times(&over))],
-            Side::Lower => [alone(ratio.times(&wd).times(&over)), under.map(|part| wn.times(&part))],
+        // of a magnitude, what E multiplies as a whole
+        let over = match over {
+            [own, late, images] if own.is_empty() && images.is_empty() => [late, vec![], vec![]],
+            other => other,
         };
-        Some(Claimed::of(u, v, &self.dead_time))
+        let under =
+            each(self.characteristic(), |part| beside.map_or(part.clone(), |beside| part.times(beside)));
+        let raised = |of, by: &Part<S>| each(of, |part| by.times(part).scaled(ratio));
+        let claimed = match limited.side {
+            Side::Upper => {
+                let v = each(over, |part| wd.times(part));
+                self.claim(raised(under, &wn), v, [Which::WithSensor, which])
+            }
+            Side::Lower => {
+                let v = each(under, |part| wn.times(part));
+                self.claim(raised(over, &wd), v, [which, Which::WithSensor])
+            }
+        };
+        Some(claimed.without_powers_of_s().joined())
     }
 }

@@ -1,10 +1,10 @@
 //! Dead time over a panel of frequencies: a polynomial, and a remainder.
 //!
 //! ```text
-//! e^(-j w tau) = e^(-j a) e^(-j d),   d = w tau - a,   e^(-j d) = sum over k < 6 of (-j d)^k/k! + r,   |r| <= |d|^6/6!
+//! e^(-j w tau) = e^(-j a) e^(-j d),   d = w tau - a,   e^(-j d) = sum over k < m of (-j d)^k/k! + r,   |r| <= |d|^m/m!
 //! ```
 
-use phea_dynamics::scalar::Interval;
+use phea_dynamics::scalar::{Interval, Scalar};
 
 use super::points::Range;
 use super::polynomial::{Decimal, InS, Polynomial};
@@ -42,9 +42,8 @@ impl<S: Decimal> InFrequency<S> {
         }
     }
 
-    /// In powers of x, the frequency being `from + (to - from) x`: shifted, then scaled.
-    pub(super) fn along(&self, from: f64, to: f64) -> InFrequency<S> {
-        let (low, width) = (S::decimal(from), S::decimal(to) - S::decimal(from));
+    /// In powers of x, the frequency being `low + width x`: shifted, then scaled.
+    pub(super) fn along(&self, low: S, width: S) -> InFrequency<S> {
         let one = |of: &InS<S>| {
             let mut terms = of.0.clone();
             let degree = terms.len().saturating_sub(1);
@@ -91,7 +90,8 @@ pub(super) fn turned<S: Decimal>(dead_time: &DeadTime<S>, range: Range, angle: f
         term = term.times(&turn).scaled(S::from(1.0) / S::from((power + 1) as f64));
     }
     let [real, imaginary] = sums;
-    let [cosine, sine] = S::cosine_and_sine(angle).map(|value| InS(vec![Polynomial::constant(value)]));
+    let [cosine, sine] =
+        S::cosine_and_sine(S::decimal(angle)).map(|value| InS(vec![Polynomial::constant(value)]));
     let start = InFrequency { real: cosine, imaginary: sine.scaled(S::from(-1.0)) };
     start.times(&InFrequency { real, imaginary })
 }
@@ -120,8 +120,14 @@ pub(super) fn ends<S: Decimal>(dead_time: &DeadTime<S>) -> [S; 2] {
 /// What the cosine and the sine of an angle are known to, in units of one and of the angle.
 const TRIGONOMETRIC_ERROR: f64 = 4.0 * f64::EPSILON;
 
-/// The cosine and the sine of a decimal angle: the functions of the library are good to less than the error that is taken here.
-pub(super) fn enclosed_cosine_and_sine(angle: f64, value: [f64; 2]) -> [Interval; 2] {
-    let error = TRIGONOMETRIC_ERROR * (1.0 + angle.abs());
-    value.map(|value| Interval::new((value - error).next_down(), (value + error).next_up()))
+/// The cosine and the sine of every angle of an interval: neither changes faster than the angle, and the functions of the library are good
+/// to less than the error that is taken here.
+pub(super) fn enclosed_cosine_and_sine(angle: Interval) -> [Interval; 2] {
+    let middle = angle.middle();
+    let beside = (angle - Interval::from(middle)).abs().high();
+    let error = (TRIGONOMETRIC_ERROR * (1.0 + middle.abs()) + beside).next_up();
+    f64::cosine_and_sine(middle).map(|value| match error.is_finite() {
+        true => Interval::new((value - error).next_down(), (value + error).next_up()),
+        false => Interval::new(-1.0, 1.0),
+    })
 }

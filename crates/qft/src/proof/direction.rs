@@ -192,7 +192,7 @@ fn between(points: &Points<f64>, [low, high]: [usize; 2], middle: Complex64) -> 
 }
 
 /// The axis along which U and V vary most, all lines together.
-fn most_varied(points: &Points<f64>) -> usize {
+pub(super) fn most_varied(points: &Points<f64>) -> usize {
     let variation = |axis: usize| {
         let stride = points.stride(axis);
         let pairs = points.points();

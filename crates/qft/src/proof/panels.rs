@@ -15,6 +15,8 @@ use super::walk::{Effort, Walk, walk};
 const POINTS_PER_DECADE: f64 = 24.0;
 /// By how much dead time turns over a panel at most, to either side of its middle, rad.
 const TURN: f64 = 1.0;
+/// The same of functions of the samples, in parts of that.
+const SAMPLED_TURN: f64 = 0.5;
 /// A panel is parted no more where its ends are nearer than by this ratio.
 const NARROWEST: f64 = 1.02;
 /// How far it is tried whether dead time matters.
@@ -32,7 +34,13 @@ pub(super) fn walk_band(
     // the lowest last: it is taken first
     let mut waiting: Vec<[f64; 2]> = decades.windows(2).map(|pair| [pair[0], pair[1]]).rev().collect();
     let mut shown = vec![];
+    let sampled_turn = claimed.turn_s();
     while let Some([from, to]) = waiting.pop() {
+        let turns = [from, to].map(|end| end * sampled_turn / SAMPLED_TURN);
+        if let Some(middle) = parted([from, to], turns).filter(|_| sampled_turn > 0.0) {
+            waiting.extend([[middle, to], [from, middle]]);
+            continue;
+        }
         let mut over = |late: Late, effort: Effort| {
             walk(claimed, variables, Range { from, to, late }, effort, &mut *watch)
         };
@@ -92,7 +100,7 @@ fn rounded(value: f64) -> f64 {
 
 /// The ends of the panels without dead time.
 fn decades([from, to]: [f64; 2], claimed: &Claimed<f64>) -> Vec<f64> {
-    let mut bends = claimed.u.iter().chain(&claimed.v).flat_map(bends).chain(beyond(claimed));
+    let mut bends = claimed.of_s().flat_map(bends).chain(beyond(claimed));
     let first = bends.next().unwrap_or(1.0);
     let [lowest, highest] = bends.fold([first, first], |[low, high], bend| [low.min(bend), high.max(bend)]);
     let [begin, end] = [portable::log10(lowest).floor() as i32, portable::log10(highest).ceil() as i32];
@@ -116,8 +124,9 @@ fn beyond(claimed: &Claimed<f64>) -> Option<f64> {
         let degree = of.degree()?;
         Some((degree as f64, of.0[degree].terms().map(|(_, value)| value).sum::<f64>().abs()))
     };
-    let of = if claimed.u[1].degree().is_some() { &claimed.u } else { &claimed.v };
-    let ((own, fast), (late, slow)) = (leading(&of[0])?, leading(&of[1])?);
+    let of = if claimed.u[1].is_empty() { &claimed.v } else { &claimed.u };
+    let ([own, ..], [late, ..]) = (&of[0][..], &of[1][..]) else { return None };
+    let ((own, fast), (late, slow)) = (leading(&own.of_s)?, leading(&late.of_s)?);
     (own > late).then(|| portable::pow(LESS * slow / fast, 1.0 / (own - late)))
 }
 

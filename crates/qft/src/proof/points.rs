@@ -10,6 +10,9 @@
 use super::certificate::Late;
 use super::claimed::Claimed;
 use super::dead_time::{InFrequency, remainder, turned};
+use super::images::Disc;
+use super::over_panel::{Middle, product, size};
+use super::part::Part;
 use super::polynomial::{Decimal, InS, Polynomial};
 
 /// Real and imaginary part of U, the same of V, and e.
@@ -33,52 +36,148 @@ pub(crate) struct Points<S> {
 /// Control points at most: more are no claim that anybody makes.
 const POINTS_MAXIMUM: usize = 1 << 21;
 
-impl<S: Decimal> Points<S> {
-    /// The control points of a claim over a panel and the whole box; `None` where they are too many.
-    pub(crate) fn over(claimed: &Claimed<S>, variables: usize, range: Range) -> Option<Points<S>> {
-        let Claimed { u, v, dead_time } = claimed;
-        let is_finite = range.to.is_finite();
-        let part = |one: &InS<S>| match is_finite {
-            true => InFrequency::of(one).along(range.from, range.to),
-            false => InFrequency::of(one),
-        };
-        let [parts_u, parts_v] = [u, v].map(|one| [part(&one[0]), part(&one[1])]);
-        let ([own_u, late_u], [own_v, late_v]) = (&parts_u, &parts_v);
-        let (whole, rest, remains) = match range.late {
-            Late::Not => ([own_u.clone(), own_v.clone()], [late_u, late_v], S::from(0.0)),
-            Late::Less => ([own_u.clone(), own_v.clone()], [late_u, late_v], S::from(1.0)),
-            Late::More => ([late_u.clone(), late_v.clone()], [own_u, own_v], S::from(1.0)),
-            Late::Turns(angle) => {
-                let turned = turned(dead_time, range, angle);
-                let whole = [own_u.plus(&late_u.times(&turned)), own_v.plus(&late_v.times(&turned))];
-                (whole, [late_u, late_v], remainder(dead_time, range, angle))
+/// U and V over a panel as polynomials, and what remains of each: at most so much of a polynomial.
+struct Terms<S> {
+    whole: [InFrequency<S>; 2],
+    rests: Vec<(InFrequency<S>, S)>,
+    /// Polynomials that count for the degrees alone.
+    unused: Vec<InFrequency<S>>,
+}
+
+impl<S: Decimal> Terms<S> {
+    fn of(claimed: &Claimed<S>, pair: [[&[Part<S>]; 2]; 2], range: Range) -> Terms<S> {
+        let none = || InFrequency { real: InS(vec![]), imaginary: InS(vec![]) };
+        let mut out = Terms { whole: [none(), none()], rests: vec![], unused: vec![] };
+        for (place, [own, late]) in pair.into_iter().enumerate() {
+            let mut add = |parts: &[Part<S>]| {
+                let mut sum = none();
+                for part in parts {
+                    let (of_part, rest) = over_panel(claimed, part, range);
+                    sum = sum.plus(&of_part);
+                    out.rests.extend(rest);
+                }
+                sum
+            };
+            let (own, late) = (add(own), add(late));
+            let remains = |of: InFrequency<S>, rest: S| (of, rest);
+            match range.late {
+                Late::Not => {
+                    out.whole[place] = own;
+                    out.unused.push(late);
+                }
+                Late::Less => {
+                    out.whole[place] = own;
+                    out.rests.push(remains(late, S::from(1.0)));
+                }
+                Late::More => {
+                    out.whole[place] = late;
+                    out.rests.push(remains(own, S::from(1.0)));
+                }
+                Late::Turns(angle) => {
+                    out.whole[place] = own.plus(&late.times(&turned(&claimed.dead_time, range, angle)));
+                    out.unused.push(own);
+                    out.rests.push(remains(late, remainder(&claimed.dead_time, range, angle)));
+                }
             }
-        };
-        let all = [&whole[0], &whole[1], own_u, own_v, late_u, late_v];
-        let mut points = Points::powers([&whole[0], &whole[1]], &all, variables)?;
-        points.bring_to(range);
-        if range.late == Late::Not {
-            return Some(points);
         }
-        let mut left = Points::powers(rest, &all, variables)?;
-        left.bring_to(range);
-        for (point, left) in points.values.iter_mut().zip(&left.values) {
-            point[4] = remains * (left[0].abs() + left[1].abs() + left[2].abs() + left[3].abs());
+        out
+    }
+
+    fn raise_degrees(&self, degrees: &mut [usize]) {
+        let rests = self.rests.iter().map(|(of, _)| of);
+        self.whole.iter().chain(rests).chain(&self.unused).for_each(|one| one.raise_degrees(degrees));
+    }
+}
+
+/// A part over a panel, and what remains of its functions of the samples.
+fn over_panel<S: Decimal>(
+    claimed: &Claimed<S>,
+    part: &Part<S>,
+    range: Range,
+) -> (InFrequency<S>, Option<(InFrequency<S>, S)>) {
+    let own = InFrequency::of(&part.of_s);
+    if range.to.is_infinite() {
+        return (own, None);
+    }
+    let [from, to] = [range.from, range.to].map(S::decimal);
+    let own = own.along(from, to - from);
+    match part.over(Middle::of([from, to], claimed.dead_time.terms), claimed.sample_time_s()) {
+        None => (own, None),
+        Some(factor) => (own.times(&factor.along()), Some((own, factor.rest()))),
+    }
+}
+
+impl<S: Decimal> Points<S> {
+    /// The control points of a claim over a panel and the whole box, and of what its images multiply, in the same degrees; `None` where
+    /// they are too many.
+    pub(crate) fn over(
+        claimed: &Claimed<S>,
+        variables: usize,
+        range: Range,
+    ) -> Option<(Points<S>, Option<Points<S>>)> {
+        let Claimed { u, v, .. } = claimed;
+        let own = Terms::of(claimed, [[&u[0], &u[1]], [&v[0], &v[1]]], range);
+        let images = match range.late {
+            // the images are late as well
+            Late::Not => Terms::of(claimed, [[&u[2], &[]], [&v[2], &[]]], range),
+            _ => Terms::of(claimed, [[&[], &u[2]], [&[], &v[2]]], range),
+        };
+        let mut degrees = vec![0; variables + 1];
+        own.raise_degrees(&mut degrees);
+        images.raise_degrees(&mut degrees);
+        let own = Points::of(&own, &degrees, range)?;
+        match &claimed.images {
+            None => Some((own, None)),
+            Some(_) => Some((own, Some(Points::of(&images, &degrees, range)?))),
+        }
+    }
+
+    /// The control points of two polynomials on a finite panel.
+    pub(super) fn of_pair(pair: [&InFrequency<S>; 2], variables: usize) -> Option<Points<S>> {
+        let mut degrees = vec![0; variables + 1];
+        pair.iter().for_each(|one| one.raise_degrees(&mut degrees));
+        let mut out = Points::powers(pair, &degrees)?;
+        out.bring_to_bernstein_all();
+        Some(out)
+    }
+
+    fn of(terms: &Terms<S>, degrees: &[usize], range: Range) -> Option<Points<S>> {
+        let [u, v] = &terms.whole;
+        let mut points = Points::powers([u, v], degrees)?;
+        points.bring_to(range);
+        for (of, rest) in &terms.rests {
+            let mut left = Points::powers([of, of], degrees)?;
+            left.bring_to(range);
+            for (point, left) in points.values.iter_mut().zip(&left.values) {
+                point[4] = point[4] + *rest * (left[0].abs() + left[1].abs());
+            }
         }
         Some(points)
     }
 
-    /// U and V as powers of the frequency and of the variables, in the degrees that all of these have.
-    fn powers(pair: [&InFrequency<S>; 2], all: &[&InFrequency<S>], variables: usize) -> Option<Points<S>> {
-        let mut degrees = vec![0; variables + 1];
-        for one in pair.iter().chain(all) {
-            one.raise_degrees(&mut degrees);
+    /// With images whose sum is in this disc, for U and for V: what remains of them is added to e.
+    pub(super) fn with_images(&self, images: &Points<S>, [of_u, of_v]: [Disc<S>; 2]) -> Points<S> {
+        let greatest = |disc: &Disc<S>| size(disc.center) + disc.radius;
+        let most = greatest(&of_u).maximum(greatest(&of_v));
+        let mut out = self.clone();
+        for (point, image) in out.values.iter_mut().zip(&images.values) {
+            let [ur, ui, vr, vi, rest] = *image;
+            let u = product([ur, ui], of_u.center);
+            let v = product([vr, vi], of_v.center);
+            let beside = of_u.radius * size([ur, ui]) + of_v.radius * size([vr, vi]) + most * rest;
+            let [known_ur, known_ui, known_vr, known_vi, known] = *point;
+            *point = [known_ur + u[0], known_ui + u[1], known_vr + v[0], known_vi + v[1], known + beside];
         }
+        out
+    }
+
+    /// U and V as powers of the frequency and of the variables, in these degrees.
+    fn powers(pair: [&InFrequency<S>; 2], degrees: &[usize]) -> Option<Points<S>> {
         let count = degrees.iter().try_fold(1_usize, |count, degree| count.checked_mul(degree + 1))?;
         if count > POINTS_MAXIMUM {
             return None;
         }
-        let mut out = Points { degrees, values: vec![[S::from(0.0); 5]; count] };
+        let mut out = Points { degrees: degrees.to_vec(), values: vec![[S::from(0.0); 5]; count] };
         for (place, one) in pair.into_iter().enumerate() {
             for (part, polynomials) in one.parts().into_iter().enumerate() {
                 for (power, coefficient) in polynomials.iter().enumerate() {
@@ -107,6 +206,10 @@ impl<S: Decimal> Points<S> {
             self.reverse_frequency();
             self.scale_frequency(S::from(1.0) / S::decimal(range.from));
         }
+        self.bring_to_bernstein_all();
+    }
+
+    fn bring_to_bernstein_all(&mut self) {
         for axis in 0..self.degrees.len() {
             self.bring_to_bernstein(axis);
         }
@@ -205,7 +308,7 @@ impl<S: Decimal> Points<S> {
 
 impl<S: Decimal> InFrequency<S> {
     /// s = j w: j^0 = 1, j, -1, -j.
-    fn of(of: &InS<S>) -> InFrequency<S> {
+    pub(super) fn of(of: &InS<S>) -> InFrequency<S> {
         let part = |own: usize| {
             let signed =
                 of.0.iter().enumerate().map(|(power, coefficient)| match (power % 2 == own, power % 4 < 2) {

@@ -1,5 +1,7 @@
 //! Polynomials in the variables of a box, and polynomials in s that have them as coefficients.
 
+use std::f64::consts::PI;
+
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
 use phea_dynamics::portable;
 use phea_dynamics::scalar::{Interval, Scalar};
@@ -7,11 +9,23 @@ use phea_dynamics::scalar::{Interval, Scalar};
 use super::dead_time::enclosed_cosine_and_sine;
 
 /// A number of a certificate: what it prints as in decimals is meant, of which binary numbers hold the nearest.
-pub(crate) trait Decimal: Scalar {
+pub(crate) trait Decimal: Scalar + PartialEq {
     /// What holds the decimal number that this one prints as.
     fn decimal(value: f64) -> Self;
-    /// What holds the cosine and the sine of the angle that this number prints as, rad.
-    fn cosine_and_sine(angle: f64) -> [Self; 2];
+    /// What holds the cosine and the sine of every angle that this stands for, rad.
+    fn cosine_and_sine(angle: Self) -> [Self; 2];
+    /// What holds every number of at most this magnitude; zero where rounding is not kept account of.
+    fn uncertain(magnitude: f64) -> Self;
+    /// What holds pi.
+    fn pi() -> Self;
+    /// What holds both and all between them; the other where rounding is not kept account of.
+    fn up_to(self, other: Self) -> Self;
+    /// A number in the midst of those that this stands for.
+    fn middle(self) -> f64;
+    /// Not less than any number that this stands for.
+    fn most(self) -> f64;
+    /// Not greater than any number that this stands for.
+    fn least(self) -> f64;
 }
 
 impl Decimal for f64 {
@@ -22,6 +36,30 @@ impl Decimal for f64 {
     fn cosine_and_sine(angle: f64) -> [f64; 2] {
         [portable::cos(angle), portable::sin(angle)]
     }
+
+    fn uncertain(_magnitude: f64) -> f64 {
+        0.0
+    }
+
+    fn pi() -> f64 {
+        PI
+    }
+
+    fn up_to(self, other: f64) -> f64 {
+        other
+    }
+
+    fn middle(self) -> f64 {
+        self
+    }
+
+    fn most(self) -> f64 {
+        self
+    }
+
+    fn least(self) -> f64 {
+        self
+    }
 }
 
 impl Decimal for Interval {
@@ -30,8 +68,33 @@ impl Decimal for Interval {
         if value == 0.0 { Interval::from(0.0) } else { Interval::new(value.next_down(), value.next_up()) }
     }
 
-    fn cosine_and_sine(angle: f64) -> [Interval; 2] {
-        enclosed_cosine_and_sine(angle, f64::cosine_and_sine(angle))
+    fn cosine_and_sine(angle: Interval) -> [Interval; 2] {
+        enclosed_cosine_and_sine(angle)
+    }
+
+    fn uncertain(magnitude: f64) -> Interval {
+        Interval::new(-magnitude, magnitude)
+    }
+
+    /// The double nearest to pi is less than it.
+    fn pi() -> Interval {
+        Interval::new(PI, PI.next_up())
+    }
+
+    fn up_to(self, other: Interval) -> Interval {
+        Interval::new(self.low().min(other.low()), self.high().max(other.high()))
+    }
+
+    fn middle(self) -> f64 {
+        0.5 * (self.low() + self.high())
+    }
+
+    fn most(self) -> f64 {
+        self.high()
+    }
+
+    fn least(self) -> f64 {
+        self.low()
     }
 }
 
@@ -87,7 +150,7 @@ impl<S: Decimal> Polynomial<S> {
     }
 
     /// The number that it is, if it depends on no variable.
-    fn as_constant(&self) -> Option<S> {
+    pub(crate) fn as_constant(&self) -> Option<S> {
         match self.terms.as_slice() {
             [] => Some(S::from(0.0)),
             [(exponents, value)] if exponents.iter().all(|exponent| *exponent == 0) => Some(*value),

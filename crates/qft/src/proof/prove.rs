@@ -3,11 +3,14 @@
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, part};
 
-use super::certificate::{Certificate, Claim, Limited, Member, Panel, Side, StableBox};
+use super::bounds::with_bounds;
+use super::certificate::{Certificate, Claim, Count, Limited, Member, Panel, Side, StableBox};
 use super::checker::check_claim;
 use super::claimed::{Claimed, Loop};
+use super::count::poles_outside;
 use super::hurwitz::{Roots, roots_of};
 use super::panels::walk_band;
+use super::sampling::poles_of_law;
 use super::statement::{Stated, limit, member_of, stated, values_of};
 use super::supremum::{Enclosed, Place, Wanted, corners, enclose};
 use super::walk::{Effort, Region, Walk};
@@ -36,6 +39,8 @@ impl Default for ProofOptions {
 
 /// Halvings on the way to a leaf at most.
 const DEPTH_MAXIMUM: usize = 120;
+/// Plants that are always looked at: the nominal one, and the least stable that the audit found.
+const NAMED: usize = 2;
 /// From the lowest to the highest frequency.
 const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 
@@ -57,6 +62,9 @@ pub fn prove(
         return Ok(nothing(problem, NotProven::NotPolynomial));
     }
     let effort = Effort { leaves: options.leaves_maximum, depth: DEPTH_MAXIMUM };
+    let Some(certificate) = with_bounds(certificate, effort, watch)? else {
+        return Ok(nothing(problem, NotProven::Images));
+    };
     let mut prover = Prover { problem, certificate, larger, options, effort };
     let parts = problem.specifications.len() as f64 + 1.0;
     let stability = prover.stability(audit, &mut part(watch, "proving", [0.0, 1.0 / parts]))?;
@@ -137,18 +145,23 @@ impl Prover<'_> {
         watch: Watch<'_>,
     ) -> Result<Result<StableBox, Standing>, Stopped> {
         let mut stable = None;
-        for member in members {
-            let Some(at) = Loop::at(&self.certificate, member) else { continue };
-            let roots = [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of);
-            if roots.contains(&Roots::SomeNotLeft) && self.keeps(Claim::Unstable(member.clone())) {
-                return Ok(Err(self.refuted()));
+        for (index, member) in members.iter().enumerate() {
+            // every other plant of a sampled loop is judged by the box alone
+            if stable.is_some() && self.certificate.sampling.is_some() && index >= NAMED {
+                break;
             }
-            if stable.is_none() && roots == [Roots::AllLeft; 2] {
-                stable = Some(member);
+            match self.poles(member, watch)? {
+                Poles::Beyond(count)
+                    if self.keeps(Claim::Unstable { member: member.clone(), count: count.clone() }) =>
+                {
+                    return Ok(Err(self.refuted()));
+                }
+                Poles::Within(count) if stable.is_none() => stable = Some((member, count)),
+                _ => {}
             }
         }
         let not_proven = |reason| Ok(Err(Standing::NotProven(reason)));
-        let Some(member) = stable else { return not_proven(NotProven::NoStableMember) };
+        let Some((member, count)) = stable else { return not_proven(NotProven::NoStableMember) };
         let around = Loop::<f64>::over_box(&self.certificate, member.of_box);
         let (Some(around), Some(at)) = (around, Loop::<f64>::at(&self.certificate, member)) else {
             return not_proven(NotProven::NotPolynomial);
@@ -159,13 +172,61 @@ impl Prover<'_> {
             Err(reason) => return not_proven(reason),
         };
         let mut delays = vec![];
-        if self.certificate.plant.is_late() {
+        if self.certificate.plant.is_late() && count.is_none() {
             delays = match self.never_zero(&at.stability_while_delayed(), 1, member.of_box, watch)? {
                 Ok(panels) => panels,
                 Err(reason) => return not_proven(reason),
             };
         }
-        Ok(Ok(StableBox { member: member.variables.clone(), panels, delays }))
+        Ok(Ok(StableBox { member: member.variables.clone(), panels, delays, count }))
+    }
+
+    /// Where the poles of the loop with one plant are, those of the prefilter as well.
+    fn poles(&self, member: &Member, watch: Watch<'_>) -> Result<Poles, Stopped> {
+        if self.certificate.sampling.is_some() {
+            return self.counted(member, watch);
+        }
+        let Some(at) = Loop::at(&self.certificate, member) else { return Ok(Poles::Unknown) };
+        let roots = [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of);
+        Ok(match roots {
+            [Roots::AllLeft, Roots::AllLeft] => Poles::Within(None),
+            roots if roots.contains(&Roots::SomeNotLeft) => Poles::Beyond(None),
+            _ => Poles::Unknown,
+        })
+    }
+
+    /// The same of a sampled loop.
+    fn counted(&self, member: &Member, watch: Watch<'_>) -> Result<Poles, Stopped> {
+        let (Some(at), Some(sampling)) =
+            (Loop::<f64>::at(&self.certificate, member), &self.certificate.sampling)
+        else {
+            return Ok(Poles::Unknown);
+        };
+        let (claimed, of_box) = (at.stability(), member.of_box);
+        let (denominator, _) = at.denominator_claimed();
+        let [_, end] = claimed.band_covered(WHOLE);
+        let bands = [(&claimed, WHOLE), (&denominator, [0.0, end]), (&denominator, [end, f64::INFINITY])];
+        let mut found = vec![];
+        for (claimed, band) in bands {
+            match self.never_zero_within(claimed, band, 0, of_box, watch)? {
+                Ok(panels) => found.push(panels),
+                Err(_) => return Ok(Poles::Unknown),
+            }
+        }
+        let mut found = found.into_iter();
+        let (Some(characteristic), Some(denominator), Some(beyond)) =
+            (found.next(), found.next(), found.next())
+        else {
+            return Ok(Poles::Unknown);
+        };
+        let count = Count { characteristic, denominator, beyond };
+        let controller_poles = poles_of_law(&self.certificate.feedback);
+        let half = std::f64::consts::PI / sampling.sample_time_s;
+        Ok(match poles_outside(&at, controller_poles, &count, half) {
+            Some(0) => Poles::Within(Some(count)),
+            Some(_) => Poles::Beyond(Some(count)),
+            None => Poles::Unknown,
+        })
     }
 
     /// Trees that show that U is not zero at any frequency.
@@ -176,7 +237,19 @@ impl Prover<'_> {
         of_box: usize,
         watch: Watch<'_>,
     ) -> Result<Result<Vec<Panel>, NotProven>, Stopped> {
-        Ok(match walk_band(claimed, variables, WHOLE, self.effort, watch)? {
+        self.never_zero_within(claimed, WHOLE, variables, of_box, watch)
+    }
+
+    fn never_zero_within(
+        &self,
+        claimed: &Claimed<f64>,
+        band: [f64; 2],
+        variables: usize,
+        of_box: usize,
+        watch: Watch<'_>,
+    ) -> Result<Result<Vec<Panel>, NotProven>, Stopped> {
+        let band = claimed.band_covered(band);
+        Ok(match walk_band(claimed, variables, band, self.effort, watch)? {
             Walk::Shown(panels) => Ok(panels),
             Walk::Open(region) => Err(NotProven::Budget(Region { of_box, ..region })),
             Walk::Wrong { .. } => Err(NotProven::Rounding),
@@ -192,6 +265,10 @@ impl Prover<'_> {
         watch: Watch<'_>,
     ) -> Result<SpecificationProof, Stopped> {
         let requirement = &specification.requirement;
+        let highest = self.problem.compensation.highest_frequency_rad_per_s();
+        if specification.band_rad_per_s[0] >= highest {
+            return Ok(SpecificationProof::without(Standing::NotProven(NotProven::BeyondSampling)));
+        }
         if requirement.is_tracking() && self.problem.tracking == TrackingJudgement::Spread {
             return Ok(SpecificationProof::without(Standing::NotProven(NotProven::Spread)));
         }
@@ -281,6 +358,13 @@ impl Prover<'_> {
         let PlantPoint::Parameters(values) = plant else { return None };
         member_of(&self.certificate.plant, values)
     }
+}
+
+/// Where the poles of a loop are with one plant: within the boundary of stability, or at least one on it or beyond.
+enum Poles {
+    Within(Option<Count>),
+    Beyond(Option<Count>),
+    Unknown,
 }
 
 impl SpecificationProof {

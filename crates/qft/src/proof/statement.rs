@@ -1,11 +1,14 @@
 //! The loop of an audit as a certificate states it, and which plants stand at which variables.
 
-use phea_dynamics::linear::TransferFunction;
+use num_complex::Complex64;
+use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::scalar::Interval;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter};
 
 use super::NotProven;
-use super::certificate::{Certificate, CertifiedPlant, Member, Quotient, Segment};
+use super::certificate::{
+    Bound, Certificate, CertifiedPlant, Law, Member, Quotient, Sampling, Sections, Segment,
+};
 use super::polynomial::VARIABLES_MAXIMUM;
 use crate::closed_loop::Compensation;
 use crate::family::{Coordinate, Extent, Family, Spacing, UncertainFamily};
@@ -25,9 +28,6 @@ pub(super) struct Stated {
 /// The certificate of a loop, without a claim.
 pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Stated, NotProven> {
     let Family::Uncertain(family) = family else { return Err(NotProven::Measured) };
-    if compensation.sample_time_s().is_some() {
-        return Err(NotProven::Sampled);
-    }
     if compensation.rate_feed_forward() != 0.0 {
         return Err(NotProven::RateFedForward);
     }
@@ -51,8 +51,42 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Sta
         delay_s: compensation.delay_s() + parts[0].dead_time_s() + parts[2].dead_time_s(),
         dead_time_terms: DEAD_TIME_TERMS,
     };
-    let [feedback, prefilter, sensor] = parts.map(quotient);
-    Ok(Stated { certificate: Certificate { plant, feedback, prefilter, sensor, claims: vec![] }, larger })
+    let [feedback, prefilter] = [parts[0], parts[1]].map(law);
+    let sensor = quotient(parts[2]);
+    let sampling = compensation.sample_time_s().map(|sample_time_s| {
+        let bound = Bound { ratio: 1.0, panels: vec![] };
+        let of_box = vec![bound; if sensor.is_one() { 1 } else { 2 }];
+        Sampling { sample_time_s, images: 1, bounds: vec![of_box; plant.boxes.len()] }
+    });
+    Ok(Stated {
+        certificate: Certificate { plant, feedback, prefilter, sensor, sampling, claims: vec![] },
+        larger,
+    })
+}
+
+/// A law in s or in z.
+fn law(function: &TransferFunction) -> Law {
+    match function.domain() {
+        TimeDomain::Continuous => Law::Continuous(quotient(function)),
+        TimeDomain::Discrete { .. } => Law::Sampled(Sections {
+            gain: function.gain(),
+            numerator: sections(function.zeros()),
+            denominator: sections(function.poles()),
+        }),
+    }
+}
+
+/// Polynomials in z - 1 with these roots, which come in conjugate pairs: z - p = (z - 1) + (1 - p).
+fn sections(roots: &[Complex64]) -> Vec<Vec<f64>> {
+    let of_root = |root: &Complex64| {
+        let [re, im] = [1.0 - root.re, root.im];
+        match im {
+            0.0 => Some(vec![1.0, re]),
+            im if im > 0.0 => Some(vec![1.0, 2.0 * re, re * re + im * im]),
+            _ => None,
+        }
+    };
+    roots.iter().filter_map(of_root).collect()
 }
 
 fn lengths<S>(plant: &PlantCoefficients<S>) -> Vec<usize> {

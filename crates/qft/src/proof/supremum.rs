@@ -7,7 +7,9 @@ use phea_dynamics::watch::{Stopped, Watch};
 use super::certificate::{Certificate, Limited, Member, Panel};
 use super::claimed::{Claimed, Loop};
 use super::panels::{frequencies, walk_band};
-use super::polynomial::{InS, Polynomial};
+use super::part::{Part, number};
+use super::patch::at_point;
+use super::polynomial::InS;
 use super::walk::{Effort, Region, Walk};
 
 /// Corners of a box that are looked at before anything is shown.
@@ -78,7 +80,10 @@ pub(super) fn enclose(
             }
         }
     }
-    found.least *= 1.0 - ROUNDED;
+    // what the checker can confirm at that point
+    let at = Loop::<f64>::at(certificate, &found.at.member).and_then(|at| at.claimed(limited, 1.0));
+    let confirmed = at.and_then(|at| at_point(&at, found.at.frequency_rad_per_s));
+    found.least = confirmed.map_or(found.least, |[u, v]| v / u) * (1.0 - ROUNDED);
     Ok(Some(found))
 }
 
@@ -103,13 +108,8 @@ fn walk_boxes(
 ) -> Result<Boxes, Stopped> {
     let mut shown = Vec::with_capacity(claims.len());
     for (of_box, claim) in claims.iter().enumerate() {
-        match walk_band(
-            &claim.raised(ratio),
-            certificate.plant.variables,
-            limited.band_rad_per_s,
-            effort,
-            watch,
-        )? {
+        let band = claim.band_covered(limited.band_rad_per_s);
+        match walk_band(&claim.raised(ratio), certificate.plant.variables, band, effort, watch)? {
             Walk::Shown(panels) => shown.push(panels),
             Walk::Wrong { at, ratio } => {
                 let member = Member { of_box, variables: at.variables };
@@ -137,7 +137,9 @@ fn seen(
     members.dedup();
     let own = hints.iter().map(|hint| hint.frequency_rad_per_s);
     let [from, to] = limited.band_rad_per_s;
-    let all = own.chain(frequencies(limited.band_rad_per_s, claims.first()?));
+    let first = claims.first()?;
+    let all = own.chain(frequencies(first.band(limited.band_rad_per_s), first));
+    let to = to.min(first.band([from, to])[1]);
     let frequencies: Vec<f64> = all.filter(|one| from <= *one && *one <= to).collect();
     let mut best: Option<Enclosed> = None;
     for member in members {
@@ -164,26 +166,21 @@ pub(super) fn corners(certificate: &Certificate, of_box: usize) -> impl Iterator
 
 /// |V|/|U| at a frequency; towards infinity the limit, where dead time does not matter there.
 fn ratio_at(claimed: &Claimed<f64>, frequency_rad_per_s: f64) -> f64 {
-    let angle = frequency_rad_per_s * super::dead_time::ends(&claimed.dead_time)[0];
-    let turned = portable::exp_complex(Complex64::new(0.0, -angle));
-    let degree = claimed.u.iter().chain(&claimed.v).filter_map(InS::degree).max().unwrap_or(0);
-    let value = |[own, late]: &[InS<f64>; 2]| match frequency_rad_per_s.is_finite() {
-        true => at_frequency(own, frequency_rad_per_s) + at_frequency(late, frequency_rad_per_s) * turned,
-        false => {
-            let leading = |of: &InS<f64>| of.0.get(degree).map_or(0.0, number);
-            // dead time turns what it multiplies without end
-            Complex64::new(if leading(late) == 0.0 { leading(own) } else { f64::NAN }, 0.0)
-        }
+    let size = |value: Option<[f64; 2]>| {
+        value.map_or(f64::NAN, |[re, im]| portable::magnitude(Complex64::new(re, im)))
     };
-    portable::magnitude(value(&claimed.v)) / portable::magnitude(value(&claimed.u))
-}
-
-/// The number that a polynomial is which depends on no variable.
-fn number(of: &Polynomial<f64>) -> f64 {
-    of.terms().map(|(_, value)| value).sum()
-}
-
-fn at_frequency(of: &InS<f64>, frequency_rad_per_s: f64) -> Complex64 {
-    let s = Complex64::new(0.0, frequency_rad_per_s);
-    of.0.iter().rev().fold(Complex64::new(0.0, 0.0), |sum, coefficient| sum * s + number(coefficient))
+    match frequency_rad_per_s.is_finite() {
+        true => size(claimed.value_of_v(frequency_rad_per_s)) / size(claimed.value_of_u(frequency_rad_per_s)),
+        false => {
+            let degree = claimed.of_s().filter_map(InS::degree).max().unwrap_or(0);
+            let leading = |of: &[Part<f64>]| -> f64 {
+                of.iter().map(|part| part.of_s.0.get(degree).map_or(0.0, number)).sum()
+            };
+            // dead time turns what it multiplies without end
+            let value = |[own, late, _]: &[Vec<Part<f64>>; 3]| {
+                if leading(late) == 0.0 { leading(own).abs() } else { f64::NAN }
+            };
+            value(&claimed.v) / value(&claimed.u)
+        }
+    }
 }

@@ -4,8 +4,9 @@ use phea_dynamics::watch::{Stopped, Watch, tell};
 
 use super::certificate::{LEAF, Panel};
 use super::claimed::Claimed;
-use super::direction::{Leaf, leaf};
-use super::points::{Points, Range};
+use super::direction::{Leaf, leaf, most_varied};
+use super::patch::Patch;
+use super::points::Range;
 
 /// What became of a claim over a band.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +50,7 @@ pub(crate) struct Effort {
 
 /// A box on its way: its control points, and from where to where it goes on each axis of its panel.
 struct Waiting {
-    points: Points<f64>,
+    patch: Patch<f64>,
     sides: Vec<[f64; 2]>,
     depth: usize,
 }
@@ -66,12 +67,12 @@ pub(crate) fn walk(
     effort: Effort,
     watch: Watch<'_>,
 ) -> Result<Walk, Stopped> {
-    let Some(whole) = Points::over(claimed, variables, range) else { return Ok(Walk::TooLarge) };
+    let Some(whole) = Patch::over(claimed, variables, range) else { return Ok(Walk::TooLarge) };
     let sides = vec![[0.0, 1.0]; whole.axes()];
-    let mut waiting = vec![Waiting { points: whole, sides, depth: 0 }];
+    let mut waiting = vec![Waiting { patch: whole, sides, depth: 0 }];
     let (mut tree, mut leaves) = (vec![], 0);
-    while let Some(Waiting { points, sides, depth }) = waiting.pop() {
-        match leaf(&points) {
+    while let Some(Waiting { patch, sides, depth }) = waiting.pop() {
+        match look(&patch) {
             Leaf::Shown(direction) => {
                 tree.push(LEAF);
                 tree.extend(direction.iter().flat_map(|part| part.to_be_bytes()));
@@ -83,15 +84,25 @@ pub(crate) fn walk(
             Leaf::Wrong { corner, ratio } => return Ok(Walk::Wrong { at: at(range, &sides, corner), ratio }),
             Leaf::Halve(axis) if leaves + waiting.len() < effort.leaves && depth < effort.depth => {
                 tree.push(axis as u8);
-                let [lower, upper] = points.halves(axis);
+                let [lower, upper] = patch.halves(axis);
                 let [low_sides, high_sides] = halved(&sides, axis);
-                waiting.push(Waiting { points: upper, sides: high_sides, depth: depth + 1 });
-                waiting.push(Waiting { points: lower, sides: low_sides, depth: depth + 1 });
+                waiting.push(Waiting { patch: upper, sides: high_sides, depth: depth + 1 });
+                waiting.push(Waiting { patch: lower, sides: low_sides, depth: depth + 1 });
             }
             Leaf::Halve(_) => return Ok(Walk::Open(region(range, &sides))),
         }
     }
     Ok(Walk::Shown(vec![Panel { from: range.from, to: range.to, late: range.late, tree }]))
+}
+
+/// What becomes of a patch. Where it would be shown if the images of the plant were known, it is halved so that they are known better.
+fn look(patch: &Patch<f64>) -> Leaf {
+    let found = leaf(&patch.points());
+    let (Leaf::Halve(_), Some((points, image))) = (found, patch.with_known_images()) else { return found };
+    match leaf(&points) {
+        Leaf::Halve(_) => found,
+        Leaf::Shown(_) | Leaf::Wrong { .. } => Leaf::Halve(most_varied(image)),
+    }
 }
 
 fn halved(sides: &[[f64; 2]], axis: usize) -> [Vec<[f64; 2]>; 2] {

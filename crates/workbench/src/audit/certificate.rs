@@ -108,7 +108,7 @@ fn sentence(claim: &Claim) -> String {
     };
     match claim {
         Claim::Stable(_) => "every plant of the box is stable in the loop".to_string(),
-        Claim::Unstable(_) => "a plant of the box is not stable in the loop".to_string(),
+        Claim::Unstable { .. } => "a plant of the box is not stable in the loop".to_string(),
         Claim::Limited { limited, ratio, .. } => {
             format!(
                 "{} is at most {} for every plant and every frequency of the band",

@@ -3,11 +3,13 @@
 mod claims;
 
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
-use phea_qft::proof::{Certificate, CertifiedPlant, Claim, Quotient, Segment};
+use phea_qft::proof::{
+    Bound, Certificate, CertifiedPlant, Claim, Law, Quotient, Sampling, Sections, Segment,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::project::Loaded;
-use claims::Stated;
+use claims::{Cover, Stated, covers, panels};
 
 /// What the file begins with.
 const FORMAT: &str = "phea-certificate";
@@ -33,9 +35,11 @@ pub(super) struct File {
     delay: f64,
     /// Of the series that stands for dead time.
     terms: usize,
-    feedback: Rational,
-    prefilter: Rational,
+    feedback: StatedLaw,
+    prefilter: StatedLaw,
     sensor: Rational,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sampling: Option<StatedSampling>,
     claims: Vec<Stated>,
 }
 
@@ -69,6 +73,38 @@ struct Plant {
 struct Rational {
     numerator: Vec<f64>,
     denominator: Vec<f64>,
+}
+
+/// A controller or prefilter: in s, or in sections of z - 1.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(untagged)]
+enum StatedLaw {
+    Continuous(Rational),
+    Sampled(StatedSections),
+}
+
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StatedSections {
+    gain: f64,
+    numerator: Vec<Vec<f64>>,
+    denominator: Vec<Vec<f64>>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StatedSampling {
+    sample_time: f64,
+    images: usize,
+    /// For each box.
+    bounds: Vec<Vec<StatedBound>>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StatedBound {
+    ratio: f64,
+    panels: Vec<Cover>,
 }
 
 /// Why a file is no certificate.
@@ -143,6 +179,7 @@ impl File {
             feedback: (&certificate.feedback).into(),
             prefilter: (&certificate.prefilter).into(),
             sensor: (&certificate.sensor).into(),
+            sampling: certificate.sampling.as_ref().map(StatedSampling::from),
             claims: certificate.claims.iter().map(Stated::from).collect(),
         }
     }
@@ -191,6 +228,7 @@ impl File {
             feedback: file.feedback.into(),
             prefilter: file.prefilter.into(),
             sensor: file.sensor.into(),
+            sampling: file.sampling.map(Sampling::try_from).transpose()?,
             claims: file.claims.into_iter().map(Claim::try_from).collect::<Result<_, _>>()?,
         })
     }
@@ -232,6 +270,49 @@ impl Operation {
                 _ => Err(meaning(format!("`{name}` is not an operation on two numbers"))),
             },
         }
+    }
+}
+
+impl From<&Law> for StatedLaw {
+    fn from(law: &Law) -> StatedLaw {
+        match law {
+            Law::Continuous(quotient) => StatedLaw::Continuous(quotient.into()),
+            Law::Sampled(Sections { gain, numerator, denominator }) => StatedLaw::Sampled(StatedSections {
+                gain: *gain,
+                numerator: numerator.clone(),
+                denominator: denominator.clone(),
+            }),
+        }
+    }
+}
+
+impl From<StatedLaw> for Law {
+    fn from(stated: StatedLaw) -> Law {
+        match stated {
+            StatedLaw::Continuous(quotient) => Law::Continuous(quotient.into()),
+            StatedLaw::Sampled(StatedSections { gain, numerator, denominator }) => {
+                Law::Sampled(Sections { gain, numerator, denominator })
+            }
+        }
+    }
+}
+
+impl From<&Sampling> for StatedSampling {
+    fn from(sampling: &Sampling) -> StatedSampling {
+        let bound = |one: &Bound| StatedBound { ratio: one.ratio, panels: covers(&one.panels) };
+        let bounds = sampling.bounds.iter().map(|of_box| of_box.iter().map(bound).collect()).collect();
+        StatedSampling { sample_time: sampling.sample_time_s, images: sampling.images, bounds }
+    }
+}
+
+impl TryFrom<StatedSampling> for Sampling {
+    type Error = CertificateError;
+
+    fn try_from(stated: StatedSampling) -> Result<Sampling, CertificateError> {
+        let bound = |one: StatedBound| Ok(Bound { ratio: one.ratio, panels: panels(one.panels)? });
+        let of_box = |bounds: Vec<StatedBound>| bounds.into_iter().map(bound).collect();
+        let bounds = stated.bounds.into_iter().map(of_box).collect::<Result<_, CertificateError>>()?;
+        Ok(Sampling { sample_time_s: stated.sample_time, images: stated.images, bounds })
     }
 }
 

@@ -1,6 +1,6 @@
 //! The claims of a certificate and their panels, as the file has them.
 
-use phea_qft::proof::{Claim, Late, Limited, Member, Panel, Side, StableBox};
+use phea_qft::proof::{Claim, Count, Late, Limited, Member, Panel, Side, StableBox};
 use phea_qft::specification::ClosedLoop;
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +17,8 @@ pub(super) enum Stated {
         #[serde(rename = "box")]
         of_box: usize,
         member: Vec<f64>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        count: Option<StatedCount>,
     },
     Limited {
         closed_loop: String,
@@ -46,6 +48,35 @@ pub(super) struct StatedBox {
     panels: Vec<Cover>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     delays: Vec<Cover>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    count: Option<StatedCount>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StatedCount {
+    characteristic: Vec<Cover>,
+    denominator: Vec<Cover>,
+    beyond: Vec<Cover>,
+}
+
+impl From<&Count> for StatedCount {
+    fn from(count: &Count) -> StatedCount {
+        let Count { characteristic, denominator, beyond } = count;
+        let [characteristic, denominator, beyond] =
+            [characteristic, denominator, beyond].map(|one| covers(one));
+        StatedCount { characteristic, denominator, beyond }
+    }
+}
+
+impl TryFrom<StatedCount> for Count {
+    type Error = CertificateError;
+
+    fn try_from(stated: StatedCount) -> Result<Count, CertificateError> {
+        let StatedCount { characteristic, denominator, beyond } = stated;
+        let (characteristic, denominator) = (panels(characteristic)?, panels(denominator)?);
+        Ok(Count { characteristic, denominator, beyond: panels(beyond)? })
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -109,7 +140,7 @@ fn late(lateness: Option<Lateness>) -> Result<Late, CertificateError> {
     }
 }
 
-fn covers(panels: &[Panel]) -> Vec<Cover> {
+pub(super) fn covers(panels: &[Panel]) -> Vec<Cover> {
     let hexadecimal = |tree: &[u8]| tree.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
     let cover = |panel: &Panel| Cover {
         from: panel.from.into(),
@@ -120,7 +151,7 @@ fn covers(panels: &[Panel]) -> Vec<Cover> {
     panels.iter().map(cover).collect()
 }
 
-fn panels(covers: Vec<Cover>) -> Result<Vec<Panel>, CertificateError> {
+pub(super) fn panels(covers: Vec<Cover>) -> Result<Vec<Panel>, CertificateError> {
     let bytes = |text: &str| -> Result<Vec<u8>, CertificateError> {
         let digits = text.chars().map(|digit| digit.to_digit(16)).collect::<Option<Vec<u32>>>();
         let digits = digits.filter(|digits| digits.len() % 2 == 0);
@@ -182,11 +213,13 @@ impl From<&Claim> for Stated {
                     member: one.member.clone(),
                     panels: covers(&one.panels),
                     delays: covers(&one.delays),
+                    count: one.count.as_ref().map(StatedCount::from),
                 };
                 Stated::Stable { boxes: boxes.iter().map(stated).collect() }
             }
-            Claim::Unstable(member) => {
-                Stated::Unstable { of_box: member.of_box, member: member.variables.clone() }
+            Claim::Unstable { member, count } => {
+                let count = count.as_ref().map(StatedCount::from);
+                Stated::Unstable { of_box: member.of_box, member: member.variables.clone(), count }
             }
             Claim::Limited { limited, ratio, boxes } => {
                 let (closed_loop, side, limit, band) = of(limited);
@@ -211,11 +244,15 @@ impl TryFrom<Stated> for Claim {
             Stated::Stable { boxes } => {
                 let stable = |one: StatedBox| {
                     let (panels, delays) = (panels(one.panels)?, panels(one.delays)?);
-                    Ok(StableBox { member: one.member, panels, delays })
+                    let count = one.count.map(Count::try_from).transpose()?;
+                    Ok(StableBox { member: one.member, panels, delays, count })
                 };
                 Claim::Stable(boxes.into_iter().map(stable).collect::<Result<_, CertificateError>>()?)
             }
-            Stated::Unstable { of_box, member } => Claim::Unstable(Member { of_box, variables: member }),
+            Stated::Unstable { of_box, member, count } => {
+                let count = count.map(Count::try_from).transpose()?;
+                Claim::Unstable { member: Member { of_box, variables: member }, count }
+            }
             Stated::Limited { closed_loop, side, limit, band, ratio, boxes } => Claim::Limited {
                 limited: limited(&closed_loop, &side, limit, &band)?,
                 ratio,

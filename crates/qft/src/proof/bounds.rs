@@ -1,0 +1,81 @@
+//! Looks for bounds on the images of a sampled plant that are not taken one by one.
+
+use num_complex::Complex64;
+use phea_dynamics::portable;
+use phea_dynamics::watch::{Stopped, Watch};
+
+use super::certificate::{Bound, Certificate};
+use super::claimed::{Claimed, Loop};
+use super::images::Images;
+use super::panels::walk_band;
+use super::walk::{Effort, Walk};
+
+/// Images to either side that are taken one by one, by the relative degree of the plant: the slower they die out, the more.
+const IMAGES: [usize; 3] = [0, 12, 4];
+/// The same of greater relative degrees.
+const FAR_IMAGES: usize = 3;
+/// By how much a bound is raised above what is reached.
+const ABOVE: f64 = 1.3;
+/// How often it is raised at most.
+const RAISES_MAXIMUM: usize = 40;
+
+/// The certificate with bounds on images, where its loop is sampled; `None` where there are none.
+pub(super) fn with_bounds(
+    mut certificate: Certificate,
+    effort: Effort,
+    watch: Watch<'_>,
+) -> Result<Option<Certificate>, Stopped> {
+    let first = Loop::<f64>::over_box(&certificate, 0);
+    let relative_degree = first.as_ref().and_then(Loop::images).and_then(Images::relative_degree);
+    let Some(sampling) = &mut certificate.sampling else { return Ok(Some(certificate)) };
+    let Some(relative_degree) = relative_degree else { return Ok(None) };
+    sampling.images = IMAGES.get(relative_degree).copied().unwrap_or(FAR_IMAGES);
+    let mut sampling = sampling.clone();
+    for (of_box, bounds) in sampling.bounds.iter_mut().enumerate() {
+        let around = Loop::<f64>::over_box(&certificate, of_box);
+        let Some(images) = around.as_ref().and_then(Loop::images) else { return Ok(None) };
+        let Some(claims) = images.bounded() else { return Ok(None) };
+        let begin = rounded(images.bound_begin());
+        let variables = certificate.plant.variables;
+        for (claimed, bound) in claims.iter().zip(bounds) {
+            match bounded(claimed, variables, begin, effort, watch)? {
+                Some(found) => *bound = found,
+                None => return Ok(None),
+            }
+        }
+    }
+    certificate.sampling = Some(sampling);
+    Ok(Some(certificate))
+}
+
+/// A claim with the bound one, raised until it holds.
+fn bounded(
+    claimed: &Claimed<f64>,
+    variables: usize,
+    begin: f64,
+    effort: Effort,
+    watch: Watch<'_>,
+) -> Result<Option<Bound>, Stopped> {
+    // where it begins, with all variables at one
+    let [u, v] = [claimed.value_of_u(begin), claimed.value_of_v(begin)]
+        .map(|value| value.map_or(f64::NAN, |[re, im]| portable::magnitude(Complex64::new(re, im))));
+    let mut ratio = rounded_up(ABOVE * v / u);
+    for _ in 0..RAISES_MAXIMUM {
+        match walk_band(&claimed.raised(ratio), variables, [begin, f64::INFINITY], effort, watch)? {
+            Walk::Shown(panels) => return Ok(Some(Bound { ratio, panels })),
+            Walk::Wrong { ratio: by, .. } => ratio = rounded_up(ratio * by * ABOVE),
+            Walk::Open(_) | Walk::TooLarge => return Ok(None),
+        }
+    }
+    Ok(None)
+}
+
+/// A number of few digits that is not greater.
+fn rounded(value: f64) -> f64 {
+    let lower = value * (1.0 - 1e-4);
+    format!("{lower:.5e}").parse().unwrap_or(lower)
+}
+
+fn rounded_up(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}

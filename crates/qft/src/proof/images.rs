@@ -1,0 +1,259 @@
+//! The images of a plant that is sampled: what its response at w + 2 pi k/T adds to that at w.
+//!
+//! ```text
+//! R = sum over k != 0 of q_k,    q_k = w/w_k e^(-j k W tau) N/D(j w_k),      w_k = w + k W,   W = 2 pi/T,   0 <= w <= 0.51 W
+//! ```
+//!
+//! The first `count` to either side are enclosed one by one, each by a disc: over a part of the box, with control points n_i of j w N and
+//! d_i of s D at s = j w_k, and any number c,
+//!
+//! ```text
+//! |q_k - c e^(-j k W tau)| <= greatest |n_i - c d_i|/least |d_i|
+//! ```
+//!
+//! The others are bounded together. Where |N/D| <= C/w^m from 0.49 + count images on, with m >= 1, they add at most
+//!
+//! ```text
+//! 2 w C W^-(m+1) sum over k > count of (k - 0.51)^-(m+1)  <=  2 w C W^-(m+1) (count - 0.01)^-m/m
+//! ```
+
+use super::certificate::{Quotient, Sampling};
+use super::claimed::Claimed;
+use super::dead_time::InFrequency;
+use super::over_panel::{Complex, product, size, sum};
+use super::part::{quotient, value};
+use super::points::{Point, Points, Range};
+use super::polynomial::{Decimal, InS, Polynomial};
+
+/// The band ends at this part of W at most, a little beyond pi/T.
+pub(super) const BAND_END: f64 = 0.51;
+/// What follows for the bound on the images beyond those that are taken one by one: where it begins, and where its integral does.
+const BOUND_BEGIN: f64 = 0.49;
+const INTEGRAL_BEGIN: f64 = -0.01;
+
+/// Of which plant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Which {
+    /// N Hn/(D Hd), in the loop.
+    WithSensor,
+    /// N/D, on the way to the output.
+    Alone,
+}
+
+/// The images of a plant over a box.
+#[derive(Clone, Debug)]
+pub(crate) struct Images<S> {
+    /// T
+    pub(super) sample_time_s: S,
+    count: usize,
+    /// The dead time, where no variable moves it.
+    dead_time_s: Option<S>,
+    with_sensor: Imaged<S>,
+    alone: Imaged<S>,
+}
+
+/// N and D, with the bound on what is not taken image by image.
+#[derive(Clone, Debug)]
+struct Imaged<S> {
+    over: InS<S>,
+    under: InS<S>,
+    /// C, as a decimal.
+    ratio: f64,
+}
+
+impl<S: Decimal> Images<S> {
+    pub(super) fn of(
+        sampling: &Sampling,
+        of_box: usize,
+        dead_time_s: Option<S>,
+        [n, d]: [&InS<S>; 2],
+        sensor: &Quotient,
+    ) -> Option<Images<S>> {
+        let bounds = sampling.bounds.get(of_box)?;
+        let alone = Imaged { over: n.clone(), under: d.clone(), ratio: bounds.last()?.ratio };
+        let with_sensor = match (sensor.is_one(), bounds.as_slice()) {
+            (true, [_]) => alone.clone(),
+            (false, [bound, _]) => {
+                let [hn, hd] = quotient(sensor);
+                Imaged { over: n.times(&hn), under: d.times(&hd), ratio: bound.ratio }
+            }
+            _ => return None,
+        };
+        let sample_time_s = S::decimal(sampling.sample_time_s);
+        Some(Images { sample_time_s, count: sampling.images, dead_time_s, with_sensor, alone })
+    }
+
+    fn imaged(&self, which: Which) -> &Imaged<S> {
+        match which {
+            Which::WithSensor => &self.with_sensor,
+            Which::Alone => &self.alone,
+        }
+    }
+
+    /// W
+    pub(super) fn turn(&self) -> S {
+        S::pi().times(2.0) / self.sample_time_s
+    }
+
+    /// The circle is covered from zero to the first of these; the images are enclosed up to the second.
+    pub(super) fn band_ends(&self) -> [f64; 2] {
+        let half = S::pi() / self.sample_time_s;
+        [half.most(), (self.turn() * S::from(BAND_END)).least()]
+    }
+
+    /// What is claimed of the bounds, with the sensor and without: |s^m N| <= C |D|; `None` where the relative degree m is not one at least.
+    pub(super) fn bounded(&self) -> Option<Vec<Claimed<S>>> {
+        let one = |imaged: &Imaged<S>| {
+            let s_to_m = [vec![Polynomial::zero(); imaged.relative_degree()?], vec![Polynomial::number(1.0)]];
+            let v = InS(s_to_m.concat()).times(&imaged.over);
+            Some(Claimed::polynomials(imaged.under.scaled(S::decimal(imaged.ratio)), v))
+        };
+        [&self.with_sensor, &self.alone].into_iter().map(one).collect()
+    }
+
+    /// That of the plant alone.
+    pub(super) fn relative_degree(&self) -> Option<usize> {
+        self.alone.relative_degree()
+    }
+
+    /// From which frequency on the bounds are needed.
+    pub(super) fn bound_begin(&self) -> S {
+        self.turn() * S::from(self.count as f64 + BOUND_BEGIN)
+    }
+
+    /// Control points of the images taken one by one, over a panel and the whole box.
+    pub(super) fn over(&self, which: Which, variables: usize, range: Range) -> Option<ImagePoints<S>> {
+        let imaged = self.imaged(which);
+        let turn = self.turn();
+        let (from, width) = (S::decimal(range.from), S::decimal(range.to) - S::decimal(range.from));
+        let j_w = [Polynomial::constant(from), Polynomial::constant(width)];
+        let j_w = InFrequency { real: InS(vec![]), imaginary: InS(j_w.to_vec()) };
+        let s = InS(vec![Polynomial::zero(), Polynomial::number(1.0)]);
+        let under = InFrequency::of(&imaged.under.times(&s));
+        let over = InFrequency::of(&imaged.over);
+        let sides = (1..=self.count).flat_map(|k| [k as f64, -(k as f64)]);
+        let each = sides.map(|k| {
+            let begin = from + turn * S::from(k);
+            let pair = [under.along(begin, width), over.along(begin, width).times(&j_w)];
+            let points = Points::of_pair([&pair[0], &pair[1]], variables)?;
+            let phase = self.dead_time_s.map(|dead_time_s| {
+                let [cosine, sine] = S::cosine_and_sine(turn * S::from(k) * dead_time_s);
+                [cosine, -sine]
+            });
+            Some((points, phase))
+        });
+        Some(ImagePoints {
+            each: each.collect::<Option<_>>()?,
+            rest: self.rest(imaged, S::decimal(range.to))?,
+        })
+    }
+
+    /// What holds R at a frequency, of a plant with numbers as coefficients.
+    pub(super) fn at(&self, which: Which, frequency: S) -> Option<Complex<S>> {
+        let dead_time_s = self.dead_time_s?;
+        let imaged = self.imaged(which);
+        let rest = S::uncertain(self.rest(imaged, frequency)?.most());
+        let sides = (1..=self.count).flat_map(|k| [k as f64, -(k as f64)]);
+        let each = sides.map(|k| {
+            let turn = self.turn() * S::from(k);
+            let [n, d] = [&imaged.over, &imaged.under].map(|of| value(of, frequency + turn));
+            let size = d[0] * d[0] + d[1] * d[1];
+            let conjugate = [d[0] / size, -(d[1] / size)];
+            let [cosine, sine] = S::cosine_and_sine(turn * dead_time_s);
+            let share = frequency / (frequency + turn);
+            let [re, im] = product(product(n, conjugate), [cosine, -sine]);
+            [re * share, im * share]
+        });
+        Some(each.fold([rest; 2], sum))
+    }
+
+    /// What the images that are not taken one by one add at most, up to a frequency.
+    fn rest(&self, imaged: &Imaged<S>, frequency: S) -> Option<S> {
+        let degree = imaged.relative_degree()?;
+        let own = S::from(self.count as f64 + INTEGRAL_BEGIN);
+        let power = |of: S, exponent: usize| (0..exponent).fold(S::from(1.0), |product, _| product * of);
+        let under = power(self.turn(), degree + 1) * power(own, degree) * S::from(degree as f64);
+        Some(frequency * S::decimal(imaged.ratio).times(2.0) / under)
+    }
+}
+
+impl<S: Decimal> Imaged<S> {
+    /// By how much the degree of D is greater than that of N, where it is.
+    fn relative_degree(&self) -> Option<usize> {
+        self.under.degree()?.checked_sub(self.over.degree()?).filter(|degree| *degree > 0)
+    }
+}
+
+/// Control points of the images over a part of a panel and of the box: of each d_i and n_i, and its phase where that is known.
+#[derive(Clone, Debug)]
+pub(crate) struct ImagePoints<S> {
+    each: Vec<(Points<S>, Option<Complex<S>>)>,
+    rest: S,
+}
+
+/// A disc of complex numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Disc<S> {
+    pub(crate) center: Complex<S>,
+    pub(crate) radius: S,
+}
+
+impl<S: Decimal> ImagePoints<S> {
+    /// Both halves of the box across an axis.
+    pub(super) fn halves(self, axis: usize) -> [ImagePoints<S>; 2] {
+        let rest = self.rest;
+        let (low, high) = self
+            .each
+            .into_iter()
+            .map(|(points, phase)| {
+                let [low, high] = points.halves(axis);
+                ((low, phase), (high, phase))
+            })
+            .unzip();
+        [low, high].map(|each| ImagePoints { each, rest })
+    }
+
+    /// What holds R everywhere in this part.
+    pub(super) fn disc(&self) -> Disc<S> {
+        let whole = Disc { center: [S::from(0.0); 2], radius: self.rest };
+        self.each.iter().fold(whole, |known, (points, phase)| {
+            let Disc { center, radius } = disc(points.points());
+            let (center, radius) = match phase {
+                Some(phase) => (product(center, *phase), radius),
+                None => ([S::from(0.0); 2], radius + size(center)),
+            };
+            Disc { center: sum(known.center, center), radius: known.radius + radius }
+        })
+    }
+
+    /// The points of the image that is known least.
+    pub(super) fn least_known(&self) -> Option<&Points<S>> {
+        let radius = |points: &Points<S>| disc(points.points()).radius.most();
+        let all = self.each.iter().map(|(points, _)| points);
+        all.max_by(|one, other| radius(one).total_cmp(&radius(other)))
+    }
+}
+
+/// What holds n/d, from the control points of both.
+fn disc<S: Decimal>(points: &[Point<S>]) -> Disc<S> {
+    let middle = points.iter().fold([0.0; 4], |[dr, di, nr, ni], point| {
+        [dr + point[0].middle(), di + point[1].middle(), nr + point[2].middle(), ni + point[3].middle()]
+    });
+    let [dr, di, nr, ni] = middle;
+    let square = dr * dr + di * di;
+    // whatever it is, it is exact
+    let center = [(nr * dr + ni * di) / square, (ni * dr - nr * di) / square].map(S::from);
+    let squared = |part: f64| S::from(part) * S::from(part);
+    let length = (squared(dr) + squared(di)).sqrt();
+    let mut greatest = S::from(0.0);
+    let mut least = f64::INFINITY;
+    for [dr_i, di_i, nr_i, ni_i, _] in points {
+        let from = product(center, [*dr_i, *di_i]);
+        let [re, im] = [(*nr_i - from[0]).abs(), (*ni_i - from[1]).abs()];
+        greatest = greatest.maximum((re * re + im * im).sqrt());
+        least = least.min((dr_i.times(dr) + di_i.times(di)).least());
+    }
+    // d leaves zero on one side
+    let radius = if least > 0.0 { greatest * length / S::from(least) } else { S::from(f64::INFINITY) };
+    Disc { center, radius }
+}

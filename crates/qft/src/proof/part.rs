@@ -1,0 +1,118 @@
+//! Products of a polynomial in s and of functions of the samples: what the loops of a certificate consist of.
+//!
+//! ```text
+//! z = e^(j w T),   zeta = z - 1 = j w T e^(j w T) hold,   hold = (1 - e^(-j w T))/(j w T)
+//! ```
+//!
+//! zeta is zero where s is: as a factor it is written as s, so that an integrator in z meets one in s.
+
+use super::certificate::{Law, Quotient, Sections};
+use super::over_panel::{Complex, Middle, OverPanel, product, sum};
+use super::polynomial::{Decimal, InS, Polynomial};
+
+/// A function of the frequency and the sample time.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum OfSamples<S> {
+    /// A polynomial in zeta with these decimals, highest power first.
+    Polynomial(Vec<f64>),
+    /// The zero-order hold, with a height of one at zero frequency.
+    Hold,
+    /// Later by this time, s.
+    Late(S),
+    /// Earlier by one sample.
+    Ahead,
+}
+
+/// One product.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Part<S> {
+    pub(crate) of_s: InS<S>,
+    pub(crate) of_samples: Vec<OfSamples<S>>,
+}
+
+impl<S: Decimal> Part<S> {
+    pub(crate) fn of(of_s: InS<S>) -> Part<S> {
+        Part { of_s, of_samples: vec![] }
+    }
+
+    pub(crate) fn times(&self, other: &Part<S>) -> Part<S> {
+        let of_samples = self.of_samples.iter().chain(&other.of_samples).cloned().collect();
+        Part { of_s: self.of_s.times(&other.of_s), of_samples }
+    }
+
+    pub(crate) fn scaled(&self, factor: S) -> Part<S> {
+        Part { of_s: self.of_s.scaled(factor), of_samples: self.of_samples.clone() }
+    }
+
+    /// Its functions of the samples over a panel; `None` where it has none.
+    pub(super) fn over(&self, middle: Middle<S>, sample_time_s: S) -> Option<OverPanel<S>> {
+        let each = self.of_samples.iter().map(|one| match one {
+            OfSamples::Polynomial(coefficients) => {
+                middle.polynomial(coefficients, &middle.step(sample_time_s))
+            }
+            OfSamples::Hold => middle.hold(sample_time_s),
+            OfSamples::Late(time_s) => middle.turned(*time_s),
+            OfSamples::Ahead => middle.turned(-sample_time_s),
+        });
+        each.reduce(|one, other| middle.product(&one, &other))
+    }
+
+    /// Its value at a frequency, with coefficients that are numbers.
+    pub(super) fn value(&self, frequency: S, sample_time_s: S) -> Complex<S> {
+        let of_s = value(&self.of_s, frequency);
+        let middle = Middle::of([frequency, frequency], 1);
+        self.over(middle, sample_time_s).map_or(of_s, |factor| product(of_s, factor.value()))
+    }
+}
+
+/// The value of a polynomial whose coefficients are numbers, at s = j w.
+pub(super) fn value<S: Decimal>(of: &InS<S>, frequency: S) -> Complex<S> {
+    of.0.iter().rev().fold([S::from(0.0); 2], |known, coefficient| {
+        let turned = [-(known[1] * frequency), known[0] * frequency];
+        sum(turned, [number(coefficient), S::from(0.0)])
+    })
+}
+
+/// The number that a polynomial is which depends on no variable.
+pub(super) fn number<S: Decimal>(of: &Polynomial<S>) -> S {
+    of.terms().fold(S::from(0.0), |sum, (_, value)| sum + value)
+}
+
+/// Numerator and denominator.
+pub(super) fn quotient<S: Decimal>(quotient: &Quotient) -> [InS<S>; 2] {
+    [&quotient.numerator, &quotient.denominator].map(|coefficients| InS::of_decimals(coefficients))
+}
+
+/// Numerator and denominator of a law.
+pub(super) fn law<S: Decimal>(law: &Law, sample_time_s: Option<f64>) -> [Part<S>; 2] {
+    match law {
+        Law::Continuous(own) => quotient(own).map(Part::of),
+        Law::Sampled(Sections { gain, numerator, denominator }) => {
+            let gain = Part::of(InS(vec![Polynomial::number(*gain)]));
+            let sample_time_s = sample_time_s.map_or(S::from(0.0), S::decimal);
+            let one = Part::of(InS(vec![Polynomial::number(1.0)]));
+            let of = |sections: &[Vec<f64>], start: Part<S>| {
+                sections.iter().fold(start, |known, section| known.times(&of_section(section, sample_time_s)))
+            };
+            [of(numerator, gain), of(denominator, one)]
+        }
+    }
+}
+
+/// A polynomial in zeta; as often as zeta divides it, that is written as s.
+fn of_section<S: Decimal>(section: &[f64], sample_time_s: S) -> Part<S> {
+    let integrators = section.iter().rev().take_while(|coefficient| **coefficient == 0.0).count();
+    let mut out = Part::of(InS(vec![Polynomial::number(1.0)]));
+    for _ in 0..integrators {
+        let s = InS(vec![Polynomial::zero(), Polynomial::constant(sample_time_s)]);
+        out = out.times(&Part { of_s: s, of_samples: vec![OfSamples::Hold, OfSamples::Ahead] });
+    }
+    let left = &section[..section.len() - integrators];
+    match left {
+        [number] => out.scaled(S::decimal(*number)),
+        _ => out.times(&Part {
+            of_s: InS(vec![Polynomial::number(1.0)]),
+            of_samples: vec![OfSamples::Polynomial(left.to_vec())],
+        }),
+    }
+}

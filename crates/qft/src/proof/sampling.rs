@@ -1,0 +1,107 @@
+//! What a checker looks at in a sampled loop besides its claims: that its controller is a sampled one, that its prefilter is stable, and
+//! that the images beyond those taken one by one are bounded.
+
+use phea_dynamics::scalar::{Interval, Scalar};
+
+use super::certificate::{Certificate, Law, Panel, Sections};
+use super::checker::{Rejection, check_panels};
+use super::claimed::Loop;
+use super::hurwitz::{Roots, roots_of};
+use super::polynomial::Decimal;
+
+/// Images to either side at most.
+const IMAGES_MAXIMUM: usize = 64;
+/// The degree of a section at most.
+const SECTION_DEGREE_MAXIMUM: usize = 2;
+
+/// Controller and prefilter fit the loop.
+pub(super) fn check_sampling(certificate: &Certificate) -> Result<(), Rejection> {
+    let Certificate { feedback, prefilter, sampling, plant, .. } = certificate;
+    let Some(sampling) = sampling else {
+        let is_continuous = [feedback, prefilter].iter().all(|law| matches!(law, Law::Continuous(_)));
+        return if is_continuous { Ok(()) } else { Err(Rejection::NoSuchLoop) };
+    };
+    let Law::Sampled(_) = feedback else { return Err(Rejection::NoSuchLoop) };
+    let laws_fit = [feedback, prefilter].iter().all(|law| match law {
+        Law::Continuous(_) => true,
+        Law::Sampled(sections) => is_causal(sections),
+    });
+    let numbers = sampling.sample_time_s.is_finite() && sampling.sample_time_s > 0.0;
+    let images = (1..=IMAGES_MAXIMUM).contains(&sampling.images);
+    let bounded = sampling.bounds.len() == plant.boxes.len()
+        && sampling.bounds.iter().flatten().all(|bound| bound.ratio.is_finite() && bound.ratio > 0.0);
+    if laws_fit && numbers && images && bounded { Ok(()) } else { Err(Rejection::Number("of the sampling")) }
+}
+
+/// Leading coefficients that are not zero, and no more zeros than poles.
+fn is_causal(Sections { gain, numerator, denominator }: &Sections) -> bool {
+    let fits = |section: &Vec<f64>| {
+        let leading = section.first().is_some_and(|leading| *leading != 0.0);
+        leading && section.len() <= SECTION_DEGREE_MAXIMUM + 1 && section.iter().all(|one| one.is_finite())
+    };
+    let degree = |sections: &[Vec<f64>]| -> usize { sections.iter().map(|section| section.len() - 1).sum() };
+    gain.is_finite()
+        && numerator.iter().chain(denominator).all(fits)
+        && degree(numerator) <= degree(denominator)
+}
+
+/// pi/T.
+pub(super) fn pi_over_t(certificate: &Certificate) -> Option<Interval> {
+    let sampling = certificate.sampling.as_ref()?;
+    Some(Interval::pi() / Interval::decimal(sampling.sample_time_s))
+}
+
+/// Poles of a sampled controller.
+pub(super) fn poles_of_law(law: &Law) -> usize {
+    match law {
+        Law::Continuous(_) => 0,
+        Law::Sampled(sections) => sections.denominator.iter().map(|section| section.len() - 1).sum(),
+    }
+}
+
+/// Whether all poles of the prefilter are within the unit circle, or to the left of the imaginary axis.
+pub(super) fn prefilter_is_stable(certificate: &Certificate, around: &Loop<Interval>) -> bool {
+    match &certificate.prefilter {
+        Law::Continuous(_) => roots_of(around.prefilter_denominator()) == Roots::AllLeft,
+        Law::Sampled(sections) => sections.denominator.iter().all(|section| is_within_circle(section)),
+    }
+}
+
+/// Whether the roots of a polynomial in zeta = z - 1, of degree two at most, have |z| < 1: with the leading coefficient 1, that of zeta b1
+/// and the last b0, P(z = 1) = b0 > 0, P(z = -1) = 4 - 2 b1 + b0 > 0 and b0 - b1 + 1 < 1.
+fn is_within_circle(section: &[f64]) -> bool {
+    let number = |value: f64| if value == 0.0 { Interval::from(0.0) } else { Interval::decimal(value) };
+    let is_positive = |value: Interval| value.low() > 0.0;
+    match *section {
+        [_] => true,
+        [leading, b0] => {
+            let b0 = number(b0) / number(leading);
+            is_positive(b0) && is_positive(Interval::from(2.0) - b0)
+        }
+        [leading, b1, b0] => {
+            let [b1, b0] = [b1, b0].map(|value| number(value) / number(leading));
+            is_positive(b0) && is_positive(b1 - b0) && is_positive(Interval::from(4.0) - b1.times(2.0) + b0)
+        }
+        _ => false,
+    }
+}
+
+/// The bounds on the images of a box.
+pub(super) fn check_bounds(
+    certificate: &Certificate,
+    of_box: usize,
+    around: &Loop<Interval>,
+) -> Result<(), Rejection> {
+    let Some((sampling, images)) = certificate.sampling.as_ref().zip(around.images()) else { return Ok(()) };
+    let claims = images.bounded().ok_or(Rejection::NoSuchLoop)?;
+    let bounds = sampling.bounds.get(of_box).ok_or(Rejection::Boxes)?;
+    for (claimed, bound) in claims.iter().zip(bounds) {
+        let panels: &[Panel] = &bound.panels;
+        let begin = panels.first().map_or(f64::INFINITY, |panel| panel.from);
+        if begin > images.bound_begin().low() {
+            return Err(Rejection::Gap(images.bound_begin().low()));
+        }
+        check_panels(claimed, certificate.plant.variables, [begin, f64::INFINITY], panels)?;
+    }
+    Ok(())
+}
