@@ -38,8 +38,8 @@ mod supremum;
 mod walk;
 
 pub use certificate::{
-    Bound, Certificate, CertifiedPlant, Claim, Count, LEAF, Late, Law, Limited, Member, Panel, Quotient,
-    Sampling, Sections, Segment, Side, StableBox,
+    Bound, Certificate, CertifiedPlant, Claim, Count, LEAF, Late, Law, LimitOf, Limited, Member, Panel,
+    Quotient, Sampling, Sections, Segment, Side, StableBox,
 };
 pub use checker::{Rejection, check};
 pub use prove::{ProofOptions, prove};
@@ -99,7 +99,7 @@ pub enum NotProven {
     NotPolynomial,
     /// The box has too many variables.
     TooManyVariables,
-    /// The limit is given as a table.
+    /// The limit is a table without two points in the band.
     TableLimit,
     /// There is no prefilter: the spread of a family is not a ratio at one plant.
     Spread,

@@ -11,8 +11,10 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-use phea_qft::proof::{Certificate, Claim, Late, Law, Panel, Proof, ProofOptions, Standing, check, prove};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::proof::{
+    Certificate, Claim, Late, Law, LimitOf, Panel, Proof, ProofOptions, Standing, check, prove,
+};
+use phea_qft::specification::{Limit, LimitTable, Requirement, Specification};
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::{
     Audit, AuditProblem, Evidence, PlantPoint, SpecificationFinding, StabilityFinding, StabilityReason,
@@ -368,6 +370,54 @@ fn the_peak_of_a_second_order_loop_is_enclosed() {
     assert!(own.most_db.unwrap() - own.least_db.unwrap() < 0.0021);
 }
 
+/// A table is straight between its points in a double logarithmic diagram.
+// ORIGIN: analytic, w |k/(jw + k)| grows with w and k: at 100 rad/s and k = 2 it is 200/sqrt(10004)
+#[test]
+fn a_limit_given_as_a_table_is_that_of_the_audit() {
+    let parameter = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 2.0 };
+    let plant = UncertainPlant::record(vec![parameter], |p| PlantCoefficients {
+        command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+        disturbance: None,
+        dead_time_s: 0.0.into(),
+        rate: None,
+    });
+    let coordinate =
+        Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
+    let family = UncertainFamily::new(plant.unwrap(), vec![coordinate], vec![], Extent::Box).unwrap();
+    let family = Family::Uncertain(family);
+    let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap();
+    let table = LimitTable::new(vec![(1.0, 1.0), (10.0, 0.1), (100.0, 0.01)]).unwrap();
+    let specifications = [Specification {
+        requirement: Requirement::RobustStability(Limit::Table(table)),
+        frequencies_rad_per_s: vec![1.0],
+        band_rad_per_s: [0.0, f64::INFINITY],
+    }];
+    let problem = problem(&family, &compensation, &specifications);
+    let found = audit(&problem, &mut unwatched).unwrap();
+    let proof = prove(&problem, &found, ProofOptions::default(), &mut unwatched).unwrap();
+    let truth_db = 20.0 * phea_dynamics::portable::log10(200.0 / 10_004.0_f64.sqrt());
+    let own = &proof.specifications[0];
+    let (least, most) = (own.least_db.unwrap(), own.most_db.unwrap());
+    assert!(least <= truth_db && truth_db <= most && most - least < 0.051, "{least} {truth_db} {most}");
+    // a point that is raised, and one that is left out
+    let genuine = proof.certificate.unwrap();
+    type Points = Vec<(f64, f64)>;
+    let altered = |change: &dyn Fn(&mut Points)| {
+        let mut other = genuine.clone();
+        for claim in &mut other.claims {
+            let (Claim::Limited { limited, .. } | Claim::Reached { limited, .. }) = claim else { continue };
+            if let LimitOf::Table(points) = &mut limited.limit {
+                change(points);
+            }
+        }
+        check(&other)
+    };
+    assert_eq!(altered(&|_| {}), Ok(()));
+    assert!(altered(&|points| points[2].1 *= 1.1).is_err());
+    assert!(altered(&|points| points.truncate(2)).is_err());
+    assert!(altered(&|points| points[1].0 = 0.5).is_err());
+}
+
 /// Where parameters move together, a nominal plant beside their line belongs to the family all the same.
 #[test]
 fn a_plant_beside_the_box_is_in_the_proof() {
@@ -423,8 +473,8 @@ fn a_certificate_that_overflows_is_rejected() {
         if let Some(Claim::Limited { limited, .. }) =
             other.claims.iter_mut().find(|claim| matches!(claim, Claim::Limited { .. }))
         {
-            limited.limit.numerator = vec![1.0; 1100];
-            limited.limit.denominator = vec![1.0; 1100];
+            let long = phea_qft::proof::Quotient { numerator: vec![1.0; 1100], denominator: vec![1.0; 1100] };
+            limited.limit = phea_qft::proof::LimitOf::Quotient(long);
         }
     }));
 }

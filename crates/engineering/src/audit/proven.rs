@@ -119,7 +119,7 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
             "the coefficients of the plant are not polynomials in the uncertain numbers".into()
         }
         NotProven::TooManyVariables => "the box has too many uncertain numbers".into(),
-        NotProven::TableLimit => "its limit is given as a table, which the prover does not yet cover".into(),
+        NotProven::TableLimit => "its limit is a table without two points within its band".into(),
         NotProven::Spread => "there is no prefilter, and a spread is not the ratio of one plant".into(),
         NotProven::Unstable => "the loop is not proven to be stable".into(),
         NotProven::LargerBox => {

@@ -223,10 +223,19 @@ pub struct Limited {
     pub closed_loop: ClosedLoop,
     /// Which side is limited.
     pub side: Side,
-    /// The limit is the magnitude of this.
-    pub limit: Quotient,
+    /// The limit.
+    pub limit: LimitOf,
     /// From and to, rad/s.
     pub band_rad_per_s: [f64; 2],
+}
+
+/// What limits a magnitude.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LimitOf {
+    /// The magnitude of this.
+    Quotient(Quotient),
+    /// Points of frequency, rad/s, and magnitude: between them straight in a double logarithmic diagram, beyond them nothing.
+    Table(Vec<(f64, f64)>),
 }
 
 /// On which side of a magnitude its limit lies.

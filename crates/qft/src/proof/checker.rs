@@ -8,8 +8,10 @@
 
 use phea_dynamics::scalar::{Interval, Scalar};
 
-use super::certificate::{Certificate, Claim, Count, LEAF, Late, Limited, Member, Panel, Segment, StableBox};
-use super::claimed::{Claimed, Loop};
+use super::certificate::{
+    Certificate, Claim, Count, LEAF, Late, LimitOf, Limited, Member, Panel, Quotient, Segment, StableBox,
+};
+use super::claimed::{Claimed, Loop, Piece};
 use super::count::poles_outside;
 use super::dead_time::ends;
 use super::hurwitz::{Roots, roots_of};
@@ -109,8 +111,8 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
             for (of_box, panels) in boxes.iter().enumerate() {
                 let around = sound(Loop::over_box(certificate, of_box))?;
                 check_bounds(certificate, of_box, &around)?;
-                let claimed = around.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
-                check_panels(&claimed, variables, limited.band_rad_per_s, panels)?;
+                let pieces = around.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
+                check_pieces(&pieces, variables, panels)?;
             }
             Ok(())
         }
@@ -121,8 +123,10 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
                 return Err(Rejection::Number("a frequency"));
             }
             check_bounds_of(certificate, member.of_box)?;
-            let claimed = at(certificate, member)?.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
-            if reaches(&claimed, *frequency_rad_per_s) { Ok(()) } else { Err(Rejection::Point) }
+            let pieces = at(certificate, member)?.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
+            let at = *frequency_rad_per_s;
+            let mut within = pieces.iter().filter(|piece| piece.holds(at));
+            if within.any(|piece| reaches(&piece.claimed, at)) { Ok(()) } else { Err(Rejection::Point) }
         }
     }
 }
@@ -233,13 +237,33 @@ fn check_boxes(certificate: &Certificate, shown: usize) -> Result<(), Rejection>
 
 fn check_ratio(limited: &Limited, ratio: f64) -> Result<(), Rejection> {
     let [from, to] = limited.band_rad_per_s;
-    let has_limit = [&limited.limit.numerator, &limited.limit.denominator]
-        .iter()
-        .all(|coefficients| coefficients.iter().any(|coefficient| *coefficient != 0.0));
+    let has_limit = match &limited.limit {
+        LimitOf::Quotient(Quotient { numerator, denominator }) => {
+            [numerator, denominator].iter().all(|coefficients| coefficients.iter().any(|one| *one != 0.0))
+        }
+        LimitOf::Table(points) => {
+            let is_point = |(frequency, magnitude): &(f64, f64)| *frequency > 0.0 && *magnitude > 0.0;
+            points.iter().all(is_point) && points.windows(2).all(|pair| pair[0].0 < pair[1].0)
+        }
+    };
     match ratio.is_finite() && ratio > 0.0 && from >= 0.0 && from < to && has_limit {
         true => Ok(()),
         false => Err(Rejection::Number("a ratio or the end of a band")),
     }
+}
+
+/// The pieces of a band, one behind the other; each panel belongs to one of them.
+fn check_pieces(pieces: &[Piece<Interval>], variables: usize, panels: &[Panel]) -> Result<(), Rejection> {
+    let mut left = panels;
+    for (index, Piece { band, claimed }) in pieces.iter().enumerate() {
+        let is_last = index + 1 == pieces.len();
+        let end =
+            if is_last { left.len() } else { left.iter().take_while(|panel| panel.to <= band[1]).count() };
+        let (own, others) = left.split_at(end);
+        check_panels(claimed, variables, *band, own)?;
+        left = others;
+    }
+    if pieces.is_empty() { Err(Rejection::Number("a band without a limit")) } else { Ok(()) }
 }
 
 pub(super) fn check_panels(

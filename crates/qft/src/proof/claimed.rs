@@ -23,11 +23,11 @@
 //!
 //! with R' for N Hn/(D Hd). To N belongs hold, and to N E what R' D or, of the plant alone, R D adds: `images`.
 
-use super::certificate::{Certificate, Limited, Member, Segment, Side};
+use super::certificate::{Certificate, LimitOf, Limited, Member, Segment, Side};
 use super::dead_time::DeadTime;
 use super::images::{Images, Which};
 use super::over_panel::{Complex, product, sum};
-use super::part::{OfSamples, Part, law, number, quotient};
+use super::part::{OfFrequency, Part, Straight, law, number, quotient};
 use super::polynomial::{Decimal, InS, Polynomial, expanded};
 use crate::specification::ClosedLoop;
 
@@ -37,7 +37,7 @@ const DEAD_TIME_EXPONENT_MAXIMUM: u8 = 4;
 /// By how much the panels of a sampled loop reach beyond pi/T, in parts of that.
 const BEYOND: f64 = 1e-9;
 
-/// A loop in polynomials of s and functions of the samples, over the box or at one plant.
+/// A loop in polynomials of s and functions of the frequency, over the box or at one plant.
 #[derive(Clone, Debug)]
 pub(crate) struct Loop<S> {
     numerator: Part<S>,
@@ -70,11 +70,27 @@ pub(crate) type Sum<S> = Vec<Part<S>>;
 pub(crate) struct Claimed<S> {
     pub(crate) u: [Sum<S>; 3],
     pub(crate) v: [Sum<S>; 3],
-    /// tau; nothing where there is none, and without the constant part that is in the functions of the samples.
+    /// tau; nothing where there is none, and without the constant part that is in the functions of the frequency.
     pub(crate) dead_time: DeadTime<S>,
     pub(crate) images: Option<Images<S>>,
     /// Which images those of U and of V are.
     pub(crate) which: [Which; 2],
+}
+
+/// A claim about a part of a band.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece<S> {
+    /// rad/s
+    pub(crate) band: [f64; 2],
+    pub(crate) claimed: Claimed<S>,
+}
+
+impl<S: Decimal> Piece<S> {
+    /// Whether the loop has a response at a frequency, and a limit.
+    pub(super) fn holds(&self, frequency_rad_per_s: f64) -> bool {
+        let [from, to] = self.claimed.band(self.band);
+        from <= frequency_rad_per_s && frequency_rad_per_s <= to
+    }
 }
 
 /// What is without dead time, what E multiplies, and what the images multiply.
@@ -179,11 +195,17 @@ impl<S: Decimal> Claimed<S> {
         self.u.iter().chain(&self.v).flatten().map(|part| &part.of_s)
     }
 
-    /// The frequency times this is how far its functions of the samples turn, about, s.
+    /// The frequency times this is how far its functions of the frequency turn, about, s.
     pub(crate) fn turn_s(&self) -> f64 {
-        let late = self.u.iter().chain(&self.v).flatten().flat_map(|part| &part.of_samples);
-        let late = late.map(|one| if let OfSamples::Late(time_s) = one { time_s.middle() } else { 0.0 });
+        let late = self.u.iter().chain(&self.v).flatten().flat_map(|part| &part.of_frequency);
+        let late = late.map(|one| if let OfFrequency::Late(time_s) = one { time_s.middle() } else { 0.0 });
         self.sample_time_s().middle() + late.fold(0.0, f64::max)
+    }
+
+    /// Whether a power of the frequency is among its functions, of which panels must not be wide.
+    pub(crate) fn has_powers(&self) -> bool {
+        let all = self.u.iter().chain(&self.v).flatten().flat_map(|part| &part.of_frequency);
+        all.into_iter().any(|one| matches!(one, OfFrequency::Straight(_)))
     }
 
     /// 0 where nothing is sampled, s.
@@ -192,10 +214,10 @@ impl<S: Decimal> Claimed<S> {
     }
 }
 
-/// One sum, parts with the same functions of the samples added up.
+/// One sum, parts with the same functions of the frequency added up.
 fn added<S: Decimal>(mut sum: Sum<S>, other: Sum<S>) -> Sum<S> {
     for part in other {
-        match sum.iter_mut().find(|known| known.of_samples == part.of_samples) {
+        match sum.iter_mut().find(|known| known.of_frequency == part.of_frequency) {
             Some(known) => known.of_s = known.of_s.plus(&part.of_s),
             None => sum.push(part),
         }
@@ -232,7 +254,7 @@ impl<S: Decimal> Loop<S> {
         if plant.has_dead_time {
             dead_time = dead_time.plus(&left.next()?).up_to(DEAD_TIME_EXPONENT_MAXIMUM)?;
         }
-        // what is constant is a function of the samples, where there are any
+        // in a sampled loop, what is constant is a function of the frequency
         let late = dead_time.as_constant().filter(|_| sampling.is_some());
         if late.is_some() {
             dead_time = Polynomial::zero();
@@ -253,7 +275,8 @@ impl<S: Decimal> Loop<S> {
         };
         let mut held = numerator;
         if sampling.is_some() {
-            held.of_samples = std::iter::once(OfSamples::Hold).chain(late.map(OfSamples::Late)).collect();
+            held.of_frequency =
+                std::iter::once(OfFrequency::Hold).chain(late.map(OfFrequency::Late)).collect();
         }
         Some(Loop {
             numerator: held,
@@ -333,10 +356,33 @@ impl<S: Decimal> Loop<S> {
         &self.prefilter[1].of_s
     }
 
-    /// A limit as a claim; `None` of a plant without the path that is limited.
-    pub(crate) fn claimed(&self, limited: &Limited, ratio: f64) -> Option<Claimed<S>> {
+    /// A limit as claims, each about a part of its band; `None` of a plant without the path that is limited.
+    pub(crate) fn claimed(&self, limited: &Limited, ratio: f64) -> Option<Vec<Piece<S>>> {
+        let [from, to] = limited.band_rad_per_s;
+        match &limited.limit {
+            LimitOf::Quotient(limit) => {
+                let claimed = self.within(limited, quotient(limit).map(Part::of), ratio)?;
+                Some(vec![Piece { band: [from, to], claimed }])
+            }
+            LimitOf::Table(points) => {
+                let highest = self.images.as_ref().map_or(f64::INFINITY, |images| images.band_ends()[0]);
+                let pieces = Straight::of_table(points).filter_map(|straight| {
+                    let band = [from.max(straight.from.0), to.min(straight.to.0)];
+                    (band[0] < band[1].min(highest)).then_some((band, straight))
+                });
+                let one = |of_frequency| Part { of_s: InS(vec![Polynomial::number(1.0)]), of_frequency };
+                let claimed = pieces.map(|(band, straight)| {
+                    let limit = [one(vec![OfFrequency::Straight(straight)]), one(vec![])];
+                    Some(Piece { band, claimed: self.within(limited, limit, ratio)? })
+                });
+                claimed.collect()
+            }
+        }
+    }
+
+    /// A claim with a limit Wn/Wd.
+    fn within(&self, limited: &Limited, [wn, wd]: [Part<S>; 2], ratio: f64) -> Option<Claimed<S>> {
         let [[gn, gd], [fn_, fd], [_, hd]] = [&self.feedback, &self.prefilter, &self.sensor];
-        let [wn, wd] = quotient(&limited.limit).map(Part::of);
         let ratio = S::decimal(ratio);
         let d = &self.denominator;
         // the plant alone, and its images

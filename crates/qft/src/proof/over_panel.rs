@@ -6,9 +6,13 @@
 //!
 //! e^(-j w theta)                  f_k = e^(-j a) (-j b)^k/k!                         a = middle theta, b = half theta, rest = b^m/m!
 //! (1 - e^(-j w T))/(j w T)        f_k = (-j b)^k/k! I_k,  I_k = integral over [0, 1] of x^k e^(-j a x)     rest = b^m/m!, theta = T
+//! W (w/v)^alpha                   f_k = W (middle/v)^alpha C(alpha, k) u^k           u = half/middle, rest: |f_m|/(1 - u max(1, (m + |alpha|)/(m + 1)))
 //! ```
+//!
+//! C(alpha, k + 1)/C(alpha, k) = (alpha - k)/(k + 1), whose magnitude from k = m on is not greater than that maximum.
 
 use super::dead_time::InFrequency;
+use super::part::Straight;
 use super::polynomial::{Decimal, InS, Polynomial};
 
 /// Terms of the series of I_k.
@@ -64,6 +68,25 @@ impl<S: Decimal> Middle<S> {
         let (powers, rest) = self.powers(sample_time_s);
         let each = powers.into_iter().enumerate();
         let coefficients = each.map(|(k, power)| product(moment(k, turn), power)).collect();
+        OverPanel { coefficients, rest }
+    }
+
+    /// A power of the frequency, on a panel where it is positive.
+    pub(super) fn straight(self, Straight { from, to }: Straight) -> OverPanel<S> {
+        let [(low, low_value), (high, high_value)] =
+            [from, to].map(|(w, value)| (S::decimal(w), S::decimal(value)));
+        let exponent = (high_value / low_value).ln() / (high / low).ln();
+        let ratio = self.half / self.middle;
+        let mut term = low_value * (exponent * (self.middle / low).ln()).exp();
+        let mut coefficients = Vec::with_capacity(self.terms);
+        for k in 0..self.terms {
+            coefficients.push([term, S::from(0.0)]);
+            term = term * ratio * (exponent - S::from(k as f64)) / S::from((k + 1) as f64);
+        }
+        let degree = S::from(self.terms as f64);
+        let growth = S::from(1.0).maximum((degree + exponent.abs()) / (degree + S::from(1.0)));
+        let left = S::from(1.0) - ratio * growth;
+        let rest = if left.least() > 0.0 { term.abs() / left } else { S::from(f64::INFINITY) };
         OverPanel { coefficients, rest }
     }
 

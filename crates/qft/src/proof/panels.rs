@@ -17,6 +17,8 @@ const POINTS_PER_DECADE: f64 = 24.0;
 const TURN: f64 = 1.0;
 /// The same of functions of the samples, in parts of that.
 const SAMPLED_TURN: f64 = 0.5;
+/// The greatest ratio of the ends of a panel over which a power of the frequency is expanded.
+const POWER_PANEL: f64 = 1.6;
 /// A panel is parted no more where its ends are nearer than by this ratio.
 const NARROWEST: f64 = 1.02;
 /// How far it is tried whether dead time matters.
@@ -37,7 +39,12 @@ pub(super) fn walk_band(
     let sampled_turn = claimed.turn_s();
     while let Some([from, to]) = waiting.pop() {
         let turns = [from, to].map(|end| end * sampled_turn / SAMPLED_TURN);
-        if let Some(middle) = parted([from, to], turns).filter(|_| sampled_turn > 0.0) {
+        let is_wide = claimed.has_powers() && from > 0.0 && to > POWER_PANEL * from;
+        let middle = match is_wide {
+            true => Some(rounded((from * to).sqrt())),
+            false => parted([from, to], turns).filter(|_| sampled_turn > 0.0),
+        };
+        if let Some(middle) = middle {
             waiting.extend([[middle, to], [from, middle]]);
             continue;
         }

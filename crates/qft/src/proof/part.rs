@@ -1,4 +1,5 @@
-//! Products of a polynomial in s and of functions of the samples: what the loops of a certificate consist of.
+//! Products of a polynomial in s and of functions of the frequency alone, those of the samples among them: what the loops of a certificate
+//! consist of.
 //!
 //! ```text
 //! z = e^(j w T),   zeta = z - 1 = j w T e^(j w T) hold,   hold = (1 - e^(-j w T))/(j w T)
@@ -10,9 +11,9 @@ use super::certificate::{Law, Quotient, Sections};
 use super::over_panel::{Complex, Middle, OverPanel, product, sum};
 use super::polynomial::{Decimal, InS, Polynomial};
 
-/// A function of the frequency and the sample time.
+/// A function of the frequency alone.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum OfSamples<S> {
+pub(crate) enum OfFrequency<S> {
     /// A polynomial in zeta with these decimals, highest power first.
     Polynomial(Vec<f64>),
     /// The zero-order hold, with a height of one at zero frequency.
@@ -21,38 +22,57 @@ pub(crate) enum OfSamples<S> {
     Late(S),
     /// Earlier by one sample.
     Ahead,
+    /// A part of a limit that is given as a table.
+    Straight(Straight),
+}
+
+/// A power of the frequency between two points of a table: straight in a double logarithmic diagram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Straight {
+    /// Frequency in rad/s, and magnitude.
+    pub(crate) from: (f64, f64),
+    /// The next point.
+    pub(crate) to: (f64, f64),
+}
+
+impl Straight {
+    /// The points of a table from one to the next.
+    pub(super) fn of_table(points: &[(f64, f64)]) -> impl Iterator<Item = Straight> {
+        points.windows(2).map(|pair| Straight { from: pair[0], to: pair[1] })
+    }
 }
 
 /// One product.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Part<S> {
     pub(crate) of_s: InS<S>,
-    pub(crate) of_samples: Vec<OfSamples<S>>,
+    pub(crate) of_frequency: Vec<OfFrequency<S>>,
 }
 
 impl<S: Decimal> Part<S> {
     pub(crate) fn of(of_s: InS<S>) -> Part<S> {
-        Part { of_s, of_samples: vec![] }
+        Part { of_s, of_frequency: vec![] }
     }
 
     pub(crate) fn times(&self, other: &Part<S>) -> Part<S> {
-        let of_samples = self.of_samples.iter().chain(&other.of_samples).cloned().collect();
-        Part { of_s: self.of_s.times(&other.of_s), of_samples }
+        let of_frequency = self.of_frequency.iter().chain(&other.of_frequency).cloned().collect();
+        Part { of_s: self.of_s.times(&other.of_s), of_frequency }
     }
 
     pub(crate) fn scaled(&self, factor: S) -> Part<S> {
-        Part { of_s: self.of_s.scaled(factor), of_samples: self.of_samples.clone() }
+        Part { of_s: self.of_s.scaled(factor), of_frequency: self.of_frequency.clone() }
     }
 
-    /// Its functions of the samples over a panel; `None` where it has none.
+    /// Its functions of the frequency over a panel; `None` where it has none.
     pub(super) fn over(&self, middle: Middle<S>, sample_time_s: S) -> Option<OverPanel<S>> {
-        let each = self.of_samples.iter().map(|one| match one {
-            OfSamples::Polynomial(coefficients) => {
+        let each = self.of_frequency.iter().map(|one| match one {
+            OfFrequency::Polynomial(coefficients) => {
                 middle.polynomial(coefficients, &middle.step(sample_time_s))
             }
-            OfSamples::Hold => middle.hold(sample_time_s),
-            OfSamples::Late(time_s) => middle.turned(*time_s),
-            OfSamples::Ahead => middle.turned(-sample_time_s),
+            OfFrequency::Hold => middle.hold(sample_time_s),
+            OfFrequency::Late(time_s) => middle.turned(*time_s),
+            OfFrequency::Ahead => middle.turned(-sample_time_s),
+            OfFrequency::Straight(straight) => middle.straight(*straight),
         });
         each.reduce(|one, other| middle.product(&one, &other))
     }
@@ -105,14 +125,14 @@ fn of_section<S: Decimal>(section: &[f64], sample_time_s: S) -> Part<S> {
     let mut out = Part::of(InS(vec![Polynomial::number(1.0)]));
     for _ in 0..integrators {
         let s = InS(vec![Polynomial::zero(), Polynomial::constant(sample_time_s)]);
-        out = out.times(&Part { of_s: s, of_samples: vec![OfSamples::Hold, OfSamples::Ahead] });
+        out = out.times(&Part { of_s: s, of_frequency: vec![OfFrequency::Hold, OfFrequency::Ahead] });
     }
     let left = &section[..section.len() - integrators];
     match left {
         [number] => out.scaled(S::decimal(*number)),
         _ => out.times(&Part {
             of_s: InS(vec![Polynomial::number(1.0)]),
-            of_samples: vec![OfSamples::Polynomial(left.to_vec())],
+            of_frequency: vec![OfFrequency::Polynomial(left.to_vec())],
         }),
     }
 }

@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, part};
 
 use super::bounds::with_bounds;
-use super::certificate::{Certificate, Claim, Count, Limited, Member, Panel, Side, StableBox};
+use super::certificate::{Certificate, Claim, Count, LimitOf, Limited, Member, Panel, Side, StableBox};
 use super::checker::check_claim;
 use super::claimed::{Claimed, Loop};
 use super::count::poles_outside;
@@ -277,16 +277,9 @@ impl Prover<'_> {
         let lower = lower.filter(|lower| **lower != Limit::Constant(0.0)).map(|lower| (Side::Lower, lower));
         let mut whole = SpecificationProof::without(Standing::Proven);
         for (side, own) in lower.into_iter().chain([(Side::Upper, upper)]) {
-            let one = match limit(own) {
-                None => SpecificationProof::without(Standing::NotProven(NotProven::TableLimit)),
-                Some(limit) => {
-                    let closed_loop = requirement.closed_loop();
-                    let band_rad_per_s = specification.band_rad_per_s;
-                    let limited = Limited { closed_loop, side, limit, band_rad_per_s };
-                    self.side(&limited, &hints, stability, watch)?
-                }
-            };
-            whole = whole.and(one);
+            let (closed_loop, limit) = (requirement.closed_loop(), limit(own));
+            let limited = Limited { closed_loop, side, limit, band_rad_per_s: specification.band_rad_per_s };
+            whole = whole.and(self.side(&limited, &hints, stability, watch)?);
         }
         Ok(whole)
     }
@@ -306,6 +299,14 @@ impl Prover<'_> {
             effort: self.effort,
             only_points: *stability != Standing::Proven,
         };
+        if let LimitOf::Table(points) = &limited.limit {
+            let [from, to] = limited.band_rad_per_s;
+            let highest = self.problem.compensation.highest_frequency_rad_per_s().min(to);
+            let meets = |pair: &[(f64, f64)]| pair[0].0.max(from) < pair[1].0.min(highest);
+            if !points.windows(2).any(meets) {
+                return Ok(SpecificationProof::without(Standing::NotProven(NotProven::TableLimit)));
+            }
+        }
         let Some(found) = enclose(&self.certificate, limited, hints, wanted, watch)? else {
             return Ok(SpecificationProof::without(Standing::NotProven(NotProven::NotPolynomial)));
         };

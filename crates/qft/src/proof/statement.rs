@@ -7,7 +7,7 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, Un
 
 use super::NotProven;
 use super::certificate::{
-    Bound, Certificate, CertifiedPlant, Law, Member, Quotient, Sampling, Sections, Segment,
+    Bound, Certificate, CertifiedPlant, Law, LimitOf, Member, Quotient, Sampling, Sections, Segment,
 };
 use super::polynomial::VARIABLES_MAXIMUM;
 use crate::closed_loop::Compensation;
@@ -102,12 +102,12 @@ fn quotient(function: &TransferFunction) -> Quotient {
     }
 }
 
-/// A limit; `None` of one that is given as a table.
-pub(super) fn limit(limit: &Limit) -> Option<Quotient> {
+/// A limit.
+pub(super) fn limit(limit: &Limit) -> LimitOf {
     match limit {
-        Limit::Constant(value) => Some(Quotient::constant(*value)),
-        Limit::Rational(function) => Some(quotient(function)),
-        Limit::Table(_) => None,
+        Limit::Constant(value) => LimitOf::Quotient(Quotient::constant(*value)),
+        Limit::Rational(function) => LimitOf::Quotient(quotient(function)),
+        Limit::Table(table) => LimitOf::Table(table.points().to_vec()),
     }
 }
 

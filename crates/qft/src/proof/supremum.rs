@@ -5,7 +5,7 @@ use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch};
 
 use super::certificate::{Certificate, Limited, Member, Panel};
-use super::claimed::{Claimed, Loop};
+use super::claimed::{Claimed, Loop, Piece};
 use super::panels::{frequencies, walk_band};
 use super::part::{Part, number};
 use super::patch::at_point;
@@ -60,7 +60,7 @@ pub(super) fn enclose(
 ) -> Result<Option<Enclosed>, Stopped> {
     let boxes = 0..certificate.plant.boxes.len();
     let claims = boxes.map(|of_box| Loop::<f64>::over_box(certificate, of_box)?.claimed(limited, 1.0));
-    let Some(claims) = claims.collect::<Option<Vec<Claimed<f64>>>>() else { return Ok(None) };
+    let Some(claims) = claims.collect::<Option<Vec<Vec<Piece<f64>>>>>() else { return Ok(None) };
     let Some(mut found) = seen(certificate, limited, &claims, hints) else { return Ok(None) };
     for _ in 0..RAISES_MAXIMUM {
         if wanted.only_points {
@@ -68,7 +68,7 @@ pub(super) fn enclose(
         }
         let near = found.least * wanted.width;
         let ratio = rounded(if found.least <= wanted.decisive { near.min(wanted.decisive) } else { near });
-        match walk_boxes(certificate, limited, (&claims, ratio), wanted.effort, watch)? {
+        match walk_boxes(certificate, (&claims, ratio), wanted.effort, watch)? {
             Boxes::Shown(panels) => {
                 found.most = Some((ratio, panels));
                 break;
@@ -82,8 +82,11 @@ pub(super) fn enclose(
     }
     // what the checker can confirm at that point
     let at = Loop::<f64>::at(certificate, &found.at.member).and_then(|at| at.claimed(limited, 1.0));
-    let confirmed = at.and_then(|at| at_point(&at, found.at.frequency_rad_per_s));
-    found.least = confirmed.map_or(found.least, |[u, v]| v / u) * (1.0 - ROUNDED);
+    let frequency_rad_per_s = found.at.frequency_rad_per_s;
+    let pieces = at.iter().flatten().filter(|piece| piece.holds(frequency_rad_per_s));
+    let confirmed = pieces.filter_map(|piece| at_point(&piece.claimed, frequency_rad_per_s));
+    let least = confirmed.map(|[u, v]| v / u).fold(f64::NEG_INFINITY, f64::max);
+    found.least = if least.is_finite() { least } else { found.least } * (1.0 - ROUNDED);
     Ok(Some(found))
 }
 
@@ -101,22 +104,21 @@ enum Boxes {
 
 fn walk_boxes(
     certificate: &Certificate,
-    limited: &Limited,
-    (claims, ratio): (&[Claimed<f64>], f64),
+    (claims, ratio): (&[Vec<Piece<f64>>], f64),
     effort: Effort,
     watch: Watch<'_>,
 ) -> Result<Boxes, Stopped> {
-    let mut shown = Vec::with_capacity(claims.len());
-    for (of_box, claim) in claims.iter().enumerate() {
-        let band = claim.band_covered(limited.band_rad_per_s);
-        match walk_band(&claim.raised(ratio), certificate.plant.variables, band, effort, watch)? {
-            Walk::Shown(panels) => shown.push(panels),
+    let mut shown = vec![vec![]; claims.len()];
+    let each =
+        claims.iter().enumerate().flat_map(|(of_box, pieces)| pieces.iter().map(move |one| (of_box, one)));
+    for (of_box, Piece { band, claimed }) in each {
+        let band = claimed.band_covered(*band);
+        match walk_band(&claimed.raised(ratio), certificate.plant.variables, band, effort, watch)? {
+            Walk::Shown(panels) => shown[of_box].extend(panels),
             Walk::Wrong { at, ratio } => {
                 let member = Member { of_box, variables: at.variables };
-                return Ok(Boxes::Wrong {
-                    at: Place { frequency_rad_per_s: at.frequency_rad_per_s, member },
-                    ratio,
-                });
+                let at = Place { frequency_rad_per_s: at.frequency_rad_per_s, member };
+                return Ok(Boxes::Wrong { at, ratio });
             }
             Walk::Open(region) => return Ok(Boxes::Open(Some(Region { of_box, ..region }))),
             Walk::TooLarge => return Ok(Boxes::Open(None)),
@@ -129,23 +131,24 @@ fn walk_boxes(
 fn seen(
     certificate: &Certificate,
     limited: &Limited,
-    claims: &[Claimed<f64>],
+    claims: &[Vec<Piece<f64>>],
     hints: &[Place],
 ) -> Option<Enclosed> {
     let mut members: Vec<Member> = hints.iter().map(|hint| hint.member.clone()).collect();
     members.extend((0..claims.len()).flat_map(|of_box| corners(certificate, of_box)));
     members.dedup();
     let own = hints.iter().map(|hint| hint.frequency_rad_per_s);
-    let [from, to] = limited.band_rad_per_s;
-    let first = claims.first()?;
-    let all = own.chain(frequencies(first.band(limited.band_rad_per_s), first));
-    let to = to.min(first.band([from, to])[1]);
-    let frequencies: Vec<f64> = all.filter(|one| from <= *one && *one <= to).collect();
+    let pieces = claims.first()?;
+    let spread = pieces.iter().flat_map(|piece| frequencies(piece.claimed.band(piece.band), &piece.claimed));
+    let frequencies: Vec<f64> = own.chain(spread).collect();
     let mut best: Option<Enclosed> = None;
     for member in members {
-        let claimed = Loop::<f64>::at(certificate, &member)?.claimed(limited, 1.0)?;
-        for &frequency_rad_per_s in &frequencies {
-            let ratio = ratio_at(&claimed, frequency_rad_per_s);
+        let pieces = Loop::<f64>::at(certificate, &member)?.claimed(limited, 1.0)?;
+        let each = frequencies.iter().flat_map(|&one| {
+            let holding = pieces.iter().filter(move |piece| piece.holds(one));
+            holding.map(move |piece| (one, ratio_at(&piece.claimed, one)))
+        });
+        for (frequency_rad_per_s, ratio) in each {
             if ratio.is_finite() && best.as_ref().is_none_or(|known| ratio > known.least) {
                 let at = Place { frequency_rad_per_s, member: member.clone() };
                 best = Some(Enclosed { least: ratio, at, most: None, open: None });

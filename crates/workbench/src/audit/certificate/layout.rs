@@ -70,7 +70,7 @@ struct Plant {
 
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Rational {
+pub(super) struct Rational {
     numerator: Vec<f64>,
     denominator: Vec<f64>,
 }

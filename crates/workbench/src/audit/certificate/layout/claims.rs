@@ -1,6 +1,6 @@
 //! The claims of a certificate and their panels, as the file has them.
 
-use phea_qft::proof::{Claim, Count, Late, Limited, Member, Panel, Side, StableBox};
+use phea_qft::proof::{Claim, Count, Late, LimitOf, Limited, Member, Panel, Side, StableBox};
 use phea_qft::specification::ClosedLoop;
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,7 @@ pub(super) enum Stated {
     Limited {
         closed_loop: String,
         side: String,
-        limit: Rational,
+        limit: StatedLimit,
         band: [End; 2],
         ratio: f64,
         boxes: Vec<Vec<Cover>>,
@@ -31,7 +31,7 @@ pub(super) enum Stated {
     Reached {
         closed_loop: String,
         side: String,
-        limit: Rational,
+        limit: StatedLimit,
         band: [End; 2],
         ratio: f64,
         frequency: End,
@@ -87,6 +87,39 @@ pub(super) struct Cover {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     late: Option<Lateness>,
     tree: String,
+}
+
+/// A quotient, or a table.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+pub(super) enum StatedLimit {
+    Quotient(Rational),
+    Table(StatedTable),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StatedTable {
+    /// Frequency in rad/s, and magnitude.
+    table: Vec<(f64, f64)>,
+}
+
+impl From<&LimitOf> for StatedLimit {
+    fn from(limit: &LimitOf) -> StatedLimit {
+        match limit {
+            LimitOf::Quotient(quotient) => StatedLimit::Quotient(quotient.into()),
+            LimitOf::Table(points) => StatedLimit::Table(StatedTable { table: points.clone() }),
+        }
+    }
+}
+
+impl From<StatedLimit> for LimitOf {
+    fn from(stated: StatedLimit) -> LimitOf {
+        match stated {
+            StatedLimit::Quotient(quotient) => LimitOf::Quotient(quotient.into()),
+            StatedLimit::Table(StatedTable { table }) => LimitOf::Table(table),
+        }
+    }
 }
 
 /// The angle around which dead time turns, or a word.
@@ -176,7 +209,7 @@ fn side_key(side: Side) -> String {
 fn limited(
     closed_loop: &str,
     side: &str,
-    limit: Rational,
+    limit: StatedLimit,
     band: &[End; 2],
 ) -> Result<Limited, CertificateError> {
     let known = [
@@ -205,7 +238,7 @@ impl From<&Claim> for Stated {
         let of = |limited: &Limited| {
             let key = closed_loop_key(limited.closed_loop).to_string();
             let band = limited.band_rad_per_s.map(End::from);
-            (key, side_key(limited.side), Rational::from(&limited.limit), band)
+            (key, side_key(limited.side), StatedLimit::from(&limited.limit), band)
         };
         match claim {
             Claim::Stable(boxes) => {
