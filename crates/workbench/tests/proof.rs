@@ -72,7 +72,7 @@ fn dead_time_and_correlated_parameters_are_covered() {
     let rows = frame["specifications"].as_array().unwrap();
     let standing: Vec<&Value> = rows.iter().map(|row| &row["proven"]).collect();
     assert_eq!(standing, [&Value::Bool(true), &Value::Null, &Value::Bool(true)]);
-    assert!(rows[1]["proven_reason"].as_str().unwrap().contains("table"));
+    assert!(rows[1]["proven_reason"].as_str().unwrap().contains("move together"));
     // what was asked to be proven and is not, is not met
     assert_eq!(
         (frame["verdict"].as_str(), rows[1]["verdict"].as_str()),
