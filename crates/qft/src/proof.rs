@@ -25,6 +25,8 @@ mod dead_time;
 mod direction;
 mod hurwitz;
 mod images;
+mod model;
+mod modelling;
 mod over_panel;
 mod panels;
 mod part;
@@ -105,8 +107,6 @@ pub enum NotProven {
     Spread,
     /// The loop is not shown to be stable, and closed loops mean nothing.
     Unstable,
-    /// It is wrong in a larger box than that of the family, in which parameters that move together move each by itself.
-    LargerBox,
     /// So many leaves did not suffice; this part remains.
     Budget(Region),
     /// The ratio grows without an end that was found.

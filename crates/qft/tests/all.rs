@@ -13,6 +13,7 @@ mod kernels;
 mod manual_shaping;
 mod prefilter;
 mod proof;
+mod proof_curved;
 mod proof_sampled;
 mod quantisation;
 mod responding;

@@ -116,16 +116,13 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
         }
         NotProven::Waves => "waves travel in the lines, so that the plant has no polynomials".into(),
         NotProven::NotPolynomial => {
-            "the coefficients of the plant are not polynomials in the uncertain numbers".into()
+            "the coefficients of the plant could not be enclosed by polynomials of the uncertain numbers"
+                .into()
         }
         NotProven::TooManyVariables => "the box has too many uncertain numbers".into(),
         NotProven::TableLimit => "its limit is a table without two points within its band".into(),
         NotProven::Spread => "there is no prefilter, and a spread is not the ratio of one plant".into(),
         NotProven::Unstable => "the loop is not proven to be stable".into(),
-        NotProven::LargerBox => {
-            "numbers that move together were let move each by itself, and in that larger box it is wrong"
-                .into()
-        }
         NotProven::Unbounded => "the ratio grows without an end that was found".into(),
         NotProven::NoStableMember => "no plant could be shown to be stable, nor unstable".into(),
         NotProven::Rounding => "the checker, which rounds outwards, could not confirm it".into(),

@@ -58,9 +58,11 @@ pub struct CertifiedPlant {
     pub delay_s: f64,
     /// Terms of the series that stands for dead time.
     pub dead_time_terms: usize,
+    /// The degree of the polynomials that stand for coefficients which are none, with a remainder; 0 where all are polynomials.
+    pub model_degree: usize,
 }
 
-/// A parameter in a box: `low + (high - low) t` of the variable with this index.
+/// A parameter in a box: `low + (high - low) t` of the variable with this index, or `low (high/low)^t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     /// Its value where the variable is 0.
@@ -69,16 +71,23 @@ pub struct Segment {
     pub high: f64,
     /// Which variable moves it; `None` where it is `low` always.
     pub variable: Option<usize>,
+    /// Whether it moves by equal factors.
+    pub by_factors: bool,
 }
 
 impl Segment {
     /// A value that nothing moves.
     pub fn fixed(value: f64) -> Segment {
-        Segment { low: value, high: value, variable: None }
+        Segment { low: value, high: value, variable: None, by_factors: false }
     }
 }
 
 impl CertifiedPlant {
+    /// Whether every parameter of a box moves along a straight line.
+    pub(super) fn is_straight(&self) -> bool {
+        self.boxes.iter().flatten().all(|one| !one.by_factors)
+    }
+
     /// Whether there is dead time in the loop.
     pub fn is_late(&self) -> bool {
         self.has_dead_time || self.delay_s != 0.0

@@ -24,6 +24,8 @@ use super::sampling::{check_bounds, check_sampling, pi_over_t, poles_of_law, pre
 /// Halvings on the way to a leaf at most: no proof needs as many.
 const DEPTH_MAXIMUM: usize = 256;
 
+/// The degree of a polynomial that stands for a coefficient at most.
+const MODEL_DEGREE_MAXIMUM: usize = 8;
 /// Terms of the series of dead time at most.
 const DEAD_TIME_TERMS_MAXIMUM: usize = 24;
 
@@ -220,11 +222,15 @@ fn check_numbers(certificate: &Certificate) -> Result<(), Rejection> {
         one.len() == plant.parameters.len()
             && one.iter().all(|one| {
                 let moved = one.variable.is_none_or(|variable| variable < plant.variables);
-                one.low.is_finite() && one.high.is_finite() && moved
+                let by_factors =
+                    !one.by_factors || (one.low > 0.0 && one.high > 0.0 && plant.model_degree > 0);
+                one.low.is_finite() && one.high.is_finite() && moved && by_factors
             })
     };
     let in_time = plant.delay_s >= 0.0 && (1..=DEAD_TIME_TERMS_MAXIMUM).contains(&plant.dead_time_terms);
-    let in_bounds = plant.variables <= VARIABLES_MAXIMUM && !plant.boxes.is_empty();
+    let in_bounds = plant.variables <= VARIABLES_MAXIMUM
+        && plant.model_degree <= MODEL_DEGREE_MAXIMUM
+        && !plant.boxes.is_empty();
     match plant.boxes.iter().all(is_box) && in_bounds && in_time {
         true => Ok(()),
         false => Err(Rejection::Number("an end of a parameter")),

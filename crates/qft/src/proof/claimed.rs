@@ -26,6 +26,7 @@
 use super::certificate::{Certificate, LimitOf, Limited, Member, Segment, Side};
 use super::dead_time::DeadTime;
 use super::images::{Images, Which};
+use super::model::{by_factors, modelled};
 use super::over_panel::{Complex, product, sum};
 use super::part::{OfFrequency, Part, Straight, law, number, quotient};
 use super::polynomial::{Decimal, InS, Polynomial, expanded};
@@ -55,9 +56,13 @@ pub(crate) struct Loop<S> {
 /// The values of the parameters at one plant.
 fn at_member<S: Decimal>(segments: &[Segment], variables: &[f64]) -> Vec<Polynomial<S>> {
     let value = |one: &Segment| {
-        let low = S::decimal(one.low);
-        let share = one.variable.and_then(|variable| variables.get(variable));
-        share.map_or(low, |share| low + (S::decimal(one.high) - low) * S::decimal(*share))
+        let (low, high) = (S::decimal(one.low), S::decimal(one.high));
+        let share = one.variable.and_then(|variable| variables.get(variable)).map(|share| S::decimal(*share));
+        match share {
+            None => low,
+            Some(share) if one.by_factors => low * (share * (high / low).ln()).exp(),
+            Some(share) => low + (high - low) * share,
+        }
     };
     segments.iter().map(|one| Polynomial::constant(value(one))).collect()
 }
@@ -229,9 +234,22 @@ impl<S: Decimal> Loop<S> {
     /// Over a whole box; `None` where the plant is not polynomial, or there is no such box.
     pub(crate) fn over_box(certificate: &Certificate, of_box: usize) -> Option<Loop<S>> {
         let segments = certificate.plant.boxes.get(of_box)?.iter();
-        let values: Vec<_> =
-            segments.map(|one| Polynomial::between(one.low, one.high, one.variable)).collect();
-        Loop::of(certificate, of_box, &values)
+        let degree = certificate.plant.model_degree;
+        let values = segments.map(|one| match (degree, one.variable) {
+            (0, variable) => Some(Polynomial::between(one.low, one.high, variable)),
+            (_, None) => Some(Polynomial::number(one.low)),
+            (_, Some(variable)) => {
+                let [low, high] = [one.low, one.high].map(S::decimal);
+                match one.by_factors {
+                    true => by_factors([low, high], variable, degree),
+                    false => {
+                        let (middle, half) = ((low + high).times(0.5), (high - low).times(0.5));
+                        Some(Polynomial::about(middle, half, variable))
+                    }
+                }
+            }
+        });
+        Loop::of(certificate, of_box, &values.collect::<Option<Vec<_>>>()?)
     }
 
     /// With one plant.
@@ -242,7 +260,11 @@ impl<S: Decimal> Loop<S> {
 
     fn of(certificate: &Certificate, of_box: usize, parameters: &[Polynomial<S>]) -> Option<Loop<S>> {
         let plant = &certificate.plant;
-        let mut left = expanded(&plant.coefficients, parameters)?.into_iter();
+        let coefficients = match plant.model_degree {
+            0 => expanded(&plant.coefficients, parameters)?,
+            degree => modelled(&plant.coefficients, parameters, degree)?,
+        };
+        let mut left = coefficients.into_iter();
         let mut parts = vec![];
         for &length in &plant.lengths {
             let mut highest_first: Vec<Polynomial<S>> = left.by_ref().take(length).collect();
@@ -253,6 +275,9 @@ impl<S: Decimal> Loop<S> {
         let mut dead_time = Polynomial::number(plant.delay_s);
         if plant.has_dead_time {
             dead_time = dead_time.plus(&left.next()?).up_to(DEAD_TIME_EXPONENT_MAXIMUM)?;
+            if dead_time.rest().most() != 0.0 {
+                return None;
+            }
         }
         // in a sampled loop, what is constant is a function of the frequency
         let late = dead_time.as_constant().filter(|_| sampling.is_some());
@@ -292,6 +317,13 @@ impl<S: Decimal> Loop<S> {
             dead_time: DeadTime { value: dead_time, terms: plant.dead_time_terms },
             images,
         })
+    }
+
+    /// The greatest remainder of a coefficient of the plant beside its size.
+    pub(super) fn remainder_share(&self) -> f64 {
+        let own = [&self.numerator, &self.denominator].into_iter().chain(self.disturbance.iter().flatten());
+        let coefficients = own.flat_map(|part| &part.of_s.0).filter(|one| one.rest().most() != 0.0);
+        coefficients.map(|one| one.rest().most() / one.size().most()).fold(0.0, f64::max)
     }
 
     pub(super) fn images(&self) -> Option<&Images<S>> {

@@ -26,23 +26,21 @@ pub(crate) enum Leaf {
 
 /// The greatest part of a direction.
 const FULL: f64 = 32767.0;
-/// What is kept for the rounding of the checker, of |V|^2.
-const ROOM: f64 = 1e-11;
 /// Below this length the mean of unit directions says nothing.
 const CLEAR: f64 = 0.05;
 
 /// Beyond this angle, rad, a point counts as turned away.
 const BEHIND: f64 = 2.0;
 
-/// Looks at one leaf.
-pub(crate) fn leaf(points: &Points<f64>) -> Leaf {
+/// Looks at one leaf; `room` is kept for the rounding of the checker, of |V|^2.
+pub(crate) fn leaf(points: &Points<f64>, room: f64) -> Leaf {
     if let Some((corner, ratio)) = worst_corner(points) {
         return Leaf::Wrong { corner, ratio };
     }
     let pairs = points.points();
     let Some(middle) = mean_direction(pairs) else { return Leaf::Halve(most_varied(points)) };
     let near = rounded(middle);
-    if shows(near, pairs) {
+    if shows(near, pairs, room) {
         return Leaf::Shown(near);
     }
     if let Some(index) = turned_away(pairs, middle) {
@@ -60,7 +58,7 @@ pub(crate) fn leaf(points: &Points<f64>) -> Leaf {
     }
     let angle = 0.5 * (low.0 + high.0);
     let direction = rounded(middle * portable::exp_complex(Complex64::new(0.0, angle)));
-    if low.0 < high.0 && shows(direction, pairs) {
+    if low.0 < high.0 && shows(direction, pairs, room) {
         return Leaf::Shown(direction);
     }
     Leaf::Halve(between(points, [low.1, high.1], middle))
@@ -110,11 +108,11 @@ fn rounded(direction: Complex64) -> [i16; 2] {
 }
 
 /// What the checker asks, with room for its rounding.
-fn shows(direction: [i16; 2], pairs: &[Point<f64>]) -> bool {
+fn shows(direction: [i16; 2], pairs: &[Point<f64>], room: f64) -> bool {
     let [a, b] = direction.map(f64::from);
-    let square = (a * a + b * b) * (1.0 + ROOM);
+    let square = (a * a + b * b) * (1.0 + room);
     pairs.iter().all(|[ur, ui, vr, vi, rest]| {
-        let room = ROOM * ((a * ur).abs() + (b * ui).abs());
+        let room = room * ((a * ur).abs() + (b * ui).abs());
         let least = a * ur + b * ui - (a.abs() + b.abs()) * rest - room;
         least > 0.0 && least * least >= square * (vr * vr + vi * vi)
     })

@@ -2,6 +2,7 @@
 
 use phea_dynamics::scalar::Interval;
 
+use super::part::number;
 use super::polynomial::InS;
 
 /// What is known of the roots.
@@ -21,8 +22,7 @@ pub(crate) enum Roots {
 /// real parts.
 pub(crate) fn roots_of(polynomial: &InS<Interval>) -> Roots {
     let Some(degree) = polynomial.degree() else { return Roots::Unknown };
-    let number =
-        |power: usize| polynomial.0[power].terms().next().map_or(Interval::from(0.0), |(_, value)| value);
+    let number = |power: usize| number(&polynomial.0[power]);
     let leading = number(degree);
     let Some(sign) = sign_of(leading) else { return Roots::Unknown };
     let highest_first = (0..=degree).rev().map(|power| number(power) * Interval::from(sign));

@@ -131,11 +131,16 @@ impl<S: Decimal> Images<S> {
         let s = InS(vec![Polynomial::zero(), Polynomial::number(1.0)]);
         let under = InFrequency::of(&imaged.under.times(&s));
         let over = InFrequency::of(&imaged.over);
+        // w is less than |w_k|
+        let rests = [&imaged.under, &imaged.over].map(|of| InFrequency::of_rests(&of.times(&s)));
         let sides = (1..=self.count).flat_map(|k| [k as f64, -(k as f64)]);
         let each = sides.map(|k| {
             let begin = from + turn * S::from(k);
             let pair = [under.along(begin, width), over.along(begin, width).times(&j_w)];
-            let points = Points::of_pair([&pair[0], &pair[1]], variables)?;
+            // at the greatest |w_k|
+            let farthest = if k > 0.0 { begin + width } else { -begin };
+            let rests = rests.iter().flatten().map(|rests| rests.along(farthest, S::from(0.0)));
+            let points = Points::of_pair(pair, rests, variables, range)?;
             let phase = self.dead_time_s.map(|dead_time_s| {
                 let [cosine, sine] = S::cosine_and_sine(turn * S::from(k) * dead_time_s);
                 [cosine, -sine]
@@ -247,11 +252,11 @@ fn disc<S: Decimal>(points: &[Point<S>]) -> Disc<S> {
     let length = (squared(dr) + squared(di)).sqrt();
     let mut greatest = S::from(0.0);
     let mut least = f64::INFINITY;
-    for [dr_i, di_i, nr_i, ni_i, _] in points {
+    for [dr_i, di_i, nr_i, ni_i, rest] in points {
         let from = product(center, [*dr_i, *di_i]);
         let [re, im] = [(*nr_i - from[0]).abs(), (*ni_i - from[1]).abs()];
-        greatest = greatest.maximum((re * re + im * im).sqrt());
-        least = least.min((dr_i.times(dr) + di_i.times(di)).least());
+        greatest = greatest.maximum((re * re + im * im).sqrt() + *rest * (S::from(1.0) + size(center)));
+        least = least.min((dr_i.times(dr) + di_i.times(di) - *rest * length).least());
     }
     // d leaves zero on one side
     let radius = if least > 0.0 { greatest * length / S::from(least) } else { S::from(f64::INFINITY) };

@@ -21,8 +21,8 @@ const SAMPLED_TURN: f64 = 0.5;
 const POWER_PANEL: f64 = 1.6;
 /// A panel is parted no more where its ends are nearer than by this ratio.
 const NARROWEST: f64 = 1.02;
-/// How far it is tried whether dead time matters.
-const TRIAL: Effort = Effort { leaves: 40, depth: 24 };
+/// How far it is tried whether dead time matters: leaves and depth.
+const TRIAL: (usize, usize) = (40, 24);
 
 /// Looks for trees that show |V| <= |U| over a band.
 pub(super) fn walk_band(
@@ -54,7 +54,7 @@ pub(super) fn walk_band(
         let found = match ends(&claimed.dead_time) {
             _ if claimed.dead_time.value.is_zero() => over(Late::Not, effort)?,
             _ if to.is_infinite() => over(Late::Less, effort)?,
-            dead_times => match any(&mut over)? {
+            dead_times => match any(&mut over, effort)? {
                 Some(found) => found,
                 None => {
                     let turn = angles([from, to], dead_times);
@@ -77,9 +77,13 @@ pub(super) fn walk_band(
 }
 
 /// Whether it is shown, or wrong, however far dead time turns.
-fn any(over: &mut impl FnMut(Late, Effort) -> Result<Walk, Stopped>) -> Result<Option<Walk>, Stopped> {
+fn any(
+    over: &mut impl FnMut(Late, Effort) -> Result<Walk, Stopped>,
+    effort: Effort,
+) -> Result<Option<Walk>, Stopped> {
+    let (leaves, depth) = TRIAL;
     for late in [Late::Less, Late::More] {
-        let found = over(late, TRIAL)?;
+        let found = over(late, Effort { leaves, depth, ..effort })?;
         if matches!(found, Walk::Shown(_) | Walk::Wrong { .. }) {
             return Ok(Some(found));
         }

@@ -95,7 +95,7 @@ pub(super) fn value<S: Decimal>(of: &InS<S>, frequency: S) -> Complex<S> {
 
 /// The number that a polynomial is which depends on no variable.
 pub(super) fn number<S: Decimal>(of: &Polynomial<S>) -> S {
-    of.terms().fold(S::from(0.0), |sum, (_, value)| sum + value)
+    of.terms().fold(S::uncertain(of.rest().most()), |sum, (_, value)| sum + value)
 }
 
 /// Numerator and denominator.

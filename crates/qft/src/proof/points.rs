@@ -52,9 +52,9 @@ impl<S: Decimal> Terms<S> {
             let mut add = |parts: &[Part<S>]| {
                 let mut sum = none();
                 for part in parts {
-                    let (of_part, rest) = over_panel(claimed, part, range);
+                    let (of_part, rests) = over_panel(claimed, part, range);
                     sum = sum.plus(&of_part);
-                    out.rests.extend(rest);
+                    out.rests.extend(rests);
                 }
                 sum
             };
@@ -89,21 +89,27 @@ impl<S: Decimal> Terms<S> {
     }
 }
 
-/// A part over a panel, and what remains of its functions of the samples.
+/// A part over a panel, and what remains: of its functions of the frequency, and of its polynomial.
 fn over_panel<S: Decimal>(
     claimed: &Claimed<S>,
     part: &Part<S>,
     range: Range,
-) -> (InFrequency<S>, Option<(InFrequency<S>, S)>) {
+) -> (InFrequency<S>, Vec<(InFrequency<S>, S)>) {
     let own = InFrequency::of(&part.of_s);
+    let rests = InFrequency::of_rests(&part.of_s);
     if range.to.is_infinite() {
-        return (own, None);
+        return (own, rests.into_iter().map(|rests| (rests, S::from(1.0))).collect());
     }
     let [from, to] = [range.from, range.to].map(S::decimal);
     let own = own.along(from, to - from);
+    let rests = rests.map(|rests| rests.along(from, to - from));
     match part.over(Middle::of([from, to], claimed.dead_time.terms), claimed.sample_time_s()) {
-        None => (own, None),
-        Some(factor) => (own.times(&factor.along()), Some((own, factor.rest()))),
+        None => (own, rests.into_iter().map(|rests| (rests, S::from(1.0))).collect()),
+        Some(factor) => {
+            let most = factor.size() + factor.rest();
+            let whole = own.times(&factor.along());
+            (whole, std::iter::once((own, factor.rest())).chain(rests.map(|rests| (rests, most))).collect())
+        }
     }
 }
 
@@ -132,13 +138,18 @@ impl<S: Decimal> Points<S> {
         }
     }
 
-    /// The control points of two polynomials on a finite panel.
-    pub(super) fn of_pair(pair: [&InFrequency<S>; 2], variables: usize) -> Option<Points<S>> {
+    /// The control points of two polynomials on a finite panel, with what remains of both.
+    pub(super) fn of_pair(
+        pair: [InFrequency<S>; 2],
+        rests: impl Iterator<Item = InFrequency<S>>,
+        variables: usize,
+        range: Range,
+    ) -> Option<Points<S>> {
+        let rests = rests.map(|rests| (rests, S::from(1.0))).collect();
+        let terms = Terms { whole: pair, rests, unused: vec![] };
         let mut degrees = vec![0; variables + 1];
-        pair.iter().for_each(|one| one.raise_degrees(&mut degrees));
-        let mut out = Points::powers(pair, &degrees)?;
-        out.bring_to_bernstein_all();
-        Some(out)
+        terms.raise_degrees(&mut degrees);
+        Points::of(&terms, &degrees, range)
     }
 
     fn of(terms: &Terms<S>, degrees: &[usize], range: Range) -> Option<Points<S>> {
@@ -307,6 +318,14 @@ impl<S: Decimal> Points<S> {
 }
 
 impl<S: Decimal> InFrequency<S> {
+    /// What remains of a polynomial in s = j w at most, as a polynomial in w; `None` where nothing does.
+    pub(super) fn of_rests(of: &InS<S>) -> Option<InFrequency<S>> {
+        let rests = of.0.iter().map(Polynomial::rest);
+        let rests: Vec<Polynomial<S>> = rests.map(Polynomial::constant).collect();
+        let remains = of.0.iter().any(|one| one.rest().most() != 0.0);
+        remains.then(|| InFrequency { real: InS(rests), imaginary: InS(vec![]) })
+    }
+
     /// s = j w: j^0 = 1, j, -1, -j.
     pub(super) fn of(of: &InS<S>) -> InFrequency<S> {
         let part = |own: usize| {

@@ -106,16 +106,18 @@ const EXPONENT_MAXIMUM: u8 = 60;
 /// Exponents of the variables.
 type Exponents = [u8; VARIABLES_MAXIMUM];
 
-/// A polynomial in the variables of a box: exponents in increasing order, each with its coefficient.
+/// A polynomial in the variables of a box: exponents in increasing order, each with its coefficient. What it stands for differs from it by
+/// a remainder of at most `rest`, with the variables in [0, 1] as in [-1, 1].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Polynomial<S> {
     terms: Vec<(Exponents, S)>,
+    rest: S,
 }
 
 impl<S: Decimal> Polynomial<S> {
     /// A number.
     pub(crate) fn constant(value: S) -> Polynomial<S> {
-        Polynomial { terms: vec![([0; VARIABLES_MAXIMUM], value)] }
+        Polynomial { terms: vec![([0; VARIABLES_MAXIMUM], value)], rest: S::from(0.0) }
     }
 
     /// A decimal number; zero has no term.
@@ -125,7 +127,7 @@ impl<S: Decimal> Polynomial<S> {
 
     /// Nothing: no term.
     pub(crate) fn zero() -> Polynomial<S> {
-        Polynomial { terms: vec![] }
+        Polynomial { terms: vec![], rest: S::from(0.0) }
     }
 
     /// `low + (high - low) t`, t being the variable with this index; `low` if there is none.
@@ -144,14 +146,35 @@ impl<S: Decimal> Polynomial<S> {
         self.terms.iter().map(|(exponents, coefficient)| (exponents.as_slice(), *coefficient))
     }
 
-    /// Whether it has no term. A sum of intervals that may vanish is not zero.
+    /// What it stands for differs from it by this at most.
+    pub(crate) fn rest(&self) -> S {
+        self.rest
+    }
+
+    /// The same with more that it may differ by.
+    pub(super) fn with_rest(mut self, more: S) -> Polynomial<S> {
+        self.rest = self.rest + more;
+        self
+    }
+
+    /// Its magnitude at most, without the remainder.
+    pub(super) fn size(&self) -> S {
+        self.terms.iter().fold(S::from(0.0), |sum, (_, value)| sum + value.abs())
+    }
+
+    fn has_rest(&self) -> bool {
+        self.rest.most() != 0.0
+    }
+
+    /// Whether it has no term and no remainder. A sum of intervals that may vanish is not zero.
     pub(crate) fn is_zero(&self) -> bool {
-        self.terms.is_empty()
+        self.terms.is_empty() && !self.has_rest()
     }
 
     /// The number that it is, if it depends on no variable.
     pub(crate) fn as_constant(&self) -> Option<S> {
         match self.terms.as_slice() {
+            _ if self.has_rest() => None,
             [] => Some(S::from(0.0)),
             [(exponents, value)] if exponents.iter().all(|exponent| *exponent == 0) => Some(*value),
             _ => None,
@@ -160,11 +183,12 @@ impl<S: Decimal> Polynomial<S> {
 
     pub(crate) fn scaled(&self, factor: S) -> Polynomial<S> {
         let terms = self.terms.iter().map(|(exponents, coefficient)| (*exponents, *coefficient * factor));
-        Polynomial { terms: terms.collect() }
+        Polynomial { terms: terms.collect(), rest: self.rest * factor.abs() }
     }
 
     pub(crate) fn plus(&self, other: &Polynomial<S>) -> Polynomial<S> {
-        Polynomial::collected(self.terms.iter().chain(&other.terms).copied().collect())
+        let terms = self.terms.iter().chain(&other.terms).copied().collect();
+        Polynomial::collected(terms, self.rest + other.rest)
     }
 
     pub(crate) fn times(&self, other: &Polynomial<S>) -> Polynomial<S> {
@@ -181,11 +205,15 @@ impl<S: Decimal> Polynomial<S> {
                 (exponents, product)
             })
         });
-        Polynomial::collected(products.collect())
+        let rest = match self.has_rest() || other.has_rest() {
+            true => self.size() * other.rest + self.rest * other.size() + self.rest * other.rest,
+            false => S::from(0.0),
+        };
+        Polynomial::collected(products.collect(), rest)
     }
 
     /// Terms in any order, those with the same exponents added up in it.
-    fn collected(mut terms: Vec<(Exponents, S)>) -> Polynomial<S> {
+    fn collected(mut terms: Vec<(Exponents, S)>, rest: S) -> Polynomial<S> {
         terms.sort_by_key(|(exponents, _)| *exponents);
         terms.dedup_by(|next, kept| {
             let same = next.0 == kept.0;
@@ -194,7 +222,44 @@ impl<S: Decimal> Polynomial<S> {
             }
             same
         });
-        Polynomial { terms }
+        Polynomial { terms, rest }
+    }
+
+    /// Its terms up to a total degree, what the others are at most added to the remainder.
+    pub(super) fn truncated(mut self, degree: usize) -> Polynomial<S> {
+        let is_kept =
+            |exponents: &Exponents| exponents.iter().map(|one| usize::from(*one)).sum::<usize>() <= degree;
+        let beyond = self.terms.iter().filter(|(exponents, _)| !is_kept(exponents));
+        self.rest = beyond.fold(self.rest, |sum, (_, value)| sum + value.abs());
+        self.terms.retain(|(exponents, _)| is_kept(exponents));
+        self
+    }
+
+    /// `middle + half x`, x being the variable with this index.
+    pub(super) fn about(middle: S, half: S, variable: usize) -> Polynomial<S> {
+        let mut out = Polynomial::constant(middle);
+        let mut exponents = [0; VARIABLES_MAXIMUM];
+        if let Some(slot) = exponents.get_mut(variable) {
+            *slot = 1;
+            out.terms.push((exponents, half));
+        }
+        out
+    }
+
+    /// The same polynomial with x = 2 t - 1 in place of every variable.
+    pub(super) fn with_shares(&self) -> Polynomial<S> {
+        let mut out = Polynomial { terms: vec![], rest: self.rest };
+        for (exponents, value) in &self.terms {
+            let start = Polynomial::constant(*value);
+            let powers = exponents.iter().enumerate().flat_map(|(variable, power)| {
+                std::iter::repeat_n(
+                    Polynomial::about(S::from(-1.0), S::from(2.0), variable),
+                    usize::from(*power),
+                )
+            });
+            out = out.plus(&powers.fold(start, |product, one| product.times(&one)));
+        }
+        out
     }
 
     /// Itself, unless an exponent is greater than this.

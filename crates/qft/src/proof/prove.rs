@@ -11,7 +11,7 @@ use super::count::poles_outside;
 use super::hurwitz::{Roots, roots_of};
 use super::panels::walk_band;
 use super::sampling::poles_of_law;
-use super::statement::{Stated, limit, member_of, stated, values_of};
+use super::statement::{limit, member_of, stated, values_of};
 use super::supremum::{Enclosed, Place, Wanted, corners, enclose};
 use super::walk::{Effort, Region, Walk};
 use super::{NotProven, Proof, SpecificationProof, Standing};
@@ -37,6 +37,8 @@ impl Default for ProofOptions {
     }
 }
 
+/// What is kept for the rounding of the checker, in parts of |V|^2: at first, and where that did not suffice.
+const ROOMS: [f64; 2] = [1e-11, 3e-5];
 /// Halvings on the way to a leaf at most.
 const DEPTH_MAXIMUM: usize = 120;
 /// Plants that are always looked at: the nominal one, and the least stable that the audit found.
@@ -54,18 +56,15 @@ pub fn prove(
     options: ProofOptions,
     watch: Watch<'_>,
 ) -> Result<Proof, Stopped> {
-    let Stated { certificate, larger } = match stated(problem.family, problem.compensation) {
+    let certificate = match stated(problem.family, problem.compensation) {
         Ok(stated) => stated,
         Err(reason) => return Ok(nothing(problem, reason)),
     };
-    if Loop::<f64>::over_box(&certificate, 0).is_none() {
-        return Ok(nothing(problem, NotProven::NotPolynomial));
-    }
-    let effort = Effort { leaves: options.leaves_maximum, depth: DEPTH_MAXIMUM };
+    let effort = Effort { leaves: options.leaves_maximum, depth: DEPTH_MAXIMUM, room: ROOMS[0] };
     let Some(certificate) = with_bounds(certificate, effort, watch)? else {
         return Ok(nothing(problem, NotProven::Images));
     };
-    let mut prover = Prover { problem, certificate, larger, options, effort };
+    let mut prover = Prover { problem, certificate, options, effort };
     let parts = problem.specifications.len() as f64 + 1.0;
     let stability = prover.stability(audit, &mut part(watch, "proving", [0.0, 1.0 / parts]))?;
     let mut specifications = Vec::with_capacity(problem.specifications.len());
@@ -98,16 +97,11 @@ impl SpecificationProof {
 struct Prover<'a> {
     problem: &'a AuditProblem<'a>,
     certificate: Certificate,
-    larger: bool,
     options: ProofOptions,
     effort: Effort,
 }
 
 impl Prover<'_> {
-    fn refuted(&self) -> Standing {
-        if self.larger { Standing::NotProven(NotProven::LargerBox) } else { Standing::Refuted }
-    }
-
     /// Keeps a claim that the checker confirms.
     fn keeps(&mut self, claim: Claim) -> bool {
         let confirmed = check_claim(&self.certificate, &claim).is_ok();
@@ -154,7 +148,7 @@ impl Prover<'_> {
                 Poles::Beyond(count)
                     if self.keeps(Claim::Unstable { member: member.clone(), count: count.clone() }) =>
                 {
-                    return Ok(Err(self.refuted()));
+                    return Ok(Err(Standing::Refuted));
                 }
                 Poles::Within(count) if stable.is_none() => stable = Some((member, count)),
                 _ => {}
@@ -307,10 +301,18 @@ impl Prover<'_> {
                 return Ok(SpecificationProof::without(Standing::NotProven(NotProven::TableLimit)));
             }
         }
-        let Some(found) = enclose(&self.certificate, limited, hints, wanted, watch)? else {
+        let Some(mut found) = enclose(&self.certificate, limited, hints, wanted, watch)? else {
             return Ok(SpecificationProof::without(Standing::NotProven(NotProven::NotPolynomial)));
         };
-        let Enclosed { least, at, most, open } = found;
+        let mut most_db = self.keeps_most(limited, found.most.take());
+        let rounding = most_db == Some(None);
+        if rounding {
+            let effort = Effort { room: ROOMS[1], ..wanted.effort };
+            let again = enclose(&self.certificate, limited, hints, Wanted { effort, ..wanted }, watch)?;
+            most_db = self.keeps_most(limited, again.and_then(|again| again.most));
+        }
+        let most_db = most_db.flatten();
+        let Enclosed { least, at, open, .. } = found;
         let reached = Claim::Reached {
             limited: limited.clone(),
             ratio: least,
@@ -318,22 +320,14 @@ impl Prover<'_> {
             member: at.member.clone(),
         };
         let is_reached = self.keeps(reached);
-        let mut rounding = false;
-        let most_db = most.and_then(|(ratio, boxes)| {
-            let claim = Claim::Limited { limited: limited.clone(), ratio, boxes };
-            rounding = !self.keeps(claim);
-            (!rounding).then(|| db(ratio))
-        });
         let standing = match most_db {
-            _ if is_reached && least > decisive => self.refuted(),
+            _ if is_reached && least > decisive => Standing::Refuted,
             Some(most_db) if most_db <= self.problem.tolerance_db => Standing::Proven,
             _ if wanted.only_points => Standing::NotProven(NotProven::Unstable),
             _ if rounding => Standing::NotProven(NotProven::Rounding),
             _ => Standing::NotProven(open.map_or(NotProven::Unbounded, NotProven::Budget)),
         };
         let values = values_of(&self.certificate.plant, &at.member);
-        // a plant of a larger box need not be one of the family
-        let is_reached = is_reached && !self.larger;
         let worst = is_reached.then(|| WorstCase {
             margin_db: -db(least),
             frequency_rad_per_s: at.frequency_rad_per_s,
@@ -341,6 +335,17 @@ impl Prover<'_> {
             other: None,
         });
         Ok(SpecificationProof { standing, least_db: is_reached.then(|| db(least)), most_db, worst })
+    }
+
+    /// Keeps a claim that a ratio is not exceeded: that ratio in dB, or nothing where the checker could not confirm it.
+    fn keeps_most(
+        &mut self,
+        limited: &Limited,
+        shown: Option<(f64, Vec<Vec<Panel>>)>,
+    ) -> Option<Option<f64>> {
+        let (ratio, boxes) = shown?;
+        let claim = Claim::Limited { limited: limited.clone(), ratio, boxes };
+        Some(self.keeps(claim).then(|| db(ratio)))
     }
 
     /// Where the audit found the specification to be worst.

@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
+use phea_dynamics::portable;
 use phea_dynamics::scalar::Interval;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter};
 
@@ -9,6 +10,7 @@ use super::NotProven;
 use super::certificate::{
     Bound, Certificate, CertifiedPlant, Law, LimitOf, Member, Quotient, Sampling, Sections, Segment,
 };
+use super::modelling::with_model;
 use super::polynomial::VARIABLES_MAXIMUM;
 use crate::closed_loop::Compensation;
 use crate::family::{Coordinate, Extent, Family, Spacing, UncertainFamily};
@@ -17,23 +19,15 @@ use crate::specification::Limit;
 /// Terms of the series that stands for dead time: over a panel it turns by one radian to either side, so that 2e-9 remains.
 const DEAD_TIME_TERMS: usize = 12;
 
-/// The loop, and whether its boxes are those of the family or larger ones.
-pub(super) struct Stated {
-    /// Without a claim.
-    pub(super) certificate: Certificate,
-    /// Parameters that move together by equal factors are let move each by itself: what is wrong there may be right in the family.
-    pub(super) larger: bool,
-}
-
 /// The certificate of a loop, without a claim.
-pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Stated, NotProven> {
+pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Certificate, NotProven> {
     let Family::Uncertain(family) = family else { return Err(NotProven::Measured) };
     if compensation.rate_feed_forward() != 0.0 {
         return Err(NotProven::RateFedForward);
     }
     let parts = [compensation.feedback(), compensation.prefilter(), compensation.sensor()];
     let expression = family.plant().expression().ok_or(NotProven::Waves)?;
-    let (boxes, variables, larger) = boxes(family)?;
+    let (boxes, variables) = boxes(family)?;
     let ends = family.plant().parameters().iter();
     let all: Vec<Interval> = ends.map(|one| Interval::new(one.minimum, one.maximum)).collect();
     let enclosed = family.plant().enclosures(&all).ok_or(NotProven::Waves)?;
@@ -50,6 +44,7 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Sta
         // that of the prefilter changes no magnitude
         delay_s: compensation.delay_s() + parts[0].dead_time_s() + parts[2].dead_time_s(),
         dead_time_terms: DEAD_TIME_TERMS,
+        model_degree: 0,
     };
     let [feedback, prefilter] = [parts[0], parts[1]].map(law);
     let sensor = quotient(parts[2]);
@@ -58,10 +53,9 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Sta
         let of_box = vec![bound; if sensor.is_one() { 1 } else { 2 }];
         Sampling { sample_time_s, images: 1, bounds: vec![of_box; plant.boxes.len()] }
     });
-    Ok(Stated {
-        certificate: Certificate { plant, feedback, prefilter, sensor, sampling, claims: vec![] },
-        larger,
-    })
+    let mut certificate = Certificate { plant, feedback, prefilter, sensor, sampling, claims: vec![] };
+    with_model(&mut certificate)?;
+    Ok(certificate)
 }
 
 /// A law in s or in z.
@@ -111,53 +105,114 @@ pub(super) fn limit(limit: &Limit) -> LimitOf {
     }
 }
 
-/// The boxes of a family, the number of variables, and whether they are larger than the family.
-fn boxes(family: &UncertainFamily) -> Result<(Vec<Vec<Segment>>, usize, bool), NotProven> {
+/// The boxes of a family, and the number of variables.
+fn boxes(family: &UncertainFamily) -> Result<(Vec<Vec<Segment>>, usize), NotProven> {
     let fixed = |values: &[f64]| -> Vec<Segment> { values.iter().copied().map(Segment::fixed).collect() };
     if family.extent() == Extent::Members {
-        return Ok((family.members().iter().map(|values| fixed(values)).collect(), 0, false));
+        return Ok((family.members().iter().map(|values| fixed(values)).collect(), 0));
     }
     let own = family.plant().parameters();
-    let mut segments = fixed(&family.plant().nominal());
-    let (mut variables, mut larger) = (0, false);
-    for coordinate in family.coordinates() {
-        let together = moves_straight(coordinate);
-        larger |= !together;
-        for (position, &index) in coordinate.parameters.iter().enumerate() {
+    let variables = family.coordinates().len();
+    if variables > VARIABLES_MAXIMUM {
+        return Err(NotProven::TooManyVariables);
+    }
+    let mut boxes = vec![fixed(&family.plant().nominal())];
+    for (variable, coordinate) in family.coordinates().iter().enumerate() {
+        let ends = |&index: &usize| {
             let UncertainParameter { minimum, maximum, .. } = own[index];
-            let [low, high] = match coordinate.opposed.contains(&index) {
-                true => [maximum, minimum],
-                false => [minimum, maximum],
-            };
-            let variable = if together { variables } else { variables + position };
-            segments[index] = Segment { low, high, variable: (minimum < maximum).then_some(variable) };
+            if coordinate.opposed.contains(&index) { [maximum, minimum] } else { [minimum, maximum] }
+        };
+        let moved: Vec<(usize, [f64; 2], bool)> = coordinate
+            .parameters
+            .iter()
+            .zip(&coordinate.spacing)
+            .map(|(index, spacing)| {
+                (*index, ends(index), *spacing == Spacing::Logarithmic && !moves_straight(coordinate))
+            })
+            .filter(|(_, [low, high], _)| low != high)
+            .collect();
+        boxes = boxes.into_iter().flat_map(|one| parts(&one, &moved, variable)).collect();
+        if boxes.len() > BOXES_MAXIMUM {
+            return Err(NotProven::TooManyVariables);
         }
-        variables += if together { 1 } else { coordinate.parameters.len() };
     }
-    match variables <= VARIABLES_MAXIMUM {
-        true => {
-            let beside = family.members().iter().filter(|values| !is_within(&segments, variables, values));
-            let beside: Vec<Vec<Segment>> = beside.map(|values| fixed(values)).collect();
-            Ok((std::iter::once(segments).chain(beside).collect(), variables, larger))
+    let beside =
+        family.members().iter().filter(|values| !boxes.iter().any(|one| is_within(one, variables, values)));
+    let beside: Vec<Vec<Segment>> = beside.map(|values| fixed(values)).collect();
+    boxes.extend(beside);
+    Ok((boxes, variables))
+}
+
+/// Boxes that a family is parted into at most.
+const BOXES_MAXIMUM: usize = 256;
+/// By which factor a parameter that moves by equal factors is changed in one box at most.
+const FACTOR_MAXIMUM: f64 = 1.6;
+
+/// A box in which a variable moves these parameters: parted, where it moves them by factors that are too great for one.
+fn parts(whole: &[Segment], moved: &[(usize, [f64; 2], bool)], variable: usize) -> Vec<Vec<Segment>> {
+    let factor = |[low, high]: [f64; 2]| portable::ln(high / low).abs() / portable::ln(FACTOR_MAXIMUM);
+    let greatest = moved.iter().filter(|one| one.2).map(|one| factor(one.1)).fold(1.0, f64::max);
+    let count = greatest.ceil();
+    let value = |[low, high]: [f64; 2], by_factors: bool, share: f64| match share {
+        0.0 => low,
+        1.0 => high,
+        share if by_factors => low * portable::exp(share * portable::ln(high / low)),
+        share => low + (high - low) * share,
+    };
+    let part = |index: f64| {
+        let mut own = whole.to_vec();
+        for &(parameter, ends, by_factors) in moved {
+            let [low, high] =
+                [index / count, (index + 1.0) / count].map(|share| value(ends, by_factors, share));
+            own[parameter] = Segment { low, high, variable: Some(variable), by_factors };
         }
-        false => Err(NotProven::TooManyVariables),
-    }
+        own
+    };
+    (0..count as usize).map(|index| part(index as f64)).collect()
 }
 
 /// By how much a plant may stand beside the box through rounding, in parts of the range of a parameter.
 const BESIDE: f64 = 1e-9;
 
-/// Whether a plant of a family belongs to the box, which one that is named need not do where parameters move together.
-fn is_within(segments: &[Segment], variables: usize, values: &[f64]) -> bool {
-    let mut shares = vec![None; variables];
-    segments.iter().zip(values).all(|(one, value)| match one.variable.and_then(|own| shares.get_mut(own)) {
-        None => one.low == *value,
-        Some(slot) => {
-            let own = (value - one.low) / (one.high - one.low);
-            let known: f64 = *slot.get_or_insert(own);
-            (own - known).abs() <= BESIDE && (-BESIDE..=1.0 + BESIDE).contains(&own)
+/// The variables of a plant that belongs to a box; `None` of one that does not, as one that is named need not do where parameters move
+/// together.
+fn variables_within(segments: &[Segment], variables: usize, values: &[f64]) -> Option<Vec<f64>> {
+    let mut shares: Vec<Option<f64>> = vec![None; variables];
+    let fits = segments.iter().zip(values).all(|(one, value)| {
+        match one.variable.and_then(|own| shares.get_mut(own)) {
+            None => one.low == *value,
+            Some(slot) => {
+                let own = one.share(*value);
+                let known = *slot.get_or_insert(own);
+                (own - known).abs() <= BESIDE && (-BESIDE..=1.0 + BESIDE).contains(&own)
+            }
         }
-    })
+    });
+    fits.then(|| shares.into_iter().map(|share| share.unwrap_or(0.0).clamp(0.0, 1.0)).collect())
+}
+
+fn is_within(segments: &[Segment], variables: usize, values: &[f64]) -> bool {
+    variables_within(segments, variables, values).is_some()
+}
+
+impl Segment {
+    /// The variable at which a parameter has this value.
+    fn share(&self, value: f64) -> f64 {
+        match self.by_factors {
+            true => portable::ln(value / self.low) / portable::ln(self.high / self.low),
+            false => (value - self.low) / (self.high - self.low),
+        }
+    }
+
+    /// The value of a parameter where its variable is this.
+    pub(super) fn value(&self, share: f64) -> f64 {
+        match share {
+            0.0 => self.low,
+            1.0 => self.high,
+            share if self.by_factors => self.low * portable::exp(share * portable::ln(self.high / self.low)),
+            share => self.low + (self.high - self.low) * share,
+        }
+    }
 }
 
 /// Whether the parameters of a coordinate move along a straight line, as one alone always does.
@@ -165,34 +220,30 @@ fn moves_straight(coordinate: &Coordinate) -> bool {
     coordinate.parameters.len() == 1 || coordinate.spacing.iter().all(|spacing| *spacing == Spacing::Linear)
 }
 
-/// The plant of a family with these values: of plants that are listed the one that has them, else that of the first box nearest to them.
+/// The plant of a family with these values: of plants that are listed the one that has them, else that of a box that holds them, else that of
+/// the first box nearest to them.
 pub(super) fn member_of(plant: &CertifiedPlant, values: &[f64]) -> Option<Member> {
-    let is_listed = |one: &Vec<Segment>| {
-        one.iter().zip(values).all(|(segment, value)| segment.variable.is_none() && segment.low == *value)
-    };
-    let of_box = match plant.boxes.iter().position(is_listed) {
-        Some(listed) => listed,
-        None if plant.variables > 0 => 0,
-        None => return None,
-    };
+    let within = plant.boxes.iter().enumerate().find_map(|(of_box, segments)| {
+        let variables = variables_within(segments, plant.variables, values)?;
+        Some(Member { of_box, variables })
+    });
+    if within.is_some() || plant.variables == 0 {
+        return within;
+    }
     let mut variables = vec![0.0; plant.variables];
-    for (one, value) in plant.boxes.get(of_box)?.iter().zip(values) {
+    for (one, value) in plant.boxes.first()?.iter().zip(values) {
         if let Some(slot) = one.variable.and_then(|variable| variables.get_mut(variable)) {
-            *slot = ((value - one.low) / (one.high - one.low)).clamp(0.0, 1.0);
+            *slot = one.share(*value).clamp(0.0, 1.0);
         }
     }
-    Some(Member { of_box, variables })
+    Some(Member { of_box: 0, variables })
 }
 
 /// The values of the parameters of a plant.
 pub(super) fn values_of(plant: &CertifiedPlant, member: &Member) -> Vec<f64> {
     let value = |one: &Segment| {
         let share = one.variable.and_then(|variable| member.variables.get(variable)).copied();
-        match share {
-            None | Some(0.0) => one.low,
-            Some(1.0) => one.high,
-            Some(share) => one.low + (one.high - one.low) * share,
-        }
+        share.map_or(one.low, |share| one.value(share))
     };
     plant.boxes.get(member.of_box).into_iter().flatten().map(value).collect()
 }

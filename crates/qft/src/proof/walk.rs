@@ -46,6 +46,8 @@ pub(crate) struct Effort {
     pub(crate) leaves: usize,
     /// Halvings on the way to a leaf at most.
     pub(crate) depth: usize,
+    /// What is kept for the rounding of the checker, in parts of |V|^2.
+    pub(crate) room: f64,
 }
 
 /// A box on its way: its control points, and from where to where it goes on each axis of its panel.
@@ -72,7 +74,7 @@ pub(crate) fn walk(
     let mut waiting = vec![Waiting { patch: whole, sides, depth: 0 }];
     let (mut tree, mut leaves) = (vec![], 0);
     while let Some(Waiting { patch, sides, depth }) = waiting.pop() {
-        match look(&patch) {
+        match look(&patch, effort.room) {
             Leaf::Shown(direction) => {
                 tree.push(LEAF);
                 tree.extend(direction.iter().flat_map(|part| part.to_be_bytes()));
@@ -96,10 +98,10 @@ pub(crate) fn walk(
 }
 
 /// What becomes of a patch. Where it would be shown if the images of the plant were known, it is halved so that they are known better.
-fn look(patch: &Patch<f64>) -> Leaf {
-    let found = leaf(&patch.points());
+fn look(patch: &Patch<f64>, room: f64) -> Leaf {
+    let found = leaf(&patch.points(), room);
     let (Leaf::Halve(_), Some((points, image))) = (found, patch.with_known_images()) else { return found };
-    match leaf(&points) {
+    match leaf(&points, room) {
         Leaf::Halve(_) => found,
         Leaf::Shown(_) | Leaf::Wrong { .. } => Leaf::Halve(most_varied(image)),
     }

@@ -27,20 +27,65 @@ pub(super) struct File {
     settings: Vec<String>,
     variables: usize,
     parameters: Vec<String>,
-    /// For each box, for each parameter: low, high and the variable.
-    boxes: Vec<Vec<(f64, f64, Option<usize>)>>,
+    /// For each box, for each parameter.
+    boxes: Vec<Vec<StatedSegment>>,
     operations: Vec<Operation>,
     plant: Plant,
     #[serde(default, skip_serializing_if = "is_zero")]
     delay: f64,
     /// Of the series that stands for dead time.
     terms: usize,
+    #[serde(default, skip_serializing_if = "is_none")]
+    model_degree: usize,
     feedback: StatedLaw,
     prefilter: StatedLaw,
     sensor: Rational,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sampling: Option<StatedSampling>,
     claims: Vec<Stated>,
+}
+
+/// Low, high and the variable; a word where it moves by equal factors.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum StatedSegment {
+    Straight((f64, f64, Option<usize>)),
+    Named((f64, f64, usize, String)),
+}
+
+/// The word.
+const BY_FACTORS: &str = "by_factors";
+
+impl From<&Segment> for StatedSegment {
+    fn from(one: &Segment) -> StatedSegment {
+        let Segment { low, high, variable, by_factors } = *one;
+        match variable.filter(|_| by_factors) {
+            Some(variable) => StatedSegment::Named((low, high, variable, BY_FACTORS.to_string())),
+            None => StatedSegment::Straight((low, high, variable)),
+        }
+    }
+}
+
+impl TryFrom<StatedSegment> for Segment {
+    type Error = CertificateError;
+
+    fn try_from(stated: StatedSegment) -> Result<Segment, CertificateError> {
+        match stated {
+            StatedSegment::Straight((low, high, variable)) => {
+                Ok(Segment { low, high, variable, by_factors: false })
+            }
+            StatedSegment::Named((low, high, variable, word)) if word == BY_FACTORS => {
+                Ok(Segment { low, high, variable: Some(variable), by_factors: true })
+            }
+            StatedSegment::Named((.., word)) => {
+                Err(meaning(format!("`{word}` does not say how a parameter moves")))
+            }
+        }
+    }
+}
+
+fn is_none(degree: &usize) -> bool {
+    *degree == 0
 }
 
 fn is_zero(value: &f64) -> bool {
@@ -53,6 +98,22 @@ fn is_zero(value: &f64) -> bool {
 enum Operation {
     Number((String, f64)),
     Two((String, usize, usize)),
+    Four((String, usize, usize, usize, usize)),
+}
+
+/// Operations on one number.
+const UNARY: [(&str, Unary); 5] = [
+    ("negate", Unary::Negate),
+    ("sqrt", Unary::SquareRoot),
+    ("exp", Unary::Exponential),
+    ("ln", Unary::Logarithm),
+    ("abs", Unary::Magnitude),
+];
+/// The third where the first is less than the second, else the fourth.
+const SELECT: &str = "select";
+
+fn unary_name(unary: Unary) -> &'static str {
+    UNARY.iter().find(|(_, known)| *known == unary).map_or("", |(name, _)| name)
 }
 
 #[derive(Serialize, Deserialize)]
@@ -157,13 +218,7 @@ impl File {
             settings: loaded.settings.clone(),
             variables: plant.variables,
             parameters: plant.parameters.clone(),
-            boxes: plant
-                .boxes
-                .iter()
-                .map(|one| {
-                    one.iter().map(|Segment { low, high, variable }| (*low, *high, *variable)).collect()
-                })
-                .collect(),
+            boxes: plant.boxes.iter().map(|one| one.iter().map(StatedSegment::from).collect()).collect(),
             operations: plant.coefficients.nodes().iter().filter_map(Operation::of).collect(),
             plant: Plant {
                 numerator: parts.next().unwrap_or_default(),
@@ -176,6 +231,7 @@ impl File {
             },
             delay: plant.delay_s,
             terms: plant.dead_time_terms,
+            model_degree: plant.model_degree,
             feedback: (&certificate.feedback).into(),
             prefilter: (&certificate.prefilter).into(),
             sensor: (&certificate.sensor).into(),
@@ -211,19 +267,19 @@ impl File {
         results.extend(dead_time);
         let coefficients = Expression::from_nodes(file.parameters.clone(), nodes, results)
             .ok_or_else(|| meaning("an operation acts on what does not stand before it"))?;
-        let segments = |one: Vec<(f64, f64, Option<usize>)>| {
-            one.into_iter().map(|(low, high, variable)| Segment { low, high, variable }).collect()
-        };
+        let segments = |one: Vec<StatedSegment>| one.into_iter().map(Segment::try_from).collect();
+        let boxes = file.boxes.into_iter().map(segments).collect::<Result<Vec<Vec<Segment>>, _>>()?;
         Ok(Certificate {
             plant: CertifiedPlant {
                 parameters: file.parameters,
                 variables: file.variables,
-                boxes: file.boxes.into_iter().map(segments).collect(),
+                boxes,
                 coefficients,
                 lengths,
                 has_dead_time: dead_time.is_some(),
                 delay_s: file.delay,
                 dead_time_terms: file.terms,
+                model_degree: file.model_degree,
             },
             feedback: file.feedback.into(),
             prefilter: file.prefilter.into(),
@@ -241,12 +297,14 @@ impl Operation {
         match *node {
             Node::Parameter(index) => one("parameter", index as f64),
             Node::Constant(value) => one("number", value),
-            Node::Unary(Unary::Negate, x) => one("negate", x as f64),
+            Node::Unary(unary, x) => one(unary_name(unary), x as f64),
             Node::Binary(Binary::Add, x, y) => two("add", x, y),
             Node::Binary(Binary::Subtract, x, y) => two("subtract", x, y),
             Node::Binary(Binary::Multiply, x, y) => two("multiply", x, y),
             Node::Binary(Binary::Divide, x, y) => two("divide", x, y),
-            Node::Unary(..) | Node::Select(..) => None,
+            Node::Select(x, y, if_less, otherwise) => {
+                Some(Operation::Four((SELECT.to_string(), x, y, if_less, otherwise)))
+            }
         }
     }
 
@@ -259,9 +317,18 @@ impl Operation {
             Operation::Number((name, value)) => match name.as_str() {
                 "parameter" => Ok(Node::Parameter(index(*value)?)),
                 "number" => Ok(Node::Constant(*value)),
-                "negate" => Ok(Node::Unary(Unary::Negate, index(*value)?)),
+                name if UNARY.iter().any(|(known, _)| *known == name) => {
+                    let unary = UNARY.iter().find(|(known, _)| *known == name).map(|(_, unary)| *unary);
+                    Ok(Node::Unary(unary.unwrap_or(Unary::Negate), index(*value)?))
+                }
                 _ => Err(meaning(format!("`{name}` is not an operation on one number"))),
             },
+            Operation::Four((name, x, y, if_less, otherwise)) if name == SELECT => {
+                Ok(Node::Select(*x, *y, *if_less, *otherwise))
+            }
+            Operation::Four((name, ..)) => {
+                Err(meaning(format!("`{name}` is not an operation on four numbers")))
+            }
             Operation::Two((name, x, y)) => match name.as_str() {
                 "add" => Ok(Node::Binary(Binary::Add, *x, *y)),
                 "subtract" => Ok(Node::Binary(Binary::Subtract, *x, *y)),

@@ -1,0 +1,207 @@
+//! Coefficients that are not polynomials in the variables of a box: a polynomial with a remainder for each operation, after Taylor.
+//!
+//! ```text
+//! t = (x + 1)/2,  x in [-1, 1],    y = c + u,  |u| <= rho,    f(y) = sum over k <= d of f_k u^k + r,    |r| <= rho^(d+1) greatest |f_(d+1)|
+//!
+//! 1/y       f_k = (-1)^k c^-(k+1)                      greatest: least |y|^-(d+2)
+//! root y    f_k = C(1/2, k) c^(1/2 - k)                          |C(1/2, d+1)| least^(1/2 - d - 1)
+//! exp y     f_k = e^c/k!                                         e^greatest/(d+1)!
+//! ln y      f_0 = ln c, f_k = (-1)^(k-1)/(k c^k)                 1/((d+1) least^(d+1))
+//! ```
+//!
+//! c is the coefficient without a variable; least and greatest are those of y, which is between c - rho and c + rho. What a product has
+//! beyond the degree d, the sum of the exponents, is added to its remainder.
+
+use phea_dynamics::expression::{Binary, Expression, Node, Unary};
+
+use super::polynomial::{Decimal, Polynomial};
+
+/// The results of an expression as polynomials in t of at most this degree with remainders, the parameters being such in x; `None` where an
+/// operation is not defined on the whole box.
+pub(super) fn modelled<S: Decimal>(
+    expression: &Expression,
+    parameters: &[Polynomial<S>],
+    degree: usize,
+) -> Option<Vec<Polynomial<S>>> {
+    let model = Model { degree };
+    // an operation that is not defined is none that a choice may take
+    let mut values: Vec<Option<Polynomial<S>>> = Vec::with_capacity(expression.nodes().len());
+    for node in expression.nodes() {
+        let value = model.value(*node, &values, parameters);
+        values.push(value);
+    }
+    let results = expression.results().iter().map(|&index| values.get(index)?.as_ref());
+    results.map(|value| Some(value?.with_shares())).collect()
+}
+
+/// A parameter that moves from low to high by equal factors with t: root(low high) exp(x ln(high/low)/2).
+pub(super) fn by_factors<S: Decimal>(
+    [low, high]: [S; 2],
+    variable: usize,
+    degree: usize,
+) -> Option<Polynomial<S>> {
+    let half = (high / low).ln().times(0.5);
+    let model = Model { degree };
+    let power = model.applied(&Polynomial::about(S::from(0.0), half, variable), Function::Exponential)?;
+    Some(power.scaled((low * high).sqrt()))
+}
+
+#[derive(Clone, Copy)]
+enum Function {
+    Inverse,
+    Root,
+    Exponential,
+    Logarithm,
+}
+
+/// How far polynomials go.
+struct Model {
+    degree: usize,
+}
+
+/// One of two, nobody knows which: their mean, half of their difference added to the remainder.
+fn either<S: Decimal>(one: &Polynomial<S>, other: &Polynomial<S>) -> Polynomial<S> {
+    let apart = one.plus(&other.scaled(S::from(-1.0)));
+    let half = (apart.size() + apart.rest()).times(0.5);
+    one.plus(other).scaled(S::from(0.5)).with_rest(half)
+}
+
+/// Between which numbers a polynomial in x is, its remainder included.
+fn range<S: Decimal>(of: &Polynomial<S>) -> [S; 2] {
+    let (center, reach) = parted(of);
+    [center - reach, center + reach]
+}
+
+/// The coefficient without a variable, and what is beside it at most.
+fn parted<S: Decimal>(of: &Polynomial<S>) -> (S, S) {
+    let zero = S::from(0.0);
+    let (center, reach) =
+        of.terms().fold((zero, zero), |(center, reach), (exponents, value)| {
+            match exponents.iter().all(|exponent| *exponent == 0) {
+                true => (center + value, reach),
+                false => (center, reach + value.abs()),
+            }
+        });
+    (center, reach + of.rest())
+}
+
+impl Model {
+    fn value<S: Decimal>(
+        &self,
+        node: Node,
+        values: &[Option<Polynomial<S>>],
+        parameters: &[Polynomial<S>],
+    ) -> Option<Polynomial<S>> {
+        let of = |index: usize| values.get(index)?.as_ref();
+        let minus = |of: &Polynomial<S>| of.scaled(S::from(-1.0));
+        match node {
+            Node::Parameter(index) => parameters.get(index).cloned(),
+            Node::Constant(value) => Some(Polynomial::number(value)),
+            Node::Unary(Unary::Negate, y) => Some(minus(of(y)?)),
+            Node::Unary(Unary::SquareRoot, y) => self.applied(of(y)?, Function::Root),
+            Node::Unary(Unary::Exponential, y) => self.applied(of(y)?, Function::Exponential),
+            Node::Unary(Unary::Logarithm, y) => self.applied(of(y)?, Function::Logarithm),
+            Node::Unary(Unary::Magnitude, y) => {
+                let [least, most] = range(of(y)?);
+                match (least.least() >= 0.0, most.most() <= 0.0) {
+                    (true, _) => of(y).cloned(),
+                    (_, true) => Some(minus(of(y)?)),
+                    _ => Some(either(of(y)?, &minus(of(y)?))),
+                }
+            }
+            Node::Binary(Binary::Add, y, z) => Some(of(y)?.plus(of(z)?)),
+            Node::Binary(Binary::Subtract, y, z) if y == z => of(y).map(|_| Polynomial::zero()),
+            Node::Binary(Binary::Subtract, y, z) => Some(of(y)?.plus(&minus(of(z)?))),
+            Node::Binary(Binary::Multiply, y, z) => Some(self.product(of(y)?, of(z)?)),
+            Node::Binary(Binary::Divide, y, z) => {
+                Some(self.product(of(y)?, &self.applied(of(z)?, Function::Inverse)?))
+            }
+            Node::Select(y, z, if_less, otherwise) => {
+                let [least, most] = range(&of(y)?.plus(&minus(of(z)?)));
+                match (most.most() < 0.0, least.least() >= 0.0) {
+                    (true, _) => of(if_less).cloned(),
+                    (_, true) => of(otherwise).cloned(),
+                    _ => Some(either(of(if_less)?, of(otherwise)?)),
+                }
+            }
+        }
+    }
+
+    fn product<S: Decimal>(&self, one: &Polynomial<S>, other: &Polynomial<S>) -> Polynomial<S> {
+        one.times(other).truncated(self.degree)
+    }
+
+    /// A function of a polynomial; `None` where it is not defined everywhere.
+    fn applied<S: Decimal>(&self, to: &Polynomial<S>, function: Function) -> Option<Polynomial<S>> {
+        let (center, reach) = parted(to);
+        let [least, most] = [center - reach, center + reach];
+        let is_defined = match function {
+            Function::Inverse => least.least() > 0.0 || most.most() < 0.0,
+            Function::Root | Function::Logarithm => least.least() > 0.0,
+            Function::Exponential => most.most().is_finite(),
+        };
+        // zero has a root, and no derivative
+        if to.is_zero() && matches!(function, Function::Root) {
+            return Some(Polynomial::zero());
+        }
+        if !is_defined {
+            return None;
+        }
+        if to.as_constant().is_some() {
+            return Some(Polynomial::constant(function.at(center)));
+        }
+        let beside = to.plus(&Polynomial::constant(-center));
+        let coefficients = function.coefficients(center, self.degree);
+        let mut out = Polynomial::zero();
+        for &coefficient in coefficients.iter().rev() {
+            out = self.product(&out, &beside).plus(&Polynomial::constant(coefficient));
+        }
+        let power = (0..=self.degree).fold(S::from(1.0), |product, _| product * reach);
+        Some(out.with_rest(power * function.beyond([least, most], self.degree + 1)))
+    }
+}
+
+impl Function {
+    fn at<S: Decimal>(self, value: S) -> S {
+        match self {
+            Function::Inverse => S::from(1.0) / value,
+            Function::Root => value.sqrt(),
+            Function::Exponential => value.exp(),
+            Function::Logarithm => value.ln(),
+        }
+    }
+
+    /// f_0 to f_d.
+    fn coefficients<S: Decimal>(self, center: S, degree: usize) -> Vec<S> {
+        let mut term = self.at(center);
+        let mut out = vec![term];
+        for k in 1..=degree {
+            let order = k as f64;
+            term = match self {
+                Function::Inverse => -(term / center),
+                Function::Root => term / center * S::from(1.5 - order) / S::from(order),
+                Function::Exponential => term / S::from(order),
+                Function::Logarithm if k == 1 => S::from(1.0) / center,
+                Function::Logarithm => -(term / center * S::from(order - 1.0) / S::from(order)),
+            };
+            out.push(term);
+        }
+        out
+    }
+
+    /// |f_k| at most, for every center between two numbers.
+    fn beyond<S: Decimal>(self, [least, most]: [S; 2], order: usize) -> S {
+        let nearest = if least.least() > 0.0 { least } else { -most };
+        let power = |of: S| (0..order).fold(S::from(1.0), |product, _| product * of);
+        match self {
+            Function::Inverse => S::from(1.0) / (power(nearest) * nearest),
+            Function::Root => {
+                let share = (1..=order)
+                    .fold(S::from(1.0), |known, k| known * S::from(1.5 - k as f64) / S::from(k as f64));
+                share.abs() * nearest.sqrt() / power(nearest)
+            }
+            Function::Exponential => (1..=order).fold(most.exp(), |known, k| known / S::from(k as f64)),
+            Function::Logarithm => S::from(1.0) / (power(nearest) * S::from(order as f64)),
+        }
+    }
+}
