@@ -304,6 +304,13 @@ impl Prover<'_> {
         let Some(mut found) = enclose(&self.certificate, limited, hints, wanted, watch)? else {
             return Ok(SpecificationProof::without(Standing::NotProven(NotProven::NotPolynomial)));
         };
+        let reached = Claim::Reached {
+            limited: limited.clone(),
+            ratio: found.least,
+            frequency_rad_per_s: found.at.frequency_rad_per_s,
+            member: found.at.member.clone(),
+        };
+        let is_reached = self.keeps(reached);
         let mut most_db = self.keeps_most(limited, found.most.take());
         let rounding = most_db == Some(None);
         if rounding {
@@ -313,13 +320,6 @@ impl Prover<'_> {
         }
         let most_db = most_db.flatten();
         let Enclosed { least, at, open, .. } = found;
-        let reached = Claim::Reached {
-            limited: limited.clone(),
-            ratio: least,
-            frequency_rad_per_s: at.frequency_rad_per_s,
-            member: at.member.clone(),
-        };
-        let is_reached = self.keeps(reached);
         let standing = match most_db {
             _ if is_reached && least > decisive => Standing::Refuted,
             Some(most_db) if most_db <= self.problem.tolerance_db => Standing::Proven,
