@@ -15,6 +15,7 @@ mod prefilter;
 mod proof;
 mod proof_curved;
 mod proof_sampled;
+mod proof_trap;
 mod quantisation;
 mod responding;
 mod rig;

@@ -7,7 +7,7 @@ mod dead_time;
 mod ends;
 mod examples;
 mod given_frequency;
-mod plants;
+pub(crate) mod plants;
 mod properties;
 mod reach;
 pub(crate) mod thesis;

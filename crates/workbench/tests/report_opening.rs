@@ -91,8 +91,17 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     let verified = json(&source, &loaded, &Request::VerifyOnMachine);
     let designed = json(&source, &loaded, &Request::Design { seed: None, stages: false, repair: false });
     let both = [&verified, &designed["verification"]];
-    let verdicts = both.map(|answer| answer["verdict"].as_str().unwrap().replace('_', " "));
-    assert_eq!(rows(&page, "every specification")[0][1..], verdicts);
+    let all_proven = |answer: &Value| {
+        let proof = &answer["proof"]["stable"]["proven"];
+        let each = answer["specifications"].as_array().unwrap().iter().map(|own| &own["proven"]);
+        std::iter::once(proof).chain(each).all(|proven| proven == true)
+    };
+    let verdict = designed["verification"]["verdict"].as_str().unwrap();
+    let proven = if all_proven(&designed["verification"]) { ", proven" } else { "" };
+    let cells = [verified["verdict"].as_str().unwrap().to_string(), format!("{verdict}{proven}")];
+    assert_eq!(rows(&page, "every specification")[0][1..], cells);
+    assert_eq!(told.decision.designed.as_ref().unwrap().proven, Some(all_proven(&designed["verification"])));
+    assert_eq!(told.decision.given.as_ref().unwrap().proven, Some(false));
     let machines =
         [&verified["machine"], &designed["machine"]].map(|machine| machine["verdict"].as_str().unwrap());
     let tried = &rows(&page, "tried on the rig")[0];

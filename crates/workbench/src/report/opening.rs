@@ -57,6 +57,9 @@ pub struct Decided {
     /// The same of each specification, in file order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub specifications: Vec<&'static str>,
+    /// Whether all of that is proven for every plant and every frequency; absent where no proof was attempted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub proven: Option<bool>,
     /// What the machine did with the verdict: `agrees`, `differs`, `contradicts`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub machine: Option<&'static str>,
@@ -115,6 +118,7 @@ fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
     Decided {
         verdict: side.view.map(|view| verdict_key(view.audit.verdict)),
         specifications: findings.iter().map(|finding| verdict_key(finding.verdict)).collect(),
+        proven: side.is_proven(),
         machine: side.trial.map(|trial| agreement_word(trial.agreement())),
         wishes_kept: wish.and_then(|wish| side.keeps(wish)),
     }

@@ -1,5 +1,6 @@
 //! One controller with all that is known of it.
 
+use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::Verdict;
 
 use crate::audit::ProjectAudit;
@@ -45,6 +46,18 @@ pub(super) fn sides<'a>(judged: Option<&'a Judged>, driven: Option<&'a Driven>) 
 }
 
 impl Side<'_> {
+    /// What was proven of it, where its proof was attempted.
+    pub(super) fn proof(&self) -> Option<&Proof> {
+        self.view?.proof.as_ref()
+    }
+
+    /// Whether every plant is proven to be stable and to satisfy every specification at every frequency; `None` where no proof was attempted.
+    pub(super) fn is_proven(&self) -> Option<bool> {
+        let proof = self.proof()?;
+        let each = proof.specifications.iter().map(|own| &own.standing);
+        Some(std::iter::once(&proof.stability).chain(each).all(|one| *one == Standing::Proven))
+    }
+
     /// Whether every specification is met.
     pub(super) fn is_met(&self) -> bool {
         self.view.is_some_and(|view| view.audit.verdict == Verdict::Met)

@@ -1,6 +1,7 @@
 //! The table of verdicts and numbers: a row for each thing that was asked, a column for each controller.
 
 use maud::{Markup, html};
+use phea_qft::proof::Standing;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use super::Contents;
@@ -52,7 +53,8 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     let Some(judged) = contents.judged else { return vec![] };
     let mut rows = Vec::new();
     rows.extend(row(html! { b { "every specification, at every frequency" } }, sides, |side| {
-        Some(html! { b { (Cell::verdict(side.view?.audit.verdict).markup()) } })
+        let verdict = Cell::verdict(side.view?.audit.verdict).markup();
+        Some(html! { b { (verdict) (proven(side.is_proven().unwrap_or(false))) } })
     }));
     rows.extend(row(cell("every plant stable"), sides, |side| {
         let verdict = side.view?.audit.stability.verdict;
@@ -61,19 +63,29 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
             Verdict::Violated => "unstable",
             Verdict::NotProven => "not proven",
         };
-        Some(badge(verdict.into(), word))
+        let is_proven = side.proof().is_some_and(|proof| proof.stability == Standing::Proven);
+        Some(html! { (badge(verdict.into(), word)) (proven(is_proven)) })
     }));
     for (index, specification) in judged.problem.specifications.iter().enumerate() {
         let name = html! {
             (index + 1) " " (judged.problem.name_of(index)) ", " (typeset(&demand(&specification.requirement)))
         };
-        rows.extend(row(name, sides, |side| Some(finding(side.view?.audit.specifications.get(index)?))));
+        rows.extend(row(name, sides, |side| {
+            let is_proven = side.proof().and_then(|proof| proof.specifications.get(index));
+            let is_proven = is_proven.is_some_and(|own| own.standing == Standing::Proven);
+            Some(finding(side.view?.audit.specifications.get(index)?, is_proven))
+        }));
     }
     rows
 }
 
+/// What stands behind a verdict that holds for every plant and every frequency.
+fn proven(is_proven: bool) -> &'static str {
+    if is_proven { ", proven" } else { "" }
+}
+
 /// The verdict, by how much, and where.
-fn finding(finding: &SpecificationFinding) -> Markup {
+fn finding(finding: &SpecificationFinding, is_proven: bool) -> Markup {
     let Some(worst) = &finding.worst else { return Cell::verdict(finding.verdict).markup() };
     let place = frequency_words(worst.frequency_rad_per_s);
     let size = significant(worst.margin_db.abs(), 3);
@@ -86,7 +98,7 @@ fn finding(finding: &SpecificationFinding) -> Markup {
             format!("; {size} dB {} {place}", if worst.margin_db < 0.0 { "off" } else { "to spare" })
         }
     };
-    html! { (Cell::verdict(finding.verdict).markup()) (told) }
+    html! { (Cell::verdict(finding.verdict).markup()) (proven(is_proven)) (told) }
 }
 
 fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
