@@ -8,10 +8,10 @@ Cosines, sines, logarithms and powers are enclosed by rational numbers; all else
 """
 
 import math
-import pathlib
 import sys
 from fractions import Fraction
 
+import arithmetic
 from arithmetic import Malformed, Polynomial, Rejected, axis, exponential, logarithm, number, of_frequency, turned
 from layout import LAWS, need, read, read_certificate
 from panels import show
@@ -308,24 +308,40 @@ def check_reached(claim, file):
 CHECKS = {"stable": check_stable, "unstable": check_unstable, "limited": check_limited, "reached": check_reached}
 
 
-def main():
+def check(text):
+    """The exit status, and what is said: a sentence for each claim, the last one about the file."""
+    arithmetic.work, told = 0, []
     try:
-        file = read_certificate(read(pathlib.Path(sys.argv[1]).read_bytes()[:GREATEST_FILE].decode()))
-        print(file["title"])
+        file = read_certificate(read(text))
+        told.append(file["title"])
         if not file["claims"]:
-            print("The certificate is rejected: it makes no claim.")
-            return 1
+            raise Rejected("The certificate is rejected: it makes no claim")
         for i, claim in enumerate(file["claims"], 1):
             try:
-                print(f"  holds: {CHECKS[claim['claim']](claim, file)}", flush=True)
+                told.append(f"  holds: {CHECKS[claim['claim']](claim, file)}")
             except Rejected as reason:
-                print(f"The certificate is rejected at claim {i}, {claim['claim']}: {reason}.")
-                return 1
-    except (Malformed, UnicodeDecodeError, OSError, IndexError) as problem:
-        print(f"No certificate that can be checked: {problem}.")
+                raise Rejected(f"The certificate is rejected at claim {i}, {claim['claim']}: {reason}") from None
+    except Malformed as problem:
+        return 2, [*told, f"No certificate that can be checked: {problem}."]
+    except Rejected as reason:
+        return 1, [*told, f"{reason}."]
+    return 0, [*told, f"Every claim holds: {len(file['claims'])}."]
+
+
+def main():
+    if len(sys.argv) != 2:
+        print("usage: python3 check_certificate.py FILE", file=sys.stderr)
         return 2
-    print(f"Every claim holds: {len(file['claims'])}.")
-    return 0
+    try:
+        with open(sys.argv[1], "rb") as certificate:
+            data = certificate.read(GREATEST_FILE + 1)
+        if len(data) > GREATEST_FILE:
+            raise ValueError("the file is too long")
+        status, told = check(data.decode())
+    except (OSError, ValueError) as problem:
+        status, told = 2, [f"No certificate that can be checked: {problem}."]
+    print("\n".join(told))
+    return status
 
 
 if __name__ == "__main__":
